@@ -139,6 +139,9 @@ onstart:
 
 onsuccess:
     unlike_this_run()
+    from stiction.command import index
+
+    index.write(Path("results"), planner.rules)
 
 
 rule all:

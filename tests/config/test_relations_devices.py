@@ -14,7 +14,7 @@ from test_messages import UNITS
 
 from stiction.config.files import load, normalised
 from stiction.config.kinds import KEYS
-from stiction.config.memory import of_field
+from stiction.config.memory import field_memory
 from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
@@ -501,9 +501,9 @@ def test_warnings_know_what_is_stated_of_a_material():
 
 def test_patches_of_devices_count_for_the_memory_of_jobs():
     wide = normalised(with_device(width_um=600))
-    assert memory.of_job(wide) == round(of_field(2.5, 601, 10))
+    assert memory.of_job(wide) == round(field_memory(2.5, 601, 10))
     stopper = normalised(merged(PAPER, {"devices": {"S1": S1 | {"contact_um": [30, 40]}}}))
-    assert memory.of_job(stopper) == round(of_field(31, 41, 10))
+    assert memory.of_job(stopper) == round(field_memory(31, 41, 10))
 
 
 def test_the_axis_of_the_worst_humidity_holds_no_air_that_is_too_dry_for_a_stopper():

@@ -277,28 +277,6 @@ def test_a_script_is_looked_for_once_unless_its_name_depends_on_the_job(monkeypa
         assert looked_for == [*jobs[:number], *jobs[-2:]]
 
 
-#: Private parts of Snakemake that a plan changes, each with its change.
-CHANGED = [
-    (persistence.PersistenceBase, "_serialize_param_pandas", snakemake_patches.compare_without_pandas),
-    (dag.ScriptProcessor, "process_job", snakemake_patches.look_for_scripts_once),
-    (common, "get_function_params", snakemake_patches.remember_signatures),
-    (rules, "get_function_params", snakemake_patches.remember_signatures),
-]
-
-
-@pytest.mark.parametrize(("owner", "name", "change"), CHANGED)
-def test_a_private_part_of_this_version_is_changed_and_an_unknown_one_remains(monkeypatch, owner, name, change):
-    for other, part, _ in CHANGED:  # restored after the test
-        monkeypatch.setattr(other, part, getattr(other, part))
-    known = getattr(owner, name)
-    change()
-    assert getattr(owner, name) is not known
-    if owner is not persistence.PersistenceBase:  # whose values are compared, whatever it takes
-        monkeypatch.setattr(owner, name, another)
-        change()
-        assert getattr(owner, name) is another
-
-
 @pytest.mark.parametrize("module", ["common", "dag", "persistence", "rules", "script"])
 def test_a_snakemake_without_a_private_module_remains_as_it_is(monkeypatch, module):
     private = common, rules, dag.ScriptProcessor, persistence.PersistenceBase, PythonScript

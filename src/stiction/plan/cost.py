@@ -23,7 +23,7 @@ _DRAWN = {"sampling", "contact", "beam"}
 _FULL = {"strips", "humidities"}
 
 
-def of_job(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets: int = 1, repeats: int = 1) -> float:
+def job_cost(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets: int = 1, repeats: int = 1) -> float:
     """CPU time of a job [s], from its settings in the units of the configuration.
 
     A job that writes several ``datasets`` computes as many contacts, a chunk of them its part of the samples. Beams are
@@ -33,7 +33,7 @@ def of_job(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets: 
     --------
     >>> beam, sampling = {"width_um": 30}, {"spacing_nm": 10, "strip_length_um": 1.5, "margin_um": 1}
     >>> settings = {"sampling": sampling, "beam": beam, "contact": {"samples": 5000}}
-    >>> round(of_job(settings, {})), round(of_job(settings, {"chunk": "0", "number": "5"}), 1)
+    >>> round(job_cost(settings, {})), round(job_cost(settings, {"chunk": "0", "number": "5"}), 1)
     (36, 7.7)
     """
     parts, sections = int(wildcards["number"]) if "chunk" in wildcards else 1, list(_sections(settings))

@@ -1,6 +1,6 @@
 """Memory to request for jobs: enough for the largest field that they draw, and twice as much after each failure."""
 
-from stiction.config.memory import FIELD_UM, USUAL, of_field, patch_of, spacings_of
+from stiction.config.memory import FIELD_UM, USUAL, field_memory, patch_of, spacings_of
 from stiction.config.units import NM_PER_UM
 from stiction.plan.devices import DevicePlan
 
@@ -34,4 +34,4 @@ def _of_largest_field(config):
     for device in devices.sections.values():
         length, width = patch_of(device, sampling)
         drawn += [((length + margin, width + margin), at) for at in spacings_of(device, spacing, others)]
-    return max(of_field(*side, at) for side, at in drawn)
+    return max(field_memory(*side, at) for side, at in drawn)

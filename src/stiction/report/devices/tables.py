@@ -110,7 +110,7 @@ def safe_lengths(
         for shape in map(str, dataset["shape"].values):
             head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[shape].by}
             head |= _at_length(dataset.sel(shape=shape))
-            last = model_errors.of_device(errors, device, humidity, shape)
+            last = model_errors.device_change(errors, device, humidity, shape)
             last |= {"warnings": " ".join(warnings[device, humidity, shape])}
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
@@ -248,7 +248,7 @@ STAGES = (
                 "lengths": by_case("devices/safe_lengths", plan.devices.cases),
                 "warnings": device_warnings.files_of(*plan.devices.beams),
             }
-            | model_errors.of_devices(plan, *plan.devices.beams)
+            | model_errors.error_inputs(plan, *plan.devices.beams)
         ),
         settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.beams)},
         compute=lambda data, settings: safe_lengths(

@@ -44,7 +44,7 @@ def variant_label(name: str) -> str:
 
 
 def sensitivity(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataFrame) -> Table:
-    """Fig. 13 in numbers, beside the published slopes of the mean; datasets by pair and shifted moment."""
+    """Fig. 13 in numbers, beside the published slopes of the mean. Datasets by pair and shifted moment."""
     frame = pd.DataFrame([row for at, dataset in datasets.items() for row in _slopes(dataset, *at, published)])
     caption = (
         "Fig. 13: normalised sensitivity (|x|/y) dy/dx of mean and standard deviation y of the meso-scale adhesion "
@@ -157,7 +157,7 @@ def _summary(key, group):
 
 
 def _removed(group, base):
-    """Share of the mean square deviation from the published length that a variant removes, with its error [-]."""
+    """Fraction of the mean square deviation from the published length removed by a variant, with its error [-]."""
     known = (group.published_um.notna() & group.crack_length_um.notna()).values & base.crack_length_um.notna().values
     if not known.any() or group is base:
         return np.nan, np.nan
@@ -169,7 +169,7 @@ def _removed(group, base):
 
 
 def _rms_deviation(group, column):
-    """Root mean square deviation from the references in a column and its standard error; None without references."""
+    """Root mean square deviation from the references in a column and its standard error, None without references."""
     known = group[group[column].notna() & group.crack_length_um.notna()]
     if not len(known):
         return None

@@ -1,4 +1,4 @@
-"""Force curves at a humidity from the dataset of stage contact; shared by several stages, not a stage itself."""
+"""Force curves at a humidity from the dataset of stage contact. Shared by several stages, not a stage itself."""
 
 from functools import partial
 
@@ -66,7 +66,7 @@ def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
 
 
 def share_flat(contact: xr.Dataset, humidity: float, water: Water) -> float:
-    """Share of the samples at a relative humidity that count as flat surfaces, because no summits stop them [-]."""
+    """Fraction of the samples at a relative humidity to count as flat surfaces, not stopped by summits [-]."""
     sampled = force_curves(contact, humidity, water)
     return forcelaw.share_flat(sampled.curve, sampled.samples) if sampled.flat else 0.0
 

@@ -10,7 +10,7 @@ from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
 from stiction.stages.contact.changes.table import AS_IT_IS, file_of
 from stiction.stages.contact.changes.variants import VARIANT
-from stiction.stages.contact.corrections import of_pair
+from stiction.stages.contact.corrections import correction_inputs
 
 
 def contact_of(plan: Any, case: Case) -> str:
@@ -38,8 +38,8 @@ def _tips(plan, case):
 
 
 def corrections_of(plan: Any, device: str) -> dict[str, str]:
-    """As `stiction.stages.contact.corrections.of_pair`, of the pair of a device."""
-    return of_pair(plan, plan.config["devices"][device]["pair"])
+    """As `stiction.stages.contact.corrections.correction_inputs`, of the pair of a device."""
+    return correction_inputs(plan, plan.config["devices"][device]["pair"])
 
 
 def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import GROUND, TIPS
 from stiction.stages.surfaces.descriptions import description, drawn_as
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 #: Folder of the contacts of patches; those of tips have one in it.
 FOLDER = "devices/contact"
@@ -32,7 +32,7 @@ CURVES = 5
 
 
 class Varied(NamedTuple):
-    """A quantity that is varied: one key of section ``roughness`` of a device."""
+    """Varied quantity: one key of section ``roughness`` of a device."""
 
     surface: str
     key: str  #: of `stiction.config.kinds.ROUGHNESSES`
@@ -40,11 +40,11 @@ class Varied(NamedTuple):
     high: float
 
     def value(self, number: int) -> float | None:
-        """Value of a point in the unit of the key, ``None`` as it is given; evenly spaced, or by equal factors."""
+        """Value of a point in the unit of the key, ``None`` as it is given. Evenly spaced, or by equal factors."""
         return None if number == POINTS - 1 else self._spaced(number, POINTS - 1)
 
     def of_curve(self, number: int) -> float | None:
-        """As `value`, of a curve of a map."""
+        """Value of a curve of a map, see `value`."""
         return None if number == 0 else self._spaced(number - 1, CURVES - 1)
 
     def _spaced(self, number, count):
@@ -52,14 +52,14 @@ class Varied(NamedTuple):
         return float(spaced(self.low, self.high, count)[number].round(9))
 
     def named(self, name: str, value: float | None) -> dict[str, float | None]:
-        """A value by a name with the unit of the key."""
+        """Value by a name with the unit of the key."""
         unit = self.key.removeprefix(without_unit(self.key))
         return {name + unit * (value is not None): value}
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that such a contact depends on apart from its surfaces."""
+    """Settings of such a contact, without its surfaces."""
 
     contact: pairs.Settings
     pair: str  #: part of the addresses of random numbers
@@ -71,7 +71,7 @@ class Settings:
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Settings) -> xr.Dataset:
-    """Dataset of stage contact with the value of the quantity, and of another one with that as given, as variables.
+    """Dataset of stage contact with the value of the quantity, and of an unchanged second one, as variables.
 
     So is the kurtosis, which may change with the skewness, see `stiction.analysis.shifts.with_value`.
     """
@@ -99,7 +99,7 @@ def roughness_of(contact: xr.Dataset) -> float:
 
 
 def varied(plan: Any, device: str) -> list[Varied]:
-    """What is varied of the surfaces of a device: along its curves and, for a map, from curve to curve."""
+    """Varied quantities of the surfaces of a device: along its curves and, for a map, from curve to curve."""
     section = plan.config["devices"][device]["roughness"]
     return [Varied(section["surface"], key, *section[key]) for key in ROUGHNESSES if key in section]
 
@@ -137,15 +137,16 @@ def _of_patch(plan, pair, device):
 
 
 def _of_tips(plan, pair, device):
-    """As `_of_patch`, of the tips of a cantilever."""
+    """Settings of the tips of a cantilever, see `_of_patch`."""
     tips = plan.devices.tips(device)._replace(pair=pair)
     return TIPS.settings(plan, At(**tips._asdict()), plan.config["design"]["beams"])
 
 
 def _stage(name, folder, contact, words, in_air=PairInAir):
-    """Stage of one contact of a point; ``contact`` gives its settings by plan, pair in its air and device."""
+    """Stage of one contact of a point. ``contact`` gives its settings by plan, pair in its air and device."""
 
     def settings(plan, at):
+        """Settings of the contact of a point, with its values of the varied quantities."""
         pair = plan.config["devices"][at.device]["pair"]
         what, *others = varied(plan, at.device)
         curve, point = divmod(int(at.number), POINTS)
@@ -163,7 +164,7 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
     return Stage.writing(
         name,
         f"{folder}/roughness/{{device}}{in_air('')}_{{number}}",
-        inputs=lambda plan, at: of_pair(plan, plan.config["devices"][at.device]["pair"]),
+        inputs=lambda plan, at: surface_inputs(plan, plan.config["devices"][at.device]["pair"]),
         settings=settings,
         kind=Settings,
         compute=lambda data, settings: compute(both(data), settings),

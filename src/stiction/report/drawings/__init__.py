@@ -1,0 +1,1 @@
+"""Drawings of devices, of what holds them, and of the method, as SVG."""
