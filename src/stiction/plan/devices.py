@@ -21,10 +21,13 @@ from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
+from stiction.plan.stage import chosen
 
 #: Steps of the distance for the contact of tips, in those of section contact. ASSUME: they suffice for the largest
 #: attraction, the vertex of a parabola: with four, lengths of pair b are 0.02 to 0.19 % longer than with one.
 OF_TIPS = 2
+#: Gaps across which solids attract a tilted stopper at most [nm]. Retarded attraction has 0.05 % of its work at 5 nm.
+FAR = 100.0
 #: Quantities of a surface by numbers, in the order of budgets.
 ALL_QUANTITIES = MOMENT_QUANTITIES + SPECTRUM_QUANTITIES
 
@@ -123,10 +126,32 @@ class DevicePlan:
         section = self.sections[device]
         return patch(section["pair"], *self.kind(device).sides(section, self.config["sampling"]["strip_length_um"]))
 
+    def capacitor(self, device: str) -> dict:
+        """Voltage of a device and its dielectric; empty without a voltage."""
+        return chosen(self.sections[device], ("voltage_V", "offset_V", "dielectric"))
+
     def has_strips_of_pair(self, device: str) -> bool:
         """Whether a device sticks on the strips of its pair in the main line, whose contact it then shares."""
         main = self.config["sampling"]["strip_length_um"], self.config["beam"]["width_um"]
         return self.ground(device) == patch(self.sections[device]["pair"], *main)
+
+    # Tilted stoppers
+
+    def slopes(self, device: str) -> list[float]:
+        """Slopes of a stopper at its tilts, increasing [-]; none if it states no tilt."""
+        return [math.tan(to_si(tilt, "deg")) for tilt in self.sections[device].get("tilt_deg", ())]
+
+    def inclination(self, area: Patch) -> dict:
+        """Slopes and reach of the contact of tilted stoppers that touch with this area.
+
+        The reach covers film, heights of six times the rms of both surfaces, and the gaps to the far side of the
+        stopper. ASSUME: no attraction across gaps beyond `FAR`.
+        """
+        area = area._replace(pair=PairInAir(area.pair).pair)
+        users = [name for name in self.stoppers if self.ground(name) == area]
+        slopes = sorted({slope for name in users for slope in self.slopes(name) if slope})
+        reach = max(map(self._reach, users)) + 3 * self._rms_of_both(area.pair) + min(slopes[-1] * area.length, FAR)
+        return {"slopes": slopes, "reach_nm": reach}
 
     # Tips of cantilevers
 
@@ -177,10 +202,13 @@ class DevicePlan:
         """
         section = self.sections[device]
         wettest = max(section["humidities"] + section.get("chart", {}).get("humidities", []))
-        rms = [self._rms(self.config["pairs"][section["pair"]][side]) for side in SIDES]
         film = float(meniscus_height(wettest, self.config["water"]["temperature_K"])) if wettest else 0.0
-        least = from_si(film, "nm") + 3 * math.hypot(*rms)
+        least = from_si(film, "nm") + 3 * self._rms_of_both(section["pair"])
         return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
+
+    def _rms_of_both(self, pair):
+        """Standard deviation of the sum of the heights of both surfaces of a pair [nm]."""
+        return math.hypot(*(self._rms(self.config["pairs"][pair][side]) for side in SIDES))
 
     def _rms(self, surface):
         """Standard deviation of the heights of a surface, preliminary if it is described by scans [nm]."""
