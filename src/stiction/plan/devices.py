@@ -15,7 +15,7 @@ from stiction.config.kinds import ROUGHNESSES, Kind, kind_of
 from stiction.config.materials import material_of
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
-from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge
+from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, uncertain
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
@@ -71,27 +71,27 @@ class DevicePlan:
         """Kind of a device."""
         return kind_of(self.sections[device])
 
-    @property
+    @cached_property
     def beams(self) -> list[str]:
         """Devices that crack open."""
         return [name for name in self.sections if self.kind(name).is_beam]
 
-    @property
+    @cached_property
     def stoppers(self) -> list[str]:
         """Devices that touch with their whole area."""
         return [name for name in self.sections if not self.kind(name).is_beam]
 
-    @property
+    @cached_property
     def with_tips(self) -> list[str]:
         """Devices that a free end may hold."""
         return [name for name in self.sections if self.kind(name).has_tip]
 
-    @property
+    @cached_property
     def cases(self) -> list[str]:
         """Every beam at each of its humidities."""
         return [case_id(name, humidity) for name in self.beams for humidity in self.sections[name]["humidities"]]
 
-    @property
+    @cached_property
     def charted(self) -> list[str]:
         """Devices with a chart."""
         return [name for name in self.beams if "chart" in self.sections[name]]
@@ -222,22 +222,22 @@ class DevicePlan:
 
     # Budgets
 
-    @property
+    @cached_property
     def tested(self) -> list[str]:
         """Devices with test beams."""
         return [name for name, device in self.sections.items() if "test_beams" in device]
 
-    @property
+    @cached_property
     def roughened(self) -> list[str]:
         """Devices that are computed over the roughness of a surface."""
         return [name for name, device in self.sections.items() if "roughness" in device]
 
-    @property
+    @cached_property
     def mapped(self) -> list[str]:
         """Those of `roughened` that are computed over two quantities."""
         return [name for name in self.roughened if len(ROUGHNESSES.keys() & self.sections[name]["roughness"]) > 1]
 
-    @property
+    @cached_property
     def budgeted(self) -> list[str]:
         """Devices with an uncertain input: with a stated uncertainty, or on a surface described by scans."""
         stated = {name: any(device.get("uncertainty", {}).values()) for name, device in self.sections.items()}
@@ -266,12 +266,11 @@ class DevicePlan:
         spectrum changes a length by 0.2 %.
         """
         of_heights = set(MOMENT_QUANTITIES if self.sections[device].get("uncertainty", {}).get("scan_um") else ())
-        entries, known = self._surfaces(device), self.known(device)
         by_surface = {
             name: quantities(entry)
             if is_measured(entry)
-            else [one for one in ALL_QUANTITIES if one in of_heights.union(known[name].quantities)]
-            for name, entry in entries.items()
+            else [one for one in ALL_QUANTITIES if one in of_heights.union(uncertain(entry))]
+            for name, entry in self._surfaces(device).items()
         }
         return [(name, quantity) for name, of_surface in by_surface.items() for quantity in of_surface]
 
