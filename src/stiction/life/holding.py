@@ -1,4 +1,4 @@
-r"""What a voltage adds to the adhesion of a device that touches.
+r"""Voltage as an addition to the adhesion of a touching device.
 
 A dielectric of thickness t and relative permittivity :math:`\epsilon_r` keeps beam and substrate apart, and counts as a
 gap :math:`D = t / \epsilon_r`. At the gap g they attract each other as a capacitor per area,
@@ -35,7 +35,7 @@ ARC, S_SHAPE = 3 / 8, 3 / 2
 
 
 def energy_of_voltage(voltage: float, distance: float, gap: float) -> float:
-    """Work Γ_V against a voltage [V] from contact to a gap h [m], with D as the ``distance`` in contact [m]; [J m⁻²].
+    """Work Γ_V against a voltage [V] from contact to a gap h [m], with ``distance`` D in contact [m] [J m⁻²].
 
     Examples
     --------
@@ -46,12 +46,12 @@ def energy_of_voltage(voltage: float, distance: float, gap: float) -> float:
 
 
 def pressure_of_voltage(voltage: float, distance: float) -> float:
-    """Attraction of flats in contact at a voltage, ε0 V² / 2 D² [Pa]; parameters as of `energy_of_voltage`."""
+    """Attraction of flats in contact at a voltage, ε0 V² / 2 D² [Pa]. Parameters as of `energy_of_voltage`."""
     return VACUUM_PERMITTIVITY * voltage**2 / (2 * distance**2)
 
 
 def length_at_voltage(length: float, beam: Beam, added: float, form: float) -> float:
-    """Length that releases at a voltage, where one without voltage is known [m]; energy Γ_V [J m⁻²], form c [-].
+    """Length to release at a voltage, from one without voltage [m], the energy Γ_V [J m⁻²] and form c [-].
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Stage life: what brings a device into contact, whether it then sticks, what holds it, and what frees it.
+"""Stage life: causes of the contact of a device, its adhesion then, and ways to free it.
 
 Every answer is a number between two bounds, which are equal where the model leaves nothing open. Voltage and shock of a
 beam are those of its length: the stated one, or its least safe length.
@@ -49,7 +49,7 @@ class Answer(NamedTuple):
 
 @dataclass(frozen=True)
 class Liquid:
-    """A liquid in which devices are released."""
+    """Liquid for the release of devices."""
 
     surface_tension: float  #: γ [N m⁻¹]
     contact_angle: float = 0.0  #: θ on the device [rad]. ASSUME: 0, the safe side, where it is not stated
@@ -72,7 +72,7 @@ class Errors:
 
 @dataclass(frozen=True)
 class Dielectric:
-    """What keeps a device and its substrate apart at a voltage."""
+    """Dielectric between a device and its substrate at a voltage."""
 
     thickness: float  #: [m]
     permittivity: float  #: relative [-]
@@ -85,7 +85,7 @@ class Dielectric:
 
 @dataclass(frozen=True, kw_only=True)
 class Stated:
-    """What any device may state beside its dimensions."""
+    """Keys of any device beside its dimensions."""
 
     touchdowns: int = 1
     voltage: float = 0.0  #: [V]
@@ -94,13 +94,13 @@ class Stated:
 
     @property
     def potential(self) -> float:
-        """Largest difference of potential [V]; ASSUME: voltages of both signs occur."""
+        """Largest difference of potential [V]. ASSUME: voltages of both signs occur."""
         return abs(self.voltage) + abs(self.offset)
 
 
 @dataclass(frozen=True, kw_only=True)
 class OfBeam(Stated):
-    """A beam, and what it meets beside its ground."""
+    """Beam and its surroundings beside its ground."""
 
     device: DesignedBeam
     density: float  #: ρ [kg m⁻³]
@@ -120,7 +120,7 @@ class OfBeam(Stated):
         return half_of_bridge(Beam(*sizes, elements=1), device.residual_stress)
 
     def number(self, of: Callable[[Beam], float], length: float) -> tuple[float, float]:
-        """A number that depends on the beam, and its standard uncertainty to first order; NaN if no input has any."""
+        """Number of the beam, and its standard uncertainty to first order, NaN if no input has any."""
         squares, value = 0.0, of(self.beam(length))
         for field in fields(self.uncertainty):
             mean, error = getattr(self.device, field.name), getattr(self.uncertainty, field.name)
@@ -133,7 +133,7 @@ class OfBeam(Stated):
 
 @dataclass(frozen=True)
 class Electrode:
-    """An electrode that pulls a stopper down."""
+    """Electrode for pulling a stopper down."""
 
     area: float  #: [m²]
     gap: float  #: from the moving part at rest [m]
@@ -141,7 +141,7 @@ class Electrode:
 
 @dataclass(frozen=True, kw_only=True)
 class OfStopper(Stated):
-    """A stopper, and what it meets beside its ground; zero where nothing is stated."""
+    """Stopper and its surroundings beside its ground, zero if not given."""
 
     restoring_force: float  #: [N]
     contact: tuple[float, float]  #: sides of its area [m]
@@ -176,7 +176,7 @@ def of_beam(lengths: Mapping[float, xr.Dataset], after: Mapping[float, xr.Datase
 
 
 def length_of(lengths: Mapping[float, xr.Dataset], of: OfBeam) -> float:
-    """Length at which a beam is asked for voltage and shock [m]: the stated one, or its least safe length."""
+    """Length of a beam for voltage and shock [m]: the given one, or its least safe length."""
     return of.length or min(_safe(dataset, chosen_share(dataset))[0] for dataset in lengths.values())
 
 
@@ -190,7 +190,7 @@ def _safe(dataset, share):
 
 
 def _touched(of, length):
-    """Voltage and shock that bring a beam of a length [m] into contact."""
+    """Voltage and shock for contact of a beam of a length [m]."""
     clamps, end = of.clamps, "tip" if of.clamps == 1 else "middle"
     forms = {
         1: ("V² = 0.2801 E t³ h³ / (ε₀ L⁴)", "a = 2 E t² h / (3 ρ L⁴)"),
@@ -224,7 +224,7 @@ def _touched(of, length):
 
 
 def _dried(of, liquid, adhesion):
-    """Lengths that stand while a liquid dries, and that come free afterwards."""
+    """Lengths of beams standing while a liquid dries, and releasing afterwards."""
     clamps = of.clamps
     each, error = of.number(lambda beam: drying.longest_standing_each(beam, clamps, adhesion), 1.0)
     free, free_error = of.number(lambda beam: drying.longest_free(beam, clamps, adhesion), 1.0)
@@ -256,7 +256,7 @@ def _dried(of, liquid, adhesion):
 
 
 def _held(of, length):
-    """Adhesion that holds a beam of a length [m], and the force with which it pulls."""
+    """Adhesion of a stuck beam of a length [m], and its pulling force."""
     clamps = of.clamps
     along, error = of.number(lambda beam: float(apparent_adhesion_energy(length / clamps, beam)), length)
     force, force_error = of.number(lambda beam: freeing.force_at_contact(beam, clamps), length)
@@ -286,7 +286,7 @@ def _held(of, length):
 
 
 def _at_voltage(of, safe):
-    """What a voltage adds, and the length that is then safe, from the safe length without it and its error [m]."""
+    """Effect of a voltage, and the length safe with it, from the safe length without it and its error [m]."""
     if not of.dielectric:
         return []
     added = holding.energy_of_voltage(of.potential, of.dielectric.distance, of.device.gap)
@@ -310,7 +310,7 @@ def _at_voltage(of, safe):
 
 
 def _field(of):
-    """Field in the dielectric of a device whose surfaces touch."""
+    """Field in the dielectric of a touching device."""
     field = of.potential / of.dielectric.thickness
     what, form = "field in the dielectric in contact", "V / t; thin oxides break down near 1 V/nm"
     return Answer(FIELD, HOLD, what, np.nan, field, np.nan, "V m-1", form, "stiction.life.holding")
@@ -370,7 +370,7 @@ def of_stopper(stopper: xr.Dataset, of: OfStopper) -> list[Answer]:
 
 
 def _moved(of):
-    """Shock and voltage that bring a stopper into contact, as far as mass and electrode are stated."""
+    """Shock and voltage for contact of a stopper, as far as mass and electrode are given."""
     answers = []
     if of.mass:
         slow = of.restoring_force / of.mass
@@ -416,7 +416,7 @@ def _freed(stopper, of):
 
 
 def _often(stopper, of):
-    """P(stuck) after all touchdowns in the worst stated air, and the force that leaves a small fraction stuck."""
+    """P(stuck) after all touchdowns in the worst given air, and the force for a small fraction stuck."""
     if of.touchdowns == 1:
         return []
     once = float(stopper.stuck.sel(bound="estimate").max())
@@ -434,7 +434,7 @@ def _often(stopper, of):
 
 
 def _one_in(share):
-    """A fraction in words."""
+    """Fraction in words."""
     return f"1 in {1 / share:.6g}"
 
 
@@ -499,7 +499,7 @@ def _inputs(plan, at):
 
 
 def _settings(plan, at):
-    """A device, the liquids and its density, or what a stopper states."""
+    """Settings of a device, the liquids and its density, or of a stopper."""
     section = plan.config["devices"][at.device]
     if not plan.devices.kind(at.device).is_beam:
         return {"stopper": select(OfStopper, section, restoring_force_uN=restoring_force(section))}

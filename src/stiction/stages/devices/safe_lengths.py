@@ -23,7 +23,7 @@ _POINTS = 300
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the safe lengths depend on apart from the cracks and the contact of the tips."""
+    """Settings of the safe lengths, without the cracks and the contact of the tips."""
 
     seed: int
     water: Water
@@ -34,7 +34,7 @@ class Settings:
 
 
 def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
-    """P(stuck) and safe lengths; each beam has one of the tips, and a bridge has none."""
+    """P(stuck) and safe lengths. Each beam has one of the tips, and a bridge has none."""
     lengths, of_group, foundation = stage_cracks.lengths(cracks)
     device, held = settings.device, None
     if tips is not None:
@@ -124,7 +124,7 @@ def layout(
 
 
 def _axis(sticking, reach):
-    """Lengths of the curves of P(stuck), from below the shortest that sticks to where all do or the simulation ends."""
+    """Lengths of the curves of P(stuck), from below the shortest stuck one to all stuck or the last simulated."""
     lengths = np.concatenate(list(sticking.values()))
     ends = lengths[np.isfinite(lengths) & (lengths <= reach)]
     low, high = ends.min(initial=reach), 1.02 * ends.max(initial=0.0)
@@ -132,12 +132,12 @@ def _axis(sticking, reach):
 
 
 def chosen_share(dataset: xr.Dataset) -> float:
-    """The fraction of stuck devices for which sentences state lengths: the middle one [-]."""
+    """Fraction of stuck devices for lengths in sentences: the middle one [-]."""
     return float(dataset.share[dataset.sizes["share"] // 2])
 
 
 def _for_touchdowns(plan, at):
-    """Settings of the safe length of one touchdown that leaves the middle fraction stuck after all of them."""
+    """Settings of the safe length of one touchdown for the middle fraction stuck after all of them."""
     settings, shares = settings_of_beam(plan, at.case), plan.config["design"]["shares"]
     touchdowns = plan.config["devices"][at.case.device]["touchdowns"]
     return select(Settings, settings, shares=[probability_for(shares[len(shares) // 2], touchdowns)])
