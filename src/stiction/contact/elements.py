@@ -314,6 +314,7 @@ def separation(
     """
 
     def at(distance, before):
+        """State at a distance [m], from a state before it."""
         return equilibrium(space, heights, distance, adhesion, before)
 
     closed, states = at_rest(space, heights, adhesion, curve)
@@ -330,6 +331,7 @@ def at_rest(
     """State without force, with the adhesion energy, and the number of states. Parameters of `separation`."""
 
     def at(distance, before, coarser=1.0):
+        """State at a distance [m], from a state before it, on a coarser tolerance."""
         return equilibrium(space, heights, distance, adhesion, before, coarser=coarser)
 
     return _without_force(at, curve, lambda state: state.energy(heights, adhesion))

@@ -113,6 +113,7 @@ def humid_curves(
     out = np.empty(distance.size)
 
     def curve(k):
+        """Force curve of sample k [Pa], in a common array."""
         apparent_force(solid[k], bearing[k], (*starts, starts[0]), step, height, tension, out)
         return out
 
@@ -385,6 +386,7 @@ def adhesion_energies(
     beyond = np.zeros(samples) if beyond is None else beyond
 
     def energy_of(force, k):
+        """Adhesion energy of curve k [J m⁻²], the flat surfaces' if it does not resist."""
         return adhesion_energy(distance, force, beyond[k]) if flat is None or resists(force) else flat[0]
 
     return _each_sample(energy_of, curve, samples)
@@ -396,6 +398,7 @@ def pull_offs(
     """Largest attraction f_max of all sampled curves (m,) [Pa]. Parameters of `parametrise`, errors of `extremum`."""
 
     def pull_off(force, _):
+        """Largest attraction of a curve [Pa], the flat surfaces' if it does not resist."""
         return extremum(distance, force)[1] if flat is None or resists(force) else flat[1]
 
     return _each_sample(pull_off, curve, samples)

@@ -56,6 +56,7 @@ def alone(heights: np.ndarray, space: HalfSpace) -> _Within:
     offsets = (space.unit * love(*np.ix_(*along))).astype(np.float32)
 
     def within(level):
+        """Places of the points above a level [m], and their regions."""
         places, ends = _connected(heights, level, space.periodic)
         rows, columns = (k.astype(np.int32) for k in np.unravel_index(places, heights.shape))
         return places, Regions(rows, columns, ends, offsets, space.unit)

@@ -97,6 +97,7 @@ class Bent:
         """
 
         def largest(begin):
+            """Largest λ of a drop from x = ``begin`` to the end [-]."""
             factor, there = self.under_part(begin, 1.0)
             return factor / (4 * there)
 

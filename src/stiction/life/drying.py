@@ -61,6 +61,7 @@ def _longest(beam: Beam, clamps: int, adhesion: float, fold: Callable[[Bent], fl
         return float(slack)
 
     def excess(length):
+        """Load factor at the fold over the beam's, less 1, at a length [m]."""
         return fold(Bent(clamps, (beam.decay * length) ** 2)) * by_fold / length**4 - 1
 
     longer = slack

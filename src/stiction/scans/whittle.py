@@ -216,6 +216,7 @@ def fit(rings: Rings, within: Reach) -> WhittleFit:
         raise ValueError(f"{FEWEST_RINGS} rings are needed within the reach of the scan, there are {len(wavenumber)}")
 
     def objective(parameters):
+        """Half of the deviance per weight of the rings, at the best plateau."""
         relative = shape(wavenumber, *parameters)
         plateau = np.average(density / relative, weights=weight)
         return np.log(plateau) + np.average(np.log(relative), weights=weight)  # P / s is 1 on average at its optimum

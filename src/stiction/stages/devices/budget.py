@@ -186,6 +186,7 @@ def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, addr
     laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water) for state in states])
 
     def lengths(state, laws):
+        """Crack lengths in a state on force laws [m]."""
         part = replace(state.device.beam, length=mesh.length, elements=mesh.elements)
         return arrests(state.device, (part, strips), partial(_picked, laws), number, address)
 
@@ -401,6 +402,7 @@ def _inputs_of_test_beams(contacts):
     """Inputs of a cantilever, or of its tips. Other choices of the model are left out."""
 
     def inputs(plan, at):
+        """Inputs of an array, as of a device."""
         plan, name = plan.of_test_beams, at.case.device
         return _inputs(plan, name) | contacts(plan, at.case) | {"choices": {}}
 

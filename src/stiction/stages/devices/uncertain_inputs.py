@@ -104,6 +104,7 @@ def _size(name, step=None, least=-np.inf):
     """Dimension, or stress, of a beam."""
 
     def changed(state, value):
+        """State with another value of the dimension."""
         return replace(state, device=replace(state.device, **{name: value}))
 
     return Varied(name, name.replace("_", " "), lambda state: getattr(state.device, name), changed, step, least)
@@ -113,6 +114,7 @@ def _contact_angle(side):
     """Contact angle on one of the two surfaces, with the other one as it is."""
 
     def changed(state, value):
+        """State with another contact angle of the side [rad]."""
         angles = tuple(value if k == side else angle for k, angle in enumerate(state.water.contact_angles))
         return replace(state, water=replace(state.water, contact_angles=angles))
 
