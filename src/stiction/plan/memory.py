@@ -10,15 +10,15 @@ def of_job(config: dict) -> int:
     return round(max(USUAL, _largest_field_memory(config)))
 
 
-def of_attempt(megabytes: int, attempt: int) -> int:
-    """Memory to reserve for an attempt of a job [MB]: twice as much after each failure.
+def of_attempt(first: int, attempt: int) -> int:
+    """Memory or time to reserve for an attempt of a job, from that of the first: twice as much after each failure.
 
     Examples
     --------
     >>> [of_attempt(800, attempt) for attempt in (1, 2, 3)]
     [800, 1600, 3200]
     """
-    return megabytes * 2 ** (attempt - 1)
+    return first * 2 ** (attempt - 1)
 
 
 def _largest_field_memory(config):
