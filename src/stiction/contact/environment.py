@@ -75,7 +75,7 @@ class Water:
         return bool(self.gaps or self.capacitor)
 
     def work_across(self, gap: float | np.ndarray, height: float) -> float | np.ndarray:
-        """Work of two flats beyond that of summits and film [J m⁻²], at gaps [m] and under a film of a height [m]."""
+        """Work of two flats beyond summits and film [J m⁻²], at gaps [m] and under a film of a height [m]."""
         work = self.gaps.work(gap, height) if self.gaps else 0.0
         return work + self.capacitor.work(gap) if self.capacitor else work
 

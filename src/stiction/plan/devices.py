@@ -127,7 +127,7 @@ class DevicePlan:
         return patch(section["pair"], *self.kind(device).sides(section, self.config["sampling"]["strip_length_um"]))
 
     def capacitor(self, device: str) -> dict:
-        """Voltage of a device and its dielectric; empty without a voltage."""
+        """Voltage of a device and its dielectric, empty without a voltage."""
         return chosen(self.sections[device], ("voltage_V", "offset_V", "dielectric"))
 
     def has_strips_of_pair(self, device: str) -> bool:
@@ -138,11 +138,11 @@ class DevicePlan:
     # Tilted stoppers
 
     def slopes(self, device: str) -> list[float]:
-        """Slopes of a stopper at its tilts, increasing [-]; none if it states no tilt."""
+        """Slopes of a stopper at its tilts, increasing [-], none without a tilt."""
         return [math.tan(to_si(tilt, "deg")) for tilt in self.sections[device].get("tilt_deg", ())]
 
     def inclination(self, area: Patch) -> dict:
-        """Slopes and reach of the contact of tilted stoppers that touch with this area.
+        """Slopes and reach of the contact of tilted stoppers with this area.
 
         The reach covers film, heights of six times the rms of both surfaces, and the gaps to the far side of the
         stopper. ASSUME: no attraction across gaps beyond `FAR`.

@@ -383,7 +383,7 @@ def of_stopper(
 
 
 def _tilted(tilted):
-    """How many stoppers stick at their tilts, the force on them, and the tilt that makes it that of a wedge."""
+    """Fraction of stoppers stuck at their tilts, the force on them, and the tilt at the transition to a wedge."""
     ends = dict.fromkeys(f"{from_si(float(tilt), 'deg'):.3g}" for tilt in tilted.tilt)
     by, form = (
         f"tilted by {' to '.join(ends)}°",
@@ -422,7 +422,7 @@ def _tilted(tilted):
 
 
 def _pulled(stopper, of, biased):
-    """Force that a voltage adds to that on a stopper, and how many stick while it is on."""
+    """Force of a voltage in addition to that on a stopper, and the fraction stuck while it is on."""
     flat = of.capacitor.largest_pressure * of.contact[0] * of.contact[1]
     low, error, sticking = np.nan, np.nan, []
     if biased is not None:

@@ -59,7 +59,7 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
 def compute_at_voltage(
     contact: xr.Dataset, cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings
 ) -> xr.Dataset:
-    """As `compute` while a voltage is on, from the contact of the strips and the cracks without voltage.
+    """Safe lengths at a voltage, from the contact of the strips and the cracks without voltage, see `compute`.
 
     Tips are held by the attraction across their gaps, and cracks by the mean energy that it adds to the strips
     (`stiction.life.holding`). ASSUME: strips gain the same, as far as cracks are concerned.

@@ -65,13 +65,13 @@ def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = No
 
 @dataclass(frozen=True)
 class Tilted(Settings):
-    """As `Settings`, of a stopper that tilts."""
+    """Settings of a tilted stopper."""
 
     slopes: tuple[float, ...] = ()  #: at its tilts, increasing [-]
 
 
 def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Dataset:
-    r"""Pull-off forces of a stopper at its tilts, and the slope beyond which its force is that of a wedge.
+    r"""Pull-off forces of a stopper at its tilts, and the slope at the transition to a wedge.
 
     Without tilt, the patches are those of `compute`. A tilted one touches with an edge of its first side a, as long as
     its second side w. Smooth surfaces with the adhesion energy e then hold the force :math:`w e / s` at the slope s,
@@ -94,7 +94,7 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
 
 
 def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) -> xr.Dataset:
-    """Dataset of a tilted stopper: forces (tilts, n_rh, m) [N], and slopes beyond which it is a wedge (n_rh,) [-]."""
+    """Dataset of a tilted stopper: forces (tilts, n_rh, m) [N], and slopes at the transition to a wedge (n_rh,) [-]."""
     newton, none, over = {"units": "N"}, {"units": "1"}, ("tilt", "humidity")
     stuck = [[_stuck(row, settings.restoring_force) for row in rows] for rows in pull_off]
     safe, bases = zip(*(_safe(rows, settings.seed) for rows in pull_off), strict=True)
@@ -258,7 +258,7 @@ _STOPPERS = Stage.writing(
 
 
 def _inputs_tilted(plan, at):
-    """As `_inputs`, with the contacts of tilted patches if a tilt is not zero."""
+    """Inputs of a stopper, with the contacts of tilted patches if a tilt is not zero, see `_inputs`."""
     inputs, humidities = _inputs(plan, at), plan.config["devices"][at.device]["humidities"]
     if not any(plan.devices.slopes(at.device)):
         return inputs
