@@ -30,8 +30,8 @@ READ_BY = {
     " tip_solid_contact tip_choice_contact tip_budget",
     "identification": "device_choice_summits",
     "contact_chunk": "contact",
-    "contact": "cracks chart budget",
-    "device_contact": "cracks stoppers budget",
+    "contact": "cracks chart budget separation",
+    "device_contact": "cracks stoppers budget separation",
     "tip_contact": "safe_lengths chart tip_budget",
     "slope_contact": "budget",
     "device_slope_contact": "budget",
@@ -45,6 +45,7 @@ READ_BY = {
     "cracks": "safe_lengths",
     "safe_lengths": "table_safe_lengths figure_risk device_warnings device_page life",
     "touchdowns": "life",
+    "separation": "life",
     "life": "table_life figure_life device_page",
     "chart": "table_chart figure_chart device_warnings device_page",
     "tip_slope_contact": "tip_budget",
@@ -83,7 +84,7 @@ MATRIX = [
      "S1|R1|modulus|hamaker|slopes|choices|heights|spectrum|contact/b|3000x3000|cracks|safe|chart"),
     ("uncertainty of a property of the solids", "devices: {C1: {uncertainty: {hamaker_constant_zJ: 15}}}",
      "budget tip_budget", (), "R1|S1|contact|chart"),
-    ("one humidity of a stopper", "devices: {S1: {humidities: [0.7, 0.9]}}", "stoppers budget device_warnings", OF_BEAMS,
+    ("one humidity of a stopper", "devices: {S1: {humidities: [0.7, 0.9]}}", "stoppers budget device_warnings separation", OF_BEAMS,
      "C1|R1|contact|S1_rh070"),
     ("area of a stopper", "devices: {S1: {contact_um: [3, 2]}}", "device_contact solid_contact device_choice_summits",
      OF_BEAMS, "C1|R1|1500x"),
@@ -95,8 +96,8 @@ MATRIX = [
     ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", "stoppers device_warnings", OF_BEAMS, "C1|R1|budget|contact"),
     ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
      "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
-    ("water", "water: {temperature_K: 310}", "cracks safe_lengths chart stoppers budget tip_budget", (), "contact"),
-    ("attraction across gaps", "attraction: {wavelength_nm: 90}", "cracks safe_lengths chart stoppers budget tip_budget", (),
+    ("water", "water: {temperature_K: 310}", "cracks safe_lengths chart stoppers budget tip_budget separation", (), "contact"),
+    ("attraction across gaps", "attraction: {wavelength_nm: 90}", "cracks safe_lengths chart stoppers budget tip_budget separation", (),
      "contact"),
     ("skewness of a surface", "surfaces: {B2: {skewness: -0.7}}", "heights device_choice_summits", (), "Sub1.nc"),
     ("skewness of another surface", "surfaces: {B1: {skewness: -0.7}}", "", (), ""),
@@ -146,7 +147,7 @@ LAYOUTS |= {
     "stages/devices/cracks": {"cracks", "safe_lengths"},
     "stages/devices/safe_lengths": {"safe_lengths"},
 }
-LAYOUTS |= {"stages/devices/life": {"life"}}
+LAYOUTS |= {"stages/devices/life": {"life"}, "stages/devices/separation": {"separation"}}
 
 
 def behind(rules):
