@@ -97,6 +97,9 @@ MATRIX = [
     ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
      "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
     ("water", "water: {temperature_K: 310}", "cracks safe_lengths chart stoppers budget tip_budget separation", (), "contact"),
+    ("adsorbed water", "water: {adsorbed_nm: 0.1}", "cracks safe_lengths chart stoppers budget tip_budget separation", (), "contact"),
+    ("uncertainty of the adsorbed water", "devices: {C1: {uncertainty: {adsorbed_nm: 0.1}}}", "budget tip_budget", (),
+     "R1|S1|contact|chart"),
     ("attraction across gaps", "attraction: {wavelength_nm: 90}", "cracks safe_lengths chart stoppers budget tip_budget separation", (),
      "contact"),
     ("skewness of a surface", "surfaces: {B2: {skewness: -0.7}}", "heights device_choice_summits", (), "Sub1.nc"),
@@ -133,7 +136,7 @@ FURTHER = {
     "gap of a beam",
 }
 FURTHER |= {"humidities of a chart", "width of a beam", "strips of a beam", "stress in a bridge", "hardness of a body"}
-FURTHER |= {"tension of a liquid", "number of touchdowns"}
+FURTHER |= {"tension of a liquid", "number of touchdowns", "adsorbed water", "uncertainty of the adsorbed water"}
 FURTHER |= {"Hamaker constant of a body", "uncertainty of a property of the solids"}
 FURTHER |= {"another property of the solids of a cantilever becomes uncertain"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]

@@ -178,8 +178,9 @@ class DevicePlan:
         section = self.sections[device]
         wettest = max(section["humidities"] + section.get("chart", {}).get("humidities", []))
         rms = [self._rms(self.config["pairs"][section["pair"]][side]) for side in SIDES]
-        film = float(meniscus_height(wettest, self.config["water"]["temperature_K"])) if wettest else 0.0
-        least = from_si(film, "nm") + 3 * math.hypot(*rms)
+        water = self.config["water"]
+        film = from_si(float(meniscus_height(wettest, water["temperature_K"])), "nm") if wettest else 0.0
+        least = film + (water.get("adsorbed_nm", 0) if wettest else 0) + 3 * math.hypot(*rms)
         return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
 
     def _rms(self, surface):

@@ -12,9 +12,7 @@ from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws
 from stiction.contact.environment import Water, flooded_law
-from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, bridges, risk
-from stiction.devices.chart import flooded_length
 from stiction.devices.risk import NOTHING, Basis, Known, SafeLength
 from stiction.stages.contact import curves
 from stiction.stages.contact.error_notes import on_patch
@@ -76,18 +74,19 @@ def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list
     """Lengths that stick on flooded flats, one for each end state [m].
 
     A cantilever has the length that sticks in saturated air or, where no water condenses, that of flats in contact.
+    Adsorbed films add their work at the humidity.
     Only that of a beam is a bound: roughness that follows the slope of a tip lets it hold harder than a flat one. The
     worst air of a bridge is not the wettest: it has the length below which its middle comes free of flats in contact at
     this humidity, a bound for any surfaces.
     """
-    wet = water.temperature, water.contact_angles
     if not device.opening.has_tip:
         law = flooded_law(humidity, water, device.hamaker_constant)
         return [bridges.least_length(*law, device.beam)]
     if not water.film(humidity)[0]:
         energy = float(water.gaps.through("dry").work(0.0))
         return [float(arrest_length(energy, device.beam)), arcs.arc_length(energy, device.beam)]
-    return [flooded_length(device.beam, *wet), arcs.arc_length(flooded_energy(*wet), device.beam)]
+    energy = water.flooded_energy(humidity)
+    return [float(arrest_length(energy, device.beam)), arcs.arc_length(energy, device.beam)]
 
 
 def sticking_lengths(
