@@ -224,7 +224,7 @@ def test_water_condenses_up_to_contact_angles_that_add_up_to_180_degrees(more, w
     surfaces = {name: {"rms_nm": 1, "material": name} for name in angles}
     pairs = {"d": {"beam": "One", "substrate": "Other"}}
     config = Keys({"run": {"pairs": ["d"]}, "pairs": pairs, "surfaces": surfaces, "materials": angles}, [])
-    (meeting,) = meetings.of_pairs(config)
+    (meeting,) = meetings.pair_meetings(config)
     assert bool(meeting.wetting(more)) == wet
 
 

@@ -14,7 +14,7 @@ from test_messages import UNITS
 
 from stiction.config.files import load, normalised
 from stiction.config.kinds import KEYS
-from stiction.config.memory import of_field
+from stiction.config.memory import field_memory
 from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
@@ -53,6 +53,7 @@ DEVICES = {
         "voltage_V": 5,
         "offset_V": 0.3,
         "dielectric": {"thickness_nm": 100, "permittivity": 3.9},
+        "tilt_deg": [0, 0.1],
     },
 }
 ALL = merged(PAPER, {"devices": DEVICES, "materials": {"Gold": GOLD}, "surfaces": {"B2": {"material": "Gold"}}})
@@ -216,6 +217,11 @@ def test_a_stopper_has_no_length():
         ({"mass_ng": 0}, "mass_ng", "above 0"),
         ({"touchdowns": 0}, "touchdowns", "at least 1"),
         ({"touchdowns": 2.5}, "touchdowns", "must be a whole number"),
+        ({"tilt_deg": 0.1}, "tilt_deg", "must be a list with 1 or 2 entries"),
+        ({"tilt_deg": 0.1}, "tilt_deg", "write [0.1]"),
+        ({"tilt_deg": []}, "tilt_deg", "must be a list with 1 or 2 entries"),
+        ({"tilt_deg": [0.2, 0.1]}, "tilt_deg", "must be in increasing order"),
+        ({"tilt_deg": [-0.1]}, "tilt_deg[0]", "at least 0"),
         ({"voltage_V": 5}, "voltage_V", "must come with dielectric: {thickness_nm, permittivity}"),
         ({"dielectric": {"thickness_nm": 9, "permittivity": 4}}, "dielectric", "must come with voltage_V or offset_V"),
         ({"offset_V": 1, "dielectric": {"thickness_nm": 9}}, "dielectric.permittivity", "is missing"),
@@ -513,9 +519,9 @@ def test_warnings_know_what_is_stated_of_a_material():
 
 def test_patches_of_devices_count_for_the_memory_of_jobs():
     wide = normalised(with_device(width_um=600))
-    assert memory.of_job(wide) == round(of_field(2.5, 601, 10))
+    assert memory.of_job(wide) == round(field_memory(2.5, 601, 10))
     stopper = normalised(merged(PAPER, {"devices": {"S1": S1 | {"contact_um": [30, 40]}}}))
-    assert memory.of_job(stopper) == round(of_field(31, 41, 10))
+    assert memory.of_job(stopper) == round(field_memory(31, 41, 10))
 
 
 def test_the_axis_of_the_worst_humidity_holds_no_air_that_is_too_dry_for_a_stopper():

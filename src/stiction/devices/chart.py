@@ -17,7 +17,7 @@ ALLOWED = 0.01
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """Length c t^α h^β, within the thicknesses and gaps to which it was fitted."""
+    """Length c t^α h^β, within the thicknesses and gaps of its fit."""
 
     prefactor: float  #: c [m^(1 - α - β)]
     thickness_power: float  #: α [-]
@@ -26,7 +26,7 @@ class PowerLaw:
     gaps: tuple[float, float]  #: smallest and largest h [m]
 
     def __call__(self, thickness: float | np.ndarray, gap: float | np.ndarray) -> float | np.ndarray:
-        """Length [m]; thickness and gap [m] broadcast.
+        """Length [m]. Thickness and gap [m] broadcast.
 
         Raises
         ------
@@ -62,14 +62,14 @@ def fit_power_law(thickness: np.ndarray, gap: np.ndarray, length: np.ndarray) ->
 
 
 def largest_error(law: PowerLaw, thickness: np.ndarray, gap: np.ndarray, length: np.ndarray) -> float:
-    """Largest relative error of a power law at beams to which it was not fitted (n,) [-]."""
+    """Largest relative error of a power law at beams outside its fit (n,) [-]."""
     return float(np.max(np.abs(law(thickness, gap) / length - 1)))
 
 
 def checked_power_law(
     thickness: np.ndarray, gap: np.ndarray, length: np.ndarray, test: np.ndarray
 ) -> tuple[PowerLaw, float]:
-    """Power law through the beams that are not in ``test`` (n,) bool, and its `largest_error` at those that are.
+    """Power law through the beams not in ``test`` (n,) bool, and its `largest_error` at the others.
 
     Raises
     ------

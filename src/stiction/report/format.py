@@ -16,7 +16,7 @@ MISSING = "–"
 
 
 def one_in(share: float) -> str:
-    """A share of devices in words.
+    """Fraction of devices in words.
 
     Examples
     --------
@@ -28,7 +28,7 @@ def one_in(share: float) -> str:
 
 
 def percent(value: float, reference: float) -> float:
-    """Deviation from a reference [%]; NaN without one.
+    """Deviation from a reference [%], NaN without one.
 
     Examples
     --------
@@ -39,7 +39,7 @@ def percent(value: float, reference: float) -> float:
 
 
 def number(value: float, form: str) -> str:
-    """Text of a number in a format such as ``+.1f``; – for NaN; zero has no minus sign.
+    """Text of a number in a format such as ``+.1f``, with – for NaN and zero without a minus sign.
 
     Examples
     --------
@@ -53,7 +53,7 @@ def number(value: float, form: str) -> str:
 
 
 def humidity_text(value: float) -> str:
-    """Text of a relative humidity [-], which is zero in dry air.
+    """Text of a relative humidity, zero in dry air [-].
 
     Examples
     --------
@@ -64,7 +64,7 @@ def humidity_text(value: float) -> str:
 
 
 def airs(humidities: Collection[float]) -> str:
-    """Where a device is, for the end of a sentence.
+    """Air of a device, for the end of a sentence.
 
     Examples
     --------
@@ -78,7 +78,7 @@ def airs(humidities: Collection[float]) -> str:
 
 
 def with_error(value: float, error: float, sign: str = "") -> str:
-    """Value ± standard error as text, to the second significant digit of the error; – for NaN.
+    """Value ± standard error as text, to the second significant digit of the error, – for NaN.
 
     Examples
     --------
@@ -105,7 +105,7 @@ def signed(value: float, error: float) -> str:
 
 
 def as_published(value: float, deviation: float) -> str:
-    """Published value ± standard deviation as text, with the digits of the publication; – for NaN.
+    """Published value ± standard deviation as text, with the digits of the publication, – for NaN.
 
     Examples
     --------
@@ -116,7 +116,7 @@ def as_published(value: float, deviation: float) -> str:
 
 
 def error_alone(error: float) -> str:
-    """A standard error as text, with the same digits as after ± in `with_error`.
+    """Standard error as text, with the same digits as after ± in `with_error`.
 
     Examples
     --------

@@ -17,7 +17,7 @@ _PIXELS, _ROWS = 120, 30
 
 @dataclass(frozen=True)
 class Section:
-    """Part of a page: paragraphs, a table and a figure, each of which may be missing."""
+    """Part of a page: paragraphs, a table and a figure, each possibly missing."""
 
     title: str
     paragraphs: Sequence[str] = ()
@@ -31,7 +31,7 @@ class Section:
 
     @property
     def picture(self) -> str:
-        """The figure as PNG in Base64."""
+        """Figure as PNG in Base64."""
         return base64.b64encode(png(self.figure)).decode()
 
     @property
@@ -42,7 +42,7 @@ class Section:
 
 @dataclass(frozen=True)
 class Page:
-    """Everything that the page of a device shows."""
+    """Contents of the page of a device."""
 
     title: str
     facts: Mapping[str, str]  #: dimensions and conditions, by name
@@ -52,8 +52,9 @@ class Page:
     words: Mapping[str, str] = field(default_factory=dict)  #: terms and what they mean
     made: Sequence[str] = ()  #: when and by which code
     not_modelled: str = ""  #: what is not in the model
+    drawing: str = ""  #: of the device, as SVG
 
     @property
     def html(self) -> str:
-        """The page as one file: figures are part of it."""
+        """Page as one file, with its figures inside."""
         return html.rendered(TEMPLATE, page=self)

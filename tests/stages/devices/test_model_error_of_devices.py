@@ -110,8 +110,8 @@ def test_sentences_say_what_full_contact_leaves_out_and_whether_it_has_been_appl
         " ".join(model_errors.sentences("D", {"D": error((S_SHAPE,), [1.1, np.nan], **changed)}))
         for changed in ({}, {"across_gaps": True}, {"applied": True})
     )
-    assert "which is in neither model" in plain
-    assert "that this prediction contains" in across
+    assert "is in neither model" in plain
+    assert "across gaps of this prediction. That" in across
     assert "It is not known at a relative humidity of 0.67." in plain
     assert "has changed the lengths" in applied
     assert "safe side" not in applied
@@ -148,4 +148,4 @@ def test_what_is_left_out_is_said_and_is_empty_in_the_tables():
     assert said.startswith("The error of the model is not known: full elastic contact needs a humidity")
     assert model_errors.sentences("S3", {}) == [said]
     assert model_errors.sentences("S3", None) == []
-    assert np.isnan(model_errors.of_device(ERRORS, "S3", 0.67, FORCE)["model_error_percent"])
+    assert np.isnan(model_errors.device_change(ERRORS, "S3", 0.67, FORCE)["model_error_percent"])

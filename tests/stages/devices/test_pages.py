@@ -18,6 +18,7 @@ from stiction.contact.environment import Water
 from stiction.report.devices import own_length, pages, sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.page import Page, Section
+from stiction.report.surfaces.words import described
 from stiction.stages.devices import device_warnings, safe_lengths, sticking
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import EITHER, S_SHAPE, DesignedBeam
@@ -218,10 +219,10 @@ def test_a_page_explains_the_terms_that_it_uses_and_no_others():
 
 
 def test_surfaces_are_described_by_their_numbers_or_their_scans():
-    assert sentences.described({"rms_nm": 2, "psd": "identified", "summit_density_per_um2": 40}, {}) == (
+    assert described({"rms_nm": 2, "psd": "identified", "summit_density_per_um2": 40}, {}) == (
         "rms 2 nm, density of summits 40 per µm²"
     )
-    assert sentences.described({"scans": {"files": ["a.gwy", "b.gwy"]}}, {}) == "described by 2 scans"
+    assert described({"scans": {"files": ["a.gwy", "b.gwy"]}}, {}) == "described by 2 scans"
 
 
 def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():

@@ -39,11 +39,11 @@ def device(energy=2e-3, of=C1):
 
 
 def test_s_shaped_beams_of_the_paper_have_no_warning():
-    assert pair_warnings.of_beams(beams(50, 0), PAPER, 1.5 * UM) == []
+    assert pair_warnings.beam_warnings(beams(50, 0), PAPER, 1.5 * UM) == []
 
 
 def test_arcs_and_what_their_mean_lacks_are_each_said_once():
-    arcs, mean = pair_warnings.of_beams(beams(58, 42, 1400 * UM), PAPER, 1.5 * UM)
+    arcs, mean = pair_warnings.beam_warnings(beams(58, 42, 1400 * UM), PAPER, 1.5 * UM)
     assert "42 % of the beams end as arcs" in arcs
     assert "1.5 µm" in arcs
     assert "1400 µm" in mean
@@ -51,7 +51,7 @@ def test_arcs_and_what_their_mean_lacks_are_each_said_once():
 
 
 def test_beams_that_all_end_as_arcs_have_no_mean_to_warn_about():
-    (sentence,) = pair_warnings.of_beams(beams(0, 10), PAPER, 1.5 * UM)
+    (sentence,) = pair_warnings.beam_warnings(beams(0, 10), PAPER, 1.5 * UM)
     assert "100 % of the beams end as arcs" in sentence
 
 
@@ -64,14 +64,14 @@ def test_beams_that_all_end_as_arcs_have_no_mean_to_warn_about():
     ],
 )
 def test_each_dimension_beyond_the_model_is_said_once(beam, words):
-    (sentence,) = pair_warnings.of_beams(beams(9, 0), beam, 1.5 * UM)
+    (sentence,) = pair_warnings.beam_warnings(beams(9, 0), beam, 1.5 * UM)
     assert words in sentence
 
 
 def about_pairs(cases, plasticity, plan=PLAN):
     settings = job_settings(plan, "warnings.md")
     nominal = in_si(pair_warnings.OfPairs, settings["pairs"])
-    return pair_warnings.of_pairs(cases, plasticity, settings["materials"], nominal)
+    return pair_warnings.main_line_warnings(cases, plasticity, settings["materials"], nominal)
 
 
 NOT_MEASURED = {"estimates": {}, "spectra": {}}
@@ -89,7 +89,7 @@ def test_flags_of_a_surface_stand_beside_everything_that_rests_on_it(warned):
     for flag in FLAGS:
         (line,) = (line for line in page.splitlines() if flag in line)
         assert line.startswith("- pair a: ")
-    assert pair_warnings.of_surfaces(MEASURED, settings["surfaces"]) == {"a": FLAGS, "b": []}, "in Table III"
+    assert pair_warnings.surface_notes(MEASURED, settings["surfaces"]) == {"a": FLAGS, "b": []}, "in Table III"
     assert warned({"S1": stopper()}, surfaces=MEASURED).patches["S1"][-2:] == FLAGS
     assert not set(FLAGS) & set(warned({"S1": stopper()}).patches["S1"])
     lengths = {("C1", 0.67): device()[0]}
@@ -158,7 +158,7 @@ def test_beams_of_pairs_a_and_b_at_the_humidities_of_the_paper_have_the_warnings
         mean = float(row["crack_length_um"] or "nan") * UM
         ended = xr.Dataset({"state": ("sample", np.repeat([0, 1, 2], np.round(np.multiply(shares, 1000)).astype(int)))})
         ended["crack_length"] = "sample", np.where(ended.state == 0, mean, 1500 * UM)
-        found = pair_warnings.of_beams(ended, PAPER, 1.5 * UM)
+        found = pair_warnings.beam_warnings(ended, PAPER, 1.5 * UM)
         # Gaussian surfaces and all in the driest air adhere so little that some end as arcs: two sentences, else none.
         assert len(found) == (shares[1] > 0) + (0 < shares[0] < 1)
         assert all("end as arcs" in sentence or "end S-shaped" in sentence for sentence in found)
@@ -290,7 +290,7 @@ def test_cases_of_the_main_line_in_air_that_is_hardly_humid_enough_are_said():
     cases = {("b", 0.39, "NG"): beams(9, 0), ("b", 0.39, "G"): beams(9, 0), ("b", 0.4, "NG"): beams(9, 0)}
     said = {subject for subject, sentences in about_pairs(cases, PLASTIC).items() if "thinner" in " ".join(sentences)}
     assert said == {"pair b, RH 0.39, NG", "pair b, RH 0.39, G"}
-    (sentence,) = pair_warnings.of_films(cases, {"b": Water(300.0)})
+    (sentence,) = pair_warnings.film_warnings(cases, {"b": Water(300.0)})
     assert sentence.startswith("Pair b, RH 0.39: The film of water is 1.1 nm high")
 
 
@@ -379,7 +379,7 @@ def test_the_rim_of_a_film_adds_its_share_to_the_force_of_the_film():
 def test_a_stopper_in_air_that_is_hardly_humid_enough_for_a_liquid_is_said(dry, warned):
     (sentence,) = warned({"S1": stopper(**dry)}).patches["S1"]
     assert sentence.startswith("The film of water is ")
-    assert "thinner than 4 molecules, 1.12 nm: the air is drier than the range in which" in sentence
+    assert "thinner than 4 molecules, 1.12 nm: the air is too dry for the theory of a liquid" in sentence
 
 
 def test_a_stopper_has_the_warnings_of_its_contact(warned):

@@ -20,12 +20,14 @@ from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import life, own_length, sentences
 from stiction.report.devices import tables as tables_devices
+from stiction.report.drawings.devices import of_device
 from stiction.report.format import MISSING, humidity_text, one_in
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import STYLE
+from stiction.report.surfaces.words import described
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import provenance
@@ -167,7 +169,7 @@ def _title(name, section):
 def _facts_of(section):
     """Dimensions and conditions of a device, by name."""
     facts = {"surfaces": f"pair {section['pair']}"} | section.get("surfaces", {})
-    stated = section if kind_of(section).is_beam else section | {"restoring_force_uN": restoring_force(section)}
+    stated = _with_force(section)
     for key in (key for key in KEYS if key in stated):
         (name, unit), value = KEYS[key], stated[key]
         values = value if isinstance(value, list) else [value]
@@ -175,6 +177,11 @@ def _facts_of(section):
     name = "relative humidities" if len(section["humidities"]) > 1 else "relative humidity"
     facts[name] = ", ".join(map(humidity_text, section["humidities"]))
     return facts | _asked(section)
+
+
+def _with_force(section):
+    """Section of a device, of a stopper with its restoring force."""
+    return section if kind_of(section).is_beam else section | {"restoring_force_uN": restoring_force(section)}
 
 
 def _asked(section):
@@ -255,7 +262,7 @@ def _inputs(plan, at):
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
     budgets = budgets_of(plan, at.device) if at.device in devices.budgeted else {}
     own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
-    own |= {"life": f"devices/life/{at.device}"} | model_errors.of_devices(plan, at.device)
+    own |= {"life": f"devices/life/{at.device}"} | model_errors.error_inputs(plan, at.device)
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
     own |= {"style": File(STYLE), "templates": [File(_GLOSSARY), *html.files(TEMPLATE)]}
@@ -275,7 +282,7 @@ def _settings(plan, at):
     names = {f"surface of the {part}": pair[part] for part in ("beam", "substrate")}
     materials = [material_of(plan.config, name) for name in names.values()]
     surfaces = {
-        part: f"{name}: {sentences.described(plan.config['surfaces'][name], material)}"
+        part: f"{name}: {described(plan.config['surfaces'][name], material)}"
         for (part, name), material in zip(names.items(), materials, strict=True)
     }
     not_modelled = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
@@ -292,7 +299,8 @@ def _page(data, at, settings):
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
         page = of_beam(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
-    return replace(with_life(page, at.device, data["life"]), not_modelled=settings["not_modelled"])
+    drawing = of_device(_with_force(settings)).svg
+    return replace(with_life(page, at.device, data["life"]), not_modelled=settings["not_modelled"], drawing=drawing)
 
 
 def with_life(page: Page, name: str, answers: xr.Dataset) -> Page:

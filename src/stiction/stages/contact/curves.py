@@ -1,4 +1,4 @@
-"""Force curves at a humidity from the dataset of stage contact; shared by several stages, not a stage itself."""
+"""Force curves at a humidity from the dataset of stage contact. Shared by several stages, not a stage itself."""
 
 from functools import partial
 
@@ -43,6 +43,20 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
     ValueError
         If the film is higher than the contact of the tips reaches.
     """
+    return contact.slope.values, _wedges(contact, humidity, water, endless=True)
+
+
+def tilted_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """Largest attraction of each tilted patch at each slope, per its width (m, s) [N/m]; errors as of `tip_forces`.
+
+    ASSUME: the ratio of the pull-off force on parallel patches to full elastic contact is that on tilted ones.
+    """
+    forces = _wedges(contact, humidity, water, endless=False)
+    return forces * water.correction.at(humidity)[1] if water.correction else forces
+
+
+def _wedges(contact, humidity, water, endless):
+    """Largest attractions per width of strips that go on below their stored heights or end there (m, s) [N/m]."""
     layer, reach = water.film(humidity), -float(contact.height[0])
     if layer[0] > reach:
         raise ValueError(
@@ -50,13 +64,12 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
             f"humidity of {humidity:g} is {from_si(layer[0], 'nm'):.3g} nm high: state this humidity with the device"
         )
     solid, bearing, starts, step = tables(contact)
-    if water.gaps is not None:
-        work = partial(water.gaps.work, height=layer[0])
+    if water.reaches_across:
+        work = partial(water.work_across, height=layer[0])
         pressure, _ = gaps.gap_pressures(bearing, starts[1], contact.distance.values, step, work)
         rest = work(contact.distance.values + reach) / (contact.slope.values[:, None] * float(contact.length))
-        solid = solid + pressure - rest.astype(np.float32)
-    largest = forcelaw.largest_attractions(solid, bearing, starts, step, layer)
-    return contact.slope.values, largest * float(contact.length)
+        solid = solid + pressure - endless * rest.astype(np.float32)
+    return forcelaw.largest_attractions(solid, bearing, starts, step, layer) * float(contact.length)
 
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
@@ -94,7 +107,7 @@ def _separations(contact, humidity, water):
 
 
 def share_flat(contact: xr.Dataset, humidity: float, water: Water) -> float:
-    """Share of the samples at a relative humidity that count as flat surfaces, because no summits stop them [-]."""
+    """Fraction of the samples at a relative humidity to count as flat surfaces, not stopped by summits [-]."""
     sampled = force_curves(contact, humidity, water)
     return forcelaw.share_flat(sampled.curve, sampled.samples) if sampled.flat else 0.0
 

@@ -371,7 +371,7 @@ def _memory_of_tips(plan, view, names):
         left_out = [] if view is plan else contacts["choices"]
         number = sum(1 if isinstance(some, str) else len(some) for some in contacts.values()) - len(left_out)
         slopes.append(number * len(plan.devices.tilt(view.devices.tips(name))["slopes"]))
-    return memory.of_tips(plan.config["design"]["beams"] * max(slopes, default=0))
+    return memory.tip_memory(plan.config["design"]["beams"] * max(slopes, default=0))
 
 
 BUDGET = Stage.writing(

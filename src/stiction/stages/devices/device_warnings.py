@@ -98,7 +98,7 @@ def _of_length(length, dataset, of, plastic, thinnest=None):
     """
     device = of.device
     sizes = device.gap, device.width, device.thickness, length / device.opening.arms
-    return limits.of_beam(*sizes, float(dataset.film), float(dataset.rms)) + limits.given(
+    return limits.beam_warnings(*sizes, float(dataset.film), float(dataset.rms)) + limits.given(
         limits.thin_film(thinnest or float(dataset.film)),
         limits.stretched_bridge(device.gap, device.thickness) if device.opening.arms == 2 else None,
         *contact_warnings(plastic, of.materials),

@@ -74,7 +74,7 @@ def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list
     """Lengths that stick on flooded flats, one for each end state [m].
 
     A cantilever has the length that sticks in saturated air or, where no water condenses, that of flats in contact.
-    Adsorbed films add their work at the humidity.
+    Adsorbed films add their work at the humidity, and a voltage its work between flats.
     Only that of a beam is a bound: roughness that follows the slope of a tip lets it hold harder than a flat one. The
     worst air of a bridge is not the wettest: it has the length below which its middle comes free of flats in contact at
     this humidity, a bound for any surfaces.
@@ -82,10 +82,10 @@ def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list
     if not device.opening.has_tip:
         law = flooded_law(humidity, water, device.hamaker_constant)
         return [bridges.least_length(*law, device.beam)]
-    if not water.film(humidity)[0]:
-        energy = float(water.gaps.through("dry").work(0.0))
-        return [float(arrest_length(energy, device.beam)), arcs.arc_length(energy, device.beam)]
-    energy = water.flooded_energy(humidity)
+    wet = water.film(humidity)[0]
+    energy = water.flooded_energy(humidity) if wet else float(water.gaps.through("dry").work(0.0))
+    if water.capacitor:
+        energy += water.capacitor.work(0.0)
     return [float(arrest_length(energy, device.beam)), arcs.arc_length(energy, device.beam)]
 
 
