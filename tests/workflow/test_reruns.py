@@ -130,6 +130,7 @@ MATRIX = [
     ("spacing of Table I", "character: {spacing_nm: 10}", "identification character", (), "results/contact|forces"),
     ("patches of identification", "identification: {patches: 4}", "identification", (), "spectrum|_base"),
     ("water", "water: {temperature_K: 310}", "full_contact pressed readings forces humidity sensitivity variant cracks safe_lengths chart", (), "results/contact"),
+    ("adsorbed water", "water: {adsorbed_nm: 0.1}", "full_contact pressed readings forces humidity sensitivity variant cracks safe_lengths chart", (), "results/contact"),
     ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (),
      "studies/(sens|plas|variants/(contact|summits))|psd_identified|tips"),
     ("distance step", "contact: {distance_step_nm: 0.1}",

@@ -1,8 +1,8 @@
 r"""What frees a device: the force of its spring, a shock, and how often it may touch.
 
-A shock frees a stopper if its inertia adds what the spring lacks, :math:`a = (F_\mathrm{hold} - F) / m`. The force
-:math:`F_\mathrm{hold}` is that of slow separation. A shock separates surfaces faster than water evaporates: menisci
-then keep their volume and hold more, so that this acceleration is the least that is needed.
+A shock frees a stopper if its inertia adds what the spring lacks, :math:`a = (F_\mathrm{hold} - F) / m`. With the force
+:math:`F_\mathrm{hold}` of slow separation it is the least acceleration that is needed. A shock can separate surfaces
+faster than water evaporates: menisci keep their volume, `stiction.contact.separation`, and can hold more.
 
 A device touches n times. If it meets other summits each time, it sticks with :math:`1 - (1 - P)^n`. If it meets the
 same ones, it sticks the first time or never, with P. How much touchdowns have in common is unknown: both are bounds.

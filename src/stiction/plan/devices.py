@@ -202,8 +202,10 @@ class DevicePlan:
         """
         section = self.sections[device]
         wettest = max(section["humidities"] + section.get("chart", {}).get("humidities", []))
-        film = float(meniscus_height(wettest, self.config["water"]["temperature_K"])) if wettest else 0.0
-        least = from_si(film, "nm") + 3 * self._rms_of_both(section["pair"])
+        water = self.config["water"]
+        film = from_si(float(meniscus_height(wettest, water["temperature_K"])), "nm") if wettest else 0.0
+        adsorbed = water.get("adsorbed_nm", 0) if wettest else 0
+        least = film + adsorbed + 3 * self._rms_of_both(section["pair"])
         return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
 
     def _rms_of_both(self, pair):

@@ -91,13 +91,14 @@ class Air:
         return config | {"van_der_waals": medium} if medium else config
 
     def water(self, contact: str, config: dict | None = None) -> dict[str, Any]:
-        """Section ``water`` of a contact: with the contact angles if one is not zero, and the attraction across gaps.
+        """Section ``water`` of a contact, without zeros: with the contact angles, and the attraction across gaps.
 
-        Another configuration may be given for the attraction, such as that of a variant.
+        Another configuration may be given for water and attraction, such as that of a variant.
         """
         angles = self._contact_angles(contact)
         gaps = self._gaps(contact, self.around(contact, config))
-        return self.config["water"] | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
+        water = {key: value for key, value in (config or self.config)["water"].items() if value}
+        return water | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
 
     def across_gaps(self, contact: str) -> dict[str, Any]:
         """As `water`, with attraction across gaps."""

@@ -16,8 +16,10 @@ from stiction.plan.stage import chosen
 #: Key that a variant changes, and its section; the source of the spectrum is a key of each surface.
 _CHANGED = {
     **{"van_der_waals": None, "psd": None, "asperity": "contact", "every": "contact", "spacing_nm": "sampling"},
-    **{"poisson_ratio": "solid", "reach": "attraction"},
+    **{"poisson_ratio": "solid", "reach": "attraction", "adsorbed_nm": "water"},
 }
+#: Sections of what is between the solids, which does not affect their contact.
+_BETWEEN = {"attraction", "water"}
 #: Sections of the solids, which do not affect the summits.
 _SOLIDS = ("solid", "van_der_waals")
 
@@ -109,7 +111,7 @@ class Variants:
 
     def contact_under(self, variant: str) -> str:
         """Variant whose contact a variant has: that of the base if only what follows from it differs."""
-        after = variant in self.finer_beams or variant == CORRECTED or "attraction" in self.changes[variant]
+        after = variant in self.finer_beams or variant == CORRECTED or bool(_BETWEEN & self.changes[variant].keys())
         return "base" if after else variant
 
     @property

@@ -245,7 +245,7 @@ def test_the_bound_of_a_dry_cantilever_is_that_of_flats_in_contact():
 
 
 def test_a_budget_in_dry_air_has_no_inputs_of_the_air():
-    stated = Uncertainty(thickness=1e-7, humidity=0.01, temperature=2.0, contact_angle=0.1)
+    stated = Uncertainty(thickness=1e-7, humidity=0.01, temperature=2.0, contact_angle=0.1, adsorbed=1e-10)
     names = {}
     for humidity in (0.0, 0.67):
         settings = replace(BEAM, water=ACROSS, humidity=humidity, uncertainty=stated)
@@ -259,6 +259,7 @@ def test_a_budget_in_dry_air_has_no_inputs_of_the_air():
         "temperature",
         "contact angle on the beam",
         "contact angle on the substrate",
+        "adsorbed water",
     }
 
 

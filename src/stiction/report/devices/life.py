@@ -27,9 +27,11 @@ from stiction.stages.devices.life import (
     AFTER,
     AT_VOLTAGE,
     COLLAPSE,
+    FAST,
     FIELD,
     QUESTIONS,
     RELEASED,
+    RESTORING,
     SHOCK,
     TILTED,
     VOLTAGE,
@@ -114,7 +116,8 @@ def sentences(dataset: xr.Dataset) -> list[str]:
     at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
     said = [*_touching(answers, at), *_pulled_in(answers, potential), *_drying(answers, at, length)]
-    return [*said, *_tilted(answers), *_biased(answers, potential), *_often(answers, int(dataset.touchdowns))]
+    said += [*_tilted(answers), *_biased(answers, potential), *_fast(answers)]
+    return [*said, *_often(answers, int(dataset.touchdowns))]
 
 
 def _touching(answers, at):
@@ -194,6 +197,17 @@ def _inverted(values):
 def _liquids(answers, name):
     """Answers of one kind by the liquid that they are about."""
     return {key.removeprefix(f"{name}_"): one for key, one in answers.items() if key.startswith(f"{name}_")}
+
+
+def _fast(answers):
+    """Safe length, or restoring force, of fast separation in words, if it differs from slow and a bound is known."""
+    one = answers.get(FAST) or answers.get(RESTORING)
+    if one is None or not one.low < one.high < np.inf:
+        return []
+    needs = f"its safe length can fall from {_high(one)} to {_low(one)} µm"
+    if one.unit == "N":
+        needs = f"it can need a restoring force of {_high(one)} instead of {_low(one)} µN"
+    return [f"If it separates faster than water evaporates, as in a shock, {needs}."]
 
 
 def _often(answers, touchdowns):

@@ -133,6 +133,13 @@ OF_AIR = (
         lambda state, at: replace(state, water=replace(state.water, temperature=at)),
     ),
     *map(_contact_angle, range(len(SIDES))),
+    Varied(
+        "adsorbed",
+        "adsorbed water",
+        lambda state: state.water.adsorbed,
+        lambda state, height: replace(state, water=replace(state.water, adsorbed=height)),
+        least=0.0,
+    ),
 )
 #: Fields of the uncertainties of the properties of solids, by their names.
 _OF_SOLIDS = {name: without_unit(one.key) for name, one in OF_CONTACT.items()}
