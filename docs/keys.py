@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from stiction.config.messages import number_of_items
 from stiction.config.reading import read
 from stiction.config.relations import schema
 
@@ -72,7 +73,7 @@ def allowed(entry: dict) -> str:
     '> 0, ≤ 5'
     """
     if entry["type"] == "array":
-        number = f"{entry['maxItems']} entries" if "maxItems" in entry else "list"
+        number = f"{number_of_items(entry)} entries" if "maxItems" in entry else "list"
         return f"{number}: {allowed(entry['items'])}"
     if "enum" in entry:
         return ", ".join(f"`{choice}`" for choice in entry["enum"])
