@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from stiction.config.messages import number_of_items
 from stiction.config.reading import read
 from stiction.config.relations import schema
 
@@ -64,22 +65,22 @@ def _values(config, path):
 
 
 def allowed(entry: dict) -> str:
-    """Allowed values in words.
+    """Allowed values in short.
 
     Examples
     --------
     >>> allowed({"type": "number", "exclusiveMinimum": 0, "maximum": 5})
-    'above 0, at most 5'
+    '> 0, ≤ 5'
     """
     if entry["type"] == "array":
-        number = f"{entry['maxItems']} entries" if "maxItems" in entry else "list"
+        number = f"{number_of_items(entry)} entries" if "maxItems" in entry else "list"
         return f"{number}: {allowed(entry['items'])}"
     if "enum" in entry:
         return ", ".join(f"`{choice}`" for choice in entry["enum"])
     if entry["type"] == "string":
         return "text"
-    words = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
-    bounds = ", ".join(f"{word} {entry[bound]}" for bound, word in words.items() if bound in entry)
+    signs = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
+    bounds = ", ".join(f"{sign} {entry[bound]}" for bound, sign in signs.items() if bound in entry)
     bounds += f", or `{entry['word']}`" if "word" in entry else ""
     return f"whole number, {bounds}" if entry["type"] == "integer" else bounds
 

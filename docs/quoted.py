@@ -12,8 +12,8 @@ import pandas as pd
 from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP
 from stiction.config.files import paper
 from stiction.config.units import in_si
+from stiction.contact.meniscus import flooded_energy
 from stiction.devices.arcs import arc_length
-from stiction.devices.chart import flooded_energy
 from stiction.devices.limits import FILMS
 from stiction.plan.plan import Plan
 from stiction.report.checks import MESH_OFF_OF_PAPER, RESOLVED

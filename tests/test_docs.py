@@ -51,10 +51,11 @@ update, quoted = (module(DOCS / f"{name}.py") for name in ("update", "quoted"))
 @pytest.fixture(scope="module")
 def written():
     """Path to text of every file that ``make numbers`` writes."""
-    return update.pages()
+    return update.drawings() | update.pages()
 
 
 WRITTEN = [
+    *(DOCS / "pictures" / f"{name}.svg" for name in ("beam", "stopper_and_bridge", "method")),
     DOCS / "results.json",
     *(update.page_of(path) for path in sorted((DOCS / "templates").glob("*.md"))),
 ]
@@ -302,8 +303,9 @@ def test_the_map_of_the_code_names_every_folder_and_its_tests():
         assert all((ROOT / folder).is_dir() for folder in re.findall("`(.+?)`", tests))
 
 
-def test_the_map_of_the_code_names_every_module_of_the_physics():
-    named = set(re.findall(r"^\| `(\w+\.\w+)`", (DOCS / "code.md").read_text(encoding="utf-8"), re.MULTILINE))
+def test_the_table_of_modules_names_every_module_of_the_physics():
+    table = (DOCS / "tables" / "modules.md").read_text(encoding="utf-8")
+    named = set(re.findall(r"^\| `(\w+\.\w+)`", table, re.MULTILINE))
     folders = {name.partition(".")[0] for name in named}
     files = (ROOT / "src" / "stiction").glob("*/[!_]*.py")
     assert {f"{path.parent.name}.{path.stem}" for path in files if path.parent.name in folders} == named

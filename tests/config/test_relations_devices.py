@@ -52,6 +52,7 @@ DEVICES = {
         "voltage_V": 5,
         "offset_V": 0.3,
         "dielectric": {"thickness_nm": 100, "permittivity": 3.9},
+        "tilt_deg": [0, 0.1],
     },
 }
 ALL = merged(PAPER, {"devices": DEVICES, "materials": {"Gold": GOLD}, "surfaces": {"B2": {"material": "Gold"}}})
@@ -215,6 +216,11 @@ def test_a_stopper_has_no_length():
         ({"mass_ng": 0}, "mass_ng", "above 0"),
         ({"touchdowns": 0}, "touchdowns", "at least 1"),
         ({"touchdowns": 2.5}, "touchdowns", "must be a whole number"),
+        ({"tilt_deg": 0.1}, "tilt_deg", "must be a list with 1 or 2 entries"),
+        ({"tilt_deg": 0.1}, "tilt_deg", "write [0.1]"),
+        ({"tilt_deg": []}, "tilt_deg", "must be a list with 1 or 2 entries"),
+        ({"tilt_deg": [0.2, 0.1]}, "tilt_deg", "must be in increasing order"),
+        ({"tilt_deg": [-0.1]}, "tilt_deg[0]", "at least 0"),
         ({"voltage_V": 5}, "voltage_V", "must come with dielectric: {thickness_nm, permittivity}"),
         ({"dielectric": {"thickness_nm": 9, "permittivity": 4}}, "dielectric", "must come with voltage_V or offset_V"),
         ({"offset_V": 1, "dielectric": {"thickness_nm": 9}}, "dielectric.permittivity", "is missing"),

@@ -45,6 +45,10 @@ READ_BY = {
     "cracks": "safe_lengths",
     "safe_lengths": "table_safe_lengths figure_risk device_warnings device_page life",
     "touchdowns": "life",
+    "at_voltage": "life",
+    "stoppers_at_voltage": "life",
+    "tilted_contact": "tilted_stoppers",
+    "tilted_stoppers": "life",
     "life": "table_life figure_life device_page",
     "chart": "table_chart figure_chart device_warnings device_page",
     "tip_slope_contact": "tip_budget",
@@ -70,6 +74,11 @@ MATRIX = [
      "R1|S1|contact|chart"),
     ("tension of a liquid", "liquids: {Mine: {surface_tension_mN_per_m: 30}}", "life", (), "S1|contact|cracks|safe"),
     ("number of touchdowns", "devices: {C1: {touchdowns: 10}}", "touchdowns", (), "R1|S1|contact|cracks|safe"),
+    ("voltage of a beam", "devices: {C1: {voltage_V: 3, dielectric: {thickness_nm: 100, permittivity: 4}}}", "at_voltage", (),
+     "R1|S1|contact|cracks|safe"),
+    ("voltage of a stopper", "devices: {S1: {voltage_V: 3, dielectric: {thickness_nm: 100, permittivity: 4}}}",
+     "stoppers_at_voltage", (), "R1|C1|contact|devices/stoppers/"),
+    ("tilt of a stopper", "devices: {S1: {tilt_deg: [0, 0.1]}}", "tilted_contact", (), "R1|C1|devices/contact/b|devices/stoppers/"),
     ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget", (), "R1|S1|contact|chart"),
     ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", (),
      "C1|R1|slopes/contact|stoppers"),
@@ -132,7 +141,8 @@ FURTHER = {
     "gap of a beam",
 }
 FURTHER |= {"humidities of a chart", "width of a beam", "strips of a beam", "stress in a bridge", "hardness of a body"}
-FURTHER |= {"tension of a liquid", "number of touchdowns"}
+FURTHER |= {"tension of a liquid", "number of touchdowns", "voltage of a beam", "voltage of a stopper"}
+FURTHER |= {"tilt of a stopper"}
 FURTHER |= {"Hamaker constant of a body", "uncertainty of a property of the solids"}
 FURTHER |= {"another property of the solids of a cantilever becomes uncertain"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]

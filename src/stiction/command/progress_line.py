@@ -65,7 +65,7 @@ def costs(run: Run) -> Iterator[str]:
     """Yield the cost of the budgets of a run, before it computes anything, or nothing without budgets."""
     if number := sum(run.planned[rule] for rule in run.budgets):
         yield (
-            f"{number} of {run.total} jobs are for budgets, which say what to measure better. Without them: stiction "
+            f"{number} of {run.total} jobs are for budgets: advice on what to measure better. Without them: stiction "
             "run FILE -- results/tables/safe_lengths.md (of stoppers: results/tables/stoppers.md)"
         )
 

@@ -120,7 +120,7 @@ KINDS = {
         words="stopper",
         keys=("contact_um",),
         ways=(("restoring_force_uN",), ("stiffness_N_per_m", "gap_um")),
-        optional=("mass_ng", "electrode"),
+        optional=("mass_ng", "electrode", "tilt_deg"),
         is_beam=False,
     ),
 }

@@ -42,6 +42,11 @@ class Problem:
         return f"{dotted(self.path)} {self.message}"
 
 
+def faulty(faults: Iterable[tuple], section: str) -> set[str]:
+    """Names of the entries of a section with one of the faults, paths of wrong keys."""
+    return {path[1] for path in faults if path[:1] == (section,) and len(path) > 1}
+
+
 def schema_problems(config: object, schema: dict) -> list[Problem]:
     """Problems of single keys, found with the schema."""
     try:
@@ -121,10 +126,22 @@ def _allowed(entry):
     if entry.get("properties"):
         words.append(f"with the keys {', '.join(entry['properties'])}")
     if "maxItems" in entry:
-        words.append(f"with {entry['maxItems']} entries")
+        words.append(f"with {number_of_items(entry)} entries")
     elif "minItems" in entry or "minProperties" in entry:
         words.append("with at least one entry")
     return f"{' '.join(filter(None, words))}: {described(entry)}"
+
+
+def number_of_items(entry: Mapping) -> str:
+    """How many items a list of limited length has, in words.
+
+    Examples
+    --------
+    >>> number_of_items({"minItems": 2, "maxItems": 2}), number_of_items({"minItems": 1, "maxItems": 2})
+    ('2', '1 or 2')
+    """
+    most = entry["maxItems"]
+    return " or ".join(map(str, range(entry.get("minItems", most), most + 1)))
 
 
 def described(entry: Mapping) -> str:

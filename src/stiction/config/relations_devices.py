@@ -136,7 +136,8 @@ def axes_increase(config):
     """Values along an axis increase."""
     axes = "chart.gaps_um", "chart.thicknesses_um", "chart.humidities", *(f"roughness.{key}" for key in ROUGHNESSES)
     charts = [f"devices.{name}.{axis}" for axis in axes for name, _ in config.entries("devices", axis)]
-    for key, values in config.known(*charts, "design.worst_humidities"):
+    tilts = [f"devices.{name}.tilt_deg" for name, _ in config.entries("devices", "tilt_deg")]
+    for key, values in config.known(*charts, *tilts, "design.worst_humidities"):
         if any(low >= high for low, high in zip(values, values[1:], strict=False)):
             yield key, "must be in increasing order, each value once"
 

@@ -17,10 +17,11 @@ from pathlib import Path
 from typing import Any
 
 from stiction.config.memory import GRID
-from stiction.config.messages import Problem
+from stiction.config.messages import Problem, faulty
+from stiction.config.surfaces.knowledge import with_uncertain_devices
 from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
 from stiction.errors import ScanError
-from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
+from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.regular_files import require_regular
 from stiction.run.atomic import DataError, save_text
 from stiction.run.fingerprint import fingerprint
@@ -132,7 +133,7 @@ def preliminary_estimates(
     estimates, problems = {}, []
     if _unusable(faults):
         return estimates, problems
-    wrong = {fault[1] for fault in faults if fault[:1] == ("surfaces",) and len(fault) > 1}
+    wrong = faulty(faults, "surfaces")
     for name, entry in config["surfaces"].items():
         if name not in wrong and is_measured(entry):
             try:
@@ -357,17 +358,7 @@ def with_preliminary_estimates(config: dict[str, Any], estimates: Mapping[str, d
     """
     spacing = config["sampling"]["spacing_nm"]
     described = {name: _described(complete(config["surfaces"][name]), estimates[name], spacing) for name in estimates}
-    devices = {name: _with_uncertainty(device, config, estimates) for name, device in config.get("devices", {}).items()}
-    return config | {"surfaces": config["surfaces"] | described} | ({"devices": devices} if devices else {})
-
-
-def _with_uncertainty(device, config, estimates):
-    """Section of a device with a section of its uncertainty, if one of its surfaces is measured."""
-    try:
-        measured = any(config["pairs"][device["pair"]][side] in estimates for side in SIDES)
-    except (KeyError, TypeError):
-        return device  # other relations report what is missing
-    return {"uncertainty": {}} | device if measured else device
+    return with_uncertain_devices(config | {"surfaces": config["surfaces"] | described}, described)
 
 
 def _described(entry, preliminary, spacing):

@@ -14,6 +14,7 @@ from stiction.contact import forcelaw, gaps, vanderwaals
 from stiction.contact.correction import Correction
 from stiction.contact.meniscus import film
 from stiction.contact.solids import Solid, attraction_between, interfaces
+from stiction.contact.voltage import Capacitor
 from stiction.models import SIDES
 
 
@@ -66,6 +67,17 @@ class Water:
     contact_angles: tuple[float, float] = (0.0, 0.0)  #: on beam and substrate [rad]
     gaps: Gaps | None = None  #: attraction across the gaps; without it, only the summits attract
     correction: Correction | None = None  #: to full elastic contact; without it, the sum over summits
+    capacitor: Capacitor | None = None  #: attraction by a voltage
+
+    @property
+    def reaches_across(self) -> bool:
+        """Whether anything attracts across the gaps between the surfaces."""
+        return bool(self.gaps or self.capacitor)
+
+    def work_across(self, gap: float | np.ndarray, height: float) -> float | np.ndarray:
+        """Work of two flats beyond that of summits and film [J m⁻²], at gaps [m] and under a film of a height [m]."""
+        work = self.gaps.work(gap, height) if self.gaps else 0.0
+        return work + self.capacitor.work(gap) if self.capacitor else work
 
     def film(self, humidity: float) -> tuple[float, float]:
         """Height h_C [m] and tension -ΔP [Pa] at a relative humidity, see `stiction.contact.meniscus.film`."""
@@ -103,9 +115,9 @@ def force_curves(
     """
     layer = water.film(humidity)
     distance, curve = forcelaw.humid_curves(solid, bearing, starts, step, layer)
-    if water.gaps is None:
+    if not water.reaches_across:
         return ForceCurves(distance, curve, len(solid))
-    work = partial(water.gaps.work, height=layer[0])
+    work = partial(water.work_across, height=layer[0])
     pressure, beyond = gaps.gap_pressures(bearing, starts[1], distance, step, work)
     bound = flooded_law(humidity, water, 0.0)
     return ForceCurves(distance, lambda k: curve(k) + pressure[k], len(solid), beyond, bound)
@@ -124,6 +136,8 @@ def flooded_law(humidity: float, water: Water, hamaker_constant: float) -> tuple
     if hamaker_constant:
         solid = vanderwaals.DugdaleAttraction(hamaker_constant)
         energy, pull = energy + solid.work_of_adhesion, pull + solid.stress
-    if water.gaps is None:
-        return energy, pull
-    return energy + float(water.gaps.work(0.0, height)), pull + water.gaps.through("dry").largest_pressure
+    if water.gaps:
+        pull += water.gaps.through("dry").largest_pressure
+    if water.capacitor:
+        pull += water.capacitor.largest_pressure
+    return energy + float(water.work_across(0.0, height)), pull

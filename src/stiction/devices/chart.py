@@ -9,9 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stiction.beam.cantilever import Beam
-from stiction.beam.energy import arrest_length
-from stiction.contact.meniscus import flooded_energy
 from stiction.rounding import is_at_most
 
 #: Largest relative error of a power law that is used.
@@ -84,8 +81,3 @@ def checked_power_law(
     if error > ALLOWED:
         raise ValueError(f"a power law errs by {error:.1%} between the computed beams, more than {ALLOWED:.0%}")
     return law, error
-
-
-def flooded_length(beam: Beam, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:
-    """Crack length at the `stiction.contact.meniscus.flooded_energy`, the shortest possible by water alone [m]."""
-    return float(arrest_length(flooded_energy(temperature, contact_angles), beam))

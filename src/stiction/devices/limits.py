@@ -47,7 +47,7 @@ def not_modelled(left_out: Sequence[str] = (), humid: bool = True) -> str:
         "conformal films, which correlate both surfaces",
     ]
     sentence = f"Not in the model: {', '.join([*left_out, *never])}, and curl by a stress gradient."
-    fast = " Surfaces that separate faster than water evaporates hold more than computed, which is the unsafe side."
+    fast = " If surfaces separate faster than water evaporates, they hold more than computed: this is the unsafe side."
     return sentence + fast * humid
 
 
@@ -148,9 +148,8 @@ def thin_film(film: float) -> str | None:
         return None
     return (
         f"The film of water is {film * 1e9:.2g} nm high, thinner than {MOLECULES} molecules, "
-        f"{MOLECULES * WATER_MOLECULE * 1e9:.3g} nm: the air is drier than the range in which the theory of a liquid "
-        "is valid, so that this result may be off to either side. Results for dry air and for the next humidity above "
-        "bracket it."
+        f"{MOLECULES * WATER_MOLECULE * 1e9:.3g} nm: the air is too dry for the theory of a liquid, and this result "
+        "can be off to either side. Results for dry air and for the next humidity above bracket it."
     )
 
 
@@ -237,9 +236,9 @@ def stretched_bridge(gap: float, thickness: float) -> str | None:
         return None
     size = "equal to the thickness" if f"{ratio:.3g}" == "1" else f"{ratio:.3g} times the thickness"
     return (
-        f"The gap is {size} of the bridge: its stretching, which is left out, helps to free it. Bridges would come "
-        "free that are up to 5 % longer at a gap of half the thickness, up to 16 % where both are equal, and more "
-        "beyond. The prediction is on the safe side."
+        f"The gap is {size} of the bridge: its stretching, which is left out, helps to free it. Longer bridges would "
+        "release, too: by up to 5 % at a gap of half the thickness, by up to 16 % at an equal gap, and by more beyond. "
+        "The prediction is on the safe side."
     )
 
 

@@ -4,7 +4,8 @@ A patch touches everywhere at once, unlike a beam, and is pulled off by the larg
 force is therefore f_max times its area. Unlike the adhesion energy, f_max is largest below saturation: the wetter the
 air, the larger the wetted area, and the weaker the tension in it.
 
-ASSUME: the patch stays parallel to the substrate. A patch that tilts comes off more easily.
+ASSUME: the patch stays parallel to the substrate unless its tilt is stated, the safe side: one that tilts comes off
+more easily (`stiction.stages.devices.stoppers`).
 """
 
 from dataclasses import dataclass

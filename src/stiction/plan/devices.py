@@ -15,16 +15,19 @@ from stiction.config.kinds import ROUGHNESSES, Kind, kind_of
 from stiction.config.materials import material_of
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
-from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge
+from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, uncertain
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
+from stiction.plan.stage import chosen
 
 #: Steps of the distance for the contact of tips, in those of section contact. ASSUME: they suffice for the largest
 #: attraction, the vertex of a parabola: with four, lengths of pair b are 0.02 to 0.19 % longer than with one.
 OF_TIPS = 2
+#: Gaps across which solids attract a tilted stopper at most [nm]. Retarded attraction has 0.05 % of its work at 5 nm.
+FAR = 100.0
 #: Quantities of a surface by numbers, in the order of budgets.
 ALL_QUANTITIES = MOMENT_QUANTITIES + SPECTRUM_QUANTITIES
 
@@ -68,27 +71,27 @@ class DevicePlan:
         """Kind of a device."""
         return kind_of(self.sections[device])
 
-    @property
+    @cached_property
     def beams(self) -> list[str]:
         """Devices that crack open."""
         return [name for name in self.sections if self.kind(name).is_beam]
 
-    @property
+    @cached_property
     def stoppers(self) -> list[str]:
         """Devices that touch with their whole area."""
         return [name for name in self.sections if not self.kind(name).is_beam]
 
-    @property
+    @cached_property
     def with_tips(self) -> list[str]:
         """Devices that a free end may hold."""
         return [name for name in self.sections if self.kind(name).has_tip]
 
-    @property
+    @cached_property
     def cases(self) -> list[str]:
         """Every beam at each of its humidities."""
         return [case_id(name, humidity) for name in self.beams for humidity in self.sections[name]["humidities"]]
 
-    @property
+    @cached_property
     def charted(self) -> list[str]:
         """Devices with a chart."""
         return [name for name in self.beams if "chart" in self.sections[name]]
@@ -123,10 +126,32 @@ class DevicePlan:
         section = self.sections[device]
         return patch(section["pair"], *self.kind(device).sides(section, self.config["sampling"]["strip_length_um"]))
 
+    def capacitor(self, device: str) -> dict:
+        """Voltage of a device and its dielectric; empty without a voltage."""
+        return chosen(self.sections[device], ("voltage_V", "offset_V", "dielectric"))
+
     def has_strips_of_pair(self, device: str) -> bool:
         """Whether a device sticks on the strips of its pair in the main line, whose contact it then shares."""
         main = self.config["sampling"]["strip_length_um"], self.config["beam"]["width_um"]
         return self.ground(device) == patch(self.sections[device]["pair"], *main)
+
+    # Tilted stoppers
+
+    def slopes(self, device: str) -> list[float]:
+        """Slopes of a stopper at its tilts, increasing [-]; none if it states no tilt."""
+        return [math.tan(to_si(tilt, "deg")) for tilt in self.sections[device].get("tilt_deg", ())]
+
+    def inclination(self, area: Patch) -> dict:
+        """Slopes and reach of the contact of tilted stoppers that touch with this area.
+
+        The reach covers film, heights of six times the rms of both surfaces, and the gaps to the far side of the
+        stopper. ASSUME: no attraction across gaps beyond `FAR`.
+        """
+        area = area._replace(pair=PairInAir(area.pair).pair)
+        users = [name for name in self.stoppers if self.ground(name) == area]
+        slopes = sorted({slope for name in users for slope in self.slopes(name) if slope})
+        reach = max(map(self._reach, users)) + 3 * self._rms_of_both(area.pair) + min(slopes[-1] * area.length, FAR)
+        return {"slopes": slopes, "reach_nm": reach}
 
     # Tips of cantilevers
 
@@ -177,10 +202,13 @@ class DevicePlan:
         """
         section = self.sections[device]
         wettest = max(section["humidities"] + section.get("chart", {}).get("humidities", []))
-        rms = [self._rms(self.config["pairs"][section["pair"]][side]) for side in SIDES]
         film = float(meniscus_height(wettest, self.config["water"]["temperature_K"])) if wettest else 0.0
-        least = from_si(film, "nm") + 3 * math.hypot(*rms)
+        least = from_si(film, "nm") + 3 * self._rms_of_both(section["pair"])
         return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
+
+    def _rms_of_both(self, pair):
+        """Standard deviation of the sum of the heights of both surfaces of a pair [nm]."""
+        return math.hypot(*(self._rms(self.config["pairs"][pair][side]) for side in SIDES))
 
     def _rms(self, surface):
         """Standard deviation of the heights of a surface, preliminary if it is described by scans [nm]."""
@@ -194,22 +222,22 @@ class DevicePlan:
 
     # Budgets
 
-    @property
+    @cached_property
     def tested(self) -> list[str]:
         """Devices with test beams."""
         return [name for name, device in self.sections.items() if "test_beams" in device]
 
-    @property
+    @cached_property
     def roughened(self) -> list[str]:
         """Devices that are computed over the roughness of a surface."""
         return [name for name, device in self.sections.items() if "roughness" in device]
 
-    @property
+    @cached_property
     def mapped(self) -> list[str]:
         """Those of `roughened` that are computed over two quantities."""
         return [name for name in self.roughened if len(ROUGHNESSES.keys() & self.sections[name]["roughness"]) > 1]
 
-    @property
+    @cached_property
     def budgeted(self) -> list[str]:
         """Devices with an uncertain input: with a stated uncertainty, or on a surface described by scans."""
         stated = {name: any(device.get("uncertainty", {}).values()) for name, device in self.sections.items()}
@@ -238,12 +266,11 @@ class DevicePlan:
         spectrum changes a length by 0.2 %.
         """
         of_heights = set(MOMENT_QUANTITIES if self.sections[device].get("uncertainty", {}).get("scan_um") else ())
-        entries, known = self._surfaces(device), self.known(device)
         by_surface = {
             name: quantities(entry)
             if is_measured(entry)
-            else [one for one in ALL_QUANTITIES if one in of_heights.union(known[name].quantities)]
-            for name, entry in entries.items()
+            else [one for one in ALL_QUANTITIES if one in of_heights.union(uncertain(entry))]
+            for name, entry in self._surfaces(device).items()
         }
         return [(name, quantity) for name, of_surface in by_surface.items() for quantity in of_surface]
 

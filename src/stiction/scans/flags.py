@@ -143,9 +143,8 @@ def _noise_stays(estimate):
     if not levels:
         return ""
     return (
-        f"a floor of the spectrum like that of white noise of {' and '.join(levels)} is not subtracted, because no "
-        "heights have the moments that would remain; if it is noise, the surface is smoother than computed and sticks "
-        "more"
+        f"a floor of the spectrum like white noise of {' and '.join(levels)} is not subtracted, because no heights "
+        "have the remaining moments; if it is noise, the surface is smoother than computed and sticks more"
     )
 
 

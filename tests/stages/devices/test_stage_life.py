@@ -12,6 +12,7 @@ from test_tables_budget import stopper_dataset
 
 from stiction.config.files import load
 from stiction.config.units import in_si
+from stiction.contact.voltage import Capacitor, Dielectric
 from stiction.devices.risk import samples_for
 from stiction.devices.stoppers import safe_force
 from stiction.life import drying, freeing, holding, touch
@@ -21,7 +22,7 @@ from stiction.report.devices import life as report
 from stiction.report.devices.pages import Page, Section, with_life
 from stiction.run import storage
 from stiction.stages.devices import life
-from stiction.stages.devices.life import Dielectric, Electrode, Errors, Liquid, OfBeam, OfStopper
+from stiction.stages.devices.life import Electrode, Errors, Liquid, OfBeam, OfStopper
 
 LIQUIDS = {"water": Liquid(0.072), "mine": Liquid(0.03, np.pi / 3)}
 OF = OfBeam(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=Errors())
@@ -47,10 +48,17 @@ def lengths():
     return {0.44: safe_with_tips(tips), 0.67: safe_with_tips(1.5 * tips)}
 
 
-def answers(of, lengths=None, after=None):
+def answers(of, lengths=None, after=None, biased=None):
     """Answers about a beam, or a stopper, by name."""
-    found = life.of_stopper(stopper_dataset(), of) if lengths is None else life.of_beam(lengths, after or {}, of)
-    return {one.name: one for one in found}
+    if lengths is None:
+        return {one.name: one for one in life.of_stopper(stopper_dataset(), of, biased)}
+    return {one.name: one for one in life.of_beam(lengths, after or {}, of, biased)}
+
+
+def at_voltage(lengths, factor, energy):
+    """Datasets of safe lengths at a voltage, shorter by a factor, where the voltage adds an energy [J m⁻²]."""
+    gained = {"voltage_energy": energy, "voltage_error": 0.1 * energy}
+    return {key: one.assign(safe_length=factor * one.safe_length, **gained) for key, one in lengths.items()}
 
 
 def test_a_beam_is_asked_at_its_least_safe_length_unless_it_states_one(lengths):
@@ -181,21 +189,60 @@ def test_a_voltage_shortens_the_safe_length_of_a_beam_as_its_energy_says(lengths
     of = replace(OF, voltage=-5.0, offset=0.3, dielectric=Dielectric(100e-9, 4.0))
     found, least = answers(of, lengths), life.length_of(lengths, OF)
     assert of.potential == 5.3
-    added = holding.energy_of_voltage(5.3, 25e-9, C1.gap)
+    added = holding.energy_of_voltage(of.capacitor, C1.gap)
     assert_allclose(found["voltage_energy"].high, added, rtol=1e-12)
     assert_allclose(found["field"].high, 5.3 / 100e-9, rtol=1e-12)
     at = found["at_voltage"]
     shorter, longer = (holding.length_at_voltage(by * least, OF.beam(1.0), added, 3 / 8) for by in (1, 1.001))
-    assert_allclose((at.low, at.high), (shorter, least), rtol=1e-12)
+    assert_allclose(at.low, shorter, rtol=1e-12)
+    assert np.isnan([at.high, found["voltage_energy"].low]).all(), "nothing is known of rough surfaces"
     # To first order, the error moves with the derivative of the length.
     of_least = min((one.low, one.error) for name, one in found.items() if name.startswith("safe_length"))[1]
     assert_allclose(at.error, of_least * (longer - shorter) / (1e-3 * least), rtol=1e-2)
 
 
+def test_a_beam_at_a_voltage_is_between_flats_and_the_gaps_of_its_rough_surfaces(lengths):
+    of = replace(OF, voltage=5.0, dielectric=Dielectric(100e-9, 4.0))
+    flat, least = answers(of, lengths)["at_voltage"].low, life.length_of(lengths, OF)
+    between, gained = (1 + flat / least) / 2, 0.2 * of.capacitor.work(0.0)
+    found = answers(of, lengths, biased=at_voltage(lengths, between, gained))
+    assert_allclose((found["at_voltage"].low, found["at_voltage"].high), (flat, between * least), rtol=1e-12)
+    energy = found["voltage_energy"]
+    assert_allclose((energy.low, energy.error), (gained, 0.1 * gained), rtol=1e-12)
+    assert energy.low < energy.high
+    # The least length of both bounds is the lower one, with its own error.
+    steep = answers(of, lengths, biased=at_voltage(lengths, 0.9 * flat / least, gained))["at_voltage"]
+    assert_allclose((steep.low, steep.high), (0.9 * flat, 0.9 * flat), rtol=1e-12)
+    assert_allclose(steep.error, min((one.low, one.error) for one in found.values() if one.name.startswith("safe"))[1])
+
+
+def test_a_bridge_at_a_voltage_has_the_safe_length_on_its_rough_surfaces_alone():
+    of = replace(OF, device=R1, liquids={}, voltage=5.0, dielectric=Dielectric(100e-9, 4.0))
+    without = {0.67: safe_without_tips()}
+    found = answers(of, without, biased=at_voltage(without, 0.9, 1e-4))["at_voltage"]
+    assert np.isnan(found.low)
+    assert_allclose(found.high, 0.9 * life.length_of(without, of), rtol=1e-12)
+    assert found.error > 0
+
+
+def test_a_stopper_at_a_voltage_is_held_by_more_on_flats_than_on_rough_patches():
+    of = replace(STOPPER, voltage=5.0, dielectric=Dielectric(100e-9, 4.0))
+    flat, dataset = answers(of)["at_voltage"].high, stopper_dataset()
+    gained = 0.3 * flat * (1 + 0.1 * np.random.default_rng(4).standard_normal(dataset.sizes["sample"]))
+    biased = dataset.assign(pull_off=dataset.pull_off + gained, stuck=0 * dataset.stuck + 0.6)
+    found = answers(of, biased=biased)
+    assert_allclose(found["at_voltage"].low, gained.mean(), rtol=1e-12)
+    assert found["at_voltage"].high == flat
+    assert_allclose(found["at_voltage"].error, gained.std(ddof=1) / len(gained) ** 0.5, rtol=1e-9)
+    assert_allclose((found["stuck_at_voltage"].low, found["stuck_at_voltage"].high), 0.6, rtol=1e-12)
+    said = report.sentences(life.layout(life.of_stopper(dataset, of, biased), of))
+    assert any(sentence.endswith(f" to {report.significant(1e6 * flat)} µN.") for sentence in said)
+
+
 def test_without_voltage_nothing_is_said_of_it_and_a_vanishing_one_changes_nothing(lengths):
     assert not {"at_voltage", "field", "voltage_energy"} & set(answers(OF, lengths))
     little = answers(replace(OF, voltage=1e-6, dielectric=Dielectric(100e-9, 4.0)), lengths)["at_voltage"]
-    assert_allclose(little.low, little.high, rtol=1e-9)
+    assert_allclose(little.low, life.length_of(lengths, OF), rtol=1e-9)
 
 
 def test_a_bridge_states_the_energy_of_the_voltage_alone():
@@ -207,7 +254,7 @@ def test_a_bridge_states_the_energy_of_the_voltage_alone():
 
 def test_a_voltage_holds_a_stopper_with_the_pressure_of_flats_on_its_area():
     found = answers(replace(STOPPER, voltage=5.0, dielectric=Dielectric(100e-9, 4.0)))
-    assert_allclose(found["at_voltage"].high, holding.pressure_of_voltage(5.0, 25e-9) * 9e-12, rtol=1e-12)
+    assert_allclose(found["at_voltage"].high, Capacitor(Dielectric(25e-9, 1.0), 5.0).largest_pressure * 9e-12)
     assert found["restoring_force"] == answers(STOPPER)["restoring_force"]
 
 

@@ -379,7 +379,7 @@ def test_the_rim_of_a_film_adds_its_share_to_the_force_of_the_film():
 def test_a_stopper_in_air_that_is_hardly_humid_enough_for_a_liquid_is_said(dry, warned):
     (sentence,) = warned({"S1": stopper(**dry)}).patches["S1"]
     assert sentence.startswith("The film of water is ")
-    assert "thinner than 4 molecules, 1.12 nm: the air is drier than the range in which" in sentence
+    assert "thinner than 4 molecules, 1.12 nm: the air is too dry for the theory of a liquid" in sentence
 
 
 def test_a_stopper_has_the_warnings_of_its_contact(warned):

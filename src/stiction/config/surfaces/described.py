@@ -14,10 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from stiction.config.messages import Problem, did_you_mean, shown
-from stiction.config.surfaces.knowledge import Library, slope
+from stiction.config.messages import Problem, did_you_mean, faulty, shown
+from stiction.config.surfaces.knowledge import Library, slope, with_uncertain_devices
 from stiction.config.units import from_si, to_si
-from stiction.models import SIDES
 from stiction.surface import self_affine
 
 #: Keys of the spectrum as papers state it, and all keys of a section that is to be completed.
@@ -119,34 +118,17 @@ def completed(
     Surfaces with keys that are wrong on their own, the ``faults``, stay as they are. A device on a surface that is not
     known exactly has a section of its uncertainty.
     """
-    wrong, surfaces, problems = {fault[1] for fault in faults if fault[0] == "surfaces"}, {}, []
+    wrong, surfaces, problems = faulty(faults, "surfaces"), {}, []
     for name, entry in config["surfaces"].items():
         refused = None if name in wrong else next(_refusals(entry, library), None)
         problems += [_problem(name, entry, *refused)] if refused else []
         surfaces[name] = entry if refused or name in wrong else complete(entry, library)
     uncertain = [name for name, entry in surfaces.items() if name not in wrong and _is_uncertain(entry)]
-    return config | {"surfaces": surfaces} | _devices(config, uncertain), problems
+    return with_uncertain_devices(config | {"surfaces": surfaces}, uncertain), problems
 
 
 def _is_uncertain(entry):
     return bool(entry.get("unknown") or entry.get("uncertainty"))
-
-
-def _devices(config, uncertain):
-    """Section ``devices`` with a section of uncertainty for devices on uncertain surfaces."""
-    devices = config["devices"]
-    if not (uncertain and isinstance(devices, dict)):
-        return {}
-    return {"devices": {name: _with_uncertainty(device, config, uncertain) for name, device in devices.items()}}
-
-
-def _with_uncertainty(device, config, surfaces):
-    """Section of a device with a section of its uncertainty, if one of its surfaces is among these."""
-    try:
-        is_uncertain = any(config["pairs"][device["pair"]][side] in surfaces for side in SIDES)
-    except (KeyError, TypeError):
-        return device  # other relations report what is missing
-    return {"uncertainty": {}} | device if is_uncertain else device
 
 
 def _problem(name, entry, key, message):

@@ -13,6 +13,7 @@ from itertools import chain, count
 from typing import Any
 
 from stiction.config import memory, scans
+from stiction.config.messages import faulty
 from stiction.config.units import NM_PER_UM, from_si, in_si
 from stiction.models import SIDES
 from stiction.rounding import is_at_most
@@ -35,7 +36,7 @@ def completed(config: dict[str, Any], estimates: Mapping[str, dict], faults: Col
     config = scans.with_heights(config, estimates)
     if {"spacing_nm", "margin_um"} <= set(sampling):
         return config
-    wrong = {path[1] for path in faults if path[:1] == ("surfaces",) and len(path) > 1}
+    wrong = faulty(faults, "surfaces")
     waves = [_waves(config, name, estimates) for name in dict.fromkeys(used(config)) if name not in wrong]
     waves = list(filter(None, waves))
     chosen = {"margin_um": max((_margin(length) for _, length in waves), default=_MARGIN)} | sampling

@@ -3,12 +3,12 @@
 The library of typical surfaces is given as sections of a configuration with moments and the parameters of Eq. (7).
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
+from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.surface import self_affine
 
 #: Quantities of `stiction.analysis.shifts` by the words of key ``unknown``, and by the keys of ``uncertainty``.
@@ -35,6 +35,23 @@ class Knowledge(NamedTuple):
         return {"quantities": list(self.quantities), "covariance": rounded}
 
 
+def with_uncertain_devices(config: dict[str, Any], surfaces: Collection[str]) -> dict[str, Any]:
+    """Configuration with a section of uncertainty in every device on one of these surfaces."""
+    devices = config.get("devices")
+    if not (surfaces and isinstance(devices, dict)):
+        return config
+    return config | {"devices": {name: _with_uncertainty(device, config, surfaces) for name, device in devices.items()}}
+
+
+def _with_uncertainty(device, config, surfaces):
+    """Section of a device with a section of its uncertainty, if one of its surfaces is among these."""
+    try:
+        is_uncertain = any(config["pairs"][device["pair"]][side] in surfaces for side in SIDES)
+    except (KeyError, TypeError):
+        return device  # other relations report what is missing
+    return {"uncertainty": {}} | device if is_uncertain else device
+
+
 def slope(psd: Mapping[str, float]) -> float:
     """Exponent of the power law of a section ``published_psd``."""
     falls = np.log(psd["floor_nm4"] / psd["plateau_nm4"])
@@ -47,8 +64,7 @@ def knowledge(entry: Mapping[str, Any], library: Library) -> Knowledge:
     A stated uncertainty takes the place of the scatter over the library.
     """
     variances = {quantity: deviation**2 for quantity, deviation in _deviations(entry).items()}
-    unknown = assumed(entry)
-    names = tuple(name for name in _ALL if name in unknown or variances.get(name))
+    names = uncertain(entry)
     places = [_ALL.index(name) for name in names]
     covariance = scatter(library)[np.ix_(places, places)]
     for place, name in enumerate(names):
@@ -56,6 +72,12 @@ def knowledge(entry: Mapping[str, Any], library: Library) -> Knowledge:
             covariance[place], covariance[:, place] = 0.0, 0.0
             covariance[place, place] = variances[name]
     return Knowledge(names, covariance)
+
+
+def uncertain(entry: Mapping[str, Any]) -> tuple[str, ...]:
+    """Uncertain quantities of the section of a surface: assumed, or with an uncertainty above zero."""
+    unknown, deviations = assumed(entry), _deviations(entry)
+    return tuple(name for name in _ALL if name in unknown or deviations.get(name))
 
 
 def assumed(entry: Mapping[str, Any]) -> dict[str, str]:

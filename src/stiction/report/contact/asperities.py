@@ -34,7 +34,7 @@ _CAPTION = (
     "Crack lengths of Table III, model NG, under several readings of an asperity, from the ratio of the mean adhesion "
     "energies of the same strips to the power -1/4: change against spheres on summits, on the grid of the contact and "
     "with attraction of the solids, at the lowest and at the highest humidity; root mean square over the humidities of "
-    "the deviation from the published length, and from that under full elastic contact where it was computed; "
+    "the deviation from the published length, and from the length under full elastic contact, if computed; "
     "processor time of a strip over that of spheres on summits; ± standard error over strips. Island: a sphere of the "
     "area of every island; fitted: a sphere by least squares; shape: every island with its true shape, solved alone. "
     "vdW: the medium through which the solids attract, or none."
@@ -59,7 +59,7 @@ def _rows(
             others, count = base[: len(energies)], {"strips": len(energies)}
             whole = {"time_over_summits": cost(study, **labels)}
             whole |= _rms("published", energies, others, lengths / known)
-            whole |= _rms("full_contact", *_of_full_contact(energies, humidities, full[pair]))
+            whole |= _rms("full_contact", *_common_energies(energies, humidities, full[pair]))
             labels = {
                 "reading": labels["reading"],
                 "spacing_nm": TO_NM * labels["spacing"],
@@ -80,7 +80,7 @@ def _rms(name, *compared):
     return {f"rms_{name}_percent": 100 * rms, f"rms_{name}_se_percent": 100 * error}
 
 
-def _of_full_contact(energies, humidities, study):
+def _common_energies(energies, humidities, study):
     """Energies of a reading and of full contact, in common strips and at common humidities."""
     at, full, _ = full_contact.energies(study)
     strips = min(len(energies), len(full))

@@ -207,7 +207,7 @@ STAGES = (
     ),
     figure_stage(
         "chart",
-        "safe length over the relative humidity",
+        "safe length against relative humidity",
         "Devices",
         inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.charted)},
         compute=lambda data: chart(data["charts"], device_warnings.read(data["warnings"]).curves),

@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from stiction.config.units import from_si
 from stiction.constants import FREE_FALL
-from stiction.life.holding import BREAKDOWN
+from stiction.contact.voltage import BREAKDOWN
 from stiction.plan.names import by_name
 from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN
 from stiction.report.style import (
@@ -30,7 +31,9 @@ from stiction.stages.devices.life import (
     QUESTIONS,
     RELEASED,
     SHOCK,
+    TILTED,
     VOLTAGE,
+    WEDGE,
     Answer,
     answers_of,
 )
@@ -45,6 +48,7 @@ _UNITS = {
     "N m-1": (1.0, "N/m"),
     "J m-2": (TO_MJ, "mJ/m²"),
     "1": (100.0, "%"),
+    "rad": (from_si(1.0, "deg"), "°"),
 }
 #: What the answers are, for the table and for pages.
 CAPTION = (
@@ -110,7 +114,7 @@ def sentences(dataset: xr.Dataset) -> list[str]:
     at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
     said = [*_touching(answers, at), *_pulled_in(answers, potential), *_drying(answers, at, length)]
-    return [*said, *_biased(answers, potential), *_often(answers, int(dataset.touchdowns))]
+    return [*said, *_tilted(answers), *_biased(answers, potential), *_often(answers, int(dataset.touchdowns))]
 
 
 def _touching(answers, at):
@@ -128,15 +132,24 @@ def _pulled_in(answers, potential):
     return [f"Its own voltage of {significant(potential)} V pulls it in."]
 
 
+def _tilted(answers):
+    """Force on a stopper at its tilts, and the tilt that makes it that of a wedge."""
+    if TILTED not in answers:
+        return []
+    one, wedge = answers[TILTED], answers[WEDGE]
+    ends, limit = (" to ".join(dict.fromkeys((_low(each), _high(each)))) for each in (one, wedge))
+    return [f"Its {one.what}, is {ends} µN. Beyond a tilt of {limit}°, a longer side of its area hardly holds more."]
+
+
 def _biased(answers, potential):
     """What a voltage does to a device that touches, and whether its dielectric stands the field."""
     if AT_VOLTAGE not in answers:
         return []
     one, field = answers[AT_VOLTAGE], answers[FIELD]
     is_length, on = one.unit == "m", f"While {significant(potential)} V are on,"
-    said = [
-        f"{on} its safe length is {_low(one)} µm." if is_length else f"{on} up to {_high(one)} µN hold it in addition."
-    ]
+    what, unit = ("its safe length is", "µm") if is_length else ("they hold it with a further", "µN")
+    ends = list(dict.fromkeys(end for end, value in ((_low(one), one.low), (_high(one), one.high)) if value == value))
+    said = [f"{on} {what} {' to '.join(ends)} {unit}."]
     if field.high > BREAKDOWN:
         said.append(f"The field in its dielectric, {_high(field)} V/nm, is above 1 V/nm, where thin oxides break down.")
     return said

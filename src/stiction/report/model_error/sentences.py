@@ -51,8 +51,8 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     said += [] if error.applied else [_safe_side(known, -1 if shape == FORCE else 1)]
     gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
     if error.across_gaps:
-        return [*said, f"It leaves out the attraction across gaps that this prediction contains, and which acts {gaps}"]
-    return [*said, f"Attraction across gaps, which is in neither model, acts {gaps}"]
+        return [*said, f"It leaves out the attraction across gaps of this prediction. That attraction acts {gaps}"]
+    return [*said, f"Attraction across gaps is in neither model. It acts {gaps}"]
 
 
 def _percent(row):

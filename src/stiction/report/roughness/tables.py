@@ -33,9 +33,9 @@ def form(*datasets: xr.Dataset) -> str:
     stays = "The form of its heights and the shape of its spectrum stay"
     if any(KURTOSIS in dataset for dataset in datasets):
         stays = (
-            "A skewness comes with the kurtosis of the surface or, where no density of maximum entropy has both, with "
-            "the largest one that such a density has, which is stated beside it. All else of the form of its heights "
-            "and the shape of its spectrum stays"
+            "A skewness comes with the kurtosis of the surface. If no density of maximum entropy has both, it comes "
+            "with the largest kurtosis of such a density, shown beside it. All else of the form of its heights and the "
+            "shape of its spectrum stays"
         )
     return f"{varied} {stays}; a process that changes one of them usually changes all."
 
@@ -95,8 +95,8 @@ def extrapolated(dataset: xr.Dataset) -> list[str]:
     if share >= VERIFIED or samples >= samples_for(share):
         return []
     return [
-        f"What holds for {one_in(share)} is extrapolated: from {samples} simulated devices, by a line through the 5 % "
-        f"that stick most easily, which was verified down to {one_in(VERIFIED)}."
+        f"The result for {one_in(share)} is extrapolated from {samples} simulated devices, by a line through the 5 % "
+        f"that stick most easily. The line was verified down to {one_in(VERIFIED)}."
     ]
 
 
@@ -244,8 +244,8 @@ def roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
     sentences = [f"{device}: {sentence}" for device, dataset in datasets.items() for sentence in answers(dataset)]
     of_maps = any("other" in row for row in rows)
     caption = (
-        "Safe length of a beam, or safe restoring force of a stopper, over the roughness of a surface: with a "
-        "confidence of 95 % given the drawn surfaces, at most a share p sticks. Estimate: where a share p sticks, ± "
+        "Safe length of a beam, or safe restoring force of a stopper, against the roughness of a surface: with a "
+        "confidence of 95 % given the drawn surfaces, at most a fraction p sticks. Estimate: a fraction p sticks, ± "
         "standard error due to the numbers of devices and of drawn surfaces. P(stuck): at the required length or "
         f"force, with its 95 % band. {form(*datasets.values())} Devices: number of simulated devices at every "
         "roughness."

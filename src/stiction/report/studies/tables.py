@@ -92,8 +92,7 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
         "Table III, model NG, under other model choices: change of the mean crack length and of the mean meso-scale "
         "energy against the base case, at the lowest and at the highest humidity; root mean square over the "
         "humidities of the deviation from the published and from the measured crack length; ± standard error. Removed: "
-        "by what share the variant reduces the mean square deviation from the published length; negative if it "
-        "increases it."
+        "reduction of the mean square deviation from the published length by the variant, negative for an increase."
     )
     return Table(frame, caption, pd.DataFrame(cells))
 

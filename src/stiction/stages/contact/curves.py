@@ -42,6 +42,20 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
     ValueError
         If the film is higher than the contact of the tips reaches.
     """
+    return contact.slope.values, _wedges(contact, humidity, water, endless=True)
+
+
+def tilted_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """Largest attraction of each tilted patch at each slope, per its width (m, s) [N/m]; errors as of `tip_forces`.
+
+    ASSUME: the ratio of the pull-off force on parallel patches to full elastic contact is that on tilted ones.
+    """
+    forces = _wedges(contact, humidity, water, endless=False)
+    return forces * water.correction.at(humidity)[1] if water.correction else forces
+
+
+def _wedges(contact, humidity, water, endless):
+    """Largest attractions per width of strips that go on below their stored heights or end there (m, s) [N/m]."""
     layer, reach = water.film(humidity), -float(contact.height[0])
     if layer[0] > reach:
         raise ValueError(
@@ -49,13 +63,12 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
             f"humidity of {humidity:g} is {from_si(layer[0], 'nm'):.3g} nm high: state this humidity with the device"
         )
     solid, bearing, starts, step = tables(contact)
-    if water.gaps is not None:
-        work = partial(water.gaps.work, height=layer[0])
+    if water.reaches_across:
+        work = partial(water.work_across, height=layer[0])
         pressure, _ = gaps.gap_pressures(bearing, starts[1], contact.distance.values, step, work)
         rest = work(contact.distance.values + reach) / (contact.slope.values[:, None] * float(contact.length))
-        solid = solid + pressure - rest.astype(np.float32)
-    largest = forcelaw.largest_attractions(solid, bearing, starts, step, layer)
-    return contact.slope.values, largest * float(contact.length)
+        solid = solid + pressure - endless * rest.astype(np.float32)
+    return forcelaw.largest_attractions(solid, bearing, starts, step, layer) * float(contact.length)
 
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:

@@ -5,7 +5,7 @@ from typing import Any
 from stiction.config.cases import Case
 from stiction.models import SHIFTS
 from stiction.plan.devices import Patch
-from stiction.stages.contact.changes.patches import GROUND, STRIPS, TIPS
+from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS
 from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
 from stiction.stages.contact.changes.table import AS_IT_IS, file_of
@@ -23,6 +23,11 @@ def contact_of(plan: Any, case: Case) -> str:
 def patch_of(plan: Any, case: Case) -> Patch:
     """Patch on which a device sticks, named with its pair in the air of a case, see `stiction.plan.environment`."""
     return plan.devices.ground(case.device)._replace(pair=plan.contact_of_device(case))
+
+
+def tilted_of(plan: Any, case: Case) -> str:
+    """Contact of a tilted stopper at a humidity."""
+    return file_of(AS_IT_IS, TILTED, **patch_of(plan, case)._asdict())
 
 
 def tips_of(plan: Any, case: Case) -> dict[str, str]:

@@ -6,6 +6,7 @@ sampled surfaces, force laws are fitted to each of some groups of the samples al
 with the same random numbers.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -106,6 +107,14 @@ def lengths(cracks: xr.Dataset) -> tuple[np.ndarray, np.ndarray, float]:
     """Crack or held lengths with all samples (n,), with each group alone (g, n), and the foundation length [m]."""
     name = next(opening.length for opening in BEAMS.values() if opening.length in cracks)
     return cracks[name].values, cracks[f"{name}_of_group"].values, float(cracks.foundation_length)
+
+
+def with_lengths(cracks: xr.Dataset, changed: Callable[[np.ndarray], np.ndarray]) -> xr.Dataset:
+    """Dataset with other lengths, a function of those of any shape [m]."""
+    name = next(opening.length for opening in BEAMS.values() if opening.length in cracks)
+    return cracks.assign(
+        {key: cracks[key].copy(data=changed(cracks[key].values)) for key in (name, f"{name}_of_group")}
+    )
 
 
 STAGES = (

@@ -18,9 +18,11 @@ from stiction.config.kinds import restoring_force
 from stiction.config.materials import material_of
 from stiction.config.units import from_si, in_si
 from stiction.constants import DENSITY, LIQUIDS
+from stiction.contact.voltage import BREAKDOWN, Capacitor, Dielectric
 from stiction.devices.bridges import half_of_bridge
 from stiction.devices.risk import Basis, samples_for
 from stiction.devices.stoppers import safe_force
+from stiction.estimates import mean_with_error
 from stiction.life import drying, freeing, holding, touch
 from stiction.plan.stage import Stage, select
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
@@ -31,6 +33,9 @@ QUESTIONS = TOUCH, STICK, HOLD, FREE = "touch", "stick", "hold", "free"
 #: Names of answers that sentences are about.
 VOLTAGE, SHOCK, COLLAPSE, RELEASED, AFTER = "voltage", "shock", "collapse", "released", "after"
 AT_VOLTAGE, FIELD = "at_voltage", "field"
+TILTED, WEDGE = "force_tilted", "wedge"
+#: Sources of the answers about voltages and tilts.
+_OF_VOLTAGE, _OF_TILT = "stage at_voltage, stiction.life.holding", "stage tilted_stoppers"
 
 
 class Answer(NamedTuple):
@@ -70,19 +75,6 @@ class Errors:
     residual_stress: float = 0.0  #: [Pa]
 
 
-@dataclass(frozen=True)
-class Dielectric:
-    """What keeps a device and its substrate apart at a voltage."""
-
-    thickness: float  #: [m]
-    permittivity: float  #: relative [-]
-
-    @property
-    def distance(self) -> float:
-        """Gap of air of the same capacity [m]."""
-        return self.thickness / self.permittivity
-
-
 @dataclass(frozen=True, kw_only=True)
 class Stated:
     """What any device may state beside its dimensions."""
@@ -93,9 +85,14 @@ class Stated:
     dielectric: Dielectric | None = None
 
     @property
+    def capacitor(self) -> Capacitor | None:
+        """Device and substrate at their voltage, if there is any."""
+        return self.dielectric and Capacitor(self.dielectric, self.voltage, self.offset)
+
+    @property
     def potential(self) -> float:
-        """Largest difference of potential [V]; ASSUME: voltages of both signs occur."""
-        return abs(self.voltage) + abs(self.offset)
+        """Largest difference of potential [V]."""
+        return self.capacitor.potential if self.capacitor else 0.0
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,8 +151,13 @@ class OfStopper(Stated):
 # Beams
 
 
-def of_beam(lengths: Mapping[float, xr.Dataset], after: Mapping[float, xr.Dataset], of: OfBeam) -> list[Answer]:
-    """Answers about a beam from its safe lengths by humidity, for one touchdown and, if there are more, after all."""
+def of_beam(
+    lengths: Mapping[float, xr.Dataset],
+    after: Mapping[float, xr.Dataset],
+    of: OfBeam,
+    biased: Mapping[float, xr.Dataset] | None = None,
+) -> list[Answer]:
+    """Answers about a beam from its safe lengths by humidity: for one touchdown, after all, and at its voltage."""
     share = chosen_share(next(iter(lengths.values())))
     safe = {humidity: _safe(dataset, share) for humidity, dataset in lengths.items()}
     length = length_of(lengths, of)
@@ -172,7 +174,7 @@ def of_beam(lengths: Mapping[float, xr.Dataset], after: Mapping[float, xr.Datase
     answers += _touched(of, length) + _held(of, length) if 0 < length < np.inf else []
     answers += [answer for name, liquid in of.liquids.items() for answer in _dried(of, name, liquid.adhesion)]
     answers += _after_touchdowns(of, share, min(safe.values()), after) if after else []
-    return _in_order(answers + _at_voltage(of, min(safe.values())))
+    return _in_order(answers + _at_voltage(of, min(safe.values()), biased))
 
 
 def length_of(lengths: Mapping[float, xr.Dataset], of: OfBeam) -> float:
@@ -285,35 +287,49 @@ def _held(of, length):
     return answers
 
 
-def _at_voltage(of, safe):
-    """What a voltage adds, and the length that is then safe, from the safe length without it and its error [m]."""
-    if not of.dielectric:
+def _at_voltage(of, safe, biased):
+    """What a voltage adds, and the length that is then safe, from the safe length without it and its error [m].
+
+    On flats in contact, and on rough surfaces from the safe lengths at the voltage by humidity, if there are any.
+    """
+    if not of.capacitor:
         return []
-    added = holding.energy_of_voltage(of.potential, of.dielectric.distance, of.device.gap)
-    form = f"Γ_V = ε₀ V² / 2 (1 / D - 1 / (D + h)), D = {from_si(of.dielectric.distance, 'nm'):.3g} nm"
-    answers = [
-        Answer(
-            "voltage_energy",
-            HOLD,
-            f"adhesion energy that {of.potential:g} V add",
-            *(np.nan, added, np.nan, "J m-2", form, "stiction.life.holding"),
-        ),
-        _field(of),
-    ]
-    if not (of.device.opening.has_tip and 0 < safe[0] < np.inf):
+    added = holding.energy_of_voltage(of.capacitor, of.device.gap)
+    distance = from_si(of.dielectric.distance, "nm")
+    form = f"mean over samples (at least); Γ_V = ε₀ V² / 2 (1 / D - 1 / (D + h)), D = {distance:.3g} nm (at most)"
+    gained = [(float(one.voltage_energy), float(one.voltage_error)) for one in (biased or {}).values()]
+    low, error = max(gained, default=(np.nan, np.nan))
+    what = f"adhesion energy that {of.potential:g} V add"
+    numbers = min(low, added), added, error
+    answers = [Answer("voltage_energy", HOLD, what, *numbers, "J m-2", form, _OF_VOLTAGE), _field(of)]
+    numbers = _shorter(of, added, safe, [_safe(one, chosen_share(one)) for one in (biased or {}).values()])
+    if np.isnan(numbers).all():
         return answers
-    length, beam = safe[0], of.beam(1.0)
-    shorter = holding.length_at_voltage(length, beam, added, holding.ARC)
     what = f"safe length while {of.potential:g} V are on"
-    error, form = safe[1] * (shorter / length) ** 5, "1 / L_V⁴ = 1 / L⁴ + 8 Γ_V / (3 E t³ h²) (at least)"
-    return [*answers, Answer(AT_VOLTAGE, HOLD, what, shorter, length, error, "m", form, "stiction.life.holding")]
+    form = "1 / L_V⁴ = 1 / L⁴ + 8 Γ_V / (3 E t³ h²), flats (at least); gaps of rough surfaces (at most)"
+    return [*answers, Answer(AT_VOLTAGE, HOLD, what, *numbers, "m", form, _OF_VOLTAGE)]
+
+
+def _shorter(of, added, safe, rough):
+    """Safe length at a voltage [m]: on flats, on rough surfaces, and an error of the first, or of the latter alone.
+
+    NaN for bridges on flats, and on rough surfaces that were not computed. Tips are held at steeper slopes by more of
+    their surfaces, so that rough ones can have the least length.
+    """
+    length, flat, error = safe[0], np.nan, np.nan
+    high, high_error, _ = min(rough, default=(np.nan, np.nan, ""))
+    if of.device.opening.has_tip and 0 < length < np.inf:
+        flat = holding.length_at_voltage(length, of.beam(1.0), added, holding.ARC)
+        error = safe[1] * (flat / length) ** 5
+    if high < flat:
+        return high, high, high_error
+    return flat, high, high_error if np.isnan(flat) else error
 
 
 def _field(of):
     """Field in the dielectric of a device whose surfaces touch."""
-    field = of.potential / of.dielectric.thickness
     what, form = "field in the dielectric in contact", "V / t; thin oxides break down near 1 V/nm"
-    return Answer(FIELD, HOLD, what, np.nan, field, np.nan, "V m-1", form, "stiction.life.holding")
+    return Answer(FIELD, HOLD, what, np.nan, of.capacitor.field, np.nan, "V m-1", form, "stiction.contact.voltage")
 
 
 def _after_touchdowns(of, share, once, after):
@@ -342,8 +358,10 @@ def _after_touchdowns(of, share, once, after):
 # Stoppers
 
 
-def of_stopper(stopper: xr.Dataset, of: OfStopper) -> list[Answer]:
-    """Answers about a stopper from the dataset of its pull-off forces."""
+def of_stopper(
+    stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | None = None, tilted: xr.Dataset | None = None
+) -> list[Answer]:
+    """Answers about a stopper from the datasets of its pull-off forces: as it is, at its voltage, and tilted."""
     worst = int(stopper.mean_along.argmax("axis"))
     mean, error = (float(stopper[name][worst]) for name in ("mean_along", "mean_along_error"))
     where = in_air(round(float(stopper.worst_humidity), 2))
@@ -360,13 +378,63 @@ def of_stopper(stopper: xr.Dataset, of: OfStopper) -> list[Answer]:
     what = f"mean pull-off force {where}, the worst air"
     answers.append(Answer("force", HOLD, what, mean, mean, error, "N", "largest attraction x area", "stage stoppers"))
     answers += _moved(of) + _freed(stopper, of) + _often(stopper, of)
-    if of.dielectric:
-        area = of.contact[0] * of.contact[1]
-        force = holding.pressure_of_voltage(of.potential, of.dielectric.distance) * area
-        what, form = f"force that {of.potential:g} V add", "F = ε₀ V² A / (2 D²), flats in contact"
-        answers.append(Answer(AT_VOLTAGE, HOLD, what, np.nan, force, np.nan, "N", form, "stiction.life.holding"))
-        answers.append(_field(of))
-    return _in_order(answers)
+    answers += [] if tilted is None else _tilted(tilted)
+    return _in_order(answers + (_pulled(stopper, of, biased) if of.capacitor else []))
+
+
+def _tilted(tilted):
+    """How many stoppers stick at their tilts, the force on them, and the tilt that makes it that of a wedge."""
+    ends = dict.fromkeys(f"{from_si(float(tilt), 'deg'):.3g}" for tilt in tilted.tilt)
+    by, form = (
+        f"tilted by {' to '.join(ends)}°",
+        "random patches; w e / s on smooth surfaces beyond the tilt of a wedge",
+    )
+    answers = [
+        Answer(
+            f"stuck_tilted_{float(humidity):g}",
+            STICK,
+            f"probability of sticking {by}, {in_air(float(humidity))}",
+            float(tilted.stuck.sel(humidity=humidity, bound="low").min()),
+            float(tilted.stuck.sel(humidity=humidity, bound="high").max()),
+            *(np.nan, "1", "fraction of random patches, 95 %", _OF_TILT),
+        )
+        for humidity in tilted.humidity.values
+    ]
+    most = tilted.isel(humidity=int(tilted["mean"].max("tilt").argmax("humidity")))
+    low, high, air = int(most["mean"].argmin("tilt")), float(most["mean"].max()), in_air(float(most.humidity))
+    numbers = float(most["mean"][low]), high, float(most.mean_error[low])
+    answers.append(Answer(TILTED, HOLD, f"mean pull-off force {by}, {air}", *numbers, "N", form, _OF_TILT))
+    what, form = "tilt beyond which a longer first side hardly holds more", "e / (f_max a), parallel patches"
+    numbers = float(tilted.wedge.min()), float(tilted.wedge.max()), np.nan
+    answers.append(Answer(WEDGE, HOLD, what, *numbers, "rad", form, _OF_TILT))
+    bounded = [float(share) for share in tilted.share[tilted.basis == Basis.SAMPLED]]
+    if bounded:
+        safe = tilted.safe_force.sel(share=min(bounded)).max("humidity")
+        low = int(safe.sel(part="safe").argmin("tilt"))
+        numbers = (
+            float(safe.sel(part="safe")[low]),
+            float(safe.sel(part="safe").max()),
+            float(safe.sel(part="error")[low]),
+        )
+        what, form = f"restoring force that frees all but {_one_in(min(bounded))} {by}", "quantile of the force, 95 %"
+        answers.append(Answer("restoring_force_tilted", FREE, what, *numbers, "N", form, _OF_TILT))
+    return answers
+
+
+def _pulled(stopper, of, biased):
+    """Force that a voltage adds to that on a stopper, and how many stick while it is on."""
+    flat = of.capacitor.largest_pressure * of.contact[0] * of.contact[1]
+    low, error, sticking = np.nan, np.nan, []
+    if biased is not None:
+        gained = [mean_with_error(row) for row in (biased.pull_off - stopper.pull_off).values]
+        low, error = max(gained)
+        worst = biased.isel(humidity=int(biased.stuck.sel(bound="estimate").argmax("humidity")))
+        what = f"probability of sticking while {of.potential:g} V are on, {in_air(float(worst.humidity))}"
+        numbers = *map(float, worst.stuck.sel(bound=["low", "high"])), np.nan
+        sticking = [Answer("stuck_at_voltage", HOLD, what, *numbers, "1", "as without voltage", _OF_VOLTAGE)]
+    what, form = f"force that {of.potential:g} V add", "mean of rough patches (at least); ε₀ V² A / (2 D²) (at most)"
+    added = Answer(AT_VOLTAGE, HOLD, what, min(low, flat), flat, error, "N", form, _OF_VOLTAGE)
+    return [added, *sticking, _field(of)]
 
 
 def _moved(of):
@@ -451,13 +519,15 @@ def compute(
     lengths: Mapping[float, xr.Dataset] | None = None,
     after: Mapping[float, xr.Dataset] | None = None,
     stopper: xr.Dataset | None = None,
+    biased: Mapping[float, xr.Dataset] | xr.Dataset | None = None,
+    tilted: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Answers about a device, from its safe lengths by humidity or from the forces of a stopper."""
     if stopper is not None:
         of = in_si(OfStopper, settings["stopper"])
-        return layout(of_stopper(stopper, of), of)
+        return layout(of_stopper(stopper, of, biased, tilted), of)
     of = in_si(OfBeam, settings["beam"])
-    return layout(of_beam(lengths, after, of), of, length_of(lengths, of))
+    return layout(of_beam(lengths, after, of, biased), of, length_of(lengths, of))
 
 
 def layout(answers: Sequence[Answer], of: Stated, length: float = np.nan) -> xr.Dataset:
@@ -486,15 +556,22 @@ def answers_of(dataset: xr.Dataset) -> list[Answer]:
 
 
 def _inputs(plan, at):
-    """Safe lengths at all humidities of a beam, for all touchdowns as well, or the forces of a stopper."""
-    section = plan.config["devices"][at.device]
+    """Safe lengths at all humidities of a beam, for all touchdowns and at its voltage as well, or forces of a stopper.
+
+    Beyond the breakdown of the dielectric, no voltage is there that could hold, and flats alone bound what it does.
+    """
+    section, capacitor = plan.config["devices"][at.device], plan.devices.capacitor(at.device)
+    is_biased = bool(capacitor) and in_si(Capacitor, capacitor).field <= BREAKDOWN
     if not plan.devices.kind(at.device).is_beam:
-        return {"stopper": f"devices/stoppers/{at.device}"}
+        biased = {"biased": f"devices/at_voltage/{at.device}"} if is_biased else {}
+        tilted = {"tilted": f"devices/tilted/{at.device}"} if "tilt_deg" in section else {}
+        return {"stopper": f"devices/stoppers/{at.device}"} | biased | tilted
     cases = {humidity: case_id(at.device, humidity) for humidity in section["humidities"]}
-    more = cases if "touchdowns" in section else {}
+    more, biased = cases if "touchdowns" in section else {}, cases if is_biased else {}
     return {
         "lengths": {humidity: f"devices/safe_lengths/{case}" for humidity, case in cases.items()},
         "after": {humidity: f"devices/touchdowns/{case}" for humidity, case in more.items()},
+        "biased": {humidity: f"devices/at_voltage/{case}" for humidity, case in biased.items()},
     }
 
 

@@ -31,6 +31,7 @@ from stiction.devices.bridges import (
     longest_tried,
     middle_zone,
 )
+from stiction.life import holding
 from stiction.plan.stage import chosen, select
 from stiction.streams import stream
 
@@ -167,6 +168,8 @@ class Opening:
     #: What the samples of force laws (..., m, 4) contribute to the length (..., m, ...), and the length on their mean.
     contribution: Callable[[np.ndarray], np.ndarray]
     length_on_mean: Callable[[np.ndarray, Beam], float]
+    #: Lengths (n,) at a voltage from those without it, and from the mean e and f_max (2,) without and with it.
+    at_voltage: Callable[[np.ndarray, np.ndarray, np.ndarray, Beam], np.ndarray]
 
     @property
     def has_tip(self) -> bool:
@@ -175,7 +178,8 @@ class Opening:
 
 
 #: How beams open by kind. ASSUME: crack lengths follow the mean energy of the samples as in Eq. (13), and lengths of
-#: bridges their mean energy and pull-off force as in ``least_length``, as far as the error of the samples is concerned.
+#: bridges their mean energy and pull-off force as in ``least_length``, as far as errors of the samples and effects of a
+#: voltage are concerned.
 BEAMS = {
     "cantilever": Opening(
         arms=1,
@@ -189,6 +193,9 @@ BEAMS = {
         tried=lambda beam, *_: beam.length,
         contribution=forcelaw.energy,
         length_on_mean=lambda sample, beam: arrest_length(sample.mean(), beam),
+        at_voltage=lambda lengths, without, at, beam: holding.length_at_voltage(
+            lengths, beam, float(at[0] - without[0]), holding.S_SHAPE
+        ),
     ),
     "bridge": Opening(
         arms=2,
@@ -202,6 +209,9 @@ BEAMS = {
         tried=longest_tried,
         contribution=_energies_and_pull_offs,
         length_on_mean=lambda sample, beam: least_length(*sample.mean(axis=0), beam),
+        at_voltage=lambda lengths, without, at, beam: (
+            lengths * (least_length(*at, beam) / least_length(*without, beam))
+        ),
     ),
 }
 
@@ -211,6 +221,11 @@ def settings_of_beam(plan: Any, case: Case) -> dict[str, Any]:
     pair = plan.contact_of_device(case)
     own = {"device": section_of_beam(plan, case.device, pair), "humidity": case.humidity}
     return plan.seen_by(pair) | plan.config["design"] | own | {"water": plan.air_of_devices.water(pair)}
+
+
+def at_voltage(plan: Any, device: str, settings: dict[str, Any]) -> dict[str, Any]:
+    """Settings of a device with its voltage beside its water."""
+    return settings | {"water": settings["water"] | {"capacitor": plan.devices.capacitor(device)}}
 
 
 def section_of_beam(plan: Any, name: str, contact: str | None = None) -> dict[str, Any]:

@@ -14,7 +14,6 @@ from stiction.chaos.model import ChaosModel, Truncation, draw_laws
 from stiction.contact.environment import Water, flooded_law
 from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, bridges, risk
-from stiction.devices.chart import flooded_length
 from stiction.devices.risk import NOTHING, Basis, Known, SafeLength
 from stiction.stages.contact import curves
 from stiction.stages.contact.error_notes import on_patch
@@ -75,7 +74,8 @@ def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> tuple
 def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list[float]:
     """Lengths that stick on flooded flats, one for each end state [m].
 
-    A cantilever has the length that sticks in saturated air or, where no water condenses, that of flats in contact.
+    A cantilever has the length that sticks in saturated air or, where no water condenses, that of flats in contact. A
+    voltage adds its work between flats.
     Only that of a beam is a bound: roughness that follows the slope of a tip lets it hold harder than a flat one. The
     worst air of a bridge is not the wettest: it has the length below which its middle comes free of flats in contact at
     this humidity, a bound for any surfaces.
@@ -84,10 +84,10 @@ def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list
     if not device.opening.has_tip:
         law = flooded_law(humidity, water, device.hamaker_constant)
         return [bridges.least_length(*law, device.beam)]
-    if not water.film(humidity)[0]:
-        energy = float(water.gaps.through("dry").work(0.0))
-        return [float(arrest_length(energy, device.beam)), arcs.arc_length(energy, device.beam)]
-    return [flooded_length(device.beam, *wet), arcs.arc_length(flooded_energy(*wet), device.beam)]
+    energy = flooded_energy(*wet) if water.film(humidity)[0] else float(water.gaps.through("dry").work(0.0))
+    if water.capacitor:
+        energy += water.capacitor.work(0.0)
+    return [float(arrest_length(energy, device.beam)), arcs.arc_length(energy, device.beam)]
 
 
 def sticking_lengths(

@@ -1,8 +1,8 @@
 """Stage stoppers: pull-off force of a patch of a pair against its restoring force, over the humidity."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -16,9 +16,10 @@ from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.contact.corrections import corrected
-from stiction.stages.contact.curves import pull_offs, share_flat
+from stiction.stages.contact.curves import energies, pull_offs, share_flat, tilted_forces
 from stiction.stages.contact.error_notes import on_patch
-from stiction.stages.devices.contact_names import contact_of, corrections_of
+from stiction.stages.devices.contact_names import contact_of, corrections_of, tilted_of
+from stiction.stages.devices.opening import at_voltage
 from stiction.streams import stream
 
 #: Shares of stuck patches for which a restoring force is stated, down to one in a million.
@@ -60,6 +61,62 @@ def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = No
     along = np.array([at[float(h)] for h in axis])
     flat = max(share_flat(one, h, settings.water.at(h)) for h, one in contacts.items())
     return layout(settings, chosen, axis, along).assign(share_flat=((), flat, {"units": "1"}))
+
+
+@dataclass(frozen=True)
+class Tilted(Settings):
+    """As `Settings`, of a stopper that tilts."""
+
+    slopes: tuple[float, ...] = ()  #: at its tilts, increasing [-]
+
+
+def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Dataset:
+    r"""Pull-off forces of a stopper at its tilts, and the slope beyond which its force is that of a wedge.
+
+    Without tilt, the patches are those of `compute`. A tilted one touches with an edge of its first side a, as long as
+    its second side w. Smooth surfaces with the adhesion energy e then hold the force :math:`w e / s` at the slope s,
+    without a. It equals the force f_max w a of parallel ones at the slope :math:`e / f_\mathrm{max} a`. On rough
+    surfaces, whose wedge has few summits, each patch finds a distance of its own and holds more. The data are the
+    contacts of parallel and of tilted patches, in the wettest air and in dry air.
+    """
+    width, found, wedges = settings.contact[1], [], []
+    for humidity in settings.humidities:
+        end, water = "_dry" if humidity == 0 and "dry" in data else "", settings.water.at(humidity)
+        parallel, tilted = data["dry" if end else "contact"], data.get(f"tilted{end}")
+        flat = forces(parallel, humidity, settings)
+        rows = [] if settings.slopes[0] else [flat]
+        if tilted is not None:
+            own = tilted.sel(slope=[slope for slope in settings.slopes if slope], method="nearest")
+            rows += list(width * tilted_forces(own, humidity, water).T)
+        found.append(rows)
+        wedges.append(energies(parallel, humidity, water).mean() * width / flat.mean())
+    return layout_tilted(settings, np.swapaxes(found, 0, 1), np.array(wedges))
+
+
+def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) -> xr.Dataset:
+    """Dataset of a tilted stopper: forces (tilts, n_rh, m) [N], and slopes beyond which it is a wedge (n_rh,) [-]."""
+    newton, none, over = {"units": "N"}, {"units": "1"}, ("tilt", "humidity")
+    stuck = [[_stuck(row, settings.restoring_force) for row in rows] for rows in pull_off]
+    safe, bases = zip(*(_safe(rows, settings.seed) for rows in pull_off), strict=True)
+    mean, error = mean_with_error(np.moveaxis(pull_off, -1, 0))
+    return xr.Dataset(
+        {
+            "pull_off": ((*over, "sample"), pull_off, newton),
+            "mean": (over, mean, newton),
+            "mean_error": (over, error, newton),
+            "stuck": (("bound", *over), np.moveaxis(stuck, -1, 0), none | {"long_name": "P(stuck) and its 95 % band"}),
+            "safe_force": (("part", *over, "share"), np.moveaxis(safe, 0, 1), newton),
+            "basis": ("share", bases[0]),
+            "wedge": ("humidity", wedges, none | {"long_name": "slope beyond which the force is that of a wedge"}),
+        },
+        coords={
+            "tilt": ("tilt", np.arctan(settings.slopes), {"units": "rad"}),
+            "humidity": list(settings.humidities),
+            "share": list(SHARES),
+            "bound": ["estimate", "low", "high"],
+            "part": ["safe", "estimate", "error"],
+        },
+    )
 
 
 def axis_of(settings: Settings) -> np.ndarray:
@@ -189,14 +246,43 @@ def _inputs(plan, at):
     return {"contact": contact_of(plan, wettest)} | dry | corrections_of(plan, at.device)
 
 
+_STOPPERS = Stage.writing(
+    "stoppers",
+    "devices/stoppers/{device}",
+    inputs=_inputs,
+    settings=_settings,
+    kind=Settings,
+    compute=lambda data, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
+    message="Pull-off force of stopper {device}.",
+)
+
+
+def _inputs_tilted(plan, at):
+    """As `_inputs`, with the contacts of tilted patches if a tilt is not zero."""
+    inputs, humidities = _inputs(plan, at), plan.config["devices"][at.device]["humidities"]
+    if not any(plan.devices.slopes(at.device)):
+        return inputs
+    dry = {"tilted_dry": tilted_of(plan, case_id(at.device, 0))} if 0 in humidities else {}
+    return inputs | {"tilted": tilted_of(plan, case_id(at.device, max(humidities)))} | dry
+
+
 STAGES = (
-    Stage.writing(
-        "stoppers",
-        "devices/stoppers/{device}",
-        inputs=_inputs,
-        settings=_settings,
-        kind=Settings,
-        compute=lambda data, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
-        message="Pull-off force of stopper {device}.",
+    _STOPPERS,
+    replace(
+        _STOPPERS,
+        name="tilted_stoppers",
+        files={"dataset": "devices/tilted/{device}"},
+        inputs=_inputs_tilted,
+        settings=lambda plan, at: _settings(plan, at) | {"slopes": plan.devices.slopes(at.device)},
+        kind=Tilted,
+        compute=lambda data, settings: compute_tilted(data, corrected(settings, data)),
+        message="Pull-off force of tilted stopper {device}.",
+    ),
+    replace(
+        _STOPPERS,
+        name="stoppers_at_voltage",
+        files={"dataset": "devices/at_voltage/{device}"},
+        settings=lambda plan, at: at_voltage(plan, at.device, _settings(plan, at)),
+        message="Pull-off force of stopper {device} at its voltage.",
     ),
 )

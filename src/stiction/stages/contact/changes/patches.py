@@ -40,12 +40,21 @@ def _size_of_tips(plan, at):
     return _size(plan, at) | {"contact": own, "tilt": tilt}
 
 
+def _size_of_tilted(plan, at):
+    """Area of tilted stoppers with larger steps of the distance."""
+    step = OF_TIPS * plan.config["contact"]["distance_step_nm"]
+    tilt = plan.devices.inclination(Patch(at.pair, int(at.length), int(at.width)))
+    return _size(plan, at) | {"contact": {"distance_step_nm": step}, "tilt": tilt}
+
+
 #: Strips along the beam, as in the paper.
 STRIPS = Place("{pair}", "", lambda plan, at: {})
 #: Patch on which a device sticks: strips of another size, or the whole area of a stopper.
 GROUND = Place("{pair}_{length}x{width}", ", {length} x {width} nm,", _size)
 #: Tilted strips that hold the tips of cantilevers.
 TIPS = Place(GROUND.file, f"{GROUND.words} at the tips of beams,", _size_of_tips)
+#: Area in which a tilted stopper touches.
+TILTED = Place(GROUND.file, f"{GROUND.words} of tilted stoppers,", _size_of_tilted)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

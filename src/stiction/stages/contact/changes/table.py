@@ -8,7 +8,7 @@ differences are those of the changes.
 from stiction.plan.stage import Stage
 from stiction.stages.contact import contact
 from stiction.stages.contact.changes.moments import MOMENTS
-from stiction.stages.contact.changes.patches import GROUND, STRIPS, TIPS, Change, Place
+from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS, Change, Place
 from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.scan_options import SCAN_OPTION
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
@@ -23,6 +23,7 @@ TABLE = {
     AS_IT_IS: {
         GROUND: ("device_contact", "devices/contact"),
         TIPS: ("tip_contact", "devices/contact/tips"),
+        TILTED: ("tilted_contact", "devices/contact/tilted"),
     },
     QUANTITY: {
         STRIPS: ("slope_contact", "studies/slopes/contact"),
