@@ -18,7 +18,7 @@ from stiction.report import html
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import figures as figures_devices
-from stiction.report.devices import life, own_length, sentences
+from stiction.report.devices import first_screen, life, own_length, sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.drawings.devices import of_device
 from stiction.report.format import MISSING, humidity_text, one_in
@@ -44,6 +44,12 @@ _OF_MAPS = (
     "meets it; dashed: the safe value does, with a confidence of 95 %. Dots: computed points; cross: the surface as it "
     "is given.",
 )
+#: Why a table of safe lengths and one of a budget have cells without a number.
+_MISSING_LENGTHS = (
+    "all drawn surfaces have the same tips, whose scatter is part of the error due to the number of beams; or too few "
+    "beams stick for an estimate"
+)
+_MISSING_EFFECTS = "this input does not act here, or too few of the simulated devices stick to show what it changes"
 #: Terms that pages explain.
 _GLOSSARY = Path(__file__).with_name("terms.yaml")
 
@@ -92,7 +98,7 @@ def of_beam(
     """
     cases = {(name, humidity): dataset for humidity, dataset in safe_lengths.items()}
     table = tables_devices.safe_lengths(cases, warnings, errors).cells.drop(columns="device")
-    sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}))]
+    sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}), _MISSING_LENGTHS)]
     if charts:
         axis = {(name, humidity): dataset for humidity, dataset in charts.items()}
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
@@ -121,7 +127,8 @@ def of_beam(
         | (terms["charts"] if charts else {})
         | _words_of_budgets(budgets)
     )
-    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
+    summary = _with_model_error(first_screen.of_beam(section, safe_lengths, budgets, listed, test_beams), name, errors)
+    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary)
 
 
 def of_stopper(
@@ -148,7 +155,16 @@ def of_stopper(
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
     answer += [*sentences.safe_force_sentences(stopper), *worst, *model_errors.sentences(name, errors)]
     words = _terms()["stoppers"] | (_terms()["worst_humidity"] if worst else {}) | _words_of_budgets(budgets)
-    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
+    summary = _with_model_error(first_screen.of_stopper(section, stopper, budgets, listed), name, errors)
+    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary)
+
+
+def _with_model_error(summary, name, errors):
+    """First screen with the error of the model of the contact, beside a number."""
+    if not summary.basis:
+        return summary
+    unstated = "The error of the model of the contact is not stated: run.studies leaves out full_contact."
+    return replace(summary, basis=[*summary.basis, *(model_errors.sentences(name, errors)[:1] or [unstated])])
 
 
 def _words_of_budgets(budgets):
@@ -212,7 +228,7 @@ def _sure(name, budgets, errors):
     ]
     said += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
     cells, drawn = _side_by_side(tables_budget.budget(cases, errors).cells), figures_budget.budget(cases)
-    return [Section("Uncertainty, and what should be measured better", said, cells, drawn)]
+    return [Section("Uncertainty, and what should be measured better", said, cells, drawn, _MISSING_EFFECTS)]
 
 
 def _of_test_beams(name, update):

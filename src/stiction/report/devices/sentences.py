@@ -12,6 +12,16 @@ from stiction.stages.devices.opening import EITHER
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
 
 
+def length_to_build(
+    safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
+) -> tuple[float, float, float]:
+    """Least safe length [m], its relative uncertainty due to the measurements, and the length less twice that [m]."""
+    least = min(_safe(dataset).item() for dataset in safe_lengths.values())
+    totals = [budget_of(budget).total for budget in of_shortest(safe_lengths, budgets).values()]
+    total = max((total for total in totals if np.isfinite(total)), default=0.0)
+    return least, total, (1 - 2 * total) * least
+
+
 def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> str:
     """The length to build for all humidities of a device, for the middle one of the shares.
 
@@ -22,10 +32,9 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     safe_lengths, budgets : dict
         As in `stiction.report.devices.pages.of_beam`.
     """
-    least = min(_safe(dataset).item() for dataset in safe_lengths.values())
+    least, total, length = length_to_build(safe_lengths, budgets)
     totals = [budget_of(budget).total for budget in of_shortest(safe_lengths, budgets).values()]
-    total = max((total for total in totals if np.isfinite(total)), default=0.0)
-    length = (1 - 2 * total) * least / UM
+    least, length = least / UM, length / UM
     if length <= 0:
         return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
     sentence = (
@@ -39,7 +48,7 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     if total == 0:
         return sentence
     return (
-        f"{sentence} The shortest safe length, {least / UM:.0f} µm, is reduced by {200 * total:.2g} %, twice the "
+        f"{sentence} The shortest safe length, {least:.0f} µm, is reduced by {200 * total:.2g} %, twice the "
         "uncertainty due to the measurements."
     )
 
@@ -71,11 +80,9 @@ def verdict(stopper: xr.Dataset) -> str:
     """Whether the restoring force of a stopper suffices, for the smallest share that its patches can bound."""
     force, where = float(stopper.restoring_force), airs(stopper.humidity.values)
     stated, any_air = stopper.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(stopper)[1]
-    sampled = stated.where(stopper.basis == Basis.SAMPLED)
-    known = [float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))]
-    if not known:
+    share = bounded_share(stopper)
+    if share is None:
         return _verdict_of_few(stopper)
-    share = min(known)
     at_these, anywhere = (float(needed.sel(share=share)) for needed in (stated, any_air))
     head = f"The restoring force of {force / UN:g} µN"
     tail = f"at most {one_in(share)} sticks (95 % confidence, given the drawn surfaces)."
@@ -86,6 +93,13 @@ def verdict(stopper: xr.Dataset) -> str:
     dry = ["in dry air"] if stopper.axis[0] == 0 else []
     humid = [f"at all relative humidities{_range(stopper)}"] if ends(stopper) else []
     return f"{head} suffices {' and '.join(dry + humid)}: {tail}"
+
+
+def bounded_share(stopper: xr.Dataset) -> float | None:
+    """Smallest share that the patches of a stopper alone bound at all its humidities; none if they are too few."""
+    stated = stopper.safe_force.sel(part="safe").max("humidity", skipna=False)
+    sampled = stated.where(stopper.basis == Basis.SAMPLED)
+    return min((float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))), default=None)
 
 
 def _verdict_of_few(stopper):
