@@ -202,7 +202,9 @@ def energies(ratios, errors):
 def test_fast_separation_shortens_the_safe_length_as_its_energy_says(lengths):
     least = {h: min(float(v) for v in one.safe_length.sel(share=1e-3)) for h, one in lengths.items()}
     for ratios in ([2.7, 1.0], [1.0, 81.0], [16.0, 2.0]):
-        found = {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies(ratios, [0.1, 0.1]))}["fast"]
+        found = {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies(ratios, [0.1, 0.1]))}[
+            "fast"
+        ]
         shorter = min(least[0.44] * ratios[0] ** -0.25, least[0.67] * ratios[1] ** -0.25)
         assert_allclose((found.low, found.high), (shorter, min(least.values())), rtol=1e-12)
     assert "fast" not in answers(OF, lengths)
@@ -210,14 +212,18 @@ def test_fast_separation_shortens_the_safe_length_as_its_energy_says(lengths):
 
 def test_its_error_has_that_of_the_length_and_a_quarter_of_that_of_the_ratio(lengths):
     def fast(errors):
-        return {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies([50.0, 1.0], errors))}["fast"]
+        return {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies([50.0, 1.0], errors))}[
+            "fast"
+        ]
 
     alone, both = fast([0.0, 0.0]), fast([10.0, 0.0])
     assert_allclose(np.hypot(alone.error / alone.low, 0.2 / 4), both.error / both.low, rtol=1e-9)
 
 
 def test_strips_that_no_summits_stop_leave_a_beam_without_a_bound(lengths):
-    found = {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies([np.inf, 2.0], [np.nan, 0.1]))}["fast"]
+    found = {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies([np.inf, 2.0], [np.nan, 0.1]))}[
+        "fast"
+    ]
     assert np.isnan(found.low)
     assert np.isnan(found.error)
     assert found.high == min(float(one.safe_length.sel(share=1e-3).min()) for one in lengths.values())
