@@ -51,10 +51,11 @@ update, quoted = (module(DOCS / f"{name}.py") for name in ("update", "quoted"))
 @pytest.fixture(scope="module")
 def written():
     """Path to text of every file that ``make numbers`` writes."""
-    return update.pages()
+    return update.drawings() | update.pages()
 
 
 WRITTEN = [
+    *(DOCS / "pictures" / f"{name}.svg" for name in ("beam", "stopper_and_bridge", "method")),
     DOCS / "results.json",
     *(update.page_of(path) for path in sorted((DOCS / "templates").glob("*.md"))),
 ]

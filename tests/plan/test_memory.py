@@ -89,7 +89,7 @@ def test_long_wedges_at_tips_count_for_the_memory_of_fields():
     flat = changed(TIPS.replace("gap_um: 20", "gap_um: 0.5").replace("thickness_um: 2.6", "thickness_um: 80"))
     length = DevicePlan(flat).tips("D1").length / 1000
     assert length > 20
-    assert memory._of_largest_field(flat) >= field_memory(length + 1, 3, 10)
+    assert memory._largest_field_memory(flat) >= field_memory(length + 1, 3, 10)
 
 
 def test_the_patch_of_a_device_with_an_uncertainty_is_also_drawn_with_the_points_of_the_variants():

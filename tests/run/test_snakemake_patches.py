@@ -409,9 +409,21 @@ def test_files_of_the_configuration_come_before_those_that_they_overwrite():
     assert [path.name for path in found] == ["second.yaml", "first.yaml", "config.yaml"]
 
 
-def test_a_workflow_that_says_nothing_runs_without_changes():
-    assert not snakemake_patches.runs_here(Workflow())
+def test_a_job_uses_no_more_cores_than_slurm_allots(monkeypatch):
+    for allotted, cores in (("1", 1), ("12", 12), ("", 64)):
+        monkeypatch.setenv("SLURM_CPUS_PER_TASK", allotted)
+        limited = Workflow(global_resources={"_cores": 64})
+        snakemake_patches.keep_to_allotted_cores(limited)
+        assert limited.global_resources == {"_cores": cores}
+
+
+def test_a_workflow_that_says_nothing_runs_without_changes(monkeypatch):
+    monkeypatch.setenv("SLURM_CPUS_PER_TASK", "1")
+    snakemake_patches.keep_to_allotted_cores(Workflow())
     assert snakemake_patches.files_of_configuration(Workflow()) == []
+    silent = Workflow()
+    snakemake_patches.read_in_jobs(silent, forkserver.Path("configuration.json"))
+    assert not vars(silent)
     unknown = Workflow(_open_jobs=threading.Semaphore(0))
     snakemake_patches.limit_timers(Workflow(scheduler=unknown))
     snakemake_patches.limit_timers(Workflow())

@@ -75,7 +75,7 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
     """
     if not _is_valid(config.get("compare")):
         return config
-    paths = [_of_entry(config, path) for path, _ in _compared(config)]
+    paths = [_parts_of_path(config, path) for path, _ in _compared(config)]
     copied, stated, ends = _affected(config, *((section, name) for section, name, _ in paths)), config, values(config)
     for end, numbers in ends.items():
         config = _with_copies(config, copied, end)
@@ -105,7 +105,7 @@ def _in_place(config, copied, ends):
     return config
 
 
-def _of_entry(config, path):
+def _parts_of_path(config, path):
     """Section, name of the entry, and key below it of a compared key. Raises a ConfigError without such an entry."""
     section, _, rest = path.partition(".")
     name, _, keys = rest.partition(".")

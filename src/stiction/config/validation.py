@@ -79,10 +79,10 @@ def _broken(config, faults, files=None, origins=None):
         _KeysOfArrays(config | {"devices": beams, "run": {"pairs": []}}, faults, files, origins, config["devices"])
         for beams in test_beams.at_single_humidities(config)
     ]
-    return broken + [problem for one in _OF_DEVICES for problem in _of_arrays(one, single)]
+    return broken + [problem for one in _OF_DEVICES for problem in _problems_of_arrays(one, single)]
 
 
-def _of_arrays(relation, single):
+def _problems_of_arrays(relation, single):
     """Problems of arrays with one relation, each key once."""
     problems = {}
     for keys in single:

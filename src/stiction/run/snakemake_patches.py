@@ -180,14 +180,16 @@ def limit_timers(workflow: Any) -> None:
     scheduler._schedule_reevalutation = reevaluate
 
 
+def keep_to_allotted_cores(workflow: Any) -> None:
+    """Let a group of jobs use no more cores than SLURM allotted to it; Snakemake would take all of the machine."""
+    allotted, limits = os.environ.get("SLURM_CPUS_PER_TASK", ""), getattr(workflow, "global_resources", None)
+    if allotted.isdecimal() and limits is not None:
+        limits["_cores"] = int(allotted)
+
+
 def is_main(workflow: Any) -> bool:
     """Whether this process plans the run, and is not started by Snakemake for a job with the option ``--mode``."""
     return getattr(workflow, "is_main_process", not {"subprocess", "remote"} & set(sys.argv))
-
-
-def runs_here(workflow: Any) -> bool:
-    """Whether jobs run on this machine. If Snakemake no longer says so, each job starts its own interpreter."""
-    return getattr(workflow, "local_exec", False)
 
 
 def files_of_configuration(workflow: Any) -> list[Path]:
@@ -198,3 +200,13 @@ def files_of_configuration(workflow: Any) -> list[Path]:
     """
     names = [*reversed(getattr(workflow, "overwrite_configfiles", ())), *getattr(workflow, "configfiles", ())]
     return list(dict.fromkeys(map(Path, names)))
+
+
+def read_in_jobs(workflow: Any, file: Path) -> None:
+    """Let jobs that start an interpreter of their own read one file of the configuration in place of this run's files.
+
+    If Snakemake no longer says where it keeps them, jobs read the files of this run.
+    """
+    settings = getattr(workflow, "config_settings", None)
+    if hasattr(settings, "configfiles"):
+        settings.configfiles = [file]

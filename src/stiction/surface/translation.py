@@ -173,7 +173,7 @@ def underlying_spectrum(
     require_resolved(target.cutoff, spacing)
     zeta, cell = _square(spacing, points)
     correlation = fft.fft2(_on_square(target, zeta)).real
-    rho = _of_even(translation.underlying_autocorrelation, correlation / correlation[0, 0])
+    rho = _on_one_half(translation.underlying_autocorrelation, correlation / correlation[0, 0])
     wanted = fft.ifft2(rho).real / cell
     possible = np.where(zeta <= target.cutoff, np.maximum(wanted, 0), 0)
     defect = np.abs(wanted - possible).sum() * cell
@@ -187,7 +187,7 @@ def spectrum_of_heights(
     require_resolved(underlying.cutoff, spacing)
     zeta, cell = _square(spacing, points)
     correlation = fft.fft2(_on_square(underlying, zeta)).real
-    heights = fft.ifft2(_of_even(translation.autocorrelation, correlation / correlation[0, 0])).real / cell
+    heights = fft.ifft2(_on_one_half(translation.autocorrelation, correlation / correlation[0, 0])).real / cell
     return _radial(np.maximum(heights, 0), zeta, np.inf)  # rounding may make it negative
 
 
@@ -205,7 +205,7 @@ def _on_square(spectrum, zeta):
     return quarter[mirrored[:, None], mirrored]
 
 
-def _of_even(function, values):
+def _on_one_half(function, values):
     """Function of values (n, n) even in the lag, computed on one half and mirrored to the other."""
     n = len(values)
     half = function(values[:, : n // 2 + 1])

@@ -41,7 +41,7 @@ def lengths():
 
 
 def answers(lengths, of, dimples):
-    return {one.name: one for one in life.of_beam(lengths, {}, of, None, dimples)}
+    return {one.name: one for one in [*life.of_beam(lengths, {}, of), *life.dimple_answers(of, dimples)]}
 
 
 @pytest.mark.parametrize("number", [1, 3, 7])
@@ -91,11 +91,11 @@ def test_errors_of_the_force_follow_thickness_and_gap(lengths):
 def test_sentences_say_how_many_stick_and_whether_the_beam_touches_beside_its_dimples(lengths):
     for height, said in ((1e-6, "But it touches beside them"), (19e-6, "% of the gap is left")):
         of = replace(OF, length=200e-6, dimples=Dimples(3, 80e-6, height))
-        dataset = life.layout(life.of_beam(lengths, {}, of, None, {0.67: forces(1e-5)}), of, 200e-6)
+        dataset = life.layout(list(answers(lengths, of, {0.67: forces(1e-5)}).values()), of, 200e-6)
         (sentence,) = [one for one in report.sentences(dataset) if "dimples" in one]
         assert said in sentence
         assert "of the beams stick on them" in sentence
-    assert not any("dimples" in one for one in answers(lengths, OF, None))
+    assert not any("dimples" in one for one in answers(lengths, OF, {}))
 
 
 def test_a_beam_with_dimples_has_a_job_for_them_at_each_humidity():

@@ -64,8 +64,7 @@ def knowledge(entry: Mapping[str, Any], library: Library) -> Knowledge:
     A stated uncertainty takes the place of the scatter over the library.
     """
     variances = {quantity: deviation**2 for quantity, deviation in _deviations(entry).items()}
-    unknown = assumed(entry)
-    names = tuple(name for name in _ALL if name in unknown or variances.get(name))
+    names = uncertain(entry)
     places = [_ALL.index(name) for name in names]
     covariance = scatter(library)[np.ix_(places, places)]
     for place, name in enumerate(names):
@@ -73,6 +72,12 @@ def knowledge(entry: Mapping[str, Any], library: Library) -> Knowledge:
             covariance[place], covariance[:, place] = 0.0, 0.0
             covariance[place, place] = variances[name]
     return Knowledge(names, covariance)
+
+
+def uncertain(entry: Mapping[str, Any]) -> tuple[str, ...]:
+    """Uncertain quantities of the section of a surface: assumed, or with an uncertainty above zero."""
+    unknown, deviations = assumed(entry), _deviations(entry)
+    return tuple(name for name in _ALL if name in unknown or deviations.get(name))
 
 
 def assumed(entry: Mapping[str, Any]) -> dict[str, str]:

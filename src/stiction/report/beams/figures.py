@@ -318,7 +318,7 @@ STAGES = (
     ),
     figure_stage(
         "figure_15",
-        "adhesion energy over the relative humidity",
+        "adhesion energy against relative humidity",
         _CATEGORY,
         inputs=lambda plan, at: {
             "beams": by_outcome("beams", plan.outcomes),

@@ -63,16 +63,16 @@ def stoppers(
 
     The caption ends with what is not in the model.
     """
-    rows = [row for device, dataset in datasets.items() for row in _of_stopper(device, dataset)]
+    rows = [row for device, dataset in datasets.items() for row in _stopper_rows(device, dataset)]
     rows = [row | model_errors.device_change(errors, row["device"], row["relative_humidity"], FORCE) for row in rows]
     rows = [row | {"warnings": " ".join(warnings[row["device"]])} for row in rows]
     caption = (
-        "Stoppers: force that pulls a patch off, an upper bound if it tilts or bends, mean ± standard error and "
+        "Stoppers: pull-off force of a patch, an upper bound if it tilts or bends, mean ± standard error and "
         "standard deviation over the patches; "
-        "P(stuck): share of the patches that hold more than the restoring force, with its 95 % band; safe force: "
-        "restoring force that is exceeded by the pull-off force of at most this share of all patches, with 95 % "
-        "confidence; fitted: by a line through the largest 5 % of the forces, where too few patches bound the share; "
-        "extrapolated: by this line beyond what was verified; – where there are too few patches."
+        "P(stuck): fraction of the patches with a pull-off force above the restoring force, with its 95 % band; safe "
+        "force: restoring force exceeded by the pull-off force of at most this fraction of all patches, with 95 % "
+        "confidence; fitted: by a line through the largest 5 % of the forces, if too few patches bound the fraction; "
+        "extrapolated: by this line beyond its verified range; –: too few patches."
     )
     humid = [dataset for dataset in datasets.values() if ends(dataset)]
     if humid:
@@ -90,7 +90,7 @@ def stoppers(
     return Table.of(rows, with_list(" ".join(said), listed), columns)
 
 
-def _of_stopper(device, dataset):
+def _stopper_rows(device, dataset):
     """Numbers of one stopper at each of its humidities and, in humid air, the largest along its fine axis."""
     for humidity, *stuck in shares_stuck(dataset):
         forces = dataset.pull_off.sel(humidity=humidity).values / UN
@@ -185,7 +185,7 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
         [
             row
             for (device, rh, *_), one in datasets.items()
-            for row in [*_of_budget(device, rh, one), *_of_model(device, rh, one, errors)]
+            for row in [*_budget_rows(device, rh, one), *_model_rows(device, rh, one, errors)]
         ]
     )
     sentences = [f"{device}, {air(humidity)}: {advised(one)}" for (device, humidity, *_), one in datasets.items()]
@@ -239,7 +239,7 @@ def counted_as_exact(dataset: xr.Dataset) -> str:
     return f"Counted as exact: {', '.join(map(str, dataset.exact.values))}."
 
 
-def _of_budget(device, humidity, dataset):
+def _budget_rows(device, humidity, dataset):
     """Numbers of one device at one humidity: inputs, measurements, totals, scatter, choices."""
     uncertainty, errors = budget_of(dataset), dataset.slope_error.values
     head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[response_of(dataset)[0]].by}
@@ -258,7 +258,7 @@ def _of_budget(device, humidity, dataset):
         yield head | {"part": "choice", "name": str(name), "effect_percent": effect, "effect_se_percent": error}
 
 
-def _of_model(device, humidity, dataset, errors):
+def _model_rows(device, humidity, dataset, errors):
     """Row of the error of the model, if it is known."""
     response, _ = response_of(dataset)
     head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[response].by}

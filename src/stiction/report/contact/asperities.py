@@ -59,7 +59,7 @@ def _rows(
             others, count = base[: len(energies)], {"strips": len(energies)}
             whole = {"time_over_summits": cost(study, **labels)}
             whole |= _rms("published", energies, others, lengths / known)
-            whole |= _rms("full_contact", *_of_full_contact(energies, humidities, full[pair]))
+            whole |= _rms("full_contact", *_common_energies(energies, humidities, full[pair]))
             labels = {
                 "reading": labels["reading"],
                 "spacing_nm": TO_NM * labels["spacing"],
@@ -80,7 +80,7 @@ def _rms(name, *compared):
     return {f"rms_{name}_percent": 100 * rms, f"rms_{name}_se_percent": 100 * error}
 
 
-def _of_full_contact(energies, humidities, study):
+def _common_energies(energies, humidities, study):
     """Energies of a reading and of full contact, in common strips and at common humidities."""
     at, full, _ = full_contact.energies(study)
     strips = min(len(energies), len(full))

@@ -1,1 +1,1 @@
-"""Drawings of devices, of what holds them, and of the method, as SVG."""
+"""Drawings of devices, of their places of adhesion, and of the method, as SVG."""

@@ -1,4 +1,4 @@
-"""A drawing as SVG: shapes and texts, a style for light and dark, and a text alternative.
+"""Drawing as SVG: shapes and texts, a style for light and dark, and a text alternative.
 
 The text of an SVG is written directly. Matplotlib would draw every letter as a path, which no screen reader reads, and
 with one fixed set of colours.
@@ -66,7 +66,7 @@ Point = tuple[float, float]
 
 @dataclass(frozen=True)
 class Drawing:
-    """A drawing with its text alternative."""
+    """Drawing with its text alternative."""
 
     name: str  #: of its file
     title: str
@@ -76,7 +76,7 @@ class Drawing:
 
     @property
     def svg(self) -> str:
-        """The drawing as SVG, which can be a file or a part of a page."""
+        """Drawing as SVG, for a file or a part of a page."""
         inside = [
             f"<title>{escape(self.title)}</title>",
             f"<desc>{escape(self.description)}</desc>",
@@ -101,7 +101,7 @@ def _variables(colours: Mapping[str, str]) -> str:
 
 
 def _text(number: float) -> str:
-    """A coordinate to a tenth of a pixel."""
+    """Coordinate to a tenth of a pixel."""
     return f"{number:.1f}".removesuffix(".0")
 
 
@@ -110,7 +110,7 @@ def _points(points: Iterable[Point]) -> str:
 
 
 def shape(tag: str, look: str, **attributes: float) -> str:
-    """An element of SVG with numbers as attributes."""
+    """Element of SVG with numbers as attributes."""
     stated = " ".join(f'{name}="{_text(value)}"' for name, value in attributes.items())
     return f'<{tag} class="{look}" {stated}/>'
 
@@ -126,7 +126,7 @@ def area(points: Iterable[Point], look: str) -> str:
 
 
 def text(place: Point, words: str, look: str = "", anchor: str = "start") -> str:
-    """Words on a base line that starts, has its middle or ends at a place."""
+    """Words on a base line. The anchor says if the place is their start, middle or end."""
     x, y = map(_text, place)
     return f'<text class="{look}" x="{x}" y="{y}" text-anchor="{anchor}">{escape(words)}</text>'
 
@@ -143,7 +143,7 @@ def arrow(start: Point, end: Point, look: str = "measure", size: float = 9) -> s
 
 
 def measure(start: Point, end: Point, words: str, beside: Point = (0, 24)) -> list[str]:
-    """Distance of two points with its name, which is at ``beside`` from the middle: above or below, or to the right."""
+    """Distance of two points with its name, ``beside`` its middle: above or below, or to the right."""
     middle = tuple((np.array(start) + np.array(end)) / 2)
     anchor = "start" if beside[0] > 0 else "middle"
     said = text((middle[0] + beside[0], middle[1] + beside[1]), words, "quiet", anchor)
@@ -151,7 +151,7 @@ def measure(start: Point, end: Point, words: str, beside: Point = (0, 24)) -> li
 
 
 def profile(x: np.ndarray, rms: float, start: float = 0.0) -> np.ndarray:
-    """Heights of a rough line: a sum of waves whose lengths have no common multiple."""
+    """Heights of a rough line: a sum of waves without a common multiple of their lengths."""
     lengths = np.array([173.0, 109.0, 67.0, 43.0])
     waves = np.sin(2 * np.pi * x[:, None] / lengths + start * np.arange(1, 5)) * lengths
     return rms * waves.sum(axis=1) / np.sqrt((lengths**2).sum() / 2)

@@ -1,4 +1,4 @@
-"""Drawings of devices and of what holds them."""
+"""Drawings of devices and of their places of adhesion."""
 
 from collections.abc import Callable, Mapping
 
@@ -29,30 +29,30 @@ _NONE: Mapping[str, str] = {}
 
 
 def _ground(y: float) -> str:
-    """The substrate, below a line."""
+    """Substrate, below a line."""
     return area([(MARGIN, y), (WIDTH - MARGIN, y), (WIDTH - MARGIN, y + 20), (MARGIN, y + 20)], "ground")
 
 
 def _clamp(y: float, x: float, inwards: float) -> str:
-    """What holds an end of a beam above a ground; the beam starts at ``x``."""
+    """Support of an end of a beam above a ground. The beam starts at ``x``."""
     top = y - _GAP - _THICK - 12
     return area([(x, top), (x - 44 * inwards, top), (x - 44 * inwards, y), (x, y)], "ground")
 
 
 def _beam(x: np.ndarray, underside: np.ndarray, look: str = "solid") -> str:
-    """A beam by its underside, from which its thickness is upwards."""
+    """Beam by its underside, with its thickness upwards."""
     below = list(zip(x, underside, strict=True))
     above = [(at, height - _THICK) for at, height in reversed(below)]
     return area(below + above, look)
 
 
 def _s_shape(y: float) -> tuple[np.ndarray, np.ndarray]:
-    """Underside of a cantilever that sticks behind an open crack."""
+    """Underside of a cantilever stuck behind an open crack."""
     return np.append(_CLAMP + _ALONG * (_CRACK - _CLAMP), _END), np.append(y - _GAP * _S_SHAPE, y)
 
 
 def _arc(y: float) -> tuple[np.ndarray, np.ndarray]:
-    """Underside of a cantilever whose tip alone touches."""
+    """Underside of a cantilever stuck at its tip alone."""
     return _CLAMP + _ALONG * (_END - _CLAMP), y - _GAP * _ARC
 
 
@@ -68,7 +68,7 @@ def _sizes(y: float, words: Mapping[str, str]) -> list[str]:
 
 
 def stuck_along(y: float, words: Mapping[str, str] = _NONE) -> list[str]:
-    """A cantilever that sticks along its underside, on a ground at ``y``."""
+    """Cantilever stuck along its underside, on a ground at ``y``."""
     return [
         _ground(y),
         _clamp(y, _CLAMP, 1),
@@ -81,7 +81,7 @@ def stuck_along(y: float, words: Mapping[str, str] = _NONE) -> list[str]:
 
 
 def stuck_at_tip(y: float) -> list[str]:
-    """A cantilever that only its tip holds, on a ground at ``y``."""
+    """Cantilever stuck at its tip alone, on a ground at ``y``."""
     return [
         _ground(y),
         _clamp(y, _CLAMP, 1),
@@ -92,7 +92,7 @@ def stuck_at_tip(y: float) -> list[str]:
 
 
 def held_by_middle(y: float, words: Mapping[str, str] = _NONE) -> list[str]:
-    """A bridge that its middle holds, on a ground at ``y``."""
+    """Bridge stuck at its middle, on a ground at ``y``."""
     middle, half = WIDTH / 2, 12
     x = _CLAMP + _ALONG * (middle - half - _CLAMP)
     below = y - _GAP * _S_SHAPE
@@ -110,7 +110,7 @@ def held_by_middle(y: float, words: Mapping[str, str] = _NONE) -> list[str]:
 
 
 def held_by_area(y: float, words: Mapping[str, str] = _NONE) -> list[str]:
-    """A stopper that its whole area holds against a spring, on a ground at ``y``."""
+    """Stopper stuck with its whole area against a spring, on a ground at ``y``."""
     left, right, top = 240.0, 400.0, y - 122
     spring = [(WIDTH / 2 + 14 * (-1) ** k * (0 < k < 9), top - 62 + 62 * k / 9) for k in range(10)]
     return [
@@ -131,7 +131,7 @@ def held_by_area(y: float, words: Mapping[str, str] = _NONE) -> list[str]:
 
 
 def _strip(top: float, bottom: float) -> list[str]:
-    """A strip of the contact: rough surfaces, summits that touch, and water where the gap is narrow."""
+    """Strip of the contact: rough surfaces, touching summits, and water in narrow gaps."""
     x = np.linspace(MARGIN, WIDTH - MARGIN, 600)
     lower = bottom - 0.34 * (bottom - top) + profile(x, 2, 2.0)
     gap = lower - profile(x, 17, 2.6)
@@ -156,13 +156,13 @@ def _along(x, heights, part):
 
 
 def _runs(true: np.ndarray) -> list[np.ndarray]:
-    """Numbers of the points of every part of a line where something is true."""
+    """Numbers of the points of every part of a line with a true value."""
     points = np.flatnonzero(true)
     return np.split(points, np.flatnonzero(np.diff(points) > 1) + 1)
 
 
 def beam() -> Drawing:
-    """Draw a cantilever that sticks, a strip of its contact, and a cantilever that its tip holds."""
+    """Draw a cantilever stuck along its underside, a strip of its contact, and a cantilever stuck at its tip."""
     spot = (540.0, 196.0)
     return Drawing(
         "beam",
@@ -187,7 +187,7 @@ def beam() -> Drawing:
 
 
 def stopper_and_bridge() -> Drawing:
-    """Draw a bridge that its middle holds, and a stopper that its area holds."""
+    """Draw a bridge stuck at its middle, and a stopper stuck with its area."""
     return Drawing(
         "stopper_and_bridge",
         "How a bridge and a stopper stick",
@@ -232,7 +232,7 @@ def of_device(section: Mapping) -> Drawing:
 
 
 def _label(key, value):
-    """A size with its name and unit."""
+    """Size with its name and unit."""
     (name, unit), values = KEYS[key], value if isinstance(value, list) else [value]
     size = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
     return f"{name} {size}" if key in ("thickness_um", "length_um") else size

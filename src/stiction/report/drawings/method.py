@@ -1,4 +1,4 @@
-"""Drawing of the method: from scans of two surfaces to the risk that a device sticks."""
+"""Drawing of the method: from scans of two surfaces to the risk of a stuck device."""
 
 from collections.abc import Callable
 
@@ -47,7 +47,7 @@ def _statistics(top: float) -> list[str]:
 
 
 def _surfaces(top: float) -> list[str]:
-    """Two rough surfaces, which touch."""
+    """Two rough surfaces in contact."""
     x = MARGIN + _ALONG * _ACROSS
     lower = top + (1 - _rough(0.38, 0.02, 2.0)) * _TALL
     upper = top + (1 - _rough(0.66, 0.09, 2.6)) * _TALL

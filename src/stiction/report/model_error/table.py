@@ -66,7 +66,7 @@ def _rows(
                 "energy_ratio_se": float(ratio.energy_ratio_error),
             }
             | change(error)
-            | _of_beams(case, variants or {})
+            | _beam_change(case, variants or {})
             | {
                 "crack_length_um": length,
                 "full_contact_um": longer,
@@ -83,7 +83,7 @@ def _rows(
     return rows
 
 
-def _of_beams(case, variants):
+def _beam_change(case, variants):
     """Change of the crack length of beams on corrected force laws, if computed."""
     keys = [(*case.values(), name) for name in (CORRECTED, "base")]
     change = np.nan, np.nan

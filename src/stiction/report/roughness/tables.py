@@ -244,8 +244,8 @@ def roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
     sentences = [f"{device}: {sentence}" for device, dataset in datasets.items() for sentence in answers(dataset)]
     of_maps = any("other" in row for row in rows)
     caption = (
-        "Safe length of a beam, or safe restoring force of a stopper, over the roughness of a surface: with a "
-        "confidence of 95 % given the drawn surfaces, at most a share p sticks. Estimate: where a share p sticks, ± "
+        "Safe length of a beam, or safe restoring force of a stopper, against the roughness of a surface: with a "
+        "confidence of 95 % given the drawn surfaces, at most a fraction p sticks. Estimate: a fraction p sticks, ± "
         "standard error due to the numbers of devices and of drawn surfaces. P(stuck): at the required length or "
         f"force, with its 95 % band. {form(*datasets.values())} Devices: number of simulated devices at every "
         "roughness."

@@ -87,7 +87,7 @@ def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
         "the key, ± standard error due to sampling and, for heights, to the scans. Scans measure the shape of the "
         "height density less precisely than the moments."
     )
-    return Table.of(rows, caption, _UNCERTAINTY | _of_choices(rows))
+    return Table.of(rows, caption, _UNCERTAINTY | _choice_columns(rows))
 
 
 def _rows(pair, study, k):
@@ -125,7 +125,7 @@ _UNCERTAINTY = (
 )
 
 
-def _of_choices(rows):
+def _choice_columns(rows):
     """Columns of the changes by other choices, as far as any row has them."""
     chosen = [name for name in ALTERNATIVES_OF_SCANS if any(f"{name}_percent" in row for row in rows)]
     return {f"other {name} [%]": (signed, f"{name}_percent", f"{name}_se_percent") for name in chosen}

@@ -24,6 +24,7 @@ _LABELS = {
     "poisson_ratio": "ν = {}",
     "strips_per_element": "elements of {} strips",
     "reach": "vdW: across {} gaps",
+    "adsorbed_nm": "{} nm of adsorbed water",
     "contact": "{} elastic contact",
 }
 
@@ -92,8 +93,7 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
         "Table III, model NG, under other model choices: change of the mean crack length and of the mean meso-scale "
         "energy against the base case, at the lowest and at the highest humidity; root mean square over the "
         "humidities of the deviation from the published and from the measured crack length; ± standard error. Removed: "
-        "by what share the variant reduces the mean square deviation from the published length; negative if it "
-        "increases it."
+        "reduction of the mean square deviation from the published length by the variant, negative for an increase."
     )
     return Table(frame, caption, pd.DataFrame(cells))
 

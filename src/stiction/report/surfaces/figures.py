@@ -241,7 +241,7 @@ def _mean_radius(panel, radius):
     panel.annotate(f"{number} µm", (0.96, radius), (0, 3), place, "offset points", **style)
 
 
-def _of_surfaces(data):
+def _datasets_by_surface(data):
     """Datasets of several stages by surface."""
     return {name: tuple(data[stage][name] for stage in data if stage != "style") for name in data["heights"]}
 
@@ -304,7 +304,7 @@ STAGES = (
             "character": by_name("character", plan.surfaces, "_NG"),
             "iteration": by_name("iteration", plan.surfaces),
         },
-        compute=lambda data: spectra(_of_surfaces(data)),
+        compute=lambda data: spectra(_datasets_by_surface(data)),
         study="iteration",
         targets=("figures",),
     ),

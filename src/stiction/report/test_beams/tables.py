@@ -228,7 +228,7 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
 
 def _rows(device, update):
     """Numbers of one device: data, results, safe sizes, inputs."""
-    for part in (_data, _results, _safe_sizes, _of_inputs):
+    for part in (_data, _results, _safe_sizes, _input_rows):
         yield from part(device, update)
 
 
@@ -237,7 +237,7 @@ def _data(device, update):
     for datum in update.datum.values:
         at = update.sel(datum=datum)
         computed = TO_UM * float(at.computed)
-        numbers = _of_length(computed, *(float(at[f"datum_{key}"]) for key in ("before", "shift", "after")))
+        numbers = _length_numbers(computed, *(float(at[f"datum_{key}"]) for key in ("before", "shift", "after")))
         error = float(at.measured * at.datum_measured_error)
         own = {"measured": TO_UM * float(at.measured), "measured_se": TO_UM * error} if error > 0 else {}
         head = {"device": device, "relative_humidity": float(at.datum_humidity), "part": "crack length [µm]"}
@@ -257,7 +257,7 @@ def _results(device, update):
     for result in update.result.values:
         at = update.sel(result=result)
         length = TO_UM * float(at.centre)
-        numbers = _of_length(length, *(float(at[f"result_{key}"]) for key in ("before", "shift", "after")))
+        numbers = _length_numbers(length, *(float(at[f"result_{key}"]) for key in ("before", "shift", "after")))
         head = {"device": device, "relative_humidity": float(at.humidity_of_result)}
         yield head | {"part": END_STATES[str(at.response.values)].result, "name": device} | numbers
 
@@ -278,7 +278,7 @@ def _safe_sizes(device, update):
                 yield head | {"part": "stuck at the restoring force [%]"} | _both(of_shape, *_STUCK)
 
 
-def _of_inputs(device, update):
+def _input_rows(device, update):
     """Inputs in their standard uncertainties."""
     for name in update.input.values:
         at = update.sel(input=name)
@@ -294,7 +294,7 @@ def _both(update, before, after, scale):
     return {"before": scale * float(update[before]), "after": scale * updated}
 
 
-def _of_length(length, before, shift, after):
+def _length_numbers(length, before, shift, after):
     """Length before and after the measurement, with standard deviations, from its logarithm's."""
     updated = length * np.exp(shift)
     return {"before": length, "before_std": length * before, "after": updated, "after_std": updated * after}

@@ -153,7 +153,7 @@ def surface_notes(
     }
 
 
-def _of_pairs(data, settings):
+def _warnings(data, settings):
     """Warnings about all pairs as a page."""
     nominal = in_si(OfPairs, settings["pairs"])
     remedy = limits.DISTANCE if settings["plasticity_runs"] else limits.NAMED
@@ -186,7 +186,7 @@ STAGES = (
             "surfaces": {pair: plan.scans.sides(pair) for pair in plan.pairs},
             "assumed": plan.assumed(*plan.pairs),
         },
-        compute=_of_pairs,
+        compute=_warnings,
         save=lambda page, paths: save_text(page, paths["markdown"]),
         message="Where the results of pairs are beyond the model.",
         targets=("all",),

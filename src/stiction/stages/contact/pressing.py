@@ -45,13 +45,13 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
     """
     hardness = solids.softer_hardness(*bodies(settings))
     strips = [
-        _of_strip(*strip, np.linspace(0, 1, settings.steps + 1), settings.distance, hardness)
+        _strip_pressed(*strip, np.linspace(0, 1, settings.steps + 1), settings.distance, hardness)
         for strip in full_contact.strips(surfaces, pair, settings)
     ]
     return layout(*map(np.array, zip(*strips, strict=True)), settings.humidities)
 
 
-def _of_strip(space, heights, cases, shares, closest, hardness):
+def _strip_pressed(space, heights, cases, shares, closest, hardness):
     """Energies (2 + n_steps, n_humidity) and variables of the presses (n_steps, n_variables) of one strip."""
     fresh = [at_rest(space, heights, *each)[0] for each in cases]
     before = [state.energy(heights, adhesion) for state, (adhesion, _) in zip(fresh, cases, strict=True)]
@@ -68,7 +68,7 @@ def _of_strip(space, heights, cases, shares, closest, hardness):
         ]
         for flat in (own, *([state.flattening] * len(cases) for state in pressed))
     ]
-    return -np.array([before, *after]), [_of_press(state) for state in pressed]
+    return -np.array([before, *after]), [_press_variables(state) for state in pressed]
 
 
 def _energy(space, heights, adhesion, curve):
@@ -93,7 +93,7 @@ def _pressed(space: HalfSpace, heights: np.ndarray, distances: np.ndarray, hardn
         yield state
 
 
-def _of_press(state):
+def _press_variables(state):
     """Variables of a pressed strip."""
     touching = state.pressure > 0
     at_hardness = (state.pressure >= np.float32(state.hardness)).sum() / touching.sum()

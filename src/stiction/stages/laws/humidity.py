@@ -63,6 +63,6 @@ STAGES = (
         settings=_settings,
         kind=Settings,
         compute=lambda data, settings: compute(data["contact"], corrections.corrected(settings, data)),
-        message="Adhesion energy of {model} surfaces of pair {pair} over the relative humidity.",
+        message="Adhesion energy of {model} surfaces of pair {pair} against relative humidity.",
     ),
 )

@@ -79,11 +79,11 @@ def compute(
     as those of the choices, keys of `stiction.models.ALTERNATIVES_OF_SCANS` with the contact under the other value.
     """
 
-    def of_all(of_one):
+    def by_surface(part):
         """Values of one function for every surface."""
-        return np.array([of_one(dataset, errors[name]) for name, dataset in slopes.items()])
+        return np.array([part(dataset, errors[name]) for name, dataset in slopes.items()])
 
-    uncertainty = Uncertainty(*map(of_all, (_parts, _sampling, _form)))
+    uncertainty = Uncertainty(*map(by_surface, (_parts, _sampling, _form)))
     changes = {name: _changes(contact, base, settings) for name, contact in choices.items()}
     return layout(list(slopes), settings.humidities, uncertainty, [errors[name].scans for name in slopes], changes)
 

@@ -43,7 +43,7 @@ class Varied(NamedTuple):
         """Value of a point in the unit of the key, ``None`` as it is given. Evenly spaced, or by equal factors."""
         return None if number == POINTS - 1 else self._spaced(number, POINTS - 1)
 
-    def of_curve(self, number: int) -> float | None:
+    def value_of_curve(self, number: int) -> float | None:
         """Value of a curve of a map, see `value`."""
         return None if number == 0 else self._spaced(number - 1, CURVES - 1)
 
@@ -124,7 +124,7 @@ def contacts_of(plan: Any, device: str, number: int) -> dict[str, dict[bool, str
     }
 
 
-def _of_patch(plan, pair, device):
+def _patch_settings(plan, pair, device):
     """Settings of the contact of the patch of a device, with as many stoppers as its share of stuck ones needs.
 
     Those of smaller shares than have been verified are extrapolated. The pair is that of the device in its air.
@@ -136,8 +136,8 @@ def _of_patch(plan, pair, device):
     return GROUND.settings(plan, At(**ground._replace(pair=pair)._asdict()), samples)
 
 
-def _of_tips(plan, pair, device):
-    """Settings of the tips of a cantilever, see `_of_patch`."""
+def _tip_settings(plan, pair, device):
+    """Settings of the tips of a cantilever, see `_patch_settings`."""
     tips = plan.devices.tips(device)._replace(pair=pair)
     return TIPS.settings(plan, At(**tips._asdict()), plan.config["design"]["beams"])
 
@@ -150,7 +150,7 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
         pair = plan.config["devices"][at.device]["pair"]
         what, *others = varied(plan, at.device)
         curve, point = divmod(int(at.number), POINTS)
-        values = [(what, what.value(point)), *((other, other.of_curve(curve)) for other in others)]
+        values = [(what, what.value(point)), *((other, other.value_of_curve(curve)) for other in others)]
         own = plan.config["surfaces"][what.surface]
         surface = {one.key: value for one, value in values if value is not None and one.key in own}
         if surface:  # on which the reach of tips depends
@@ -177,8 +177,8 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
 
 
 STAGES = (
-    _stage("roughness_contact", FOLDER, _of_patch, "the patch"),
-    _stage("roughness_tip_contact", f"{FOLDER}/tips", _of_tips, "the tips"),
-    _stage("roughness_dry_contact", FOLDER, _of_patch, "the patch, in dry air,", PairInAir.in_dry_air),
-    _stage("roughness_dry_tip_contact", f"{FOLDER}/tips", _of_tips, "the tips, in dry air,", PairInAir.in_dry_air),
+    _stage("roughness_contact", FOLDER, _patch_settings, "the patch"),
+    _stage("roughness_tip_contact", f"{FOLDER}/tips", _tip_settings, "the tips"),
+    _stage("roughness_dry_contact", FOLDER, _patch_settings, "the patch, in dry air,", PairInAir.in_dry_air),
+    _stage("roughness_dry_tip_contact", f"{FOLDER}/tips", _tip_settings, "the tips, in dry air,", PairInAir.in_dry_air),
 )

@@ -495,11 +495,11 @@ def _before_and_after(update, safe):
     """Safe lengths or forces before and after the measurement."""
     return {
         "safe": safe,
-        "updated_safe": safe * np.exp(_of_shapes(update, "result_shift").reindex_like(safe.isel(share=0))),
+        "updated_safe": safe * np.exp(_by_shape(update, "result_shift").reindex_like(safe.isel(share=0))),
     }
 
 
-def _of_shapes(update, name):
+def _by_shape(update, name):
     """Numbers of the results of a device by humidity and shape."""
     shapes = list(map(shape_of, update.response.values))
     keys = {"humidity": ("result", update.humidity_of_result.values), "shape": ("result", shapes)}
@@ -515,8 +515,8 @@ def _of_shapes(update, name):
 def _shares(update, sizes, share):
     """P(stuck) of some sizes before and after the measurement, averaged over the uncertainty of the inputs."""
     quantiles = {
-        "expected_stuck": _of_shapes(update, "result_before") * update.score,
-        "updated_stuck": _of_shapes(update, "result_quantile"),
+        "expected_stuck": _by_shape(update, "result_before") * update.score,
+        "updated_stuck": _by_shape(update, "result_quantile"),
     }
     stacked = sizes.stack(at=sizes.dims)
     expected = {name: [] for name in quantiles}

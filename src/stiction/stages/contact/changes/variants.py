@@ -224,7 +224,7 @@ def contact_of_islands(data: Mapping[str, Any], pair: str, settings: dict[str, A
     return stage_contact.layout(*curves, islands.distances, samples)
 
 
-def _of_summits(plan, at, place):
+def _summit_settings(plan, at, place):
     """Settings of the summits without the variant, and its changes. Patches of devices have the samples of slopes."""
     settings, size = plan.variants.summits(at.pair, at.variant), place.size(plan, at)
     if size:
@@ -238,7 +238,7 @@ SUMMITS = Change(
     words="under variant {variant}",
     end="_{variant}",
     inputs=lambda plan, at, named: inputs(plan, at),
-    settings=_of_summits,
+    settings=_summit_settings,
     kind=None,
     compute=summits_of_job,
     label="variant_summits",
@@ -268,7 +268,7 @@ VARIANT_OF_ISLANDS = Change(
     end="_{variant}",
     inputs=lambda plan, at, named: inputs(plan, at),
     settings=lambda plan, at, place: (
-        _of_summits(plan, at, place) | {"solids": plan.variants.solids(at.pair, at.variant)}
+        _summit_settings(plan, at, place) | {"solids": plan.variants.solids(at.pair, at.variant)}
     ),
     kind=None,
     compute=contact_of_islands,
