@@ -48,7 +48,7 @@ class Gaps:
         return gaps.LayeredFlats(tuple(gaps.FlatAttraction(each, self.wavelength, apart) for each, apart in pairs))
 
     def work(self, gap: float | np.ndarray, height: float) -> float | np.ndarray:
-        """Work of two flats beyond that of the summits [J m⁻²], at gaps [m] and under a film of a height [m].
+        """Work of two flats beyond the summits' [J m⁻²], at gaps [m] and under a film of a height [m].
 
         If the summits attract through dry air, so do the solids across the film.
         """
@@ -56,7 +56,7 @@ class Gaps:
         return across - self._counted.work(gap)
 
     def scaled(self, factor: float, sides: Collection[str]) -> "Gaps":
-        """The same with a factor of the Hamaker constants of the solids on some sides, see ``combined``."""
+        """Gaps with a factor of the Hamaker constants of the solids on some sides, see ``combined``."""
         scales = {side: factor if side in sides else 1.0 for side in SIDES}
         both = vanderwaals.combined(*scales.values())
         constants = {medium: both * constant for medium, constant in self.hamaker_constant.items()}
@@ -73,7 +73,7 @@ class Gaps:
 
 @dataclass(frozen=True)
 class Water:
-    """Condensed water, and what attracts where there is none."""
+    """Condensed water, and the attraction without it."""
 
     temperature: float  #: T [K]
     contact_angles: tuple[float, float] = (0.0, 0.0)  #: on beam and substrate [rad]
@@ -90,7 +90,7 @@ class Water:
         return bool(self.gaps or self.capacitor)
 
     def work_across(self, gap: float | np.ndarray, height: float) -> float | np.ndarray:
-        """Work of two flats beyond that of summits and film [J m⁻²], at gaps [m] and under a film of a height [m]."""
+        """Work of two flats beyond summits and film [J m⁻²], at gaps [m] and under a film of a height [m]."""
         work = self.gaps.work(gap, height) if self.gaps else 0.0
         return work + self.capacitor.work(gap) if self.capacitor else work
 
@@ -150,7 +150,7 @@ def force_curves(
 
 
 def flooded_law(humidity: float, water: Water, hamaker_constant: float) -> tuple[float, float]:
-    """Upper bounds of e [J m⁻²] and f_max [Pa] of any surfaces at a humidity: those of flooded flats that touch.
+    """Upper bounds of e [J m⁻²] and f_max [Pa] of any surfaces at a humidity: flooded flats in contact.
 
     Water pulls nowhere harder or farther than between flats, and neither do the solids. Their Hamaker constant [J] is 0
     without van der Waals forces, and that of the water if attraction reaches across gaps.

@@ -15,14 +15,14 @@ from stiction.devices.bridges import pull
 
 
 def force_at_contact(beam: Beam, clamps: int) -> float:
-    """Force with which a beam pulls at its tip, 3 EI h / L³, or at its middle [N]."""
+    """Force of a beam at its tip, 3 EI h / L³, or at its middle, in contact [N]."""
     if clamps == 2:
         return float(pull(beam.length, beam)[0])
     return 3 * beam.bending_stiffness * beam.gap / beam.length**3
 
 
 def freeing_acceleration(hold: float, restoring_force: float, mass: float) -> float:
-    """Least acceleration away from the substrate that frees a stopper [m s⁻²]; zero if its spring does.
+    """Least acceleration away from the substrate to free a stopper, zero if its spring does [m s⁻²].
 
     Examples
     --------
@@ -33,7 +33,7 @@ def freeing_acceleration(hold: float, restoring_force: float, mass: float) -> fl
 
 
 def stuck_after(probability: float, touchdowns: int) -> float:
-    """P(stuck) after n independent touchdowns [-], 1 - (1 - P)^n, from that of one.
+    """P(stuck) after n independent touchdowns [-], 1 - (1 - P)^n, from one touchdown's.
 
     Examples
     --------
@@ -44,7 +44,7 @@ def stuck_after(probability: float, touchdowns: int) -> float:
 
 
 def probability_for(stuck: float, touchdowns: int) -> float:
-    """P(stuck) of one touchdown that leaves a fraction stuck after n independent ones, `stuck_after` inverted [-].
+    """P(stuck) of one touchdown for a fraction stuck after n independent ones, inverse of `stuck_after` [-].
 
     Examples
     --------

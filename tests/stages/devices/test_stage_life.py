@@ -210,7 +210,7 @@ def test_fast_separation_shortens_the_safe_length_of_each_end_state_by_its_facto
         found, slow = fast(lengths, values)
         assert_allclose((found.low, found.high), (np.min(slow * values), slow.min()), rtol=1e-12)
     assert "fast" not in answers(OF, lengths)
-    (alone,) = [row for row in fast(lengths, [[0.7, 0.9]])[1:]]
+    _, alone = fast(lengths, [[0.7, 0.9]])
     assert_allclose(fast(lengths, [[1e-3, 1e-3]])[0].low, 1e-3 * alone[0].min(), rtol=1e-12)
     assert_allclose(fast(lengths, [[1.0, 1.0]])[0].low, alone.min(), rtol=1e-12)  # 0.67 has no water
 

@@ -1,4 +1,4 @@
-"""Stage life: what brings a device into contact, whether it then sticks, what holds it, and what frees it.
+"""Stage life: causes of the contact of a device, its adhesion then, and ways to free it.
 
 Every answer is a number between two bounds, which are equal where the model leaves nothing open. Voltage and shock of a
 beam are those of its length: the stated one, or its least safe length.
@@ -56,7 +56,7 @@ class Answer(NamedTuple):
 
 @dataclass(frozen=True)
 class Liquid:
-    """A liquid in which devices are released."""
+    """Liquid for the release of devices."""
 
     surface_tension: float  #: γ [N m⁻¹]
     contact_angle: float = 0.0  #: θ on the device [rad]. ASSUME: 0, the safe side, where it is not stated
@@ -79,7 +79,7 @@ class Errors:
 
 @dataclass(frozen=True, kw_only=True)
 class Stated:
-    """What any device may state beside its dimensions."""
+    """Keys of any device beside its dimensions."""
 
     touchdowns: int = 1
     voltage: float = 0.0  #: [V]
@@ -99,7 +99,7 @@ class Stated:
 
 @dataclass(frozen=True, kw_only=True)
 class OfBeam(Stated):
-    """A beam, and what it meets beside its ground."""
+    """Beam and its surroundings beside its ground."""
 
     device: DesignedBeam
     density: float  #: ρ [kg m⁻³]
@@ -119,7 +119,7 @@ class OfBeam(Stated):
         return half_of_bridge(Beam(*sizes, elements=1), device.residual_stress)
 
     def number(self, of: Callable[[Beam], float], length: float) -> tuple[float, float]:
-        """A number that depends on the beam, and its standard uncertainty to first order; NaN if no input has any."""
+        """Number of the beam, and its standard uncertainty to first order, NaN if no input has any."""
         squares, value = 0.0, of(self.beam(length))
         for field in fields(self.uncertainty):
             mean, error = getattr(self.device, field.name), getattr(self.uncertainty, field.name)
@@ -132,7 +132,7 @@ class OfBeam(Stated):
 
 @dataclass(frozen=True)
 class Electrode:
-    """An electrode that pulls a stopper down."""
+    """Electrode for pulling a stopper down."""
 
     area: float  #: [m²]
     gap: float  #: from the moving part at rest [m]
@@ -140,7 +140,7 @@ class Electrode:
 
 @dataclass(frozen=True, kw_only=True)
 class OfStopper(Stated):
-    """A stopper, and what it meets beside its ground; zero where nothing is stated."""
+    """Stopper and its surroundings beside its ground, zero if not given."""
 
     restoring_force: float  #: [N]
     contact: tuple[float, float]  #: sides of its area [m]
@@ -185,7 +185,7 @@ def of_beam(
 
 
 def length_of(lengths: Mapping[float, xr.Dataset], of: OfBeam) -> float:
-    """Length at which a beam is asked for voltage and shock [m]: the stated one, or its least safe length."""
+    """Length of a beam for voltage and shock [m]: the given one, or its least safe length."""
     return of.length or min(_safe(dataset, chosen_share(dataset))[0] for dataset in lengths.values())
 
 
@@ -203,7 +203,7 @@ def _length_and_error(one):
 
 
 def _touched(of, length):
-    """Voltage and shock that bring a beam of a length [m] into contact."""
+    """Voltage and shock for contact of a beam of a length [m]."""
     clamps, end = of.clamps, "tip" if of.clamps == 1 else "middle"
     forms = {
         1: ("V² = 0.2801 E t³ h³ / (ε₀ L⁴)", "a = 2 E t² h / (3 ρ L⁴)"),
@@ -237,7 +237,7 @@ def _touched(of, length):
 
 
 def _dried(of, liquid, adhesion):
-    """Lengths that stand while a liquid dries, and that come free afterwards."""
+    """Lengths of beams standing while a liquid dries, and releasing afterwards."""
     clamps = of.clamps
     each, error = of.number(lambda beam: drying.longest_standing_each(beam, clamps, adhesion), 1.0)
     free, free_error = of.number(lambda beam: drying.longest_free(beam, clamps, adhesion), 1.0)
@@ -269,7 +269,7 @@ def _dried(of, liquid, adhesion):
 
 
 def _held(of, length):
-    """Adhesion that holds a beam of a length [m], and the force with which it pulls."""
+    """Adhesion of a stuck beam of a length [m], and its pulling force."""
     clamps = of.clamps
     along, error = of.number(lambda beam: float(apparent_adhesion_energy(length / clamps, beam)), length)
     force, force_error = of.number(lambda beam: freeing.force_at_contact(beam, clamps), length)
@@ -427,7 +427,7 @@ def of_stopper(
 
 
 def _tilted(tilted):
-    """How many stoppers stick at their tilts, the force on them, and the tilt that makes it that of a wedge."""
+    """Fraction of stoppers stuck at their tilts, the force on them, and the tilt at the transition to a wedge."""
     ends = dict.fromkeys(f"{from_si(float(tilt), 'deg'):.3g}" for tilt in tilted.tilt)
     by, form = (
         f"tilted by {' to '.join(ends)}°",
@@ -466,7 +466,7 @@ def _tilted(tilted):
 
 
 def _pulled(stopper, of, biased):
-    """Force that a voltage adds to that on a stopper, and how many stick while it is on."""
+    """Force of a voltage in addition to that on a stopper, and the fraction stuck while it is on."""
     flat = of.capacitor.largest_pressure * of.contact[0] * of.contact[1]
     low, error, sticking = np.nan, np.nan, []
     if biased is not None:
@@ -482,7 +482,7 @@ def _pulled(stopper, of, biased):
 
 
 def _moved(of):
-    """Shock and voltage that bring a stopper into contact, as far as mass and electrode are stated."""
+    """Shock and voltage for contact of a stopper, as far as mass and electrode are given."""
     answers = []
     if of.mass:
         slow = of.restoring_force / of.mass
@@ -525,7 +525,7 @@ def _freed(stopper, of, separation):
 
 
 def _often(stopper, of):
-    """P(stuck) after all touchdowns in the worst stated air, and the force that leaves a small fraction stuck."""
+    """P(stuck) after all touchdowns in the worst given air, and the force for a small fraction stuck."""
     if of.touchdowns == 1:
         return []
     once = float(stopper.stuck.sel(bound="estimate").max())
@@ -543,7 +543,7 @@ def _often(stopper, of):
 
 
 def _one_in(share):
-    """A fraction in words."""
+    """Fraction in words."""
     return f"1 in {1 / share:.6g}"
 
 
@@ -619,7 +619,7 @@ def _inputs(plan, at):
 
 
 def _settings(plan, at):
-    """A device, the liquids and its density, or what a stopper states."""
+    """Settings of a device, the liquids and its density, or of a stopper."""
     section = plan.config["devices"][at.device]
     if not plan.devices.kind(at.device).is_beam:
         return {"stopper": select(OfStopper, section, restoring_force_uN=restoring_force(section))}

@@ -22,7 +22,7 @@ from stiction.streams import stream
 
 
 class Settings(Protocol):
-    """Settings of any job that computes safe lengths."""
+    """Settings of any job with safe lengths."""
 
     seed: int
     water: Water
@@ -31,7 +31,7 @@ class Settings(Protocol):
 
 
 class BeamSettings(Protocol):
-    """Settings of any job that releases beams, from the contact on."""
+    """Settings of any job with released beams, from the contact on."""
 
     seed: int
     chaos: Truncation
@@ -42,7 +42,7 @@ class BeamSettings(Protocol):
 
 @dataclass(frozen=True)
 class Ground:
-    """What beams of any thickness and gap meet at one humidity."""
+    """Ground of beams of any thickness and gap at one humidity."""
 
     model: ChaosModel  #: of the force laws of strips
     laws: np.ndarray  #: sample of these (k, 4) [SI]
@@ -50,7 +50,7 @@ class Ground:
 
 
 def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settings: BeamSettings) -> Ground:
-    """Force laws at a relative humidity, from the contact of the strips and of the tips; ``None`` for a bridge."""
+    """Force laws at a relative humidity, from the contact of the strips and of the tips, or ``None`` for a bridge."""
     with on_patch(settings.device.strip, settings.device.width):
         model = opening.fitted(*curves.vectors(contact, humidity, settings.water), settings.chaos)
     laws = draw_laws(model, opening.LAWS, opening.addresses(settings)("mesh"))
@@ -104,7 +104,7 @@ def sticking_lengths(
 
 
 def known(device: DesignedBeam, water: Water, humidity: float, reach: float) -> dict[str, Known]:
-    """What is known of the lengths of a device without samples, by shape; they were simulated up to a reach [m].
+    """Known lengths of a device without samples, by shape, with the reach of the simulation [m].
 
     No surfaces hold a bridge up to the length of `flooded_lengths`, but a single tip may hold a shorter beam.
     """
