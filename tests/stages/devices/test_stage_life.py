@@ -193,44 +193,43 @@ def test_patches_that_no_summits_stop_leave_fast_separation_without_a_bound():
     assert np.isfinite(life.of_stopper(stopper_dataset(), STOPPER, separation=flat)[-1].high)
 
 
-def energies(ratios, errors):
-    """Dataset of stage separation of a beam."""
-    data = {"energy_ratio": ("humidity", ratios), "energy_ratio_error": ("humidity", errors)}
-    return xr.Dataset(data, coords={"humidity": [0.44, 0.67]})
+def factors(values, errors=0.01):
+    """Dataset of stage separation of a cantilever: factors of both end states at each humidity."""
+    data = {"factor": (("humidity", "shape"), values), "factor_error": (("humidity", "shape"), errors + 0 * values)}
+    return xr.Dataset(data, coords={"humidity": [0.44, 0.67][: len(values)], "shape": list(C1.opening.shapes)})
 
 
-def test_fast_separation_shortens_the_safe_length_as_its_energy_says(lengths):
-    least = {h: min(float(v) for v in one.safe_length.sel(share=1e-3)) for h, one in lengths.items()}
-    for ratios in ([2.7, 1.0], [1.0, 81.0], [16.0, 2.0]):
-        found = {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies(ratios, [0.1, 0.1]))}[
-            "fast"
-        ]
-        shorter = min(least[0.44] * ratios[0] ** -0.25, least[0.67] * ratios[1] ** -0.25)
-        assert_allclose((found.low, found.high), (shorter, min(least.values())), rtol=1e-12)
+def fast(lengths, values, errors=0.01):
+    """Safe length of fast separation, and those of slow separation at all humidities in all end states [m]."""
+    found = {one.name: one for one in life.of_beam(lengths, {}, OF, separation=factors(np.array(values), errors))}
+    return found["fast"], np.array([one.safe_length.sel(share=1e-3).values for one in lengths.values()])
+
+
+def test_fast_separation_shortens_the_safe_length_of_each_end_state_by_its_factor(lengths):
+    for values in ([[0.7, 0.9], [0.8, 1.0]], [[0.2, 0.9], [0.8, 1.0]], [[1.0, 1.0], [0.9, 0.1]]):
+        found, slow = fast(lengths, values)
+        assert_allclose((found.low, found.high), (np.min(slow * values), slow.min()), rtol=1e-12)
     assert "fast" not in answers(OF, lengths)
+    _, alone = fast(lengths, [[0.7, 0.9]])
+    assert_allclose(fast(lengths, [[1e-3, 1e-3]])[0].low, 1e-3 * alone[0].min(), rtol=1e-12)
+    assert_allclose(fast(lengths, [[1.0, 1.0]])[0].low, alone.min(), rtol=1e-12)  # 0.67 has no water
 
 
-def test_its_error_has_that_of_the_length_and_a_quarter_of_that_of_the_ratio(lengths):
-    def fast(errors):
-        return {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies([50.0, 1.0], errors))}[
-            "fast"
-        ]
-
-    alone, both = fast([0.0, 0.0]), fast([10.0, 0.0])
-    assert_allclose(np.hypot(alone.error / alone.low, 0.2 / 4), both.error / both.low, rtol=1e-9)
+def test_its_error_has_those_of_the_length_and_of_the_factor(lengths):
+    values = [[1.0, 0.5], [1.0, 1.0]]
+    (alone, slow), (both, _) = fast(lengths, values, 0.0), fast(lengths, values, 0.1)
+    assert_allclose(np.hypot(alone.error, 0.1 * slow[0, 1]), both.error, rtol=1e-9)
 
 
 def test_strips_that_no_summits_stop_leave_a_beam_without_a_bound(lengths):
-    found = {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies([np.inf, 2.0], [np.nan, 0.1]))}[
-        "fast"
-    ]
+    found, slow = fast(lengths, [[0.7, 0.9], [0.0, 0.9]], np.nan)
     assert np.isnan(found.low)
     assert np.isnan(found.error)
-    assert found.high == min(float(one.safe_length.sel(share=1e-3).min()) for one in lengths.values())
+    assert found.high == slow.min()
 
 
 def test_sentences_say_what_fast_separation_needs_if_it_is_more(lengths):
-    beam = life.layout(life.of_beam(lengths, {}, OF, separation=energies([16.0, 2.0], [0.1, 0.1])), OF)
+    beam = life.layout(life.of_beam(lengths, {}, OF, separation=factors(np.array([[0.5, 0.5], [0.8, 0.9]]))), OF)
     (said,) = [one for one in report.sentences(beam) if "faster than water" in one]
     assert "safe length can fall from" in said
     stopper = life.layout(life.of_stopper(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 1.0)), STOPPER)

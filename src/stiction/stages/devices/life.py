@@ -192,7 +192,7 @@ def of_beam(
     answers += _touched(of, length) + _held(of, length) if 0 < length < np.inf else []
     answers += [answer for name, liquid in of.liquids.items() for answer in _dried(of, name, liquid.adhesion)]
     answers += _after_touchdowns(of, share, min(safe.values()), after) if after else []
-    answers += _separated_fast(safe, separation) if separation is not None else []
+    answers += _separated_fast(lengths, separation) if separation is not None else []
     return _in_order(answers + _at_voltage(of, min(safe.values()), biased))
 
 
@@ -205,9 +205,13 @@ def _safe(dataset, share):
     """Least safe length of all end states [m], the standard error of its estimate, and its basis."""
     one = dataset.sel(share=share)
     one = one.isel(shape=int(one.safe_length.argmin("shape")))
+    return *_length_and_error(one), str(one.basis.values)
+
+
+def _length_and_error(one):
+    """Safe length of one end state [m], and the standard error of its estimate; NaN if none is known."""
     errors = [float(one[name]) for name in ("beams_error", "surfaces_error")]
-    error = float(np.sqrt(np.nansum(np.square(errors)))) or np.nan
-    return float(one.safe_length), error, str(one.basis.values)
+    return float(one.safe_length), float(np.sqrt(np.nansum(np.square(errors)))) or np.nan
 
 
 def _touched(of, length):
@@ -393,23 +397,33 @@ def _bent_to_dimples(of):
     return [beside, Answer(PULLED, FREE, what, force, force, error, "N", form, source)]
 
 
-def _separated_fast(safe, separation):
-    """Safe length of a beam that separates faster than water evaporates, from its safe lengths and their errors.
+def _separated_fast(lengths, separation):
+    """Safe length of a beam that separates faster than water evaporates, by humidity and end state, in the worst one.
 
-    ASSUME: the ratio of the mean energies of strips also holds where cracks stop, and at tips. It leaves the pull-off
-    force of a smooth wedge as it is, so that this is the safe side.
+    It is at most that of slow separation.
     """
-    ratios = separation.energy_ratio.to_series().to_dict()
-    errors = separation.energy_ratio_error.to_series().to_dict()
-    at, (length, error, _) = min(safe.items(), key=lambda one: one[1][0] * ratios.get(one[0], 1.0) ** -0.25)
-    ratio = ratios.get(at, 1.0)
-    shorter, most = length * ratio**-0.25, min(safe.values())[0]
-    form = f"L (e / e_V)^(1/4), e_V / e = {ratio:.3g} {in_air(at)} (at least); slow separation (at most)"
+    slow, fast = [], []
+    for humidity, dataset in lengths.items():
+        one = dataset.sel(share=chosen_share(dataset))
+        for shape in map(str, one["shape"].values):
+            length, spread = _length_and_error(one.sel(shape=shape))
+            factor, error = _factor(separation, humidity, shape)
+            slow.append(length)
+            shorter = length * factor if factor else 0.0
+            fast.append((shorter, float(np.hypot(spread * factor, length * error)), factor, in_air(humidity)))
+    shorter, error, factor, air = min(fast)
+    form = f"L x {factor:.3g} {air}, by (e / e_V)^(1/4) of strips or lengths of tips (at least); slow (at most)"
     what = "safe length if it separates faster than water evaporates"
-    numbers = np.nan, most, np.nan
-    if 0 < shorter < np.inf:
-        numbers = shorter, most, shorter * float(np.hypot(error / length, errors.get(at, 0.0) / (4 * ratio)))
+    numbers = (shorter, min(slow), error) if 0 < shorter < np.inf else (np.nan, min(slow), np.nan)
     return [Answer(FAST, FREE, what, *numbers, "m", form, "stage separation")]
+
+
+def _factor(separation, humidity, shape):
+    """Factor of the length by fast separation and its standard error [-]; 1 in air without water."""
+    if humidity not in separation.humidity.values:
+        return 1.0, 0.0
+    one = separation.sel(humidity=humidity, shape=shape)
+    return float(one.factor), float(one.factor_error)
 
 
 def _after_touchdowns(of, share, once, after):
