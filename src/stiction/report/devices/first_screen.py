@@ -9,10 +9,11 @@ import xarray as xr
 
 from stiction.config.cases import air
 from stiction.devices import limits
+from stiction.devices.risk import one_in
 from stiction.report.budget import tables as tables_budget
 from stiction.report.budget.tables import percentage
 from stiction.report.devices import sentences
-from stiction.report.format import UM, UN, airs, humidity_text, number, one_in, with_error
+from stiction.report.format import UM, UN, airs, humidity_text, number, with_error
 from stiction.report.page import Summary
 from stiction.report.test_beams.tables import is_reliable
 from stiction.stages.devices.budget import budget_of
@@ -26,7 +27,7 @@ _OF_THICKNESS, _OF_GAP = 3 / 4, 1 / 2
 _UNSTATED = "State the uncertainties of the inputs in section uncertainty: the budget then says what to measure better."
 
 
-def of_beam(
+def beam_screen(
     section: Mapping[str, Any],
     safe_lengths: Mapping[float, xr.Dataset],
     budgets: Mapping[tuple, xr.Dataset],
@@ -57,7 +58,7 @@ def of_beam(
     points = {
         "What decides": " ".join(_decides_beam(humidity, worst, budgets, section)),
         "What to change": _change_beam(section, safe / UM),
-        "What to measure": _measure(sentences.of_shortest(safe_lengths, budgets).values()),
+        "What to measure": _measure(sentences.shortest_budgets(safe_lengths, budgets).values()),
     }
     return _unless_forbidden(Summary(*verdict, basis, points, _table_of_beam(safe_lengths, test_beams)), warnings)
 
@@ -156,7 +157,7 @@ def _with_test_beams(update, humidity):
     return float(_chosen(update).updated_safe.sel(humidity=humidity).min())
 
 
-def of_stopper(
+def stopper_screen(
     section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset], warnings: Sequence[str]
 ) -> Summary:
     """First screen of a stopper: its section, dataset of stage stoppers, budgets and warnings."""

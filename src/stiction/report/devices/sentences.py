@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from stiction.devices.risk import Basis, samples_for
-from stiction.report.format import UM, UN, airs, one_in
+from stiction.devices.risk import Basis, one_in, samples_for
+from stiction.report.format import UM, UN, airs
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import EITHER
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
@@ -17,7 +17,7 @@ def length_to_build(
 ) -> tuple[float, float, float]:
     """Least safe length [m], its relative uncertainty due to the measurements, and the length less twice that [m]."""
     least = min(_safe(dataset).item() for dataset in safe_lengths.values())
-    totals = [budget_of(budget).total for budget in of_shortest(safe_lengths, budgets).values()]
+    totals = [budget_of(budget).total for budget in shortest_budgets(safe_lengths, budgets).values()]
     total = max((total for total in totals if np.isfinite(total)), default=0.0)
     return least, total, (1 - 2 * total) * least
 
@@ -30,10 +30,10 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     Parameters
     ----------
     safe_lengths, budgets : dict
-        As in `stiction.report.devices.pages.of_beam`.
+        As in `stiction.report.devices.pages.beam_page`.
     """
     least, total, length = length_to_build(safe_lengths, budgets)
-    totals = [budget_of(budget).total for budget in of_shortest(safe_lengths, budgets).values()]
+    totals = [budget_of(budget).total for budget in shortest_budgets(safe_lengths, budgets).values()]
     least, length = least / UM, length / UM
     if length <= 0:
         return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
@@ -68,7 +68,7 @@ def _chosen(dataset):
     return float(dataset.share[dataset.sizes["share"] // 2])
 
 
-def of_shortest(
+def shortest_budgets(
     safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
 ) -> dict[tuple, xr.Dataset]:
     """Budgets of the shortest stuck devices: of tips, if there are tips."""
