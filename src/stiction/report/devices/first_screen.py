@@ -1,4 +1,4 @@
-"""First screen of the page of a device: the answer, what decides it, what to change and to measure, and one table."""
+"""First screen of the page of a device: answer, its cause, advice on changes and measurements, and one table."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -69,7 +69,7 @@ def _chosen(dataset):
 
 
 def _finite(point):
-    """Standard error due to the number of surfaces; zero where it is part of that due to the number of beams."""
+    """Standard error due to the number of surfaces, zero if it is part of the beams' error."""
     return point.surfaces_error.fillna(0)
 
 
@@ -91,12 +91,12 @@ def _verdict(length, safe, safe_lengths):
 
 
 def _stuck(stuck, low, high):
-    """Share that sticks with its band of 95 % confidence."""
+    """Fraction stuck with its band of 95 % confidence."""
     return f"{100 * stuck:.3g} % stick ({100 * low:.3g} to {100 * high:.3g} %)"
 
 
 def _decides_beam(humidity, worst, budgets, section):
-    """Humidity and end state of the shortest safe length, and an assumed input that decides."""
+    """Humidity and end state of the shortest safe length, and a decisive assumed input."""
     lengths = _chosen(worst).safe_length
     shape = str(lengths["shape"].values[int(lengths.argmin("shape"))])
     yield f"{air(humidity)}, held by the {END_STATES[shape].by}."
@@ -106,7 +106,7 @@ def _decides_beam(humidity, worst, budgets, section):
 
 
 def _change_beam(section, safe):
-    """Sizes that would make the stated length safe, or what sizes change of the safe length [µm]."""
+    """Sizes for a safe given length, or the effect of sizes on the safe length [µm]."""
     length = section.get("length_um")
     if section.get("residual_stress_MPa", 0):
         return (
@@ -151,7 +151,7 @@ def _table_of_beam(safe_lengths, test_beams):
 
 
 def _with_test_beams(update, humidity):
-    """Safe length after test beams, before any margin [m]; NaN where they are not to be relied on."""
+    """Safe length after test beams, before any margin [m], NaN if they are unreliable."""
     if not is_reliable(update) or humidity not in update.humidity:
         return np.nan
     return float(_chosen(update).updated_safe.sel(humidity=humidity).min())

@@ -15,7 +15,7 @@ from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, sha
 def length_to_build(
     safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
 ) -> tuple[float, float, float]:
-    """Least safe length [m], its relative uncertainty due to the measurements, and the length less twice that [m]."""
+    """Least safe length [m], its relative uncertainty due to the measurements, and the length less twice it [m]."""
     least = min(_safe(dataset).item() for dataset in safe_lengths.values())
     totals = [budget_of(budget).total for budget in shortest_budgets(safe_lengths, budgets).values()]
     total = max((total for total in totals if np.isfinite(total)), default=0.0)
@@ -96,7 +96,7 @@ def verdict(stopper: xr.Dataset) -> str:
 
 
 def bounded_share(stopper: xr.Dataset) -> float | None:
-    """Smallest share that the patches of a stopper alone bound at all its humidities; none if they are too few."""
+    """Smallest fraction with a bound from the patches of a stopper alone at all its humidities, or none."""
     stated = stopper.safe_force.sel(part="safe").max("humidity", skipna=False)
     sampled = stated.where(stopper.basis == Basis.SAMPLED)
     return min((float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))), default=None)

@@ -92,7 +92,7 @@ def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
 
 
 def _length_warnings(length, dataset, of, plastic, thinnest=None):
-    """Warnings about a device of a length [m]; film and rms from a dataset.
+    """Warnings about a device of a length [m]. Film and rms from a dataset.
 
     The thinnest film [m] is that of the dataset, or along the axis of a chart.
     """

@@ -41,7 +41,7 @@ _OF_VOLTAGE, _OF_TILT = "stage at_voltage, stiction.life.holding", "stage tilted
 
 
 class Answer(NamedTuple):
-    """One answer to a question; numbers in SI."""
+    """One answer to a question, with numbers in SI."""
 
     name: str
     question: str
@@ -295,7 +295,7 @@ def _held(of, length):
 
 
 def _at_voltage(of, safe, biased):
-    """What a voltage adds, and the length that is then safe, from the safe length without it and its error [m].
+    """Effect of a voltage, and the length safe with it, from the safe length without it and its error [m].
 
     On flats in contact, and on rough surfaces from the safe lengths at the voltage by humidity, if there are any.
     """

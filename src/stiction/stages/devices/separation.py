@@ -65,7 +65,7 @@ def energy_ratio(contact: xr.Dataset, humidity: float, water: Water) -> tuple[fl
 
 
 def separation_inputs(plan: Any, device: str) -> dict[str, str]:
-    """Dataset of a device, as input of a stage; none if no water condenses in any of its airs."""
+    """Dataset of a device, as input of a stage, none without condensation in any of its airs."""
     return {"separation": f"devices/separation/{device}"} if _contacts(plan, device) else {}
 
 
