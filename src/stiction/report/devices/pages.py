@@ -171,7 +171,7 @@ def _with_model_error(summary, name, errors):
 
 
 def _words_of_budgets(budgets):
-    """Terms that the budgets use."""
+    """Terms used by the budgets."""
     if not budgets:
         return {}
     words = dict(_terms()["budgets"])

@@ -23,7 +23,7 @@ def length_to_build(
 
 
 def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> str:
-    """The length to build for all humidities of a device, for the middle one of the shares.
+    """Length to build for all humidities of a device, for the middle fraction.
 
     It is the least safe length, less twice the largest uncertainty of what holds the shortest devices, if any is known.
 
@@ -77,7 +77,7 @@ def shortest_budgets(
 
 
 def verdict(stopper: xr.Dataset) -> str:
-    """Whether the restoring force of a stopper suffices, for the smallest share that its patches can bound."""
+    """Answer on the restoring force of a stopper, for the smallest fraction with a bound from its patches."""
     force, where = float(stopper.restoring_force), airs(stopper.humidity.values)
     stated, any_air = stopper.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(stopper)[1]
     share = bounded_share(stopper)
@@ -103,7 +103,7 @@ def bounded_share(stopper: xr.Dataset) -> float | None:
 
 
 def _verdict_of_few(stopper):
-    """The verdict where there are too few patches to bound any of the shares from above."""
+    """Answer with too few patches to bound any of the fractions from above."""
     (humidity, _, low, _), share = max(shares_stuck(stopper), key=lambda row: row[2]), float(stopper.share.max())
     if low <= share:
         return "There are too few patches to say whether the restoring force suffices."
