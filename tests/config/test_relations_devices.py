@@ -35,6 +35,7 @@ GOLD = {"young_modulus_GPa": 79, "poisson_ratio": 0.42, "hardness_GPa": 1.2, "co
 GOLD |= {"hamaker_constant_zJ": {"water": 250, "dry": 400}, "density_kg_per_m3": 19300}
 UNCERTAIN = {"thickness_um": 0.05, "gap_um": 0.2, "young_modulus_GPa": 4, "humidity": 0.01, "scan_um": 10}
 UNCERTAIN |= {"temperature_K": 1, "contact_angle_deg": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20}
+UNCERTAIN |= {"adsorbed_nm": 0.1}
 DEVICES = {
     "C1": C1 | {"chart": CHART, "strip_um": 1.2, "length_um": 300, "uncertainty": UNCERTAIN},
     "R1": R1 | {"humidities": [0.67], "uncertainty": {"residual_stress_MPa": 5}},
@@ -392,6 +393,17 @@ def test_the_strip_of_a_tip_holds_the_wedge_of_the_flattest_beam_and_its_film():
         assert 1e9 * film + 3 * np.hypot(3.4, 0.17) <= tilt["reach_nm"] < 1.2 * (1e9 * film + 10.3)
     assert devices.tips("C1") == devices.tips("C2")._replace(width=30000)
     assert devices.tips("C3").length > 1.5 * devices.tips("C1").length
+
+
+def test_tips_reach_into_adsorbed_films_as_well():
+    thin, thick, dry = (
+        DevicePlan(load({"water": {"adsorbed_nm": added}, "devices": {"C1": C1 | {"humidities": [humidity]}}}))
+        for added, humidity in ((0, 0.67), (4, 0.67), (4, 0))
+    )
+    reach, higher, without = (plan.tilt(plan.tips("C1"))["reach_nm"] for plan in (thin, thick, dry))
+    film = 1e9 * float(meniscus_height(0.67, 300))
+    assert film + 4 + 10.2 <= higher < 1.2 * (film + 4 + 10.3)
+    assert without < reach < higher
 
 
 def test_tips_reach_into_the_film_of_the_wettest_air_of_a_device_and_its_chart():

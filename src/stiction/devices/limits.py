@@ -29,6 +29,8 @@ PLATE = 10.0
 STRETCH = 0.5
 #: What plastic contact does to beams and to stoppers that were pressed as hard.
 SHORTER, STRONGER = "beams that were pressed stick at shorter lengths", "stoppers that were pressed hold more"
+#: Words of every warning about a result on the unsafe side.
+UNSAFE = "the unsafe side"
 #: How to let plastic contact be checked, and how where the list of studies leaves it out.
 DISTANCE = "give its distance in studies.plasticity.distance_nm"
 NAMED = f"{DISTANCE}, and name plasticity in run.studies"
@@ -238,6 +240,11 @@ def stretched_bridge(gap: float, thickness: float) -> str | None:
         "release, too: by up to 5 % at a gap of half the thickness, by up to 16 % at an equal gap, and by more beyond. "
         "The prediction is on the safe side."
     )
+
+
+def forbids(warning: str) -> bool:
+    """Whether a warning forbids relying on a number: a result on the unsafe side, by an amount that is not known."""
+    return UNSAFE in warning
 
 
 def given(*warnings: str | None) -> list[str]:

@@ -1,4 +1,4 @@
-"""Memory to request for jobs: enough for the largest field that they draw, and twice as much after each failure."""
+"""Memory to request for jobs: enough for their largest field, and twice as much after each failure."""
 
 from stiction.config.memory import FIELD_UM, USUAL, field_memory, patch_of, spacings_of
 from stiction.config.units import NM_PER_UM

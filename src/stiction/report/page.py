@@ -8,6 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from stiction.report import html
+from stiction.report.format import MISSING
 from stiction.report.style import png
 
 TEMPLATE = "page.html"
@@ -23,6 +24,12 @@ class Section:
     paragraphs: Sequence[str] = ()
     cells: pd.DataFrame | None = None
     figure: Figure | None = None
+    missing: str = "it does not apply to this row, or too few samples bound it"  #: why cells have no number
+
+    @property
+    def has_missing(self) -> bool:
+        """Whether a cell has no number."""
+        return bool((self.cells == MISSING).any(axis=None))
 
     @property
     def is_long(self) -> bool:
@@ -41,6 +48,23 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Summary:
+    """First screen of a page."""
+
+    tone: str  #: ``good``, ``bad`` or ``open``
+    sign: str  #: the answer in a word or two
+    answer: str  #: one number with its error, or the warning that forbids relying on it
+    basis: Sequence[str]  #: what the number rests on
+    points: Mapping[str, str]  #: what decides, what to change, what to measure
+    cells: pd.DataFrame  #: one small table
+
+    @property
+    def has_missing(self) -> bool:
+        """Whether a cell has no number."""
+        return bool((self.cells == MISSING).any(axis=None))
+
+
+@dataclass(frozen=True)
 class Page:
     """Contents of the page of a device."""
 
@@ -53,6 +77,7 @@ class Page:
     made: Sequence[str] = ()  #: when and by which code
     not_modelled: str = ""  #: what is not in the model
     drawing: str = ""  #: of the device, as SVG
+    summary: Summary | None = None  #: its first screen
 
     @property
     def html(self) -> str:

@@ -17,7 +17,7 @@ from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_
 from stiction.contact.environment import Water
 from stiction.report.devices import own_length, pages, sentences
 from stiction.report.devices import tables as tables_devices
-from stiction.report.page import Page, Section
+from stiction.report.page import Page, Section, Summary
 from stiction.report.surfaces.words import described
 from stiction.stages.devices import device_warnings, safe_lengths, sticking
 from stiction.stages.devices.budget import budget_of
@@ -59,7 +59,7 @@ def test_a_page_is_one_file_with_its_figures(stopper):
     assert stopper.startswith("<!DOCTYPE html>")
     pictures = re.findall(r'src="data:image/png;base64,([^"]+)"', stopper)
     assert [base64.b64decode(picture)[:4] for picture in pictures] == [b"\x89PNG"] * 2
-    assert not re.findall(r'(?:src|href)="(?!data:)', stopper)
+    assert not re.findall(r'(?:src|href)="(?!data:|#)', stopper)
 
 
 def test_long_descriptions_of_surfaces_are_wrapped_and_numbers_of_tables_are_not(stopper):
@@ -292,14 +292,16 @@ def test_a_saved_page_ends_with_date_version_and_commit_of_the_last_run_and_diff
 def test_text_is_shown_as_it_is():
     figure, cells = Figure(figsize=(1, 1)), pd.DataFrame({HOSTILE: [HOSTILE]})
     sections, words = [Section(HOSTILE, [HOSTILE], cells, figure)], {HOSTILE: HOSTILE}
-    page = Page(HOSTILE, {HOSTILE: HOSTILE}, [HOSTILE, HOSTILE], sections, [HOSTILE], words, [HOSTILE])
+    summary = Summary("good", HOSTILE, HOSTILE, [HOSTILE], words, cells)
+    page = Page(HOSTILE, {HOSTILE: HOSTILE}, [HOSTILE] * 2, sections, [HOSTILE], words, [HOSTILE], summary=summary)
     shown = Reading(page.html)
     assert [code for code in shown.code if code != "meta"] == []
-    for tag, number in {"title": 1, "h1": 1, "strong": 1, "th": 1, "td": 3, "dt": 1, "dd": 1}.items():
+    for tag, number in {"title": 1, "h1": 1, "strong": 1, "th": 2, "td": 4, "dt": 2, "dd": 2}.items():
         assert shown.text[tag] == [HOSTILE] * number
-    assert [text for text in shown.text["p"] if text == HOSTILE] == [HOSTILE] * 5
-    assert len(shown.text["p"]) == 6, "with what is not in the model"
-    assert shown.text["h2"] == [HOSTILE, "Limits of this prediction", "Terms"]
+    said = [text.replace("\N{NO-BREAK SPACE}", " ") for text in shown.text["p"]]
+    assert [text for text in said if text == HOSTILE] == [HOSTILE] * 9
+    assert len(shown.text["p"]) == 11, "with the link to warnings and what is not in the model"
+    assert shown.text["h2"] == ["The answer in words", HOSTILE, "Limits of this prediction", "Terms"]
     assert shown.alt == [HOSTILE]
 
 
@@ -353,7 +355,7 @@ def test_the_table_has_the_share_at_the_length_of_those_devices_that_have_one():
     assert list(one.share_stuck) == [0.0] * 3 + [0.5] * 3
     assert other.length_um.isna().all()
     assert list(table.cells["P(stuck) [%]"])[-1] == "–"
-    assert "length that they have" in table.caption
+    assert "at their given length" in table.caption
     assert "length [µm]" not in tables_devices.safe_lengths({("C2", 0.67): safe()}, silent).cells
 
 

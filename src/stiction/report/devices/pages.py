@@ -18,7 +18,7 @@ from stiction.report import html
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import figures as figures_devices
-from stiction.report.devices import life, own_length, sentences
+from stiction.report.devices import first_screen, life, own_length, sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.drawings.devices import of_device
 from stiction.report.format import MISSING, humidity_text, one_in
@@ -44,18 +44,24 @@ _OF_MAPS = (
     "meets it; dashed: the safe value does, with a confidence of 95 %. Dots: computed points; cross: the surface as it "
     "is given.",
 )
+#: Why a table of safe lengths and one of a budget have cells without a number.
+_MISSING_LENGTHS = (
+    "all drawn surfaces have the same tips, whose scatter is part of the error due to the number of beams; or too few "
+    "beams stick for an estimate"
+)
+_MISSING_EFFECTS = "this input does not act here, or too few of the simulated devices stick to show what it changes"
 #: Terms that pages explain.
 _GLOSSARY = Path(__file__).with_name("terms.yaml")
 
 
 @cache
 def _terms():
-    """Terms by what a page has."""
+    """Terms by part of a page."""
     return _read(yaml.safe_load(_GLOSSARY.read_text(encoding="utf-8")))
 
 
 def _read(part):
-    """A section of the glossary, or the text of a term, whose parts are joined."""
+    """Section of the glossary, or the text of a term with its parts joined."""
     if isinstance(part, dict):
         return {name: _read(inner) for name, inner in part.items()}
     return part if isinstance(part, str) else " ".join(part)
@@ -92,7 +98,7 @@ def of_beam(
     """
     cases = {(name, humidity): dataset for humidity, dataset in safe_lengths.items()}
     table = tables_devices.safe_lengths(cases, warnings, errors).cells.drop(columns="device")
-    sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}))]
+    sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}), _MISSING_LENGTHS)]
     if charts:
         axis = {(name, humidity): dataset for humidity, dataset in charts.items()}
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
@@ -121,7 +127,8 @@ def of_beam(
         | (terms["charts"] if charts else {})
         | _words_of_budgets(budgets)
     )
-    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
+    summary = _with_model_error(first_screen.of_beam(section, safe_lengths, budgets, listed, test_beams), name, errors)
+    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary)
 
 
 def of_stopper(
@@ -134,7 +141,7 @@ def of_stopper(
     errors: Mapping[str, xr.Dataset] | None = None,
     roughness: xr.Dataset | None = None,
 ) -> Page:
-    """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
+    """Page of a stopper. Parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
     table = tables_budget.stoppers({name: stopper}, {name: []}, errors).cells.drop(columns=["device"])
     sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: stopper}, {}))]
     sections += [*_sure(name, budgets, errors), *_how_rough(name, roughness)]
@@ -148,7 +155,16 @@ def of_stopper(
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
     answer += [*sentences.safe_force_sentences(stopper), *worst, *model_errors.sentences(name, errors)]
     words = _terms()["stoppers"] | (_terms()["worst_humidity"] if worst else {}) | _words_of_budgets(budgets)
-    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
+    summary = _with_model_error(first_screen.of_stopper(section, stopper, budgets, listed), name, errors)
+    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary)
+
+
+def _with_model_error(summary, name, errors):
+    """First screen with the error of the model of the contact, beside a number."""
+    if not summary.basis:
+        return summary
+    unstated = "The error of the model of the contact is not stated: run.studies leaves out full_contact."
+    return replace(summary, basis=[*summary.basis, *(model_errors.sentences(name, errors)[:1] or [unstated])])
 
 
 def _words_of_budgets(budgets):
@@ -185,7 +201,7 @@ def _with_force(section):
 
 
 def _asked(section):
-    """What is required of a device and over which roughness it is asked for, by name; nothing if it is not asked."""
+    """Requirement of a device and its range of roughness, by name, or nothing without a requirement."""
     if "requirement" not in section:
         return {}
     required, over = section["requirement"], section["roughness"]
@@ -202,7 +218,7 @@ def _asked(section):
 
 
 def _sure(name, budgets, errors):
-    """Section on the uncertainty of the result and what to measure better; none if no input is uncertain."""
+    """Section on the uncertainty of the result and on measurements, none if no input is uncertain."""
     if not budgets:
         return []
     cases = {(name, *key): dataset for key, dataset in budgets.items()}
@@ -212,11 +228,11 @@ def _sure(name, budgets, errors):
     ]
     said += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
     cells, drawn = _side_by_side(tables_budget.budget(cases, errors).cells), figures_budget.budget(cases)
-    return [Section("Uncertainty, and what should be measured better", said, cells, drawn)]
+    return [Section("Uncertainty, and what should be measured better", said, cells, drawn, _MISSING_EFFECTS)]
 
 
 def _of_test_beams(name, update):
-    """Section on what the test beams of a device say."""
+    """Section on the evidence of the test beams of a device."""
     said = [
         tables_test_beams.explained(update),
         *tables_test_beams.combinations(update),
@@ -228,12 +244,12 @@ def _of_test_beams(name, update):
 
 
 def _rough_enough(roughness):
-    """Which roughness suffices, among the first sentences; nothing if this was not asked."""
+    """Sufficient roughness, among the first sentences, or nothing without a requirement."""
     return [] if roughness is None else tables_roughness.briefly(roughness)
 
 
 def _how_rough(name, roughness):
-    """Section on how rough a surface must be; none if this was not asked."""
+    """Section on how rough a surface must be, none without a requirement."""
     if roughness is None:
         return []
     cells = tables_roughness.roughness({name: roughness}).cells.drop(columns="device")
@@ -257,7 +273,7 @@ def _side_by_side(cells):
 
 
 def _inputs(plan, at):
-    """Everything that the page of a device shows."""
+    """Inputs of the page of a device."""
     devices, section = plan.devices, plan.config["devices"][at.device]
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
     budgets = budgets_of(plan, at.device) if at.device in devices.budgeted else {}

@@ -1,4 +1,4 @@
-"""Sentences on the pages of devices: the length to build, the force that suffices, and who sticks in which air."""
+"""Sentences on the pages of devices: the length to build, the sufficient force, and devices stuck in each air."""
 
 from collections.abc import Mapping
 
@@ -12,6 +12,16 @@ from stiction.stages.devices.opening import EITHER
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
 
 
+def length_to_build(
+    safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
+) -> tuple[float, float, float]:
+    """Least safe length [m], its relative uncertainty due to the measurements, and the length less twice that [m]."""
+    least = min(_safe(dataset).item() for dataset in safe_lengths.values())
+    totals = [budget_of(budget).total for budget in of_shortest(safe_lengths, budgets).values()]
+    total = max((total for total in totals if np.isfinite(total)), default=0.0)
+    return least, total, (1 - 2 * total) * least
+
+
 def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> str:
     """The length to build for all humidities of a device, for the middle one of the shares.
 
@@ -22,10 +32,9 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     safe_lengths, budgets : dict
         As in `stiction.report.devices.pages.of_beam`.
     """
-    least = min(_safe(dataset).item() for dataset in safe_lengths.values())
+    least, total, length = length_to_build(safe_lengths, budgets)
     totals = [budget_of(budget).total for budget in of_shortest(safe_lengths, budgets).values()]
-    total = max((total for total in totals if np.isfinite(total)), default=0.0)
-    length = (1 - 2 * total) * least / UM
+    least, length = least / UM, length / UM
     if length <= 0:
         return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
     sentence = (
@@ -39,13 +48,13 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     if total == 0:
         return sentence
     return (
-        f"{sentence} The shortest safe length, {least / UM:.0f} µm, is reduced by {200 * total:.2g} %, twice the "
+        f"{sentence} The shortest safe length, {least:.0f} µm, is reduced by {200 * total:.2g} %, twice the "
         "uncertainty due to the measurements."
     )
 
 
 def _any(safe_lengths):
-    """One of the datasets of a device, which have the same shares and shapes."""
+    """One of the datasets of a device. All have the same shares and shapes."""
     return next(iter(safe_lengths.values()))
 
 
@@ -55,14 +64,14 @@ def _safe(dataset):
 
 
 def _chosen(dataset):
-    """The share of stuck devices for which sentences state lengths: the middle one [-]."""
+    """Fraction of stuck devices for lengths in sentences: the middle one [-]."""
     return float(dataset.share[dataset.sizes["share"] // 2])
 
 
 def of_shortest(
     safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
 ) -> dict[tuple, xr.Dataset]:
-    """Budgets of what holds the shortest devices: of tips, if there are tips."""
+    """Budgets of the shortest stuck devices: of tips, if there are tips."""
     of_tips = EITHER in _any(safe_lengths)["shape"].values
     return {key: budget for key, budget in budgets.items() if ("tip" in key) == of_tips}
 
@@ -71,11 +80,9 @@ def verdict(stopper: xr.Dataset) -> str:
     """Whether the restoring force of a stopper suffices, for the smallest share that its patches can bound."""
     force, where = float(stopper.restoring_force), airs(stopper.humidity.values)
     stated, any_air = stopper.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(stopper)[1]
-    sampled = stated.where(stopper.basis == Basis.SAMPLED)
-    known = [float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))]
-    if not known:
+    share = bounded_share(stopper)
+    if share is None:
         return _verdict_of_few(stopper)
-    share = min(known)
     at_these, anywhere = (float(needed.sel(share=share)) for needed in (stated, any_air))
     head = f"The restoring force of {force / UN:g} µN"
     tail = f"at most {one_in(share)} sticks (95 % confidence, given the drawn surfaces)."
@@ -86,6 +93,13 @@ def verdict(stopper: xr.Dataset) -> str:
     dry = ["in dry air"] if stopper.axis[0] == 0 else []
     humid = [f"at all relative humidities{_range(stopper)}"] if ends(stopper) else []
     return f"{head} suffices {' and '.join(dry + humid)}: {tail}"
+
+
+def bounded_share(stopper: xr.Dataset) -> float | None:
+    """Smallest share that the patches of a stopper alone bound at all its humidities; none if they are too few."""
+    stated = stopper.safe_force.sel(part="safe").max("humidity", skipna=False)
+    sampled = stated.where(stopper.basis == Basis.SAMPLED)
+    return min((float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))), default=None)
 
 
 def _verdict_of_few(stopper):
@@ -101,7 +115,7 @@ def _verdict_of_few(stopper):
 
 
 def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
-    """The safe lengths of a device at one humidity in words, for the middle one of the shares."""
+    """Safe lengths of a device at one humidity in words, for the middle fraction."""
     share = _chosen(dataset)
     lengths = dataset.safe_length.sel(share=share) / UM
     shortest, longest = float(lengths.min()), float(lengths.max())
@@ -116,17 +130,17 @@ def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
 
 
 def few_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
-    """How many devices stick at most at each humidity at which hardly any does."""
+    """Largest fractions of stuck devices, at each humidity with hardly any stuck."""
     return [few_sentence(humidity, one) for humidity, one in safe_lengths.items() if _few_stick(one)]
 
 
 def _few_stick(dataset):
-    """Whether the safe length of the chosen share is as long as the simulated devices, or that of flat surfaces."""
+    """Whether the safe length of the chosen fraction is as long as the simulated devices, or as on flat surfaces."""
     return dataset.basis.sel(share=_chosen(dataset)).values[-1] in (Basis.LONGEST, Basis.FLAT)
 
 
 def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
-    """How many devices stick at most at one humidity, in words, where so few do that no smaller share is known."""
+    """Largest fraction of stuck devices at one humidity, in words, if so few stick that no smaller one is known."""
     held, number, share = dataset.isel(shape=-1), int(dataset.beams), _chosen(dataset)
     shortest, most, reach = float(held.shortest), float(held.most_stuck), float(held.reach)
     none = f"shorter than {shortest / UM:.0f} µm " if np.isfinite(shortest) else ""
@@ -143,7 +157,7 @@ def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
 
 
 def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force: float) -> str:
-    """P(stuck) of a stopper at one humidity in words; restoring force [N].
+    """P(stuck) of a stopper at one humidity in words, with its restoring force [N].
 
     Examples
     --------
@@ -163,7 +177,7 @@ _ON = {
 
 
 def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
-    """Restoring forces that would suffice at the humidities of a stopper, and in any air of its fine axis.
+    """Sufficient restoring forces at the humidities of a stopper, and in any air of its fine axis.
 
     For the shares that its patches can bound.
     """
@@ -179,7 +193,7 @@ def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
 
 
 def worst_sentence(stopper: xr.Dataset) -> str:
-    """The worst humidity of a stopper in words."""
+    """Worst humidity of a stopper in words."""
     worst = float(stopper.worst_humidity)
     share, least, most = (100 * share for share in in_any_air(stopper)[0])
     stuck = f" In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
@@ -196,7 +210,7 @@ def worst_sentence(stopper: xr.Dataset) -> str:
 
 
 def _range(stopper):
-    """Range of humidities along which the worst was sought, in words."""
+    """Range of humidities in the search of the worst, in words."""
     low, high = ends(stopper)
     return f" from {low:g} to {high:g}"
 
