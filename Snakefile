@@ -32,7 +32,7 @@ include: "workflow/rules/common.smk"
 include: "workflow/rules/stages.smk"
 
 
-if snakemake_patches.is_main(workflow):
+if is_main:
     remember.save()
 
 
@@ -125,6 +125,7 @@ onstart:
         HELD.append(run_lock.reserved(".snakemake/running"))
         refuse_what_samples_show()
         provenance.record("results/provenance.json", BASE, config)
+        hand_to_jobs()
     except (OSError, DataError) as error:
         reason = error.__cause__ or error
         raise WorkflowError(f"results/ cannot be used: {reason}. Make it writable or choose another --directory.")
@@ -132,13 +133,16 @@ onstart:
         raise WorkflowError(str(error))
     snakemake_patches.limit_timers(workflow)
     # Kernels are compiled and cached before jobs run in parallel, because two jobs could corrupt a shared cache entry.
-    # The server of local jobs does it; the jobs of a cluster run on other machines.
-    if not (snakemake_patches.runs_here(workflow) and snakemake_patches.fork_jobs()):
+    # The server of the jobs that run on this machine does it.
+    if not snakemake_patches.fork_jobs():
         shell("{sys.executable:q} -m stiction.run.warmup")
 
 
 onsuccess:
     unlike_this_run()
+    from stiction.command import index
+
+    index.write(Path("results"), planner.rules)
 
 
 rule all:

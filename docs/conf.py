@@ -16,7 +16,7 @@ release = stiction.__version__
 
 extensions = ["myst_parser", "mathml", "plain", "sphinx_copybutton", "sphinx_gallery.gen_gallery"]
 extensions += [f"sphinx.ext.{name}" for name in ("autodoc", "autosummary", "napoleon", "viewcode")]
-exclude_patterns = ["_build", "templates", "tables", "gallery"]
+exclude_patterns = ["_build", "templates", "gallery"]
 templates_path = ["_templates"]
 
 myst_enable_extensions = ["dollarmath", "amsmath"]
@@ -63,3 +63,15 @@ html_static_path = ["_static"]
 html_css_files = ["stiction.css"]
 html_copy_source = False
 html_show_sphinx = False
+
+
+def titled(_app, docname, source):
+    """Give a table of ``docs/tables`` a title, and leave it out of the navigation: pages link to it."""
+    if docname.startswith("tables/"):
+        title = docname.removeprefix("tables/").replace("_", " ").capitalize()
+        source[0] = f"---\norphan: true\n---\n\n# {title}\n\n{source[0]}"
+
+
+def setup(app):
+    """Register `titled` with Sphinx."""
+    app.connect("source-read", titled)

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from stiction.config.messages import number_of_items
 from stiction.config.reading import read
 from stiction.config.relations import schema
 
@@ -64,22 +65,22 @@ def _values(config, path):
 
 
 def allowed(entry: dict) -> str:
-    """Allowed values in words.
+    """Allowed values in short.
 
     Examples
     --------
     >>> allowed({"type": "number", "exclusiveMinimum": 0, "maximum": 5})
-    'above 0, at most 5'
+    '> 0, ≤ 5'
     """
     if entry["type"] == "array":
-        number = f"{entry['maxItems']} entries" if "maxItems" in entry else "list"
+        number = f"{number_of_items(entry)} entries" if "maxItems" in entry else "list"
         return f"{number}: {allowed(entry['items'])}"
     if "enum" in entry:
         return ", ".join(f"`{choice}`" for choice in entry["enum"])
     if entry["type"] == "string":
         return "text"
-    words = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
-    bounds = ", ".join(f"{word} {entry[bound]}" for bound, word in words.items() if bound in entry)
+    signs = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
+    bounds = ", ".join(f"{sign} {entry[bound]}" for bound, sign in signs.items() if bound in entry)
     bounds += f", or `{entry['word']}`" if "word" in entry else ""
     return f"whole number, {bounds}" if entry["type"] == "integer" else bounds
 
@@ -90,7 +91,7 @@ def page() -> str:
     for name, entry in schema()["properties"].items():
         named = isinstance(entry.get("additionalProperties"), dict)
         rows = [_row(key, 1 + named) for key in keys(entry, (name,))]
-        head = ["| key | meaning | unit | allowed | default | example |", "|---|---|---|---|---|---|"]
+        head = ["| key | meaning | allowed | default (or example) |", "|---|---|---|---|"]
         about = entry["description"].partition(" [")[0]
         below = f" Keys below `{name}.NAME`:" if named else f" Keys below `{name}`:" if len(rows) > 1 else ""
         parts.append("\n".join([f"## {name}", "", f"{about[0].upper()}{about[1:]}.{below}", "", *head, *rows]))
@@ -107,10 +108,9 @@ def sections() -> str:
 def _row(key, above):
     """Row of one key, without the first names of its path; defaults hold without a file of one's own."""
     default = "" if "*" in key.path else next((_yaml(value) for value in _values(PAPER, key.path)), "")
-    example = "" if default else _yaml(key.example)
     name = ".".join(key.path[above:] or key.path).replace("*", "NAME")
-    cells = [f"`{name}`", key.meaning, key.unit, allowed(key.entry), default, example]
-    return f"| {' | '.join(cells)} |"
+    values = f"{allowed(key.entry)} [{key.unit}]" if key.unit else allowed(key.entry)
+    return f"| `{name}` | {key.meaning} | {values} | {default or f'({_yaml(key.example)})'} |"
 
 
 def _yaml(value):

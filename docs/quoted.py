@@ -12,8 +12,8 @@ import pandas as pd
 from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP
 from stiction.config.files import paper
 from stiction.config.units import in_si
+from stiction.contact.meniscus import flooded_energy
 from stiction.devices.arcs import arc_length
-from stiction.devices.chart import flooded_energy
 from stiction.devices.limits import FILMS
 from stiction.plan.plan import Plan
 from stiction.report.checks import MESH_OFF_OF_PAPER, RESOLVED
@@ -46,13 +46,7 @@ def numbers(tables):
     texts |= sealed(tables["sealed_safe_lengths"], tables["sealed_stoppers"])
     texts |= measured_beams(tables["measured_beams"]) | said(tables["test_beams"]) | skewed(tables["roughness"])
     texts |= tails(tables["tails"]) | studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
-    return (
-        texts
-        | scans(tables["example_scans"])
-        | timings(tables["timings"], tables["earlier_timings"])
-        | constants()
-        | nearly_gaussian()
-    )
+    return texts | scans(tables["example_scans"]) | timings(tables["timings"]) | constants() | nearly_gaussian()
 
 
 def measured_beams(frame):
@@ -83,10 +77,8 @@ def skewed(frame):
 
 
 def crack_lengths(table_3):
-    """``l_b_044_NG``: mean ± standard deviation [µm], with the share of beams included if not all."""
-    return {f"l_{_case(row)}_{row.model}": crack_length(row) for row in table_3.itertuples()} | {
-        f"std_{_case(row)}_{row.model}": f"{row.crack_length_std_um:.2g}" for row in table_3.itertuples()
-    }
+    """``std_b_044_NG``: standard deviation of the crack lengths of a case [µm]."""
+    return {f"std_{_case(row)}_{row.model}": f"{row.crack_length_std_um:.2g}" for row in table_3.itertuples()}
 
 
 def crack_length(row):
@@ -345,30 +337,24 @@ def mesh(checks):
 
 
 def scans(table):
-    """Scans of the surface Etched of the example: Nyquist wave number, and errors over those of independent points."""
+    """``scan_errors``: error of the skewness of a scan of the example over that of independent points."""
     row = next(table[table.surface == "Etched"].itertuples())
     independent = np.sqrt(6 / (row.points_fast * row.points_slow))
-    nyquist = np.pi * row.points_fast / row.size_fast_um
-    return {"scan_nyquist": f"{nyquist:.0f}", "scan_errors": f"{row.skewness_se / independent:.0f}"}
+    return {"scan_errors": f"{row.skewness_se / independent:.0f}"}
 
 
-def timings(now, earlier):
-    """``time_paper``: minutes and seconds, or seconds, of every row; ``ratio_paper``: that after over that before."""
-    seconds = dict(zip([*now["name"], *earlier["name"]], [*now.seconds, *earlier.seconds], strict=True))
-    texts = {f"time_{name}": _duration(value) for name, value in seconds.items()}
-    repeated = [name.removesuffix("_before") for name in seconds if name.endswith("_before")]
-    ratios = {name: seconds[f"{name}_after"] / seconds[f"{name}_before"] for name in repeated}
-    return texts | {f"ratio_{name}": f"{ratio:.2f}" for name, ratio in ratios.items()}
+def timings(table):
+    """``time_paper``: minutes and seconds, or seconds, of every row."""
+    return {f"time_{row.name}": _duration(row.seconds) for row in table.itertuples(index=False)}
 
 
 def constants():
-    """Constants of the package and of the paper's configuration that pages state."""
+    """Constants of the package that pages state."""
     return {
         "longest_strip": f"{STRIP:g}",
         "longest_element": f"{ELEMENT:g}",
         "mesh_accuracy": f"{100 * ACCURACY:g}",
         "films": f"{FILMS:g}",
-        "cutoff_B2": f"{paper()['surfaces']['B2']['published_psd']['cutoff_rad_per_um']:g}",
     }
 
 

@@ -5,8 +5,8 @@
    ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction`` and ``stiction devices
    examples/NAME.yaml --directory runs/NAME`` with the names roughness and test_beams in folders of ``runs`` beside it.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
-3. The pages of ``docs`` and ``config/README.md`` are generated from ``docs/templates``, with numbers and tables
-   inserted.
+3. The drawings are drawn, and the pages of ``docs`` and ``config/README.md`` are generated from ``docs/templates``,
+   with numbers and tables inserted.
 
 Steps 2 and 3 depend on ``docs`` alone: ``tests/test_docs.py`` repeats them and compares.
 """
@@ -40,6 +40,7 @@ sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "tes
 import keys  # noqa: E402
 import quoted  # noqa: E402
 from benchmarks import jobs  # noqa: E402
+from draw import drawings  # noqa: E402
 
 DOCS = Path(__file__).parent
 ROOT = DOCS.parent
@@ -123,8 +124,9 @@ def main(results):
             print(f"{reason}: the docs keep their present numbers")  # noqa: T201
         else:
             collected(folder)
-    for path, text in pages().items():
-        path.write_text(text, encoding="utf-8")
+    for written in (drawings, pages):  # pages state checksums of the drawings
+        for path, text in written().items():
+            path.write_text(text, encoding="utf-8")
 
 
 # 1. From a run to docs/tables and docs/pictures
@@ -326,7 +328,7 @@ def timing(results):
     costs = list(jobs.costs(results))
     _, number, longest, seconds, megabytes, *_ = zip(*costs, strict=True)
     run = json.loads((results / "provenance.json").read_text(encoding="utf-8"))[-1]
-    machine, git = run["machine"], run["git"]
+    machine = run["machine"]
     return {
         "jobs": str(sum(number)),
         "job_minutes": f"{sum(seconds) / 60:.1f}",
@@ -334,7 +336,6 @@ def timing(results):
         "job_memory": f"{max(megabytes):.0f}",
         "cpu": " ".join(machine["cpu"].split()),
         "cores": str(machine["cores"]),
-        "commit": git["commit"][:7] + " with changes" * bool(git["changed"]),
     }
 
 
@@ -387,7 +388,6 @@ def quoted_numbers():
             "studies",
             "checks",
             "timings",
-            "earlier_timings",
         )
     }
     return quoted.numbers(frames | {TAILS: quoted.of_markdown(DOCS / "tables" / f"{TAILS}.md")})

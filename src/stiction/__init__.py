@@ -22,7 +22,7 @@ __all__ = list(_PLACES)
 
 
 def __getattr__(name):
-    """Import the module that defines a public name when the name is first used."""
+    """Import the module of a public name at its first use."""
     if name not in _PLACES:
         raise AttributeError(f"module 'stiction' has no attribute {name!r}")
     module, attribute = _PLACES[name]
@@ -31,5 +31,5 @@ def __getattr__(name):
 
 
 def __dir__():
-    """All public names, including those not imported yet."""
+    """Names of the public interface, including those not imported yet."""
     return sorted({*globals(), *__all__})

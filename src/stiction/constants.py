@@ -1,4 +1,4 @@
-"""Physical constants in SI units, each with unit and source; none is a tuning parameter."""
+"""Physical constants in SI units, each with unit and source. None is a tuning parameter."""
 
 #: Molar gas constant [J mol⁻¹ K⁻¹], exact; SI of 2019.
 GAS_CONSTANT = 8.31446261815324

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Surface:
-    """A surface of a configuration, described by numbers, as in papers, like a typical one, or by scans.
+    """Surface of a configuration, described by numbers, as in papers, like a typical one, or by scans.
 
     Examples
     --------
@@ -51,7 +51,7 @@ class Surface:
 
     @property
     def heights(self) -> xr.Dataset:
-        """Density of the standardised heights and its moments; dataset of stage heights."""
+        """Density of the standardised heights and its moments. Dataset of stage heights."""
         return self.results[f"heights/{self.name}"]
 
     @property
@@ -61,7 +61,7 @@ class Surface:
 
     @property
     def skewness(self) -> float:
-        """Third standardised moment of the heights [-]; of measured heights, that of their density."""
+        """Third standardised moment of the heights [-]. For measured heights, it is their density's."""
         return stage_heights.moments(self.heights).skewness
 
     @property
@@ -71,7 +71,7 @@ class Surface:
 
     @property
     def spectrum(self) -> xr.DataArray:
-        """Power spectral density s_Z of the heights [m⁴] over the wave number [rad/m]; its integral is the rms squared.
+        """Power spectral density s_Z of the heights [m⁴] by wave number [rad/m]. Its integral is the rms squared.
 
         The convention is that of `stiction.surface.spectrum`.
         """

@@ -1,4 +1,4 @@
-"""A device in one process: from a configuration to its safe lengths, forces and uncertainty, without files.
+"""Device in one process: from a configuration to its safe lengths, forces and uncertainty, without files.
 
 Stages, settings and addresses of random numbers are the same as in the workflow, and so are the results.
 """
@@ -18,7 +18,7 @@ from stiction.plan.graph import Results
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings, stuck
 from stiction.stages.devices.contact_names import contact_of, tips_of
-from stiction.stages.devices.device_warnings import left_out_changes, of_left_out_gaps
+from stiction.stages.devices.device_warnings import gap_warnings, left_out_changes
 from stiction.stages.devices.opening import FORCE
 from stiction.stages.surfaces import surface_flags
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Device:
-    """One device of a configuration, and its safe lengths or pull-off forces at any relative humidity, or ``"dry"``.
+    """Device of a configuration, and its safe lengths or pull-off forces at any relative humidity, or ``"dry"``.
 
     Examples
     --------
@@ -74,7 +74,7 @@ class Device:
 
     @property
     def tips(self) -> xr.Dataset | None:
-        """Contact of the strips that hold the tips of a cantilever, at its highest humidity; ``None`` for others."""
+        """Contact of the strips at the tips of a cantilever, at its highest humidity, ``None`` for others."""
         return next((self.results[name] for name in tips_of(self._plan, self._wettest).values()), None)
 
     @property
@@ -83,7 +83,7 @@ class Device:
         return case_id(self.name, max(self._section["humidities"]))
 
     def cracks(self, humidity: float | str) -> xr.Dataset:
-        """Crack lengths of long beams, or lengths of held bridges; dataset of `stiction.stages.devices.cracks`.
+        """Crack lengths of long beams, or lengths of stuck bridges. Dataset of `stiction.stages.devices.cracks`.
 
         The first call takes half a minute, for a bridge a minute.
         """
@@ -91,7 +91,7 @@ class Device:
         return self._result("cracks", humidity)
 
     def safe_lengths(self, humidity: float | str) -> xr.Dataset:
-        """P(stuck) over the length, and safe lengths; dataset of `stiction.stages.devices.safe_lengths`."""
+        """P(stuck) against length, and safe lengths. Dataset of `stiction.stages.devices.safe_lengths`."""
         self._must_be(lambda kind: kind.is_beam)
         return self._result("safe_lengths", humidity)
 
@@ -101,8 +101,8 @@ class Device:
         Beams and stoppers have one layout, that of `stiction.stages.devices.stuck`.
         """
         if self.kind.is_beam:
-            return stuck.of_beam(self.safe_lengths(humidity))
-        return stuck.of_stopper(self.forces(), in_numbers(humidity))
+            return stuck.stuck_beams(self.safe_lengths(humidity))
+        return stuck.stuck_stoppers(self.forces(), in_numbers(humidity))
 
     def plot(self) -> "Figure":
         """Figure of P(stuck) at all humidities: with the safe lengths of a beam, or the forces of a stopper."""
@@ -117,7 +117,7 @@ class Device:
 
     @property
     def kind(self) -> Kind:
-        """What distinguishes its kind of devices from others."""
+        """Differences of its kind of devices from others."""
         return kind_of(self._section)
 
     @property
@@ -145,7 +145,7 @@ class Device:
         return f"<table><caption>Device {escape(self.name)}, {escape(self.kind.words)}</caption>{rows}</table>"
 
     def chart(self, humidity: float | str) -> xr.Dataset:
-        """Safe lengths of the thicknesses and gaps of its chart; dataset of `stiction.stages.devices.chart`."""
+        """Safe lengths of the thicknesses and gaps of its chart. Dataset of `stiction.stages.devices.chart`."""
         self._must_be(lambda kind: kind.is_beam)
         self._must_state("chart", self._section.get("chart"))
         return self._result("chart", humidity)
@@ -156,14 +156,14 @@ class Device:
         return self.results[f"devices/stoppers/{self.name}"]
 
     def life(self) -> xr.Dataset:
-        """What brings it into contact, whether it sticks, what holds it and what frees it.
+        """Life of the device: causes of contact, adhesion then, and ways to free it.
 
         Dataset of `stiction.stages.devices.life`, one answer for every name along its dimension.
         """
         return self.results[f"devices/life/{self.name}"]
 
     def budget(self, humidity: float | str) -> xr.Dataset:
-        """Uncertainty of the mean length or force; dataset of `stiction.stages.devices.budget`.
+        """Uncertainty of the mean length or force. Dataset of `stiction.stages.devices.budget`.
 
         The first call draws the surfaces with every uncertain input changed, a few minutes.
         """
@@ -171,13 +171,13 @@ class Device:
         return self._result("budget", humidity)
 
     def tip_budget(self, humidity: float | str) -> xr.Dataset:
-        """As `budget`, of the length that the tip of a cantilever holds."""
+        """Uncertainty of the length of adhesion at the tip of a cantilever, see `budget`."""
         self._must_be(lambda kind: kind.has_tip)
         self._must_state("uncertainty", self.name in self._plan.devices.budgeted)
         return self._result("budget", humidity, "_tip")
 
     def roughness(self) -> xr.Dataset:
-        """Safe length or force over the roughness of a surface, and which roughness suffices for its requirement.
+        """Safe length or force along the roughness of a surface, and roughnesses sufficient for its requirement.
 
         Dataset of `stiction.stages.roughness.curves`. The first call draws the surfaces at eight roughnesses.
         """
@@ -185,7 +185,7 @@ class Device:
         return self.results[f"devices/roughness/{self.name}"]
 
     def test_beams(self) -> xr.Dataset:
-        """What its test beams say about its inputs and lengths; dataset of `stiction.stages.test_beams.inference`.
+        """Evidence of its test beams on inputs and lengths. Dataset of `stiction.stages.test_beams.inference`.
 
         The first call computes the budgets of device and test beams, a few minutes.
         """
@@ -193,7 +193,7 @@ class Device:
         return self.results[f"devices/test_beams/{self.name}"]
 
     def test_beams_again(self) -> xr.Dataset:
-        """As `test_beams`, with lengths or forces computed again at the inputs that the test beams suggest.
+        """Update of `test_beams`, with lengths or forces computed again at the inputs from the test beams.
 
         Dataset of `stiction.stages.test_beams.rerun`.
         """
@@ -201,7 +201,7 @@ class Device:
         return self.results[f"devices/test_beams/rerun/{self.name}"]
 
     def warnings(self, safe_lengths: xr.Dataset) -> list[str]:
-        """Where a result of `safe_lengths` or `forces` is beyond the limits of the model, one sentence each.
+        """Results of `safe_lengths` or `forces` beyond the limits of the model, one sentence each.
 
         Plasticity is not checked, which is one of the sentences. Where attraction across gaps is left out, the first
         call computes what it would change.
@@ -216,10 +216,10 @@ class Device:
         flags += settings.get("assumed", [])
         if "stopper" in settings:
             of = in_si(device_warnings.OfStopper, settings["stopper"])
-            own = device_warnings.of_stopper(of, share_flat=float(safe_lengths.share_flat))
-            return own + of_left_out_gaps(changes, FORCE) + flags
-        of_beam = device_warnings.of_device(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
-        with_gaps = {shape: said + of_left_out_gaps(changes, shape) for shape, said in of_beam.items()}
+            own = device_warnings.stopper_warnings(of, share_flat=float(safe_lengths.share_flat))
+            return own + gap_warnings(changes, FORCE) + flags
+        of_beam = device_warnings.beam_warnings(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
+        with_gaps = {shape: said + gap_warnings(changes, shape) for shape, said in of_beam.items()}
         return pair_warnings.numbered(with_gaps)[0] + flags
 
     def _result(self, stage, humidity, end=""):
@@ -235,12 +235,12 @@ class Device:
         return self._plan.config["devices"][self.name]
 
     def _must_be(self, wanted: Callable[[Kind], bool]):
-        """Refuse a result that other kinds of devices have."""
+        """Refuse a result of other kinds of devices."""
         kinds = [name for name, kind in KINDS.items() if wanted(kind)]
         if self._section["kind"] not in kinds:
             raise ValueError(f"device {self.name} is a {self._section['kind']}; only a {' or '.join(kinds)} has this")
 
     def _must_state(self, key, stated):
-        """Refuse a result without the key of the device on which it depends."""
+        """Refuse a result without its key in the section of the device."""
         if not stated:
             raise ValueError(f"device {self.name} has no {key}: state devices.{self.name}.{key}")

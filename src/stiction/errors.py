@@ -1,11 +1,11 @@
-"""Exceptions: iterations that do not converge, scans that cannot be used.
+"""Exceptions: iterations without convergence, scans without use.
 
 Each passes its arguments on to the class of Python, which needs them to rebuild it in another process.
 """
 
 
 class NotConverged(RuntimeError):
-    """An iteration ended above its tolerance; the message includes its name, residual and tolerance."""
+    """Iteration ended above its tolerance. The message includes its name, residual and tolerance."""
 
     def __init__(self, what: str, residual: float, tolerance: float, iterations: int):
         super().__init__(what, residual, tolerance, iterations)
@@ -16,7 +16,7 @@ class NotConverged(RuntimeError):
 
 
 class ScanError(ValueError):
-    """A measured scan that cannot be used; one sentence with the key of the configuration and the file."""
+    """Error of an unusable scan: one sentence with the key of the configuration and the file."""
 
     def __init__(self, file: str, key: str, reason: str):
         super().__init__(file, key, reason)

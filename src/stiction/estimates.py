@@ -6,7 +6,7 @@ import numpy as np
 
 
 def mean_with_error(samples: np.ndarray) -> tuple[float | np.ndarray, float | np.ndarray]:
-    """Mean over the first axis and its standard error; raises ValueError for a single sample."""
+    """Mean over the first axis and its standard error. Raises ValueError for a single sample."""
     samples = np.asarray(samples, float)
     if len(samples) < 2:
         raise ValueError(f"a standard error needs two samples, got {len(samples)}")
@@ -14,7 +14,7 @@ def mean_with_error(samples: np.ndarray) -> tuple[float | np.ndarray, float | np
 
 
 def mean_on_shared_samples(values: np.ndarray, shared: np.ndarray, power: float) -> tuple[float, float, float]:
-    """Mean of values that all depend on one set of samples, and both parts of its standard error.
+    """Mean of values with one common set of samples, and both parts of its standard error.
 
     The beams of a case share a finite number of sampled pairs, whose sampling error is common to all beams.
 

@@ -1,4 +1,4 @@
-"""Decorator of compiled functions, which keeps their machine code on disk as long as it belongs to the sources.
+"""Decorator of compiled functions. It keeps their machine code on disk as long as it belongs to the sources.
 
 Machine code contains the kernels that a kernel calls and the constants that it uses. Numba compiles a kernel again if
 its own file has changed, but not if one of these has changed in another file. Here the names of its files have a digest
@@ -27,7 +27,7 @@ _IMPORT = re.compile(r"^\s*(?:from|import)\s+stiction\.?([\w.]*)(?:\s+import\s+(
 
 
 def kernel(function: Callable | None = None, **options: Any) -> Callable:
-    """Compile a function of this package with Numba, without the lock of the interpreter; keep the result on disk.
+    """Compile a function of this package with Numba, without the lock of the interpreter. Keep the result on disk.
 
     Parameters
     ----------
@@ -44,7 +44,7 @@ def kernel(function: Callable | None = None, **options: Any) -> Callable:
 
 
 def _cache(function):
-    """Files of a kernel; among temporary files where neither the package nor the home can be written."""
+    """Files of a kernel, among temporary files if neither the package nor the home can be written."""
     try:
         return _Cache(function)
     except RuntimeError:
@@ -64,11 +64,12 @@ class _Names(CompileResultCacheImpl):
 
 
 class _Cache(FunctionCache):
-    """Files of a kernel; those of other sources are removed when it is saved."""
+    """Files of a kernel. Those of other sources are removed when it is saved."""
 
     _impl_class = _Names
 
     def save_overload(self, sig, data):
+        """Save a compiled kernel, unless the disk refuses."""
         with suppress(OSError):  # a full disk costs time alone
             self._save(sig, data)
 
@@ -88,7 +89,7 @@ class _Cache(FunctionCache):
 
 
 def _digest(path):
-    """Digest of a source file and of all files of the package that it imports, directly or through others."""
+    """Digest of a source file and of all its imported files of the package, directly or through others."""
     reached, unread = {}, {path}
     while unread:
         reached |= {path: _read(path) for path in unread}
@@ -98,7 +99,7 @@ def _digest(path):
 
 @cache  # a file that changes later does not change the code that this process has imported
 def _read(path):
-    """Digest of the name and the text of a source file, and the files of the package that it imports."""
+    """Digest of the name and the text of a source file, and its imported files of the package."""
     text = path.read_text(encoding="utf-8")
     digest = sha256(f"{path.relative_to(_PACKAGE)}\n{text}".encode()).hexdigest()
     places = [

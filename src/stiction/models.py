@@ -1,4 +1,4 @@
-"""What the whole package shares: models, the two surfaces of a pair, quantities and scans of a surface, fields."""
+"""Common names of the whole package: models, the two surfaces of a pair, quantities and scans of a surface, fields."""
 
 #: Models of the heights: Gaussian and non-Gaussian.
 SURFACE_MODELS = ("G", "NG")
@@ -21,5 +21,5 @@ FIELD = 10.24e-6
 
 
 def surface_model(model: str) -> str:
-    """Model of the heights of the surfaces on which beams of a model stick."""
+    """Model of the heights of the surfaces for beams of a model."""
     return "G" if model == "G" else "NG"

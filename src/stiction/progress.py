@@ -17,6 +17,6 @@ def show_progress(shown: bool = True) -> None:
 
 
 def progress(steps: Iterable[T], what: str, total: int | None = None) -> Iterator[T]:
-    """Iterate over ``steps`` with a progress bar on standard error, which jobs redirect to their log."""
+    """Iterate over ``steps`` with a progress bar on standard error. Jobs redirect it to their log."""
     off = not _CHOSEN["shown"]
     return tqdm(steps, desc=what, total=total, mininterval=2.0, ascii=True, file=sys.stderr, disable=off)

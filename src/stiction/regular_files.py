@@ -1,4 +1,4 @@
-"""Files that users name: a pipe may never begin and a device never end, so only regular files are read."""
+"""Files of users: a pipe may never begin and a device never end, so only regular files are read."""
 
 import errno
 import stat
@@ -15,7 +15,7 @@ _KINDS = {
 
 
 def require_regular(path: str | Path) -> None:
-    """Refuse a path that does not lead to a regular file, before it is opened.
+    """Refuse a path to anything but a regular file, before it is opened.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The whole model in one process: from a configuration to the crack lengths of the beams of a pair, without files.
+"""Whole model in one process: from a configuration to the crack lengths of the beams of a pair, without files.
 
 Stages, settings and addresses of random numbers are the same as in the workflow, and so are the results.
 """
@@ -76,12 +76,12 @@ class PairStudy:
         return self._contact_at(max(self._plan.config["pairs"][self.name]["humidities"]))
 
     def _contact_at(self, humidity):
-        """Contact at a humidity, which differs in dry air alone."""
+        """Contact at a humidity. It differs in dry air alone."""
         return self.results[f"contact/{self._plan.air.contact(self.name, humidity)}_{self.model}"]
 
     @property
     def surfaces(self) -> SurfacePair:
-        """The two surfaces, from which samples can be drawn."""
+        """Both surfaces, for drawing samples."""
         job = self.results.graph.job(f"contact/{self.name}_{self.model}/0-of-1")
         settings = in_si(pairs.Settings, job.settings)
         return pairs.surface_pair(both(self.results.inputs(job)), self.model, settings)
@@ -90,12 +90,12 @@ class PairStudy:
         """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
         humidity = in_numbers(humidity)
         water = in_si(Water, self._plan.air.water(self._plan.air.contact(self.name, humidity)))
-        if named := corrections.of_pair(self._plan, self.name, model=self.model):
+        if named := corrections.correction_inputs(self._plan, self.name, model=self.model):
             water = replace(water, correction=corrections.correction(self.results[named["model_error"]]))
         return curves.energies(self._contact_at(humidity), humidity, water)
 
     def forces(self, humidity: float | str) -> xr.Dataset:
-        """Vectors v of Eq. (11) and f_limit at a relative humidity (Sec. III-B1); dataset of stage forces."""
+        """Vectors v of Eq. (11) and f_limit at a relative humidity (Sec. III-B1). Dataset of stage forces."""
         return self.results[f"forces/{case_id(self.name, humidity)}_{self.model}"]
 
     def curves(self, humidity: float | str) -> xr.DataArray:
@@ -106,7 +106,7 @@ class PairStudy:
         return self.forces(humidity).force.assign_attrs(long_name="force per area")
 
     def laws(self, humidity: float | str) -> xr.Dataset:
-        """Force laws of Eq. (12) of all samples that have one, by number; dataset of `stiction.stages.laws.samples`."""
+        """Force laws of Eq. (12) of all lawful samples, by number. Dataset of `stiction.stages.laws.samples`."""
         return samples.laws(self.forces(humidity))
 
     def plot(self, humidity: float | str) -> "Figure":
@@ -117,14 +117,14 @@ class PairStudy:
         return fitted_curve(self.results[f"forces/{case}"], self.results[f"fit/{case}"])
 
     def chaos(self, humidity: float | str) -> xr.Dataset:
-        """Chaos model of the force laws at a relative humidity (App. B); dataset of stage chaos.
+        """Chaos model of the force laws at a relative humidity (App. B). Dataset of stage chaos.
 
         `stiction.stages.laws.chaos.chaos_model` returns the model itself, which draws force laws.
         """
         return self.results[f"chaos/{case_id(self.name, humidity)}_{self.model}"]
 
     def beams(self, humidity: float | str, scatter: float = 0.0, threads: int = 1) -> xr.Dataset:
-        """Beams released at a relative humidity (Sec. III-C); dataset of stage beams.
+        """Beams released at a relative humidity (Sec. III-C). Dataset of stage beams.
 
         Parameters
         ----------

@@ -1,4 +1,4 @@
-"""Folder of this user among temporary files, where neither the package nor the home can be written."""
+"""Folder of this user among temporary files, for use without a writable package or home."""
 
 import os
 import stat
@@ -10,7 +10,7 @@ from pathlib import Path
 
 @cache
 def own_folder() -> Path:
-    """Folder that nobody else can write, the same for all processes of a user: machine code in it will be run.
+    """Folder writable by this user alone, the same for all his processes: machine code in it will be run.
 
     A folder of its name that belongs to somebody else, or that others can write, is left alone: the process gets one of
     its own.
@@ -29,7 +29,7 @@ def own_folder() -> Path:
 
 
 def is_writable(folder: str | Path) -> bool:
-    """Whether files can be written in a folder, which is made if it does not exist."""
+    """Whether files can be written in a folder, after making it if necessary."""
     try:
         Path(folder).mkdir(parents=True, exist_ok=True)
         tempfile.TemporaryFile(dir=folder).close()

@@ -23,7 +23,7 @@ from stiction.plan.plan import Plan
 from stiction.plan.stage import select
 from stiction.report.format import TO_MJ, with_error
 from stiction.stages.contact import full_contact
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 #: Gaps of the tables of the work [m], up to where it is below 1e-5 of that of touching flats.
 GAPS = np.arange(0, 300e-9, 0.02e-9)
@@ -83,7 +83,7 @@ def row(pair, humidity, strips):
     medium = {"van_der_waals": "water" if humidity else "dry", "attraction": {"reach": "all"}}
     config = load(medium | {"beam": {"width_um": WIDTH}})
     plan, results = Plan(config), Results.of(config)
-    data = {stage: [results[name] for name in names] for stage, names in of_pair(plan, pair).items()}
+    data = {stage: [results[name] for name in names] for stage, names in surface_inputs(plan, pair).items()}
     water = plan.air.water(pair)
     seen = plan.seen_by(pair, (*ELASTIC, "hardness_GPa"), samples=None)
     others = {"water": {key: value for key, value in water.items() if key != "gaps"}}

@@ -59,7 +59,7 @@ def test_what_budgets_cost_is_said_once_before_the_first_job(stream):
         display(now)
     display.close()
     (told,) = (text for text in shown.getvalue().splitlines() if "budget" in text)
-    assert told.removeprefix("\x1b[K").startswith("16 of 20 jobs are for budgets, which say what to measure better.")
+    assert told.removeprefix("\x1b[K").startswith("16 of 20 jobs are for budgets: advice on what to measure better.")
 
 
 def test_a_run_without_budgets_says_nothing_about_them(run):

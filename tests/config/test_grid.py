@@ -47,7 +47,11 @@ def test_the_grid_carries_every_spectrum_with_no_more_points_than_needed(cutoff)
 def test_a_grid_that_does_not_fit_into_memory_is_as_fine_as_fits(cutoff):
     spacing = sampling({"run": {"pairs": ["b"]}}, b2(cutoff=cutoff))["spacing_nm"]
     field = memory.FIELD_UM, memory.FIELD_UM
-    assert memory.of_field(*field, spacing) <= memory.LARGEST / 2 < memory.of_field(*field, 10 / (10 / spacing + 1))
+    assert (
+        memory.field_memory(*field, spacing)
+        <= memory.LARGEST / 2
+        < memory.field_memory(*field, 10 / (10 / spacing + 1))
+    )
 
 
 @pytest.mark.parametrize("corner", [0.5, 2.0, 12.0, 50.0])

@@ -14,7 +14,7 @@ from test_messages import UNITS
 
 from stiction.config.files import load, normalised
 from stiction.config.kinds import KEYS
-from stiction.config.memory import of_field
+from stiction.config.memory import field_memory
 from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
@@ -35,8 +35,10 @@ GOLD = {"young_modulus_GPa": 79, "poisson_ratio": 0.42, "hardness_GPa": 1.2, "co
 GOLD |= {"hamaker_constant_zJ": {"water": 250, "dry": 400}, "density_kg_per_m3": 19300}
 UNCERTAIN = {"thickness_um": 0.05, "gap_um": 0.2, "young_modulus_GPa": 4, "humidity": 0.01, "scan_um": 10}
 UNCERTAIN |= {"temperature_K": 1, "contact_angle_deg": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20}
+DIMPLES = {"number": 4, "at_um": 200, "height_um": 1, "contact_um": [2, 2]}
+UNCERTAIN |= {"adsorbed_nm": 0.1}
 DEVICES = {
-    "C1": C1 | {"chart": CHART, "strip_um": 1.2, "length_um": 300, "uncertainty": UNCERTAIN},
+    "C1": C1 | {"chart": CHART, "dimples": DIMPLES, "strip_um": 1.2, "length_um": 300, "uncertainty": UNCERTAIN},
     "R1": R1 | {"humidities": [0.67], "uncertainty": {"residual_stress_MPa": 5}},
     "S1": S1,
     "S2": {
@@ -52,6 +54,7 @@ DEVICES = {
         "voltage_V": 5,
         "offset_V": 0.3,
         "dielectric": {"thickness_nm": 100, "permittivity": 3.9},
+        "tilt_deg": [0, 0.1],
     },
 }
 ALL = merged(PAPER, {"devices": DEVICES, "materials": {"Gold": GOLD}, "surfaces": {"B2": {"material": "Gold"}}})
@@ -201,6 +204,23 @@ def test_a_wrong_device_is_refused_by_name(keys, key, message):
     assert message in line
 
 
+@pytest.mark.parametrize(
+    ("keys", "key", "message"),
+    [
+        ({}, "dimples", "must come with length_um"),
+        ({"length_um": 200}, "dimples.at_um", "must be below length_um of the beam"),
+        ({"length_um": 300, "gap_um": 1}, "dimples.height_um", "must be below gap_um of the beam"),
+        ({"length_um": 300, "dimples": DIMPLES | {"number": 101}}, "dimples.number", "must be at most 1 / 50 of"),
+        ({"length_um": 300, "dimples": DIMPLES | {"number": 0}}, "dimples.number", "at least 1"),
+        ({"length_um": 300, "dimples": DIMPLES | {"contact_um": [200, 200]}}, "dimples.contact_um", "memory"),
+    ],
+)
+def test_dimples_are_refused_by_name(keys, key, message):
+    (line,) = problems(with_device(**{"dimples": DIMPLES} | keys))
+    assert line.startswith(f"devices.C1.{key} is ")
+    assert message in line
+
+
 def test_a_stopper_has_no_length():
     (line,) = problems(merged(PAPER, {"devices": {"S1": S1 | with_roughness()}}))
     assert line.startswith("devices.S1.requirement is ")
@@ -215,6 +235,11 @@ def test_a_stopper_has_no_length():
         ({"mass_ng": 0}, "mass_ng", "above 0"),
         ({"touchdowns": 0}, "touchdowns", "at least 1"),
         ({"touchdowns": 2.5}, "touchdowns", "must be a whole number"),
+        ({"tilt_deg": 0.1}, "tilt_deg", "must be a list with 1 or 2 entries"),
+        ({"tilt_deg": 0.1}, "tilt_deg", "write [0.1]"),
+        ({"tilt_deg": []}, "tilt_deg", "must be a list with 1 or 2 entries"),
+        ({"tilt_deg": [0.2, 0.1]}, "tilt_deg", "must be in increasing order"),
+        ({"tilt_deg": [-0.1]}, "tilt_deg[0]", "at least 0"),
         ({"voltage_V": 5}, "voltage_V", "must come with dielectric: {thickness_nm, permittivity}"),
         ({"dielectric": {"thickness_nm": 9, "permittivity": 4}}, "dielectric", "must come with voltage_V or offset_V"),
         ({"offset_V": 1, "dielectric": {"thickness_nm": 9}}, "dielectric.permittivity", "is missing"),
@@ -388,6 +413,17 @@ def test_the_strip_of_a_tip_holds_the_wedge_of_the_flattest_beam_and_its_film():
     assert devices.tips("C3").length > 1.5 * devices.tips("C1").length
 
 
+def test_tips_reach_into_adsorbed_films_as_well():
+    thin, thick, dry = (
+        DevicePlan(load({"water": {"adsorbed_nm": added}, "devices": {"C1": C1 | {"humidities": [humidity]}}}))
+        for added, humidity in ((0, 0.67), (4, 0.67), (4, 0))
+    )
+    reach, higher, without = (plan.tilt(plan.tips("C1"))["reach_nm"] for plan in (thin, thick, dry))
+    film = 1e9 * float(meniscus_height(0.67, 300))
+    assert film + 4 + 10.2 <= higher < 1.2 * (film + 4 + 10.3)
+    assert without < reach < higher
+
+
 def test_tips_reach_into_the_film_of_the_wettest_air_of_a_device_and_its_chart():
     for humidities, more, wettest in (([0.44, 0.95], {}, 0.95), ([0.44], {"chart": CHART}, 0.9)):
         devices = DevicePlan(load({"devices": {"C1": C1 | {"humidities": humidities} | more}}))
@@ -501,9 +537,9 @@ def test_warnings_know_what_is_stated_of_a_material():
 
 def test_patches_of_devices_count_for_the_memory_of_jobs():
     wide = normalised(with_device(width_um=600))
-    assert memory.of_job(wide) == round(of_field(2.5, 601, 10))
+    assert memory.of_job(wide) == round(field_memory(2.5, 601, 10))
     stopper = normalised(merged(PAPER, {"devices": {"S1": S1 | {"contact_um": [30, 40]}}}))
-    assert memory.of_job(stopper) == round(of_field(31, 41, 10))
+    assert memory.of_job(stopper) == round(field_memory(31, 41, 10))
 
 
 def test_the_axis_of_the_worst_humidity_holds_no_air_that_is_too_dry_for_a_stopper():

@@ -5,9 +5,8 @@ import pytest
 from beams import E_BAR, PAPER, scattered_laws
 from numpy.testing import assert_allclose
 
-from stiction.beam.energy import apparent_adhesion_energy, arrest_length
+from stiction.beam.energy import arrest_length
 from stiction.beam.release import released_beam
-from stiction.contact.meniscus import flooded_energy
 from stiction.devices import chart
 
 GRID = np.array([(t, h) for t in (1e-6, 3e-6, 6e-6) for h in (1e-6, 10e-6, 40e-6)]).T
@@ -58,12 +57,6 @@ def test_beams_that_vary_together_do_not_determine_a_power_law():
     size = np.array([1.0, 2.0, 4.0])
     with pytest.raises(ValueError, match="3 beams do not determine"):
         chart.fit_power_law(size, size, size)
-
-
-@pytest.mark.parametrize("angles", [(0.0, 0.0), (0.3, 0.9)])
-def test_the_shortest_crack_in_saturated_air_has_the_energy_of_its_water(angles):
-    energy = flooded_energy(300.0, angles)
-    assert_allclose(apparent_adhesion_energy(chart.flooded_length(PAPER, 300.0, angles), PAPER), energy, rtol=1e-12)
 
 
 def test_a_power_law_between_beams_on_rough_ground_predicts_those_that_were_left_out():

@@ -9,7 +9,7 @@ from stiction.devices.stoppers import safe_forces
 from stiction.plan.graph import Results
 from stiction.stages.contact import contact, pairs
 from stiction.stages.devices import stoppers
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 PATCHES, FEW = 60_000, 1000
 BUMP = {"kind": "stopper", "pair": "b", "contact_um": [1.5, 1.5], "restoring_force_uN": 5, "humidities": [0.67]}
@@ -19,7 +19,7 @@ BUMP = {"kind": "stopper", "pair": "b", "contact_um": [1.5, 1.5], "restoring_for
 def forces():
     """Pull-off forces of patches of pair b [N]."""
     results = Results.of(stiction.load({"devices": {"S1": BUMP}}))
-    graph, names = results.graph, of_pair(results.graph.plan, "b")
+    graph, names = results.graph, surface_inputs(results.graph.plan, "b")
     surfaces = both({stage: [results[name] for name in files] for stage, files in names.items()})
     own = in_si(pairs.Settings, graph.job("devices/contact/b_1500x1500").settings)
     settings = in_si(stoppers.Settings, graph.job("devices/stoppers/S1").settings)

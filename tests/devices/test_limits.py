@@ -81,7 +81,7 @@ def test_every_limit_is_tested():
     }
     assert functions == {case[0] for case in CASES} | {
         limits.given,
-        limits.of_beam,
+        limits.beam_warnings,
         limits.least_gap,
         limits.not_modelled,
         limits.without_gaps,
@@ -109,11 +109,11 @@ def test_a_warning_appears_at_its_limit(limit, at):
 
 def test_the_paper_s_beam_and_its_humidities_are_within_the_limits():
     for crack, film in ((952 * UM, 1.3 * NM), (387 * UM, 12.5 * NM)):
-        assert limits.of_beam(PAPER.gap, PAPER.width, PAPER.thickness, crack, film, 3.4 * NM) == []
+        assert limits.beam_warnings(PAPER.gap, PAPER.width, PAPER.thickness, crack, film, 3.4 * NM) == []
 
 
 def test_a_beam_beyond_all_limits_has_all_warnings():
-    assert len(limits.of_beam(20 * UM, 100 * UM, 10 * UM, 100 * UM, 2e-6, 3.4 * NM)) == 4
+    assert len(limits.beam_warnings(20 * UM, 100 * UM, 10 * UM, 100 * UM, 2e-6, 3.4 * NM)) == 4
 
 
 def test_what_is_not_in_the_model_is_said():

@@ -30,7 +30,7 @@ def of_run(config, *targets):
 
 
 def test_the_time_of_contacts_grows_with_samples_points_and_datasets():
-    one = cost.of_job(SETTINGS, {}) - cost.PER_JOB
+    one = cost.job_cost(SETTINGS, {}) - cost.PER_JOB
     twice = SETTINGS | {"contact": {"samples": 2000}}
     fine = SETTINGS | {"sampling": SETTINGS["sampling"] | {"spacing_nm": 5}}
     nested = {"contact": SETTINGS, "pair": "b"}
@@ -41,23 +41,23 @@ def test_the_time_of_contacts_grows_with_samples_points_and_datasets():
         (SETTINGS, {"chunk": "0", "number": "5"}, 1, 0.2),
         (nested, {}, 1, 1),
     ):
-        assert cost.of_job(settings, wildcards, datasets) - cost.PER_JOB == pytest.approx(factor * one, rel=1e-12)
+        assert cost.job_cost(settings, wildcards, datasets) - cost.PER_JOB == pytest.approx(factor * one, rel=1e-12)
 
 
 def test_the_time_of_beams_grows_with_their_number_sizes_and_releases():
-    one = cost.of_job({"beams": 100}, {}) - cost.PER_JOB
+    one = cost.job_cost({"beams": 100}, {}) - cost.PER_JOB
     chart = {"beams": 100, "thicknesses_um": [2, 3], "gaps_um": [1, 2, 3]}
-    assert cost.of_job(chart, {}, 1, 11) - cost.PER_JOB == pytest.approx(66 * one, rel=1e-12)
-    assert cost.of_job({"beam": {"elements": 20}, "samples": 100}, {}) == cost.of_job({"beams": 100}, {})
+    assert cost.job_cost(chart, {}, 1, 11) - cost.PER_JOB == pytest.approx(66 * one, rel=1e-12)
+    assert cost.job_cost({"beam": {"elements": 20}, "samples": 100}, {}) == cost.job_cost({"beams": 100}, {})
 
 
 def test_the_time_of_full_contact_grows_with_strips_and_humidities():
-    one, many = (cost.of_job({"strips": n, "humidities": [0.5] * m}, {}) - cost.PER_JOB for n, m in ((1, 1), (5, 3)))
+    one, many = (cost.job_cost({"strips": n, "humidities": [0.5] * m}, {}) - cost.PER_JOB for n, m in ((1, 1), (5, 3)))
     assert many == pytest.approx(15 * one, rel=1e-12)
 
 
 def test_a_job_without_samples_and_beams_takes_the_time_of_any_job():
-    assert cost.of_job({"water": {"temperature_K": 300}}, {}) == cost.PER_JOB
+    assert cost.job_cost({"water": {"temperature_K": 300}}, {}) == cost.PER_JOB
 
 
 def test_the_paper_takes_as_long_as_measured_within_a_factor_of_two():

@@ -1,6 +1,7 @@
 """Stoppers and budgets in a configuration: what is computed for them, and the settings of their jobs."""
 
 import json
+import sys
 from dataclasses import MISSING, fields
 
 import pytest
@@ -13,8 +14,9 @@ from stiction.config.units import in_si
 from stiction.devices.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.plan.devices import DevicePlan, patch
-from stiction.plan.graph import Graph
+from stiction.plan.graph import Graph, Job, stages
 from stiction.plan.plan import Plan
+from stiction.plan.stage import At
 from stiction.stages.contact import contact
 from stiction.stages.contact.changes import variants
 from stiction.stages.devices import budget, stoppers
@@ -91,7 +93,10 @@ def test_a_device_on_scans_has_a_budget_without_a_stated_uncertainty():
     found = DevicePlan(merged(PLAN.config, {"surfaces": {"B2": scanned}}))
     assert found.budgeted == ["C1", "C2", "S1"]
     assert found.quantities("C2") == [("B2", quantity) for quantity in MOMENT_QUANTITIES + SPECTRUM_QUANTITIES]
-    assert budget.of_job(job_settings(PLAN, "devices/budget/C2_rh067")["budget"]).uncertainty == inputs.Uncertainty()
+    assert (
+        budget.budget_settings(job_settings(PLAN, "devices/budget/C2_rh067")["budget"]).uncertainty
+        == inputs.Uncertainty()
+    )
 
 
 def test_heights_are_uncertain_if_a_scan_is_stated():
@@ -179,7 +184,7 @@ def test_a_budget_has_the_hamaker_constant_through_the_medium_if_it_is_uncertain
     stated = {"devices": {"S1": {"uncertainty": {"hamaker_constant_zJ": 3}}}, "van_der_waals": medium}
     found = job_settings(plan(**stated), "devices/budget/S1_rh090")["budget"]
     assert found["hamaker_constant_zJ"] == pytest.approx(expected)
-    assert budget.of_job(found).uncertainty.hamaker_constant == pytest.approx(3e-21)
+    assert budget.budget_settings(found).uncertainty.hamaker_constant == pytest.approx(3e-21)
     assert "hamaker_constant_zJ" not in job_settings(PLAN, "devices/budget/S1_rh090")["budget"]
     constants = {"hamaker_constant_zJ": {"water": 5, "dry": 65}}
     of_glass = {"materials": {"Glass": GLASS | constants}, "surfaces": {"B2": {"material": "Glass"}}}
@@ -239,3 +244,24 @@ def test_an_uncertainty_that_a_device_cannot_have_is_refused(change, key, messag
 def test_the_axis_of_the_worst_humidity_increases():
     (line,) = problems(merged(PAPER, {"design": {"worst_humidities": [0.9, 0.4]}}))
     assert line.startswith("design.worst_humidities")
+
+
+def test_the_plan_of_a_device_takes_as_long_among_many_devices_as_among_few():
+    """Counted in calls of functions, for all jobs but the few that read those of all devices."""
+
+    def calls_for_each_of(number):
+        stated = {"uncertainty": {"humidity": 0.01}}
+        sections = {f"C{k}": PLAN.config["devices"]["C1"] | stated for k in range(number)}
+        of_many = Plan(PLAN.config | {"devices": sections})
+        jobs = [Job(stage, At(**at), of_many) for stage, _ in stages().values() for at in stage.wanted(of_many)]
+        each = [job for job in jobs if vars(job.at).keys() & {"device", "case"}]
+        assert len(each) >= number
+        counted = []
+        sys.setprofile(lambda frame, event, argument: counted.append(event) if event == "call" else None)
+        for job in each:
+            _ = job.inputs, job.settings
+        sys.setprofile(None)
+        return len(counted) / number
+
+    calls_for_each_of(2)  # what is kept from then on
+    assert calls_for_each_of(32) < 1.2 * calls_for_each_of(8)

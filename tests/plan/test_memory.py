@@ -8,7 +8,7 @@ import yaml
 from configurations import PAPER, ROOT, changed
 
 from stiction.config import files
-from stiction.config.memory import USUAL, of_field, of_tips
+from stiction.config.memory import USUAL, field_memory, tip_memory
 from stiction.plan import memory
 from stiction.plan.devices import DevicePlan
 from stiction.plan.graph import stages
@@ -42,12 +42,12 @@ def test_drawing_takes_at_most_the_estimated_memory_and_at_least_a_quarter(size_
     length, width, spacing = size_um
     words = [sys.executable, "-c", DRAWING, *(str(1e-6 * side) for side in (length, width)), str(1e-9 * spacing)]
     used = float(subprocess.run(words, text=True, capture_output=True, check=True).stdout)
-    assert 0.25 * of_field(*size_um) < used < of_field(*size_um)
+    assert 0.25 * field_memory(*size_um) < used < field_memory(*size_um)
 
 
 def test_memory_grows_with_the_number_of_points():
-    small, fine, wide = of_field(3, 5, 10), of_field(3, 5, 5), of_field(6, 5, 10)
-    empty = of_field(0, 5, 10)
+    small, fine, wide = field_memory(3, 5, 10), field_memory(3, 5, 5), field_memory(6, 5, 10)
+    empty = field_memory(0, 5, 10)
     assert fine - empty == pytest.approx(4 * (small - empty))
     assert wide - empty == pytest.approx(2 * (small - empty))
 
@@ -70,7 +70,7 @@ def test_the_paper_needs_no_more_than_the_usual_memory_and_time_of_the_profiles(
     ],
 )
 def test_the_largest_field_of_a_configuration_counts(overlay, size):
-    assert memory.of_job(changed(overlay)) == max(USUAL, round(of_field(*size))) > USUAL
+    assert memory.of_job(changed(overlay)) == max(USUAL, round(field_memory(*size))) > USUAL
 
 
 STICKING = """
@@ -89,16 +89,16 @@ def test_long_wedges_at_tips_count_for_the_memory_of_fields():
     flat = changed(TIPS.replace("gap_um: 20", "gap_um: 0.5").replace("thickness_um: 2.6", "thickness_um: 80"))
     length = DevicePlan(flat).tips("D1").length / 1000
     assert length > 20
-    assert memory._of_largest_field(flat) >= of_field(length + 1, 3, 10)
+    assert memory._largest_field_memory(flat) >= field_memory(length + 1, 3, 10)
 
 
 def test_the_patch_of_a_device_with_an_uncertainty_is_also_drawn_with_the_points_of_the_variants():
     plain = STICKING.replace("PAIR", "b").replace("100000", "100").replace("[1.5, 30]", "[40, 40]")
     stated = plain.replace("humidities: [0.5]", "humidities: [0.5], uncertainty: {gap_um: 1}")
     finer = "\nstudies: {variants: {spacing_nm: [5]}}"
-    assert memory.of_job(changed(plain)) == pytest.approx(of_field(41, 41, 10), abs=1)
+    assert memory.of_job(changed(plain)) == pytest.approx(field_memory(41, 41, 10), abs=1)
     assert memory.of_job(changed(plain + finer)) == memory.of_job(changed(plain))
-    assert memory.of_job(changed(stated + finer)) == pytest.approx(of_field(41, 41, 5), abs=1)
+    assert memory.of_job(changed(stated + finer)) == pytest.approx(field_memory(41, 41, 5), abs=1)
 
 
 HOLDING = """
@@ -141,7 +141,7 @@ def test_contacts_of_tips_take_at_most_the_estimated_memory_and_at_least_a_quart
     tips, contacts = 200, 12
     words = [sys.executable, "-c", HOLDING, str(tips), str(contacts), str(tmp_path / "c.nc")]
     before, used = map(float, subprocess.run(words, text=True, capture_output=True, check=True).stdout.split())
-    estimate = of_tips(12 * tips * contacts) - USUAL
+    estimate = tip_memory(12 * tips * contacts) - USUAL
     assert 0.25 * estimate < used - before < estimate
 
 
@@ -154,10 +154,10 @@ def test_budgets_of_tips_reserve_the_memory_of_all_their_tips_under_every_input(
     array |= {"stuck": [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]}
     counted = {"test_beams": {"A": array}, "devices": {"C1": {"test_beams": ["A"]}}}
     # 15 slopes; contacts with the inputs as stated, with less and more of seven, and under four choices of the model.
-    assert reserved() == [of_tips(15 * 1000 * (1 + 2 * 7 + 4)), of_tips(0)]
-    assert reserved({"design": {"beams": 2000}}) == [of_tips(15 * 2000 * (1 + 2 * 7 + 4)), of_tips(0)]
+    assert reserved() == [tip_memory(15 * 1000 * (1 + 2 * 7 + 4)), tip_memory(0)]
+    assert reserved({"design": {"beams": 2000}}) == [tip_memory(15 * 2000 * (1 + 2 * 7 + 4)), tip_memory(0)]
     # Test beams have no chart, whose beams have other slopes, and no other choices of the model.
-    assert reserved(counted)[1] == of_tips(12 * 1000 * (1 + 2 * 7))
+    assert reserved(counted)[1] == tip_memory(12 * 1000 * (1 + 2 * 7))
 
 
 def test_a_job_that_failed_may_use_twice_as_much():

@@ -81,7 +81,7 @@ def test_energies_of_the_same_surfaces_are_compared_pair_by_pair():
 
 def test_air_drier_than_in_any_experiment_is_not_checked_for_growth():
     dry = {(0.1, "NG"): 9, (0.3, "NG"): 5, (0.5, "NG"): 7, (0.7, "NG"): 8}
-    found = list(checks.of_trends(study(dry), [], ["b"]))
+    found = list(checks.trend_checks(study(dry), [], ["b"]))
     assert [check.case for check in found] == ["b NG, RH 0.5 to 0.7"]
 
 
@@ -187,7 +187,9 @@ def test_strips_of_beams_with_scattered_dimensions_may_be_larger():
 
     def passed(model, factor):
         found = cracks(90).assign(imbalance=("sample", np.full(cracks(90).sizes["sample"], factor * allowed)))
-        return next(checks.of_beams({("b", 0.67, model): found}, samples, {"b": BEAM}, STRIP, [], scatter=0.025)).passed
+        return next(
+            checks.beam_checks({("b", 0.67, model): found}, samples, {"b": BEAM}, STRIP, [], scatter=0.025)
+        ).passed
 
     assert passed("GEO", 1.15)
     assert not passed("GEO", 1.25)
@@ -276,13 +278,13 @@ def test_beams_are_checked_on_the_mesh_in_use_and_with_the_tolerance_of_their_ca
     key = ("b", 0.67, "NG")
     samples = {("b", 0.67, "NG"): laws(7, strength=12)}
     coarse, fine = cracks(7.2 * 12), cracks(7.2 * 12, elements=1000)
-    _, of_paper, _ = checks.of_beams({key: coarse}, samples, {"b": BEAM}, STRIP, ["b_rh067"])
-    _, other, _ = checks.of_beams({key: coarse}, samples, {"b": BEAM}, STRIP, ["b_rh088"])
-    _, refined, _ = checks.of_beams({key: fine}, samples, {"b": BEAM}, STRIP, [])
+    _, of_paper, _ = checks.beam_checks({key: coarse}, samples, {"b": BEAM}, STRIP, ["b_rh067"])
+    _, other, _ = checks.beam_checks({key: coarse}, samples, {"b": BEAM}, STRIP, ["b_rh088"])
+    _, refined, _ = checks.beam_checks({key: fine}, samples, {"b": BEAM}, STRIP, [])
     assert "(allowed ± 2 %)" in of_paper.message
     assert "(allowed ± 1 %)" in other.message
     assert refined.message != other.message
-    _, geo, _ = checks.of_beams({("b", 0.67, "GEO"): coarse}, samples, {"b": BEAM}, STRIP, [])
+    _, geo, _ = checks.beam_checks({("b", 0.67, "GEO"): coarse}, samples, {"b": BEAM}, STRIP, [])
     assert geo.message == other.message
 
 
@@ -291,10 +293,10 @@ def test_moments_that_replace_measured_ones_are_stated_and_are_the_target_of_the
     with pytest.warns(UserWarning, match="nearest feasible"):
         replaced = heights.compute(heights.Settings(1.7e-9, 0.01, 3.2))
     drawn = {("B", "NG"): character(60)}
-    of_kept, *_ = checks.of_surfaces({"B": kept}, drawn, {"B": TARGET}, {"B": 0.0})
+    of_kept, *_ = checks.surface_checks({"B": kept}, drawn, {"B": TARGET}, {"B": 0.0})
     assert of_kept.passed
     assert of_kept.message == "skewness 0, kurtosis 3"
-    of_replaced, *moments = checks.of_surfaces({"B": replaced}, drawn, {"B": TARGET | {"kurtosis": 3.2}}, {"B": 0.0})
+    of_replaced, *moments = checks.surface_checks({"B": replaced}, drawn, {"B": TARGET | {"kurtosis": 3.2}}, {"B": 0.0})
     assert of_replaced.passed
     assert "measured skewness 0.01 and kurtosis 3.2" in of_replaced.message
     targets = (1.7, replaced.skewness, replaced.kurtosis)
@@ -304,8 +306,8 @@ def test_moments_that_replace_measured_ones_are_stated_and_are_the_target_of_the
 
 def test_cases_with_fewer_than_two_stuck_beams_are_not_compared():
     key = ("b", 0.5, "NG")
-    assert list(checks.of_resampling({key: released(700)}, {key: released(700, stuck=0)})) == []
-    assert len(list(checks.of_resampling({key: released(700)}, {key: released(700, stuck=0.5)}))) == 1
+    assert list(checks.resampling_checks({key: released(700)}, {key: released(700, stuck=0)})) == []
+    assert len(list(checks.resampling_checks({key: released(700)}, {key: released(700, stuck=0.5)}))) == 1
 
 
 def study(energies):
@@ -314,20 +316,22 @@ def study(energies):
 
 
 def test_trends_compare_neighbouring_humidities_and_both_height_models():
-    found = list(checks.of_trends(study({(0.8, "NG"): 9, (0.5, "NG"): 5, (0.8, "G"): 3, (0.5, "G"): 1}), ["b"], ["b"]))
+    found = list(
+        checks.trend_checks(study({(0.8, "NG"): 9, (0.5, "NG"): 5, (0.8, "G"): 3, (0.5, "G"): 1}), ["b"], ["b"])
+    )
     assert [check.name.split()[0] for check in found] == ["energy", "energy", "scatter", "negative", "negative"]
     assert all(check.passed for check in found)
 
 
 def test_surfaces_that_are_not_skewed_negatively_need_not_adhere_more():
-    found = list(checks.of_trends(study({(0.8, "NG"): 3, (0.8, "G"): 9}), [], ["b"]))
+    found = list(checks.trend_checks(study({(0.8, "NG"): 3, (0.8, "G"): 9}), [], ["b"]))
     assert not found
 
 
 def test_surfaces_that_no_water_wets_need_not_adhere_more_in_humid_air():
     same = study({(0.8, "NG"): 3, (0.5, "NG"): 3})
-    assert not any(check.passed for check in checks.of_trends(same, [], ["b"]) if "grows" in check.name)
-    assert not list(checks.of_trends(same, [], []))
+    assert not any(check.passed for check in checks.trend_checks(same, [], ["b"]) if "grows" in check.name)
+    assert not list(checks.trend_checks(same, [], []))
 
 
 def test_verdict_lists_failed_checks_and_the_report_every_number():
@@ -395,8 +399,8 @@ def identified(radius, density, error=1e-3):
     ],
 )
 def test_an_identified_spectrum_must_have_the_measured_summits(radius, density, passed):
-    found = list(checks.of_identifications({"Mine": identified(radius, density)}))
+    found = list(checks.identification_checks({"Mine": identified(radius, density)}))
     assert [check.passed for check in found] == passed
     assert all(check.case == "Mine" for check in found)
-    (uncertain, _) = checks.of_identifications({"Mine": identified(1.4, 1.0, error=0.1)})
+    (uncertain, _) = checks.identification_checks({"Mine": identified(1.4, 1.0, error=0.1)})
     assert uncertain.passed

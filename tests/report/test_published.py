@@ -48,9 +48,9 @@ def test_published_tables_contain_only_surfaces_and_pairs_of_the_configuration()
 
 
 def test_a_user_s_surface_or_pair_has_no_rows_whatever_its_name():
-    assert published.of_paper(TABLES["table_3"], []).empty
-    assert set(published.of_paper(TABLES["table_3"], ["c", "pair", "mine"]).pair) == {"c"}
-    assert set(published.of_paper(TABLES["table_1"], ["B1"]).surface) == {"B1"}
+    assert published.rows_of_paper(TABLES["table_3"], []).empty
+    assert set(published.rows_of_paper(TABLES["table_3"], ["c", "pair", "mine"]).pair) == {"c"}
+    assert set(published.rows_of_paper(TABLES["table_1"], ["B1"]).surface) == {"B1"}
 
 
 def test_a_row_is_found_by_texts_and_by_numbers_up_to_rounding():

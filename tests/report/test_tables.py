@@ -163,7 +163,7 @@ def test_defect_is_that_of_the_spectrum_in_use(source, defects, corner):
 
 
 def test_a_surface_of_the_user_has_identified_parameters_only():
-    known = published.of_paper(published.read(RESOURCES / "table_2.csv"), ["B2"])
+    known = published.rows_of_paper(published.read(RESOURCES / "table_2.csv"), ["B2"])
     table = tables_surfaces.table_2(*spectra(33e6), known, {"B1": "identified"})
     assert table.frame.psd.tolist() == ["identified"]
 
@@ -264,7 +264,7 @@ def test_a_variant_under_which_no_beam_sticks_has_no_crack_length_but_an_energy(
 
 
 def test_a_redefined_pair_with_a_name_of_the_paper_is_compared_with_nothing():
-    known, key = published.of_paper(PUBLISHED, ["b", "c"]), ("a", 0.45, "NG")
+    known, key = published.rows_of_paper(PUBLISHED, ["b", "c"]), ("a", 0.45, "NG")
     (row,) = tables_beams.table_3({key: beams(0, 0, 1)}, {key: forces()}, known).frame.itertuples()
     assert np.isnan([row.published_um, row.experiment_um, row.published_bias_error_percent]).all()
     (row,) = tables_studies.variants({("a", "base"): variant(0, 0, 1)}, known).frame.itertuples()

@@ -277,28 +277,6 @@ def test_a_script_is_looked_for_once_unless_its_name_depends_on_the_job(monkeypa
         assert looked_for == [*jobs[:number], *jobs[-2:]]
 
 
-#: Private parts of Snakemake that a plan changes, each with its change.
-CHANGED = [
-    (persistence.PersistenceBase, "_serialize_param_pandas", snakemake_patches.compare_without_pandas),
-    (dag.ScriptProcessor, "process_job", snakemake_patches.look_for_scripts_once),
-    (common, "get_function_params", snakemake_patches.remember_signatures),
-    (rules, "get_function_params", snakemake_patches.remember_signatures),
-]
-
-
-@pytest.mark.parametrize(("owner", "name", "change"), CHANGED)
-def test_a_private_part_of_this_version_is_changed_and_an_unknown_one_remains(monkeypatch, owner, name, change):
-    for other, part, _ in CHANGED:  # restored after the test
-        monkeypatch.setattr(other, part, getattr(other, part))
-    known = getattr(owner, name)
-    change()
-    assert getattr(owner, name) is not known
-    if owner is not persistence.PersistenceBase:  # whose values are compared, whatever it takes
-        monkeypatch.setattr(owner, name, another)
-        change()
-        assert getattr(owner, name) is another
-
-
 @pytest.mark.parametrize("module", ["common", "dag", "persistence", "rules", "script"])
 def test_a_snakemake_without_a_private_module_remains_as_it_is(monkeypatch, module):
     private = common, rules, dag.ScriptProcessor, persistence.PersistenceBase, PythonScript
@@ -431,9 +409,21 @@ def test_files_of_the_configuration_come_before_those_that_they_overwrite():
     assert [path.name for path in found] == ["second.yaml", "first.yaml", "config.yaml"]
 
 
-def test_a_workflow_that_says_nothing_runs_without_changes():
-    assert not snakemake_patches.runs_here(Workflow())
+def test_a_job_uses_no_more_cores_than_slurm_allots(monkeypatch):
+    for allotted, cores in (("1", 1), ("12", 12), ("", 64)):
+        monkeypatch.setenv("SLURM_CPUS_PER_TASK", allotted)
+        limited = Workflow(global_resources={"_cores": 64})
+        snakemake_patches.keep_to_allotted_cores(limited)
+        assert limited.global_resources == {"_cores": cores}
+
+
+def test_a_workflow_that_says_nothing_runs_without_changes(monkeypatch):
+    monkeypatch.setenv("SLURM_CPUS_PER_TASK", "1")
+    snakemake_patches.keep_to_allotted_cores(Workflow())
     assert snakemake_patches.files_of_configuration(Workflow()) == []
+    silent = Workflow()
+    snakemake_patches.read_in_jobs(silent, forkserver.Path("configuration.json"))
+    assert not vars(silent)
     unknown = Workflow(_open_jobs=threading.Semaphore(0))
     snakemake_patches.limit_timers(Workflow(scheduler=unknown))
     snakemake_patches.limit_timers(Workflow())

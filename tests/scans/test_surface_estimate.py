@@ -291,8 +291,8 @@ FLAGS = {
     "corner and slope are not measured; roughness beyond 125 rad/µm is left out, so that surfaces are too smooth and "
     "stick more, the safe side":
         lambda: fit_with(corner=7.8e7),
-    "a floor of the spectrum like that of white noise of 2 nm in scans of 5 x 5 µm is not subtracted, because no "
-    "heights have the moments that would remain; if it is noise, the surface is smoother than computed and sticks more":
+    "a floor of the spectrum like white noise of 2 nm in scans of 5 x 5 µm is not subtracted, because no heights "
+    "have the remaining moments; if it is noise, the surface is smoother than computed and sticks more":
         lambda: with_inspection(sizes=(dataclasses.replace(of_b2().inspection.largest, kept=floor_of(2e-9)),)),
     "white noise of 1 nm in scans of 5 x 5 µm, 8.8 % of their variance, is subtracted from rms, skewness, kurtosis and "
     "spectrum, not from heights: measured":

@@ -15,7 +15,6 @@ from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw, draw_laws, fit, fit_report
 from stiction.config.merging import merged
 from stiction.contact.environment import Water
-from stiction.contact.forcelaw import parametrise
 from stiction.models import FIELD
 from stiction.plan.plan import Plan
 from stiction.stages.beams import beams, releases
@@ -248,15 +247,14 @@ def test_spectrum_and_picture_are_of_periodic_fields(of_strips, through_a_file):
 def test_forces_are_those_of_the_curves_at_the_humidity(through_a_file):
     found = through_a_file(small.forces_of_case())
     distance, curve, *_ = curves.force_curves(small.contact_of_pair(), small.HUMIDITY, Water(300))
-    vectors, limit = forces.vectors(found)
-    expected, expected_limit = parametrise(distance, curve, 20)
-    assert_array_equal(vectors, expected)
-    assert limit == expected_limit
     assert_array_equal(found.distance, distance)
     for k in (0, 19):
         assert_allclose(found.force[k], curve(k), rtol=1e-6)
         # Pull-off is the strongest attraction, at its distance.
         assert found.pull_off[k] == pytest.approx(-float(found.force[k].min()), rel=1e-2)
+        # The energy is the work against the attraction, Eq. (11).
+        work = np.trapezoid(np.maximum(-found.force[k], 0), found.distance)
+        assert found.adhesion_energy[k] == pytest.approx(float(work), rel=2e-2)
     assert np.all(found.limit_distance < found.pull_off_distance)
 
 
@@ -410,8 +408,3 @@ def test_statistics_of_exponential_heights_are_those_of_their_distribution():
 
 def test_strips_have_the_margin_spacing_and_length_of_the_configuration():
     assert Sampling(7.5e-9, 1.5e-6, 1e-6).strips(30e-6) == StripGrid(1.5e-6, 30e-6, 7.5e-9, margin=1e-6)
-
-
-def test_the_defect_is_the_share_of_the_variance_that_is_missing():
-    found = small.spectrum_of("B2")
-    assert spectrum.defect(found) == float(found.defect) > 0

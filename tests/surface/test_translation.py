@@ -11,7 +11,7 @@ from stiction.surface.spectrum import CutoffSelfAffine
 from stiction.surface.translation import (
     LARGEST_SCORE,
     Translation,
-    _of_even,
+    _on_one_half,
     spectrum_of_heights,
     underlying_spectrum,
 )
@@ -191,8 +191,8 @@ def test_autocorrelations_are_even_so_that_half_of_them_give_all_bit_for_bit(poi
     density = np.random.default_rng(1).random((points, points))
     turned = np.roll(density[::-1, ::-1], 1, axis=(0, 1))
     even = fft.fft2(density + turned).real
-    np.testing.assert_array_equal(_of_even(np.exp, even), np.exp(even))
-    assert not np.array_equal(_of_even(np.exp, density), np.exp(density))
+    np.testing.assert_array_equal(_on_one_half(np.exp, even), np.exp(even))
+    assert not np.array_equal(_on_one_half(np.exp, density), np.exp(density))
 
 
 @given(st.floats(0.2, 5))

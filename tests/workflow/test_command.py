@@ -57,11 +57,16 @@ def test_a_run_in_a_folder_gives_the_files_of_snakemake_and_then_has_nothing_to_
     status, printed = stiction(tmp_path, "run", tiny, "--cores", 2, "--", BEAMS)
     assert status == 0
     assert printed[0].startswith("0 of 10 jobs: ")
-    assert printed[-1].startswith("Done: 10 jobs in ")
+    assert printed[-2].startswith("Done: 10 jobs in ")
+    assert printed[-1] == (index := "All results: results/index.html; stiction show opens it.")
+    assert "Results of pair b" in (tmp_path / "results" / "index.html").read_text(encoding="utf-8")
     assert datasets(tmp_path) == datasets(undisturbed)
     (log,) = (tmp_path / ".snakemake" / "log").glob("*.log")
     assert "Finished jobid" in log.read_text()
-    assert stiction(tmp_path, "run", tiny, "--", BEAMS) == (0, ["Nothing to do: all results are up to date."])
+    assert stiction(tmp_path, "run", tiny, "--", BEAMS) == (
+        0,
+        ["Nothing to do: all results are up to date.", index],
+    )
     assert stiction(tmp_path, "explain", tiny, "--", BEAMS) == (
         0,
         ["Nothing would be computed: all results are up to date."],
@@ -100,7 +105,7 @@ def test_verbose_shows_what_snakemake_prints_and_ends_alike(undisturbed, tiny, t
     status, printed = stiction(folder, "run", tiny, "--verbose", "--", BEAMS)
     assert status == 0
     assert "1 of 1 steps (100%) done" in printed
-    assert printed[-1].startswith("Done: 1 jobs in ")
+    assert printed[-2].startswith("Done: 1 jobs in ")
 
 
 @pytest.mark.slow

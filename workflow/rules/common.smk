@@ -1,17 +1,18 @@
 """Configuration and plan of a run, and what the rules of all stages share."""
 
 import atexit
+import json
 import uuid
 from functools import cache
 
 from snakemake.logging import logger
 
 from stiction.config import files, merging, messages, scans, test_beams
-from stiction.plan import memory
+from stiction.plan import cost, memory
 from stiction.plan.planner import Planner
 from stiction.plan.stage import WILDCARDS
 from stiction.run import provenance, run_lock, snakemake_patches, stale_results
-from stiction.run.atomic import DataError
+from stiction.run.atomic import DataError, save_text
 from stiction.run.disk_cache import DiskCache
 from stiction.run.fingerprint import PACKAGE, fingerprint
 
@@ -29,6 +30,9 @@ snakemake_patches.compare_without_pandas()
 snakemake_patches.look_for_scripts_once()
 snakemake_patches.remember_signatures()
 remember = DiskCache(".snakemake/planning.json")
+is_main = snakemake_patches.is_main(workflow)
+if not is_main:
+    snakemake_patches.keep_to_allotted_cores(workflow)
 
 
 def code(file):
@@ -57,7 +61,8 @@ def rules_of_the_configuration():
     return [*modules, (folder / "schema.yaml").read_text(encoding="utf-8")]
 
 
-try:
+def read_configuration():
+    """Files of the configuration, read strictly, checked and made complete; and the numbers of measured surfaces."""
     # Read again, because Snakemake silently uses the last of duplicate keys.
     contents = {file: files.read(file) for file in snakemake_patches.files_of_configuration(workflow)}
     for file in contents:  # files of scans and of test beams are relative to the first match
@@ -68,17 +73,34 @@ try:
     preliminary, following = (
         validated() if scanned else remember(["valid", config, rules_of_the_configuration()], validated)
     )
+    config.update(files.normalised(config))
+    config.update(following)
+    config.update(files.normalised(config))
+    return dict(config), preliminary
+
+
+#: Complete configuration and numbers of measured surfaces, which a run hands to the jobs that plan it again.
+PLANNED = ".snakemake/configuration.json"
+
+try:
+    complete, preliminary = config["planned"] if "planned" in config and not is_main else read_configuration()
 except messages.ConfigError as error:
     raise WorkflowError(f"The configuration is invalid:\n{error}")
 
-config.update(files.normalised(config))
-config.update(following)
-config.update(files.normalised(config))
+config.clear()
+config.update(complete)
 remember_jobs = DiskCache(".snakemake/jobs.json")
 planner = Planner(config, preliminary, remember, remember_jobs)
 
-if snakemake_patches.is_main(workflow):
+if is_main:
     atexit.register(remember_jobs.save)
+
+
+def hand_to_jobs():
+    """Keep what the jobs of this run need to plan it again in a fraction of the time."""
+    remember_jobs.save()
+    save_text(json.dumps({"planned": [config, preliminary]}), PLANNED)
+    snakemake_patches.read_in_jobs(workflow, Path(PLANNED).absolute())
 
 
 def refuse_what_samples_show():
@@ -112,7 +134,7 @@ STALE = Path(".snakemake/stale")
 @cache
 def unusable():
     """These files, which are named: this run writes them anew."""
-    if not snakemake_patches.is_main(workflow):
+    if not is_main:
         return {}
     found = unlike_this_run()
     for line in stale_results.summary(found):
@@ -175,3 +197,13 @@ def memory_of(rule):
     """Function of the attempt that gives the memory to reserve for a job [MB]."""
     megabytes = max(MEMORY, round(rule["memory"]))
     return lambda wildcards, attempt: memory.of_attempt(megabytes, attempt)
+
+
+def minutes_of(rule):
+    """Function of wildcards and the attempt that gives the time to reserve for a job [min]."""
+
+    def minutes(wildcards, attempt):
+        seconds = planner.job(rule["name"], wildcards)["seconds"]
+        return memory.of_attempt(cost.minutes(seconds, rule["minutes"]), attempt)
+
+    return minutes

@@ -16,7 +16,7 @@ for declared in planner.rules:
         priority: declared["priority"]
         localrule: not declared["cluster"]
         resources:
-            runtime=declared["minutes"],
+            runtime=minutes_of(declared),
             mem_mb=memory_of(declared),
             cpu_s=seconds_of(declared),
         params:

@@ -1,4 +1,4 @@
-"""Readings of an asperity: deviation of the crack lengths that they give, Eq. (13), from a reference."""
+"""Readings of an asperity: deviation of their crack lengths, Eq. (13), from a reference."""
 
 import numpy as np
 
@@ -14,6 +14,7 @@ def rms_deviation(energies: np.ndarray, others: np.ndarray, relative: float | np
     """
 
     def rms(means):
+        """Root mean square of the relative deviations of the crack lengths [-]."""
         return np.sqrt(np.mean((relative * np.divide(*np.split(means, 2)) ** CRACK_LENGTH_POWER - 1) ** 2))
 
     return jackknife(rms, np.hstack([energies, others]))

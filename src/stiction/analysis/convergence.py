@@ -1,4 +1,4 @@
-r"""How many samples and polynomials are enough (App. B-C).
+r"""Number of samples and polynomials to be enough (App. B-C).
 
 Distributions are compared by Kolmogorov's distance :math:`D = \sup |F - G|`. The distance of m samples from their own
 distribution is random with mean 0.869 / √m: smaller distances cannot be resolved with m samples.
@@ -68,13 +68,13 @@ def kernel_distribution(
 
 
 def kernel_estimate(samples: np.ndarray, at: np.ndarray) -> np.ndarray:
-    """Density of samples (n,) at given values, by Gaussian kernels of Silverman's width; in 1 / unit of the samples."""
+    """Density of samples (n,) at given values, by Gaussian kernels of Silverman's width [1 / unit of the samples]."""
     width = silverman_bandwidth(len(samples), 1) * np.std(samples)
     return np.array([np.exp(-(((x - samples) / width) ** 2) / 2).mean() for x in at]) / (np.sqrt(2 * np.pi) * width)
 
 
 def converged_order(orders: Sequence[int], distances: np.ndarray, samples: int, draws: int) -> int:
-    """Smallest order beyond which a marginal is as close as ``samples`` draws from the target; 0 if there is none.
+    """Smallest order beyond which a marginal is as close as ``samples`` draws from the target, or 0 without any.
 
     The distances of the marginals of increasing orders from their target are Kolmogorov's (n,) [-]. A marginal is known
     from draws, whose own distance from it is allowed in addition.

@@ -1,4 +1,4 @@
-"""How fine elements and contact points must be: release of a beam on uniform ground (App. C)."""
+"""Fineness of elements and contact points: release of a beam on uniform ground (App. C)."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -26,7 +26,7 @@ class Arrest:
 
 
 def arrest_on_uniform_ground(beam: Beam, law: np.ndarray, points: int) -> Arrest:
-    """Release a beam whose ``points`` contact points all have one law [f_max, d_max, a_left, a_right].
+    """Release a beam on uniform ground: all ``points`` contact points have one law [f_max, d_max, a_left, a_right].
 
     Both numbers of the result are NaN if the beam does not stick in an S-shape.
 
@@ -44,7 +44,7 @@ def arrest_on_uniform_ground(beam: Beam, law: np.ndarray, points: int) -> Arrest
 
 
 def finer_mesh(beam: Beam, law: np.ndarray, points: int) -> tuple[Beam, int]:
-    """Beam and number of points of a mesh that is at least twice as fine, and twice as fine as the law requires.
+    """Beam and number of points of a mesh at least twice as fine, and twice as fine as the law requires.
 
     Elements are then wrong by an eighth, points by a quarter: ``tests/beam/test_release.py``.
     """
@@ -78,14 +78,14 @@ class Resolution:
 
 
 def resolution(beam: Beam, law: np.ndarray, points: int) -> Resolution:
-    """Effect of the mesh of a beam on its crack on uniform ground; raises as `arrest_on_uniform_ground`."""
+    """Effect of the mesh of a beam on its crack on uniform ground. Raises as `arrest_on_uniform_ground`."""
     used = arrest_on_uniform_ground(beam, law, points)
     finer, more = finer_mesh(beam, law, points)
     return Resolution(used, arrest_on_uniform_ground(finer, law, more), law)
 
 
 def rigid_energy(laws: np.ndarray) -> float:
-    """Adhesion energy of the mean of force laws (n, 4), that of a beam too stiff to follow single strips [J m⁻²].
+    """Adhesion energy of the mean of force laws (n, 4), as for a beam too stiff to follow single strips [J m⁻²].
 
     It is at most the mean of their energies, because some strips already push while others still pull.
     """

@@ -31,6 +31,7 @@ def factors(
     shape = (2, *full.shape[1:])
 
     def computed(means):
+        """Ratio of the responses to both means [-]."""
         changed, base = map(response, means.reshape(shape))
         return changed / base
 
@@ -59,12 +60,12 @@ def interpolation_error(logarithms: np.ndarray, humidities: np.ndarray, at: np.n
 def mean_ratios(
     full: np.ndarray, summits: np.ndarray, humidities: np.ndarray, at: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Ratio of the means at some humidities and its jackknife error; parameters and errors as in `factors`."""
+    """Ratio of the means at some humidities and its jackknife error. Parameters and errors as in `factors`."""
     return factors(lambda means: means, full, summits, humidities, at)
 
 
 def length_factors(
     full: np.ndarray, summits: np.ndarray, humidities: np.ndarray, at: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Factor of the crack length by Eq. (13), from adhesion energies (n, h) [J m⁻²]; otherwise as `mean_ratios`."""
+    """Factor of the crack length by Eq. (13), from adhesion energies (n, h) [J m⁻²]. Otherwise as `mean_ratios`."""
     return factors(lambda energies: energies**CRACK_LENGTH_POWER, full, summits, humidities, at)

@@ -20,12 +20,12 @@ def touching(height: np.ndarray, curvature: np.ndarray, distance: float) -> tupl
 
 
 def contact_area(interference: np.ndarray, radius: np.ndarray) -> np.ndarray:
-    """Hertzian contact area of a sphere, π R δ [m²]; interference [m], radius [m]."""
+    """Hertzian contact area of a sphere, π R δ [m²], from interference and radius [m]."""
     return np.pi * radius * interference
 
 
 def yields(stress: float | np.ndarray, hardness: float = HARDNESS) -> bool | np.ndarray:
-    """Whether a summit with this largest stress [Pa] yields; hardness of the softer body [Pa]."""
+    """Whether a summit yields at its largest stress [Pa]. Hardness of the softer body [Pa]."""
     return stress > ONSET * hardness
 
 

@@ -17,7 +17,7 @@ def shifted(moment: float, step: float) -> tuple[float, float]:
 
 
 def normalised_slope(values: Sequence[np.ndarray], at: Sequence[float]) -> np.ndarray:
-    """Central difference of ln y over ln |x|, with the sign of an increase of x [-]; exact for a power law.
+    """Central difference of ln y over ln |x|, with the sign of an increase of x [-]. Exact for a power law.
 
     Parameters
     ----------
@@ -52,6 +52,7 @@ def energy_sensitivity(energies: np.ndarray, at: Sequence[float]) -> tuple[np.nd
     samples = np.moveaxis(powers, 2, 0)
 
     def slopes(means):
+        """Normalised slopes of mean and standard deviation, from first and second moments [-]."""
         first, second = means.reshape(samples.shape[1:])
         statistics = np.stack([first, np.sqrt(second - first**2)], axis=1)
         return normalised_slope(statistics, at)

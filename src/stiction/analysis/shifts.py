@@ -1,4 +1,4 @@
-r"""A surface with one of its quantities slightly decreased and increased, for slopes with common random numbers.
+r"""Surface with one of its quantities slightly decreased and increased, for slopes with common random numbers.
 
 The quantities are those that a measurement of a surface determines: ln rms and form of the heights, and ln corner and
 slope of its spectrum. The form of maximum-entropy heights is given by skewness and kurtosis. That of measured heights
@@ -47,7 +47,7 @@ class Description:
 
 
 def bracketed(surface: Description, quantity: str) -> tuple[tuple[Description, Description], float]:
-    """Two surfaces that differ in one quantity, around the given one, and the difference of that quantity.
+    """Bracket a surface: two with one quantity lower and higher, and the difference of that quantity.
 
     ASSUME: where no surface has the increased quantity, both values are lower, and where none has the decreased one,
     both are higher, so that the slope is that of a near surface. This concerns skewness and kurtosis of nearly Gaussian
@@ -76,12 +76,12 @@ def bracketed(surface: Description, quantity: str) -> tuple[tuple[Description, D
 
 
 def value_of(surface: Description, quantity: str) -> float:
-    """The rms [m], skewness, or corner [rad m⁻¹] of a surface."""
+    """Rms [m], skewness, or corner [rad m⁻¹] of a surface."""
     return surface.spectrum.corner if quantity == "corner" else getattr(surface, quantity)
 
 
 def with_value(surface: Description, quantity: str, value: float) -> Description:
-    """A surface with another rms [m], skewness, or corner of its spectrum [rad m⁻¹], and its form otherwise.
+    """Surface with another rms [m], skewness, or corner of its spectrum [rad m⁻¹], and its form otherwise.
 
     ASSUME: a skewness at which no surface has the kurtosis comes with the nearest one that is feasible.
     """
@@ -94,7 +94,7 @@ def with_value(surface: Description, quantity: str, value: float) -> Description
 
 
 def moved(surface: Description, errors: Mapping[str, float]) -> Description:
-    """A surface whose quantities err by amounts, in the units of `bracketed`.
+    """Surface after errors of its quantities, in the units of `bracketed`.
 
     ASSUME: modes are added one after the other, which differs from their sum at second order. A kurtosis and a corner
     that no surface has come with their nearest one.

@@ -1,4 +1,4 @@
-"""Effect of a model choice that the paper leaves open on the crack lengths of Table III: paired comparison of variants.
+"""Effect of a model choice left open by the paper on the crack lengths of Table III: paired comparison of variants.
 
 Crack lengths are NaN if fewer than two beams stick.
 """
@@ -13,7 +13,7 @@ from stiction.estimates import mean_on_shared_samples, mean_with_error
 
 @dataclass(frozen=True)
 class Variant:
-    """One case under one variant of the model."""
+    """Case under one variant of the model."""
 
     energy: np.ndarray  #: meso-scale adhesion energies ē of the sampled pairs (m,) [J m⁻²]
     crack_length: np.ndarray  #: of the released beams (n,) [m]
@@ -76,7 +76,7 @@ def rms_deviation(
 def removed_share(
     values: np.ndarray, base: np.ndarray, references: np.ndarray, errors: np.ndarray
 ) -> tuple[float, float]:
-    """Share of the mean square deviation of ``base`` from references that ``values`` remove, with its error [-].
+    """Fraction of the mean square deviation of ``base`` from references removed by ``values``, with its error [-].
 
     There is one of each per case (n,). The standard errors (3, n) are those of values - base, common to the cases, so
     that they add up; of base, independent between cases; and of base, common to the cases. An error of the base shifts

@@ -1,4 +1,4 @@
-r"""The micro cantilever on a rough substrate (Sec. III-C): one random force law per contact point.
+r"""Micro cantilever on a rough substrate (Sec. III-C): one random force law per contact point.
 
 Conventions of this folder: x runs from the clamp (x = 0) to the free end (x = L); the deflection u is positive towards
 the substrate, so that the distance is ``d = gap - u``; the pressure of a force law is positive in repulsion (Eq. 12).
@@ -16,7 +16,7 @@ import numpy as np
 
 @dataclass(frozen=True)
 class Beam:
-    """A cantilever above a substrate and its mesh, Fig. 1 and Sec. IV."""
+    """Cantilever above a substrate and its mesh, Fig. 1 and Sec. IV."""
 
     length: float  #: L [m]
     width: float  #: w [m]
@@ -47,7 +47,7 @@ class Beam:
 
     @property
     def decay(self) -> float:
-        """Wave number √(N/EI) with which bending decays under tension; 0 without tension [m⁻¹]."""
+        """Wave number √(N/EI) of the decay of bending under tension, 0 without tension [m⁻¹]."""
         return float(np.sqrt(self.tension / self.bending_stiffness))
 
     @property

@@ -43,7 +43,7 @@ def apparent_adhesion_energy(crack_length: float | np.ndarray, beam: Beam) -> fl
 
 
 def arrest_length(energy: float | np.ndarray, beam: Beam) -> float | np.ndarray:
-    """Crack length [m] of an S-shaped beam at the adhesion energy Γ [J m⁻²], Eq. (13) inverted; any shape."""
+    """Crack length [m] of an S-shaped beam at the adhesion energy Γ [J m⁻²], inverse of Eq. (13), any shape."""
     if beam.tension:
         return tension.arrest_length(energy, beam)
     return (energy / (1.5 * beam.young_modulus * beam.gap**2 * beam.thickness**3)) ** CRACK_LENGTH_POWER

@@ -39,7 +39,7 @@ AHEAD, AHEAD_ELEMENTS, WHOLE = 12.0, 6, 64
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A beam in equilibrium."""
+    """Beam in equilibrium."""
 
     deflection: np.ndarray  #: [u, u'] of every node, (elements + 1, 2) [m, -]
     imbalance: float  #: largest unbalanced force [N]
@@ -60,7 +60,7 @@ class Mesh(NamedTuple):
 
 
 class System(NamedTuple):
-    """The linear system of one Newton step: upper band, right-hand side, and position of each point on its law."""
+    """Linear system of one Newton step: upper band, right-hand side, and position of each point on its law."""
 
     band: np.ndarray  # (2 nodes + 3, 4) [N/m]; row i holds A[i, i:i+4]
     force: np.ndarray  # (2 nodes + 3,): unbalanced force [N], after the solution the step [m]
@@ -68,7 +68,7 @@ class System(NamedTuple):
 
 
 def hermite(s: float | np.ndarray) -> np.ndarray:
-    """Hermite functions at the relative position ``s`` in an element, (..., 4) [-]; for [u, l u'] of its two ends.
+    """Hermite functions for [u, l u'] of both ends at the relative position ``s`` in an element, (..., 4) [-].
 
     >>> hermite(0.5).tolist()
     [0.5, 0.125, 0.5, -0.125]
@@ -159,7 +159,7 @@ def add_points(u, laws, system, mesh, element, viscosity):
 
 @kernel
 def _assemble(u, laws, system, mesh, clamp, window, viscosity):
-    """Assemble the elements ``window`` = (first, last); returns the largest unbalanced force [N].
+    """Assemble the elements ``window`` = (first, last). Returns the largest unbalanced force [N].
 
     The beam from its clamp to element ``first`` is open, unless the window begins at node ``clamp``, which is fixed.
     """
@@ -189,7 +189,7 @@ def _assemble(u, laws, system, mesh, clamp, window, viscosity):
 
 @kernel
 def solve(band, x, start, stop):
-    """Solve rows [start, stop) of a symmetric system by LDLᵀ, in place; returns False if it is not positive definite.
+    """Solve rows [start, stop) of a symmetric system by LDLᵀ, in place. Return False if it is not positive definite.
 
     Entries beyond ``stop`` are zero, so that the last rows need no special treatment.
     """
@@ -231,7 +231,7 @@ def largest_moves(laws, system, mesh, window):
 
 @kernel
 def newton_step(u, laws, system, mesh, window):
-    """Solve and take the step unless it is too long; returns its relative length (`largest_moves`) [-], or infinity.
+    """Solve and take the step unless it is too long. Returns its relative length (`largest_moves`) [-], or infinity.
 
     The step is shortened where a point beyond the reach of its law would pass through the ground.
     """
@@ -271,7 +271,7 @@ def _front(stretch, points, element, elements):
 
 @kernel
 def _fill_open_part(u, mesh, first):
-    """Deflect the nodes between the clamp and ``first``: the cubic to that node and the deflection by the load."""
+    """Deflect the nodes between the clamp and ``first``: the cubic to this node and the deflection by the load."""
     if first * mesh.decay > SLACK:
         fill_open_part_in_tension(u, first, first * mesh.decay, mesh.stiffness, mesh.load)
         return
@@ -286,7 +286,7 @@ def _fill_open_part(u, mesh, first):
 
 @kernel
 def next_viscosity(viscosity, move, slope):
-    """Viscosity after a step of this relative length [N/m]: longer steps need more; ``slope`` is the mean one."""
+    """Viscosity after a step of this relative length [N/m]. It grows with long steps, from the mean ``slope``."""
     return max(viscosity * min(max(move, SLOWER), FASTER), LEAST * slope * min(10 * move, 1.0))
 
 
@@ -300,7 +300,7 @@ def _system(u, laws, mesh):
 
 @kernel
 def _settle(u, laws, mesh, held, tolerance, max_iterations):
-    """Relax the beam beyond the node ``held``, which is fixed, in place; returns as `_relax`."""
+    """Relax the beam beyond the fixed node ``held``, in place. Returns as `_relax`."""
     system, steepest, slope = _system(u, laws, mesh)
     viscosity, residual, window = steepest, np.inf, (held, u.size // 2 - 1)
     for iteration in range(max_iterations):
@@ -314,7 +314,7 @@ def _settle(u, laws, mesh, held, tolerance, max_iterations):
 
 @kernel
 def _relax(u, laws, mesh, ahead, tolerance, max_iterations):
-    """Relax the beam to its next equilibrium, in place; returns the largest unbalanced force [N] and the Newton steps.
+    """Relax the beam to its next equilibrium, in place. Returns the largest unbalanced force [N] and the Newton steps.
 
     Dashpots at the contact points make the beam creep downhill, so that the crack cannot jump over a place of arrest.
     Their viscosity [N/m] keeps the tangent positive definite and the steps short, and vanishes where it is not needed:
@@ -365,7 +365,7 @@ def _points(beam, laws):
 
 
 def mesh_of(beam: Beam, laws: np.ndarray, load: float, tip_force: float) -> Mesh:
-    """Mesh of a beam for compiled code; parameters and errors as in `equilibrate`."""
+    """Mesh of a beam for compiled code. Parameters and errors as in `equilibrate`."""
     functions, l_e = _points(beam, laws), beam.element_length
     points = len(functions)
     area = beam.width * l_e / max(points, 1)
@@ -376,7 +376,7 @@ def mesh_of(beam: Beam, laws: np.ndarray, load: float, tip_force: float) -> Mesh
 
 
 def _ahead(beam, laws):
-    """Number of elements ahead of the crack front that move with it in every step."""
+    """Number of elements ahead of the crack front to move with it in every step."""
     if not np.any(laws[:, 0] * laws[:, 2]):  # nothing holds the beam
         return beam.elements
     reach = np.ceil(AHEAD * foundation_length(beam, laws) / beam.element_length)

@@ -1,4 +1,4 @@
-"""The foundation length of a beam on its force laws, and how long elements and strips may be (Sec. III-C, App. C).
+"""Foundation length of a beam on its force laws, and how long elements and strips may be (Sec. III-C, App. C).
 
 Behind the front of a crack a beam lies on the force laws as on an elastic foundation; its deflection decays within the
 foundation length. Elements and strips that are longer hold the front and make cracks too short.
@@ -18,7 +18,7 @@ LONGER, TOO_EARLY = 2.0, 0.06
 
 
 def decay_length(bending: float, stiffness: float) -> float:
-    """Length within which the deflection of a plate on an elastic foundation decays, (4 D / k)^(1/4) [m].
+    """Decay length of the deflection of a plate on an elastic foundation, (4 D / k)^(1/4) [m].
 
     D = E t³ / 12 is the bending stiffness per width [N m], k the stiffness of the foundation per area [Pa/m].
     """

@@ -1,4 +1,4 @@
-"""The middle of a bridge on random ground: how short a bridge, clamped at both ends, may be and still be held there.
+"""Middle of a bridge on random ground: the shortest bridge, clamped at both ends, to stick there.
 
 A bridge that is shorter than its two cracks touches with its middle, which has no slope: it is a parabola, and
 adhesion acts on a few micrometres. Finite elements resolve this zone; both open arms are condensed into their exact
@@ -30,7 +30,7 @@ _FREE, _HELD, _OPEN = 0, 1, 2
 
 
 def outwards(number: int) -> np.ndarray:
-    """Positions along a zone of an even number of strips that are numbered from the middle outwards (number,).
+    """Positions along a zone of an even number of strips, numbered from the middle outwards (number,).
 
     The ground of a bridge thus stays the same if its zone grows.
 
@@ -44,7 +44,7 @@ def outwards(number: int) -> np.ndarray:
 
 @kernel
 def _add_arms(u, system, mesh, arm):
-    """Add both open arms, each from its clamp to the next end of the zone, as exact elements; ``arm`` in elements."""
+    """Add both open arms as exact elements, each from its clamp to the next end of the zone, ``arm`` elements long."""
     band, force, k, i = system.band, system.force, mesh.stiffness, u.size - 2
     f, c, m, _ = end_stiffness(arm * mesh.decay) if mesh.decay > 0 else (12.0, 6.0, 4.0, 2.0)
     f, c, m = f * k / arm**3, c * k / arm**2, m * k / arm
@@ -62,7 +62,7 @@ def _add_arms(u, system, mesh, arm):
 
 @kernel
 def _assemble(u, laws, system, mesh, arm, viscosity):
-    """Assemble zone and arms; returns the largest unbalanced force [N]."""
+    """Assemble zone and arms. Returns the largest unbalanced force [N]."""
     system.band[:] = 0.0
     system.force[:] = 0.0
     pull = mesh.stiffness * mesh.decay**2
@@ -77,7 +77,7 @@ def _assemble(u, laws, system, mesh, arm, viscosity):
 
 @kernel
 def _relax(u, laws, mesh, arm, tolerance, system):
-    """Relax a bridge in place: creep downhill, as `stiction.beam.equilibrium.equilibrate`; returns how it ends.
+    """Relax a bridge in place: creep downhill, as `stiction.beam.equilibrium.equilibrate`. Returns its end.
 
     It is free as soon as all points are beyond the largest attraction of their law.
     """
@@ -96,7 +96,7 @@ def _relax(u, laws, mesh, arm, tolerance, system):
 
 @kernel
 def _shorten(u, laws, mesh, arm, tolerance):
-    """Shorten a bridge until it comes free; returns the last arm that is held [elements] and how the search ends."""
+    """Shorten a bridge until it releases. Return the last arm with adhesion [elements] and the end of the search."""
     system = System(np.zeros((u.size + 3, 4)), np.zeros(u.size + 3), np.zeros(laws.shape[0]))
     half, step = u.size // 4, FIRST
     end = _relax(u, laws, mesh, arm, tolerance, system)
@@ -115,7 +115,7 @@ def _shorten(u, laws, mesh, arm, tolerance):
 
 
 def shortest_held(zone: Beam, laws: np.ndarray, longest: float) -> float:
-    """Length of the shortest bridge that its middle holds on this ground, to 0.1 % [m].
+    """Length of the shortest bridge to stick at its middle on this ground, to 0.1 % [m].
 
     The bridge was pressed down on the whole zone. Its arms are shortened step by step; after each step it creeps
     downhill to its next equilibrium.

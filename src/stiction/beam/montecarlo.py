@@ -20,7 +20,7 @@ SCATTERED = ("thickness", "length", "width", "gap")
 
 @dataclass(frozen=True)
 class Experiment:
-    """One case: the nominal beam, its random substrate and the scatter of its dimensions."""
+    """One case: nominal beam, random substrate and scatter of its dimensions."""
 
     beam: Beam  #: nominal dimensions
     points: int  #: number of force laws along the beam, N_p
@@ -89,7 +89,7 @@ def release_beam(experiment: Experiment, sample: int, rng: np.random.Generator) 
 def simulate(
     experiment: Experiment, samples: Iterable[int], stream: Callable[[int], np.random.Generator], threads: int = 1
 ) -> Iterator[Outcome]:
-    """Release many beams; yields their outcomes in the order of ``samples``, their numbers, as they become available.
+    """Release many beams. Yields their outcomes in the order of ``samples``, their numbers, as they become available.
 
     ``stream(k)`` is the numpy.random.Generator of beam k. The results do not depend on the number of threads, in which
     beams are computed at a time.
@@ -126,6 +126,6 @@ def columns(outcomes: Sequence[Outcome], shapes: int = 0) -> dict[str, np.ndarra
 def released_beams(
     experiment: Experiment, number: int, stream: Callable, threads: int = 1, shapes: int = 0
 ) -> dict[str, np.ndarray]:
-    """`columns` of the first beams of an experiment, with a bar of the progress; arguments as in `simulate`."""
+    """`columns` of the first beams of an experiment, with a bar of the progress. Arguments as in `simulate`."""
     outcomes = simulate(experiment, range(number), stream, threads)
     return columns(list(progress(outcomes, "beams", total=number)), shapes)

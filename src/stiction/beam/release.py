@@ -1,4 +1,4 @@
-"""Release of a beam that was pressed down: its crack opens until the adhesion arrests it (Sec. III-C).
+"""Release of a beam after it was pressed down: its crack opens until the adhesion arrests it (Sec. III-C).
 
 A crack of length l drives its front with the energy release rate of Eq. (13), which falls as l⁻⁴. No place arrests it
 while that exceeds the largest adhesion energy along the beam. The crack therefore starts at a safe fraction of the
@@ -50,7 +50,7 @@ class ReleasedBeam:
 
 
 def s_shape(beam: Beam, depth: float, crack: float) -> np.ndarray:
-    """Deflection of a beam that touches down at ``depth`` [m] beyond a crack [m]; (elements + 1, 2) [m, -].
+    """Deflection of a beam touching down at ``depth`` [m] beyond a crack [m], (elements + 1, 2) [m, -].
 
     It follows from u⁽⁴⁾ = 0 with u = u⁽¹⁾ = 0 at the clamp and u = depth, u⁽¹⁾ = 0 at the end of the crack; tension is
     left out.
@@ -60,7 +60,7 @@ def s_shape(beam: Beam, depth: float, crack: float) -> np.ndarray:
 
 
 def touching(laws: np.ndarray) -> float:
-    """Distance at which a flat beam starts [m]: f = 0 for the mean law, or farther where that presses some law too far.
+    """Distance at which a flat beam starts [m]: f = 0 for the mean law, or farther if that presses some law too far.
 
     Laws of rough surfaces differ in d_max by many lengths 1/a, over each of which the repulsion grows by e².
     """
@@ -69,14 +69,14 @@ def touching(laws: np.ndarray) -> float:
 
 
 def _release_from(beam, laws, crack):
-    """Equilibrium of a beam that first adheres to the ground beyond a crack of this length [m]."""
+    """Equilibrium of a beam after it first adheres to the ground beyond a crack of this length [m]."""
     held = int(np.searchsorted(beam.nodes, crack, side="right")) - 1
     start = s_shape(beam, beam.gap - touching(laws), beam.nodes[held])
     return equilibrate(beam, laws, start, held=held)
 
 
 def release(beam: Beam, laws: np.ndarray, start_crack: float) -> Equilibrium:
-    """Release a beam from a short crack, which opens up to the first place that arrests it (Sec. III-C).
+    """Release a beam from a short crack. The crack opens up to the first place of arrest (Sec. III-C).
 
     Parameters
     ----------
@@ -108,7 +108,7 @@ def release(beam: Beam, laws: np.ndarray, start_crack: float) -> Equilibrium:
 
 
 def crack_length(beam: Beam, laws: np.ndarray, deflection: np.ndarray) -> float:
-    """First place from the clamp, between points, where d < d_max; the whole length if there is none [m].
+    """First place from the clamp, between points, with d < d_max, or the whole length without any [m].
 
     ASSUME: the paper does not define the end of a crack; here it is where the attraction has passed its maximum.
     """
@@ -122,7 +122,7 @@ def crack_length(beam: Beam, laws: np.ndarray, deflection: np.ndarray) -> float:
 
 
 def end_state(beam: Beam, laws: np.ndarray, deflection: np.ndarray) -> EndState:
-    """Whether a beam ends S-shaped, as an arc or free.
+    """Final state of a beam: S-shape, arc or free.
 
     ASSUME: at the end of its crack an arc has the slope 3h/2l of a cantilever on a simple support, an S-shape none; a
     beam is classified by the nearer of the two. The paper mentions S-shapes only.
@@ -135,7 +135,7 @@ def end_state(beam: Beam, laws: np.ndarray, deflection: np.ndarray) -> EndState:
 
 
 def released_beam(beam: Beam, laws: np.ndarray) -> ReleasedBeam:
-    """Release a beam from a crack that no place along it can arrest.
+    """Release a beam from a crack too short to be arrested at any place along it.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Elements that resolve the cracks on given force laws (Sec. III-C, App. C)."""
+"""Elements fine enough for the cracks on given force laws (Sec. III-C, App. C)."""
 
 from dataclasses import replace
 
@@ -15,7 +15,7 @@ ALONG_SHORTEST, SHORTEST = 4, 1 / 3
 
 
 def longest(beam: Beam, laws: np.ndarray) -> tuple[float, float]:
-    """Longest strip and longest element with which a beam resolves a crack on force laws (n, 4) [m]."""
+    """Longest strip and longest element to resolve a crack on force laws (n, 4) [m]."""
     foundation = foundation_length(beam, laws)
     shortest = SHORTEST * min(arrest_length(forcelaw.energy(laws).mean(), beam), beam.length)
     element = min(ELEMENT * foundation, shortest / ALONG_SHORTEST)

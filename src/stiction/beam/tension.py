@@ -1,4 +1,4 @@
-r"""A beam under constant axial tension N: its stiffness, its open part in closed form, its energy release rate.
+r"""Beam under constant axial tension N: its stiffness, its open part in closed form, its energy release rate.
 
 .. math:: EI u'''' - N u'' = q, \quad k = \sqrt{N / EI}
 
@@ -41,7 +41,7 @@ def end_stiffness(kl: float) -> tuple[float, float, float, float]:
 
 @kernel
 def add_tension(u: np.ndarray, band: np.ndarray, force: np.ndarray, pull: float, i: int) -> None:
-    """Add tension to force and stiffness of the element whose unknowns start at row ``i``; ``pull`` is N/l_e [N/m]."""
+    """Add tension to force and stiffness of the element with unknowns from row ``i``, for ``pull`` = N/l_e [N/m]."""
     n = pull / 30
     band[i, 0] += 36 * n
     band[i, 1] += 3 * n
@@ -65,7 +65,7 @@ def add_tension(u: np.ndarray, band: np.ndarray, force: np.ndarray, pull: float,
 def add_open_part_in_tension(
     u: np.ndarray, band: np.ndarray, force: np.ndarray, first: int, kl: float, stiffness: float, load: float
 ) -> None:
-    """Add the beam from the clamp to node ``first``, where kL is ``kl``, as one exact element.
+    """Add the beam from the clamp to node ``first``, at kL = ``kl``, as one exact element.
 
     ``stiffness`` is EI/l_e³ [N/m], ``load`` the uniform load times l_e [N].
     """
@@ -82,7 +82,7 @@ def add_open_part_in_tension(
 
 @kernel
 def fill_open_part_in_tension(u: np.ndarray, first: int, kl: float, stiffness: float, load: float) -> None:
-    """Deflect the nodes between the clamp and node ``first``; parameters as in `add_open_part_in_tension`, kL >= 0.03.
+    """Deflect the nodes between the clamp and node ``first``. Parameters as in `add_open_part_in_tension`, kL >= 0.03.
 
     The deflection is written about the middle of the open part, so that every hyperbolic function is divided by the
     largest one.
@@ -101,12 +101,12 @@ def fill_open_part_in_tension(u: np.ndarray, first: int, kl: float, stiffness: f
 
 
 def _coupling(crack, beam):
-    """Moment at the end of an S-shape in units of EI h / l², 6 without tension [-]; crack length l [m], any shape."""
+    """Moment at the end of an S-shape in units of EI h / l², 6 without tension [-]. Crack length l [m], any shape."""
     return np.vectorize(end_stiffness)(beam.decay * crack)[1]
 
 
 def release_rate(crack_length: float | np.ndarray, beam: Beam) -> float | np.ndarray:
-    r"""Energy release rate of an S-shape under tension [J m⁻²]; crack length s [m], any shape.
+    r"""Energy release rate of an S-shape under tension [J m⁻²]. Crack length s [m], any shape.
 
     .. math:: G = \frac{M^2}{2 w EI} = \frac{N h^2 \tanh^2 y}{2 w (s - (2/k) \tanh y)^2}, \quad y = \frac{ks}{2},
 
@@ -124,7 +124,7 @@ def release_rate(crack_length: float | np.ndarray, beam: Beam) -> float | np.nda
 
 
 def arrest_length(energy: float | np.ndarray, beam: Beam) -> float | np.ndarray:
-    """Crack length of an S-shape under tension at the adhesion energy Γ [J m⁻²], `release_rate` inverted; any shape."""
+    """Crack length of an S-shape under tension at the adhesion energy Γ [J m⁻²], inverse of `release_rate`."""
     pull = np.sqrt(2 * beam.width * energy / beam.bending_stiffness) / beam.gap
     crack = np.sqrt(6 / pull)
     for _ in range(_HALVINGS):

@@ -8,19 +8,19 @@ from stiction.kernels import kernel
 
 
 def unconstrained(vectors: np.ndarray) -> np.ndarray:
-    """Unbounded variables log e, log f_max, d_max, log(d_max - d_limit) of vectors v, (m, 4); Eq. (15) times σ."""
+    """Unbounded variables log e, log f_max, d_max, log(d_max - d_limit) of vectors v, (m, 4). Eq. (15) times σ."""
     e, f_max, d_max, d_limit = np.asarray(vectors, float).T
     return np.column_stack([np.log(e), np.log(f_max), d_max, np.log(d_max - d_limit)])
 
 
 def constrained(free: np.ndarray) -> np.ndarray:
-    """Inverse of `unconstrained`: vectors v (m, 4) that satisfy e > 0, f_max > 0 and d_max > d_limit."""
+    """Inverse of `unconstrained`: vectors v (m, 4) with e > 0, f_max > 0 and d_max > d_limit."""
     log_e, log_f_max, d_max, log_gap = free.T
     return np.array([np.exp(log_e), np.exp(log_f_max), d_max, d_max - np.exp(log_gap)]).T
 
 
 def dimension_error(variances: np.ndarray) -> np.ndarray:
-    """Share Err^DR of the variance that is lost if only 1, 2, ... coordinates are kept (4,) [-]."""
+    """Fraction Err^DR of the variance lost by keeping only 1, 2, ... coordinates (4,) [-]."""
     return np.append(np.cumsum(variances[:0:-1])[::-1], 0.0) / np.sum(variances)
 
 
@@ -80,7 +80,7 @@ def principal_coordinates(vectors: np.ndarray) -> PrincipalCoordinates:
 
 
 def _checked(vectors):
-    """Unbounded variables (m, 4) of vectors that satisfy the constraints."""
+    """Unbounded variables (m, 4) of vectors, after a check of the constraints."""
     e, f_max, d_max, d_limit = vectors.T
     bad = ~((e > 0) & (f_max > 0) & (d_max > d_limit) & np.isfinite(vectors).all(axis=1))
     if bad.any():

@@ -92,7 +92,7 @@ def _smooth(bins, taps, masses):
 
 @kernel
 def _invert(masses, start, step, probabilities, quantiles):
-    """Quantiles at increasing probabilities of a density that is linear within each cell, sloped as its neighbours."""
+    """Quantiles at increasing probabilities of a density linear within each cell, sloped as its neighbours."""
     cell, below = 1, masses[0]
     for i in range(probabilities.size):
         while below + masses[cell] < probabilities[i] and cell < masses.size - 2:
@@ -109,7 +109,7 @@ def _invert(masses, start, step, probabilities, quantiles):
 
 @kernel
 def _quantile_rows(given, centres, bandwidth, grid, taps, probabilities, rows):
-    """Fill ``rows`` (r, n) of `conditional_quantiles`; ``grid`` is (first node, step, number of nodes)."""
+    """Fill ``rows`` (r, n) of `conditional_quantiles` on a ``grid`` of (first node, step, number of nodes)."""
     start, step, count = grid
     coordinate, m = given.shape[1], centres.shape[1]
     squares, weights = np.zeros((coordinate + 1, m)), np.empty(m)

@@ -51,7 +51,7 @@ class ChaosModel:
 
     @property
     def truncation_error(self) -> np.ndarray:
-        """Share of the variance of each coordinate η that polynomials of this order do not represent (N_g,) [-]."""
+        """Fraction of the variance of each coordinate η not represented by polynomials of this order (N_g,) [-]."""
         return 1 - np.sum(self.coefficients[:, 1:] ** 2, axis=1)
 
     def __call__(self, xi: np.ndarray) -> np.ndarray:
@@ -89,7 +89,7 @@ def fit(vectors: np.ndarray, f_limit: float, order: int, tolerance: float) -> Ch
 
 
 def truncated(model: ChaosModel, order: int) -> ChaosModel:
-    """Model of lower total order; because the projection is orthogonal, this equals a new fit of that order."""
+    """Model of lower total order. It equals a new fit of that order, because the projection is orthogonal."""
     kept = model.indices.sum(axis=1) <= order
     coefficients = np.ascontiguousarray(model.coefficients[:, kept])
     return ChaosModel(model.coordinates, coefficients, model.indices[kept], model.f_limit)
@@ -121,12 +121,12 @@ def _accept(candidates: Callable[[int], tuple[np.ndarray, np.ndarray]], n: int) 
 
 
 def _judged(vectors, f_limit):
-    """Vectors and which of them are admissible, for `_accept`."""
+    """Vectors and their admissibility, for `_accept`."""
     return vectors, forcelaw.admissible(vectors, f_limit)
 
 
 def draw(model: ChaosModel, n: int, rng: np.random.Generator) -> tuple[np.ndarray, int]:
-    """Draw vectors v from the chaos model; those without a force law of Eq. (12) are rejected and redrawn.
+    """Draw vectors v from the chaos model. Those without a force law of Eq. (12) are rejected and redrawn.
 
     Returns
     -------
@@ -155,7 +155,7 @@ def _vectors(model, n, rng):
 
 
 def draw_kernels(model: ChaosModel, vectors: np.ndarray, n: int, rng: np.random.Generator) -> tuple[np.ndarray, int]:
-    """Draw vectors v from the kernel density underlying the chaos model; returns as `draw`.
+    """Draw vectors v from the kernel density underlying the chaos model. Returns as `draw`.
 
     ``vectors`` (m, 4) are the samples to which the model was fitted. The result is a reference without truncation
     error.

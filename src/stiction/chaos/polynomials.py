@@ -49,7 +49,7 @@ def legendre(points: np.ndarray, values: np.ndarray) -> None:
 
 
 def quadrature() -> tuple[np.ndarray, np.ndarray]:
-    """Points and weights for integrals over [0, 1] of functions with steep ends, such as quantiles; (NODES,) each.
+    """Points and weights for integrals over [0, 1] of functions with steep ends, such as quantiles, (NODES,) each.
 
     Gauss-Legendre in t with ξ = t²(3 - 2t), which concentrates the points at the ends, where quantiles diverge.
     With the same number of points in ξ itself the coefficients of a normal quantile would be 300 times less accurate.
@@ -127,7 +127,7 @@ def _add_products(factors, left, values, out):
 
 @kernel
 def _expand_block(xi, indices, coefficients, values, partial, eta):
-    """Sum Eq. (19) over a block; ``xi`` and ``eta`` are (N_g, _BLOCK), ``values`` and ``partial`` workspace.
+    """Sum Eq. (19) over a block: ``xi`` and ``eta`` (N_g, _BLOCK), with ``values`` and ``partial`` as workspace.
 
     The terms are summed in runs that differ in the last index only, 0, 1, ...; the product of the others is common.
     """
@@ -156,7 +156,7 @@ def _expand_block(xi, indices, coefficients, values, partial, eta):
 
 @kernel
 def _expand(xi, indices, coefficients, order, eta):
-    """Sum Eq. (19) at points (N_g, n), block by block; the last block is filled up with points that are not used."""
+    """Sum Eq. (19) at points (N_g, n), block by block. Unused points fill up the last block."""
     dimension, n = xi.shape
     points, part = np.zeros((dimension, _BLOCK)), np.empty((dimension, _BLOCK))
     values, partial = np.empty((dimension, order + 1, _BLOCK)), np.empty((dimension, _BLOCK))

@@ -1,1 +1,1 @@
-"""The command ``stiction``: it starts Snakemake, shows how far a run is, and says at the end where to look."""
+"""Command ``stiction``: start Snakemake, show the progress of a run, and say at the end where to look."""

@@ -1,4 +1,4 @@
-"""Schema for editors that complete and check YAML: of files that change single keys."""
+"""Schema for editors with completion and checks of YAML: for files of changed single keys."""
 
 import json
 from pathlib import Path
@@ -12,12 +12,12 @@ _OF_COMPLETE = ("required", "if", "else", "then", "allOf", "minProperties")
 
 
 def text() -> str:
-    """Schema of files that change single keys, as JSON for editors that complete and check YAML."""
+    """Schema of files of changed single keys, as JSON for editors with completion and checks of YAML."""
     return json.dumps(_reduced(schema()) | {"$schema": "http://json-schema.org/draft-07/schema#"}, indent=1) + "\n"
 
 
 def _reduced(entry):
-    """Part of the schema without what only a complete configuration must fulfil."""
+    """Part of the schema without demands on a complete configuration only."""
     if not isinstance(entry, dict):
         return entry
     kept = {name: value for name, value in entry.items() if name not in _OF_COMPLETE}

@@ -1,4 +1,4 @@
-"""What a run would compute and why, in words, from a dry run of Snakemake."""
+"""Jobs of a run and their reasons in words, from a dry run of Snakemake."""
 
 import ast
 import re
@@ -23,7 +23,7 @@ _CHANGED = re.compile(r"before: (.*?) now: (.*)", re.DOTALL)
 
 
 def explained(run: Run) -> Iterator[str]:
-    """Lines on what a run would compute and why, from all that a dry run has reported; the first counts the jobs."""
+    """Yield lines on the jobs of a run and their reasons, from all reports of a dry run. The first counts the jobs."""
     jobs = [job for job in run.jobs.values() if job.logs]  # the others only collect files
     if not jobs:
         yield "Nothing would be computed: all results are up to date."
@@ -37,7 +37,7 @@ def explained(run: Run) -> Iterator[str]:
 
 
 def _cost(jobs):
-    """CPU time and memory of jobs, for the end of a sentence; nothing if they are not known."""
+    """CPU time and memory of jobs, for the end of a sentence, or nothing if unknown."""
     seconds = sum(job.seconds for job in jobs)
     return f", {cost.in_words(seconds, max(job.megabytes for job in jobs))}" if seconds else ""
 
@@ -48,7 +48,7 @@ def counted(rules: Counter) -> str:
 
 
 def reasons(job: Job) -> Iterator[str]:
-    """Why a job runs, apart from jobs before it, in words."""
+    """Yield the reasons of a job in words, apart from jobs before it."""
     others, params, values = job.reason.partition("Params have changed")
     if params:  # also explains results that are missing because they were temporary
         yield changed(values)
@@ -59,7 +59,7 @@ def reasons(job: Job) -> Iterator[str]:
 
 
 def changed(reason: str) -> str:
-    """Which code or settings of a job changed, from the parameters that Snakemake prints."""
+    """Code or settings changed for a job, in words, from the parameters printed by Snakemake."""
     try:
         before, now = map(_merged, _CHANGED.search(reason).groups())
     except (AttributeError, SyntaxError, ValueError, TypeError):

@@ -1,4 +1,4 @@
-"""Front page of the report: the answer in words, what to open first, checks, warnings and provenance.
+"""Front page of the report: the answer in words, the first files to open, checks, warnings and provenance.
 
 Snakemake fills the page in as a template, with all that Jinja can do. Text of configurations, files and names is on the
 page only as characters: HTML shows it as it is, and Jinja finds no brace in it.
@@ -14,7 +14,6 @@ import yaml
 
 from stiction.config.cases import air
 from stiction.config.reading import paper
-from stiction.plan.graph import stages
 from stiction.report.format import with_error
 from stiction.report.html import rendered
 from stiction.run.markdown import plain
@@ -36,11 +35,11 @@ def front_page(results: Path) -> str:
     changes = differing(config, paper())
     page = rendered(
         "front.html",
-        subjects=" and ".join(_subjects(config)),
+        subjects=subjects(config),
         answers=answers(results, config),
         opened=_opened(results, config),
         checks=_text(results / "verdict.txt").strip() if config["run"]["pairs"] else None,
-        warnings=list(_warnings(results, config)),
+        warnings=list(warnings(results, config)),
         provenance=provenance(last, len(runs)),
         changes=yaml.safe_dump(changes, allow_unicode=True, sort_keys=False) if changes else "",
     )
@@ -61,25 +60,30 @@ def _text(path):
     return path.read_text(encoding="utf-8")
 
 
-def _subjects(config):
-    """Pairs and devices of a configuration."""
+def subjects(config: Mapping[str, Any]) -> str:
+    """Pairs and devices of a configuration in words."""
     named = {"pair": config["run"]["pairs"], "device": config.get("devices", {})}
-    return [f"{kind}{'s' * (len(names) > 1)} {', '.join(names)}" for kind, names in named.items() if names]
+    return " and ".join(f"{kind}{'s' * (len(names) > 1)} {', '.join(names)}" for kind, names in named.items() if names)
 
 
 def answers(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
-    """What the results say about every device and every pair, a sentence each."""
+    """Yield the results about every device and every pair, a sentence each."""
     for name in config.get("devices", {}):
         yield f"Device {name}: {_text(results / 'devices' / f'{name}.txt').splitlines()[0]}"
-    if not config["run"]["pairs"]:
-        return
-    rows = csv.DictReader(_text(results / "tables" / "table_3.csv").splitlines())
+    if config["run"]["pairs"]:
+        yield from pair_answers(results, config)
+
+
+def pair_answers(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
+    """Yield the ends of the beams of every pair, a sentence each, or nothing before Table III is computed."""
+    table = results / "tables" / "table_3.csv"
+    rows = csv.DictReader(_text(table).splitlines() if table.exists() else ())
     for pair, of_pair in groupby((row for row in rows if row["model"] == "NG"), lambda row: row["pair"]):
         yield cracks(pair, list(of_pair), config["beam"]["length_um"])
 
 
 def cracks(pair: str, rows: Sequence[Mapping[str, str]], length: float) -> str:
-    """How the beams of a pair end at each humidity, from their rows of Table III; length of the beams [µm].
+    """Ends of the beams of a pair at each humidity, from their rows of Table III, with the beams' length [µm].
 
     Examples
     --------
@@ -103,6 +107,8 @@ def _ends(row):
 
 def _opened(results, config):
     """Results to open first, by category and title in the menu of the report."""
+    from stiction.plan.graph import stages  # imports the physics
+
     devices = config.get("devices", {})
     for name in (*(_OF_DEVICES if devices else ()), *(_OF_PAIRS if config["run"]["pairs"] else ())):
         stage, _ = stages()[name]
@@ -112,11 +118,20 @@ def _opened(results, config):
                 yield f"{stage.shown.category} › {title.format(device=device)}"
 
 
-def _warnings(results, config):
+def warnings(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
     """Sentences about results beyond the limits of the model."""
+    return (item for page in warning_pages(results, config) for item in listed(_text(page)))
+
+
+def warning_pages(results: Path, config: Mapping[str, Any]) -> list[Path]:
+    """Pages of warnings about the pairs and devices of a configuration, as far as they have been written."""
     pages = {"warnings.md": config["run"]["pairs"], "devices/warnings.md": config.get("devices")}
-    lines = (line for page, subjects in pages.items() if subjects for line in _text(results / page).splitlines())
-    return (plain(line.removeprefix("- ")) for line in lines if line.startswith("- "))
+    return [results / page for page, subjects in pages.items() if subjects and (results / page).exists()]
+
+
+def listed(markdown: str) -> Iterator[str]:
+    """Items of the lists of a page in Markdown, as their characters."""
+    return (plain(line.removeprefix("- ")) for line in markdown.splitlines() if line.startswith("- "))
 
 
 def provenance(run: Mapping[str, Any], number: int) -> Iterator[str]:
@@ -135,7 +150,7 @@ def provenance(run: Mapping[str, Any], number: int) -> Iterator[str]:
 
 
 def differing(config: Mapping[str, Any], base: Mapping[str, Any]) -> dict[str, Any]:
-    """Keys of nested sections whose values differ from those of others.
+    """Keys of nested sections with other values than in another configuration.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""The last lines of a command, and its exit status."""
+"""Last lines of a command, and its exit status."""
 
 import csv
 import re
@@ -36,7 +36,7 @@ _MODULES = re.compile(r"\A(?:\w+\.)+(?=\w+:)")
 
 
 def status(run: Run, code: int, stopped: bool) -> Status:
-    """Exit status of a run of Snakemake that ended with a code."""
+    """Exit status of a run, from Snakemake's code."""
     if stopped:
         return Status.STOPPED
     if code == 0:
@@ -50,7 +50,7 @@ def status(run: Run, code: int, stopped: bool) -> Status:
 def last_lines(
     run: Run, ended: Status, directory: Path, printed: str = "", targets: Sequence[str] = ()
 ) -> Iterator[str]:
-    """What a user reads at the end of a run in a folder.
+    """Yield the last lines for a user at the end of a run in a folder.
 
     ``printed`` is what Snakemake printed last, for errors that it does not report otherwise. Figures and tables with
     the name of a target, which may contain wildcards of the shell, come first.
@@ -78,7 +78,7 @@ def fault(log: Path) -> Iterator[str]:
 
 
 def shown(path: Path) -> Path:
-    """A path relative to the present folder, if it is below it, else from the root.
+    """Path relative to the present folder, if below it, else from the root.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def shown(path: Path) -> Path:
 
 
 def _finished(run):
-    """That a run has finished, and how long it took."""
+    """Report the end of a run and its duration."""
     if run.up_to_date:
         return "Nothing to do: all results are up to date."
     spent = {rule: sum(seconds) for rule, seconds in run.seconds.items()}
@@ -110,6 +110,8 @@ def where_to_look(results: Path, targets: Sequence[str] = ()) -> Iterator[str]:
     tables = [*(f"tables/{name}.md" for name in targets), *_TABLES]
     if first := [*_first(results, pages), *_first(results, tables)]:
         yield f"Open first: {' and '.join(map(str, first))}."
+    if (results / "index.html").exists():
+        yield f"All results: {results / 'index.html'}; stiction show opens it."
 
 
 def _warnings(page):
@@ -118,13 +120,13 @@ def _warnings(page):
 
 
 def _first(results, patterns):
-    """The first file that matches the first pattern that any file matches; empty if there is none."""
+    """First file for the first pattern with any file, empty without one."""
     matching = (sorted(results.glob(pattern)) for pattern in patterns)
     return next(filter(None, matching), [])[:1]
 
 
 def _failed_checks(results):
-    """The first check that failed, and where the others are."""
+    """Yield the first failed check, and the place of the others."""
     with (results / "checks.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     failed = [row for row in rows if row["passed"] != "True"]
@@ -133,7 +135,7 @@ def _failed_checks(results):
 
 
 def _failed(jobs: list[Job], directory: Path) -> Iterator[str]:
-    """What went wrong in the first job that failed, and its log."""
+    """Yield the error of the first failed job, and its log."""
     first, logs = jobs[0], list(_existing(jobs[0].logs, directory))
     others = f" (and {len(jobs) - 1} more)" if len(jobs) > 1 else ""
     yield f"failed: {first.message}{others}"
@@ -147,14 +149,14 @@ def _failed(jobs: list[Job], directory: Path) -> Iterator[str]:
 
 
 def _existing(logs: Iterable[str], directory: Path) -> Iterator[Path]:
-    """Those logs that exist; their paths are relative to the folder of the run."""
+    """Yield existing logs. Their paths are relative to the folder of the run."""
     for log in logs:
         if (directory / log).is_file():
             yield shown(directory / log)
 
 
 def sentence(log: Path) -> str:
-    """The error with which a log ends, without its traceback; empty if the log holds none."""
+    """Error at the end of a log, without its traceback, or nothing."""
     lines = log.read_text(encoding="utf-8", errors="replace").splitlines()
     frames = [number for number, text in enumerate(lines) if text.startswith("  File ")]
     last = (text for text in lines[frames[-1] :] if not text.startswith("  ")) if frames else ()

@@ -24,7 +24,7 @@ _SPECIAL = set(" '\"&;|<>`*?[]()\\!")
 
 
 class RefusedError(Exception):
-    """A sentence on why nothing was started."""
+    """Refusal to start, in a sentence."""
 
 
 def require_snakemake() -> None:
@@ -42,14 +42,14 @@ def require_snakemake() -> None:
 
 
 def require_folder(directory: Path) -> None:
-    """Raise an error if the folder of a run, or that of its results, is something else."""
+    """Raise an error if the folder of a run, or of its results, is something else."""
     for path in (directory / "results", directory, *directory.absolute().parents):
         if os.path.lexists(path) and not path.is_dir():
             raise RefusedError(f"{path} is no folder: move it away, or choose another --directory")
 
 
 def words(configs: Sequence[str], directory: str, arguments: Sequence[str]) -> list[str]:
-    """Arguments of Snakemake: files that change single keys of the paper's configuration, and the folder of the run.
+    """Arguments of Snakemake: files with changed keys of the paper's configuration, and the folder of the run.
 
     Targets and further options come last, where none of the options before takes them for its values.
     """
@@ -58,7 +58,7 @@ def words(configs: Sequence[str], directory: str, arguments: Sequence[str]) -> l
 
 
 def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: bool) -> tuple[int, bool]:
-    """Run Snakemake in a folder, with arguments from `words`; it reports to `stiction.command.run_state.RUN`.
+    """Run Snakemake in a folder, with arguments from `words`. It reports to `stiction.command.run_state.RUN`.
 
     A quiet one keeps in a file everything that Snakemake and its jobs print as errors; ``progress`` shows one line
     instead.
@@ -75,6 +75,7 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
     stopped = []
 
     def interrupt(*received):
+        """Note the interrupt, and pass it on."""
         stopped.append(received)
         warnings.filterwarnings("ignore", "coroutine .* was never awaited", RuntimeWarning)  # of jobs about to start
         signal.default_int_handler(*received)
@@ -96,7 +97,7 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
 
 
 def _code(program, arguments):
-    """Exit status of a program that ends as ``sys.exit`` does, or by Ctrl-C or SIGTERM."""
+    """Exit status of a program after its end by ``sys.exit``, Ctrl-C or SIGTERM."""
     try:
         program(list(map(str, arguments)))
     except SystemExit as end:
@@ -108,7 +109,7 @@ def _code(program, arguments):
 
 @contextlib.contextmanager
 def _kept_errors(directory: Path) -> Iterator[TextIO]:
-    """Let this process and those that it starts write errors to a file; yields what standard error was before."""
+    """Let this process and its children write errors to a file. Yields the former standard error."""
     sys.stderr.flush()
     with opened(directory / PRINTED) as file, os.fdopen(os.dup(2), "w") as terminal:
         os.dup2(file.fileno(), 2)
@@ -120,7 +121,7 @@ def _kept_errors(directory: Path) -> Iterator[TextIO]:
 
 
 def opened(path: Path) -> TextIO:
-    """New file for what is printed; one without a name if the folder cannot be written, which the run then reports."""
+    """New file for printed text, without a name if the folder cannot be written. The run then reports this."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         return path.open("w")
@@ -129,7 +130,7 @@ def opened(path: Path) -> TextIO:
 
 
 def printed_last(directory: Path) -> str:
-    """Last line that Snakemake or one of its jobs has printed; empty if there is none."""
+    """Last line printed by Snakemake or one of its jobs, or nothing."""
     with contextlib.suppress(OSError):
         lines = (directory / PRINTED).read_text(encoding="utf-8", errors="replace").split("\n")
         return next(filter(None, map(str.strip, reversed(lines))), "")

@@ -1,4 +1,4 @@
-"""The command line: ``stiction COMMAND [FILE ...] [OPTIONS] [-- ARGUMENTS OF SNAKEMAKE]``."""
+"""Command line: ``stiction COMMAND [FILE ...] [OPTIONS] [-- ARGUMENTS OF SNAKEMAKE]``."""
 
 import argparse
 import os
@@ -75,12 +75,13 @@ def _parser():
     _add(commands, "scans", _scans, "evaluate scans alone: sheets, statistics and warnings", files="+")
     _add(commands, "figures", _figures, "draw the figures", files="*")
     _add(commands, "report", _report, "put the results into one file, results/report.html", files="*")
+    _add(commands, "show", _show, "open the index of the results, results/index.html", files=None)
     _add(commands, "explain", _explain, "say what would be computed, and why", files="*")
     return parser
 
 
 class _Version(argparse.Action):
-    """Shows the version, which takes an import of its own."""
+    """Shows the version. This takes an import of its own."""
 
     def __call__(self, parser, *_):
         from importlib import metadata
@@ -103,7 +104,7 @@ def _add(commands, name: str, run: Callable, purpose: str, files: str | None):
         added.add_argument(
             "--test-beams", action="store_true", help="write test_beams.csv, a table of single test beams"
         )
-    if run not in (_init, _check):
+    if run not in (_init, _check, _show):
         added.add_argument("--cores", "-c", metavar="N", help="number of jobs at the same time (default: all cores)")
         added.add_argument("--dry-run", "-n", action="store_true", help="only say what would be computed")
         added.add_argument("--verbose", "-v", action="store_true", help="show everything that Snakemake prints")
@@ -135,7 +136,7 @@ def _init_test_beams(target):
 
 
 def _write(contents):
-    """Write new files from texts, or from the files that hold them; a file of the same content remains."""
+    """Write new files from texts, or from files with them. A file of the same content remains."""
     texts = {target: _text(content) for target, content in contents.items()}
     missing = {target: text for target, text in texts.items() if not (target.is_file() and _text(target) == text)}
     if there := [target for target in missing or texts if os.path.lexists(target)]:
@@ -151,7 +152,7 @@ def _write(contents):
 
 
 def _text(content):
-    """Text itself, or that of a file."""
+    """Text itself, or a file's."""
     return content if isinstance(content, str) else content.read_text(encoding="utf-8", errors="replace")
 
 
@@ -222,7 +223,7 @@ def _run(arguments, *targets):
 
 
 def _devices(arguments):
-    """Run what devices need."""
+    """Run the jobs of devices."""
     arguments.files = arguments.files or [str(launch.WORKFLOW / "examples" / "devices.yaml")]
     if not any(content.get("devices") for content in reading.contents(arguments.files, arguments.more)):
         raise launch.RefusedError(f"{' '.join(arguments.files)} describes no devices: add a section devices")
@@ -282,8 +283,27 @@ def _report(arguments):
     return ended
 
 
+def _show(arguments):
+    """Write the index of the present results, name it, and open it if there is a display."""
+    import webbrowser
+
+    from stiction.command import index  # imports the libraries for numbers
+
+    results = Path(arguments.directory) / "results"
+    try:
+        page = index.write_for_last_run(results)
+    except ValueError as damaged:
+        raise launch.RefusedError(str(damaged)) from None
+    if page is None:
+        raise launch.RefusedError(f"there are no results in {results}: run stiction paper or stiction run FILE first")
+    say(str(page))
+    if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
+        webbrowser.open(page.resolve().as_uri())
+    return Status.DONE
+
+
 def _explain(arguments):
-    """Say what would be computed, and why."""
+    """Say the jobs of a run and their reasons."""
     arguments.dry_run = True
     return _run(arguments)
 

@@ -7,7 +7,7 @@ from typing import TextIO
 
 
 def open_closed() -> None:
-    """Open standard streams that are closed as the null device, before other files take their numbers."""
+    """Open closed standard streams as the null device, before other files take their numbers."""
     for number, name, mode in ((0, "stdin", "r"), (1, "stdout", "w"), (2, "stderr", "w")):
         try:
             os.fstat(number)
@@ -18,7 +18,7 @@ def open_closed() -> None:
 
 
 def put(text: str, stream: TextIO) -> OSError | None:
-    """Write a text at once, and return the error if that is not possible; all that follows is then lost."""
+    """Write a text at once, and return the error if this is not possible. All later text is then lost."""
     try:
         stream.write(text)
         stream.flush()

@@ -1,4 +1,4 @@
-"""Progress of a run: one line that is drawn again on a terminal, and few lines otherwise."""
+"""Progress of a run: one line drawn again and again on a terminal, and few lines otherwise."""
 
 import shutil
 import threading
@@ -17,7 +17,7 @@ _START = "loading; after an installation, compiling for a minute"
 
 
 class Display:
-    """Line about a run: drawn again every second on a terminal until `close`; a file gets a line from time to time."""
+    """Line about a run: drawn again every second on a terminal until `close`. A file gets a line from time to time."""
 
     def __init__(self, run: Run, stream: TextIO):
         self._run, self._stream = run, stream
@@ -33,7 +33,7 @@ class Display:
             self._write(f"{_ABOVE}{line(self._run, time.time())[:width]}")
 
     def __call__(self, now: float) -> None:
-        """Write once what budgets cost, and to a file a line about the run, unless this was done a moment ago."""
+        """Write once the cost of budgets, and to a file a line about the run, unless this was done a moment ago."""
         if self._run.planned and not self._told:
             self._told = True
             self._write("".join(f"{_ABOVE if self._clock else ''}{text}\n" for text in costs(self._run)))
@@ -53,7 +53,7 @@ class Display:
 
 
 def line(run: Run, now: float) -> str:
-    """How far a run is, in one line: jobs, time left, and the job that started last."""
+    """Progress of a run in one line: jobs, time left, and the latest job."""
     left = run.seconds_left(now)
     remaining = "" if left is None else f", about {duration(left)} left"
     jobs = list(run.jobs.values())  # another thread adds jobs
@@ -62,10 +62,10 @@ def line(run: Run, now: float) -> str:
 
 
 def costs(run: Run) -> Iterator[str]:
-    """What the budgets of a run cost, before it has computed anything; nothing without budgets."""
+    """Yield the cost of the budgets of a run, before it computes anything, or nothing without budgets."""
     if number := sum(run.planned[rule] for rule in run.budgets):
         yield (
-            f"{number} of {run.total} jobs are for budgets, which say what to measure better. Without them: stiction "
+            f"{number} of {run.total} jobs are for budgets: advice on what to measure better. Without them: stiction "
             "run FILE -- results/tables/safe_lengths.md (of stoppers: results/tables/stoppers.md)"
         )
 

@@ -1,4 +1,4 @@
-"""What a run of Snakemake has reported so far: its jobs, the time they take, and what went wrong.
+"""Reports of a run of Snakemake so far: its jobs, their time, and errors.
 
 Snakemake reports by records of the standard library's ``logging``, whose attribute ``event`` names the kind of report.
 """
@@ -25,7 +25,7 @@ _BUDGETS = {
 
 
 def is_fault(kind: str, *expected: type[Exception]) -> bool:
-    """Whether an exception, by the name of its class, is an error of the code: built in and none that is expected.
+    """Whether an exception, by the name of its class, is an error of the code: built in and not an expected one.
 
     Examples
     --------
@@ -39,7 +39,7 @@ def is_fault(kind: str, *expected: type[Exception]) -> bool:
 
 @dataclass(frozen=True)
 class Job:
-    """One job."""
+    """One job of a run."""
 
     rule: str
     message: str  #: what the job does, in words
@@ -52,7 +52,7 @@ class Job:
 
 @dataclass
 class Run:
-    """A run, from the reports of Snakemake.
+    """Run, from the reports of Snakemake.
 
     Attributes
     ----------
@@ -103,16 +103,16 @@ class Run:
 
     @property
     def total(self) -> int:
-        """Number of jobs that this run needs."""
+        """Number of jobs of this run."""
         return self.planned.total()
 
     @property
     def budgets(self) -> set[str]:
-        """Rules of this run whose jobs serve budgets alone."""
+        """Rules of this run with jobs for budgets alone."""
         return _BUDGETS & self.planned.keys() - ({"slope_contact"} if "slopes" in self.planned else set())
 
     def hear(self, record: LogRecord) -> None:
-        """Follow one report of Snakemake; reports of unknown kinds are left out."""
+        """Follow one report of Snakemake. Reports of unknown kinds are left out."""
         event = getattr(record, "event", None)
         self.last = record.created
         self.started = record.created if self.started is None else self.started
@@ -124,7 +124,7 @@ class Run:
             self.changed(record.created)
 
     def _hear_text(self, record):
-        """A sentence without a kind."""
+        """Note a report without a kind."""
         text = str(record.msg)
         self.up_to_date |= text.startswith("Nothing to be done")
         if record.levelno == WARNING:
@@ -135,7 +135,7 @@ class Run:
         self.planned = Counter({rule: int(number) for rule, number in record.stats.items() if rule != "total"})
 
     def _hear_start(self, record):
-        """A job starts, perhaps for the second time."""
+        """Note the start of a job, perhaps its second."""
         logs = tuple(map(str, record.log))
         message = " ".join(str(record.rule_msg or record.rule_name).split())
         asked = getattr(record, "resources", None) or {}
@@ -144,18 +144,18 @@ class Run:
         self.failures.pop(record.jobid, None)
 
     def _hear_end(self, record):
-        """A job has finished."""
+        """Note the end of a job."""
         self.ended = record.created
         job = self.jobs[record.job_id]
         self.seconds.setdefault(job.rule, []).append(record.created - job.started)
 
     def _hear_failure(self, record):
-        """A job has failed; its logs include that of a cluster."""
+        """Note the failure of a job. Its logs include the cluster's."""
         job = self.jobs.get(record.jobid, Job(record.rule_name, record.rule_name, "", (), record.created))
         self.failures[record.jobid] = replace(job, logs=tuple(map(str, record.log)))
 
     def _hear_error(self, record):
-        """An error of the run itself; that of a command which a run starts says less than what the command printed."""
+        """Note an error of the run itself. For a command started by a run, the command's own output says more."""
         kind = getattr(record, "exception", "")
         if kind != "CalledProcessError":
             said = _ORIGIN.sub("", str(record.msg)).strip()
@@ -165,7 +165,7 @@ class Run:
             self.refusal = f"{kind}: {said}" if self.fault else said
 
     def seconds_left(self, now: float) -> float | None:
-        """Estimate of the time that the run still takes [s]; ``None`` while too little is known, or when it is over.
+        """Estimate of the time left [s], ``None`` while too little is known, or at the end.
 
         A job is expected to take as long as the finished jobs of its rule, or else as long as all jobs so far. The
         speed is that of the run until a job finished last, so that the estimate includes the number of cores.
@@ -178,7 +178,7 @@ class Run:
         return left if left >= 0 else None
 
     def _expected(self, mean):
-        """Time that all jobs take that have not finished [s]; the mean is for rules of which no job has finished."""
+        """Time of all unfinished jobs [s]. The mean is for rules without a finished job."""
         spent = ((number, self.seconds.get(rule, ())) for rule, number in self.planned.items())
         return sum((number - len(times)) * (sum(times) / len(times) if times else mean) for number, times in spent)
 

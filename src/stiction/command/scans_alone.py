@@ -1,4 +1,4 @@
-"""Scans without anything that is simulated: a configuration of their surfaces alone, and sheets of those refused."""
+"""Scans without a simulation: a configuration of their surfaces alone, and sheets of refused ones."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -32,7 +32,7 @@ class Alone:
 
 
 def alone(overlays: Iterable[str], directory: Path) -> Alone:
-    """Surfaces that files of a configuration describe by scans, each with the files that can be evaluated.
+    """Surfaces described by scans in files of a configuration, each with its usable files.
 
     Raises
     ------
@@ -55,12 +55,12 @@ def alone(overlays: Iterable[str], directory: Path) -> Alone:
 
 
 def _entry(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """Section of a surface without its material, which scans do not need."""
+    """Section of a surface without its material. Scans do not need it."""
     return {key: value for key, value in entry.items() if key != "material"}
 
 
 def draw_refused(name: str, entry: Mapping[str, Any], reasons: Sequence[str], results: Path) -> Path:
-    """Draw the sheet of a surface that cannot be estimated, with the map of its first scan if one can be read."""
+    """Draw the sheet of a surface without an estimate, with the map of its first scan if one is readable."""
     from stiction.config.scans import readable
     from stiction.report.scans.figures import refused_sheet
     from stiction.report.style import save

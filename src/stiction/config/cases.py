@@ -1,4 +1,4 @@
-"""Names of cases, which are used in file names, and the word ``dry`` for air from which no water condenses.
+"""Names of cases, used in file names, and the word ``dry`` for air without condensation of water.
 
 Dry air has the humidity 0 in the code. It has no water at all, which is not a film that becomes thinner and thinner.
 """
@@ -28,7 +28,7 @@ NAMEABLE = "have at most 4 decimals, because the names of files contain them"
 
 
 class PairInAir(str):
-    """Name of the contact of a pair: that of the pair, or one of its own in air in which the summits differ.
+    """Name of the contact of a pair: the pair's, or another in air with other summits.
 
     Examples
     --------
@@ -39,7 +39,7 @@ class PairInAir(str):
 
     @classmethod
     def in_dry_air(cls, pair: str) -> "PairInAir":
-        """Contact of a pair in dry air, whose summits attract each other through air."""
+        """Contact of a pair in dry air. Its summits attract each other through air."""
         return cls(pair + _OF_DRY)
 
     @property
@@ -49,7 +49,7 @@ class PairInAir(str):
 
     @property
     def medium(self) -> str | None:
-        """Medium through which its summits attract each other, if not that of the configuration."""
+        """Medium of the attraction between its summits, if not the configuration's."""
         return DRY if self.endswith(_OF_DRY) else None
 
 
@@ -79,7 +79,7 @@ class Case(str):
 
 @cache
 def _parts(case):
-    """Pair and humidity of a case, the inverse of `case_id`; a plan asks for them ten times for each job."""
+    """Pair and humidity of a case, the inverse of `case_id`. A plan asks for them ten times for each job."""
     pair, _, digits = case.removesuffix(_OF_DRY).partition("_rh0")
     valid = re.fullmatch(CASE, case)
     humidity = float(f"0.{digits or 0}") if valid else 0.0
@@ -113,7 +113,7 @@ def case_id(pair: str, humidity: float | str) -> Case:
 
 
 def in_numbers(value: Any, key: str = "humidity", levels: int = _LEVELS) -> Any:
-    """Humidity, or configuration with its humidities, in which 0 replaces the word ``dry``; ``key`` is that of a value.
+    """Humidity, or configuration with its humidities, with 0 for the word ``dry``. ``key`` is the value's.
 
     Values below more levels of sections and lists than any humidity has are left as they are.
 
@@ -130,7 +130,7 @@ def in_numbers(value: Any, key: str = "humidity", levels: int = _LEVELS) -> Any:
 
 
 def in_words(value: Any, path: Sequence[str | int]) -> Any:
-    """Value of a key, for messages: humidities of 0 are those that a user calls dry.
+    """Value of a key, for messages: a humidity of 0 is called dry.
 
     Examples
     --------
@@ -158,7 +158,7 @@ def air(humidity: float) -> str:
 
 
 def in_air(humidity: float) -> str:
-    """Where something is, as a part of a sentence; parameter as of `air`.
+    """Place in air, as a part of a sentence. Parameter as of `air`.
 
     Examples
     --------
@@ -169,6 +169,6 @@ def in_air(humidity: float) -> str:
 
 
 def decimals(humidity: float) -> str | None:
-    """Humidity with two to four decimals as text; ``None`` if four decimals are not exact."""
+    """Humidity with two to four decimals as text, or ``None`` if four decimals are not exact."""
     texts = (f"{humidity:.{places}f}" for places in (2, 3, 4))
     return next((text for text in texts if float(text) == humidity), None)

@@ -1,4 +1,4 @@
-"""What relations between keys read: the values of a configuration by dotted key; and the problems that they report."""
+"""Access of relations to keys: values of a configuration by dotted key, and reported problems."""
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
@@ -11,14 +11,14 @@ from stiction.config.messages import Problem, dotted, shown
 
 
 class Unknown(LookupError):
-    """A key that is not given, or is wrong on its own: what depends on it is not checked."""
+    """Key not given, or wrong on its own. Relations on it are not checked."""
 
 
 class Relations(list):
-    """Generators of refusals of values; also the decorator that adds them."""
+    """Generators of refusals of values. Also the decorator to add them."""
 
     def __call__(self, relation: Callable) -> Callable:
-        """Add a generator of keys, refusals of their values or ``None``, and other keys on whose values that depends.
+        """Register a relation. It yields a key, its refusal or ``None``, and other keys behind the refusal.
 
         It takes `Keys` and ends where it reads a key that is unknown.
         """
@@ -26,7 +26,7 @@ class Relations(list):
         return relation
 
     def problems(self, config: "Keys") -> Iterator[Problem]:
-        """Violated relations between keys that are valid on their own."""
+        """Yield violated relations between keys valid on their own."""
         for relation in self:
             with suppress(Unknown):
                 for key, refusal, *given in relation(config):
@@ -51,14 +51,14 @@ class Keys:
     origins: dict[tuple, tuple] = field(default_factory=dict)  #: paths and values that users stated, by what follows
 
     def __getitem__(self, key: str) -> Any:
-        """Value of a key; raises `Unknown` if it is not given, or wrong on its own, as a whole or in part."""
+        """Value of a key. Raises `Unknown` if it is not given, or wrong on its own, as a whole or in part."""
         path = _path(key)
         if any(path[: len(fault)] == fault[: len(path)] for fault in self.faults):
             raise Unknown(key)
         return self._value(path)
 
     def names(self, section: str) -> list[str]:
-        """Names in a section or indices of a list, also of wrong entries; raises `Unknown` if it is wrong itself."""
+        """Names in a section or indices of a list, also of wrong entries. Raises `Unknown` if it is wrong itself."""
         path = _path(section)
         if any(path[: len(fault)] == fault for fault in self.faults):
             raise Unknown(section)
@@ -70,7 +70,7 @@ class Keys:
         )
 
     def known(self, *keys: str) -> Iterator[tuple[str, Any]]:
-        """Those of some keys that are known, with their values."""
+        """Yield (key, value) for every valid key."""
         for key in keys:
             with suppress(Unknown):
                 yield key, self[key]
@@ -81,7 +81,7 @@ class Keys:
             yield from self.known(*(f"{listed}.{index}" for index in self.names(listed)))
 
     def entries(self, section: str, *keys: str) -> Iterator[tuple]:
-        """Name of every entry of a section of which all these keys are known, and their values."""
+        """Yield the name of every entry of a section with all these keys valid, and their values."""
         with suppress(Unknown):
             for name in self.names(section):
                 values = dict(self.known(*(f"{section}.{name}.{key}" for key in keys)))
@@ -89,11 +89,11 @@ class Keys:
                     yield name, *values.values()
 
     def scanned(self, *surfaces: str) -> list[str]:
-        """Keys of those surfaces that are measured, for which a problem states the files of their scans."""
+        """Keys of measured surfaces. A problem with them names the files of their scans."""
         return [f"surfaces.{name}.rms_nm" for name in self.files if name in surfaces]
 
     def problem(self, key: str, message: str, *given: str) -> Problem:
-        """Problem with a key, and the other keys on whose values that depends."""
+        """Problem with a key, and the other keys behind it."""
         path, value = self._stated(key)
         follows = path[0] == "surfaces" and path != _path(key) and value != self[key]
         number = f", which gives {_path(key)[-1]} = {self[key]:.4g}" if follows else ""

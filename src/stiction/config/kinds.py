@@ -1,4 +1,4 @@
-"""Kinds of devices: which keys each has, where it sticks, and what may hold it.
+"""Kinds of devices: their keys, their places of contact, and the parts able to stick.
 
 All other code asks the object of a kind, never its name: a new kind is an entry of `KINDS` and of the schema. How the
 beams of a kind open is in `stiction.stages.devices.opening.BEAMS`.
@@ -30,7 +30,7 @@ KEYS = {
 
 
 class Roughness(NamedTuple):
-    """A quantity of a surface over which a device is computed."""
+    """Varied quantity of a surface, the axis of a computation."""
 
     words: str  #: what it is called
     unit: str  #: with a space before it; empty without a unit
@@ -47,7 +47,7 @@ ROUGHNESSES = {
 
 @dataclass(frozen=True, kw_only=True)
 class Kind:
-    """What distinguishes the devices of one kind from others."""
+    """Differences between the devices of one kind and others."""
 
     words: str  #: what it is
     keys: tuple[str, ...]  #: that it must have, of `KEYS`
@@ -59,11 +59,11 @@ class Kind:
 
     @property
     def known(self) -> tuple[str, ...]:
-        """All keys that it may have."""
+        """All keys allowed for it."""
         return (*COMMON, *self.keys, *chain.from_iterable(self.ways), *self.optional)
 
     def refusal(self, keys: Collection[str]) -> str | None:
-        """What is wrong with the keys of a device as the end of a sentence: one is missing or of another kind.
+        """Refusal of the keys of a device, one missing or of another kind, as the end of a sentence.
 
         Examples
         --------
@@ -84,7 +84,7 @@ class Kind:
         return self.longest_strip < math.inf
 
     def strip(self, device: Mapping, of_pairs: float) -> float:
-        """Length of the strips along a beam [µm]: as its section states, or that of pairs, or shorter.
+        """Length of the strips along a beam [µm]: from its section, or the pairs', or shorter.
 
         Examples
         --------
@@ -94,7 +94,7 @@ class Kind:
         return device.get("strip_um", min(of_pairs, self.longest_strip))
 
     def sides(self, device: Mapping, of_pairs: float) -> tuple[float, float]:
-        """Sides of the patch on which it sticks [µm]: of a strip along a beam, or of the whole area of a stopper."""
+        """Sides of its patch of contact [µm]: of a strip along a beam, or of the whole area of a stopper."""
         return (self.strip(device, of_pairs), device["width_um"]) if self.is_beam else tuple(device["contact_um"])
 
 
@@ -103,13 +103,13 @@ KINDS = {
     "cantilever": Kind(
         words="beam clamped at one end",
         keys=("thickness_um", "gap_um", "width_um"),
-        optional=("length_um", "strip_um", "chart"),
+        optional=("length_um", "strip_um", "chart", "dimples"),
         has_tip=True,
     ),
     "bridge": Kind(
         words="beam clamped at both ends",
         keys=("thickness_um", "gap_um", "width_um", "residual_stress_MPa"),
-        optional=("length_um", "strip_um", "chart"),
+        optional=("length_um", "strip_um", "chart", "dimples"),
         # ASSUME: strips of 0.5 µm resolve the middle of a bridge, which is held on 2 to 6 µm. Shorter ones hold more:
         # on pair b (t = h = 2 µm, 50 MPa, p = 0.001), 0.25, 0.5 and 1.5 µm give 233, 236 and 242 µm at RH 0.44, 176,
         # 175 and 181 µm at 0.67, 112.2, 112.2 and 113.2 µm at 0.92, with standard errors of about 1 %. Windows of one
@@ -120,7 +120,7 @@ KINDS = {
         words="stopper",
         keys=("contact_um",),
         ways=(("restoring_force_uN",), ("stiffness_N_per_m", "gap_um")),
-        optional=("mass_ng", "electrode"),
+        optional=("mass_ng", "electrode", "tilt_deg"),
         is_beam=False,
     ),
 }
@@ -134,7 +134,7 @@ def kind_of(device: Mapping) -> Kind:
 
 
 def restoring_force(stopper: Mapping) -> float:
-    """Force that pulls a stopper off [µN]: as its section states, or that of its spring, deflected by the gap.
+    """Force to pull a stopper off [µN]: from its section, or of its spring, deflected by the gap.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Materials of the surfaces of a configuration: what it states of them, and Hamaker constants."""
+"""Materials of the surfaces of a configuration: their stated properties, and Hamaker constants."""
 
 from typing import Any
 
@@ -12,13 +12,13 @@ def material_of(config: dict[str, Any], surface: str) -> dict[str, Any]:
 
 
 def hamaker_constants(material: dict) -> dict[str, float]:
-    """Hamaker constant of two bodies of a material by medium [zJ]: as stated, or that of polysilicon."""
+    """Hamaker constant of two bodies of a material by medium [zJ]: as stated, or polysilicon's."""
     polysilicon = {medium: from_si(constant, "zJ") for medium, constant in HAMAKER_CONSTANT.items()}
     return material.get("hamaker_constant_zJ", polysilicon)
 
 
 def hamaker_constant(material: dict, medium: str) -> float:
-    """That through a medium [zJ]; without van der Waals forces, where none acts, that through dry air.
+    """Hamaker constant through a medium [zJ]. Without van der Waals forces it is the one through dry air.
 
     Examples
     --------

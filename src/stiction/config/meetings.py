@@ -1,4 +1,4 @@
-"""Relations that hold wherever two surfaces meet: in pairs that run, in devices, and in test beams in their place."""
+"""Relations for all places of contact: pairs in the run, devices, and test beams in their place."""
 
 import math
 from collections.abc import Iterator
@@ -20,12 +20,12 @@ from stiction.rounding import is_at_most
 #: Relations between what meets, its gaps and the air between.
 relation = Relations()
 
-TEMPERATURE = "water.temperature_K"
+TEMPERATURE, ADSORBED = "water.temperature_K", "water.adsorbed_nm"
 
 
 @dataclass(frozen=True)
 class Meeting:
-    """Two surfaces that meet, over some gaps and in some air."""
+    """Two surfaces in contact, over some gaps and in some air."""
 
     config: Keys
     pair: str  #: need not be defined
@@ -36,27 +36,27 @@ class Meeting:
     deviation: str = ""  #: key of the uncertainty of the humidities
 
     def given(self, *more: str) -> list[str]:
-        """List the keys on which a refusal depends, ``more`` among them."""
+        """List the keys behind a refusal, ``more`` among them."""
         return [*self.asked, *more, *self.stated]
 
     @cached_property
     def surfaces(self) -> list[str | None]:
-        """Names of both surfaces, which need not be defined."""
+        """Names of both surfaces, not necessarily defined."""
         return surfaces_of(self.pair, self.config)
 
     @cached_property
     def sides(self) -> list[dict]:
-        """Sections of both surfaces; empty if one is not defined or has no numbers (yet)."""
+        """Sections of both surfaces. Empty if one is not defined or has no numbers (yet)."""
         return sides_of(*self.surfaces, self.config["surfaces"])
 
     @cached_property
     def materials(self) -> list[dict]:
-        """Stated properties of the material of each surface; empty for the solid of both bodies."""
+        """Stated properties of the material of each surface. Empty for the solid of both bodies."""
         sections = [self.config["surfaces"].get(name, {}) for name in self.surfaces]
         return [self.config["materials"].get(section.get("material"), {}) for section in sections]
 
     def wetting(self, more: float = 0) -> tuple[float, ...]:
-        """Contact angles [rad]; empty without surfaces or without water, which other relations report.
+        """Contact angles [rad], empty without surfaces or without water. Other relations report these.
 
         ``more`` degrees are added to both angles.
         """
@@ -65,7 +65,7 @@ class Meeting:
 
     @property
     def is_wetted(self) -> bool:
-        """Whether water condenses in humid air, as far as it is known."""
+        """Whether water condenses in humid air, or nothing is known of it."""
         return not self.sides or bool(self.wetting())
 
     def too_dry(self, humidities: float | list, more: float = 0, warmer: float = 0) -> str | None:
@@ -75,30 +75,30 @@ class Meeting:
 
 
 def surfaces_of(pair: str, config: Keys) -> list[str | None]:
-    """Names of the surfaces of a pair, which need not be defined."""
+    """Names of the surfaces of a pair, not necessarily defined."""
     return [config["pairs"].get(pair, {}).get(side) for side in SIDES]
 
 
 def sides_of(beam: str, substrate: str, surfaces: dict) -> list[dict]:
-    """Sections of the surfaces of a pair; empty if one is not defined or has no numbers (yet)."""
+    """Sections of the surfaces of a pair. Empty if one is not defined or has no numbers (yet)."""
     sides = [surfaces.get(name, {}) for name in (beam, substrate)]
     return sides if all("rms_nm" in surface and "scans" not in surface for surface in sides) else []
 
 
 def above_zero(humidities: float | list) -> list[float]:
-    """Humidities, of one or several, without that of dry air."""
+    """Humidities, of one or several, without dry air."""
     return [float(humidity) for humidity in np.ravel(humidities) if humidity > 0]
 
 
 def meetings(config: Keys) -> Iterator[Meeting]:
-    """Yield everything that meets."""
-    yield from of_pairs(config)
+    """Yield all meetings."""
+    yield from pair_meetings(config)
     for name, _ in config.entries("devices", "pair"):
-        yield of_device(name, config)
+        yield device_meeting(name, config)
 
 
-def of_pairs(config: Keys) -> Iterator[Meeting]:
-    """Yield the pairs that run."""
+def pair_meetings(config: Keys) -> Iterator[Meeting]:
+    """Yield the meetings of the pairs in the run."""
     running = [pair for _, pairs in config.known("run.pairs") for pair in pairs]
     for pair, *surfaces in config.entries("pairs", *SIDES):
         if pair in running:
@@ -108,8 +108,8 @@ def of_pairs(config: Keys) -> Iterator[Meeting]:
             yield Meeting(config, pair, airs, [(f"{section}.gap_um", air) for air in airs], stated, ("run.pairs",))
 
 
-def of_device(name: str, config: Keys) -> Meeting:
-    """What meets at a device, also along its chart, and for a stopper where its worst humidity is sought."""
+def device_meeting(name: str, config: Keys) -> Meeting:
+    """Meeting at a device, also along its chart, and for a stopper at the humidities of its search."""
     section = f"devices.{name}"
     pair, humidities = config[f"{section}.pair"], f"{section}.humidities"
     airs, gaps = [humidities], [(f"{section}.gap_um", humidities)]
@@ -130,14 +130,16 @@ def gaps_are_far_above_the_film(config):
         for gap, air in meeting.gaps:
             values = dict(config.known(gap, air))
             if len(values) == 2 and meeting.sides:
-                refusal = _too_low(np.min(values[gap]), values[air], meeting)
-                yield gap, refusal, air, *meeting.given(TEMPERATURE)
+                adsorbed = dict(config.known(ADSORBED))
+                refusal = _too_low(np.min(values[gap]), values[air], meeting, adsorbed.get(ADSORBED, 0))
+                yield gap, refusal, air, *meeting.given(TEMPERATURE, *adsorbed)
 
 
-def _too_low(gap, humidities, meeting):
-    """Refusal of a gap [µm] that is not far above the film at the highest humidity."""
+def _too_low(gap, humidities, meeting, adsorbed):
+    """Refusal of a gap [µm] not far above the film at the highest humidity, with the adsorbed water [nm]."""
     angles, humid = meeting.wetting(), above_zero(humidities)
-    heights = meniscus_height(humid, meeting.config[TEMPERATURE], angles) if angles and humid else 0.0
+    wet = angles and humid
+    heights = meniscus_height(humid, meeting.config[TEMPERATURE], angles) + to_si(adsorbed, "nm") if wet else 0.0
     height, rms = float(np.max(heights)), math.hypot(*(to_si(side["rms_nm"], "nm") for side in meeting.sides))
     least = from_si(limits.least_gap(height, rms), "um")
     if gap >= least:
@@ -150,7 +152,7 @@ def _too_low(gap, humidities, meeting):
 
 @relation
 def coatings_leave_a_gap(config):
-    """Both coatings together are thinner than the gap."""
+    """Require both coatings together to be thinner than the gap."""
     for meeting in meetings(config):
         coatings = sum(material.get(COATING, 0) for material in meeting.materials)
         for key, gap in config.known(*dict.fromkeys(gap for gap, _ in meeting.gaps)):
@@ -161,7 +163,7 @@ def coatings_leave_a_gap(config):
 
 @relation
 def water_is_a_liquid(config):
-    """The air is not too dry for a film of liquid water; the humidity of the figures is refused once."""
+    """Require air humid enough for a film of liquid water. The humidity of the figures is refused once."""
     refused = {}
     for meeting in meetings(config):
         for key, humidities in config.known(*meeting.airs):
@@ -180,7 +182,7 @@ _TOO_SHORT = {
 
 @relation
 def attraction_reaches_across_dry_gaps(config):
-    """Where no water condenses, surfaces attract each other mostly where they do not touch."""
+    """Require attraction across gaps in dry air. There surfaces attract each other mostly out of contact."""
     for meeting in meetings(config):
         dry = [key for key, humidities in config.known(*meeting.airs) if np.min(humidities) == 0]
         if meeting.is_wetted and not dry:

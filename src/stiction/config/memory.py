@@ -1,4 +1,4 @@
-"""Memory of fields and tips that a job draws, and its limits."""
+"""Memory of fields and tips drawn by a job, and its limits."""
 
 from collections.abc import Sequence
 
@@ -19,12 +19,12 @@ _PER_SLOPE = 6000
 USUAL, LARGEST = 800, 8000
 
 
-def of_field(length_um: float, width_um: float, spacing_nm: float) -> float:
-    """Memory of a job that draws fields of this size on a grid of this spacing [MB].
+def field_memory(length_um: float, width_um: float, spacing_nm: float) -> float:
+    """Memory of a job with fields of this size on a grid of this spacing [MB].
 
     Examples
     --------
-    >>> round(of_field(10.24, 10.24, 10))
+    >>> round(field_memory(10.24, 10.24, 10))
     413
     """
     points = (NM_PER_UM * length_um / spacing_nm) * (NM_PER_UM * width_um / spacing_nm)
@@ -32,21 +32,21 @@ def of_field(length_um: float, width_um: float, spacing_nm: float) -> float:
 
 
 def patch_of(device: dict, sampling: dict) -> tuple[float, float]:
-    """Sides of the patch of surface on which a device sticks [µm]; section of the device."""
+    """Sides of the patch of contact of a device [µm], from its section."""
     return kind_of(device).sides(device, sampling["strip_length_um"])
 
 
 def spacings_of(device: dict, spacing_nm: float, others_nm: Sequence[float]) -> tuple[float, ...]:
-    """Distances of points at which the patch of a device is drawn [nm]; with an uncertainty, also those of variants."""
+    """Distances of points of the patch of a device [nm]. With an uncertainty, those of variants are included."""
     return (spacing_nm, *others_nm) if "uncertainty" in device else (spacing_nm,)
 
 
-def of_tips(slopes: int) -> float:
-    """Memory of a job that holds the contacts of tips, with this number of slopes of all of them together [MB].
+def tip_memory(slopes: int) -> float:
+    """Memory of a job with the contacts of tips, for this number of slopes of all of them together [MB].
 
     Examples
     --------
-    >>> round(of_tips(12 * 400 * 15))  # 12 slopes of 400 tips in 15 contacts
+    >>> round(tip_memory(12 * 400 * 15))  # 12 slopes of 400 tips in 15 contacts
     1232
     """
     return USUAL + from_si(_PER_SLOPE * slopes, "MB")

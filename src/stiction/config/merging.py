@@ -23,7 +23,7 @@ _NAMED = {
 
 
 def merged(base: Any, overlay: Any) -> Any:
-    """Mapping ``base`` changed key by key, as Snakemake does; lists and numbers are replaced as a whole."""
+    """Mapping ``base`` changed key by key, as Snakemake does. Lists and numbers are replaced as a whole."""
     if not (isinstance(base, Mapping) and isinstance(overlay, Mapping)):
         return overlay
     return {**base, **{key: merged(base.get(key), value) for key, value in overlay.items()}}
@@ -62,7 +62,7 @@ def _end(number):
 
 
 def expanded(config: dict[str, Any]) -> dict[str, Any]:
-    """Configuration with a copy of each entry for each value of section ``compare``; itself without such a section.
+    """Configuration with a copy of each entry for each value of section ``compare``. Itself without such a section.
 
     Copies take the place of pairs that run and of devices, which all run. A section that the schema refuses is left to
     it.
@@ -75,7 +75,7 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
     """
     if not _is_valid(config.get("compare")):
         return config
-    paths = [_of_entry(config, path) for path, _ in _compared(config)]
+    paths = [_parts_of_path(config, path) for path, _ in _compared(config)]
     copied, stated, ends = _affected(config, *((section, name) for section, name, _ in paths)), config, values(config)
     for end, numbers in ends.items():
         config = _with_copies(config, copied, end)
@@ -88,14 +88,14 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
 
 
 def _changed(before, after):
-    """Dotted names of entries, also of those below studies, that differ between two configurations."""
+    """Yield dotted names of entries different in two configurations, also below studies."""
     for place in _places(before):
         entries, now = _section(before, *place), _section(after, *place)
         yield from (".".join((*place, name)) for name in now if name in entries and entries[name] != now[name])
 
 
 def _in_place(config, copied, ends):
-    """Configuration in which copies take the place of pairs that run and of devices."""
+    """Configuration with copies in place of pairs in the run and of devices."""
     runs, devices = _section(config, "run").get("pairs"), _section(config, "devices")
     if isinstance(runs, list):
         copies = ([pair + end for end in ends] if pair in copied["pairs"] else [pair] for pair in runs)
@@ -105,8 +105,8 @@ def _in_place(config, copied, ends):
     return config
 
 
-def _of_entry(config, path):
-    """Section, name of the entry, and key below it of a compared key; raises a ConfigError without such an entry."""
+def _parts_of_path(config, path):
+    """Section, name of the entry, and key below it of a compared key. Raises a ConfigError without such an entry."""
     section, _, rest = path.partition(".")
     name, _, keys = rest.partition(".")
     entries = config.get(section) if section in _NAMED else None
@@ -120,7 +120,7 @@ def _of_entry(config, path):
 
 
 def _is_valid(compare):
-    """Whether section ``compare`` is as the schema demands, as far as its use here needs it."""
+    """Whether section ``compare`` is well formed enough to expand."""
     return (
         isinstance(compare, dict)
         and all(isinstance(path, str) for path in compare)
@@ -129,21 +129,21 @@ def _is_valid(compare):
 
 
 def _section(config, *place):
-    """Nested section of a configuration, which need not be valid; empty where there is none."""
+    """Nested section of a configuration, valid or not, empty if missing."""
     for name in place:
         config = config.get(name) if isinstance(config, dict) else None
     return config if isinstance(config, dict) else {}
 
 
 def _nested(value, *place):
-    """Configuration that has nothing but a value at a place."""
+    """Configuration with nothing but a value at a place."""
     for name in reversed(place):
         value = {name: value}
     return value
 
 
 def _places(config):
-    """Places of the sections whose entries may be copied, and of those that state something by the name of a pair."""
+    """Yield places of sections with entries to copy, and of sections keyed by the name of a pair."""
     yield from ((section,) for section in _NAMED)
     yield from (
         ("studies", study, key) for study in _section(config, "studies") for key in _section(config, "studies", study)
@@ -151,7 +151,7 @@ def _places(config):
 
 
 def _affected(config, *entries):
-    """Names by section of some entries and of all that use them."""
+    """Names by section of some entries and of all their users."""
     copied = {kind: list(dict.fromkeys(name for section, name in entries if section == kind)) for kind in _NAMED}
     for kind in _NAMED:
         for other, entry in _section(config, kind).items():
@@ -162,11 +162,12 @@ def _affected(config, *entries):
 
 
 def _renamed(entry, section, copied, end):
-    """Entry in which names of copied entries have an end, also one level below."""
+    """Append a suffix to the names of copied entries in an entry, nested sections included."""
     if not isinstance(entry, dict):
         return entry
 
     def new(key, value):
+        """Value with the suffix on names of copies, nested sections and lists included."""
         if isinstance(value, dict):
             return {inner: new(inner, below) for inner, below in value.items()}
         names = copied[_NAMED[section][key]] if key in _NAMED[section] else ()
@@ -178,7 +179,7 @@ def _renamed(entry, section, copied, end):
 
 
 def _with_copies(config, copied, end):
-    """Configuration with a copy of every affected entry, and of what studies state by the name of a pair."""
+    """Configuration with a copy of every affected entry, and of settings of studies by the name of a pair."""
     added = {
         section: {name + end: _renamed(config[section][name], section, copied, end) for name in names}
         for section, names in copied.items()

@@ -19,11 +19,11 @@ from stiction.config.units import from_si, to_si
 
 
 class ConfigError(ValueError):
-    """Invalid configuration; one line per problem."""
+    """Error of a configuration, with one line per problem."""
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """One line per problem; each begins with the key."""
+        """Problems, one line each, beginning with the key."""
         return self.args
 
     def __str__(self):
@@ -42,6 +42,11 @@ class Problem:
         return f"{dotted(self.path)} {self.message}"
 
 
+def faulty(faults: Iterable[tuple], section: str) -> set[str]:
+    """Names of the entries of a section with one of the faults, paths of wrong keys."""
+    return {path[1] for path in faults if path[:1] == (section,) and len(path) > 1}
+
+
 def schema_problems(config: object, schema: dict) -> list[Problem]:
     """Problems of single keys, found with the schema."""
     try:
@@ -52,7 +57,7 @@ def schema_problems(config: object, schema: dict) -> list[Problem]:
 
 
 def _is_number(_, value):
-    """Whether a value is a finite real number; truth values, NaN and infinities are not."""
+    """Whether a value is a finite real number. Truth values, NaN and infinities are not."""
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e300
 
 
@@ -63,7 +68,7 @@ def _is_integer(_, value):
 
 @cache
 def _strict():
-    """Class of the validator; its library is imported here because a plan of a known configuration does not need it."""
+    """Class of the validator. Its library is imported here because a plan of a known configuration does not need it."""
     from jsonschema import Draft202012Validator, validators
 
     types = Draft202012Validator.TYPE_CHECKER.redefine_many({"number": _is_number, "integer": _is_integer})
@@ -76,7 +81,7 @@ def _also(path):
 
 
 def _explained(error, schema):
-    """Problems that correspond to one error of jsonschema."""
+    """Problems for one error of jsonschema."""
     path, value = tuple(error.absolute_path), error.instance
     if "propertyNames" in error.absolute_schema_path:
         signs = f"letters and digits{_also(path)}, starting with a letter"
@@ -95,13 +100,13 @@ def _explained(error, schema):
 
 
 def _keys_of_kind(path, section):
-    """Keys of a device of a known kind; none for other sections."""
+    """Keys of a device of a known kind. None for other sections."""
     kind = section.get("kind") if path[:1] == ("devices",) and len(path) == 2 else None
     return KINDS[kind].known if isinstance(kind, str) and kind in KINDS else ()
 
 
 def _entry(schema, path):
-    """Part of the schema that describes the key at ``path``."""
+    """Part of the schema about the key at ``path``."""
     for key in path:
         schema = schema.get("items") or schema.get("properties", {}).get(key) or schema["additionalProperties"]
     return schema
@@ -121,14 +126,26 @@ def _allowed(entry):
     if entry.get("properties"):
         words.append(f"with the keys {', '.join(entry['properties'])}")
     if "maxItems" in entry:
-        words.append(f"with {entry['maxItems']} entries")
+        words.append(f"with {number_of_items(entry)} entries")
     elif "minItems" in entry or "minProperties" in entry:
         words.append("with at least one entry")
     return f"{' '.join(filter(None, words))}: {described(entry)}"
 
 
+def number_of_items(entry: Mapping) -> str:
+    """How many items a list of limited length has, in words.
+
+    Examples
+    --------
+    >>> number_of_items({"minItems": 2, "maxItems": 2}), number_of_items({"minItems": 1, "maxItems": 2})
+    ('2', '1 or 2')
+    """
+    most = entry["maxItems"]
+    return " or ".join(map(str, range(entry.get("minItems", most), most + 1)))
+
+
 def described(entry: Mapping) -> str:
-    """Description of a part of the schema, with its unit; what stands for a unit of text is left out."""
+    """Description of a part of the schema, with its unit, but without a mark for texts."""
     return re.sub(r" \[(choice|name|path)\]$", "", entry["description"])
 
 
@@ -140,7 +157,7 @@ _FORMER = {
 
 
 def _unknown(key, value, known):
-    """Message about a key that is not in the schema."""
+    """Message about a key not in the schema."""
     with_unit = [name for name in known if name.startswith(f"{key}_")]
     question = _question(with_unit) or did_you_mean(key, known)
     unit = " Keys carry their unit." if with_unit else ""
@@ -148,17 +165,17 @@ def _unknown(key, value, known):
 
 
 def did_you_mean(word: object, known: Iterable[str]) -> str:
-    """Suggest the known name that is most similar to ``word``; empty if there is none."""
+    """Suggest the known name most similar to ``word``, or nothing."""
     return _question(difflib.get_close_matches(str(word), known, n=1))
 
 
 def _question(meant):
-    """Suggest the first entry of ``meant``; empty if there is none."""
+    """Suggest the first entry of ``meant``. Empty if there is none."""
     return f"; did you mean {meant[0]}?" if meant else ""
 
 
 def _hint(path, value, entry):
-    """Likely cause of a value of the wrong type or size; may be empty."""
+    """Likely cause of a value of the wrong type or size, possibly empty."""
     if value is None:
         return "; there is no value after the key"
     if isinstance(value, bool):
@@ -173,17 +190,17 @@ def _hint(path, value, entry):
 
 
 def _accepts(entry, value):
-    """Whether a value agrees with its part of the schema: only then a message may advise to write it."""
+    """Whether a value agrees with its part of the schema. Only then a message may advise to write it."""
     return _strict()(entry).is_valid(value)
 
 
 def _advice(entry, text, sentence="write {}"):
-    """Advice to write a value as this text in YAML; empty if it would be refused as well."""
+    """Advice to write a value as this text in YAML. Empty if it would be refused as well."""
     return f"; {sentence.format(text)}" if _accepts(entry, yaml.safe_load(text)) else ""
 
 
 def _list_hint(value, entry):
-    """How to write one value, or keys without values, as a list of the least length; or an example of both ends."""
+    """Advice to write one value, or keys without values, as a list of the least length, or an example of both ends."""
     for example in entry.get("examples", ()):
         if "maxItems" in entry and len(set(example)) > 1:
             return f"; both ends are wanted, as in {example}"
@@ -199,13 +216,13 @@ _IN_SI = {"nm": "metres", "um": "metres", "GPa": "pascals", "MPa": "pascals", "u
 
 
 def _unit_of(path):
-    """Unit in the last key of a path that has one; empty if none has."""
+    """Unit in the last key of a path with a unit, empty if none has one."""
     units = (key.rpartition("_")[2] for key in reversed(path) if isinstance(key, str))
     return next((unit for unit in units if unit in _IN_SI), "")
 
 
 def _unit_hint(path, value, entry):
-    """How to write a number that would be allowed if it were in SI units."""
+    """Advice on a number in SI units: its value in the unit of the key."""
     unit = _unit_of(path)
     if not unit or not _is_number(None, value):
         return ""
@@ -219,14 +236,14 @@ _WRITTEN = re.compile(r"([-+]?\d+(?:[.,]\d*)?)(?:[eE]([-+]?\d{1,2}))?\s*([^\W\d]
 
 
 def _percent_hint(value, entry):
-    """How to write a share that is given in percent."""
+    """Advice on a fraction in percent: its value as a fraction."""
     if not _is_number(None, value) or value <= 1 or "as a fraction of 1" not in entry["description"]:
         return ""
     return _advice(entry, f"{value / 100:.12g}")
 
 
 def _number_hint(path, text, entry):
-    """How to write a number that YAML read as text."""
+    """Advice on a number read as text by YAML."""
     if entry["type"] not in ("number", "integer"):
         return ""
     if _GROUPED.fullmatch(text):
@@ -245,7 +262,7 @@ def _number_hint(path, text, entry):
 
 
 def _in_yaml(mantissa, exponent, entry):
-    """A number as YAML reads it: without an exponent if it is to be whole, otherwise with a point and a sign."""
+    """Number as YAML reads it: without an exponent if it is to be whole, otherwise with a point and a sign."""
     value = float(f"{mantissa}e{exponent or 0}")
     if entry["type"] == "integer" and value.is_integer():
         return f"{value:.15g}"
@@ -253,7 +270,7 @@ def _in_yaml(mantissa, exponent, entry):
 
 
 def _grouped_hint(text, entry):
-    """How to write 5,000: without separators, or with a decimal point where that can be meant."""
+    """Advice on a number such as 5,000: without separators, or with a decimal point if both can be meant."""
     whole, decimal = re.sub(r"[,' ]", "", text), text.replace(",", ".")
     readings = [whole] if decimal.count(".") != 1 else [whole, decimal]
     allowed = [reading for reading in readings if _accepts(entry, yaml.safe_load(reading))]
@@ -261,7 +278,7 @@ def _grouped_hint(text, entry):
 
 
 def _converted_hint(value, unit, path, entry):
-    """How to write a number with another unit than its key has; empty if that is no length, stress or force."""
+    """Advice on a number in another unit than its key's, empty unless it is a length, stress or force."""
     kind, own = _IN_SI.get(unit), _unit_of(path)
     if kind is None or kind != _IN_SI.get(own):
         return ""
@@ -293,5 +310,5 @@ def shown(value: object) -> str:
 
 
 def duplicates(items: Iterable) -> list:
-    """Items that occur more than once."""
+    """Items listed more than once."""
     return [item for item, count in Counter(items).items() if count > 1]

@@ -55,13 +55,13 @@ def read(path: str | Path) -> dict:
 
 @cache
 def paper() -> dict:
-    """Complete configuration of the paper, read once; not to be changed."""
+    """Complete configuration of the paper, read once. Not to be changed."""
     config = read(PAPER)
     return config | {"sampling": GRID | config["sampling"]}
 
 
 def _one_line(reason):
-    """An error in one line, that of the parser with the line of the file first."""
+    """Error in one line, the parser's with the line of the file first."""
     mark = getattr(reason, "problem_mark", None)
     if mark is None:
         return " ".join((getattr(reason, "strerror", None) or str(reason)).split())
@@ -82,24 +82,27 @@ def text(path: str | Path) -> str:
 
 
 class _Strict(yaml.SafeLoader):
-    """YAML loader that rejects duplicate keys, of which PyYAML drops the first value, and numbers in base 60 or 8.
+    """YAML loader without duplicate keys (PyYAML drops the first value) and numbers in base 60 or 8.
 
     It also rejects texts and files so large that nothing else is sure to end, such as a message that shows a value.
     """
 
     def construct_document(self, node):
+        """Construct a document of at most `MOST` values."""
         if (values := _number_of_values(node, {})) > MOST:
             message = f"the file has {values:.6g} values, with aliases written out, must have at most {MOST}"
             raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
         return super().construct_document(node)
 
     def construct_scalar(self, node):
+        """Construct a scalar of at most `LONGEST` characters."""
         if isinstance(node, yaml.ScalarNode) and len(node.value) > LONGEST:
             message = f"a value has {len(node.value)} characters, must have at most {LONGEST}"
             raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
         return super().construct_scalar(node)
 
     def construct_mapping(self, node, deep=False):  # noqa: ARG002
+        """Construct a mapping without duplicate keys."""
         keys = [key for key, _ in node.value if key.tag != "tag:yaml.org,2002:merge"]
         # Deep construction also rejects a mapping that contains itself.
         mapping = super().construct_mapping(node, deep=True)
@@ -119,7 +122,7 @@ class _Strict(yaml.SafeLoader):
 
 
 def _number_of_values(node, counted):
-    """Number of values of a node, with those of its aliases; a node in itself is refused when it is constructed."""
+    """Number of values of a node, with those of its aliases. A node in itself is refused when it is constructed."""
     if id(node) not in counted:
         counted[id(node)] = 0
         parts = node.value if isinstance(node, yaml.CollectionNode) else ()
@@ -140,7 +143,7 @@ _NEGATIVE = re.compile(r"-\d+")
 
 
 def problems(files: Iterable[str], arguments: Iterable[str]) -> Iterator[str]:
-    """One line for each file that cannot be read, and each of Snakemake's arguments that it cannot take.
+    """Yield one line for each unreadable file and each argument refused by Snakemake.
 
     With less than one job at a time, Snakemake waits for ever.
     """
@@ -163,7 +166,7 @@ def problems(files: Iterable[str], arguments: Iterable[str]) -> Iterator[str]:
 
 
 def contents(files: Iterable[str], arguments: Iterable[str]) -> list[dict]:
-    """Content of every file, also of those among Snakemake's arguments; raises the errors of `read`."""
+    """Content of every file, also of those among Snakemake's arguments. Raises the errors of `read`."""
     return [read(file) for file in _files(files, arguments)]
 
 
@@ -173,7 +176,7 @@ def _files(files, arguments):
 
 
 def _values(arguments, options):
-    """Words that follow one of some options, up to the next option, and those attached to one, as in -c2."""
+    """Words after some options, up to the next option, and words attached to an option, as in -c2."""
     taken = False
     for word in arguments:
         if word.startswith("-") and not _NEGATIVE.fullmatch(word):

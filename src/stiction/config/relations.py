@@ -18,7 +18,7 @@ from stiction.config import memory
 from stiction.config.cases import DRY, IN_HUMID_AIR, NAMEABLE, decimals
 from stiction.config.keys import Keys, Relations
 from stiction.config.materials import hamaker_constants
-from stiction.config.meetings import above_zero, of_pairs
+from stiction.config.meetings import above_zero, pair_meetings
 from stiction.config.messages import did_you_mean, duplicates, shown
 from stiction.config.surfaces.grid import published_correlation, used
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si
@@ -44,7 +44,7 @@ relation = Relations()
 
 @relation
 def lists_have_no_duplicates(config):
-    """A pair or a study runs once, a scan counts once, and a share has one safe length."""
+    """Require each pair, study, scan and fraction once in its list."""
     scans = [f"surfaces.{name}.scans.files" for name, _ in config.entries("surfaces", "scans.files")]
     for key, values in config.known("design.shares", *scans, "run.studies", "run.pairs"):
         if repeated := duplicates(values):
@@ -53,7 +53,7 @@ def lists_have_no_duplicates(config):
 
 @relation
 def compared_values_make_different_copies(config):
-    """Keys that change together have as many values, and no two copies have the same."""
+    """Require as many values of keys changed together, and different copies."""
     paths, compared = zip(*config["compare"].items(), strict=True)
     for path, listed in zip(paths, compared, strict=True):
         if len(listed) != len(compared[0]):
@@ -64,7 +64,7 @@ def compared_values_make_different_copies(config):
 
 @relation
 def something_is_computed(config):
-    """A run without pairs computes devices or evaluates scans."""
+    """Require something to compute: pairs, devices, or scans to evaluate."""
     names, devices, surfaces = config["run.pairs"], config["devices"], config["surfaces"].values()
     if not (names or devices or config.files or any("scans" in surface for surface in surfaces)):
         yield "run.pairs", "must name a pair: there are neither devices nor scans"
@@ -72,7 +72,7 @@ def something_is_computed(config):
 
 @relation
 def selected_pairs_exist(config):
-    """Only defined pairs can run."""
+    """Require pairs in the run to be defined."""
     pairs = config.names("pairs")
     for key, names in config.known(
         *(f"studies.{name}.distance_nm" for name in ("plasticity", "pressing")), "run.pairs"
@@ -89,26 +89,26 @@ def pair_of_the_figures_is_defined(config):
 
 @relation
 def surfaces_of_pairs_are_defined(config):
-    """As above, for both sides of every pair."""
+    """Require both surfaces of every pair to be defined."""
     for side in reversed(SIDES):
         yield from references_are_defined(config, "pairs", side, "surfaces")
 
 
 def references_are_defined(config: Keys, section: str, key: str, to: str) -> Iterator[tuple]:
-    """Refusals of a key in every entry of a section that is to name an entry of another one."""
+    """Yield refusals of a key in every entry of a section unless it names an entry of another section."""
     defined = config.names(to)
     for name, reference in config.entries(section, key):
         yield f"{section}.{name}.{key}", undefined(reference, defined)
 
 
 def undefined(name: str, defined: Iterable[str]) -> str | None:
-    """Refusal of a name that is not defined."""
+    """Refusal of an undefined name."""
     return None if name in defined else f"must be one of {', '.join(defined)}{did_you_mean(name, defined)}"
 
 
 @relation
 def materials_are_defined(config):
-    """Materials are defined in a section of their own, which the paper does not have."""
+    """Require materials to be defined in their own section. The paper has none."""
     none = "must be the name of a section of materials, where no material is described"
     for key, refusal in references_are_defined(config, "surfaces", "material", "materials"):
         yield key, refusal if config.names("materials") else none
@@ -116,13 +116,13 @@ def materials_are_defined(config):
 
 @relation
 def cases_have_unique_names(config, section="pairs"):
-    """Each humidity of a pair has a unique name."""
+    """Require a unique name for each humidity of a pair."""
     for name, humidities in config.entries(section, "humidities"):
         yield f"{section}.{name}.humidities", without_unique_names(humidities)
 
 
 def without_unique_names(humidities: list[float]) -> str | None:
-    """Refusal of humidities whose cases have no name, or the same."""
+    """Refusal of humidities without a name of their cases, or with the same."""
     nameless = [humidity for humidity in humidities if not decimals(humidity)]
     if nameless:
         return f"must {NAMEABLE}; {nameless[0]} has more"
@@ -130,14 +130,14 @@ def without_unique_names(humidities: list[float]) -> str | None:
 
 
 def repeated(humidities: list[float]) -> str | None:
-    """Refusal of humidities that are listed twice."""
+    """Refusal of humidities listed twice."""
     twice = duplicates(humidities)
     return f"must list each humidity once; {twice[0] or DRY} is listed twice" if twice else None
 
 
 @relation
 def humidity_of_the_figures_has_a_name(config):
-    """The humidity of the figures must be valid in the name of a case."""
+    """Require a humidity of the figures valid in the name of a case."""
     if not decimals(config["figures.humidity"]):
         yield "figures.humidity", f"must {NAMEABLE}"
 
@@ -148,7 +148,7 @@ _NUMBERS = ("rms_nm", "skewness", "kurtosis", "mean_summit_radius_um", "summit_d
 
 @relation
 def scans_stand_alone(config):
-    """A surface is described either by scans or by numbers."""
+    """Require a surface to have either scans or numbers."""
     for name, _ in config.entries("surfaces", "scans"):
         if beside := [key for key in config.names(f"surfaces.{name}") if key in _NUMBERS]:
             message = f"must not be given beside {', '.join(beside)}; give the measured surface a name of its own"
@@ -181,13 +181,13 @@ def only_scans_leave_a_choice(config):
 
 @relation
 def heights_have_a_density(config):
-    """A density has these moments, and a maximum-entropy density of Eq. (3) these or moments near them."""
+    """Require moments of a density, and of a maximum-entropy density of Eq. (3) at or near them."""
     for name, kurtosis, skewness in config.entries("surfaces", "kurtosis", "skewness"):
         yield f"surfaces.{name}.kurtosis", without_density(skewness, kurtosis), f"surfaces.{name}.skewness"
 
 
 def without_density(skewness: float, kurtosis: float) -> str | None:
-    """Refusal of the kurtosis of heights that have no such density."""
+    """Refusal of a kurtosis without such a density."""
     if kurtosis <= skewness**2 + 1:
         return f"must be above skewness² + 1 = {skewness**2 + 1:.6g}"
     try:
@@ -212,11 +212,14 @@ def spectra_fall(config):
 
 
 def only_if(runs: Callable[[Keys], bool]) -> Callable:
-    """Condition under which a relation holds: what does not run refuses nothing."""
+    """Condition of a relation. Without it the relation refuses nothing."""
 
     def decorated(relation):
+        """Relation under the condition."""
+
         @functools.wraps(relation)
         def conditional(config):
+            """Yield from the relation under the condition."""
             if runs(config):
                 yield from relation(config)
 
@@ -243,14 +246,14 @@ def spectra_are_identified(config: Keys) -> bool:
 
 
 def _drawn(config, *keys):
-    """Name and values of some keys of every surface that is drawn."""
+    """Name and values of some keys of every drawn surface."""
     drawn = set(used(config.config))
     return (entry for entry in config.entries("surfaces", *keys) if entry[0] in drawn)
 
 
 @relation
 def grid_carries_the_roughness(config):
-    """The cut-off lies within the Nyquist wave number of the grid."""
+    """Require a cut-off within the Nyquist wave number of the grid."""
     nyquist = math.pi / config["sampling.spacing_nm"] * NM_PER_UM
     message = f"must be at most the Nyquist wave number of the grid, {nyquist:.6g} rad/µm"
     for name, cutoff in _drawn(config, _CUTOFF):
@@ -261,7 +264,7 @@ def grid_carries_the_roughness(config):
 @relation
 @only_if(variants_run)
 def other_grids_carry_the_roughness(config):
-    """The cut-off lies within the Nyquist wave number of the grid of a variant."""
+    """Require a cut-off within the Nyquist wave number of the grid of a variant."""
     for key, spacing in config.items("studies.variants.spacing_nm"):
         for name, cutoff in _drawn(config, _CUTOFF):
             largest = math.pi / cutoff * NM_PER_UM
@@ -273,7 +276,7 @@ def other_grids_carry_the_roughness(config):
 @relation
 @only_if(variants_run)
 def other_grids_carry_an_identified_spectrum(config):
-    """The cut-off of an identified spectrum is the Nyquist wave number of the grid of Table I."""
+    """Require grids no coarser than Table I's for an identified spectrum, cut off at the Nyquist wave number there."""
     for key, spacing in config.items("studies.variants.spacing_nm"):
         for name, psd in _drawn(config, "psd"):
             if spacing > config["character.spacing_nm"] and psd != "published":
@@ -307,7 +310,7 @@ def correlated(length: float, psd: dict) -> str | None:
 
 @relation
 def lengths_can_exceed_the_correlation(config):
-    """As above for identified spectra, as far as it is known before; the jobs check the identified spectrum itself."""
+    """Require lengths above the estimated correlation of an identified spectrum. The jobs check the spectrum itself."""
     keys = "psd", "rms_nm", "mean_summit_radius_um", "summit_density_per_um2"
     spacing = config["character.spacing_nm"]
     for key, length in config.known("sampling.margin_um", "identification.patch_um"):
@@ -322,7 +325,7 @@ _AT_MOST = 1.5
 
 
 def correlated_as_estimated(length: float, rms: float, radius: float, density: float, spacing: float) -> str | None:
-    """Refusal of a length within the correlation length that the targets of an identification suggest."""
+    """Refusal of a length within the correlation length expected from the targets of an identification."""
     try:
         with np.errstate(all="ignore"):
             bound = _estimated_correlation_length(rms, radius, density, spacing)
@@ -335,14 +338,14 @@ def correlated_as_estimated(length: float, rms: float, radius: float, density: f
 
 @functools.lru_cache(maxsize=1000)
 def _estimated_correlation_length(rms, radius, density, spacing):
-    """Correlation length of the spectrum from which an identification starts [µm]."""
+    """Correlation length of the spectrum at the start of an identification [µm]."""
     summits = to_si(radius, "um"), to_si(density, "per_um2"), to_si(spacing, "nm")
     target = SummitTarget(np.float64(to_si(rms, "nm")), *summits)
     return from_si(correlation_length(estimated_spectrum(target)), "um")
 
 
 def off_grid(side: float, spacing: float, every: int) -> str | None:
-    """Refusal of a side [µm] that is no multiple of the distance between contact points."""
+    """Refusal of a side [µm] other than a multiple of the distance between contact points."""
     step = spacing * every
     whole = is_multiple(side * NM_PER_UM, step)
     return None if whole else f"must be a whole number of contact points {step:g} nm apart"
@@ -351,7 +354,7 @@ def off_grid(side: float, spacing: float, every: int) -> str | None:
 @relation
 @only_if(variants_run)
 def strips_are_whole_under_a_variant(config):
-    """Strips are whole for the step in grid points times the grid spacing, either of which a variant may change."""
+    """Require whole strips for the step in grid points times the grid spacing, with either changed by a variant."""
     sides = "sampling.strip_length_um", *(["beam.width_um"] * pairs_run(config))
     variants = {"sampling.spacing_nm": "studies.variants.every", "contact.every": "studies.variants.spacing_nm"}
     for other, step in config.known(*variants):
@@ -363,7 +366,7 @@ def strips_are_whole_under_a_variant(config):
 @relation
 @only_if(spectra_are_identified)
 def patches_are_whole_on_the_grid(config):
-    """The side of a patch is a multiple of the grid spacing."""
+    """Require sides of a patch to be multiples of the grid spacing."""
     spacing = config["sampling.spacing_nm"]
     if not is_multiple(config["identification.patch_um"] * NM_PER_UM, spacing):
         message = f"must be a whole number of grid spacings of {spacing} nm"
@@ -383,7 +386,7 @@ def summits_are_sought_on_the_grid(config):
 @relation
 @only_if(spectra_are_identified)
 def strips_can_hold_a_summit(config):
-    """A summit has eight neighbours."""
+    """Require strips with room for a summit and its eight neighbours."""
     coarse = config["character.spacing_nm"]
     for key, side in config.known("beam.width_um", "sampling.strip_length_um", "identification.patch_um"):
         if not is_at_most(3 * coarse, side * NM_PER_UM):
@@ -392,14 +395,14 @@ def strips_can_hold_a_summit(config):
 
 @relation
 def chunks_are_not_empty(config):
-    """Every chunk contains at least one sample."""
+    """Require at least one sample in every chunk."""
     if config["contact.chunks"] > config["contact.samples"]:
         yield "contact.chunks", "must be at most the number of samples", "contact.samples"
 
 
 @relation
 def samples_carry_the_chaos(config):
-    """There are no more polynomials in four variables, App. B, than samples to fit them; stoppers need no model."""
+    """Require more samples than polynomials in four variables, App. B. Stoppers need no model."""
     order, samples, pairs = config["chaos.order"], config["contact.samples"], config["run"]["pairs"]
     kinds = {device["kind"] for device in config["devices"].values()}
     carried = next(n for n in itertools.count(order, -1) if math.comb(n + 4, 4) <= samples)
@@ -414,7 +417,7 @@ def samples_carry_the_chaos(config):
 @relation
 @only_if(pairs_run)
 def strips_fill_the_elements(config):
-    """Every element contains the same whole number of strips, its integration points (Fig. 6)."""
+    """Require the same whole number of strips in every element, its integration points (Fig. 6)."""
     given = "sampling.strip_length_um", "beam.elements"
     least = config[given[0]] * config[given[1]]
     if not is_multiple(config["beam.length_um"], least):
@@ -426,7 +429,7 @@ def strips_fill_the_elements(config):
 @only_if(pairs_run)
 @only_if(variants_run)
 def strips_fill_finer_elements(config):
-    """As above, for a variant; at least two elements."""
+    """Require the same for a variant, with at least two elements."""
     given = "beam.length_um", "sampling.strip_length_um"
     length, strip = (config[key] for key in given)
     for key, strips in config.items("studies.variants.strips_per_element"):
@@ -438,7 +441,7 @@ def strips_fill_finer_elements(config):
 @relation
 @only_if(pairs_run)
 def a_mesh_is_whole(config):
-    """At least one mesh of Figure 19 is possible; lengths that do not fill each other and the beam are left out."""
+    """Require one possible mesh of Figure 19. Lengths not filling each other and the beam are left out."""
     key, *given = "studies.mesh.elements_um", "studies.mesh.strips_um", "beam.length_um"
     elements, strips, length = (config[each] for each in (key, *given))
     fitting = (is_multiple(length, element) and is_multiple(element, strip) for element in elements for strip in strips)
@@ -448,7 +451,7 @@ def a_mesh_is_whole(config):
 
 @relation
 def coatings_attract_less_than_their_solids(config):
-    """The Hamaker constant of a coating is at most that of its material, and it has a thickness."""
+    """Require a coating to attract at most as its material, and to have a thickness."""
     key = COATING_ATTRACTION
     for name, own in config.entries("materials", key):
         material, path = config["materials"][name], f"materials.{name}.{key}"
@@ -468,13 +471,13 @@ def solids_attract_across_gaps(config):
 
 @relation
 def studies_in_humid_air_have_some(config):
-    """A study of humid air that is asked for has a pair that runs, between whose surfaces water condenses.
+    """Require a pair with condensed water in the run for each requested study of humid air.
 
     That of the sensitivity is about the pair of the figures.
     """
     humid = {
         meeting.pair: above_zero(humidities) and meeting.is_wetted
-        for meeting in of_pairs(config)
+        for meeting in pair_meetings(config)
         for _, humidities in config.known(f"pairs.{meeting.pair}.humidities")
     }
     running = [pair for pair in config["run.pairs"] if pair in humid]
@@ -508,7 +511,7 @@ def full_contact_has_no_attraction_across_gaps(config):
 @relation
 @only_if(pairs_run)
 def beam_is_slender(config):
-    """The beam is longer than it is wide, thick and deflected (Euler-Bernoulli)."""
+    """Require a beam longer than its width, thickness and deflection (Euler-Bernoulli)."""
     gaps = [f"pairs.{pair}.gap_um" for pair, _ in config.entries("pairs", "gap_um")]
     for key, size in config.known("beam.thickness_um", "beam.width_um", *gaps):
         if size >= config["beam.length_um"]:
@@ -518,7 +521,7 @@ def beam_is_slender(config):
 @relation
 @only_if(pairs_run)
 def strips_fit_into_memory(config):
-    """The field from which a strip is cut fits into the memory of a job."""
+    """Require the field around a strip to fit into the memory of a job."""
     given = "sampling.strip_length_um", "sampling.margin_um", "beam.width_um"
     length, margin, width = (config[key] for key in given)
     grids = [key for key, _ in config.items("studies.variants.spacing_nm")]
@@ -529,21 +532,21 @@ def strips_fit_into_memory(config):
 @relation
 @only_if(pairs_run)
 def fields_fit_into_memory(config):
-    """The fields on which spectra are estimated fit into the memory of a job."""
+    """Require the fields for estimating spectra to fit into the memory of a job."""
     yield "sampling.spacing_nm", field_too_large(memory.FIELD_UM, memory.FIELD_UM, config["sampling.spacing_nm"])
 
 
 @relation
 @only_if(spectra_are_identified)
 def patches_fit_into_memory(config):
-    """A patch fits into the memory of a job."""
+    """Require a patch to fit into the memory of a job."""
     side = config["identification.patch_um"]
     yield "identification.patch_um", field_too_large(side, side, config["sampling.spacing_nm"]), "sampling.spacing_nm"
 
 
 def field_too_large(length: float, width: float, spacing: float) -> str | None:
-    """Refusal of a field [µm, nm] whose memory exceeds that of the largest job; ``None`` if it does not."""
-    needed = memory.of_field(length, width, spacing)
+    """Refusal of a field [µm, nm] if its memory exceeds the largest job's."""
+    needed = memory.field_memory(length, width, spacing)
     if needed <= memory.LARGEST:
         return None
     return (

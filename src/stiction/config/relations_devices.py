@@ -13,7 +13,7 @@ from stiction.config.cases import in_air
 from stiction.config.keys import Relations
 from stiction.config.kinds import KEYS, KINDS, KNOWN, ROUGHNESSES, kind_of
 from stiction.config.materials import hamaker_constant
-from stiction.config.meetings import TEMPERATURE, above_zero, of_device, sides_of, surfaces_of
+from stiction.config.meetings import TEMPERATURE, above_zero, device_meeting, sides_of, surfaces_of
 from stiction.config.messages import duplicates
 from stiction.config.relations import (
     cases_have_unique_names,
@@ -71,7 +71,7 @@ def strips_of_bridges_are_whole_on_the_grid(config):
 
 @relation
 def devices_have_the_keys_of_their_kind(config):
-    """A device has all keys that its kind needs, and no key of another kind; those that no kind has may be misspelt."""
+    """Require all keys of the kind of a device, and none of another kind. Keys of no kind may be misspelt."""
     for name, kind in config.entries("devices", "kind"):
         refusal = KINDS[kind].refusal(config.names(f"devices.{name}"))
         if any(fault[:2] == ("devices", name) and len(fault) == 3 and fault[2] not in KNOWN for fault in config.faults):
@@ -81,7 +81,7 @@ def devices_have_the_keys_of_their_kind(config):
 
 @relation
 def lengths_of_devices_are_those_of_slender_beams(config):
-    """Beams are longer than they are thick and deflected; lengths in mm are not."""
+    """Require beams longer than their thickness and deflection. Lengths in mm are not."""
     sizes = "thickness_um", "gap_um"
     for name, length, *values in config.entries("devices", "length_um", *sizes):
         if length <= max(values):
@@ -91,7 +91,7 @@ def lengths_of_devices_are_those_of_slender_beams(config):
 
 @relation
 def lengths_of_devices_are_those_that_are_required(config):
-    """A device has one length."""
+    """Require the same length of a device and of its requirement, if both are given."""
     for name, length, required in config.entries("devices", "length_um", "requirement.length_um"):
         if length != required:
             message, given = "must be the length that is required", f"devices.{name}.requirement.length_um"
@@ -100,7 +100,7 @@ def lengths_of_devices_are_those_that_are_required(config):
 
 @relation
 def voltages_are_across_a_dielectric(config):
-    """A voltage or offset needs a dielectric, without which surfaces that touch would short."""
+    """Require a dielectric for a voltage or offset. Without it, touching surfaces would short."""
     for key in ("voltage_V", "offset_V"):
         for name, _ in config.entries("devices", key):
             if "dielectric" not in config.names(f"devices.{name}"):
@@ -112,7 +112,7 @@ def voltages_are_across_a_dielectric(config):
 
 @relation
 def electrodes_pull_on_a_spring_across_a_gap(config):
-    """The voltage of an electrode needs the stiffness of the stopper, which touches before its electrode does."""
+    """Require the stiffness of a stopper for the voltage of an electrode, and contact before its electrode's."""
     for name, electrode in config.entries("devices", "electrode"):
         device, key = config["devices"][name], f"devices.{name}.electrode"
         if "stiffness_N_per_m" not in device:
@@ -122,9 +122,28 @@ def electrodes_pull_on_a_spring_across_a_gap(config):
             yield f"{key}.gap_um", message, f"devices.{name}.gap_um"
 
 
+#: Fewest independent rows of dimples whose forces are sums of sampled patches.
+SUMS = 50
+
+
+@relation
+def dimples_are_under_their_beam(config):
+    """Require a row of dimples on the length of its beam, lower than its gap, and patches enough for sums of them."""
+    for name, dimples in config.entries("devices", "dimples"):
+        device, key = config["devices"][name], f"devices.{name}.dimples"
+        if "length_um" not in device:
+            yield key, "must come with length_um, the length of the beam"
+        elif dimples["at_um"] >= device["length_um"]:
+            yield f"{key}.at_um", "must be below length_um of the beam", f"devices.{name}.length_um"
+        if "gap_um" in device and dimples["height_um"] >= device["gap_um"]:
+            yield f"{key}.height_um", "must be below gap_um of the beam", f"devices.{name}.gap_um"
+        if dimples["number"] * SUMS > config["contact.samples"]:
+            yield f"{key}.number", f"must be at most 1 / {SUMS} of contact.samples", "contact.samples"
+
+
 @relation
 def asperities_of_devices_are_summits(config):
-    """The tips of beams and the budgets of devices are computed with summits."""
+    """Require summits for tips of beams and for the budgets of devices."""
     for name, _ in config.entries("devices", "pair"):
         if config["contact.asperity"] != "summit":
             message = "must be summit, or the devices left out: their contact has summits"
@@ -136,18 +155,22 @@ def axes_increase(config):
     """Values along an axis increase."""
     axes = "chart.gaps_um", "chart.thicknesses_um", "chart.humidities", *(f"roughness.{key}" for key in ROUGHNESSES)
     charts = [f"devices.{name}.{axis}" for axis in axes for name, _ in config.entries("devices", axis)]
-    for key, values in config.known(*charts, "design.worst_humidities"):
+    tilts = [f"devices.{name}.tilt_deg" for name, _ in config.entries("devices", "tilt_deg")]
+    for key, values in config.known(*charts, *tilts, "design.worst_humidities"):
         if any(low >= high for low, high in zip(values, values[1:], strict=False)):
             yield key, "must be in increasing order, each value once"
 
 
 @relation
 def uncertain_water_of_devices_is_a_liquid(config):
-    """The film stays liquid when humidity, temperature or contact angle err by one standard uncertainty."""
+    """Require the film to stay liquid when humidity, temperature or contact angle err by one standard uncertainty."""
     keys = "humidity", "temperature_K", "contact_angle_deg"
     for key in keys:
         for name, deviation, humidities in config.entries("devices", f"uncertainty.{key}", "humidities"):
-            meeting, (drier, warmer, more) = of_device(name, config), (deviation * (key == wrong) for wrong in keys)
+            meeting, (drier, warmer, more) = (
+                device_meeting(name, config),
+                (deviation * (key == wrong) for wrong in keys),
+            )
             driest = min(above_zero(humidities), default=0) - drier
             if driest <= 0 or _freezes_or_boils(warmer, config[TEMPERATURE]) or meeting.too_dry(humidities):
                 continue  # other relations report it
@@ -159,7 +182,7 @@ def uncertain_water_of_devices_is_a_liquid(config):
 
 @relation
 def devices_fit_into_memory(config):
-    """The fields from which a patch of surface is cut fit into the memory of a job."""
+    """Require the fields around a patch of surface to fit into the memory of a job."""
     sampling, others = config["sampling"], "studies.variants.spacing_nm"
     for key in ("contact_um", "width_um"):
         for name, _ in config.entries("devices", key):
@@ -170,11 +193,15 @@ def devices_fit_into_memory(config):
             spacings = memory.spacings_of(device, sampling["spacing_nm"], config[others])
             if refusal := next(filter(None, (field_too_large(*sides, at) for at in spacings)), None):
                 yield f"devices.{name}.{key}", refusal, others
+    for name, sides in config.entries("devices", "dimples.contact_um"):
+        fields = (side + sampling["margin_um"] for side in sides)
+        if refusal := field_too_large(*fields, sampling["spacing_nm"]):
+            yield f"devices.{name}.dimples.contact_um", refusal
 
 
 @relation
 def dimensions_stay_positive(config):
-    """A dimension is positive one standard uncertainty below its value, too."""
+    """Require dimensions to stay positive one standard uncertainty below their values."""
     for key in ("gap_um", "thickness_um"):
         for name, deviation, value in config.entries("devices", f"uncertainty.{key}", key):
             if deviation >= value:
@@ -207,7 +234,7 @@ def uncertain_poisson_ratios_stay_within_their_limits(config):
 
 @relation
 def uncertain_hamaker_constants_stay_positive(config):
-    """The Hamaker constant is positive one standard uncertainty below its value, too."""
+    """Require Hamaker constants to stay positive one standard uncertainty below their values."""
     key = "uncertainty.hamaker_constant_zJ"
     for name, deviation in config.entries("devices", key):
         value = hamaker_constant(_material(config, name), config["van_der_waals"])
@@ -218,7 +245,7 @@ def uncertain_hamaker_constants_stay_positive(config):
 
 @relation
 def uncertain_hamaker_constants_are_those_of_bare_solids(config):
-    """The budget changes that of the solids alone, and that of their coating would have to follow."""
+    """Require bare solids for an uncertain Hamaker constant. The budget changes the solids', not the coating's."""
     key = "uncertainty.hamaker_constant_zJ"
     for name, deviation in config.entries("devices", key):
         if deviation and COATING_ATTRACTION in _material(config, name):
@@ -248,7 +275,7 @@ def water_stays_liquid(config):
 
 
 def _freezes_or_boils(deviation, temperature):
-    """Refusal of an uncertainty with which water may be no liquid [K]."""
+    """Refusal of an uncertainty large enough for water to freeze or boil [K]."""
     liquid = schema()["properties"]["water"]["properties"]["temperature_K"]
     freezing, boiling = liquid["minimum"], liquid["maximum"]
     inside = temperature - deviation >= freezing and temperature + deviation <= boiling
@@ -257,10 +284,10 @@ def _freezes_or_boils(deviation, temperature):
 
 @relation
 def uncertain_contact_angles_leave_water(config):
-    """Whether water condenses is the same one standard uncertainty around the contact angles."""
+    """Require the same answer on condensation one standard uncertainty around the contact angles."""
     key = "uncertainty.contact_angle_deg"
     for name, deviation in config.entries("devices", key):
-        meeting = of_device(name, config)
+        meeting = device_meeting(name, config)
         if meeting.wetting() and not meeting.wetting(deviation):
             message = "must leave contact angles at which water condenses: their cosines must add up to more than zero"
             yield f"devices.{name}.{key}", message, *_scanned(config, name)
@@ -271,7 +298,7 @@ def uncertain_contact_angles_leave_water(config):
 
 @relation
 def uncertainties_are_those_of_the_kind(config):
-    """Only dimensions that a device has are uncertain."""
+    """Require uncertain dimensions to be dimensions of the device."""
     for name, uncertainty, kind in config.entries("devices", "uncertainty", "kind"):
         if strange := set(KEYS) & set(uncertainty) - set(KINDS[kind].keys):
             message, given = f"must come without {', '.join(sorted(strange))}", f"devices.{name}.kind"
@@ -285,7 +312,7 @@ def _material(config, name):
 
 
 def _sides(config, name):
-    """Sections of the surfaces of a device; empty if one is not defined, which another relation reports."""
+    """Sections of the surfaces of a device, empty if one is not defined. Another relation reports it."""
     return sides_of(*surfaces_of(config["devices"][name]["pair"], config), config["surfaces"])
 
 
@@ -299,7 +326,7 @@ def _scanned(config, name):
 
 @relation
 def requirements_and_roughnesses_come_together(config):
-    """What is required is compared with the device over one quantity of a surface."""
+    """Require a requirement and a roughness together. They are compared along a quantity of a surface."""
     for stated, other in (("requirement", "roughness"), ("roughness", "requirement")):
         for name, _ in config.entries("devices", stated):
             if other not in config.names(f"devices.{name}"):
@@ -308,7 +335,7 @@ def requirements_and_roughnesses_come_together(config):
 
 @relation
 def requirements_are_those_of_the_kind(config):
-    """A beam must have a length; a stopper has a restoring force."""
+    """Require a length of a beam, and a restoring force of a stopper."""
     for name, requirement, kind in config.entries("devices", "requirement", "kind"):
         if KINDS[kind].is_beam != ("length_um" in requirement):
             words = "with length_um" if KINDS[kind].is_beam else "without length_um, for a stopper has a force"
@@ -317,7 +344,7 @@ def requirements_are_those_of_the_kind(config):
 
 @relation
 def varied_surfaces_are_in_the_pair(config):
-    """One or two quantities of one of the surfaces that meet are varied."""
+    """Require one or two varied quantities, of a surface of the pair."""
     for name, roughness, pair in config.entries("devices", "roughness", "pair"):
         stated = [key for key in ROUGHNESSES if key in roughness]
         if len(stated) not in (1, 2):
@@ -330,7 +357,7 @@ def varied_surfaces_are_in_the_pair(config):
 
 @relation
 def varied_skewnesses_have_a_density(config):
-    """A density has the skewness at both ends, and the kurtosis of the surface or less; a measured form has its own."""
+    """Require a density at both ends of the skewness, at the kurtosis of the surface or less."""
     for name, ends, surface in config.entries("devices", "roughness.skewness", "roughness.surface"):
         key, section = f"devices.{name}.roughness.skewness", config["surfaces"].get(surface, {})
         if section.get("heights") == "measured":
@@ -344,7 +371,7 @@ def varied_skewnesses_have_a_density(config):
 
 @relation
 def varied_corners_are_those_of_spectra(config):
-    """A corner lies below the cut-off, and patches are samples of the field where it is lowest, at the same slope."""
+    """Require corners below the cut-off, and patches wide enough for the lowest one, at the same slope."""
     for name, ends, surface in config.entries("devices", "roughness.corner_rad_per_um", "roughness.surface"):
         key, section = f"devices.{name}.roughness.corner_rad_per_um", config["surfaces"].get(surface, {})
         if section.get("psd") != "published":
@@ -366,7 +393,7 @@ def varied_corners_are_those_of_spectra(config):
 
 @relation
 def arrays_of_devices_are_defined(config):
-    """A device uses arrays that exist, each once."""
+    """Require existing test beams for a device, each once."""
     arrays = config.names("test_beams")
     for name, used in config.entries("devices", "test_beams"):
         if unknown := [array for array in used if array not in arrays]:
@@ -393,13 +420,13 @@ def arrays_have_the_materials_of_their_devices(config):
 
 
 def _names_of_materials(config, pair):
-    """Names of the materials of both sides of a pair; None where not stated."""
+    """Names of the materials of both sides of a pair, None if not stated."""
     return [config["surfaces"].get(surface, {}).get("material") for surface in surfaces_of(pair, config)]
 
 
 @relation
 def devices_with_common_test_beams_share_their_uncertainties(config):
-    """What test beams and devices share is one variable, with one uncertainty."""
+    """Require equal uncertainties of inputs common to test beams and devices. They are one variable."""
     devices = config["devices"]
     for name, used in config.entries("devices", "test_beams"):
         for other, section in devices.items():
@@ -423,7 +450,7 @@ def arrays_have_data(config):
 
 @relation
 def measured_beams_have_a_length(config):
-    """Beams with crack lengths have one length; those that were counted state their own."""
+    """Require one length of beams with crack lengths. Counted beams have their own."""
     for name, _ in config.entries("test_beams", "crack_lengths"):
         if "length_um" not in config.names(f"test_beams.{name}"):
             yield f"test_beams.{name}.crack_lengths", "must come with length_um, the length of the beams"
@@ -431,7 +458,7 @@ def measured_beams_have_a_length(config):
 
 @relation
 def crack_lengths_have_one_mean_at_a_humidity(config):
-    """All beams of an array that were measured at a humidity have one mean."""
+    """Require one mean of all beams of an array measured at a humidity."""
     for name, data in config.entries("test_beams", "crack_lengths"):
         yield f"test_beams.{name}.crack_lengths", repeated([datum["humidity"] for datum in data])
 
@@ -451,7 +478,7 @@ def cracks_end_on_the_beams(config):
 
 @relation
 def test_beams_are_slender(config):
-    """Cracks and counted beams are longer than beams are thick and deflected; lengths in mm are not."""
+    """Require cracks and counted beams longer than thickness and deflection. Lengths in mm are not."""
     sizes = "thickness_um", "gap_um"
     for kind, length in (("crack_lengths", "mean_um"), ("stuck", "length_um")):
         for array, key, datum, *values in _data(config, kind, *sizes):
@@ -469,7 +496,7 @@ def _data(config, kind, *keys):
 
 @relation
 def counts_are_parts_of_all_beams(config):
-    """No more beams stick than there are."""
+    """Require no more stuck beams than beams."""
     for _, key, datum in _data(config, "stuck"):
         if datum["stuck"] > datum["of"]:
             yield f"{key}.stuck", "must be no more than there are beams", f"{key}.of"
@@ -477,7 +504,7 @@ def counts_are_parts_of_all_beams(config):
 
 @relation
 def beams_are_counted_once(config):
-    """Each group of beams is counted once."""
+    """Require each group of beams to be counted once."""
     for name, data in config.entries("test_beams", "stuck"):
         for length, humidity in duplicates((datum["length_um"], datum["humidity"]) for datum in data):
             group = f"beams of {length:g} µm {in_air(humidity)}"

@@ -1,4 +1,4 @@
-"""Measured surfaces of a configuration, evaluated before any job so that relations between keys hold for them.
+"""Measured surfaces of a configuration, evaluated before any job for the relations between keys.
 
 The numbers are preliminary: they contain the bias that stage estimate removes. Results depend on them only through the
 question which studies are possible. They are kept by the content of the files, the settings and the code, so that a
@@ -17,10 +17,11 @@ from pathlib import Path
 from typing import Any
 
 from stiction.config.memory import GRID
-from stiction.config.messages import Problem
+from stiction.config.messages import Problem, faulty
+from stiction.config.surfaces.knowledge import with_uncertain_devices
 from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
 from stiction.errors import ScanError
-from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
+from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.regular_files import require_regular
 from stiction.run.atomic import DataError, save_text
 from stiction.run.fingerprint import fingerprint
@@ -51,24 +52,24 @@ def is_measured(entry: Mapping[str, Any]) -> bool:
 
 
 def quantities(entry: Mapping[str, Any]) -> tuple[str, ...]:
-    """Quantities of a surface on which its slopes depend, see `stiction.analysis.shifts`."""
+    """Quantities of a surface to take slopes by, see `stiction.analysis.shifts`."""
     return (MODE_QUANTITIES if entry.get("heights") == "measured" else MOMENT_QUANTITIES) + SPECTRUM_QUANTITIES
 
 
 def has_scans(config: Mapping[str, Any]) -> bool:
-    """Whether a configuration, which need not be valid, describes a surface by scans."""
+    """Whether a configuration, valid or not, describes a surface by scans."""
     return any(isinstance(entry, dict) and is_measured(entry) for entry in _surfaces(config).values())
 
 
 def complete(entry: dict[str, Any]) -> dict[str, Any]:
-    """Section of a surface with the values of all keys that are not given."""
+    """Section of a surface with the defaults of all missing keys."""
     if not is_measured(entry):
         return entry
     return _DEFAULTS | entry | {"scans": _OF_SCANS | entry["scans"]}
 
 
 def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
-    """Configuration, which need not be valid, whose scans are in the folder of the file whose content names them."""
+    """Configuration, valid or not, with paths of scans relative to the folder of the file naming them."""
     files = {name: _files(entry) for name, entry in _surfaces(named).items()}
     scanned = {
         name: entry for name, entry in _surfaces(config).items() if _files(entry) and _files(entry) == files.get(name)
@@ -78,7 +79,7 @@ def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder:
 
 
 def _surfaces(config):
-    """Section of the surfaces; empty if there is none."""
+    """Section of the surfaces. Empty if there is none."""
     surfaces = config.get("surfaces")
     return surfaces if isinstance(surfaces, dict) else {}
 
@@ -91,17 +92,17 @@ def _files(entry):
 
 
 def _moved(entry, folder):
-    """Section of a surface whose relative files are in a folder."""
+    """Section of a surface with its relative files in a folder."""
     return entry | {"scans": entry["scans"] | {"files": [str(folder / file) for file in entry["scans"]["files"]]}}
 
 
 def source(entry: Mapping[str, Any]) -> dict[str, Any]:
-    """How files are read; `stiction.scans.reading.Source` in the units of the configuration."""
+    """Settings for reading files: `stiction.scans.reading.Source` in the units of the configuration."""
     return {key: entry["scans"][key] for key in _READING if key in entry["scans"]}
 
 
 def evaluation(entry: Mapping[str, Any], section: Mapping[str, Any]) -> dict[str, Any]:
-    """How scans are evaluated; `stiction.scans.inspection.Settings` in the units of the configuration."""
+    """Settings for evaluating scans: `stiction.scans.inspection.Settings` in the units of the configuration."""
     scans = entry["scans"]
     levelling = {"levelling": {key: scans[key] for key in ("level", "lines")}}
     limits = {key: section[key] for key in ("tiles", "undefined_share")}
@@ -109,7 +110,7 @@ def evaluation(entry: Mapping[str, Any], section: Mapping[str, Any]) -> dict[str
 
 
 def digest(path: str | Path) -> str:
-    """SHA-256 of the content of a regular file; raises OSError."""
+    """SHA-256 of the content of a regular file. Raises OSError."""
     require_regular(path)
     path = Path(path)
     status = path.stat()
@@ -124,7 +125,7 @@ def _digest(path, _modified, _size):
 def preliminary_estimates(
     config: dict[str, Any], faults: Collection[tuple] = (), kept: str | Path | None = None
 ) -> tuple[dict[str, dict], list[Problem]]:
-    """Preliminary numbers of the measured surfaces by name, and the problems of those that have none.
+    """Preliminary numbers of the measured surfaces by name, and problems of the others.
 
     Surfaces with keys that are wrong on their own, the ``faults``, are left out; between processes, the numbers are
     kept in a folder, if one is named.
@@ -132,7 +133,7 @@ def preliminary_estimates(
     estimates, problems = {}, []
     if _unusable(faults):
         return estimates, problems
-    wrong = {fault[1] for fault in faults if fault[:1] == ("surfaces",) and len(fault) > 1}
+    wrong = faulty(faults, "surfaces")
     for name, entry in config["surfaces"].items():
         if name not in wrong and is_measured(entry):
             try:
@@ -144,7 +145,7 @@ def preliminary_estimates(
 
 
 def simulates(config: Mapping[str, Any]) -> bool:
-    """Whether a configuration, which need not be valid, simulates anything.
+    """Whether a configuration, valid or not, simulates anything.
 
     Rules of strips, grids and densities hold for nothing else.
     """
@@ -156,7 +157,7 @@ def simulates(config: Mapping[str, Any]) -> bool:
 def usable(
     entry: dict[str, Any], section: Mapping[str, Any], kept: str | Path | None = None
 ) -> tuple[dict[str, Any] | None, list[str]]:
-    """Section of a surface with the files that can be evaluated, and why others cannot; ``None`` without any.
+    """Section of a surface with its usable files, and reasons against the others, or ``None`` without any.
 
     Parameters
     ----------
@@ -184,7 +185,7 @@ def usable(
 
 
 def readable(entry: dict[str, Any]) -> Any:
-    """First scan of a surface that can be read, see `stiction.scans.scan.Scan`; ``None`` if none can."""
+    """First readable scan of a surface, see `stiction.scans.scan.Scan`, or ``None``."""
     entry = complete(entry)
     for path, label in zip(entry["scans"]["files"], _labels(entry), strict=True):
         with contextlib.suppress(ScanError):
@@ -193,7 +194,7 @@ def readable(entry: dict[str, Any]) -> Any:
 
 
 def _unusable(faults):
-    """Whether a section that the evaluation needs is wrong, apart from single surfaces."""
+    """Whether a section needed by the evaluation is wrong, apart from single surfaces."""
     sections = {fault[:1] for fault in faults if len(fault) < 2 or fault[0] != "surfaces"}
     return bool(sections & {(), ("surfaces",), ("scans",), ("sampling",)})
 
@@ -214,14 +215,14 @@ def _evaluated(entry, section, kept):
 
 
 def _labels(entry):
-    """What messages call the files of a surface: their names without folders, or the paths of those of equal names."""
+    """Names of the files of a surface in messages: without folders, or as paths if names are equal."""
     files = entry["scans"]["files"]
     names = [Path(file).name for file in files]
     return [file if names.count(name) > 1 else name for file, name in zip(files, names, strict=True)]
 
 
 def _contents(files):
-    """Name and SHA-256 of every file, by label; refuses equal contents, because scans are independent samples."""
+    """Name and SHA-256 of every file, by label. Refuses equal contents, because scans are independent samples."""
     seen = {}
     for label, path in files.items():
         if found := next((words for signs, words in _MISREAD.items() if re.search(signs, str(path))), None):
@@ -241,7 +242,7 @@ _KNOWN = {}
 
 
 def _read(file):
-    """Numbers in a file; ``None`` if there is none or it is damaged."""
+    """Numbers in a file, or ``None`` if it is missing or damaged."""
     try:
         return json.loads(file.read_text(encoding="utf-8")) if file else None
     except (OSError, ValueError):
@@ -250,14 +251,14 @@ def _read(file):
 
 @cache
 def _code():
-    """Fingerprint of the code that evaluates scans, this module included, and the version of the library for files."""
+    """Fingerprint of the code for the evaluation of scans, this module included, and the version of the library."""
     folder = Path(__file__).parents[1] / "scans"
     modules = __file__, folder / "estimate.py", folder / "reading.py"
     return [list(map(fingerprint, modules)), version_of("SurfaceTopography")]
 
 
 def _preliminary(files, reading, evaluating):
-    """Read and evaluate the scans of a surface, without model scans; raises the ScanErrors of both."""
+    """Read and evaluate the scans of a surface, without model scans. Raises the ScanErrors of both."""
     # Imported here: configurations without scans need neither.
     from stiction.scans import estimate
     from stiction.scans.quantiles import measured_density
@@ -283,7 +284,7 @@ def _preliminary(files, reading, evaluating):
 
 
 def _correlation(inspection, psd):
-    """Distance beyond which heights with the spectrum of a source are not correlated [µm]."""
+    """Distance beyond the correlation of heights with the spectrum of a source [µm]."""
     from stiction.scans.whittle import spectrum
     from stiction.surface.spectrum import uncorrelated_beyond
 
@@ -304,7 +305,7 @@ def _scan(path, label, settings):
 
 
 def _in_range(rms, file, reading):
-    """Rms of levelled heights [nm] if a surface can have it; otherwise the heights are in another unit."""
+    """Rms of levelled heights [nm], if possible for a surface. Otherwise the heights are in another unit."""
     if _SMOOTHEST <= rms <= _ROUGHEST:
         return rms
     key = "height_unit" if "height_unit" in reading else "files"
@@ -313,7 +314,7 @@ def _in_range(rms, file, reading):
 
 
 def with_heights(config: dict[str, Any], estimates: Mapping[str, dict]) -> dict[str, Any]:
-    """Configuration in which measured surfaces have their measured density where none has their moments.
+    """Configuration with the measured density of measured surfaces without a density of their moments.
 
     ASSUME: it follows the scans, as does a measured spectrum that is not of the form of Eq. (7). A flag says so.
     """
@@ -332,7 +333,7 @@ def _without_density(preliminary):
 
 
 def _without_power_law(name, entry, preliminary):
-    """Problem of a surface whose power law is to go on, where its scans do not show one."""
+    """Problem of a surface with an extended power law but scans without one."""
     if complete(entry)["beyond"] == "cut" or preliminary["resolved"]:
         return []
     reason = f"the pixels of {', '.join(_labels(entry))} do not resolve the power law that would go on"
@@ -340,7 +341,7 @@ def _without_power_law(name, entry, preliminary):
 
 
 def _problem(name, entry, refusal):
-    """Problem with the key that a refusal of scans is about."""
+    """Problem with the key behind a refusal of scans."""
     if refusal.key == "files":
         labels = _labels(entry)
         index = (labels.index(refusal.file),) if refusal.file in labels else ()
@@ -351,27 +352,17 @@ def _problem(name, entry, refusal):
 
 
 def with_preliminary_estimates(config: dict[str, Any], estimates: Mapping[str, dict]) -> dict[str, Any]:
-    """Configuration in which measured surfaces are described by their preliminary numbers, as other surfaces are.
+    """Configuration with measured surfaces described by their preliminary numbers, as other surfaces are.
 
     Devices on measured surfaces are uncertain even if nothing else about them is.
     """
     spacing = config["sampling"]["spacing_nm"]
     described = {name: _described(complete(config["surfaces"][name]), estimates[name], spacing) for name in estimates}
-    devices = {name: _with_uncertainty(device, config, estimates) for name, device in config.get("devices", {}).items()}
-    return config | {"surfaces": config["surfaces"] | described} | ({"devices": devices} if devices else {})
-
-
-def _with_uncertainty(device, config, estimates):
-    """Section of a device with a section of its uncertainty, if one of its surfaces is measured."""
-    try:
-        measured = any(config["pairs"][device["pair"]][side] in estimates for side in SIDES)
-    except (KeyError, TypeError):
-        return device  # other relations report what is missing
-    return {"uncertainty": {}} | device if measured else device
+    return with_uncertain_devices(config | {"surfaces": config["surfaces"] | described}, described)
 
 
 def _described(entry, preliminary, spacing):
-    """Section of a surface by numbers: skewness and kurtosis, or the measured form if that gives its heights."""
+    """Section of a surface by numbers: skewness and kurtosis, or the measured form if it gives the heights."""
     grid = math.pi / spacing * NM_PER_UM
     cutoff = min(preliminary["end_rad_per_um"], grid) if entry["beyond"] == "cut" else grid
     plateau, corner = preliminary["plateau_nm4"], preliminary["corner_rad_per_um"]

@@ -1,4 +1,4 @@
-"""Arrays of test beams in a configuration: the cantilevers that they are, and single beams in CSV files.
+"""Arrays of test beams in a configuration: their cantilevers, and single beams in CSV files.
 
 Whatever is computed for an array is computed for a cantilever of its dimensions at the humidities of its data.
 
@@ -43,13 +43,13 @@ _OTHER_UNIT = math.sqrt(1000)
 
 
 def users(config: Mapping, array: str) -> dict[str, dict]:
-    """Devices whose prediction uses an array, by name."""
+    """Devices with predictions from an array, by name."""
     devices = config.get("devices", {})
     return {name: device for name, device in devices.items() if array in device.get("test_beams", ())}
 
 
 def humidities(array: Mapping, *kinds: str) -> list[float]:
-    """Humidities of the data of an array, increasing; those of some kinds of data, by default of all."""
+    """Humidities of the data of an array, increasing. Those of some kinds of data, by default of all."""
     return sorted({datum["humidity"] for kind in kinds or DATA for datum in array.get(kind, ())})
 
 
@@ -115,18 +115,18 @@ class Beam(NamedTuple):
 
 
 class Origin(NamedTuple):
-    """What replaces the name of a file that was read."""
+    """Stands in for a file name once the file has been read."""
 
     file: str  #: name
     beams: list[Beam]
 
 
 class _Wrong(ValueError):
-    """What is wrong with a file, as the end of a sentence."""
+    """Fault of a file, as the end of a sentence."""
 
 
 def with_files(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
-    """Configuration, which need not be valid, with means and counts from the files that the content names.
+    """Configuration, valid or not, with means and counts from the files named by the content.
 
     The `Origin` of the data takes the place of the name of a file, until `without_files` removes it. ``named`` is the
     content of a configuration file, and ``folder`` the folder of this file.
@@ -143,7 +143,7 @@ def with_files(config: dict[str, Any], named: Mapping[str, Any], folder: str | P
 
 
 def _arrays(config) -> Iterator[tuple[str, dict]]:
-    """Arrays that name a file."""
+    """Yield arrays with a file."""
     arrays = config.get("test_beams")
     for name, entry in arrays.items() if isinstance(arrays, dict) else ():
         if isinstance(entry, dict) and isinstance(entry.get("file"), str):
@@ -151,7 +151,7 @@ def _arrays(config) -> Iterator[tuple[str, dict]]:
 
 
 def _replaced(name, entry, folder):
-    """Section of an array with what its file holds."""
+    """Section of an array with the content of its file."""
     key = f"test_beams.{name}.file is {shown(entry['file'])}"
     stated = [other for other in _REPLACED if other in entry]
     if stated:
@@ -167,7 +167,7 @@ def _replaced(name, entry, folder):
 
 
 def without_files(config: Any) -> Any:
-    """Configuration, which need not be valid, without the origins of data that were read from files."""
+    """Configuration, valid or not, without the origins of data from files."""
     if not (read := _origins(config)):
         return config
     arrays = config["test_beams"]
@@ -176,7 +176,7 @@ def without_files(config: Any) -> Any:
 
 
 def in_files(sentence: str, config: Any) -> str:
-    """Sentence in which file, row and column take the place of the keys of data that were read from files."""
+    """Sentence with file, row and column in place of the keys of data from files."""
     for name, origin in _origins(config).items():
         for key, row, words in _places(origin.beams, config["test_beams"][name]):
             place = f"test_beams.{name}.file is {shown(origin.file)}, row {row}: {words}"
@@ -200,7 +200,7 @@ _STATISTICS = {
 
 
 def _places(of_file, array):
-    """Keys of the data of an array that come from beams, the first row of each, and its column in words."""
+    """Yield keys of the data of an array from beams, the first row of each, and its column in words."""
     data = summary(of_file)
     for kind, groups in _by_kind(of_file).items():
         if groups and array.get(kind) == data[kind]:  # another file of the configuration may replace a list
@@ -218,7 +218,7 @@ def _places(of_file, array):
 
 
 def beams(content: str) -> list[Beam]:
-    """Single beams from the text of a file; lines that begin with # are comments."""
+    """Single beams from the text of a file. Lines beginning with # are comments."""
     lines = ((k, line) for k, line in enumerate(content.removeprefix("\ufeff").splitlines(), 1) if line.strip(" ,"))
     rows = [(k, _cells(k, line)) for k, line in lines if line[0] != "#"]
     if not rows:
@@ -239,7 +239,7 @@ def _cells(row, line):
 
 
 def _check_columns(row, columns):
-    """Refuse columns that are unknown, missing or given twice."""
+    """Refuse columns if unknown, missing or given twice."""
     for name in columns:
         if name not in COLUMNS:
             hint = "; separate columns by commas" if ";" in name or "\t" in name else did_you_mean(name, COLUMNS)
@@ -307,7 +307,7 @@ def summary(beams: list[Beam]) -> dict[str, Any]:
 
 
 def _by_kind(of_array):
-    """Groups of equal beams by the key of their data: those with crack lengths, and those that were counted."""
+    """Groups of equal beams by the key of their data: beams with crack lengths, and counted beams."""
     measured = [beam for beam in of_array if beam.stuck is None]
     counted = [beam for beam in of_array if beam.stuck is not None]
     return {"crack_lengths": _groups(measured, "humidity"), "stuck": _groups(counted, "humidity", "length")}
@@ -326,7 +326,7 @@ def _mean(humidity, group):
 
 
 def _require_one_unit(group):
-    """Refuse a crack length in mm among those in µm, or the reverse, which their mean may hide."""
+    """Refuse a crack length in mm among those in µm, or the reverse. Their mean may hide it."""
     usual = median(beam.crack_length for beam in group)
     off = max(group, key=lambda beam: abs(math.log(beam.crack_length / usual)))
     other = max(group, key=lambda beam: abs(math.log(beam.crack_length / off.crack_length)))

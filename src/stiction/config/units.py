@@ -41,7 +41,7 @@ T = TypeVar("T")
 
 
 def to_si(value: T, unit: str) -> T:
-    """Value, or array, in SI from that in a unit as in the keys of the configuration.
+    """Convert a value or array to SI from the unit of a key of the configuration.
 
     Examples
     --------
@@ -52,7 +52,7 @@ def to_si(value: T, unit: str) -> T:
 
 
 def from_si(value: T, unit: str) -> T:
-    """Value, or array, in a unit as in the keys of the configuration from that in SI.
+    """Convert a value or array from SI to the unit of a key of the configuration.
 
     Examples
     --------

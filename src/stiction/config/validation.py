@@ -62,7 +62,7 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
 
 
 def _completed(config, faults):
-    """Configuration with all sections and complete surfaces, their problems, and the keys that these follow from."""
+    """Configuration with all sections and complete surfaces, its problems, and the source keys of surfaces."""
     if any(len(fault) < 2 and fault[:1] in ((), ("surfaces",)) for fault in faults):
         return _OPTIONAL | config if isinstance(config, dict) else config, [], {}
     sections, problems = described.completed(_OPTIONAL | config, paper()["surfaces"], faults)
@@ -70,7 +70,7 @@ def _completed(config, faults):
 
 
 def _broken(config, faults, files=None, origins=None):
-    """Violated relations; those of devices hold for the arrays of test beams."""
+    """Violated relations. Those of devices hold for the arrays of test beams."""
     files, origins = files or {}, origins or {}
     broken = list(RELATIONS.problems(Keys(config, faults, files, origins)))
     if any(path[:1] in ((), ("devices",), ("test_beams",)) for path in faults):
@@ -79,10 +79,10 @@ def _broken(config, faults, files=None, origins=None):
         _KeysOfArrays(config | {"devices": beams, "run": {"pairs": []}}, faults, files, origins, config["devices"])
         for beams in test_beams.at_single_humidities(config)
     ]
-    return broken + [problem for one in _OF_DEVICES for problem in _of_arrays(one, single)]
+    return broken + [problem for one in _OF_DEVICES for problem in _problems_of_arrays(one, single)]
 
 
-def _of_arrays(relation, single):
+def _problems_of_arrays(relation, single):
     """Problems of arrays with one relation, each key once."""
     problems = {}
     for keys in single:
@@ -93,7 +93,7 @@ def _of_arrays(relation, single):
 
 @dataclass(frozen=True)
 class _KeysOfArrays(Keys):
-    """Keys of arrays that stand for devices, each at one of its humidities; problems name keys that users have."""
+    """Keys of arrays as devices, each at one of its humidities. Problems name the keys of users."""
 
     devices: dict = field(default_factory=dict)  #: those of the configuration
 

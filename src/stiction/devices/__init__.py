@@ -1,1 +1,1 @@
-"""From surfaces to a safe design: beams, bridges and stoppers that must come free, and what to measure better."""
+"""Safe design from surfaces: beams, bridges and stoppers, and advice on measurements."""

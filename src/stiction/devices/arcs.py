@@ -1,4 +1,4 @@
-r"""Beams whose crack has run to the tip: whether the tip comes free.
+r"""Release of tips: beams after their crack has run to the tip.
 
 A beam of length L that adheres as an arc, with its tip only, has the slope θ = 3h/2L there, and touches as a wedge. It
 comes free if the largest attraction P(θ) of the tilted tip is below the force :math:`3 EI h / L^3` that bends it.
@@ -25,12 +25,12 @@ LENGTH_POWER = -1 / 3
 
 
 def tip_slope(length: float | np.ndarray, gap: float | np.ndarray) -> float | np.ndarray:
-    """Slope of an arc at its tip, 3h/2L [-]; length of the beam and gap [m] broadcast."""
+    """Slope of an arc at its tip, 3h/2L [-]. Length of the beam and gap [m] broadcast."""
     return 1.5 * gap / length
 
 
 def arc_length(energy: float | np.ndarray, beam: Beam) -> float | np.ndarray:
-    """Longest arc that comes free of an adhesion energy at its tip [J m⁻²], (3Et³h² / 8e)^(1/4) [m]; any shape.
+    """Longest releasing arc at an adhesion energy of its tip [J m⁻²], (3Et³h² / 8e)^(1/4) [m], any shape.
 
     It is 2^(-1/2) = 0.7071 of the crack length of Eq. (13).
     """
@@ -38,7 +38,7 @@ def arc_length(energy: float | np.ndarray, beam: Beam) -> float | np.ndarray:
 
 
 def longest_free(slopes: np.ndarray, forces: np.ndarray, beam: Beam) -> np.ndarray:
-    r"""Longest arcs that come free of the largest attraction P(θ) of their tips (m,) [m].
+    r"""Longest arcs to release from the largest attraction P(θ) of their tips (m,) [m].
 
     At the slope θ the length is 3h/2θ, so that the tip comes free if
 
@@ -73,7 +73,7 @@ def longest_free(slopes: np.ndarray, forces: np.ndarray, beam: Beam) -> np.ndarr
 
 
 def bending_force(slope: float | np.ndarray, beam: Beam) -> float | np.ndarray:
-    """Force at its tip that bends a beam to a slope there, 3 EI h / L³ per width [N m⁻¹]; slope of any shape [-]."""
+    """Force at the tip to bend a beam to a slope there, 3 EI h / L³ per width, slope of any shape [-] [N m⁻¹]."""
     return 3 * beam.bending_stiffness * beam.gap / (beam.width * (1.5 * beam.gap / slope) ** 3)
 
 
@@ -83,7 +83,7 @@ _FLATTEST, _STEEPEST, _RATIO = 1 / 4, 1.5, 2**0.25
 
 
 def slopes_of_tips(*saturated: float) -> np.ndarray:
-    """Slopes at which the tips of several beams are computed, increasing (s,) [-].
+    """Slopes for the computation of the tips of several beams, increasing (s,) [-].
 
     ``saturated`` are their slopes at the lengths that hold in saturated air [-], where tips are steepest.
 

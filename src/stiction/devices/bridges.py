@@ -1,4 +1,4 @@
-r"""Bridges: beams clamped at both ends, under the tension of a residual stress, that are held by their middle.
+r"""Bridges: beams clamped at both ends, under the tension of a residual stress, stuck at their middle.
 
 Two cracks open a bridge that was pressed down. Once they meet, the bridge is not yet free: its middle has no slope and
 touches as a parabola, and adhesion holds it on a few micrometres. It comes free if it pulls harder than this patch
@@ -54,12 +54,12 @@ def half_of_bridge(beam: Beam, residual_stress: float) -> Beam:
 
 
 def longest_strip(part: Beam, laws: np.ndarray) -> float:
-    """Longest strip that resolves the middle of a bridge on force laws (n, 4) [m]; ``part`` is any part of it."""
+    """Longest strip to resolve the middle of a bridge on force laws (n, 4) [m]. ``part`` is any part of it."""
     return STRIP * foundation_length(part, laws)
 
 
 def middle_zone(part: Beam, strip: float, laws: np.ndarray) -> tuple[Beam, int]:
-    """Zone around the middle of a bridge with elements that resolve it, and its number of strips.
+    """Zone around the middle of a bridge with fine enough elements, and its number of strips.
 
     From any part of the bridge, under its tension, the length of a strip of ground [m], and a sample of the force laws
     of these strips (n, 4) [SI].
@@ -81,7 +81,7 @@ def middle_zone(part: Beam, strip: float, laws: np.ndarray) -> tuple[Beam, int]:
 
 
 def held_length(zone: Beam, laws: np.ndarray) -> float:
-    """Length of the shortest bridge that its middle holds [m], infinite if even two cracks on the mean law do not stop.
+    """Length of the shortest bridge to stick at its middle, infinite if two cracks on the mean law do not stop [m].
 
     The zone is from `middle_zone`; the force laws of its strips (strips, 4) are ordered from the middle outwards, first
     to the right [SI].
@@ -92,12 +92,12 @@ def held_length(zone: Beam, laws: np.ndarray) -> float:
 
 
 def _longest(zone, laws):
-    """Length at which both cracks of a bridge stop on its mean law, from which its search starts [m]."""
+    """Length of arrest of both cracks of a bridge on its mean law, the start of its search [m]."""
     return 2 * float(arrest_length(forcelaw.energy(laws).mean(), zone))
 
 
 def longest_tried(zone: Beam, strips: int, draw_laws: Callable, rng: np.random.Generator) -> float:
-    """Length from which the search of `held_lengths` for one bridge starts [m]; ``rng`` is its stream."""
+    """Length at the start of the search of `held_lengths` for one bridge [m]. ``rng`` is its stream."""
     return _longest(zone, draw_laws(strips, rng))
 
 
@@ -108,7 +108,7 @@ def held_lengths(
     number: int,
     stream: Callable[[int], np.random.Generator],
 ) -> np.ndarray:
-    """`held_length` of a number of bridges on random ground (number,) [m]; zone and strips from `middle_zone`.
+    """Lengths `held_length` of a number of bridges on random ground (number,) [m]. Zone and strips from `middle_zone`.
 
     ``draw_laws(n, rng)`` gives n force laws (n, 4) [SI], and ``stream(k)`` is the numpy.random.Generator of bridge k.
     """
@@ -119,14 +119,14 @@ def held_lengths(
 
 
 def pull(length: float, part: Beam) -> tuple[float, float]:
-    """Force with which a bridge of a length [m] pulls at its middle [N], and the curvature there [m⁻¹]."""
+    """Force of a bridge of a length [m] at its middle [N], and the curvature there [m⁻¹]."""
     half = length / 2
     force, moment, _, _ = end_stiffness(part.decay * half) if part.tension else (12.0, 6.0, 4.0, 2.0)
     return 2 * force * part.bending_stiffness * part.gap / half**3, moment * part.gap / half**2
 
 
 def least_length(energy: float, pull_off: float, part: Beam) -> float:
-    r"""Length below which no law with this energy [J m⁻²] and largest attraction [Pa] holds a bridge by its middle [m].
+    r"""Least length of a bridge to stick at its middle, over all laws of this energy [J m⁻²] and pull-off [Pa] [m].
 
     The law that holds most attracts with f_max as far as e / f_max, and not beyond. It balances the force P of the
     bridge on a half-width :math:`b = P / (2 w f_\mathrm{max})`, where the middle, of curvature κ under a point force,
@@ -147,6 +147,7 @@ def least_length(energy: float, pull_off: float, part: Beam) -> float:
     """
 
     def excess(length):
+        """Gap at the end of the stuck width beyond the reach of the law, at a length of the bridge [m]."""
         force, curvature = pull(length, part)
         width = force / (2 * part.width * pull_off)
         rise = curvature * width**2 / 2 - 7 / 48 * force * width**3 / part.bending_stiffness

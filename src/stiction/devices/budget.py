@@ -1,4 +1,4 @@
-r"""Uncertainty budget of a length: which input moves it by how much, and which to measure better.
+r"""Uncertainty budget of a length: effects of its inputs, and the most useful measurement.
 
 The length is linear in its inputs on a logarithmic scale, :math:`d \ln l = \sum_k g_k dx_k`; joint shifts of the inputs
 of pair b add up to within 0.1 %. The slopes come from runs with common random numbers. With the covariance C of the
@@ -60,7 +60,7 @@ class Budget:
         return float(np.linalg.norm(gradient * np.asarray(slope_errors)[of]))
 
     def remaining(self, group: Sequence[str]) -> float:
-        """Relative standard uncertainty of the length that remains if some inputs were known exactly [-].
+        """Relative standard uncertainty of the length left if some inputs were known exactly [-].
 
         What is correlated with these inputs is then better known, too: the variance falls by that of the regression
         on them.
@@ -94,6 +94,7 @@ def log_slope(
     """
 
     def slope(used):
+        """Central difference of ln length over the step, NaN without finite lengths."""
         ends = length(less[used]), length(more[used])
         return np.log(ends[1] / ends[0]) / step if np.isfinite(ends).all() else np.nan
 
@@ -106,18 +107,18 @@ def log_slope(
 
 
 def choice_effect(base: float, changed: float) -> float:
-    """Relative change of a length by another choice of the model, ln(changed / base) [-]; NaN without a finite one."""
+    """Relative change of a length by another choice of the model, ln(changed / base) [-]. NaN without a finite one."""
     return float(np.log(changed / base)) if np.isfinite([base, changed]).all() else np.nan
 
 
 def ranked(budget: Budget, groups: Mapping[str, Sequence[str]]) -> list[tuple[str, float, float]]:
-    """Name, effect and remaining uncertainty of groups of inputs, that with the largest gain first."""
+    """Name, effect and remaining uncertainty of groups of inputs, the largest gain first."""
     rows = [(name, budget.effect(inputs), budget.remaining(inputs)) for name, inputs in groups.items()]
     return sorted(rows, key=lambda row: row[2])
 
 
 def advice(budget: Budget, groups: Mapping[str, Sequence[str]], response: str = "length") -> str:
-    """Sentence on what to measure better: the group whose exact knowledge would reduce the uncertainty most.
+    """Sentence on the best measurement: the group with the largest reduction of uncertainty if known exactly.
 
     ``response`` is what the budget is of.
     """

@@ -9,9 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from stiction.beam.cantilever import Beam
-from stiction.beam.energy import arrest_length
-from stiction.contact.meniscus import flooded_energy
 from stiction.rounding import is_at_most
 
 #: Largest relative error of a power law that is used.
@@ -20,7 +17,7 @@ ALLOWED = 0.01
 
 @dataclass(frozen=True)
 class PowerLaw:
-    """Length c t^α h^β, within the thicknesses and gaps to which it was fitted."""
+    """Length c t^α h^β, within the thicknesses and gaps of its fit."""
 
     prefactor: float  #: c [m^(1 - α - β)]
     thickness_power: float  #: α [-]
@@ -29,7 +26,7 @@ class PowerLaw:
     gaps: tuple[float, float]  #: smallest and largest h [m]
 
     def __call__(self, thickness: float | np.ndarray, gap: float | np.ndarray) -> float | np.ndarray:
-        """Length [m]; thickness and gap [m] broadcast.
+        """Length [m]. Thickness and gap [m] broadcast.
 
         Raises
         ------
@@ -65,14 +62,14 @@ def fit_power_law(thickness: np.ndarray, gap: np.ndarray, length: np.ndarray) ->
 
 
 def largest_error(law: PowerLaw, thickness: np.ndarray, gap: np.ndarray, length: np.ndarray) -> float:
-    """Largest relative error of a power law at beams to which it was not fitted (n,) [-]."""
+    """Largest relative error of a power law at beams outside its fit (n,) [-]."""
     return float(np.max(np.abs(law(thickness, gap) / length - 1)))
 
 
 def checked_power_law(
     thickness: np.ndarray, gap: np.ndarray, length: np.ndarray, test: np.ndarray
 ) -> tuple[PowerLaw, float]:
-    """Power law through the beams that are not in ``test`` (n,) bool, and its `largest_error` at those that are.
+    """Power law through the beams not in ``test`` (n,) bool, and its `largest_error` at the others.
 
     Raises
     ------
@@ -84,8 +81,3 @@ def checked_power_law(
     if error > ALLOWED:
         raise ValueError(f"a power law errs by {error:.1%} between the computed beams, more than {ALLOWED:.0%}")
     return law, error
-
-
-def flooded_length(beam: Beam, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:
-    """Crack length at the `stiction.contact.meniscus.flooded_energy`, the shortest that water alone can cause [m]."""
-    return float(arrest_length(flooded_energy(temperature, contact_angles), beam))

@@ -1,4 +1,4 @@
-r"""Weighted draws of errors that are independent and standard normal before a measurement, whatever its likelihood.
+r"""Weighted draws of errors, independent and standard normal before a measurement of any likelihood.
 
 Adaptive importance sampling (J.-M. Cornuet et al., Scand. J. Stat. 39, 798 (2012)). The first draws z are those
 before the measurement, with density :math:`\varphi`, and those around the most probable errors after it. As long as too
@@ -28,7 +28,7 @@ _DRAWS, _ENOUGH, _MOST = 4096, 2048, 100
 
 @dataclass(frozen=True)
 class _Normal:
-    """Normal distribution, up to the factor of its density that all have."""
+    """Normal distribution, up to a common factor of its density."""
 
     mean: np.ndarray  #: (r,)
     root: np.ndarray  #: lower triangle, the covariance is its product with its transpose (r, r)
@@ -42,7 +42,7 @@ class _Normal:
 
     @classmethod
     def around(cls, mode: np.ndarray, curvature: np.ndarray) -> "_Normal":
-        """Normal distribution that is nowhere wider than the standard one."""
+        """Normal distribution, nowhere wider than the standard one."""
         curvatures, axes = np.linalg.eigh(curvature)
         covariance = axes / np.maximum(curvatures, 1.0) @ axes.T
         return cls(mode, np.linalg.cholesky(covariance))
@@ -65,7 +65,7 @@ def weighted(
     curvature: np.ndarray,
     rng: np.random.Generator,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Draw errors that are standard normal before a measurement: draws (m, r) and their weights after it (m,).
+    """Draw errors, standard normal before a measurement: draws (m, r) and their weights after it (m,).
 
     ``log_likelihood`` takes draws (m, r) and returns (m,). The most probable errors are (r,), and the curvature is that
     of half the misfit there (r, r).
@@ -99,9 +99,10 @@ def _density(normals, draws):
 
 
 def _power(before, ratio):
-    """Largest power of the ratio of densities, up to 1, with which the draws are worth enough."""
+    """Largest power of the ratio of densities, up to 1, with draws still worth enough."""
 
     def spare(power):
+        """Worth of the draws at a power, less the required one."""
         return _worth(before + power * ratio) - _ENOUGH
 
     return 1.0 if spare(1.0) >= 0 else brentq(spare, 0.0, 1.0, rtol=1e-6)

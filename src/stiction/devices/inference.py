@@ -1,4 +1,4 @@
-r"""From test beams to a device: what measured crack lengths, or counts of stuck beams, say about the inputs.
+r"""Inputs of a device from test beams: evidence of measured crack lengths, or counts of stuck beams.
 
 As in `stiction.devices.budget`, logarithms of lengths are linear in their inputs, :math:`\ln l = \ln l_0 + h^T x`,
 where x are the errors of the inputs, normal with covariance C before the test beams are measured. The model errs as
@@ -51,7 +51,7 @@ _ROUNDING = 1e-12
 
 @dataclass(frozen=True)
 class Draws:
-    """Equally probable normal distributions of the errors of inputs, which make up their distribution."""
+    """Equally probable normal distributions of the errors of inputs. Together they are their distribution."""
 
     centres: np.ndarray  #: (m, k)
     covariance: np.ndarray  #: of each of them (k, k)
@@ -99,7 +99,7 @@ class Knowledge:
 
 @dataclass(frozen=True)
 class Lengths:
-    """Mean crack lengths of test beams beside those that were computed."""
+    """Mean crack lengths of test beams beside the computed ones."""
 
     responses: np.ndarray  #: d ln l / dx (n, k)
     differences: np.ndarray  #: ln(measured / computed) (n,) [-]
@@ -108,7 +108,7 @@ class Lengths:
 
 @dataclass(frozen=True)
 class Counts:
-    """Numbers of stuck test beams of given lengths, each of which may be held in any of s shapes."""
+    """Numbers of stuck test beams of given lengths, each able to stick in any of s shapes."""
 
     responses: np.ndarray  #: d ln l / dx of every shape (n, s, k)
     lengths: np.ndarray  #: of the beams that every shape could hold (n, s) [m]
@@ -138,7 +138,7 @@ class Counts:
         return np.exp(self.logarithms(errors)[0])
 
     def deviance(self, errors: np.ndarray) -> float | np.ndarray:
-        """Twice the logarithm by which fractions equal to the counted ones are more probable, (..., k) -> (...)."""
+        """Deviance of errors: twice the log of the likelihood ratio to the counted fractions, (..., k) -> (...)."""
         stuck, free = self.logarithms(errors)
         others = self.beams - self.stuck
         best = xlogy(self.stuck, self.stuck / self.beams) + xlogy(others, others / self.beams)
@@ -171,7 +171,7 @@ def score(lengths: np.ndarray) -> PPoly:
 
 
 def _last_slope(inner):
-    """Of ln l over the score."""
+    """Slope of ln l over the score at the end."""
     return (inner[-1] - inner[-2]) / (_QUANTILES[-1] - _QUANTILES[-2])
 
 
@@ -249,7 +249,7 @@ def _spread(prior, data):
 def given(
     prior: Knowledge, lengths: Lengths, counts: Counts | None = None, rng: np.random.Generator | None = None
 ) -> Knowledge:
-    """Knowledge after crack lengths were measured and stuck beams counted, for which errors are drawn.
+    """Knowledge after measured crack lengths and counts of stuck beams. For counts, errors are drawn.
 
     Raises
     ------
@@ -271,7 +271,7 @@ def given(
 
 
 def _counted_directions(known, counts):
-    """Expected inputs per independent standard normal error (k, r); counts depend on these errors alone."""
+    """Expected inputs per independent standard normal error (k, r). Counts depend on these errors alone."""
     responses = counts.responses.reshape(-1, len(known.mean))
     shared = known.covariance @ responses.T
     variances, axes = np.linalg.eigh(responses @ shared)
@@ -350,7 +350,7 @@ class Combination:
 
 
 def combinations(prior: Knowledge, posterior: Knowledge) -> list[Combination]:
-    """Independent combinations of the errors of all inputs, that which the data determine best first.
+    """Independent combinations of the errors of all inputs, the best determined by the data first.
 
     Data determine as many of them as there are independent data. Inputs that are correlated with the same combination
     are not told apart.
@@ -366,12 +366,12 @@ def combinations(prior: Knowledge, posterior: Knowledge) -> list[Combination]:
 
 
 def _signed(values):
-    """Values with the sign with which the largest one is positive."""
+    """Values with the sign of a positive largest one."""
     return values * np.sign(values[np.argmax(np.abs(values))])
 
 
 def expected_share(margins: np.ndarray, weights: np.ndarray, quantiles: np.ndarray) -> float:
-    """P(stuck) of devices if ln of the lengths that stick has a shift with these quantiles at normal scores `SCORES`.
+    """P(stuck) of devices if ln of the stuck lengths has a shift with these quantiles at normal scores `SCORES`.
 
     The margins are ln(length of the devices / length that sticks), as computed, and the weights the shares of the
     devices with each of these (n,) [-]; the others never stick. Beyond the quantiles, their distances stay as they are.

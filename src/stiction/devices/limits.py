@@ -1,4 +1,4 @@
-"""Where the model ends: one function per limit, a sentence with the number that triggers it, or None.
+"""Limits of the model: one function each, with a sentence and its number, or None.
 
 Lengths are in metres, angles of rotation in radians, shares between 0 and 1.
 """
@@ -30,13 +30,15 @@ PLATE = 10.0
 STRETCH = 0.5
 #: What plastic contact does to beams and to stoppers that were pressed as hard.
 SHORTER, STRONGER = "beams that were pressed stick at shorter lengths", "stoppers that were pressed hold more"
+#: Words of every warning about a result on the unsafe side.
+UNSAFE = "the unsafe side"
 #: How to let plastic contact be checked, and how where the list of studies leaves it out.
 DISTANCE = "give its distance in studies.plasticity.distance_nm"
 NAMED = f"{DISTANCE}, and name plasticity in run.studies"
 
 
 def not_modelled(left_out: Sequence[str] = (), humid: bool = True) -> str:
-    """What is relevant to stiction and not in the model: at no settings, and what those in force leave out."""
+    """Effects relevant to stiction but not in the model: at no settings, or left out by the present ones."""
     time = ["the time that water needs to condense and to evaporate"] * humid
     never = [
         "residues of drying",
@@ -46,12 +48,12 @@ def not_modelled(left_out: Sequence[str] = (), humid: bool = True) -> str:
         "conformal films, which correlate both surfaces",
     ]
     sentence = f"Not in the model: {', '.join([*left_out, *never])}, and curl by a stress gradient."
-    fast = " Surfaces that separate faster than water evaporates hold more than computed, which is the unsafe side."
+    fast = " If surfaces separate faster than water evaporates, they hold more than computed: this is the unsafe side."
     return sentence + fast * humid
 
 
 def arcs_of_elements(share: float, strip: float) -> str | None:
-    """Beams that end as an arc in the finite elements, whose share depends on the length of the strips."""
+    """Beams ending as an arc in the finite elements. Their fraction depends on the length of the strips."""
     if share == 0:
         return None
     return (
@@ -62,7 +64,7 @@ def arcs_of_elements(share: float, strip: float) -> str | None:
 
 
 def long_strips(strip: float, longest: float, is_bridge: bool = False) -> str | None:
-    """Strips that are longer than the longest ones which resolve the cracks, or the middle, of a beam."""
+    """Strips longer than the cracks, or the middle, of a beam allow."""
     if strip <= longest:
         return None
     what = "middle of this bridge" if is_bridge else "cracks of this beam"
@@ -81,7 +83,7 @@ def long_strips(strip: float, longest: float, is_bridge: bool = False) -> str | 
 
 
 def cut_off_mean(share: float, mean: float, length: float) -> str | None:
-    """Mean crack length of S-shaped beams from which the others, with longer cracks, are missing."""
+    """Mean crack length of S-shaped beams without the others, with longer cracks."""
     if share == 1:
         return None
     return (
@@ -91,7 +93,7 @@ def cut_off_mean(share: float, mean: float, length: float) -> str | None:
 
 
 def plastic_contact(share: float, pressure: float, effect: str = SHORTER, remedy: str = DISTANCE) -> str | None:
-    """Contact that is plastic under a mean pressure of the surfaces; NaN if it was not studied, which has a remedy.
+    """Contact plastic under a mean pressure of the surfaces, NaN with a remedy if not studied.
 
     ``effect`` says what this does to a device that was pressed, `SHORTER` or `STRONGER`. Adhesion alone presses less.
     """
@@ -107,7 +109,7 @@ def plastic_contact(share: float, pressure: float, effect: str = SHORTER, remedy
 
 
 def default_material(name: str, stated: Sequence[str]) -> str | None:
-    """Defaults that are used for another material than polysilicon; ``stated`` lists inputs that are given."""
+    """Defaults used for another material than polysilicon. ``stated`` lists given inputs."""
     missing = [entry.words for entry in PROPERTIES.values() if entry.words not in stated]
     if name == "polysilicon" or not missing:
         return None
@@ -120,7 +122,7 @@ def default_material(name: str, stated: Sequence[str]) -> str | None:
 
 
 def spacer(name: str, stated: Sequence[str]) -> str | None:
-    """A coating whose own attraction is left out; ``stated`` lists inputs of its material that are given."""
+    """Coating without its own attraction. ``stated`` lists given inputs of its material."""
     if OF_COATINGS[COATING] not in stated or OF_COATINGS[COATING_ATTRACTION] in stated:
         return None
     return (
@@ -131,7 +133,7 @@ def spacer(name: str, stated: Sequence[str]) -> str | None:
 
 
 def without_gaps(changes: Mapping[float, tuple[float, float]], shorter: bool = False) -> str | None:
-    """Attraction across gaps that is left out, and how much it would change a length (``shorter``) or force.
+    """Left out attraction across gaps, and its effect on a length (``shorter``) or force.
 
     The changes and their standard errors are relative, by humidity.
     """
@@ -151,7 +153,7 @@ def without_gaps(changes: Mapping[float, tuple[float, float]], shorter: bool = F
 
 
 def flat_patches(share: float) -> str | None:
-    """Share of the sampled patches whose summits do not resist the adhesion, and which count as flat surfaces."""
+    """Fraction of the sampled patches without resistance to the adhesion, counted as flat surfaces."""
     if share == 0:
         return None
     return (
@@ -161,19 +163,18 @@ def flat_patches(share: float) -> str | None:
 
 
 def thin_film(film: float) -> str | None:
-    """Film of height h_C that is hardly a liquid; of height zero, there is none."""
+    """Film of height h_C too thin for a liquid. At height zero, there is none."""
     if not 0 < film < MOLECULES * WATER_MOLECULE:
         return None
     return (
         f"The film of water is {film * 1e9:.2g} nm high, thinner than {MOLECULES} molecules, "
-        f"{MOLECULES * WATER_MOLECULE * 1e9:.3g} nm: the air is drier than the range in which the theory of a liquid "
-        "is valid, so that this result may be off to either side. Results for dry air and for the next humidity above "
-        "bracket it."
+        f"{MOLECULES * WATER_MOLECULE * 1e9:.3g} nm: the air is too dry for the theory of a liquid, and this result "
+        "can be off to either side. Results for dry air and for the next humidity above bracket it."
     )
 
 
 def no_water(film: float, humidity: float) -> str | None:
-    """Air that is not dry, without a film of height h_C: no water condenses between the surfaces."""
+    """Humid air without a film of height h_C: no water condenses between the surfaces."""
     if film > 0 or humidity == 0:
         return None
     return (
@@ -183,7 +184,7 @@ def no_water(film: float, humidity: float) -> str | None:
 
 
 def wide_meniscus(film: float, sides: Sequence[float]) -> str | None:
-    r"""Film of height h_C that is not small against the sides a and b of a patch of surface.
+    r"""Film of height h_C not small against the sides a and b of a patch of surface.
 
     The tension in the film pulls on the patch with :math:`\gamma (\cos\theta_1 + \cos\theta_2) a b / h_C`, and the
     surface of the water along its rim with at most :math:`2 \gamma (a + b)`. Where the solids are wetted, the ratio is
@@ -200,12 +201,12 @@ def wide_meniscus(film: float, sides: Sequence[float]) -> str | None:
 
 
 def least_gap(film: float, rms: float) -> float:
-    """Smallest gap in which beam and film are apart [m]; height h_C of the film and rms roughness [m]."""
+    """Smallest gap with beam and film apart [m], from the height h_C of the film and rms roughness [m]."""
     return FILMS * (film + rms)
 
 
 def filled_gap(gap: float, film: float, rms: float) -> str | None:
-    """Gap that is not much wider than film h_C and roughness, so that beam and film are not apart."""
+    """Gap not much wider than film h_C and roughness. Beam and film are not apart."""
     if gap >= least_gap(film, rms):
         return None
     what, acts = ("sum of film height and roughness", "water") if film else ("roughness", "attraction across gaps")
@@ -216,7 +217,7 @@ def filled_gap(gap: float, film: float, rms: float) -> str | None:
 
 
 def large_rotation(gap: float, crack_length: float) -> str | None:
-    """Slope 1.5 h / l of a beam that is too steep for the linear theory."""
+    """Slope 1.5 h / l of a beam, too steep for the linear theory."""
     slope = 1.5 * gap / crack_length
     if slope <= ROTATION:
         return None
@@ -238,7 +239,7 @@ def stubby_beam(crack_length: float, thickness: float) -> str | None:
 
 
 def wide_beam(gap: float, width: float, thickness: float, crack_length: float) -> str | None:
-    """Beam that is too wide to curve freely across its width."""
+    """Beam too wide to curve freely across its width."""
     ratio = 6 * gap * width**2 / (thickness * crack_length**2)
     if ratio <= PLATE:
         return None
@@ -249,24 +250,31 @@ def wide_beam(gap: float, width: float, thickness: float, crack_length: float) -
 
 
 def stretched_bridge(gap: float, thickness: float) -> str | None:
-    """Bridge whose deflection adds to its tension."""
+    """Bridge with more tension by its deflection."""
     ratio = gap / thickness
     if ratio < STRETCH:
         return None
     size = "equal to the thickness" if f"{ratio:.3g}" == "1" else f"{ratio:.3g} times the thickness"
     return (
-        f"The gap is {size} of the bridge: its stretching, which is left out, helps to free it. Bridges would come "
-        "free that are up to 5 % longer at a gap of half the thickness, up to 16 % where both are equal, and more "
-        "beyond. The prediction is on the safe side."
+        f"The gap is {size} of the bridge: its stretching, which is left out, helps to free it. Longer bridges would "
+        "release, too: by up to 5 % at a gap of half the thickness, by up to 16 % at an equal gap, and by more beyond. "
+        "The prediction is on the safe side."
     )
 
 
+def forbids(warning: str) -> bool:
+    """Whether a warning forbids relying on a number: a result on the unsafe side, by an amount that is not known."""
+    return UNSAFE in warning
+
+
 def given(*warnings: str | None) -> list[str]:
-    """Warnings that are triggered, in order."""
+    """Triggered warnings, in order."""
     return [warning for warning in warnings if warning is not None]
 
 
-def of_beam(gap: float, width: float, thickness: float, crack_length: float, film: float, rms: float) -> list[str]:
+def beam_warnings(
+    gap: float, width: float, thickness: float, crack_length: float, film: float, rms: float
+) -> list[str]:
     """All warnings about the dimensions of a beam with this crack length, film height and rms roughness [m]."""
     return given(
         filled_gap(gap, film, rms),

@@ -1,4 +1,4 @@
-"""Properties of the material of a device: what they are called, and the step for the slope of a budget."""
+"""Properties of the material of a device: their names, and the step for the slope of a budget."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ class Step:
         return value - self.size, value + self.size
 
     def moved(self, value: float, by: float) -> float:
-        """An input of this value that errs by an amount, in its logarithm if the step is relative.
+        """Value shifted by an error. Relative errors shift its logarithm.
 
         Examples
         --------
@@ -30,13 +30,13 @@ class Step:
 
     @property
     def difference(self) -> float:
-        """Of the logarithm of the input between both ends, or of the input."""
+        """Difference of the logarithm of the input between both ends, or of the input."""
         return float(np.log((1 + self.size) / (1 - self.size))) if self.relative else 2 * self.size
 
 
 @dataclass(frozen=True)
 class Property:
-    """A property of the material of one body."""
+    """Property of the material of one body."""
 
     key: str  #: of the configuration, where materials and uncertainties have it
     words: str
@@ -44,7 +44,7 @@ class Property:
 
     @property
     def group(self) -> str:
-        """What a measurement determines, for reading."""
+        """Name of a measurement for it, for reading."""
         return self.words if "'s " in self.words else f"the {self.words}"
 
 

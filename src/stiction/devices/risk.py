@@ -1,4 +1,4 @@
-"""Risk of beams: the share of beams that stick over their length, and the safe length.
+"""Risk of beams: the fraction of stuck beams against their length, and the safe length.
 
 Every simulated device has a *sticking length*, the shortest one that sticks on its ground: a device of length L sticks
 if and only if its sticking length is smaller than L. One simulation of long beams thus gives P(stuck) at every length.
@@ -25,7 +25,7 @@ DECADE = 0.1
 
 
 class Basis(StrEnum):
-    """What a safe length rests on."""
+    """Basis of a safe length."""
 
     SAMPLED = "sampled"  #: order statistics, no assumption about the distribution
     FITTED = "fitted"  #: line through the lowest lengths, within a decade of the samples and within what was verified
@@ -36,7 +36,7 @@ class Basis(StrEnum):
 
 @dataclass(frozen=True)
 class SafeLength:
-    """Largest length whose one-sided upper bound of P(stuck) is at most ``share``, given the sampled surfaces."""
+    """Largest length with a one-sided upper bound of P(stuck) of at most ``share``, given the sampled surfaces."""
 
     share: float  #: p [-]
     length: float  #: the safe length: one-sided 95 % lower bound of ``estimate`` [m]
@@ -47,7 +47,7 @@ class SafeLength:
 
 @dataclass(frozen=True)
 class Known:
-    """Lengths of devices that follow from no samples, and where the samples end [m]."""
+    """Lengths of devices known without samples, and the end of the samples [m]."""
 
     reach: float = (
         np.inf
@@ -87,7 +87,7 @@ def with_arcs(s_shapes: np.ndarray, arcs: np.ndarray) -> np.ndarray:
 
 
 def upper_bound(stuck: int | np.ndarray, samples: int, confidence: float = CONFIDENCE) -> float | np.ndarray:
-    """One-sided upper bound of a share, of which ``stuck`` of ``samples`` were found (Clopper and Pearson) [-]."""
+    """One-sided upper bound of a fraction, from ``stuck`` of ``samples`` (Clopper and Pearson) [-]."""
     stuck = np.asarray(stuck)
     inner = betaincinv(np.minimum(stuck, samples - 1) + 1.0, np.maximum(samples - stuck, 1), confidence)
     return np.where(stuck < samples, inner, 1.0)[()]
@@ -114,7 +114,7 @@ def most_stuck(sticking: np.ndarray, reach: float) -> float:
 
 
 def samples_for(share: float) -> int:
-    """Number of samples of which the smallest bounds the length with P(stuck) = share (Wilks).
+    """Smallest number of samples to bound the length of P(stuck) = share by their minimum (Wilks).
 
     >>> [samples_for(share) for share in (1e-2, 1e-3, 1e-4)]
     [299, 2995, 29956]
@@ -126,7 +126,7 @@ def samples_for(share: float) -> int:
 
 
 def _sampled_length(ordered, share):
-    """Largest order statistic below which a share of at most ``share`` lies, with confidence."""
+    """Largest order statistic with at most ``share`` of all lengths below it, with confidence."""
     n = len(ordered)
     stuck = np.arange(int(share * n) + 1)
     allowed = stuck[upper_bound(stuck, n) <= share]
@@ -147,7 +147,7 @@ def _quantile(ordered, share):
 
 
 def sampled_bound(values: np.ndarray, share: float) -> tuple[float, float, float]:
-    """Value below which a share of all samples (n,) lies: one-sided 95 % lower bound, estimate and its standard error.
+    """Quantile of all samples (n,) at a share: one-sided 95 % lower bound, estimate and its standard error.
 
     The bound is an order statistic, without an assumption about the distribution. The results have the unit of the
     samples.
@@ -192,7 +192,7 @@ def _sampled(sticking, share, known):
 
 
 def _fitted(sticking, share, rng, known):
-    """Safe length by a fit of the shortest lengths that are known.
+    """Safe length by a fit of the shortest known lengths.
 
     Those of tips may all be known, and longer than any simulated crack: up to the length that sticks on flat surfaces,
     no crack stops.
@@ -233,3 +233,15 @@ def error_of_surfaces(of_group: np.ndarray) -> float | np.ndarray:
     values = np.where(np.isfinite(values), values, np.nan)
     differ = np.ptp(values, axis=0) > 0
     return np.where(differ, values.std(axis=0, ddof=1) / np.sqrt(groups), np.nan)[()]
+
+
+def one_in(share: float) -> str:
+    """Fraction of devices in words.
+
+    Examples
+    --------
+    >>> one_in(1e-3), one_in(1e-6), one_in(0.03)
+    ('1 in 1000', '1 in 1000000', '1 in 33.3333')
+    """
+    number = 1 / share
+    return f"1 in {number:.0f}" if abs(number - round(number)) < 1e-6 * number else f"1 in {number:g}"

@@ -1,4 +1,4 @@
-r"""How rough a surface must be: where a length, or a force, over its roughness meets what is required of a device.
+r"""Sufficient roughness of a surface: crossings of a length, or a force, with the requirement of a device.
 
 Lengths and forces are known at a few roughnesses. The margin is :math:`\ln (l / l_\mathrm{required})` of a length, or
 :math:`-\ln (F / F_\mathrm{required})` of a force: what is positive suffices. Between the known points it is a cubic
@@ -19,14 +19,14 @@ _LEAST = 1e-12
 
 @dataclass(frozen=True)
 class Crossing:
-    """Place at which the margin is zero."""
+    """Place of zero margin."""
 
     place: float  #: coordinate of the roughness
     error: float  #: standard error, of the margin and of the cubic between its points
 
 
 def margins(values: np.ndarray, required: float, more_is_better: bool) -> np.ndarray:
-    """Margins (n,) of lengths or forces (n,) over the required one; NaN where they are not known.
+    """Margins (n,) of lengths or forces (n,) to the required one, NaN where unknown.
 
     Examples
     --------
@@ -39,7 +39,7 @@ def margins(values: np.ndarray, required: float, more_is_better: bool) -> np.nda
 
 
 def crossings(axis: np.ndarray, margin: np.ndarray, errors: np.ndarray) -> list[Crossing]:
-    """All places at which the margin is zero, increasing.
+    """All places of zero margin, increasing.
 
     Parameters
     ----------
@@ -68,7 +68,7 @@ def crossings(axis: np.ndarray, margin: np.ndarray, errors: np.ndarray) -> list[
 
 
 def sufficient(axis: np.ndarray, margin: np.ndarray) -> list[tuple[float, float]]:
-    """Ranges of the roughness, increasing, in which the margin is not negative; parameters as of `crossings`.
+    """Ranges of the roughness without a negative margin, increasing. Parameters as of `crossings`.
 
     Ranges reach a point whose margin is the largest from their inside alone: beside it, the margin may be any.
     """
@@ -88,14 +88,14 @@ def _known(margin: np.ndarray) -> list[slice]:
 
 
 def _anywhere(place: float, axis: np.ndarray, margin: np.ndarray) -> float:
-    """Standard deviation of a place that may be anywhere between two points, one of which has the largest margin."""
+    """Standard deviation of a place anywhere between two points, one of them with the largest margin."""
     right = np.searchsorted(axis, place)
     between = slice(right - 1, right + 1)
     return float(np.ptp(axis[between]) / np.sqrt(12)) if np.abs(margin[between]).max() >= LARGEST else 0.0
 
 
 def _zeros(curve: PchipInterpolator) -> list[float]:
-    """Places inside a curve at which its sign changes; the ends of the curve are none."""
+    """Places inside a curve with a change of its sign, without the ends of the curve."""
     places = np.unique(curve.roots(extrapolate=False).round(12))
     inside = places[(places > curve.x[0]) & (places < curve.x[-1])]
     ends = np.array([curve.x[0], *inside, curve.x[-1]])
@@ -104,5 +104,5 @@ def _zeros(curve: PchipInterpolator) -> list[float]:
 
 
 def _joined(ends: Sequence[float], enough: Sequence[bool]) -> list[tuple[float, float]]:
-    """Ranges between neighbouring ends (n + 1) in which a condition (n) holds."""
+    """Ranges between neighbouring ends (n + 1) under a condition (n)."""
     return [(float(low), float(high)) for low, high, holds in zip(ends, ends[1:], enough, strict=False) if holds]

@@ -1,10 +1,11 @@
-"""Stoppers, dimples and landing tips: the force that pulls a patch off, against the force that restores it.
+"""Stoppers, dimples and landing tips: pull-off force of a patch, against its restoring force.
 
 A patch touches everywhere at once, unlike a beam, and is pulled off by the largest attraction on its way. Its pull-off
 force is therefore f_max times its area. Unlike the adhesion energy, f_max is largest below saturation: the wetter the
 air, the larger the wetted area, and the weaker the tension in it.
 
-ASSUME: the patch stays parallel to the substrate. A patch that tilts comes off more easily.
+ASSUME: the patch stays parallel to the substrate unless its tilt is stated, the safe side: one that tilts comes off
+more easily (`stiction.stages.devices.stoppers`).
 """
 
 from dataclasses import dataclass
@@ -17,12 +18,12 @@ from stiction.estimates import jackknife
 
 
 def pull_off_force(f_max: float | np.ndarray, area: float) -> float | np.ndarray:
-    """Force that pulls a patch off [N]; f_max [Pa] of surfaces drawn in the size of the patch, area [m²]."""
+    """Pull-off force of a patch [N], from f_max of surfaces drawn in its size [Pa] and its area [m²]."""
     return f_max * area
 
 
 def stuck_patches(pull_off: np.ndarray, restoring_forces: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """P(stuck), the share of patches that hold more than a force (m,) [N], with a pointwise 95 % band, (m,) each [-].
+    """P(stuck), the fraction of patches above a force (m,) [N], with a pointwise 95 % band, (m,) each [-].
 
     From the pull-off forces of sampled patches (n,) [N].
     """
@@ -30,7 +31,7 @@ def stuck_patches(pull_off: np.ndarray, restoring_forces: np.ndarray) -> tuple[n
 
 
 def safe_force(pull_off: np.ndarray, share: float) -> tuple[float, float, float]:
-    """Smallest restoring force whose one-sided 95 % upper bound of P(stuck) is at most a share p.
+    """Smallest restoring force with a one-sided 95 % upper bound of P(stuck) of at most a fraction p.
 
     It is an order statistic of the sampled pull-off forces (n,) [N], without an assumption about their distribution.
 
@@ -50,7 +51,7 @@ def safe_force(pull_off: np.ndarray, share: float) -> tuple[float, float, float]
 
 @dataclass(frozen=True)
 class SafeForce:
-    """Smallest restoring force whose one-sided 95 % upper bound of P(stuck) is at most a share p."""
+    """Smallest restoring force with a one-sided 95 % upper bound of P(stuck) of at most a fraction p."""
 
     force: float  #: the safe force [N]
     estimate: float  #: force with P(stuck) = p [N]
@@ -86,7 +87,7 @@ def safe_forces(pull_off: np.ndarray, share: float, rng: np.random.Generator) ->
 
 
 def peak(x: np.ndarray, values: np.ndarray) -> float:
-    """Place of the largest value, by a parabola through it and its neighbours; an end of ``x`` if it is there.
+    """Place of the largest value, by a parabola through it and its neighbours, or an end of ``x`` if it is there.
 
     The places x increase, not necessarily evenly.
     """

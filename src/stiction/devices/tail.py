@@ -1,4 +1,4 @@
-"""Short end of a distribution of lengths: the length below which a small share lies, from few samples.
+"""Short end of a distribution of lengths: small quantiles, from few samples.
 
 The logarithms of the lowest 5 % of the lengths are fitted by a line over the normal score, as if the end of the
 distribution, and only that, were lognormal. S-shapes, tips and bridges of the paper's pair b follow such a line down to
@@ -26,7 +26,7 @@ class TailFit:
     fitted: int  #: number of the lowest ones that are fitted
 
     def length(self, share: float) -> float:
-        """Length below which a share of all lengths lies [m]."""
+        """Quantile of all lengths at a share [m]."""
         return float(np.exp(self.intercept + self.slope * ndtri(share)))
 
 
@@ -44,7 +44,7 @@ def _lines(logarithms, scores):
 
 
 def fit_tail(lengths: np.ndarray) -> TailFit:
-    """Fit the lowest 5 % of n lengths (n,) [m], or those of them that are known, which are finite.
+    """Fit the lowest 5 % of n lengths (n,) [m], or the known, finite ones among them.
 
     Raises
     ------
@@ -64,7 +64,7 @@ def fit_tail(lengths: np.ndarray) -> TailFit:
 def scaled_errors(
     samples: int, share: float, rng: np.random.Generator, repeats: int = 2000, fitted: int | None = None
 ) -> np.ndarray:
-    """Errors of fitted logarithms of a length, in units of the true slope and of the fitted one; (2, repeats).
+    """Errors of fitted logarithms of a length, in units of the true slope and of the fitted one, (2, repeats).
 
     For a distribution that is lognormal at its end, the fit is equivariant, so that the errors do not depend on the
     distribution. They are simulated from the lowest order statistics of ``samples`` normal numbers, of which as many

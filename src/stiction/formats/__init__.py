@@ -1,1 +1,1 @@
-"""Formats of files with heights that the library for such files does not read."""
+"""Formats of files with heights, in addition to the formats of the library for such files."""

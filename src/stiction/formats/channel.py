@@ -1,4 +1,4 @@
-"""One map of values in a file, with what the library for files says of its own channels."""
+"""One map of values in a file, with the same attributes as the library's channels."""
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
@@ -23,11 +23,11 @@ class Channel:
     info: dict = field(default_factory=dict)
 
     def topography(self, **_: object) -> "Channel":
-        """The map itself."""
+        """Map itself."""
         return self
 
     def heights(self) -> np.ndarray:
-        """Its values, (n_x, n_y)."""
+        """Values of the map, (n_x, n_y)."""
         return self.values()
 
 

@@ -1,4 +1,4 @@
-"""What a file holds without its packing, and the readers of formats that the library for files does not know."""
+"""Content of a file without its packing, and readers of formats unknown to the library for files."""
 
 import io
 import posixpath
@@ -18,7 +18,7 @@ _HIGH_SPEED = "asd"
 
 @dataclass(frozen=True)
 class Content:
-    """What a file holds."""
+    """Content of a file."""
 
     label: str  #: name of the file
     path: str
@@ -33,12 +33,12 @@ class Content:
         return posixpath.splitext(self.name)[1].lower().removeprefix(".")
 
     def source(self) -> str | io.BytesIO:
-        """What a reader opens."""
+        """Content or path to be opened by a reader."""
         return io.BytesIO(self.content) if self.changed else self.path
 
 
 def content_of(label: str, path: str, stored: bytes) -> Content:
-    """Content of a file, unpacked; numbers of a text are as the library reads them."""
+    """Content of a file, unpacked. Numbers of a text are as the library reads them."""
     try:
         name, content = unpacked(label, stored)
     except (OSError, EOFError, ValueError, zlib.error, struct.error, zipfile.BadZipFile):
@@ -52,7 +52,7 @@ def content_of(label: str, path: str, stored: bytes) -> Content:
 
 @dataclass(frozen=True)
 class OwnReader:
-    """Reader of a format that the library does not know, with what is used of its readers."""
+    """Reader of a format unknown to the library, with the used part of its readers' interface."""
 
     kind: str
     channels: list[Channel]
@@ -69,7 +69,7 @@ class OwnReader:
 
 
 def own_reader(file: Content) -> OwnReader | None:
-    """Reader of Nanonis, of high-speed microscopes or of JPK; ``None`` for other formats.
+    """Reader of Nanonis, of high-speed microscopes or of JPK, or ``None`` for other formats.
 
     Raises
     ------

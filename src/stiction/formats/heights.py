@@ -1,4 +1,4 @@
-"""The channel of a file that has the heights, by its name and unit.
+"""Channel of a file with the heights, by its name and unit.
 
 The library for files regards every channel with a length, and some without, as heights.
 """
@@ -59,17 +59,17 @@ def height_channel(channels: Sequence[Any], wanted: str | None, name: str) -> tu
 
 
 def unit_of(channel: Any) -> Any:
-    """Unit of the heights of a channel; ``None`` if the file has none, otherwise not always a length."""
+    """Unit of the heights of a channel, not always a length, or ``None`` if the file has none."""
     return channel.unit if channel.data_unit is None else channel.data_unit
 
 
 def _words(name):
-    """Words of the name of a channel, in lower case; ``HeightTrace`` has two."""
+    """Words of the name of a channel, in lower case. ``HeightTrace`` has two."""
     return {word.lower() for word in re.findall(r"[A-Z]?[a-z]+|[A-Z]+(?![a-z])", name)}
 
 
 def _is_height(channel):
-    """Whether name and unit of a channel are those of heights."""
+    """Whether name and unit of a channel fit heights."""
     words = _words(channel.name)
     return bool(words & _HEIGHT) and words <= _HEIGHT | _MEANS | _DIRECTION and _has_length(channel)
 
@@ -80,13 +80,13 @@ def _has_length(channel):
 
 
 def _only_length(channels):
-    """The only channel with a length, or without a unit, unless its name is that of another quantity."""
+    """Only channel with a length, or without a unit, unless its name belongs to another quantity."""
     lengths = [channel for channel in channels if _has_length(channel)]
     return lengths if len(lengths) == 1 and not _words(lengths[0].name) & _NO_HEIGHT else []
 
 
 def _first(channels):
-    """The first channel of every name: others of its name are frames or directions."""
+    """First channel of every name: others of its name are frames or directions."""
     names = [channel.name for channel in channels]
     return [channel for k, channel in enumerate(channels) if names.index(channel.name) == k]
 

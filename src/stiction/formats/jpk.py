@@ -18,7 +18,7 @@ _MEASUREMENT, _CHANNEL, _SCALING = re.compile(r"Measurement_\d+"), re.compile(r"
 
 
 def channels(content: bytes) -> list[Channel]:
-    """Channels of a file; none if it is another file of HDF5."""
+    """Channels of a file. None if it is another file of HDF5."""
     import h5py  # comes with the library for files
 
     with h5py.File(io.BytesIO(content)) as file:

@@ -53,5 +53,5 @@ def _images(table) -> Iterator[tuple[str, str, str]]:
 
 
 def _oriented(lines, upwards):
-    """Map (n_x, n_y) with y up, from lines in the order of the scan; points of a line are in the order of x."""
+    """Map (n_x, n_y) with y up, from lines in the order of the scan, and points of a line in the order of x."""
     return (lines if upwards else lines[::-1]).T.astype(float)

@@ -31,7 +31,7 @@ def unpacked(name: str, content: bytes) -> tuple[str, bytes]:
 
 
 def _from_archive(name, content):
-    """The only file of an archive, or the archive without what other programs added to it."""
+    """Only file of an archive, or the archive without additions by other programs."""
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         members = [member for member in archive.namelist() if not member.endswith("/")]
         own = [member for member in members if not _ADDED.search(member)]
@@ -61,7 +61,7 @@ def _archive(members: Mapping[str, bytes]):
 
 
 def _surf(content):
-    """File of Digital Surf without compression: the streams that its directory lists, one after another."""
+    """File of Digital Surf without compression: the streams listed in its directory, one after another."""
     start = _HEADER + sum(struct.unpack_from("<2H", content, _TEXTS))
     (count,) = struct.unpack_from("<I", content, start)
     sizes = struct.unpack_from(f"<{2 * count}I", content, start + 4)[1::2]

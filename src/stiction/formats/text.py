@@ -21,7 +21,7 @@ _DECIMAL, _TRAILING = re.compile(r"(?<=\d),(?=\d)"), " \t;,"
 
 
 def decoded(content: bytes) -> str | None:
-    r"""Text of a file, with the line ends of Python; ``None`` if it is no text.
+    r"""Text of a file, with the line ends of Python, or ``None`` if it is no text.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def decoded(content: bytes) -> str | None:
 
 
 def plain(text: str) -> str:
-    r"""Text in which white space separates the numbers of a table, and a point their decimals.
+    r"""Text with white space between the numbers of a table, and points in their decimals.
 
     A table has at least three numbers in most of its lines. Other texts are returned unchanged.
 
@@ -59,7 +59,7 @@ def plain(text: str) -> str:
 
 
 def _columns(lines: Sequence[str], separator: str | None, decimal: str) -> int:
-    """Usual number of values of a line; 0 if fewer than half of the lines have this number, all of them numbers."""
+    """Usual number of values of a line, or 0 if fewer than half of the lines have this number, all of them numbers."""
     values = [_values(line, separator, decimal) for line in lines]
     counts = Counter(len(row) for row in values if row and all(map(_is_number, row)))
     usual, often = next(iter(counts.most_common(1)), (0, 0))
@@ -67,7 +67,7 @@ def _columns(lines: Sequence[str], separator: str | None, decimal: str) -> int:
 
 
 def _plain(line, columns, separator, decimal):
-    """Line with white space and points; a line of the table also if some of its values are no numbers."""
+    """Line with white space and points. It belongs to the table also if some of its values are no numbers."""
     values = _values(line, separator, decimal)
     if values and not line.startswith("#") and (len(values) == columns or all(map(_is_number, values))):
         return " ".join(value.replace(" ", "_") for value in values)
@@ -76,7 +76,7 @@ def _plain(line, columns, separator, decimal):
 
 
 def _values(line, separator, decimal):
-    """Values of a line; empty ones between separators are undefined."""
+    """Values of a line. Empty values between separators are undefined."""
     line = line.strip(" ")
     parts = line.removesuffix(separator).split(separator) if separator and line else line.split()
     return [part.strip(" \t\"'").replace(decimal, ".") or "nan" for part in parts]

@@ -1,4 +1,4 @@
-"""Lines of a text file of heights that are no numbers.
+"""Lines without numbers in a text file of heights.
 
 The library for files leaves out every line in which it does not understand a value, as it does with headings. The map
 then has fewer lines over the same size.
@@ -15,7 +15,7 @@ COORDINATES = 3
 
 
 def misread(text: str, *, commas: bool = False) -> tuple[int, str] | None:
-    r"""First line of data that is not all numbers, and its first value that is none; ``None`` if all are numbers.
+    r"""First line of data with a value that is no number, and its first such value, or ``None`` without any.
 
     Data are all lines between the first and the last line of numbers, and others with as many values. Empty lines and
     comments, which begin with #, are no data.
@@ -47,7 +47,7 @@ def misread(text: str, *, commas: bool = False) -> tuple[int, str] | None:
 
 
 def _rows(text, commas):
-    """Number, values and first value that is no number of every line that is neither empty nor a comment."""
+    """Number, values and first non-number of every line, without empty lines and comments."""
     for line, content in enumerate(_ENDS.split(text.removeprefix("\ufeff")), 1):
         values = [value for value in _BETWEEN.split(content) if value] if commas else content.split()
         if values and not values[0].startswith("#"):

@@ -1,14 +1,11 @@
-r"""What a voltage adds to the adhesion of a device that touches.
+r"""Voltage as an addition to the adhesion of a touching device.
 
-A dielectric of thickness t and relative permittivity :math:`\epsilon_r` keeps beam and substrate apart, and counts as a
-gap :math:`D = t / \epsilon_r`. At the gap g they attract each other as a capacitor per area,
-:math:`\epsilon_0 V^2 / 2 (g + D)^2`. Their separation from contact to the gap h needs
-
-.. math:: \Gamma_V = \frac{\epsilon_0 V^2}{2} \left( \frac{1}{D} - \frac{1}{D + h} \right) .
+Surfaces attract each other across their gaps as `stiction.contact.voltage` says, with the gap D of air of the same
+capacity as the dielectric.
 
 **Beams.** Along the open part of a beam :math:`EI (u''' u' - u''^2 / 2) - \Phi` is constant, with the potential Φ of
 all attraction. The beam has no slope at the clamp and at the crack. A crack is thus held as if the adhesion energy were
-:math:`\Gamma + \Gamma_V`. The length of an S-shape or of an arc falls with the fourth root of its energy,
+:math:`\Gamma + \Gamma_V`, and its length falls with the fourth root of its energy,
 
 .. math:: L_V^{-4} = L^{-4} + \frac{\Gamma_V}{c E t^3 h^2}, \quad
     c = \tfrac{3}{2} \text{ (S-shape)}, \tfrac{3}{8} \text{ (arc)},
@@ -16,42 +13,32 @@ all attraction. The beam has no slope at the clamp and at the crack. A crack is 
 for any fraction of the devices, because all of them gain the same. The zone of the field is :math:`\sqrt{D / 3 h}` of
 the length, 2 to 4 %. Cracks in the field are longer than the law by up to half of this, so that the law is safe.
 
-**Stoppers** are held by :math:`\epsilon_0 V^2 A / 2 D^2` more.
+Γ_V of rough surfaces is the gain of the mean energy of their samples, a number of `stiction.stages.devices.at_voltage`.
+Flats in contact need most, the closed form
 
-Rough surfaces in contact are some nanometres apart, which adds to D: flats in contact are the safe side. V is the
-largest difference of potential: voltages and offsets (contact potential, charge) of either sign add up.
+.. math:: \Gamma_V = \frac{\epsilon_0 V^2}{2} \left( \frac{1}{D} - \frac{1}{D + h} \right) .
 
-ASSUME: no current, no drift of charge, and no water in the gap, whose permittivity would add to the attraction.
+**Stoppers** are held by :math:`\epsilon_0 V^2 A / 2 D^2` more if they are flat.
 """
 
-from stiction.beam.cantilever import Beam
-from stiction.constants import VACUUM_PERMITTIVITY
+import numpy as np
 
-#: Field at which thin oxides and nitrides break down [V m⁻¹]. D. J. DiMaria and J. W. Stasiak, J. Appl. Phys. 65, 2342
-#: (1989), for SiO2: about 1 V/nm.
-BREAKDOWN = 1e9
+from stiction.beam.cantilever import Beam
+from stiction.contact.voltage import Capacitor
+
 #: Energies of arcs and S-shapes, in units of E t³ h² / L⁴.
 ARC, S_SHAPE = 3 / 8, 3 / 2
 
 
-def energy_of_voltage(voltage: float, distance: float, gap: float) -> float:
-    """Work Γ_V against a voltage [V] from contact to a gap h [m], with D as the ``distance`` in contact [m]; [J m⁻²].
-
-    Examples
-    --------
-    >>> round(1e3 * energy_of_voltage(3.0, 100e-9, 20e-6), 3)  # mJ/m²
-    0.396
-    """
-    return VACUUM_PERMITTIVITY * voltage**2 / 2 * (1 / distance - 1 / (distance + gap))
+def energy_of_voltage(capacitor: Capacitor, gap: float) -> float:
+    """Work Γ_V against a voltage from flats in contact to a gap h [m] [J m⁻²]."""
+    return capacitor.work(0.0) - capacitor.work(gap)
 
 
-def pressure_of_voltage(voltage: float, distance: float) -> float:
-    """Attraction of flats in contact at a voltage, ε0 V² / 2 D² [Pa]; parameters as of `energy_of_voltage`."""
-    return VACUUM_PERMITTIVITY * voltage**2 / (2 * distance**2)
+def length_at_voltage(length: float | np.ndarray, beam: Beam, added: float, form: float) -> float | np.ndarray:
+    """Length to release at a voltage, from one without voltage [m], the energy Γ_V [J m⁻²] and form c [-].
 
-
-def length_at_voltage(length: float, beam: Beam, added: float, form: float) -> float:
-    """Length that releases at a voltage, where one without voltage is known [m]; energy Γ_V [J m⁻²], form c [-].
+    An infinite length is that of a beam without adhesion. ASSUME: the voltage alone then holds it.
 
     Examples
     --------
@@ -59,5 +46,7 @@ def length_at_voltage(length: float, beam: Beam, added: float, form: float) -> f
     >>> round(length_at_voltage(1001e-6, beam, 0.396e-3, S_SHAPE) * 1e6)  # µm
     951
     """
-    scale = form * beam.young_modulus * beam.thickness**3 * beam.gap**2
-    return float((length**-4 + added / scale) ** (-1 / 4))
+    scale, length = form * beam.young_modulus * beam.thickness**3 * beam.gap**2, np.asarray(length)
+    if not added:
+        return length[()]
+    return ((length**-4 + added / scale) ** (-1 / 4))[()]

@@ -15,6 +15,8 @@ from stiction.config.units import NM_PER_UM
 PER_JOB, PER_POINT, PER_BEAM = 0.7, 7e-3 / (250 * 3100), 2.4e-3
 #: The same of a strip of the paper in full elastic contact at one humidity (docs/tables/full_contact_times.md).
 PER_STRIP = 2.0
+#: Time that every job reserves [min], that of the profiles for rules without resources.
+USUAL_MINUTES = 10
 #: Units of time [s].
 _TIMES = ((86_400, "days"), (3600, "h"), (60, "min"), (1, "s"))
 #: Sections of the settings of a job that draws surface pairs.
@@ -23,7 +25,7 @@ _DRAWN = {"sampling", "contact", "beam"}
 _FULL = {"strips", "humidities"}
 
 
-def of_job(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets: int = 1, repeats: int = 1) -> float:
+def job_cost(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets: int = 1, repeats: int = 1) -> float:
     """CPU time of a job [s], from its settings in the units of the configuration.
 
     A job that writes several ``datasets`` computes as many contacts, a chunk of them its part of the samples. Beams are
@@ -33,14 +35,30 @@ def of_job(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets: 
     --------
     >>> beam, sampling = {"width_um": 30}, {"spacing_nm": 10, "strip_length_um": 1.5, "margin_um": 1}
     >>> settings = {"sampling": sampling, "beam": beam, "contact": {"samples": 5000}}
-    >>> round(of_job(settings, {})), round(of_job(settings, {"chunk": "0", "number": "5"}), 1)
+    >>> round(job_cost(settings, {})), round(job_cost(settings, {"chunk": "0", "number": "5"}), 1)
     (36, 7.7)
     """
     parts, sections = int(wildcards["number"]) if "chunk" in wildcards else 1, list(_sections(settings))
-    contacts = sum(map(_of_contact, sections)) * datasets / parts
+    contacts = sum(map(_contact_time, sections)) * datasets / parts
     full = (section for section in sections if section.keys() >= _FULL)
     strips = sum(section["strips"] * len(section["humidities"]) for section in full)
     return PER_JOB + contacts + PER_STRIP * strips + PER_BEAM * repeats * sum(map(_beams, sections))
+
+
+def minutes(seconds: float, longest: int) -> int:
+    """Time to reserve for a job of this CPU time [min]: ten times as much, from the usual time to the longest.
+
+    A group of jobs reserves the sum of their times. ASSUME: with its start, on a slow machine, a job takes at most
+    ten times the estimate; one that takes longer is tried again with twice the time. A job without contacts and beams,
+    of which the estimate knows nothing, reserves the longest time.
+
+    Examples
+    --------
+    >>> minutes(24.7, 120), minutes(180.7, 120), minutes(7200.7, 120), minutes(PER_JOB, 120)
+    (10, 31, 120, 120)
+    """
+    known = max(USUAL_MINUTES, math.ceil(10 * seconds / 60)) if seconds > PER_JOB else longest
+    return min(longest, known)
 
 
 def _sections(settings: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
@@ -51,8 +69,8 @@ def _sections(settings: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
             yield from _sections(value)
 
 
-def _of_contact(section):
-    """CPU time of the samples of surface pairs that a section describes [s]."""
+def _contact_time(section):
+    """CPU time of the samples of surface pairs in a section [s]."""
     samples = section["contact"].get("samples") if section.keys() >= _DRAWN else None
     if not samples:
         return 0.0
@@ -63,7 +81,7 @@ def _of_contact(section):
 
 
 def _beams(section):
-    """Number of beams that a section describes: of devices, of all sizes of a chart, or samples of a beam."""
+    """Number of beams in a section: of devices, of all sizes of a chart, or samples of a beam."""
     sizes = math.prod(len(section.get(key, [0])) for key in ("thicknesses_um", "gaps_um"))
     has_elements = isinstance(section.get("beam"), Mapping) and "elements" in section["beam"]
     number = section.get("beams", section.get("samples") if has_elements else None)

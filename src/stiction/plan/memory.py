@@ -1,28 +1,28 @@
-"""Memory to request for jobs: enough for the largest field that they draw, and twice as much after each failure."""
+"""Memory to request for jobs: enough for their largest field, and twice as much after each failure."""
 
-from stiction.config.memory import FIELD_UM, USUAL, of_field, patch_of, spacings_of
+from stiction.config.memory import FIELD_UM, USUAL, field_memory, patch_of, spacings_of
 from stiction.config.units import NM_PER_UM
 from stiction.plan.devices import DevicePlan
 
 
 def of_job(config: dict) -> int:
-    """Memory to reserve for each job of a configuration [MB]; stages with many samples or large scans may need more."""
-    return round(max(USUAL, _of_largest_field(config)))
+    """Memory to reserve for each job of a configuration [MB]. Stages with many samples or large scans may need more."""
+    return round(max(USUAL, _largest_field_memory(config)))
 
 
-def of_attempt(megabytes: int, attempt: int) -> int:
-    """Memory to reserve for an attempt of a job [MB]: twice as much after each failure.
+def of_attempt(first: int, attempt: int) -> int:
+    """Memory or time to reserve for an attempt of a job, from the first: twice as much after each failure.
 
     Examples
     --------
     >>> [of_attempt(800, attempt) for attempt in (1, 2, 3)]
     [800, 1600, 3200]
     """
-    return megabytes * 2 ** (attempt - 1)
+    return first * 2 ** (attempt - 1)
 
 
-def _of_largest_field(config):
-    """Memory of a job that draws the largest of all fields [MB]."""
+def _largest_field_memory(config):
+    """Memory of a job with the largest of all fields [MB]."""
     sampling, patch = config["sampling"], config["identification"]["patch_um"]
     spacing, others, margin = sampling["spacing_nm"], config["studies"]["variants"]["spacing_nm"], sampling["margin_um"]
     drawn = [((FIELD_UM, FIELD_UM), spacing), ((patch, patch), spacing)]
@@ -34,4 +34,6 @@ def _of_largest_field(config):
     for device in devices.sections.values():
         length, width = patch_of(device, sampling)
         drawn += [((length + margin, width + margin), at) for at in spacings_of(device, spacing, others)]
-    return max(of_field(*side, at) for side, at in drawn)
+        if "dimples" in device:
+            drawn.append((tuple(side + margin for side in device["dimples"]["contact_um"]), spacing))
+    return max(field_memory(*side, at) for side, at in drawn)

@@ -83,11 +83,11 @@ class Flooded:
     hamaker_constant: float  #: of both solids, 0 without van der Waals forces [J]
 
     def energy(self, humidity: float) -> float:
-        """Their adhesion energy, which no surfaces exceed [J m⁻²]."""
+        """Adhesion energy of flooded flats, the bound of all surfaces [J m⁻²]."""
         return flooded_law(humidity, self.water, self.hamaker_constant)[0]
 
     def in_words(self, humidity: float) -> str:
-        """What they are: without a film of water, they are not flooded."""
+        """Name of the flats: without a film of water, they are not flooded."""
         return "flooded flats" if self.water.film(humidity)[0] else "flats in contact"
 
 
@@ -97,14 +97,14 @@ def _energy(forces):
 
 
 def energy_grows(case: str, drier: xr.Dataset, more_humid: xr.Dataset) -> Check:
-    """Energy grows with humidity; datasets of stage forces for the same pairs of surfaces at two humidities."""
+    """Check the growth of energy with humidity. Datasets of stage forces for one pair at two humidities."""
     growth, error = mean_with_error(_energy(more_humid) - _energy(drier))
     message = f"mean adhesion energy grows by {with_error(growth, error)} mJ/m²"
     return Check("energy grows with humidity", case, bool(growth > ALLOWED * error), message)
 
 
 def skewness_increases_adhesion(case: str, gaussian: xr.Dataset, non_gaussian: xr.Dataset) -> Check:
-    """Negatively skewed surfaces, which lack high summits, adhere more strongly than Gaussian ones."""
+    """Check the stronger adhesion of negatively skewed surfaces, without high summits, against Gaussian ones."""
     more, error = mean_with_error(_energy(non_gaussian) - _energy(gaussian))
     message = (
         f"mean adhesion energy is {with_error(more, error)} mJ/m² higher on non-Gaussian surfaces than on Gaussian ones"
@@ -119,6 +119,7 @@ def scatter_falls(case: str, weaker: xr.Dataset, stronger: xr.Dataset) -> Check:
     """
 
     def change(means):
+        """Change of the relative standard deviation, from moments of both cases."""
         x, xx, y, yy = means
         return np.sqrt(yy / y**2 - 1) - np.sqrt(xx / x**2 - 1)
 
@@ -129,7 +130,7 @@ def scatter_falls(case: str, weaker: xr.Dataset, stronger: xr.Dataset) -> Check:
 
 
 def heights_are_as_measured(case: str, heights: xr.Dataset) -> Check:
-    """The height density has the measured moments, or the nearest feasible ones within the error of a measurement."""
+    """Check the height density for the measured moments, or the nearest feasible ones within a measurement's error."""
     distance = measured_moments(heights).distance
     message = substitution(heights) or f"skewness {float(heights.skewness):.4g}, kurtosis {float(heights.kurtosis):.4g}"
     return Check("heights have the measured moments", case, distance <= LARGEST_DISTANCE_OF_SCANS, message)
@@ -153,7 +154,7 @@ def moments_meet_targets(
 
 
 def identification_meets_targets(case: str, identification: xr.Dataset) -> Iterator[Check]:
-    """Radius and density of the summits of the identified spectrum are the measured ones; datasets of that stage."""
+    """Check radius and density of the summits of the identified spectrum against the measured ones."""
     for word, (off, error) in misfits(identification).items():
         allowed = MISFIT + ALLOWED * error
         message = f"{word} off by {with_error(off, error, '+')} %, allowed ± {allowed:.2g} %"
@@ -161,7 +162,7 @@ def identification_meets_targets(case: str, identification: xr.Dataset) -> Itera
 
 
 def vectors_are_possible(case: str, forces: xr.Dataset) -> Check:
-    """Every v of Eq. (11) obeys e > 0, 0 < f_max <= f_limit and d_limit < d_max."""
+    """Check every v of Eq. (11): e > 0, 0 < f_max <= f_limit and d_limit < d_max."""
     parameters, limit = stage_forces.vectors(forces)
     e, f_max, d_max, d_limit = parameters.T
     good = (e > 0) & (f_max > 0) & (f_max <= limit) & (d_limit < d_max)
@@ -170,7 +171,7 @@ def vectors_are_possible(case: str, forces: xr.Dataset) -> Check:
 
 
 def energies_are_bounded(case: str, forces: xr.Dataset, humidity: float, flooded: Flooded) -> Check:
-    """No sample has more energy than flooded flats in contact."""
+    """Check the energies of all samples against the bound of flooded flats in contact."""
     largest, bound, flats = float(_energy(forces).max()), flooded.energy(humidity), flooded.in_words(humidity)
     message = f"the largest adhesion energy is {largest:.3g} mJ/m², {flats} have {TO_MJ * bound:.3g} mJ/m²"
     return Check(f"energies are below those of {flats}", case, bool(largest <= TO_MJ * bound), message)
@@ -203,7 +204,7 @@ def chaos_reproduces_input(case: str, chaos: xr.Dataset, samples: int) -> Check:
 
 
 def chaos_keeps_crack_length(case: str, beams: xr.Dataset, resampled: xr.Dataset) -> Check:
-    """Mean crack length of beams on laws of the chaos model equals that of beams on laws of the samples themselves."""
+    """Check mean crack length on laws of the chaos model against beams on laws of the samples themselves."""
     (length, error), (target, target_error) = (
         mean_with_error(TO_UM * stuck_lengths(end)) for end in (beams, resampled)
     )
@@ -230,7 +231,7 @@ def few_draws_rejected(case: str, chaos: xr.Dataset, forces: xr.Dataset, limit: 
 
 
 def beams_are_in_equilibrium(case: str, outcomes: xr.Dataset, limit: float, beam: Beam, area: float) -> Check:
-    """Every beam is in equilibrium: dataset of stage beams, pull-off pressure f_limit [Pa], area of a strip [m²]."""
+    """Check the equilibrium of every beam: dataset of stage beams, pull-off pressure [Pa], area of a strip [m²]."""
     allowed = allowed_imbalance(beam, limit * area)
     unbalanced = int(np.sum(~(outcomes.imbalance.values <= allowed)))
     message = f"{unbalanced} of {outcomes.sizes['sample']} beams have a residual force of more than {allowed:.2g} N"
@@ -240,7 +241,7 @@ def beams_are_in_equilibrium(case: str, outcomes: xr.Dataset, limit: float, beam
 def crack_is_resolved(
     case: str, outcomes: xr.Dataset, forces: xr.Dataset, beam: Beam, strip: float, accuracy: float
 ) -> Iterator[Check]:
-    """Crack lengths do not depend on the mesh, and the energy of Eq. (13) is one that the strips can have.
+    """Check crack lengths on a finer mesh, and the energy of Eq. (13) against the energies of the strips.
 
     On uniform ground, with the force law of median energy, the crack length is compared with that on a finer mesh. On
     random ground a crack opens up to the first strips that hold it, so that Γ exceeds ē, but not the energy of the
@@ -280,13 +281,13 @@ def crack_is_resolved(
     yield Check("energy of the cracks is one of the strips", case, bool(low <= gamma <= high), message)
 
 
-def of_surfaces(
+def surface_checks(
     heights: Mapping[str, xr.Dataset],
     characters: Mapping[tuple[str, str], xr.Dataset],
     targets: Mapping[str, Mapping],
     defects: Mapping[str, float],
 ) -> Iterator[Check]:
-    """All checks of drawn surfaces: datasets of stages heights, by surface, and character, by surface and model.
+    """Yield checks of drawn surfaces: datasets of stages heights, by surface, and character, by surface and model.
 
     The targets by surface are rms_nm, skewness and kurtosis as given, of which feasible ones replace the last two;
     surfaces described by scans have the rms of their heights. The defects are as in `moments_meet_targets`.
@@ -300,16 +301,16 @@ def of_surfaces(
         yield from moments_meet_targets(f"{surface} {model}", character, wanted, defects[surface])
 
 
-def of_identifications(identifications: Mapping[str, xr.Dataset]) -> Iterator[Check]:
-    """All checks of identified spectra; surface to the dataset of stage identification."""
+def identification_checks(identifications: Mapping[str, xr.Dataset]) -> Iterator[Check]:
+    """Yield checks of identified spectra, from the dataset of stage identification by surface."""
     for surface, identification in identifications.items():
         yield from identification_meets_targets(surface, identification)
 
 
-def of_force_laws(
+def case_checks(
     forces: Mapping[Outcome, xr.Dataset], chaoses: Mapping[Outcome, xr.Dataset], flooded: Mapping[str, Flooded]
 ) -> Iterator[Check]:
-    """All checks of single cases: samples, chaos model and rejection; ``flooded`` bounds the energies of each pair."""
+    """Yield checks of single cases: samples, chaos model and rejection. ``flooded`` bounds the energies of a pair."""
     for key, samples in forces.items():
         case, chaos = _case(*key), chaoses[key]
         yield vectors_are_possible(case, samples)
@@ -318,10 +319,10 @@ def of_force_laws(
         yield few_draws_rejected(case, chaos, samples, REJECTED if key[2] == "NG" else 1.0)
 
 
-def of_trends(
+def trend_checks(
     forces: Mapping[Outcome, xr.Dataset], skewed: Collection[str], wetted: Collection[str]
 ) -> Iterator[Check]:
-    """All comparisons between cases; no trend leads to dry air.
+    """Yield comparisons between cases. No trend leads to dry air.
 
     Of the ``skewed`` pairs, which are the paper's, no surface is skewed positively and at least one negatively. Between
     the surfaces of the ``wetted`` pairs, water condenses: others are in dry air at any humidity.
@@ -341,7 +342,7 @@ def of_trends(
             yield skewness_increases_adhesion(f"{pair}, {air(humidity)}", *models)
 
 
-def of_beams(
+def beam_checks(
     outcomes: Mapping[Outcome, xr.Dataset],
     forces: Mapping[Outcome, xr.Dataset],
     beams: Mapping[str, Beam],
@@ -349,7 +350,7 @@ def of_beams(
     on_mesh_of_paper: Collection[str],
     scatter: float = 0.0,
 ) -> Iterator[Check]:
-    """Equilibrium, mesh and energy of the beams of every case; model GEO shares the forces of NG.
+    """Yield checks of equilibrium, mesh and energy of the beams of every case. Model GEO shares the forces of NG.
 
     The nominal beams are by pair; length of a strip [m], names of the cases whose beams have the mesh of the paper,
     standard deviation of the dimensions in model GEO [-].
@@ -363,15 +364,17 @@ def of_beams(
         yield from crack_is_resolved(case, released, laws, beam, strip, accuracy)
 
 
-def of_resampling(outcomes: Mapping[Outcome, xr.Dataset], resampled: Mapping[Outcome, xr.Dataset]) -> Iterator[Check]:
-    """Effect of the chaos model on crack lengths, of cases in which at least two beams stick."""
+def resampling_checks(
+    outcomes: Mapping[Outcome, xr.Dataset], resampled: Mapping[Outcome, xr.Dataset]
+) -> Iterator[Check]:
+    """Yield the effect of the chaos model on crack lengths, of cases with at least two stuck beams."""
     for key, reference in resampled.items():
         if min(len(stuck_lengths(beams)) for beams in (outcomes[key], reference)) >= 2:
             yield chaos_keeps_crack_length(_case(*key), outcomes[key], reference)
 
 
 def _case(pair, humidity, model):
-    """A case as text."""
+    """Case as text."""
     return f"{pair} {model}, {air(humidity)}"
 
 
@@ -381,12 +384,12 @@ def table(checks: Iterable[Check]) -> pd.DataFrame:
 
 
 def read(path: str | PathLike) -> pd.DataFrame:
-    """Checks of a file that was written from `table`."""
+    """Checks from a file written by `table`."""
     return pd.read_csv(path, dtype={"passed": bool}, keep_default_na=False)
 
 
 def verdict(table: pd.DataFrame) -> str:
-    """One sentence about all checks and one for each that failed."""
+    """One sentence about all checks and one for each failure."""
     failed = table[~table.passed]
     if failed.empty:
         return f"All {len(table)} checks of the results passed."
@@ -409,7 +412,7 @@ def markdown(table: pd.DataFrame) -> str:
 
 
 def _checked(data, settings):
-    """All checks, whether passed or failed."""
+    """All checks, passed or failed."""
     nominal = in_si(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
     beams = {pair: cantilever(nominal, pair) for pair in settings["pairs"]}
     strip = in_si(StripLength, settings["sampling"]).strip_length
@@ -419,18 +422,18 @@ def _checked(data, settings):
     resampled = {(*case, "NG"): study for case, study in data["resampling"].items()}
     return table(
         chain(
-            of_surfaces(data["heights"], data["character"], settings["targets"], defects),
-            of_identifications(data["identification"]),
-            of_force_laws(data["forces"], data["chaos"], flooded),
-            of_trends(data["forces"], settings["skewed"], wetted),
-            of_beams(data["beams"], data["forces"], beams, strip, settings["on_mesh_of_paper"], settings["scatter"]),
-            of_resampling(data["beams"], resampled),
+            surface_checks(data["heights"], data["character"], settings["targets"], defects),
+            identification_checks(data["identification"]),
+            case_checks(data["forces"], data["chaos"], flooded),
+            trend_checks(data["forces"], settings["skewed"], wetted),
+            beam_checks(data["beams"], data["forces"], beams, strip, settings["on_mesh_of_paper"], settings["scatter"]),
+            resampling_checks(data["beams"], resampled),
         )
     )
 
 
 def _save(checked, paths):
-    """Write all checks; they may have failed, because Snakemake would remove the files of a failed job."""
+    """Write all checks. They may have failed, because Snakemake would remove the files of a failed job."""
     save_text(checked.to_csv(index=False), paths["csv"])
     save_text(markdown(checked), paths["markdown"])
 
@@ -446,7 +449,7 @@ def _skewed(plan):
 
 
 def _verdict(data):
-    """Sentence about the checks; ends the job with it if a check has failed."""
+    """Write a sentence about the checks. It ends the job if a check has failed."""
     checked = read(data["checks"])
     sentence = verdict(checked)
     if not checked.passed.all():

@@ -15,7 +15,7 @@ from stiction.report.table import HUMIDITY, Columns, Table, table_stage
 
 
 class Source(NamedTuple):
-    """What is compared of a table of the results."""
+    """Compared part of a table of the results."""
 
     table: str
     subject: str  #: column with the names of pairs or devices
@@ -46,7 +46,7 @@ SOURCES = (
 
 
 def rows(table: pd.DataFrame, source: Source, ends: Mapping[str, Sequence[float]]) -> pd.DataFrame:
-    """Rows of all copies under the names of their originals, with the compared values, which increase.
+    """Rows of all copies under the names of their originals, with the compared values in increasing order.
 
     ``ends`` maps the end of the names of copies to their values, see `stiction.config.merging.values`.
     """
@@ -86,7 +86,7 @@ def compared(table: pd.DataFrame, source: Source, keys: Sequence[str], ends: Map
 
 @styled
 def drawn(table: pd.DataFrame, source: Source, keys: Sequence[str], ends: Mapping[str, Sequence[float]]) -> Figure:
-    """The compared number over the values of a key: a line for each humidity, of the middle one of the shares.
+    """Compared number against the values of a key: a line for each humidity, for the middle fraction.
 
     Copies whose keys change together are one beside the other.
     """
@@ -119,11 +119,13 @@ def _stages(source):
     name = f"compared_{source.table}"
 
     def jobs(plan):
+        """One job if copies of a subject are compared."""
         devices = plan.devices.stoppers if source.table == "stoppers" else plan.devices.beams
         subjects = plan.pairs if source.subject == "pair" else devices
         return [{}] if any(one.endswith(tuple(values(plan.config))) for one in subjects) else []
 
     def settings(plan, _at):
+        """Compared keys and their values by suffix of the copies."""
         ends = {end: list(numbers) for end, numbers in values(plan.config).items()}
         return {"keys": sorted(plan.config.get("compare", {})), "ends": ends}
 
@@ -136,6 +138,7 @@ def _stages(source):
     shows = f"{source.words.partition(' [')[0]} for values of one key"
 
     def made(show):
+        """Function of a stage to show its table."""
         return lambda data, settings: show(pd.read_csv(data["table"]), source, settings["keys"], settings["ends"])
 
     return (

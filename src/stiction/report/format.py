@@ -15,20 +15,8 @@ TO_NM, TO_UM, TO_UN, TO_MPA, TO_GPA, TO_MJ = 1e9, 1e6, 1e6, 1e-6, 1e-9, 1e3
 MISSING = "–"
 
 
-def one_in(share: float) -> str:
-    """A share of devices in words.
-
-    Examples
-    --------
-    >>> one_in(1e-3), one_in(1e-6), one_in(0.03)
-    ('1 in 1000', '1 in 1000000', '1 in 33.3333')
-    """
-    number = 1 / share
-    return f"1 in {number:.0f}" if abs(number - round(number)) < 1e-6 * number else f"1 in {number:g}"
-
-
 def percent(value: float, reference: float) -> float:
-    """Deviation from a reference [%]; NaN without one.
+    """Deviation from a reference [%], NaN without one.
 
     Examples
     --------
@@ -39,7 +27,7 @@ def percent(value: float, reference: float) -> float:
 
 
 def number(value: float, form: str) -> str:
-    """Text of a number in a format such as ``+.1f``; – for NaN; zero has no minus sign.
+    """Text of a number in a format such as ``+.1f``, with – for NaN and zero without a minus sign.
 
     Examples
     --------
@@ -53,7 +41,7 @@ def number(value: float, form: str) -> str:
 
 
 def humidity_text(value: float) -> str:
-    """Text of a relative humidity [-], which is zero in dry air.
+    """Text of a relative humidity, zero in dry air [-].
 
     Examples
     --------
@@ -64,7 +52,7 @@ def humidity_text(value: float) -> str:
 
 
 def airs(humidities: Collection[float]) -> str:
-    """Where a device is, for the end of a sentence.
+    """Air of a device, for the end of a sentence.
 
     Examples
     --------
@@ -78,7 +66,7 @@ def airs(humidities: Collection[float]) -> str:
 
 
 def with_error(value: float, error: float, sign: str = "") -> str:
-    """Value ± standard error as text, to the second significant digit of the error; – for NaN.
+    """Value ± standard error as text, to the second significant digit of the error, – for NaN.
 
     Examples
     --------
@@ -105,7 +93,7 @@ def signed(value: float, error: float) -> str:
 
 
 def as_published(value: float, deviation: float) -> str:
-    """Published value ± standard deviation as text, with the digits of the publication; – for NaN.
+    """Published value ± standard deviation as text, with the digits of the publication, – for NaN.
 
     Examples
     --------
@@ -116,7 +104,7 @@ def as_published(value: float, deviation: float) -> str:
 
 
 def error_alone(error: float) -> str:
-    """A standard error as text, with the same digits as after ± in `with_error`.
+    """Standard error as text, with the same digits as after ± in `with_error`.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""HTML from templates, which show every text as its characters alone.
+"""HTML from templates. Every text is shown as its characters alone.
 
 A stage that writes HTML has the `files` of its template among its inputs: a change of them makes its pages again.
 """
@@ -24,7 +24,7 @@ def rendered(template: str, **values: Any) -> str:
 
 @cache
 def files(template: str) -> tuple[File, ...]:
-    """Files of a template: itself, and all that it includes."""
+    """Files of a template: itself, and all its inclusions."""
     text = (TEMPLATES / template).read_text(encoding="utf-8")
     included = meta.find_referenced_templates(_ENVIRONMENT.parse(text))
     inside = [file for name in included for file in files(name)]

@@ -8,6 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from stiction.report import html
+from stiction.report.format import MISSING
 from stiction.report.style import png
 
 TEMPLATE = "page.html"
@@ -17,12 +18,18 @@ _PIXELS, _ROWS = 120, 30
 
 @dataclass(frozen=True)
 class Section:
-    """Part of a page: paragraphs, a table and a figure, each of which may be missing."""
+    """Part of a page: paragraphs, a table and a figure, each possibly missing."""
 
     title: str
     paragraphs: Sequence[str] = ()
     cells: pd.DataFrame | None = None
     figure: Figure | None = None
+    missing: str = "it does not apply to this row, or too few samples bound it"  #: why cells have no number
+
+    @property
+    def has_missing(self) -> bool:
+        """Whether a cell has no number."""
+        return bool((self.cells == MISSING).any(axis=None))
 
     @property
     def is_long(self) -> bool:
@@ -31,7 +38,7 @@ class Section:
 
     @property
     def picture(self) -> str:
-        """The figure as PNG in Base64."""
+        """Figure as PNG in Base64."""
         return base64.b64encode(png(self.figure)).decode()
 
     @property
@@ -41,8 +48,25 @@ class Section:
 
 
 @dataclass(frozen=True)
+class Summary:
+    """First screen of a page."""
+
+    tone: str  #: ``good``, ``bad`` or ``open``
+    sign: str  #: the answer in a word or two
+    answer: str  #: one number with its error, or the warning that forbids relying on it
+    basis: Sequence[str]  #: what the number rests on
+    points: Mapping[str, str]  #: what decides, what to change, what to measure
+    cells: pd.DataFrame  #: one small table
+
+    @property
+    def has_missing(self) -> bool:
+        """Whether a cell has no number."""
+        return bool((self.cells == MISSING).any(axis=None))
+
+
+@dataclass(frozen=True)
 class Page:
-    """Everything that the page of a device shows."""
+    """Contents of the page of a device."""
 
     title: str
     facts: Mapping[str, str]  #: dimensions and conditions, by name
@@ -52,8 +76,10 @@ class Page:
     words: Mapping[str, str] = field(default_factory=dict)  #: terms and what they mean
     made: Sequence[str] = ()  #: when and by which code
     not_modelled: str = ""  #: what is not in the model
+    drawing: str = ""  #: of the device, as SVG
+    summary: Summary | None = None  #: its first screen
 
     @property
     def html(self) -> str:
-        """The page as one file: figures are part of it."""
+        """Page as one file, with its figures inside."""
         return html.rendered(TEMPLATE, page=self)

@@ -1,7 +1,7 @@
-"""The published tables, with the measurements, as frames; the CSV files are in the folder ``resources``.
+"""Published tables, with the measurements, as frames. The CSV files are in the folder ``resources``.
 
 The first column identifies the surface or pair of a row. A user's own surface or pair may have a name of the paper.
-Tables and figures compare all rows that they receive, so that callers first select the rows with `of_paper`.
+Tables and figures compare all rows that they receive, so that callers first select the rows with `rows_of_paper`.
 """
 
 from collections.abc import Iterable, Mapping
@@ -21,28 +21,28 @@ def file(table: str) -> File:
 
 
 def read(path: str | PathLike) -> pd.DataFrame:
-    """Published table of a file; lines that begin with # are comments."""
+    """Published table of a file. Lines beginning with # are comments."""
     return pd.read_csv(path, comment="#", keep_default_na=False, na_values=[""])
 
 
-def of_paper(published: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
-    """Rows of the surfaces or pairs of these names: those that are as in the paper.
+def rows_of_paper(published: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame:
+    """Rows of the surfaces or pairs of these names: those equal to the paper's.
 
     Examples
     --------
-    >>> of_paper(pd.DataFrame({"pair": ["a", "b"], "ng": [716, 1031]}), ["b", "mine"]).ng.tolist()
+    >>> rows_of_paper(pd.DataFrame({"pair": ["a", "b"], "ng": [716, 1031]}), ["b", "mine"]).ng.tolist()
     [1031]
     """
     return published[published.iloc[:, 0].isin(list(names))]
 
 
 def compared(data: Mapping[str, Any], settings: Mapping[str, Any]) -> pd.DataFrame:
-    """Published values of the surfaces or pairs that are as in the paper: settings ``of_paper`` of a stage."""
-    return of_paper(read(data["published"]), settings["of_paper"])
+    """Published values of the surfaces or pairs equal to the paper's: settings ``rows_of_paper`` of a stage."""
+    return rows_of_paper(read(data["published"]), settings["of_paper"])
 
 
 def rows(published: pd.DataFrame, /, **key: str | float) -> pd.DataFrame:
-    """Rows whose columns hold the values of ``key``; numbers may differ by rounding."""
+    """Rows with the values of ``key`` in their columns. Numbers may differ by rounding."""
     matching = np.ones(len(published), bool)
     for column, value in key.items():
         held = published[column]
@@ -51,7 +51,7 @@ def rows(published: pd.DataFrame, /, **key: str | float) -> pd.DataFrame:
 
 
 def value(published: pd.DataFrame, column: str, /, **key: str | float) -> float:
-    """Number of a column in the first row of `rows`; NaN without a row.
+    """Number of a column in the first row of `rows`, NaN without a row.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Common to all figures: style, sizes, labels and files; equal data give files that are equal byte for byte.
+"""Style, sizes, labels and files of all figures. Equal data give files equal byte for byte.
 
 Figures are drawn in the modules ``figures`` of each subject: functions of datasets that return a matplotlib figure.
 """
@@ -66,7 +66,7 @@ styled = style.context(STYLE, after_reset=True)
 
 
 def marker(k: int) -> str:
-    """Marker of curve number ``k``; markers and `dashes` repeat after different numbers of curves."""
+    """Marker of curve number ``k``. Markers and `dashes` repeat after different numbers of curves."""
     return _MARKERS[k % len(_MARKERS)]
 
 
@@ -76,7 +76,7 @@ def dashes(k: int) -> str | tuple:
 
 
 def shades(count: int, lightest: float = 0.15) -> np.ndarray:
-    """Colours that darken from the first to the last, also when printed in grey; (count, 4).
+    """Colours darkening from the first to the last, also when printed in grey, (count, 4).
 
     The first one is at the part ``lightest`` of the way from the lightest to the darkest.
     """
@@ -90,7 +90,7 @@ def panels(rows: int, columns: int, size: tuple[float, float], **shared) -> tupl
 
 
 def at_most_double(each: float) -> Callable[[int], float]:
-    """Width of a figure by the number of its columns of panels [in], of which each has this one if there is room."""
+    """Width of a figure by the number of its columns of panels, each this wide if there is room [in]."""
     return lambda columns: min(DOUBLE, each * columns)
 
 
@@ -157,7 +157,7 @@ def _columns(part, count, rows, shared):
 
 
 def legends(figure: Figure, options: Mapping[Axes, dict], most: int = 6) -> None:
-    """A legend in each panel with at most ``most`` curves, and one below the figure for the curves of all other panels.
+    """Legend in each panel with at most ``most`` curves, and one below the figure for the curves of all other panels.
 
     Panels come with the options of their legends.
     """
@@ -170,7 +170,7 @@ def legends(figure: Figure, options: Mapping[Axes, dict], most: int = 6) -> None
 
 
 def legend_below(panel: Axes, entries: Sequence[Artist]) -> None:
-    """Legend below the label of the horizontal axis of a panel, where it covers no curve.
+    """Legend below the label of the horizontal axis of a panel, clear of all curves.
 
     It has as many columns as fit below the panel.
     """
@@ -183,7 +183,7 @@ def legend_below(panel: Axes, entries: Sequence[Artist]) -> None:
 
 
 def places(humidities: Iterable[float]) -> dict[float, float]:
-    """Place of every relative humidity along an axis; dry air is never on it, but beside its lowest humidity.
+    """Place of every relative humidity along an axis. Dry air is beside its lowest humidity, never on it.
 
     Examples
     --------
@@ -197,7 +197,7 @@ def places(humidities: Iterable[float]) -> dict[float, float]:
 
 
 def humidity_axis(panel: Axes, placed: Mapping[float, float] | None = None) -> None:
-    """Keep the axis of the relative humidity within 0 and 1, and so long that its ticks do not meet.
+    """Keep the axis of the relative humidity within 0 and 1, and long enough for separate ticks.
 
     Dry air, if it is among the `places` of an axis, has a tick of its own beyond a dotted line.
     """
@@ -251,7 +251,7 @@ def _marks(count):
 
 
 def plain_log(axis: Axis) -> None:
-    """Label a logarithmic axis that spans few decades by plain numbers 1, 2, 5."""
+    """Label a logarithmic axis over few decades by plain numbers 1, 2, 5."""
     axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.set_major_formatter("{x:g}")
     axis.set_minor_formatter(NullFormatter())
@@ -271,7 +271,7 @@ _WRITERS = {".pdf": _write_pdf, ".png": _write_png}
 
 @styled
 def save(figure: Figure, *paths: str | Path) -> None:
-    """Write a figure as PDF or PNG, by the suffix of each path; equal figures give equal bytes."""
+    """Write a figure as PDF or PNG, by the suffix of each path. Equal figures give equal bytes."""
     # The layout is computed once and the canvases are written directly: savefig would compute it again for every file,
     # starting from the previous layout.
     if (layout := figure.get_layout_engine()) is not None:
@@ -288,7 +288,7 @@ def save(figure: Figure, *paths: str | Path) -> None:
 def figure_stage(
     file: str, shows: str, category: str, inputs: Callable, name: str = "", caption: str = "", **declared: Any
 ) -> Stage:
-    """Stage that draws a figure and writes it as PDF and PNG, with its caption; ``shows`` ends its title in the report.
+    """Stage for a figure as PDF and PNG, with its caption. ``shows`` ends its title in the report.
 
     The text of the caption is in ``workflow/report``; the label of the figure ends it.
     """
@@ -318,7 +318,7 @@ def preload() -> None:
 
 @styled
 def png(figure: Figure) -> bytes:
-    """Content of a PNG file of a figure, for pages that contain their figures."""
+    """Content of a PNG file of a figure, for pages with figures inside."""
     content = io.BytesIO()
     _write_png(figure, content)
     return content.getvalue()

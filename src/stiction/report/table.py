@@ -37,12 +37,12 @@ class Table:
 
     @property
     def csv(self) -> str:
-        """All numbers."""
+        """Table as CSV, with all numbers."""
         return self.frame.to_csv(index=False)
 
     @property
     def markdown(self) -> str:
-        """Caption and cells; a cell keeps all its digits, even if it looks like a number."""
+        """Caption and cells. A cell keeps all its digits, even if it looks like a number."""
         grid = self.cells.map(markdown.cell).to_markdown(index=False, disable_numparse=True, stralign="right")
         return "\n".join([*map(markdown.literal, self.caption.split("\n")), "", grid, ""])
 
@@ -66,7 +66,7 @@ def as_text(frame: pd.DataFrame, columns: Columns) -> pd.DataFrame:
 
 
 def _cell(row, show, *keys):
-    """Text of the values of a row by their keys; a format shows a single number."""
+    """Text of the values of a row by their keys. A format shows a single number."""
     values = [row[key] for key in keys]
     return show(*values) if callable(show) else number(*values, show)
 
@@ -92,7 +92,7 @@ def save(table: Table, paths: Mapping[str, str]) -> None:
 
 
 def table_stage(file: str, shows: str, inputs: Callable, name: str = "", **declared: Any) -> Stage:
-    """Stage that makes a `Table` and writes it into files of a name; ``shows`` ends its title in the report."""
+    """Stage for a `Table` in files of a name. ``shows`` ends its title in the report."""
     files = {key: f"tables/{file}.{end}" for key, end in (("csv", "csv"), ("markdown", "md"), ("html", "html"))}
     shown = Shown(file="html", title=titled(file, shows), category="Tables")
     name, message = name or named("table", file), f"{titled(file, shows)}."

@@ -8,12 +8,12 @@ from pathlib import Path
 
 
 class DataError(RuntimeError):
-    """A file is not the expected result or cannot be written; the message includes the remedy."""
+    """Error of a file: it is not the expected result or cannot be written. The message includes the remedy."""
 
 
 @contextlib.contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """Temporary file next to the target; replaces the target when complete and is removed on an error.
+    """Temporary file next to the target. Replaces the target when complete and is removed on an error.
 
     Raises
     ------
@@ -40,12 +40,12 @@ def replacing(path: Path) -> Iterator[Path]:
 
 
 def save_text(text: str, path: str | Path) -> None:
-    """Write a text file atomically; raises the errors of `replacing`."""
+    """Write a text file atomically. Raises the errors of `replacing`."""
     with replacing(Path(path)) as draft:
         draft.write_text(text, encoding="utf-8")
 
 
 def save_bytes(content: bytes, path: str | Path) -> None:
-    """Write a binary file atomically; raises the errors of `replacing`."""
+    """Write a binary file atomically. Raises the errors of `replacing`."""
     with replacing(Path(path)) as draft:
         draft.write_bytes(content)

@@ -1,4 +1,4 @@
-"""Disk cache for planning: results that only their inputs and the code determine.
+"""Disk cache for planning: results determined by their inputs and the code alone.
 
 Planning a run again takes half of the time.
 """
@@ -14,10 +14,10 @@ from stiction.run.atomic import DataError, save_text
 
 
 class DiskCache:
-    """Results by the hash of everything that determines them."""
+    """Results by the hash of all their sources."""
 
     def __init__(self, path: str | Path):
-        """Results in a file; none if it cannot be read."""
+        """Results in a file. None if it cannot be read."""
         self._path, self._used = Path(path).absolute(), {}  # Snakemake leaves its working directory before it ends
         try:
             self._known = dict(json.loads(self._path.read_text(encoding="utf-8")))
@@ -25,7 +25,7 @@ class DiskCache:
             self._known = {}
 
     def __call__(self, determined_by: object, compute: Callable[[], Any]) -> Any:
-        """Result that is known, or computed now; if this raises an error, nothing is kept.
+        """Return a known result, or compute it now. An error is not kept.
 
         Plain numbers, strings, lists and dicts determine the result, which is of the same kind; its code is among them.
         A result that is computed now is as the file will give it back, in which tuples are lists.
@@ -37,7 +37,7 @@ class DiskCache:
         return self._used[key]
 
     def save(self) -> None:
-        """Keep the results that were used; nothing is lost but time if the file cannot be written."""
+        """Keep the used results. If the file cannot be written, only time is lost."""
         if self._used != self._known:
             with contextlib.suppress(OSError, DataError):
                 save_text(json.dumps(self._used), self._path)

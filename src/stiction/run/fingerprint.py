@@ -1,4 +1,4 @@
-"""Fingerprint of a script and of all modules of the package that it imports; Snakemake does not track these modules.
+"""Fingerprint of a script and of all imported modules of the package. Snakemake does not track these modules.
 
 The fingerprint is a parameter of every rule, so that a change of a module reruns the rules whose scripts import it,
 directly or through other modules. This module uses only the standard library.
@@ -27,12 +27,12 @@ _DOCUMENTED = {ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef}
 
 
 def _compute(_determined_by, compute):
-    """Result of a function, which is not kept."""
+    """Result of a function, without keeping it."""
     return compute()
 
 
 def fingerprint(script: str | Path, remember: Callable[[object, Callable[[], Any]], Any] = _compute) -> dict[str, str]:
-    """Hash a script and every module of the package that it imports, directly or through other modules.
+    """Hash a script and every imported module of the package, directly or through other modules.
 
     The hashes do not depend on comments, docstrings and formatting, and the modules in ``SILENT`` are left out, so that
     such changes rerun nothing. All versions of Python give the same hashes.
@@ -59,7 +59,7 @@ def fingerprint(script: str | Path, remember: Callable[[object, Callable[[], Any
 
 
 def _name(path):
-    """Dotted name of a module of the package; file name of a script."""
+    """Dotted name of a module of the package. File name of a script."""
     if not path.is_relative_to(PACKAGE) or path.parent.name == "scripts":
         return path.name
     return ".".join(("stiction", *path.relative_to(PACKAGE).with_suffix("").parts))
@@ -67,7 +67,7 @@ def _name(path):
 
 @cache
 def _read(path, _modified, remember):
-    """Hash of one file, and names and files of the modules of the package that it imports."""
+    """Hash of one file, and names and files of its imported modules of the package."""
     text = path.read_bytes()
     hashed, names = remember([_this_module(), hashlib.sha256(text).hexdigest()], lambda: _parsed(text))
     modules = {_name(module): module for name in names for module in files_of(name)}
@@ -76,20 +76,20 @@ def _read(path, _modified, remember):
 
 @cache
 def _this_module():
-    """Hash of the text of this module, on which all others depend."""
+    """Hash of the text of this module. All others depend on it."""
     return hashlib.sha256(Path(__file__).read_bytes()).hexdigest()
 
 
 @cache
 def _parsed(text):
-    """Hash of a module, and the full names of everything of the package that it imports."""
+    """Hash of a module, and the full names of all its imports from the package."""
     tree = ast.parse(text)
     names = [name for node in _statements(tree) for name in imported(node)]
     return [hashlib.sha256(canonical(tree).encode()).hexdigest()[:8], names]
 
 
 def _statements(node):
-    """All statements of a syntax tree and its other parts that may contain some, without expressions."""
+    """Yield all statements of a syntax tree and its other parts with possible statements, without expressions."""
     for child in ast.iter_child_nodes(node):
         if not isinstance(child, ast.expr):
             yield child
@@ -97,7 +97,7 @@ def _statements(node):
 
 
 def imported(node: ast.AST) -> list[str]:
-    """Full names of what an import statement imports of the package; empty for any other node."""
+    """Full names imported from the package by a statement, empty for any other node."""
     if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "stiction":
         return [f"{node.module}.{alias.name}" for alias in node.names]
     if isinstance(node, ast.Import):
@@ -106,14 +106,14 @@ def imported(node: ast.AST) -> list[str]:
 
 
 def files_of(name: str) -> list[Path]:
-    """Files of the package that a full name refers to: a module, or the module that defines an object."""
+    """Files of the package behind a full name: a module, or the module with the definition of an object."""
     parts = name.split(".")
     paths = [PACKAGE.joinpath(*parts[1:end]).with_suffix(".py") for end in (None, -1)]
     return [path for path in paths if path != PACKAGE.with_suffix(".py") and path.is_file()]
 
 
 def canonical(node: object) -> str:
-    """Syntax tree without docstrings as text that is the same in every version of Python.
+    """Syntax tree without docstrings as text, the same in every version of Python.
 
     The output of `ast.dump` is not: versions differ in whether they print empty fields and in how they split formatted
     strings.
@@ -139,7 +139,7 @@ def canonical(node: object) -> str:
 
 @cache
 def _meaningful(kind):
-    """Sorted names of the fields of a kind of node that affect what the code does."""
+    """Sorted names of the fields of a kind of node with an effect on the code."""
     return sorted({*kind._fields} - _WITHOUT_MEANING)
 
 

@@ -1,4 +1,4 @@
-"""Jobs as forks of a process that has imported every library and loaded every kernel.
+"""Jobs as forks of a process after the imports of every library and kernel.
 
 A new interpreter spends about a second on imports and compiled kernels before a job can begin; a fork of a process that
 has done so begins within hundredths of a second. `Server` starts that process, ``python -m stiction.run.forkserver``,
@@ -50,7 +50,7 @@ _PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 
 class Server:
-    """Process that runs scripts in forks of itself, all in one environment; it ends with the process that started it.
+    """Process for running scripts in forks of itself, all in one environment. It ends with its parent process.
 
     Raises
     ------
@@ -96,18 +96,18 @@ class Server:
         return int(status)
 
     def close(self) -> None:
-        """End the server and the scripts that it runs."""
+        """End the server and its running scripts."""
         self._requests.close()
         self.process.wait()
 
 
 def _channel():
-    """Pair of sockets that keep the limits of messages."""
+    """Pair of sockets with limits between messages."""
     return socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
 
 
 def main() -> None:
-    """Serve requests on the socket whose number is the argument; each child runs its script and ends."""
+    """Serve requests on the socket with the number of the argument. Each child runs its script and ends."""
     requests = socket.socket(fileno=int(sys.argv[1]))
     with one_thread():
         preload()
@@ -123,7 +123,7 @@ def main() -> None:
 
 @contextlib.contextmanager
 def one_thread() -> Iterator[None]:
-    """Let libraries have one thread in this context, also after a fork; its end restores the variables."""
+    """Let libraries have one thread in this context, also after a fork. Its end restores the variables."""
     before = {name: os.environ[name] for name in _THREADS if name in os.environ}
     os.environ.update(dict.fromkeys(_THREADS, "1"))
     try:
@@ -144,7 +144,7 @@ def refuse_threads() -> None:
 
 
 def preload() -> None:
-    """Import all that jobs import; load fonts and the compiled kernels, compiled if necessary."""
+    """Import all libraries of jobs. Load fonts and the compiled kernels, and compile these if necessary."""
     gc.disable()  # nearly all objects remain, and looking for garbage among them would take a tenth of the time
     for module in pkgutil.walk_packages([str(PACKAGE)], "stiction."):
         if module.name != _OF_SNAKEMAKE:
@@ -159,7 +159,7 @@ def preload() -> None:
 
 
 def serve(requests: socket.socket) -> str | None:
-    """Fork for every request; returns the script in each child, and ``None`` once the other side has closed.
+    """Fork for every request. Returns the script in each child, and ``None`` once the other side has closed.
 
     Each request is the path of a script, with a socket for the exit status.
     """
@@ -218,7 +218,7 @@ def become(script: str) -> NoReturn:
 
 
 def _status(error):
-    """Exit status after an exception that a script does not catch; prints what the interpreter prints."""
+    """Exit status after an exception not caught by a script. Prints the interpreter's message."""
     if isinstance(error, SystemExit) and isinstance(error.code, int | None):
         return (error.code or 0) & 0xFF
     sys.stdout.flush()  # an interpreter writes what was printed before the message of an error

@@ -1,4 +1,4 @@
-"""Labels of datasets: stage, name, settings, and the settings of all datasets on which a dataset depends."""
+"""Labels of datasets: stage, name, settings, and the settings of all datasets behind a dataset."""
 
 import json
 from collections.abc import Iterable
@@ -18,13 +18,13 @@ class Label(NamedTuple):
 
     @property
     def attributes(self) -> dict[str, str]:
-        """The label as attributes of a dataset; equal settings give equal text."""
+        """Label as attributes of a dataset. Equal settings give equal text."""
         texts = {key: json.dumps(getattr(self, key), sort_keys=True) for key in ("settings", "before")}
         return {"stage": self.stage, "name": self.name} | texts
 
 
 def made_from(inputs: Iterable[str | Path], stage: str, name: str, settings: dict[str, Any]) -> Label:
-    """Label of a dataset that a stage computes from other datasets.
+    """Label of a dataset computed by a stage from other datasets.
 
     Datasets of the same stage are its chunks. They have its settings and are not listed, because their number does not
     affect the result.
@@ -61,5 +61,5 @@ def read(path: str | Path) -> Label:
 
 
 def unreadable(path: str | Path, reason: Exception) -> DataError:
-    """The error of a dataset that cannot be read, with the remedy."""
+    """Error of an unreadable dataset, with the remedy."""
     return DataError(f"{path} cannot be read ({reason}); delete it and start again, it will be computed anew")

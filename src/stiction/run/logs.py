@@ -1,4 +1,4 @@
-"""The log of a job: progress, warnings, errors, run time and peak memory."""
+"""Log of a job: progress, warnings, errors, run time and peak memory."""
 
 import contextlib
 import hashlib
@@ -13,7 +13,7 @@ from pathlib import Path
 
 @contextlib.contextmanager
 def logged(path: str | Path, results: Iterable[str] = ()) -> Iterator[None]:
-    """Write warnings, progress and the traceback of an error to a log; print one line about the error on the terminal.
+    """Write warnings, progress and the traceback of an error to a log. Print one line about the error on the terminal.
 
     The log of a successful job ends with the SHA-256 checksums of its results, its run time and its peak memory.
     """

@@ -1,4 +1,4 @@
-"""Text in Markdown that stands for its characters alone, because names, files and channels of users are in it."""
+"""Text in Markdown as its characters alone, for names, files and channels of users."""
 
 import re
 
@@ -29,7 +29,7 @@ def cell(text: str) -> str:
 
 
 def plain(line: str) -> str:
-    """Read a line that `literal` has written.
+    """Read a line written by `literal`.
 
     Examples
     --------

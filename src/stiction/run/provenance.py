@@ -29,7 +29,7 @@ LIBRARIES = (
 
 
 def record(path: str | Path, checkout: str | Path, config: dict) -> None:
-    """Append the run that is starting to the record of runs, oldest first; the JSON file is replaced atomically.
+    """Append the starting run to the record of runs, oldest first. The JSON file is replaced atomically.
 
     ``checkout`` is the folder that contains the code.
 
@@ -46,7 +46,7 @@ def record(path: str | Path, checkout: str | Path, config: dict) -> None:
 
 
 def recorded(path: Path) -> list[dict]:
-    """Runs in a record, oldest first; empty if there is no record.
+    """Runs in a record, oldest first. Empty if there is no record.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def recorded(path: Path) -> list[dict]:
 
 
 def _run(checkout, config):
-    """Date, machine, code, libraries and configuration of a run that is starting."""
+    """Date, machine, code, libraries and configuration of a starting run."""
     return {
         "started": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
         "versions": {"python": platform.python_version()} | {name: version_of(name) for name in LIBRARIES},
@@ -76,7 +76,7 @@ def _run(checkout, config):
 
 
 def version_of(library: str) -> str | None:
-    """Version of a library; ``None`` if it is not installed, e.g. Snakemake where only the package is used."""
+    """Version of a library, ``None`` if it is not installed, e.g. Snakemake in a use of the package alone."""
     try:
         return metadata.version(library)
     except metadata.PackageNotFoundError:
@@ -90,7 +90,7 @@ _UNTRACKED = ["ls-files", "--others", "--exclude-standard", "-z"]
 
 
 def git_state(checkout: str | Path) -> dict | None:
-    """Commit of a checkout, files that differ from it and files that it does not know; ``None`` without a commit.
+    """Commit of a checkout, changed files and files unknown to it, or ``None`` without a commit.
 
     The checkout may belong to another user, which git by itself refuses. A folder inside of another repository, such as
     that of an installed package, is no checkout.
@@ -106,7 +106,7 @@ def git_state(checkout: str | Path) -> dict | None:
 
 
 def _git(checkout, *command):
-    """What git prints about a checkout."""
+    """Output of git about a checkout."""
     words = ["git", "-c", f"safe.directory={Path(checkout).resolve()}", "-C", checkout, *command]
     return subprocess.run(words, capture_output=True, text=True, check=True).stdout
 
@@ -125,7 +125,7 @@ def cpu_name() -> str:
 
 
 def started(run: Mapping[str, Any]) -> str:
-    """Date and time at which a run started.
+    """Date and time of the start of a run.
 
     Examples
     --------
@@ -147,7 +147,7 @@ def code_of(run: Mapping[str, Any]) -> Iterator[str]:
 
 
 def last_run(record: Path) -> list[str]:
-    """Say when and with which code the last run of a record makes a result."""
+    """Say the time and code of the last run of a record behind a result."""
     run = recorded(record)[-1]
     more = "Machine, libraries and configuration of this run are in results/provenance.json."
     return [f"Made by the run of {started(run)}.", *(f"{sentence}." for sentence in code_of(run)), more]

@@ -1,4 +1,4 @@
-"""Folder of a run: whether it can be written, and a lock that, unlike Snakemake's, ends with a run that is killed."""
+"""Folder of a run: a test of writing, and a lock. Unlike Snakemake's, it ends with a killed run."""
 
 import fcntl
 import tempfile
@@ -7,7 +7,7 @@ from typing import IO
 
 
 def require_writable(record: str | Path) -> None:
-    """Refuse a folder in which Snakemake cannot keep its record, which it changes even if nothing is to do.
+    """Refuse a folder without room for the record of Snakemake. It changes even if nothing is to do.
 
     Raises
     ------
@@ -26,7 +26,7 @@ def require_writable(record: str | Path) -> None:
 
 
 def reserved(lock: str | Path) -> IO[str]:
-    """Open file that locks the folder of a run; the lock is released when the process ends or the file is closed.
+    """Lock the folder of a run by an open file. The lock ends with the process, or when the file is closed.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What this project changes in Snakemake, and what it asks of it, beyond Snakemake's public interface.
+"""Changes of Snakemake by this project, and questions to it, beyond its public interface.
 
 Every use of a private part is one function here, which says what happens in a version of Snakemake without that part.
 Changes save time only: another version remains as it is and is slower.
@@ -26,7 +26,7 @@ FOLDERS = ("TMPDIR", "TMP", "TEMPDIR", "TEMP")
 
 
 def _part(module, name):
-    """Object of a module of Snakemake; ``None`` if this version has no such module or no such object."""
+    """Object of a module of Snakemake, ``None`` if this version has no such module or no such object."""
     with contextlib.suppress(ImportError):
         return getattr(importlib.import_module(f"snakemake.{module}"), name, None)
 
@@ -56,6 +56,7 @@ def fork_jobs() -> bool:
         return _refused(str(error))
 
     def execute_script(job, fname, edit=False):
+        """Run the script of a job as a fork, or as Snakemake does."""
         if _plain(job, server):
             try:
                 return _run(server, fname)
@@ -75,7 +76,7 @@ def _refused(reason):
 
 
 def _run(server, script):
-    """Run a script as a fork; raises the errors of Snakemake."""
+    """Run a script as a fork. Raises the errors of Snakemake."""
     if status := server.run(script):
         raise subprocess.CalledProcessError(status, f"{sys.executable} {script}")
 
@@ -98,7 +99,7 @@ def _plain(script, server):
 
 
 def compare_without_pandas() -> None:
-    """Let Snakemake compare parameters without pandas where pandas is not imported.
+    """Let Snakemake compare parameters without pandas unless pandas is imported.
 
     Snakemake imports pandas to recognise its objects among the parameters of jobs; the import takes longer than the
     comparison of all parameters.
@@ -109,19 +110,21 @@ def compare_without_pandas() -> None:
     compared = records._serialize_param_pandas
 
     def serialize(record, value):
+        """Text of a parameter, without pandas unless it is imported."""
         return compared(record, value) if "pandas" in sys.modules else record._serialize_param_builtin(value)
 
     records._serialize_param_pandas = serialize
 
 
 def look_for_scripts_once() -> None:
-    """Let Snakemake look for the script of a rule once, not for every job; an unknown way to look for it remains."""
+    """Let Snakemake look for the script of a rule once, not for every job. An unknown way to look for it remains."""
     processor = _part("dag", "ScriptProcessor")
     look_for = getattr(processor, "process_job", None)
     if look_for is None or list(inspect.signature(look_for).parameters) != ["self", "job"]:
         return
 
     def process_job(self, job):
+        """Look for the script of a rule, unless it was found for another job."""
         rule, present = job.rule.name, vars(self).setdefault("present", set())
         if rule not in present:
             look_for(self, job)
@@ -132,7 +135,7 @@ def look_for_scripts_once() -> None:
 
 
 def remember_signatures() -> None:
-    """Let Snakemake read the signature of a function once, not nine times for every job; an unknown way remains."""
+    """Let Snakemake read the signature of a function once, not nine times for every job. An unknown way remains."""
     inspected = _part("common", "get_function_params")
     if inspected is None or _part("rules", "get_function_params") is not inspected:
         return
@@ -141,6 +144,7 @@ def remember_signatures() -> None:
     known = cache(inspected)
 
     def get_function_params(func):
+        """Names of the parameters of a function, from memory if it has a hash."""
         try:
             return known(func)
         except TypeError:  # it has no hash
@@ -151,7 +155,7 @@ def remember_signatures() -> None:
 
 
 def limit_timers(workflow: Any) -> None:
-    """Let the scheduler of a run hold one timer at a time; an unknown one keeps its timers, which cost some time.
+    """Let the scheduler of a run hold one timer at a time. An unknown scheduler keeps its timers, at some cost.
 
     Every pass of the scheduler starts a timer that starts another pass, and so does every job that ends: after n jobs,
     there are about n passes per second until the end of the run.
@@ -162,33 +166,47 @@ def limit_timers(workflow: Any) -> None:
     waiting = threading.Lock()
 
     def reevaluate(delay):
+        """Start a timer, unless one is waiting."""
         if waiting.acquire(blocking=False):
             timer = threading.Timer(delay, awake)
             timer.daemon = True  # otherwise Snakemake would wait for it at the end
             timer.start()
 
     def awake():
+        """Wake the scheduler up."""
         waiting.release()
         scheduler._open_jobs.release()
 
     scheduler._schedule_reevalutation = reevaluate
 
 
+def keep_to_allotted_cores(workflow: Any) -> None:
+    """Let a group of jobs use only the cores allotted to it by SLURM. Snakemake would take all of the machine."""
+    allotted, limits = os.environ.get("SLURM_CPUS_PER_TASK", ""), getattr(workflow, "global_resources", None)
+    if allotted.isdecimal() and limits is not None:
+        limits["_cores"] = int(allotted)
+
+
 def is_main(workflow: Any) -> bool:
-    """Whether this process plans the run, and is not one that Snakemake starts for a job with the option ``--mode``."""
+    """Whether this process plans the run, and is not started by Snakemake for a job with the option ``--mode``."""
     return getattr(workflow, "is_main_process", not {"subprocess", "remote"} & set(sys.argv))
 
 
-def runs_here(workflow: Any) -> bool:
-    """Whether jobs run on this machine; if Snakemake no longer says so, each job starts an interpreter of its own."""
-    return getattr(workflow, "local_exec", False)
-
-
 def files_of_configuration(workflow: Any) -> list[Path]:
-    """Files of the configuration, each before those that it overwrites.
+    """Files of the configuration, each before the files overwritten by it.
 
     If Snakemake no longer names them there are none: then duplicate keys are not found, and paths of scans are relative
     to the working directory.
     """
     names = [*reversed(getattr(workflow, "overwrite_configfiles", ())), *getattr(workflow, "configfiles", ())]
     return list(dict.fromkeys(map(Path, names)))
+
+
+def read_in_jobs(workflow: Any, file: Path) -> None:
+    """Let jobs with their own interpreter read one file of the configuration in place of this run's files.
+
+    If Snakemake no longer says where it keeps them, jobs read the files of this run.
+    """
+    settings = getattr(workflow, "config_settings", None)
+    if hasattr(settings, "configfiles"):
+        settings.configfiles = [file]

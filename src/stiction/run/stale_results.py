@@ -21,7 +21,7 @@ def foreign(
     expected: Callable[[str], dict[str, Any] | None],
     remember: Callable[[object, Callable[[], Any]], Any],
 ) -> Iterator[tuple[str, str]]:
-    """Datasets that other settings or another study gave, or that cannot be read, each with the reason.
+    """Yield datasets of other settings or another study, or unreadable ones, each with the reason.
 
     ``expected`` gives the settings of the job of a file in this run, ``None`` if no job writes it: such files are left
     out. A `stiction.run.disk_cache.DiskCache` keeps the labels of files that have not changed.
@@ -39,7 +39,7 @@ def foreign(
 
 
 def _difference(path, settings, expected, remember):
-    """What distinguishes a dataset from the one that this run would compute; empty if nothing does."""
+    """Difference between a dataset and this run's, empty without any."""
     try:
         label = _label(path, remember)
     except (DataError, OSError):
@@ -55,18 +55,18 @@ def _difference(path, settings, expected, remember):
 
 
 def _label(path, remember):
-    """Label of a dataset, which is read again if the file may have changed."""
+    """Label of a dataset. It is read again if the file may have changed."""
     return labels.Label(*remember([_state(path), labels.Label._fields], lambda: labels.read(path)))
 
 
 def _state(path):
-    """What the disk says about a file; whoever writes into it changes the last number, which nobody can set."""
+    """State of a file on the disk. Any write changes the last number, and nobody can set it."""
     state = path.stat()
     return [str(path), state.st_ino, state.st_size, state.st_mtime_ns, state.st_ctime_ns]
 
 
 def _first(stored, wanted, path=()):
-    """First key that differs between two sections, with both values; empty if they agree."""
+    """First different key of two sections, with both values, empty if they agree."""
     if isinstance(stored, dict) and isinstance(wanted, dict):
         keys = sorted({*stored, *wanted})
         return next(filter(None, (_first(stored.get(key), wanted.get(key), (*path, key)) for key in keys)), "")
@@ -75,12 +75,12 @@ def _first(stored, wanted, path=()):
 
 
 def _value(value):
-    """A value in a message."""
+    """Value in a message."""
     return "nothing" if value is None else value
 
 
 def damaged(logs: str | Path, remember: Callable[[object, Callable[[], Any]], Any]) -> Iterator[tuple[str, str]]:
-    """Files that are no longer as their jobs wrote them by the checksums in a folder of logs, each with the reason.
+    """Yield files changed since the end of their jobs, by the checksums in a folder of logs, each with the reason.
 
     Files that are missing and files without a checksum are left out. A `stiction.run.disk_cache.DiskCache` keeps the
     checksums of files that have not changed.
@@ -92,7 +92,7 @@ def damaged(logs: str | Path, remember: Callable[[object, Callable[[], Any]], An
 
 
 def summary(unusable: Mapping[str, str]) -> Iterator[str]:
-    """One line about the first file of each folder that a run cannot use, with the number of its other files."""
+    """Yield one line about the first unusable file of each folder, with the number of the others."""
     paths = sorted(map(Path, unusable), key=lambda path: (path.parent, path.name))
     for _, files in groupby(paths, key=lambda path: path.parent):
         first, *others = map(Path.as_posix, files)

@@ -16,7 +16,7 @@ _PART = 2**20
 def save(
     dataset: xr.Dataset, path: str | Path, stage: str, settings: dict[str, Any], inputs: Iterable[str | Path] = ()
 ) -> None:
-    """Write a dataset atomically, labelled with its stage, its name and the settings from which it was computed.
+    """Write a dataset atomically, labelled with its stage, its name and its settings.
 
     :func:`load` checks the stage, and that the file has the name under which it was written. Settings are plain,
     without time and machine, so that equal ones give equal files; those of the datasets from which it was computed, the
@@ -37,7 +37,7 @@ def save(
 
 
 def _fill(path, size):
-    """Write a file of ``size`` zeros in parts, so that large files take no memory."""
+    """Write a file of ``size`` zeros in parts, so large files take no memory."""
     with path.open("wb") as file:
         for start in range(0, size, _PART):
             file.write(bytes(min(_PART, size - start)))

@@ -67,21 +67,23 @@ PARTS = (beam_kernels, contact_kernels, chaos_kernels)
 
 
 class _NotCachedError(Exception):
-    """A kernel would have to be compiled."""
+    """Signal of a kernel without machine code in the cache."""
 
 
 class _OnlyCached(Listener):
     """Refuses to compile."""
 
     def on_start(self, _event):
+        """Refuse to compile."""
         raise _NotCachedError
 
     def on_end(self, _event):
+        """Do nothing."""
         pass
 
 
 def main() -> None:
-    """Load all kernels; if one is not in the cache, compile each part in another process first."""
+    """Load all kernels. If one is not in the cache, compile each part in another process first."""
     try:
         with install_listener("numba:compile", _OnlyCached()):
             load()

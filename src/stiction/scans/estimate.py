@@ -1,4 +1,4 @@
-"""From the scans of a surface to everything that the model needs of it, with errors and notes on its limits."""
+"""Everything needed by the model from the scans of a surface, with errors and notes on its limits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -41,7 +41,7 @@ def seen(inspection: Inspection, model: SurfaceModel, maps: Maps) -> SurfaceMode
 
 @dataclass(frozen=True)
 class SurfaceEstimate:
-    """A surface measured by scans. Moments are (ln rms, skewness, kurtosis), the rms in metres."""
+    """Surface measured by scans. Moments are (ln rms, skewness, kurtosis), the rms in metres."""
 
     inspection: Inspection
     moments: np.ndarray  #: without white noise and without the bias of levelling and finite size, (3,)
@@ -89,7 +89,7 @@ class SurfaceEstimate:
 
     @property
     def flags(self) -> tuple[str, ...]:
-        """Sentences on everything that limits the estimate."""
+        """Sentences on all limits of the estimate."""
         return sentences(self)
 
 
@@ -157,7 +157,7 @@ def _covariances(inspection, model, drawn):
 
 
 def _errors(inspection, model, drawn, described):
-    """Covariance of the moments, whose heights four moments describe or not, and their errors of both kinds."""
+    """Covariance of the moments, by their form if four moments describe the heights, and their errors of both kinds."""
     closed_form = inspection.propagated(_covariances(inspection, model, drawn))
     of_tiles = [tile_errors(maps.levelled, inspection.settings.tiles) ** 2 for maps in inspection.counted]
     by_tiles = np.sqrt(inspection.propagated(of_tiles))
@@ -169,7 +169,7 @@ def _errors(inspection, model, drawn, described):
 
 
 def _sectors(inspection):
-    """Spectrum of the largest scans in directions relative to that in all, where these resolve it, and its errors."""
+    """Spectrum of the largest scans by direction, relative to all directions, where resolved, and its errors."""
     reach, largest = inspection.reach, inspection.largest
     resolved = reach.low, min(reach.high, largest.reach.high)
     sectors, errors = spectra.sectors(largest.periodogram, inspection.rings, *resolved)
@@ -177,14 +177,14 @@ def _sectors(inspection):
 
 
 def _unbiased(inspection, drawn, model):
-    """Moments of every size, and quantiles of all together, less what levelling and the finite size change."""
+    """Moments of every size, and quantiles of all together, less the changes by levelling and the finite size."""
     counted = list(zip(inspection.counted, drawn, strict=False))
     of_sizes = [maps.moments - part.bias(model.moments, len(maps.names)) for maps, part in counted]
     return of_sizes, inspection.averaged([maps.quantiles - part.levelled_off.mean(axis=0) for maps, part in counted])
 
 
 def _drawn(inspection, model, rng, fewest):
-    """Model scans of every size; ``rng(k)`` are the random numbers of number k of all."""
+    """Draw model scans of every size. ``rng(k)`` gives the random numbers of number k of all."""
     counts = [max(fewest, _PER_SCAN * len(maps.names)) for maps in inspection.sizes]
     first = np.cumsum([0, *counts])
     return [
@@ -196,7 +196,7 @@ def _drawn(inspection, model, rng, fewest):
 
 
 def nearest_density(inspection: Inspection) -> Feasible | None:
-    """Maximum-entropy density of the scans as they are, before the bias is known; ``None`` if there is none near.
+    """Maximum-entropy density of the raw scans, before the bias is known, or ``None`` without one nearby.
 
     Raises
     ------
@@ -207,10 +207,11 @@ def nearest_density(inspection: Inspection) -> Feasible | None:
 
 
 def _model(inspection, values, heights, largest=LARGEST_DISTANCE_OF_SCANS):
-    """Surface with these moments, or with the density of these quantiles if they have none, and that of the moments."""
+    """Surface with these moments, or with the density of these quantiles without moments, and the moments' density."""
     correlation = _CORRELATED * 2 * np.pi / inspection.fit.corner
 
     def surface(density):
+        """Surface with a density, and the spectrum of the scans."""
         spectrum = inspection.spectrum_in(inspection.largest)
         return SurfaceModel(density, spectrum, correlation, float(np.exp(values[0])), inspection.largest.frame)
 
@@ -247,7 +248,7 @@ def _homogeneity(inspection, model):
 
 
 def _agreement(of_sizes, values, covariances):
-    """χ² of the moments of the sizes against their mean and the probability of a larger one, (3,) each; or ``nan``."""
+    """χ² of the moments of the sizes against their mean, and the probability of a larger one, (3,) each, or ``nan``."""
     freedom = len(of_sizes) - 1
     if freedom == 0:
         return np.full(3, np.nan), np.full(3, np.nan)
@@ -265,7 +266,7 @@ def _quantile_errors(inspection, drawn):
 
 
 def widened(closed_form: np.ndarray, by_tiles: np.ndarray) -> np.ndarray:
-    """Covariance with the standard errors by tiles (3,) where these are larger, and unchanged correlations, (3, 3).
+    """Covariance with the larger of its errors and of those by tiles (3,), and unchanged correlations, (3, 3).
 
     For heights that four moments do not describe: errors in closed form follow from moments of the density up to the
     eighth, and those of the real heights, which the tiles sample, may be much larger.

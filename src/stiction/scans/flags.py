@@ -1,4 +1,4 @@
-"""Sentences on everything that limits the estimate of a surface from its scans.
+"""Sentences on all limits of the estimate of a surface from its scans.
 
 Each function takes a `stiction.scans.estimate.SurfaceEstimate` and returns its sentence, which is empty if all is well.
 """
@@ -34,7 +34,7 @@ def sentences(estimate: Any) -> tuple[str, ...]:
 
 
 def infeasible(estimate: Any) -> str:
-    """Which measured moments have no maximum-entropy density."""
+    """Name the measured moments without a maximum-entropy density."""
     _, skewness, kurtosis = estimate.moments
     return f"skewness {skewness:.3g} with kurtosis {kurtosis:.3g} has no maximum-entropy density"
 
@@ -96,7 +96,7 @@ def _scans_differ(estimate):
 
 
 def _sizes_differ(estimate):
-    """Scans of different sizes that are not those of one surface."""
+    """Disagreement of scans of different sizes as of several surfaces."""
     likely = estimate.agreement[1]
     names = [name for name, p in zip(_MOMENTS, likely, strict=True) if p < UNLIKELY]
     sizes = " and of ".join(maps.size for maps in estimate.inspection.counted)
@@ -127,7 +127,7 @@ def _spectrum_misfits(estimate):
 
 
 def _noise(estimate):
-    """White noise that changes the moments by more than a small part of their errors."""
+    """White noise with a change of the moments above a small part of their errors."""
     noisy = [maps for maps in estimate.inspection.counted if np.any(_by_noise(maps) > _NOISE * estimate.errors)]
     if not noisy:
         return ""
@@ -138,14 +138,13 @@ def _noise(estimate):
 
 
 def _noise_stays(estimate):
-    """Floor like that of noise that stays in the heights."""
+    """Floor in the heights like noise, which stays there."""
     levels = [_in_scans(maps, maps.kept) for maps in estimate.inspection.sizes if maps.kept.density > 0]
     if not levels:
         return ""
     return (
-        f"a floor of the spectrum like that of white noise of {' and '.join(levels)} is not subtracted, because no "
-        "heights have the moments that would remain; if it is noise, the surface is smoother than computed and sticks "
-        "more"
+        f"a floor of the spectrum like white noise of {' and '.join(levels)} is not subtracted, because no heights "
+        "have the remaining moments; if it is noise, the surface is smoother than computed and sticks more"
     )
 
 

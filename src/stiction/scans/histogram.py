@@ -16,7 +16,7 @@ EDGES = np.linspace(-6, 6, 61)
 
 
 def histogram(scans: Sequence[np.ndarray], measured: np.ndarray, corrected: np.ndarray) -> np.ndarray:
-    """Density of the standardised heights of all scans in the bins of `EDGES`, (60,) [-]; levelled heights [m].
+    """Density of the standardised heights of all scans in the bins of `EDGES`, (60,) [-], from levelled heights [m].
 
     Between two of their `stiction.scans.quantiles.quantiles`, as ``measured`` and without the bias of levelling, (49,)
     each [-], all heights move with these.
@@ -42,7 +42,7 @@ def histogram_errors(model: SurfaceModel) -> np.ndarray:
 
 
 def _mean_of_normal(values):
-    """Expectations of functions of a normal score that are tabulated like `Translation.table`, (..., 4097) -> (...)."""
+    """Expectations of functions of a normal score, tabulated like `Translation.table`, (..., 4097) -> (...)."""
     score = np.linspace(-LARGEST_SCORE, LARGEST_SCORE, values.shape[-1])
     weight = np.exp(-(score**2) / 2)
     return values @ (weight / weight.sum())

@@ -14,7 +14,7 @@ _WIDE = 4
 
 
 def whole_part(heights: np.ndarray) -> tuple[slice, slice]:
-    """Largest rectangle of a map without wide holes, that with the longest shorter side: this decides the plateau.
+    """Largest rectangle of a map without wide holes, by its shorter side. This side decides the plateau.
 
     Examples
     --------
@@ -43,7 +43,7 @@ def whole_part(heights: np.ndarray) -> tuple[slice, slice]:
 
 
 def filled(heights: np.ndarray, pixel: tuple[float, float]) -> np.ndarray:
-    """Heights (n1, n2) in which Laplace's equation holds where they were NaN, undefined; the others are unchanged [m].
+    """Heights (n1, n2) with undefined points (NaN) filled by Laplace's equation, and the others unchanged [m].
 
     A filled height is the mean of its four neighbours, weighted by their inverse squared distance, and thus never
     higher or lower than the rim of its hole. Distances of the points [m].
@@ -66,6 +66,6 @@ def _laplacian(shape, pixel):
 
 
 def _second_difference(points):
-    """Second difference of a row of points, whose ends have one neighbour, (points, points)."""
+    """Second difference of a row of points with one neighbour at its ends, (points, points)."""
     step = sparse.diags_array([[-1.0], [1.0]], offsets=[0, 1], shape=(points - 1, points))
     return step.T @ step

@@ -1,4 +1,4 @@
-"""What the scans of a surface show without a model: levelled heights, moments, spectrum and its fit by Eq. (7).
+"""Scans of a surface without a model: levelled heights, moments, spectrum and its fit by Eq. (7).
 
 Scans may differ in size and number of points. Each size is evaluated by itself; moments and quantiles of all sizes are
 averaged by scanned area, and Eq. (7) is fitted to the spectra of all sizes, each within its reach.
@@ -39,7 +39,7 @@ _SAME_SIZE = 0.01
 
 @dataclass(frozen=True)
 class Settings:
-    """How scans are evaluated."""
+    """Settings for the evaluation of scans."""
 
     levelling: Levelling = Levelling()
     tip_radius: float | None = None  #: of the microscope [m]
@@ -66,7 +66,7 @@ class Maps:
 
     @classmethod
     def of(cls, alike: Mapping[int, Scan], settings: Settings) -> "Maps":
-        """Level scans that are alike, by their numbers."""
+        """Level scans of the same size and number of points, by their numbers."""
         scans = list(alike.values())
         frame = scans[0].frame
         levelled = tuple(level(scan.heights, settings.levelling) for scan in scans)
@@ -90,12 +90,12 @@ class Maps:
 
     @property
     def part_in_words(self) -> str:
-        """Size of the part that gives the spectrum."""
+        """Size of the part used for the spectrum."""
         return _in_words(self.part)
 
     @property
     def area(self) -> float:
-        """Area of all scans that has heights [m²]."""
+        """Area with heights of all scans [m²]."""
         return self.frame.area * self.number
 
     @cached_property
@@ -115,7 +115,7 @@ class Maps:
 
     @property
     def moments(self) -> np.ndarray:
-        """The same without white noise, (3,)."""
+        """Moments without white noise, (3,)."""
         return without_noise(self.noisy_moments, self.floor.variance(self.frame.pixel)[0])
 
     @property
@@ -142,7 +142,7 @@ class Maps:
 
 @dataclass(frozen=True)
 class Inspection:
-    """What the scans of a surface show without any model."""
+    """Results of the scans of a surface without any model."""
 
     sizes: tuple[Maps, ...]  #: the largest first
     settings: Settings
@@ -162,11 +162,11 @@ class Inspection:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Names of all scans, in the order in which they were given."""
+        """Names of all scans, in their given order."""
         return self.in_order([maps.names for maps in self.sizes])
 
     def in_order(self, of_sizes: Sequence[Sequence[Any]]) -> tuple[Any, ...]:
-        """Values of the scans of each size, in the order in which the scans were given."""
+        """Values of the scans of each size, in the given order of the scans."""
         numbered = [
             pair
             for maps, values in zip(self.sizes, of_sizes, strict=True)
@@ -176,22 +176,22 @@ class Inspection:
 
     @property
     def counted(self) -> tuple[Maps, ...]:
-        """Sizes that count for moments and quantiles, the largest first: those that show the plateau, if any do."""
+        """Sizes counted for moments and quantiles, the largest first: those with a plateau, if there are any."""
         shown = tuple(maps for maps in self.sizes if maps.wavelengths(self.fit) >= FEWEST_WAVELENGTHS)
         return shown or (self.largest,)
 
     @cached_property
     def weights(self) -> np.ndarray:
-        """Share of each of these sizes in the mean moments and quantiles: that of its area, (n,) [-]."""
+        """Weight of each counted size in the mean moments and quantiles: its fraction of the area, (n,) [-]."""
         areas = np.array([maps.area for maps in self.counted])
         return areas / areas.sum()
 
     def averaged(self, values: Sequence[np.ndarray]) -> np.ndarray:
-        """Mean of a value of every size that counts."""
+        """Mean of a value over all counted sizes."""
         return sum(weight * value for weight, value in zip(self.weights, values, strict=True))
 
     def propagated(self, covariances: Sequence[np.ndarray]) -> np.ndarray:
-        """Covariance of the mean of a value of every size that counts."""
+        """Covariance of the mean of a value over all counted sizes."""
         return sum(weight**2 * value for weight, value in zip(self.weights, covariances, strict=True))
 
     @property
@@ -210,7 +210,7 @@ class Inspection:
         return self.fit.spectrum(self.reach.end)
 
     def spectrum_in(self, maps: Maps) -> CutoffSelfAffine | TabulatedSpectrum:
-        """Spectrum that the scans do not contradict, without the waves that are shorter than two pixels of some."""
+        """Spectrum in agreement with the scans, without waves shorter than two pixels of some scan."""
         return spectrum("fitted", self.fit, self.rings, self.reach, min(self.reach.end, maps.reach.nyquist))
 
     @property
@@ -225,7 +225,7 @@ class Inspection:
 
     @cached_property
     def remainders(self) -> tuple[Remainder, ...]:
-        """Tilts and bows that levelling left in the scans of the largest size, which show the plateau."""
+        """Tilts and bows left by levelling in the scans of the largest size, the one with the plateau."""
         error, maps = np.sqrt(self.fit.covariance[0, 0]), self.largest
         return remainders(maps.levelled, maps.frame.size, self.settings.levelling, self.spectrum, error)
 
@@ -236,13 +236,13 @@ class Inspection:
 
     @property
     def areas(self) -> float:
-        """Correlation areas of all scans that count for the moments [-]."""
+        """Correlation areas of all scans counted for the moments [-]."""
         area = sum(maps.area for maps in self.counted)
         return correlation_areas(self.spectrum, np.exp(2 * self.moments[0]), area)
 
     @property
     def spectral_steps(self) -> Iterator[tuple[Maps, Maps, float, float]]:
-        """Neighbouring sizes, the spectrum of the second over that of the first where both resolve it, and its error.
+        """Neighbouring sizes, the second spectrum over the first in their common range, and its error.
 
         Sizes without common wave numbers are left out.
         """
@@ -276,7 +276,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
 
 
 def _whole(settings, scan, levelled):
-    """Levelled heights without holes; of a scan with many undefined points only its largest whole part, levelled anew.
+    """Levelled heights without holes. Of a scan with many undefined points only its largest whole part, levelled anew.
 
     Raises
     ------
@@ -307,7 +307,7 @@ def _part(heights, frame):
 
 
 def by_size(scans: Sequence[Scan], undefined_share: float = 1.0) -> list[dict[int, Scan]]:
-    """Scans that are alike in size and number of points together, by their numbers.
+    """Group scans of equal size and number of points, by their numbers.
 
     The largest size is first, and of equal sizes that with more points. Scans with a larger share of undefined points
     stand alone, because the parts that give their spectra differ.
@@ -322,7 +322,7 @@ def by_size(scans: Sequence[Scan], undefined_share: float = 1.0) -> list[dict[in
 
 
 def _extent(frame):
-    """Shorter side of a scan and number of its points, by which sizes are in order."""
+    """Shorter side of a scan and number of its points, for sorting sizes."""
     return min(frame.size), math.prod(frame.shape)
 
 
@@ -353,7 +353,7 @@ def _first_wave(maps, sizes):
 
 
 def _last_wave(maps, finest):
-    """Wave number up to which they count [rad m⁻¹]."""
+    """Wave number up to which scans count for such a spectrum [rad m⁻¹]."""
     return np.inf if maps is finest else maps.reach.high
 
 

@@ -14,28 +14,28 @@ LINES = {"none": None, "offset": 0, "tilt": 1, "bow": 2}
 
 @dataclass(frozen=True)
 class Levelling:
-    """What is subtracted from a map of heights."""
+    """Parts to be subtracted from a map of heights."""
 
     level: str = "plane"  #: key of `LEVELS`
     lines: str = "none"  #: key of ``LINES``
 
 
 def level(heights: np.ndarray, levelling: Levelling) -> np.ndarray:
-    """Levelled heights of mean zero, (n1, n2) with the fast axis first and NaN where undefined [m]."""
+    """Level heights to mean zero, (n1, n2) with the fast axis first and NaN where undefined [m]."""
     levelled = heights - _surface(heights, LEVELS[levelling.level])
     degree = LINES[levelling.lines]
     return levelled if degree is None else levelled - _lines(levelled, degree)
 
 
 def _surface(heights, degree):
-    """Polynomial of total degree ``degree`` that is closest to the defined heights, (n1, n2) [m]."""
+    """Polynomial of total degree ``degree`` closest to the defined heights, (n1, n2) [m]."""
     along, across = (_legendre(n, degree) for n in heights.shape)
     weights = polynomial(heights, degree)
     return sum(c * np.outer(along[:, a], across[:, b]) for (a, b), c in weights.items())
 
 
 def polynomial(heights: np.ndarray, degree: int) -> dict[tuple[int, int], float]:
-    """Weights of the products P_a P_b of Legendre polynomials in the one that is closest to the defined heights [m].
+    """Weights of the products P_a P_b of Legendre polynomials in the polynomial closest to the defined heights [m].
 
     Heights as in `level`; the degree is the largest sum of the degrees a along the fast and b along the slow axis.
     """
@@ -48,7 +48,7 @@ def polynomial(heights: np.ndarray, degree: int) -> dict[tuple[int, int], float]
 
 
 def _lines(heights, degree):
-    """Polynomial of every line ``heights[:, j]``, (n1, n2) [m]; of the smallest norm where few points are defined."""
+    """Polynomial of every line ``heights[:, j]``, (n1, n2), of the smallest norm at few defined points [m]."""
     basis = _legendre(len(heights), degree)
     defined = np.isfinite(heights)
     products = (basis[:, :, None] * basis[:, None, :]).reshape(len(heights), -1)
@@ -78,7 +78,7 @@ def line_jump(heights: np.ndarray, pixel: tuple[float, float]) -> tuple[float, f
 
 
 def _typical_step(heights, points):
-    """Root mean square of the medians of the steps between rows that are this number of points apart [m]."""
+    """Root mean square of the medians of the steps between rows this number of points apart [m]."""
     steps = heights[points:] - heights[:-points]
     known = steps[np.isfinite(steps).any(axis=1)]
     return float(np.sqrt(np.mean(np.nanmedian(known, axis=1) ** 2)))

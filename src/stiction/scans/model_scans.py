@@ -1,4 +1,4 @@
-"""Scans drawn from the estimated surface, with pixel and size of the measured ones: what levelling does to them."""
+"""Scans drawn from the estimated surface, with pixel and size of the measured ones, for the effect of levelling."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -45,7 +45,7 @@ class SurfaceModel:
 
     @cached_property
     def underlying(self) -> TabulatedSpectrum:
-        """Spectrum of the Gaussian field; raises ValueError if no field has these heights and this spectrum."""
+        """Spectrum of the Gaussian field. Raises ValueError if no field has these heights and this spectrum."""
         return underlying_spectrum(self.spectrum, self.translation, min(self.frame.pixel), self._points)[0]
 
     @property
@@ -65,7 +65,7 @@ class SurfaceModel:
 
     @property
     def _known(self):
-        """Lag up to which the autocorrelation is known [m]."""
+        """Longest lag of a known autocorrelation [m]."""
         return self._points * min(self.frame.pixel) / 2
 
     def draw(self, rng: np.random.Generator) -> np.ndarray:
@@ -79,7 +79,7 @@ class SurfaceModel:
 
     @cached_property
     def _surface(self):
-        """The surface on a grid of square pixels."""
+        """Surface on a grid of square pixels."""
         length, width = ((n + 1) * p for n, p in zip(self.frame.shape, self.frame.pixel, strict=True))
         grid = StripGrid(length, width, min(self.frame.pixel), self.correlation)
         return RoughSurface(self.underlying, self.translation, self.rms, grid)

@@ -122,7 +122,7 @@ def mode_covariance(translation: Translation, overlaps: np.ndarray, orders: Sequ
 
 
 def homogeneity(per_scan: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Whether the scatter between scans is that of finite scans of one surface.
+    """Scatter between scans against the scatter of finite scans of one surface: χ² and its probability.
 
     From the moments of every scan (n, 3) and their covariance for one scan (3, 3).
 
@@ -140,7 +140,7 @@ def homogeneity(per_scan: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarra
 
 
 def tiles(scan: np.ndarray, sides: int) -> list[np.ndarray]:
-    """Equal tiles of a map (n1, n2), ``sides`` along each side; a remainder at the far edges is left out."""
+    """Equal tiles of a map (n1, n2), ``sides`` along each side. A remainder at the far edges is left out."""
     rows, columns = (n // sides for n in scan.shape)
     return [
         scan[i * rows : (i + 1) * rows, j * columns : (j + 1) * columns] for i in range(sides) for j in range(sides)

@@ -40,7 +40,7 @@ class Floor:
 
 
 def without_noise(moments: np.ndarray, variance: float) -> np.ndarray:
-    """Moments (ln rms, skewness, kurtosis) less the variance of Gaussian noise [m²], whose other cumulants are 0.
+    """Moments (ln rms, skewness, kurtosis) without Gaussian noise of a variance [m²]. Its other cumulants are 0.
 
     Examples
     --------
@@ -68,7 +68,7 @@ def slopes_with_noise(moments: np.ndarray) -> np.ndarray:
 
 
 def above(rings: Rings, within: Reach, floor: Floor) -> Reach:
-    """Reach less the wave numbers beyond which all rings, with noise, are less than twice its floor."""
+    """Reach up to the last ring, noise included, of at least twice its floor."""
     known = rings.between(within.low, within.high)
     last = np.flatnonzero(known.density >= 2 * floor.density)
     if len(last) and last[-1] == len(known.density) - 1:
@@ -77,7 +77,7 @@ def above(rings: Rings, within: Reach, floor: Floor) -> Reach:
 
 
 def white_floor(rings: Rings, within: Reach) -> Floor:
-    """Floor of the measured spectrum of scans that are alike; zero where they do not show one.
+    """White floor of the measured spectrum of scans of one size, zero if they show none.
 
     ASSUME: noise is independent from point to point, and aliases follow the power law of the spectrum up to its end.
     It shows beyond the end of the spectrum, or as a flat octave below the Nyquist wave number. Otherwise it is fitted
@@ -100,7 +100,7 @@ def white_floor(rings: Rings, within: Reach) -> Floor:
 
 
 def _flat(rings):
-    """Longest part of the rings, up to the last one, that is constant within its errors."""
+    """Longest part of the rings, up to the last one, constant within its errors."""
     n, p = rings.modes[::-1], rings.density[::-1]
     count, first, second = (np.cumsum(n * p**power) for power in range(3))
     chi2 = np.maximum(second * (count / first) ** 2 - count, 0)  # of n (p / mean - 1)²
@@ -114,7 +114,7 @@ def _likely(chi2, freedom):
 
 
 def _joint_floor(rings, nyquist, start):
-    """Floor of rings up to the Nyquist wave number by a fit with Eq. (7); zero if it is not needed or contradicted."""
+    """Floor of rings up to the Nyquist wave number by a fit with Eq. (7). Zero if it is not needed or contradicted."""
     waves = _Waves.of(rings.wavenumber, nyquist)
     without, *fits = (_noisy(rings, waves, np.inf, start, floor) for floor in (False, True))
     if without.likely and not _better(fits[0], without):
@@ -134,7 +134,7 @@ def _better(fitted, other):
 
 
 def _averaged(fits, best):
-    """Floor over all ends of the spectrum by their likelihood; its error includes that the end is not known."""
+    """Mean floor over all ends of the spectrum by their likelihood. Its error includes the unknown end."""
     weight = np.exp((best.deviance - np.array([one.deviance for one in fits])) / (2 * NON_GAUSSIAN**2))
     level, error = (np.array([getattr(one.floor, name) for one in fits]) for name in ("density", "error"))
     mean = np.average(level, weights=weight)
@@ -143,7 +143,7 @@ def _averaged(fits, best):
 
 @dataclass(frozen=True)
 class _Waves:
-    """Waves that are seen in the same ring."""
+    """Waves of one ring."""
 
     wavenumber: np.ndarray  #: [rad m⁻¹]
     ring: np.ndarray  #: number of the ring of each
@@ -164,7 +164,7 @@ class _Waves:
         )
 
     def up_to(self, end):
-        """Those up to a wave number [rad m⁻¹]."""
+        """Waves up to a wave number [rad m⁻¹]."""
         inside = self.wavenumber <= end
         return _Waves(self.wavenumber[inside], self.ring[inside], self.share[inside])
 
@@ -184,10 +184,12 @@ def _noisy(rings, waves, end, start, floor=True):
     seen = waves.up_to(end)
 
     def total(parameters):
+        """Spectrum in the rings relative to its plateau, with the floor [-]."""
         form = seen.share * shape(seen.wavenumber, *parameters[:2])
         return np.bincount(seen.ring, form, len(rings.density)) + (np.exp(parameters[2]) if floor else 0.0)
 
     def objective(parameters):
+        """Half of the deviance per weight of the rings, at the best plateau."""
         relative = total(parameters)
         plateau = np.average(rings.density / relative, weights=rings.weight)
         return np.log(plateau) + np.average(np.log(relative), weights=rings.weight)

@@ -48,7 +48,7 @@ class Periodogram:
 
     @property
     def near_slow_axis(self) -> np.ndarray:
-        """Wave numbers that drift and jumps of lines change, (n1, 1) bool."""
+        """Wave numbers changed by drift and jumps of lines, (n1, 1) bool."""
         return np.abs(self.wavenumbers[0]) * self.size[0] / (2 * np.pi) < _SLOW_BAND - 0.5
 
 
@@ -93,13 +93,13 @@ def without_floor(spectrum: Periodogram, floor: float) -> Periodogram:
 
 
 def _correlation(taper):
-    """Squared correlation of the waves of tapered white noise that are 0, 1, 2 steps apart, (3,) [-]."""
+    """Squared correlation of waves of tapered white noise 0, 1, 2 steps apart, (3,) [-]."""
     overlap = np.abs(fft.rfft(taper**2)[: _CORRELATED + 1])
     return (overlap / overlap[0]) ** 2
 
 
 def rings(spectrum: Periodogram, inside: np.ndarray | None = None) -> Rings:
-    """Means over rings that are one wave number of the shorter side wide, without the rings that have no value.
+    """Means over rings one wave number of the shorter side wide, without empty rings.
 
     Wave numbers (n1, n2) that are ``inside`` are included, by default all but those near the slow axis. Rings that a
     floor of noise hides are 0 and without weight; others err as much as with the noise.

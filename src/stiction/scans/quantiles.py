@@ -1,4 +1,4 @@
-r"""Form of the height density: measured quantiles, the density that they are, and whether four moments describe it.
+r"""Form of the height density: measured quantiles, their density, and the test of a description by four moments.
 
 Quantiles are heights at normal scores u, as in Eq. (5), of the standardised heights.
 """
@@ -57,7 +57,7 @@ def measured_density(heights: np.ndarray, areas: float) -> MeasuredDensity:
 
 @dataclass(frozen=True)
 class Feasible:
-    """Maximum-entropy density of the moments that are nearest to the measured ones."""
+    """Maximum-entropy density of the moments nearest to the measured ones."""
 
     density: HeightDensity
     skewness: float  #: [-]
@@ -71,7 +71,7 @@ def feasible(
     covariance: Callable[[], np.ndarray],
     largest: float = LARGEST_DISTANCE_OF_SCANS,
 ) -> Feasible | None:
-    """Maximum-entropy density of measured moments, or of the nearest that have one; ``None`` if none is near.
+    """Maximum-entropy density of measured moments, or of the nearest feasible ones, or ``None`` if none is near.
 
     The covariance of both moments (2, 2) is asked for only if they have no density. The largest accepted distance may
     be infinite [standard errors].
@@ -100,6 +100,7 @@ def compared_slopes(skewness: float, kurtosis: float) -> np.ndarray:
     base, step = kurtosis - _STEP, np.copysign(_STEP / 2, skewness)
 
     def compared(s, k):
+        """Compared heights of the density of a skewness and kurtosis [-]."""
         return maxent.solve(s, k).quantile_of_normal(SCORES[COMPARED])
 
     centre = compared(skewness, base)
@@ -108,7 +109,7 @@ def compared_slopes(skewness: float, kurtosis: float) -> np.ndarray:
 
 
 def goodness(residual: np.ndarray, model_residuals: np.ndarray, scans: int) -> tuple[float, float]:
-    """Whether quantiles deviate from those of the four-moment density by more than finite scans do.
+    """Compare deviations of quantiles from the four-moment density with those of finite scans.
 
     Residuals are quantiles less those of the density: of all measured scans together (p,), and of single scans drawn
     from the density (n, p), where rows of ``nan`` are left out.

@@ -36,7 +36,7 @@ _SAME_SIZE, _LONGEST_REASON = 0.01, 120
 
 @dataclass(frozen=True)
 class Source:
-    """Settings for reading the files of a surface; every item is optional."""
+    """Settings for reading the files of a surface. Every item is optional."""
 
     channel: str | None = None  #: name, or name#2 for the second of equal names
     fast_axis: str = "x"  #: axis of the file along which the microscope scans a line, x or y
@@ -55,7 +55,7 @@ class ScanFile:
 
 
 def read(path: str | Path, source: Source | None = None) -> ScanFile:
-    """Read the heights of a file of any format that SurfaceTopography reads.
+    """Read the heights of a file of any format known to SurfaceTopography.
 
     Parameters
     ----------
@@ -81,7 +81,7 @@ def read(path: str | Path, source: Source | None = None) -> ScanFile:
 
 
 def _read(library, path, source):
-    """`ScanFile` of a file that is not empty."""
+    """`ScanFile` of a non-empty file."""
     name, file = path.name, content_of(path.name, str(path), path.read_bytes())
     with _opened(library, file) as reader:
         if not reader.channels:
@@ -107,7 +107,7 @@ def _read(library, path, source):
 
 
 def _scan(heights, size, name, source):
-    """Scan; what is wrong with it is wrong with the file where the configuration does not state it."""
+    """Make a scan. Blame the file for errors in values not set in the configuration."""
     try:
         return Scan(heights, size, name)
     except ScanError as refusal:
@@ -144,7 +144,7 @@ def _silenced():
 
 
 def _library(name):
-    """Functions and exceptions of SurfaceTopography that are used; only its own errors are sentences for users."""
+    """Used functions and exceptions of SurfaceTopography. Only the library's own errors are sentences for users."""
     try:
         from SurfaceTopography import IO
     except ImportError:
@@ -165,7 +165,7 @@ def _library(name):
 
 
 def _opened(library, file):
-    """Reader of a file, that of its ending if this accepts it; refuses what no format fits."""
+    """Reader of a file, first by its ending. Refuses a file of no known format."""
     if own := own_reader(file):
         return own
     kinds = [kind.format() for kind in library.endings.get(file.ending, ()) if kind.format() not in _TEXTS]
@@ -183,13 +183,13 @@ def _opened(library, file):
 
 
 def _error_of_its_format(library, file):
-    """Why the reader for the ending of a file does not accept it; ``None`` if no format has this ending."""
+    """Error of the reader for the ending of a file, or ``None`` if no format has this ending."""
     errors = (_error_of(kind, file) for kind in reversed(library.endings.get(file.ending, ())))
     return next(errors, None)
 
 
 def _error_of(kind, file):
-    """Why the reader of a format does not accept a file; ``None`` if it does."""
+    """Error of the reader of a format for a file, or ``None`` if it accepts the file."""
     try:
         kind(file.source()).close()
     except Exception as error:  # whatever a reader raises on a damaged file
@@ -198,20 +198,20 @@ def _error_of(kind, file):
 
 
 def _unreadable(library, name, error):
-    """One sentence, with the reason of the library and a way out."""
+    """Refusal of a file in one sentence, with the reason of the library and a way out."""
     reason = f"cannot be read as any known format, or is damaged{_quoted(library, error)}"
     return ScanError(name, "files", f"{reason}; open it in Gwyddion and save it as .gwy")
 
 
 def _quoted(library, error):
-    """First line of an error of the library itself, in brackets, if that is short."""
+    """First line of an error of the library itself, in brackets, if it is short."""
     message = str(error) if isinstance(error, library.error) else ""
     line = next(iter(message.strip().splitlines()), "").rstrip(". ")
     return f" ({line})" if 0 < len(line) <= _LONGEST_REASON else ""
 
 
 def _require_all_lines(library, file, kind, channel):
-    """Refuse a text of which the library leaves out lines, and points that it takes for a map of three columns."""
+    """Refuse a text with lines left out by the library, and with points taken for a map of three columns."""
     found = misread(file.text, commas=kind == _POINTS)
     if found is not None:
         line, value = found
@@ -240,7 +240,7 @@ def _unit(channel, source, name):
 
 
 def _delivered(channel, unit):
-    """Unit of the heights that the library returns: it converts lengths to the lateral unit, if that is a length."""
+    """Unit of the heights from the library. It converts lengths to the lateral unit, if that is a length."""
     return channel.unit if channel.unit in STORED else unit
 
 
@@ -260,7 +260,7 @@ def _size(channel, source, name):
 
 
 def _require_some_unit(channel, size, name):
-    """Refuse a size that coordinates without a unit have in no unit of length, unless they count the points."""
+    """Refuse a size without a unit if it fits coordinates in no unit of length. Numbers of points are accepted."""
     extent = tuple(map(float, channel.physical_sizes))
     candidates = [channel.nb_grid_pts, *([length / unit for length in size] for unit in UNITS.values())]
     if not any(np.allclose(extent, candidate, rtol=_SAME_SIZE, atol=0) for candidate in candidates):
@@ -271,7 +271,7 @@ def _require_some_unit(channel, size, name):
 
 
 def _heights(channel, name):
-    """Heights of a channel, (n_x, n_y) float64, NaN where undefined [unit `_delivered`]."""
+    """Heights of a channel, (n_x, n_y) float64, NaN where undefined, in the unit of `_delivered`."""
     size = None if channel.physical_sizes is not None else channel.nb_grid_pts
     topography = channel.topography(physical_sizes=size)
     if not topography.is_uniform:
@@ -285,7 +285,7 @@ def _note(channel, name):
 
 
 def _instrument_levelling(channel, name):
-    """Note that the instrument has levelled the stored heights already, according to the metadata."""
+    """Note on heights stored already levelled by the instrument, according to the metadata."""
     levelled = []
     for key, value in channel.info.get("raw_metadata", {}).items():
         known = _LEVELLED.fullmatch(str(key))

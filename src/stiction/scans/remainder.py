@@ -1,4 +1,4 @@
-r"""What levelling leaves: tilts and bows of levelled maps, beside those that a stationary surface has by chance.
+r"""Tilts and bows left by levelling, beyond chance on a stationary surface.
 
 The coefficient of an orthonormal polynomial P_a P_b is linear in the heights, and the Fourier transform of a Legendre
 polynomial is a spherical Bessel function. On a map of L1 x L2 the variance of the coefficient is therefore
@@ -26,7 +26,7 @@ _STEPS, _PER_STEP = 40, 12
 
 @dataclass(frozen=True)
 class Remainder:
-    """Polynomials that a stronger levelling would remove from scans."""
+    """Polynomials to be removed by a stronger levelling of scans."""
 
     level: str  #: that removes them, a key of `stiction.scans.levelling.LEVELS`
     rms: float  #: root mean square over all scans [m]
@@ -67,7 +67,7 @@ def coefficients(heights: np.ndarray, terms: Sequence[tuple[int, int]]) -> np.nd
 
 
 def variances(spectrum: Spectrum, size: tuple[float, float], terms: Sequence[tuple[int, int]]) -> np.ndarray:
-    """Variances of the `coefficients` of a stationary surface on a map, (terms,) [m²]; spectrum [m⁴], size [m]."""
+    """Variances of the `coefficients` of a stationary surface on a map, (terms,) [m²]. Spectrum [m⁴] and size [m]."""
     steps = (np.arange(_STEPS * _PER_STEP) + 0.5) / _PER_STEP  # midpoints of one quadrant, in wave numbers 2 π / L
     first, second = (2 * np.pi * steps / length for length in size)
     four_cells = np.prod([4 * np.pi / _PER_STEP / length for length in size])

@@ -1,4 +1,4 @@
-"""One scan of a surface: the map of heights that a microscope measured.
+"""One scan of a surface: the map of heights from a microscope.
 
 Convention, used in this folder: the first index of a map runs along the fast axis of the microscope, so that a line of
 the scan is ``heights[:, j]``.
@@ -76,7 +76,7 @@ class Scan:
         self._require_possible()
 
     def _require_possible(self):
-        """Refuse what no surface has."""
+        """Refuse values impossible for a surface."""
         for key, what, value, (least, largest) in (
             ("size_um", "a distance of its points of {} µm", 1e6 * min(self.frame.pixel), _PIXELS),
             ("size_um", "a distance of its points of {} µm", 1e6 * max(self.frame.pixel), _PIXELS),
@@ -88,7 +88,7 @@ class Scan:
                 raise ScanError(self.name, key, f"{reason}: its size or its heights are in another unit than is stated")
 
     def _rms_slope(self):
-        """Rms slope between neighbours, with the tilt of the map [-]; NaN without neighbours."""
+        """Rms slope between neighbours, with the tilt of the map [-]. NaN without neighbours."""
         steps = [np.diff(self.heights, axis=axis) / pixel for axis, pixel in enumerate(self.frame.pixel)]
         known = [step[np.isfinite(step)] for step in steps]
         return float(np.sqrt(sum(np.mean(step**2) if step.size else np.nan for step in known)))
@@ -100,7 +100,7 @@ class Scan:
 
     @cached_property
     def defined(self) -> np.ndarray:
-        """Points that have a height, (n1, n2) bool."""
+        """Points with a height, (n1, n2) bool."""
         return np.isfinite(self.heights)
 
     @property
@@ -110,7 +110,7 @@ class Scan:
 
     @property
     def stopped(self) -> str:
-        """Lines along either axis without a height, in words; empty if there are none.
+        """Lines along either axis without a height, in words. Empty if there are none.
 
         Examples
         --------
@@ -125,13 +125,13 @@ class Scan:
 
 
 def _without_repeats(heights):
-    """Heights in which lines along both axes that are constant, or equal to an earlier one, are undefined [m]."""
+    """Heights with lines along both axes undefined if they are constant or equal to an earlier line [m]."""
     across, along = _repeated(heights), _repeated(heights.T)
     return np.where(across[:, None] | along, np.nan, heights)
 
 
 def _repeated(rows):
-    """Rows (n, points) that are constant or equal to an earlier one, (n,) bool."""
+    """Mark rows (n, points) if they are constant or equal to an earlier one, (n,) bool."""
     first = {}
     earlier = [first.setdefault(row.tobytes(), number) != number for number, row in enumerate(rows)]
     return np.array(earlier) | (np.fmax.reduce(rows, axis=1) == np.fmin.reduce(rows, axis=1))

@@ -18,7 +18,7 @@ _INTERVAL = 0.01
 
 @dataclass(frozen=True)
 class MeasuredDensity:
-    """The `stiction.surface.translation.Density` of measured quantiles.
+    """`stiction.surface.translation.Density` of measured quantiles.
 
     ASSUME: beyond the outermost quantiles that have enough of the scan beyond them, heights are linear in the
     score, with the slope of the last part.

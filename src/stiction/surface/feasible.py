@@ -1,4 +1,4 @@
-"""Moments for which a maximum-entropy density of the heights exists, and the nearest ones to others (Sec. II-A).
+"""Feasible moments of the heights, with a maximum-entropy density, and the nearest ones to others (Sec. II-A).
 
 At skewness 0 a density of the form of Eq. (3) has a kurtosis of at most 3. The moments of a Gaussian surface therefore
 lie on the border of the feasible ones, and half of all measurements of a Gaussian surface fall outside.
@@ -37,7 +37,7 @@ class Moments(NamedTuple):
 
 
 def _solve(skewness, kurtosis):
-    """Maximum-entropy density that covers all normal scores; raises the errors of `stiction.surface.maxent`."""
+    """Maximum-entropy density with all normal scores. Raises the errors of `stiction.surface.maxent`."""
     density = maxent.solve(skewness, kurtosis)
     density.quantile_of_normal(np.array([-LARGEST_SCORE, LARGEST_SCORE]))
     return density
@@ -45,7 +45,7 @@ def _solve(skewness, kurtosis):
 
 @functools.lru_cache(maxsize=4096)
 def is_feasible(skewness: float, kurtosis: float) -> bool:
-    """Whether a maximum-entropy density has these moments and covers all normal scores that surfaces need."""
+    """Whether a maximum-entropy density has these moments and covers all normal scores of surfaces."""
     try:
         _solve(skewness, kurtosis)
     except (ValueError, NotConverged):
@@ -54,7 +54,7 @@ def is_feasible(skewness: float, kurtosis: float) -> bool:
 
 
 def least_kurtosis(skewness: float) -> float:
-    """Kurtosis at a skewness that is a little above the bound of any heights, and feasible [-].
+    """Kurtosis at a skewness, feasible and a little above the bound of any heights [-].
 
     Examples
     --------
@@ -90,7 +90,7 @@ def sampling_covariance(heights: float) -> np.ndarray:
 def nearest_feasible(
     skewness: float, kurtosis: float, covariance: np.ndarray | None = None, largest: float = LARGEST_DISTANCE
 ) -> Moments:
-    r"""Feasible moments nearest to measured ones; the measured ones themselves if they are feasible.
+    r"""Feasible moments nearest to measured ones. The measured ones themselves if they are feasible.
 
     .. math:: d^2 = \delta^\mathsf{T} C^{-1} \delta
 
@@ -128,6 +128,7 @@ def nearest_feasible(
     errors, inverse = np.sqrt(np.diag(covariance)), np.linalg.inv(covariance)
 
     def on_border(trial):
+        """Moments on the border at a skewness, and their distance from the measured ones."""
         border = largest_kurtosis(float(trial))
         off = np.array([trial - skewness, border - kurtosis])
         return Moments(float(trial), border, float(np.sqrt(off @ inverse @ off)))

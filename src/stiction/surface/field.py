@@ -1,4 +1,4 @@
-"""Random rough surfaces on a grid (Sec. II-B): strips cut from periodic fields that are drawn by FFT."""
+"""Random rough surfaces on a grid (Sec. II-B): strips cut from periodic fields. The fields are drawn by FFT."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +15,7 @@ from stiction.surface.translation import LARGEST_SCORE, TranslationMap
 
 @dataclass(frozen=True)
 class StripGrid:
-    """Points of a strip of surface, l_meso x w, and of the wider periodic field that it is cut from."""
+    """Points of a strip of surface, l_meso x w, and of the wider periodic field around it."""
 
     length: float  #: along the beam, l_meso [m]
     width: float  #: across the beam, w [m]
@@ -33,7 +33,7 @@ class StripGrid:
 
     @classmethod
     def periodic(cls, side: float, spacing: float) -> "StripGrid":
-        """Square of about a side [m] that is a whole period, so that its spectrum has no leakage."""
+        """Square of about a side [m], a whole period, so its spectrum has no leakage."""
         points, _ = cls(side, side, spacing, margin=0.0).shape
         length = fft.next_fast_len(points, real=True) * spacing
         return cls(length, length, spacing, margin=0.0)
@@ -45,7 +45,7 @@ class StripGrid:
 
     @property
     def field_shape(self) -> tuple[int, int]:
-        """Points of the periodic field, of a size that is fast in the FFT."""
+        """Points of the periodic field, of a size fast in the FFT."""
         return tuple(fft.next_fast_len(n + round(self.margin / self.spacing), real=True) for n in self.shape)
 
     @property
@@ -56,7 +56,7 @@ class StripGrid:
 
 @dataclass(frozen=True)
 class RoughSurface:
-    """A stationary rough surface: underlying Gaussian spectrum, translation and rms.
+    """Stationary rough surface: underlying Gaussian spectrum, translation and rms.
 
     ASSUME: the rms of Table I sets the heights, Table II only the shape of the spectrum; they differ by 2.5 % in rms at
     most.
@@ -100,7 +100,7 @@ class RoughSurface:
         return (self.rms * self.translation.table).astype(np.float32)
 
     def draw(self, rng: np.random.Generator) -> np.ndarray:
-        """Draw one strip of heights z = rms · g(u), Eq. (5); (n1, n2) float32 [m]."""
+        """Draw one strip of heights z = rms · g(u), Eq. (5), (n1, n2) float32 [m]."""
         heights = np.zeros(self.grid.shape, np.float32)
         self.add_to(heights, rng)
         return heights
@@ -110,11 +110,11 @@ class RoughSurface:
         add_heights(self._field(rng), self.table, heights)
 
     def _field(self, rng):
-        """Draw the standard Gaussian field on the length of the strip and the whole period across; (n1, n) float32."""
+        """Draw the standard Gaussian field on the length of the strip and the whole period across, (n1, n) float32."""
         return fft.irfft(self._waves_across(rng), n=self.grid.field_shape[1], axis=1, norm="forward")
 
     def _waves_across(self, rng):
-        """Draw the waves ζ₂ >= 0 across each line of the strip, up to the Nyquist wave number; complex64.
+        """Draw the waves ζ₂ >= 0 across each line of the strip, up to the Nyquist wave number, complex64.
 
         The inverse transform would copy an input that is not contiguous or shorter.
         """
@@ -172,7 +172,7 @@ def _add_row(cells, fractions, table, heights):
 
 
 def radial_periodogram(heights: np.ndarray, spacing: float) -> tuple[np.ndarray, np.ndarray]:
-    """Spectrum of one periodic field, averaged over rings of equal |ζ|; convention of `stiction.surface.spectrum`.
+    """Spectrum of one periodic field, averaged over rings of equal |ζ|. Convention of `stiction.surface.spectrum`.
 
     Parameters
     ----------

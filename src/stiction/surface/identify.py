@@ -62,7 +62,7 @@ def identify(
     rngs: Callable[[], Iterable[np.random.Generator]],
     control: Callable[[], Iterable[np.random.Generator]],
 ) -> Identification:
-    """Fit corner and slope to radius and density of simulated summits; the plateau follows from the rms.
+    """Fit corner and slope to radius and density of simulated summits. The plateau follows from the rms.
 
     The surfaces of every trial spectrum are drawn from the same streams, so that the simulated statistics are smooth
     functions of the parameters. If no spectrum of the form of Eq. (7) matches both targets (Sub2), the result is the
@@ -87,6 +87,7 @@ def identify(
     """
 
     def simulated(parameters, streams):
+        """Number and curvature of summits per area of simulated surfaces, by stream."""
         underlying, _ = underlying_spectrum(_spectrum(parameters, target), translation, grid.spacing, points=512)
         surface = RoughSurface(underlying, translation, target.rms, grid)
         return _summits_per_area(surface, target.spacing, streams)
@@ -94,6 +95,7 @@ def identify(
     known = {}
 
     def misfit(parameters):
+        """Logarithm of radius and density over their targets (2,)."""
         key = tuple(parameters)
         if key not in known:
             radius, density = radius_and_density(simulated(parameters, rngs()).mean(axis=0))
@@ -101,6 +103,7 @@ def identify(
         return known[key]
 
     def slopes(parameters):
+        """Derivatives of the misfit by the parameters (2, 2), as differences."""
         there = [misfit(parameters + step) for step in _STEP * np.eye(2)]
         return (np.transpose(there) - misfit(parameters)[:, None]) / _STEP
 
@@ -113,7 +116,7 @@ def identify(
 
 
 def estimated_spectrum(target: SummitTarget) -> CutoffSelfAffine:
-    """Spectrum from which the search starts; its correlation length is at most 1.5 times that of the result."""
+    """Spectrum at the start of the search. Its correlation length is at most 1.5 times the result's."""
     return _spectrum(_start(target), target)
 
 
@@ -127,11 +130,12 @@ def _spectrum(parameters, target):
 
 
 def _start(target):
-    """Point of a coarse lattice whose summits on a continuous Gaussian surface (Nayak) are closest to the target."""
+    """Point of a coarse lattice with summits on a continuous Gaussian surface (Nayak) closest to the target."""
     corners, slopes = (np.log(np.geomspace(*ends, 30)[1:-1]) for ends in (_CORNERS, _SLOPES))
     lattice = [(corner, slope) for corner in corners for slope in slopes]
 
     def distance(parameters):
+        """Distance of ln radius and ln density of Nayak's summits from the target."""
         summits = NayakSummits(_spectrum(parameters, target))
         misfit = np.log([summits.mean_curvature * target.mean_radius, summits.density / target.density])
         return np.hypot(*misfit)

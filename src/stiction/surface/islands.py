@@ -19,7 +19,7 @@ _AROUND = ((-1, -1), (-1, 0), (-1, 1), (0, 1), (1, 1), (1, 0), (1, -1), (0, -1))
 
 
 class Islands(NamedTuple):
-    """Islands at all levels, those of the highest level first; each is listed at every level at which it exists."""
+    """Islands at all levels, from the highest level down. Each is listed at every level of its existence."""
 
     levels: np.ndarray  #: number of the level, (m,) int32
     tops: np.ndarray  #: height of the highest point, (m,) float64 [m]
@@ -59,7 +59,7 @@ def find_islands(
 
 @kernel
 def _from_the_highest(z, step, numbers):
-    """Places of the points above the first level, ordered by the highest level below them, and where those of each end.
+    """Places of the points above the first level, by the highest level below them, and the end of each level's.
 
     Those of level k are ``places[ends[k + 1] : ends[k]]``.
     """
@@ -131,7 +131,7 @@ def _grown(z, places, ends, fitted):
 
 @kernel
 def _keep_roots(roots, islands, parents):
-    """Drop the islands that were joined with a higher one, in place; returns the number of those left."""
+    """Drop the islands already joined with a higher one, in place. Return the number of islands left."""
     kept = 0
     for n in range(islands):
         if parents[roots[n]] == roots[n]:
@@ -160,7 +160,7 @@ def _join(ranks, place, around, heights, parents, points, ring):
 
 @kernel
 def _fit(root, ring, places, heights, columns):
-    """Top and curvature of z = a + b x + c y + e (x² + y²) fitted to an island; lengths in spacings, NaN for no fit."""
+    """Top and curvature of z = a + b x + c y + e (x² + y²) fitted to an island. Lengths in spacings, NaN for no fit."""
     sums, box = _sums(root, ring, places, heights, columns)
     if sums[0, 0] < 5 or not _eliminate(sums):
         return np.nan, np.nan
@@ -194,7 +194,7 @@ def _sums(root, ring, places, heights, columns):
 
 @kernel
 def _eliminate(sums):
-    """Bring normal equations to triangular form, in place; returns False if they have no unique solution."""
+    """Bring normal equations to triangular form, in place. Returns False if they have no unique solution."""
     for i in range(4):
         if not sums[i, i] > 1e-9 * sums[0, 0]:
             return False

@@ -1,4 +1,4 @@
-"""The iterative algorithm of Fig. 4: correct a Gaussian spectrum until its translated fields have the target spectrum.
+"""Iterative algorithm of Fig. 4: correct a Gaussian spectrum until its translated fields have the target spectrum.
 
 For comparison only: surfaces are drawn from the closed form of :mod:`stiction.surface.translation`.
 """
@@ -83,6 +83,6 @@ def misfit(spectrum: np.ndarray, wanted: np.ndarray) -> float | np.ndarray:
 
 
 def sampling_misfit(periodograms: np.ndarray) -> float | np.ndarray:
-    """Expected `misfit` of an exact spectrum that is estimated from periodograms (..., fields, n) [-]."""
+    """Expected `misfit` of an exact spectrum after its estimation from periodograms (..., fields, n) [-]."""
     deviation = periodograms.std(axis=-2, ddof=1) / periodograms.mean(axis=-2)
     return np.sqrt(2 / np.pi / periodograms.shape[-2]) * deviation.mean(axis=-1)

@@ -49,7 +49,7 @@ class HeightDensity:
         return _HEIGHTS[1:-1][inside], score[inside]
 
     def quantile_of_normal(self, score: float | np.ndarray) -> np.ndarray:
-        """Height C_Z⁻¹(Φ(u)) of the normal score u, Eq. (5); any shape, |u| <= 8 [-].
+        """Height C_Z⁻¹(Φ(u)) of the normal score u, Eq. (5), any shape, |u| <= 8 [-].
 
         Raises
         ------
@@ -144,7 +144,7 @@ def _line_search(multipliers, step, objective, target):
 
 
 def _belongs_to_a_surface(multipliers):
-    """Whether all extrema of the density are near the mean; one that rises again (λ₄ < 0) also has a distant one."""
+    """Whether all extrema of the density are near the mean. A density rising again (λ₄ < 0) also has a distant one."""
     slope = np.polynomial.Polynomial([multipliers[0], *(np.arange(2, 5) * multipliers[1:])])
     roots = slope.trim(1e-12).roots()
     return np.abs(roots[np.abs(roots.imag) < 1e-9].real).max() < _FARTHEST_MODE

@@ -39,7 +39,7 @@ _STEP, _INSIDE, _DENSITY = _layers()
 
 
 def standard_normal(rng: np.random.Generator, n: int) -> np.ndarray:
-    """Numbers (n,) float32 of ``rng.standard_normal(n, dtype=np.float32)``; ``rng`` ends in the same state."""
+    """Numbers (n,) float32 of ``rng.standard_normal(n, dtype=np.float32)``. The generator ends in the same state."""
     state = rng.bit_generator.state
     if state["bit_generator"] != "SFC64":
         return rng.standard_normal(n, dtype=np.float32)
@@ -84,7 +84,7 @@ def _beyond(source):
 
 @kernel
 def _at_the_edge(source, layer, steps, x):
-    """Whether a number in the part of a layer that the density crosses is accepted, the number, and the source."""
+    """Accept or reject a number in the part of a layer crossed by the density. Return this, number and source."""
     if layer == 0:
         magnitude, source = _beyond(source)
         return True, -magnitude if steps & uint32(0x100) else magnitude, source
@@ -95,7 +95,7 @@ def _at_the_edge(source, layer, steps, x):
 
 @kernel
 def _fill(numbers, held, half, normals):
-    """Fill ``normals`` (n,); advances ``numbers`` (4,), the state of SFC64, and returns the rest of the source."""
+    """Fill ``normals`` (n,). Advances ``numbers`` (4,), the state of SFC64, and returns the rest of the source."""
     source = (numbers[0], numbers[1], numbers[2], numbers[3], held, uint64(half))
     k = 0
     while k < normals.size:

@@ -1,4 +1,4 @@
-r"""Spectrum of Eq. (7) from what papers state: rms, Hurst exponent, and correlation length or corner.
+r"""Spectrum of Eq. (7) from numbers in papers: rms, Hurst exponent, and correlation length or corner.
 
 A surface is self-affine with the Hurst exponent H if heights a distance τ apart differ by
 :math:`\langle (z(x + \tau) - z(x))^2 \rangle \propto \tau^{2H}`. A power law :math:`s_Z \propto \zeta^{p}` in the
@@ -37,7 +37,7 @@ def slope_of(hurst: float) -> float:
 
 
 def hurst_of(slope: float) -> float:
-    """Hurst exponent of an isotropic surface whose spectrum has this exponent [-].
+    """Hurst exponent of an isotropic surface with this exponent of its spectrum [-].
 
     Examples
     --------
@@ -57,7 +57,7 @@ def spectrum(rms: float, slope: float, corner: float, cutoff: float) -> CutoffSe
 
 
 def correlation_at(lag: float, slope: float, corner: float, cutoff: float) -> float:
-    """Autocovariance at a distance [m] over the variance [-]; spectrum as in `spectrum`, with a slope of -2 or below.
+    """Autocovariance at a distance [m] over the variance [-]. Spectrum as in `spectrum`, with a slope of -2 or below.
 
     As `stiction.surface.spectrum.autocovariance`, for a corner at any fraction of the cut-off: the plateau is
     integrated in closed form, the power law over ln ζ.
@@ -81,6 +81,7 @@ def corner_of(correlation_length: float, slope: float, cutoff: float) -> float:
     largest = cutoff * (1 - 1e-9)  # a corner is below the cut-off
 
     def excess(corner):
+        """Autocorrelation at the correlation length, less its required value, for a corner [rad m⁻¹]."""
         return correlation_at(correlation_length, slope, corner, cutoff) - FALLEN_TO
 
     if excess(largest) > 0:

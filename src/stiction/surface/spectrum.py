@@ -26,15 +26,15 @@ _LARGEST_DENSITY = 1e-12
 
 
 class Spectrum(Protocol):
-    """An isotropic spectrum; all classes with this signature are interchangeable."""
+    """Isotropic spectrum. All classes with this signature are interchangeable."""
 
     @property
     def cutoff(self) -> float:
-        """Wave number beyond which there is no roughness [rad m⁻¹]."""
+        """Cut-off: wave number without roughness beyond [rad m⁻¹]."""
 
     @property
     def corner(self) -> float:
-        """Wave number at which the density begins to fall [rad m⁻¹]."""
+        """Corner: wave number at the end of the plateau of the density [rad m⁻¹]."""
 
     @property
     def variance(self) -> float:
@@ -65,7 +65,7 @@ class CutoffSelfAffine:
 
     @property
     def slope(self) -> float:
-        """Exponent of the power law [-]; negative."""
+        """Exponent of the power law, negative [-]."""
         return np.log(self.floor / self.plateau) / np.log(self.cutoff / self.corner)
 
     def __call__(self, wavenumber: float | np.ndarray) -> float | np.ndarray:
@@ -90,7 +90,7 @@ class CutoffSelfAffine:
 
 @dataclass(frozen=True)
 class TabulatedSpectrum:
-    """A spectrum tabulated at equally spaced wave numbers; zero beyond its cut-off."""
+    """Spectrum tabulated at equally spaced wave numbers. Zero beyond its cut-off."""
 
     wavenumber: np.ndarray  #: |ζ|, (n,); below the first the density is constant [rad m⁻¹]
     density: np.ndarray  #: s_Z, (n,) [m⁴] or, for unit variance, [m²]
@@ -115,7 +115,7 @@ class TabulatedSpectrum:
 
     @property
     def corner(self) -> float:
-        """First wave number at which the density is below half of that at 0 [rad m⁻¹]; a bit above that of Eq. (7)."""
+        """First wave number at less than half of the density at 0 [rad m⁻¹], a bit above the corner of Eq. (7)."""
         below = np.flatnonzero(self(self.wavenumber) < 0.5 * self.density[0])
         return float(self.wavenumber[below[0]]) if len(below) else self.cutoff
 
@@ -142,7 +142,7 @@ class NayakSummits:
 
     @property
     def bandwidth(self) -> float:
-        """Parameter α = m₀ m₄ / m₂² [-]; at least 1.5."""
+        """Parameter α = m₀ m₄ / m₂², at least 1.5 [-]."""
         m0, m2, m4 = self.profile_moments
         return m0 * m4 / m2**2
 
@@ -159,7 +159,7 @@ class NayakSummits:
 
 
 def require_resolved(cutoff: float, spacing: float) -> None:
-    """Refuse points at a distance [m] that do not resolve the waves up to a cut-off [rad m⁻¹]."""
+    """Refuse points too far apart [m] to resolve the waves up to a cut-off [rad m⁻¹]."""
     if not 0 < spacing < np.inf:
         raise ValueError(f"need a distance of the points above 0, got {spacing:.4g} m")
     if not is_at_most(cutoff, np.pi / spacing):
@@ -193,7 +193,7 @@ def autocovariance(spectrum: Spectrum, lag: np.ndarray, panels: int = 4000, end:
 
 
 def correlation_length(spectrum: Spectrum, threshold: float = 0.01, reach: float = _REACH) -> float:
-    """Distance l^m beyond which r_Z remains below ``threshold`` · m₂ (Sec. III) [m].
+    """Distance l^m beyond the last correlation r_Z above ``threshold`` · m₂ (Sec. III) [m].
 
     Searched up to ``reach`` wavelengths of the corner; the slowest decay, that of a pure plateau, needs 4.7.
 
@@ -217,7 +217,7 @@ def correlation_length(spectrum: Spectrum, threshold: float = 0.01, reach: float
 
 
 def uncorrelated_beyond(spectrum: Spectrum) -> float:
-    """`correlation_length`, or the end of its search where heights of a measured spectrum still are correlated [m]."""
+    """`correlation_length`, or the end of its search if heights of a measured spectrum are correlated there [m]."""
     try:
         return correlation_length(spectrum)
     except ValueError:

@@ -7,7 +7,7 @@ from stiction.kernels import kernel
 
 @kernel
 def mark_summits(z: np.ndarray, i: int, marks: np.ndarray) -> None:
-    """Mark in ``marks`` (n2,) the points of the inner row i of z (n1, n2) that are higher than their eight neighbours.
+    """Mark in ``marks`` (n2,) the points of the inner row i of z (n1, n2) above all eight neighbours.
 
     The ends of the row, which are no inner points, are not written.
     """
@@ -65,7 +65,7 @@ def find_summits(heights: np.ndarray, spacing: float) -> tuple[np.ndarray, np.nd
 
 
 def summits_per_area(heights: np.ndarray, spacing: float) -> np.ndarray:
-    """Number and total curvature of the summits of a surface per area, (2,) [m⁻²], [m⁻³]; arguments of `find_summits`.
+    """Number and total curvature of the summits of a surface per area, (2,) [m⁻²], [m⁻³]. Arguments of `find_summits`.
 
     Unlike the mean curvature, both are known without a summit, and their means over surfaces have no bias.
     """
@@ -74,6 +74,6 @@ def summits_per_area(heights: np.ndarray, spacing: float) -> np.ndarray:
 
 
 def radius_and_density(per_area: np.ndarray) -> np.ndarray:
-    """Radius 1 / mean curvature [m] and density [m⁻²] of summits from `summits_per_area`, (2,); ``nan`` without any."""
+    """Radius 1 / mean curvature [m] and density [m⁻²] of summits from `summits_per_area`, (2,), ``nan`` without any."""
     number, curvature = per_area
     return np.array([number / curvature, number]) if curvature > 0 else np.full(2, np.nan)

@@ -1,4 +1,4 @@
-"""From a Gaussian field to the heights of a non-Gaussian one and back (Sec. II-B2).
+"""Translate a Gaussian field to the heights of a non-Gaussian one and back (Sec. II-B2).
 
 A surface of unit variance is z = g(u), with u a standard Gaussian field and g = C_Z⁻¹ ∘ Φ, Eq. (5). In orthonormal
 Hermite polynomials g = Σ c_k h_k, so the autocorrelation of z is Σ c_k² ρ^k, where ρ is the autocorrelation of u.
@@ -26,24 +26,24 @@ _TERMS = 24
 
 
 class Density(Protocol):
-    """Density of the standardised heights; all classes with this signature are interchangeable."""
+    """Density of the standardised heights. All classes with this signature are interchangeable."""
 
     def __call__(self, height: float | np.ndarray) -> float | np.ndarray:
         """Probability density at the standardised ``height``, any shape [-]."""
 
     def quantile_of_normal(self, score: float | np.ndarray) -> np.ndarray:
-        """Standardised height C_Z⁻¹(Φ(u)) of the normal score u, Eq. (5); any shape, |u| <= ``LARGEST_SCORE`` [-]."""
+        """Standardised height C_Z⁻¹(Φ(u)) of the normal score u, Eq. (5), any shape, |u| <= ``LARGEST_SCORE`` [-]."""
 
 
 class TranslationMap(Protocol):
-    """A monotone map g of Eq. (5) from normal scores to standardised heights."""
+    """Monotone map g of Eq. (5) from normal scores to standardised heights."""
 
     @property
     def table(self) -> np.ndarray:
         """Heights g(u) at equally spaced scores in ±``LARGEST_SCORE``, (n,) [-]."""
 
     def autocorrelation(self, underlying: np.ndarray) -> np.ndarray:
-        """Autocorrelation of the heights, for that of the Gaussian field, any shape [-]."""
+        """Autocorrelation of the heights, from the Gaussian field's, any shape [-]."""
 
     def underlying_autocorrelation(self, autocorrelation: np.ndarray) -> np.ndarray:
         """Inverse of `autocorrelation`, any shape [-]."""
@@ -51,7 +51,7 @@ class TranslationMap(Protocol):
 
 @dataclass(frozen=True)
 class Translation:
-    """The `TranslationMap` of a height density: g = C_Z⁻¹ ∘ Φ, Eq. (5)."""
+    """`TranslationMap` of a height density: g = C_Z⁻¹ ∘ Φ, Eq. (5)."""
 
     density: Density
 
@@ -70,7 +70,7 @@ class Translation:
         return np.interp(score, _SCORES, self.table)
 
     def autocorrelation(self, underlying: float | np.ndarray) -> float | np.ndarray:
-        """Autocorrelation Σ c_k² ρ^k of the heights from that of the Gaussian field, any shape [-]."""
+        """Autocorrelation Σ c_k² ρ^k of the heights, from the Gaussian field's, any shape [-]."""
         return _polynomial(underlying, self._series)
 
     def underlying_autocorrelation(
@@ -112,7 +112,7 @@ def _polynomial(x, coefficients):
 
 @kernel
 def _horner(x, coefficients):
-    """Horner's rule for many x, (n,), in parts that remain in the cache of the processor."""
+    """Horner's rule for many x, (n,), in parts small enough for the cache of the processor."""
     result = np.full(len(x), coefficients[-1])
     for start in range(0, len(x), 256):
         part, value = x[start : start + 256], result[start : start + 256]
@@ -173,7 +173,7 @@ def underlying_spectrum(
     require_resolved(target.cutoff, spacing)
     zeta, cell = _square(spacing, points)
     correlation = fft.fft2(_on_square(target, zeta)).real
-    rho = _of_even(translation.underlying_autocorrelation, correlation / correlation[0, 0])
+    rho = _on_one_half(translation.underlying_autocorrelation, correlation / correlation[0, 0])
     wanted = fft.ifft2(rho).real / cell
     possible = np.where(zeta <= target.cutoff, np.maximum(wanted, 0), 0)
     defect = np.abs(wanted - possible).sum() * cell
@@ -183,11 +183,11 @@ def underlying_spectrum(
 def spectrum_of_heights(
     underlying: Spectrum, translation: TranslationMap, spacing: float, points: int = 1024
 ) -> TabulatedSpectrum:
-    """Spectrum of the translated field, of unit variance: the inverse of `underlying_spectrum`; the same errors."""
+    """Spectrum of the translated field, of unit variance: inverse of `underlying_spectrum`, with the same errors."""
     require_resolved(underlying.cutoff, spacing)
     zeta, cell = _square(spacing, points)
     correlation = fft.fft2(_on_square(underlying, zeta)).real
-    heights = fft.ifft2(_of_even(translation.autocorrelation, correlation / correlation[0, 0])).real / cell
+    heights = fft.ifft2(_on_one_half(translation.autocorrelation, correlation / correlation[0, 0])).real / cell
     return _radial(np.maximum(heights, 0), zeta, np.inf)  # rounding may make it negative
 
 
@@ -198,15 +198,15 @@ def _square(spacing, points):
 
 
 def _on_square(spectrum, zeta):
-    """A spectrum at all wave numbers of `_square`: computed in a quarter of it, which the others mirror."""
+    """Spectrum at all wave numbers of `_square`, computed in a quarter and mirrored to the others."""
     places = np.arange(len(zeta))
     mirrored = np.minimum(places, len(zeta) - places)
     quarter = spectrum(zeta[: mirrored.max() + 1, : mirrored.max() + 1])
     return quarter[mirrored[:, None], mirrored]
 
 
-def _of_even(function, values):
-    """A function of values (n, n) that are even in the lag: of one half of them, which the other mirrors."""
+def _on_one_half(function, values):
+    """Function of values (n, n) even in the lag, computed on one half and mirrored to the other."""
     n = len(values)
     half = function(values[:, : n // 2 + 1])
     return np.hstack((half, half[-np.arange(n), n - half.shape[1] : 0 : -1]))

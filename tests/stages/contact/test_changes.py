@@ -18,15 +18,18 @@ from stiction.plan.plan import Plan
 from stiction.plan.stage import At
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact.changes import moments, quantities, table, variants
-from stiction.stages.contact.changes.patches import GROUND, STRIPS, TIPS
+from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS
 from stiction.stages.contact.changes.table import TABLE
 from stiction.stages.surfaces import heights, measured_heights, parameters
 from stiction.surface.empirical import MeasuredDensity
 
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 20, "humidities": [0.67]}
-PLAN = Plan(load({"devices": {"C1": BEAM}, "design": {"beams": 700}, "studies": {"slopes": {"samples": 30}}}))
+STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 2], "restoring_force_uN": 20, "humidities": [0.67]}
+DEVICES = {"C1": BEAM, "S1": STOPPER | {"tilt_deg": [0, 0.1]}}
+PLAN = Plan(load({"devices": DEVICES, "design": {"beams": 700}, "studies": {"slopes": {"samples": 30}}}))
 #: Wildcards of any contact of the table; the patches are those of the device.
 SIDES = {GROUND: PLAN.devices.ground("C1")._asdict(), TIPS: PLAN.devices.tips("C1")._asdict(), STRIPS: {"pair": "b"}}
+SIDES |= {TILTED: PLAN.devices.ground("S1")._asdict()}
 OTHERS = {"surface": "B2", "quantity": "rms", "each": "rms_less", "choice": "beyond", "side": "less"}
 OTHERS |= {"solid_property": "modulus", "variant": "poisson_ratio_0.28"}
 CELLS = [(change, place) for change, row in TABLE.items() for place in row]

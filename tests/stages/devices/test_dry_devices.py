@@ -207,7 +207,7 @@ def test_a_stopper_in_dry_air_alone_is_in_no_humid_air(grounds):
     for restoring, verdict in ((1e-6, "does not suffice in dry air"), (21e-6, "suffices in dry air: at most 1 in 100")):
         settings = replace(SETTINGS, humidities=(0.0,), restoring_force=restoring)
         layout = stoppers.layout(settings, forces, np.array([0.0]), forces)
-        page = pages.of_stopper("S1", STOPPER | {"humidities": [0.0]}, layout, {}, []).html
+        page = pages.stopper_page("S1", STOPPER | {"humidities": [0.0]}, layout, {}, []).html
         assert f"force of {1e6 * restoring:g} µN {verdict}" in page
         assert "humidity of" not in page.replace("Humidity of the largest", "")
         assert "In dry air, " in page
@@ -245,7 +245,7 @@ def test_the_bound_of_a_dry_cantilever_is_that_of_flats_in_contact():
 
 
 def test_a_budget_in_dry_air_has_no_inputs_of_the_air():
-    stated = Uncertainty(thickness=1e-7, humidity=0.01, temperature=2.0, contact_angle=0.1)
+    stated = Uncertainty(thickness=1e-7, humidity=0.01, temperature=2.0, contact_angle=0.1, adsorbed=1e-10)
     names = {}
     for humidity in (0.0, 0.67):
         settings = replace(BEAM, water=ACROSS, humidity=humidity, uncertainty=stated)
@@ -259,6 +259,7 @@ def test_a_budget_in_dry_air_has_no_inputs_of_the_air():
         "temperature",
         "contact angle on the beam",
         "contact angle on the substrate",
+        "adsorbed water",
     }
 
 
@@ -296,7 +297,7 @@ def captions(datasets):
     return (
         tables_devices.safe_lengths({("C1", humidity): one for humidity, one in datasets.items()}, warnings).caption,
         tables_devices.chart({("C1", humidity): one for humidity, one in charts.items()}, warnings).caption,
-        pages.of_beam("C1", section, datasets, charts, {}, warnings).html,
+        pages.beam_page("C1", section, datasets, charts, {}, warnings).html,
     )
 
 
@@ -304,15 +305,15 @@ def captions(datasets):
 def test_nothing_is_said_of_water_that_fills_gaps_where_none_condenses(humidity):
     for text in captions({humidity: without_water(TIPS)}):
         assert "flats in contact" in text
-        assert not [word for word in ("saturated", "flooded", "fills", "at this humidity") if word in text]
+        assert not [word for word in ("saturated", "flooded", "all gaps", "at this humidity") if word in text]
 
 
 def test_bounds_in_both_airs_are_told_apart():
     for text in captions({0.0: without_water(TIPS), 0.67: TIPS}):
-        assert "where water fills all gaps" in text
-        assert re.search("(Where no water condenses, bounds are those|In dry air: that) of flats in contact", text)
+        assert "with water in all gaps" in text
+        assert re.search("(Without condensation, bounds are those|In dry air: that) of flats in contact", text)
     for text in captions({0.67: TIPS}):
-        assert "Where no water" not in text
+        assert "Without condensation" not in text
         assert "Dry air" not in text
 
 

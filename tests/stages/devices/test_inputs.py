@@ -51,6 +51,16 @@ def test_a_stress_or_an_angle_that_may_be_zero_errs_upwards_only():
     assert_allclose([angle.step, deviation], [0.2, 0.2])
 
 
+def test_adsorbed_water_errs_upwards_from_nothing_and_around_its_height():
+    none, deviation = uncertain(Uncertainty(adsorbed=0.2e-9))["adsorbed water"]
+    assert [state.water.adsorbed for state in none.states] == [0, 0.2e-9]
+    assert (none.step, deviation, none.group) == (0.2e-9, 0.2e-9, "the adsorbed water")
+    some, _ = uncertain(Uncertainty(adsorbed=0.2e-9), water=replace(WATER, adsorbed=0.5e-9))["adsorbed water"]
+    assert_allclose([state.water.adsorbed for state in some.states], [0.3e-9, 0.7e-9])
+    moved = [inputs.changed(some.states[0], {"adsorbed water": by}).water.adsorbed for by in (0.1e-9, -1e-9)]
+    assert_allclose(moved, [0.4e-9, 0])
+
+
 def test_contact_angles_err_together_each_over_a_step_of_its_own():
     zero, small_angle, least, middle, most = np.radians([0, 10, 60, 70, 80])
     settings = replace(SETTINGS, uncertainty=Uncertainty(contact_angle=small_angle))
@@ -127,11 +137,11 @@ def test_quantities_of_a_surface_keep_their_covariance_and_their_group():
 
 def test_one_scan_gives_the_covariance_of_its_closed_form():
     # 10 µm of B2: errors and correlation as of hundreds of drawn scans.
-    found = inputs.of_one_scan(*small.surfaces()[0], 10e-6)
+    found = inputs.errors_of_one_scan(*small.surfaces()[0], 10e-6)
     errors = np.sqrt(np.diag(found.covariance))
     assert_allclose(errors, [0.0161, 0.0433, 0.1416], rtol=0.02)
     assert_allclose(found.covariance[1, 2] / (errors[1] * errors[2]), -0.868, atol=0.01)
-    assert_allclose(inputs.of_one_scan(*small.surfaces()[0], 20e-6).covariance, found.covariance / 4, rtol=0.1)
+    assert_allclose(inputs.errors_of_one_scan(*small.surfaces()[0], 20e-6).covariance, found.covariance / 4, rtol=0.1)
 
 
 def test_errors_of_several_causes_add_up_where_they_are_of_the_same_quantity():
@@ -144,7 +154,7 @@ def test_errors_of_several_causes_add_up_where_they_are_of_the_same_quantity():
 
 def test_what_is_stated_about_a_surface_adds_to_the_error_of_a_scan():
     surfaces, side = {"B2": small.surfaces()[0]}, 10e-6
-    of_scan = inputs.of_one_scan(*surfaces["B2"], side).covariance
+    of_scan = inputs.errors_of_one_scan(*surfaces["B2"], side).covariance
     stated = replace(SETTINGS, known={"B2": Known(("kurtosis", "slope"), [[0.04, 0], [0, 0.25]])})
     alone = inputs.covariances(surfaces, {}, stated)["B2"]
     assert alone.quantities == ("kurtosis", "slope")

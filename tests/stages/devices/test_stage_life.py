@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 from ground import C1, R1, safe_with_tips, safe_without_tips
 from legends import covering
 from numpy.testing import assert_allclose
@@ -12,6 +13,7 @@ from test_tables_budget import stopper_dataset
 
 from stiction.config.files import load
 from stiction.config.units import in_si
+from stiction.contact.voltage import Capacitor, Dielectric
 from stiction.devices.risk import samples_for
 from stiction.devices.stoppers import safe_force
 from stiction.life import drying, freeing, holding, touch
@@ -21,7 +23,7 @@ from stiction.report.devices import life as report
 from stiction.report.devices.pages import Page, Section, with_life
 from stiction.run import storage
 from stiction.stages.devices import life
-from stiction.stages.devices.life import Dielectric, Electrode, Errors, Liquid, OfBeam, OfStopper
+from stiction.stages.devices.life import Electrode, Errors, Liquid, OfBeam, OfStopper
 
 LIQUIDS = {"water": Liquid(0.072), "mine": Liquid(0.03, np.pi / 3)}
 OF = OfBeam(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=Errors())
@@ -47,10 +49,17 @@ def lengths():
     return {0.44: safe_with_tips(tips), 0.67: safe_with_tips(1.5 * tips)}
 
 
-def answers(of, lengths=None, after=None):
+def answers(of, lengths=None, after=None, biased=None):
     """Answers about a beam, or a stopper, by name."""
-    found = life.of_stopper(stopper_dataset(), of) if lengths is None else life.of_beam(lengths, after or {}, of)
-    return {one.name: one for one in found}
+    if lengths is None:
+        return {one.name: one for one in life.stopper_answers(stopper_dataset(), of, biased)}
+    return {one.name: one for one in life.beam_answers(lengths, after or {}, of, biased)}
+
+
+def at_voltage(lengths, factor, energy):
+    """Datasets of safe lengths at a voltage, shorter by a factor, where the voltage adds an energy [J m⁻²]."""
+    gained = {"voltage_energy": energy, "voltage_error": 0.1 * energy}
+    return {key: one.assign(safe_length=factor * one.safe_length, **gained) for key, one in lengths.items()}
 
 
 def test_a_beam_is_asked_at_its_least_safe_length_unless_it_states_one(lengths):
@@ -146,14 +155,91 @@ def test_a_stopper_touches_under_its_restoring_force_and_is_freed_by_what_it_lac
     assert_allclose(found["restoring_force"].low, force, rtol=1e-12)
     assert_allclose(found["stiffness"].low, force / 1.899e-6, rtol=1e-12)
     assert_allclose(found["freeing"].low, (force - 18.99e-6) / 50e-12, rtol=1e-9)
-    assert np.isnan(found["freeing"].high)
+    # Without water, which could keep its volume, slow and fast separation are the same.
+    assert found["freeing"].high == found["freeing"].low
     assert_allclose(found["stuck_after"].high, freeing.stuck_after(found["stuck_after"].low, 4), rtol=1e-12)
 
 
-def test_in_dry_air_a_shock_that_frees_slowly_frees_fast():
-    dry = stopper_dataset().isel(humidity=[0]).assign_coords(humidity=[0.0])
-    (shock,) = [one for one in life.of_stopper(dry, STOPPER) if one.name == "freeing"]
-    assert shock.low == shock.high
+def fast_forces(*factors):
+    """Dataset of stage separation of a stopper: the forces of `stopper_dataset` times a factor at each humidity."""
+    forces = stopper_dataset().pull_off
+    return forces.isel(humidity=slice(len(factors))).to_dataset() * np.array(factors)[:, None]
+
+
+def test_fast_separation_bounds_what_frees_a_stopper_from_above():
+    slow = answers(STOPPER)
+    fast = {one.name: one for one in life.stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 2.5))}
+    for name in ("restoring_force", "stiffness"):
+        assert slow[name].low == slow[name].high == fast[name].low
+        assert_allclose(fast[name].high, 1.5 * fast[name].low, rtol=1e-12)
+    force = fast["restoring_force"].high
+    assert_allclose(fast["freeing"].high, (force - 18.99e-6) / 50e-12, rtol=1e-9)
+    assert fast["freeing"].low == slow["freeing"].low
+    assert set(slow) == set(fast)
+    # The second humidity holds half of the force of the first one, slowly.
+    second = {
+        one.name: one for one in life.stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.0, 3.0))
+    }
+    assert_allclose(second["restoring_force"].high, 1.5 * slow["restoring_force"].low, rtol=1e-12)
+
+
+def test_patches_that_no_summits_stop_leave_fast_separation_without_a_bound():
+    flat = fast_forces(1.0, 1.0)
+    flat.pull_off[0, -30:] = np.inf
+    found = {one.name: one for one in life.stopper_answers(stopper_dataset(), STOPPER, separation=flat)}
+    for name in ("restoring_force", "stiffness", "freeing"):
+        assert np.isnan(found[name].high)
+        assert found[name].low == answers(STOPPER)[name].low
+    flat.pull_off[0] = 1.2 * flat.pull_off[1]
+    flat.pull_off[0, -1] = np.inf  # one of 400 is less than the fraction of which the bound is
+    assert np.isfinite(life.stopper_answers(stopper_dataset(), STOPPER, separation=flat)[-1].high)
+
+
+def factors(values, errors=0.01):
+    """Dataset of stage separation of a cantilever: factors of both end states at each humidity."""
+    data = {"factor": (("humidity", "shape"), values), "factor_error": (("humidity", "shape"), errors + 0 * values)}
+    return xr.Dataset(data, coords={"humidity": [0.44, 0.67][: len(values)], "shape": list(C1.opening.shapes)})
+
+
+def fast(lengths, values, errors=0.01):
+    """Safe length of fast separation, and those of slow separation at all humidities in all end states [m]."""
+    found = {one.name: one for one in life.beam_answers(lengths, {}, OF, separation=factors(np.array(values), errors))}
+    return found["fast"], np.array([one.safe_length.sel(share=1e-3).values for one in lengths.values()])
+
+
+def test_fast_separation_shortens_the_safe_length_of_each_end_state_by_its_factor(lengths):
+    for values in ([[0.7, 0.9], [0.8, 1.0]], [[0.2, 0.9], [0.8, 1.0]], [[1.0, 1.0], [0.9, 0.1]]):
+        found, slow = fast(lengths, values)
+        assert_allclose((found.low, found.high), (np.min(slow * values), slow.min()), rtol=1e-12)
+    assert "fast" not in answers(OF, lengths)
+    _, alone = fast(lengths, [[0.7, 0.9]])
+    assert_allclose(fast(lengths, [[1e-3, 1e-3]])[0].low, 1e-3 * alone[0].min(), rtol=1e-12)
+    assert_allclose(fast(lengths, [[1.0, 1.0]])[0].low, alone.min(), rtol=1e-12)  # 0.67 has no water
+
+
+def test_its_error_has_those_of_the_length_and_of_the_factor(lengths):
+    values = [[1.0, 0.5], [1.0, 1.0]]
+    (alone, slow), (both, _) = fast(lengths, values, 0.0), fast(lengths, values, 0.1)
+    assert_allclose(np.hypot(alone.error, 0.1 * slow[0, 1]), both.error, rtol=1e-9)
+
+
+def test_strips_that_no_summits_stop_leave_a_beam_without_a_bound(lengths):
+    found, slow = fast(lengths, [[0.7, 0.9], [0.0, 0.9]], np.nan)
+    assert np.isnan(found.low)
+    assert np.isnan(found.error)
+    assert found.high == slow.min()
+
+
+def test_sentences_say_what_fast_separation_needs_if_it_is_more(lengths):
+    beam = life.layout(life.beam_answers(lengths, {}, OF, separation=factors(np.array([[0.5, 0.5], [0.8, 0.9]]))), OF)
+    (said,) = [one for one in report.sentences(beam) if "faster than water" in one]
+    assert "safe length can fall from" in said
+    stopper = life.layout(life.stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 1.0)), STOPPER)
+    (said,) = [one for one in report.sentences(stopper) if "faster than water" in one]
+    assert "it can need a restoring force of" in said
+    for none in (fast_forces(1.0, 1.0), None):
+        same = life.layout(life.stopper_answers(stopper_dataset(), STOPPER, separation=none), STOPPER)
+        assert not any("faster than water" in one for one in report.sentences(same))
 
 
 def test_the_force_for_many_touchdowns_is_that_of_a_smaller_fraction_if_there_are_patches_enough():
@@ -162,7 +248,7 @@ def test_the_force_for_many_touchdowns_is_that_of_a_smaller_fraction_if_there_ar
     assert "after" not in answers(STOPPER)
     many = stopper_dataset()
     many = many.isel(sample=np.arange(1600) % 400)
-    found = {one.name: one for one in life.of_stopper(many, STOPPER)}["after"]
+    found = {one.name: one for one in life.stopper_answers(many, STOPPER)}["after"]
     forces = [
         max(safe_force(row, p)[0] for row in many.pull_off.values) for p in (0.01, freeing.probability_for(0.01, 4))
     ]
@@ -181,21 +267,60 @@ def test_a_voltage_shortens_the_safe_length_of_a_beam_as_its_energy_says(lengths
     of = replace(OF, voltage=-5.0, offset=0.3, dielectric=Dielectric(100e-9, 4.0))
     found, least = answers(of, lengths), life.length_of(lengths, OF)
     assert of.potential == 5.3
-    added = holding.energy_of_voltage(5.3, 25e-9, C1.gap)
+    added = holding.energy_of_voltage(of.capacitor, C1.gap)
     assert_allclose(found["voltage_energy"].high, added, rtol=1e-12)
     assert_allclose(found["field"].high, 5.3 / 100e-9, rtol=1e-12)
     at = found["at_voltage"]
     shorter, longer = (holding.length_at_voltage(by * least, OF.beam(1.0), added, 3 / 8) for by in (1, 1.001))
-    assert_allclose((at.low, at.high), (shorter, least), rtol=1e-12)
+    assert_allclose(at.low, shorter, rtol=1e-12)
+    assert np.isnan([at.high, found["voltage_energy"].low]).all(), "nothing is known of rough surfaces"
     # To first order, the error moves with the derivative of the length.
     of_least = min((one.low, one.error) for name, one in found.items() if name.startswith("safe_length"))[1]
     assert_allclose(at.error, of_least * (longer - shorter) / (1e-3 * least), rtol=1e-2)
 
 
+def test_a_beam_at_a_voltage_is_between_flats_and_the_gaps_of_its_rough_surfaces(lengths):
+    of = replace(OF, voltage=5.0, dielectric=Dielectric(100e-9, 4.0))
+    flat, least = answers(of, lengths)["at_voltage"].low, life.length_of(lengths, OF)
+    between, gained = (1 + flat / least) / 2, 0.2 * of.capacitor.work(0.0)
+    found = answers(of, lengths, biased=at_voltage(lengths, between, gained))
+    assert_allclose((found["at_voltage"].low, found["at_voltage"].high), (flat, between * least), rtol=1e-12)
+    energy = found["voltage_energy"]
+    assert_allclose((energy.low, energy.error), (gained, 0.1 * gained), rtol=1e-12)
+    assert energy.low < energy.high
+    # The least length of both bounds is the lower one, with its own error.
+    steep = answers(of, lengths, biased=at_voltage(lengths, 0.9 * flat / least, gained))["at_voltage"]
+    assert_allclose((steep.low, steep.high), (0.9 * flat, 0.9 * flat), rtol=1e-12)
+    assert_allclose(steep.error, min((one.low, one.error) for one in found.values() if one.name.startswith("safe"))[1])
+
+
+def test_a_bridge_at_a_voltage_has_the_safe_length_on_its_rough_surfaces_alone():
+    of = replace(OF, device=R1, liquids={}, voltage=5.0, dielectric=Dielectric(100e-9, 4.0))
+    without = {0.67: safe_without_tips()}
+    found = answers(of, without, biased=at_voltage(without, 0.9, 1e-4))["at_voltage"]
+    assert np.isnan(found.low)
+    assert_allclose(found.high, 0.9 * life.length_of(without, of), rtol=1e-12)
+    assert found.error > 0
+
+
+def test_a_stopper_at_a_voltage_is_held_by_more_on_flats_than_on_rough_patches():
+    of = replace(STOPPER, voltage=5.0, dielectric=Dielectric(100e-9, 4.0))
+    flat, dataset = answers(of)["at_voltage"].high, stopper_dataset()
+    gained = 0.3 * flat * (1 + 0.1 * np.random.default_rng(4).standard_normal(dataset.sizes["sample"]))
+    biased = dataset.assign(pull_off=dataset.pull_off + gained, stuck=0 * dataset.stuck + 0.6)
+    found = answers(of, biased=biased)
+    assert_allclose(found["at_voltage"].low, gained.mean(), rtol=1e-12)
+    assert found["at_voltage"].high == flat
+    assert_allclose(found["at_voltage"].error, gained.std(ddof=1) / len(gained) ** 0.5, rtol=1e-9)
+    assert_allclose((found["stuck_at_voltage"].low, found["stuck_at_voltage"].high), 0.6, rtol=1e-12)
+    said = report.sentences(life.layout(life.stopper_answers(dataset, of, biased), of))
+    assert any(sentence.endswith(f" to {report.significant(1e6 * flat)} µN.") for sentence in said)
+
+
 def test_without_voltage_nothing_is_said_of_it_and_a_vanishing_one_changes_nothing(lengths):
     assert not {"at_voltage", "field", "voltage_energy"} & set(answers(OF, lengths))
     little = answers(replace(OF, voltage=1e-6, dielectric=Dielectric(100e-9, 4.0)), lengths)["at_voltage"]
-    assert_allclose(little.low, little.high, rtol=1e-9)
+    assert_allclose(little.low, life.length_of(lengths, OF), rtol=1e-9)
 
 
 def test_a_bridge_states_the_energy_of_the_voltage_alone():
@@ -207,14 +332,14 @@ def test_a_bridge_states_the_energy_of_the_voltage_alone():
 
 def test_a_voltage_holds_a_stopper_with_the_pressure_of_flats_on_its_area():
     found = answers(replace(STOPPER, voltage=5.0, dielectric=Dielectric(100e-9, 4.0)))
-    assert_allclose(found["at_voltage"].high, holding.pressure_of_voltage(5.0, 25e-9) * 9e-12, rtol=1e-12)
+    assert_allclose(found["at_voltage"].high, Capacitor(Dielectric(25e-9, 1.0), 5.0).largest_pressure * 9e-12)
     assert found["restoring_force"] == answers(STOPPER)["restoring_force"]
 
 
 @pytest.mark.parametrize(("voltage", "breaks", "pulls"), [(5.0, False, False), (120.0, True, False), (4e4, True, True)])
 def test_sentences_warn_of_breakdown_and_of_a_voltage_that_pulls_in(lengths, voltage, breaks, pulls):
     of = replace(OF, voltage=voltage, dielectric=Dielectric(100e-9, 4.0))
-    said = report.sentences(life.layout(life.of_beam(lengths, {}, of), of, life.length_of(lengths, of)))
+    said = report.sentences(life.layout(life.beam_answers(lengths, {}, of), of, life.length_of(lengths, of)))
     assert any("break down" in sentence for sentence in said) == breaks
     assert any("pulls it in" in sentence for sentence in said) == pulls
     assert any(f"While {report.significant(voltage)} V are on" in sentence for sentence in said)
@@ -245,8 +370,8 @@ def test_settings_come_from_the_device_its_material_and_the_liquids():
 def found(lengths):
     many = replace(OF, touchdowns=50)
     return {
-        "C1": life.layout(life.of_beam(lengths, lengths, many), many, life.length_of(lengths, OF)),
-        "S1": life.layout(life.of_stopper(stopper_dataset(), STOPPER), STOPPER),
+        "C1": life.layout(life.beam_answers(lengths, lengths, many), many, life.length_of(lengths, OF)),
+        "S1": life.layout(life.stopper_answers(stopper_dataset(), STOPPER), STOPPER),
     }
 
 
@@ -276,9 +401,9 @@ def test_sentences_say_below_which_voltage_and_shock_nothing_touches_and_what_dr
     assert "collapses when it is dried from water" in second
     assert "(water)" in third
     assert last.startswith("For 50 touchdowns its safe length is ")
-    short = life.layout(life.of_beam(lengths, {}, replace(OF, length=60e-6)), OF, 60e-6)
+    short = life.layout(life.beam_answers(lengths, {}, replace(OF, length=60e-6)), OF, 60e-6)
     assert report.sentences(short)[1] == "At 60 µm it stands when it is dried from water and mine."
-    between = life.layout(life.of_beam(lengths, {}, replace(OF, length=230e-6)), OF, 230e-6)
+    between = life.layout(life.beam_answers(lengths, {}, replace(OF, length=230e-6)), OF, 230e-6)
     assert (
         "may collapse when it is dried from water, and stands when it is dried from mine"
         in report.sentences(between)[1]

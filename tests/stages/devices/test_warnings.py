@@ -39,11 +39,11 @@ def device(energy=2e-3, of=C1):
 
 
 def test_s_shaped_beams_of_the_paper_have_no_warning():
-    assert pair_warnings.of_beams(beams(50, 0), PAPER, 1.5 * UM) == []
+    assert pair_warnings.beam_warnings(beams(50, 0), PAPER, 1.5 * UM) == []
 
 
 def test_arcs_and_what_their_mean_lacks_are_each_said_once():
-    arcs, mean = pair_warnings.of_beams(beams(58, 42, 1400 * UM), PAPER, 1.5 * UM)
+    arcs, mean = pair_warnings.beam_warnings(beams(58, 42, 1400 * UM), PAPER, 1.5 * UM)
     assert "42 % of the beams end as arcs" in arcs
     assert "1.5 µm" in arcs
     assert "1400 µm" in mean
@@ -51,7 +51,7 @@ def test_arcs_and_what_their_mean_lacks_are_each_said_once():
 
 
 def test_beams_that_all_end_as_arcs_have_no_mean_to_warn_about():
-    (sentence,) = pair_warnings.of_beams(beams(0, 10), PAPER, 1.5 * UM)
+    (sentence,) = pair_warnings.beam_warnings(beams(0, 10), PAPER, 1.5 * UM)
     assert "100 % of the beams end as arcs" in sentence
 
 
@@ -64,14 +64,14 @@ def test_beams_that_all_end_as_arcs_have_no_mean_to_warn_about():
     ],
 )
 def test_each_dimension_beyond_the_model_is_said_once(beam, words):
-    (sentence,) = pair_warnings.of_beams(beams(9, 0), beam, 1.5 * UM)
+    (sentence,) = pair_warnings.beam_warnings(beams(9, 0), beam, 1.5 * UM)
     assert words in sentence
 
 
 def about_pairs(cases, plasticity, plan=PLAN):
     settings = job_settings(plan, "warnings.md")
     nominal = in_si(pair_warnings.OfPairs, settings["pairs"])
-    return pair_warnings.of_pairs(cases, plasticity, settings["materials"], nominal)
+    return pair_warnings.main_line_warnings(cases, plasticity, settings["materials"], nominal)
 
 
 NOT_MEASURED = {"estimates": {}, "spectra": {}}
@@ -89,7 +89,7 @@ def test_flags_of_a_surface_stand_beside_everything_that_rests_on_it(warned):
     for flag in FLAGS:
         (line,) = (line for line in page.splitlines() if flag in line)
         assert line.startswith("- pair a: ")
-    assert pair_warnings.of_surfaces(MEASURED, settings["surfaces"]) == {"a": FLAGS, "b": []}, "in Table III"
+    assert pair_warnings.surface_notes(MEASURED, settings["surfaces"]) == {"a": FLAGS, "b": []}, "in Table III"
     assert warned({"S1": stopper()}, surfaces=MEASURED).patches["S1"][-2:] == FLAGS
     assert not set(FLAGS) & set(warned({"S1": stopper()}).patches["S1"])
     lengths = {("C1", 0.67): device()[0]}
@@ -158,7 +158,7 @@ def test_beams_of_pairs_a_and_b_at_the_humidities_of_the_paper_have_the_warnings
         mean = float(row["crack_length_um"] or "nan") * UM
         ended = xr.Dataset({"state": ("sample", np.repeat([0, 1, 2], np.round(np.multiply(shares, 1000)).astype(int)))})
         ended["crack_length"] = "sample", np.where(ended.state == 0, mean, 1500 * UM)
-        found = pair_warnings.of_beams(ended, PAPER, 1.5 * UM)
+        found = pair_warnings.beam_warnings(ended, PAPER, 1.5 * UM)
         # Gaussian surfaces and all in the driest air adhere so little that some end as arcs: two sentences, else none.
         assert len(found) == (shares[1] > 0) + (0 < shares[0] < 1)
         assert all("end as arcs" in sentence or "end S-shaped" in sentence for sentence in found)
@@ -171,12 +171,12 @@ def test_beams_of_pairs_a_and_b_at_the_humidities_of_the_paper_have_the_warnings
 
 def only(found, of, shape=EITHER, **more):
     """Warnings about a device in one shape."""
-    return device_warnings.of_device(found, of, **{"plastic": (0.0, 3e7)} | more)[shape]
+    return device_warnings.beam_warnings(found, of, **{"plastic": (0.0, 3e7)} | more)[shape]
 
 
 def test_a_device_within_the_limits_has_no_warning():
     found, of = device()
-    assert device_warnings.of_device(found, of, plastic=(0.02, 3e7)) == {S_SHAPE: [], EITHER: []}
+    assert device_warnings.beam_warnings(found, of, plastic=(0.02, 3e7)) == {S_SHAPE: [], EITHER: []}
 
 
 @pytest.mark.parametrize(
@@ -217,7 +217,7 @@ def test_plastic_contact_of_a_device_is_said_and_so_is_that_it_was_not_studied()
     (sentence,) = only(found, of, plastic=(0.58, 1.04e8))
     assert "58 %" in sentence
     assert "when the surfaces are pressed together with 104 MPa: beams that were pressed" in sentence
-    assert ["was not checked" in sentence for sentence in device_warnings.of_device(found, of)[S_SHAPE]] == [True]
+    assert ["was not checked" in sentence for sentence in device_warnings.beam_warnings(found, of)[S_SHAPE]] == [True]
 
 
 def test_a_gap_that_the_film_fills_is_said():
@@ -290,7 +290,7 @@ def test_cases_of_the_main_line_in_air_that_is_hardly_humid_enough_are_said():
     cases = {("b", 0.39, "NG"): beams(9, 0), ("b", 0.39, "G"): beams(9, 0), ("b", 0.4, "NG"): beams(9, 0)}
     said = {subject for subject, sentences in about_pairs(cases, PLASTIC).items() if "thinner" in " ".join(sentences)}
     assert said == {"pair b, RH 0.39, NG", "pair b, RH 0.39, G"}
-    (sentence,) = pair_warnings.of_films(cases, {"b": Water(300.0)})
+    (sentence,) = pair_warnings.film_warnings(cases, {"b": Water(300.0)})
     assert sentence.startswith("Pair b, RH 0.39: The film of water is 1.1 nm high")
 
 
@@ -329,19 +329,19 @@ def test_the_air_of_the_shortest_length_of_a_curve_counts():
     of = device_warnings.OfDevice(C1)
     assert (
         "sum of film height and roughness"
-        in device_warnings.of_chart(along, of, (0.0, 3e7))[3 * UM, 20 * UM, S_SHAPE][0]
+        in device_warnings.chart_warnings(along, of, (0.0, 3e7))[3 * UM, 20 * UM, S_SHAPE][0]
     )
-    assert device_warnings.of_chart(along[:1], of, (0.0, 3e7))[3 * UM, 20 * UM, S_SHAPE] == []
+    assert device_warnings.chart_warnings(along[:1], of, (0.0, 3e7))[3 * UM, 20 * UM, S_SHAPE] == []
 
 
 def test_the_thinnest_film_of_a_curve_counts_whatever_the_air_of_its_shortest_length():
     along = [charted(800 * UM, film=1e-9), charted(700 * UM)]
-    found = device_warnings.of_chart(along, device_warnings.OfDevice(C1), (0.0, 3e7))
+    found = device_warnings.chart_warnings(along, device_warnings.OfDevice(C1), (0.0, 3e7))
     assert all("The film of water is 1 nm high" in " ".join(sentences) for sentences in found.values())
 
 
 def test_the_thickness_of_a_curve_counts():
-    found = device_warnings.of_chart([charted(50 * UM)], device_warnings.OfDevice(C1), (0.0, 3e7))
+    found = device_warnings.chart_warnings([charted(50 * UM)], device_warnings.OfDevice(C1), (0.0, 3e7))
     thin, thick = ([text for text in found[t * UM, 20 * UM, EITHER] if "thick" in text] for t in (2, 3))
     assert thin[0].startswith("A crack of 22 µm is only 11.2 times as long as the beam is thick")
     assert thick[0].startswith("A crack of 35 µm is only 11.7 times as long as the beam is thick")
@@ -380,7 +380,7 @@ def test_the_rim_of_a_film_adds_its_share_to_the_force_of_the_film():
 def test_a_stopper_in_air_that_is_hardly_humid_enough_for_a_liquid_is_said(dry, warned):
     (sentence,) = warned({"S1": stopper(**dry)}).patches["S1"]
     assert sentence.startswith("The film of water is ")
-    assert "thinner than 4 molecules, 1.12 nm: the air is drier than the range in which" in sentence
+    assert "thinner than 4 molecules, 1.12 nm: the air is too dry for the theory of a liquid" in sentence
 
 
 def test_a_stopper_has_the_warnings_of_its_contact(warned):
@@ -480,7 +480,7 @@ BRIDGE = safe_without_tips(), device_warnings.OfDevice(R1)
 @pytest.mark.parametrize(("found", "of", "side"), [(*device(), "is the safe side"), (*BRIDGE, "off to either side")])
 def test_strips_that_are_too_long_are_said_of_lengths(found, of, side):
     def said(longest):
-        every = device_warnings.of_device(found.assign(longest_strip=longest), of)
+        every = device_warnings.beam_warnings(found.assign(longest_strip=longest), of)
         return [sentence for sentences in every.values() for sentence in sentences if sentence.startswith("Strips of")]
 
     sentences = said(of.device.strip / 1.2)
@@ -491,12 +491,12 @@ def test_strips_that_are_too_long_are_said_of_lengths(found, of, side):
 
 def test_strips_that_are_too_long_for_one_size_are_said_of_its_curves():
     along = [charted(800 * UM), charted(700 * UM, longest_strip=1.4), charted(600 * UM)]
-    found = device_warnings.of_chart(along, device_warnings.OfDevice(C1))
+    found = device_warnings.chart_warnings(along, device_warnings.OfDevice(C1))
     said = {curve for curve, sentences in found.items() if any("longer than the 1.4 µm" in one for one in sentences)}
     assert said == {(2 * UM, 20 * UM, S_SHAPE), (2 * UM, 20 * UM, EITHER)}
 
 
 def test_strips_that_are_too_long_are_said_of_pairs():
-    (sentence,) = pair_warnings.of_beams(beams(50, 0).assign(longest_strip=1.4 * UM), PAPER, 1.5 * UM)
+    (sentence,) = pair_warnings.beam_warnings(beams(50, 0).assign(longest_strip=1.4 * UM), PAPER, 1.5 * UM)
     assert sentence.startswith("Strips of 1.5 µm are longer than the 1.4 µm that resolve the cracks")
-    assert pair_warnings.of_beams(beams(50, 0).assign(longest_strip=1.6 * UM), PAPER, 1.5 * UM) == []
+    assert pair_warnings.beam_warnings(beams(50, 0).assign(longest_strip=1.6 * UM), PAPER, 1.5 * UM) == []

@@ -230,7 +230,7 @@ def scores(stated, repeats=100):
 def mean_lengths_alone(monkeypatch):
     """Nothing is computed of safe lengths and of further beams."""
     monkeypatch.setattr(inference, "with_lengths", lambda found, _: found)
-    monkeypatch.setattr(inference, "of_further", lambda *_: xr.Dataset())
+    monkeypatch.setattr(inference, "further_dataset", lambda *_: xr.Dataset())
 
 
 @pytest.mark.usefixtures("mean_lengths_alone")
@@ -471,7 +471,7 @@ def shapes(monkeypatch):
             arc = factor * float(budget(cracks.beam, cracks.humidity, ARC).centre)
             return np.zeros(2), [lognormal(crack, SCATTER), lognormal(arc, SCATTER)]
 
-        monkeypatch.setattr(inference, "of_shapes", of_shapes)
+        monkeypatch.setattr(inference, "lengths_and_scores", of_shapes)
 
     longer(1.0)
     return longer
@@ -582,7 +582,7 @@ def test_cracks_and_arcs_hold_beams_of_the_lengths_of_the_model(monkeypatch):
     monkeypatch.setattr(curves, "vectors", lambda *_: (laws, 1.1 * laws[:, 1].max()))
     monkeypatch.setattr(curves, "tip_forces", lambda *_: (slopes, laws[:, :1] / slopes))
     one = inference.Result("arrayA", 0.67, budget(ARRAY, 0.67), ARRAY)
-    behind, (crack, tip) = inference.of_shapes(one, None, None, None)
+    behind, (crack, tip) = inference.lengths_and_scores(one, None, None, None)
     strips = forcelaw.coefficients(laws, 1.1 * laws[:, 1].max())
     assert_allclose(behind, [2 * foundation_length(ARRAY.beam, strips), 0])
     assert_allclose(crack(np.log(float(one.budget.centre) * np.exp([0, SCATTER]))), [0, 1], atol=1e-9)

@@ -1,1 +1,1 @@
-"""How surfaces are described in a configuration."""
+"""Descriptions of surfaces in a configuration."""

@@ -14,10 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from stiction.config.messages import Problem, did_you_mean, shown
-from stiction.config.surfaces.knowledge import Library, slope
+from stiction.config.messages import Problem, did_you_mean, faulty, shown
+from stiction.config.surfaces.knowledge import Library, slope, with_uncertain_devices
 from stiction.config.units import from_si, to_si
-from stiction.models import SIDES
 from stiction.surface import self_affine
 
 #: Keys of the spectrum as papers state it, and all keys of a section that is to be completed.
@@ -36,7 +35,7 @@ def is_described(entry: Mapping) -> bool:
 
 
 def complete(entry: dict[str, Any], library: Library) -> dict[str, Any]:
-    """Section of a surface in normal form: moments, parameters of Eq. (7), and what of these is unknown.
+    """Section of a surface in normal form: moments, parameters of Eq. (7), and the unknown ones among them.
 
     Raises
     ------
@@ -71,7 +70,7 @@ def _mean(library, key):
 
 
 def _spectrum(entry, typical):
-    """Section ``published_psd`` of a surface; what it leaves open is that of a typical surface."""
+    """Section ``published_psd`` of a surface. Missing parameters are a typical surface's."""
     falling = self_affine.slope_of(entry["hurst"]) if "hurst" in entry else slope(typical)
     cutoff = entry.get("cutoff_rad_per_um") or typical["cutoff_rad_per_um"]
     corner = entry.get("corner_rad_per_um") or _corner(entry, typical, falling, cutoff)
@@ -97,7 +96,7 @@ def _rounded(value):
 
 
 def _uncertainty(entry, psd):
-    """Section ``uncertainty`` with that of the corner in place of that of the correlation length.
+    """Section ``uncertainty`` with the corner's in place of the correlation length's.
 
     At a given slope, and far from the cut-off, one is inversely proportional to the other.
     """
@@ -114,39 +113,22 @@ def _uncertainty(entry, psd):
 def completed(
     config: dict[str, Any], library: Library, faults: Collection[tuple]
 ) -> tuple[dict[str, Any], list[Problem]]:
-    """Configuration with complete surfaces, and the problems of those that cannot be completed.
+    """Configuration with complete surfaces, and the problems of incomplete ones.
 
     Surfaces with keys that are wrong on their own, the ``faults``, stay as they are. A device on a surface that is not
     known exactly has a section of its uncertainty.
     """
-    wrong, surfaces, problems = {fault[1] for fault in faults if fault[0] == "surfaces"}, {}, []
+    wrong, surfaces, problems = faulty(faults, "surfaces"), {}, []
     for name, entry in config["surfaces"].items():
         refused = None if name in wrong else next(_refusals(entry, library), None)
         problems += [_problem(name, entry, *refused)] if refused else []
         surfaces[name] = entry if refused or name in wrong else complete(entry, library)
     uncertain = [name for name, entry in surfaces.items() if name not in wrong and _is_uncertain(entry)]
-    return config | {"surfaces": surfaces} | _devices(config, uncertain), problems
+    return with_uncertain_devices(config | {"surfaces": surfaces}, uncertain), problems
 
 
 def _is_uncertain(entry):
     return bool(entry.get("unknown") or entry.get("uncertainty"))
-
-
-def _devices(config, uncertain):
-    """Section ``devices`` in which those on uncertain surfaces have a section of their uncertainty."""
-    devices = config["devices"]
-    if not (uncertain and isinstance(devices, dict)):
-        return {}
-    return {"devices": {name: _with_uncertainty(device, config, uncertain) for name, device in devices.items()}}
-
-
-def _with_uncertainty(device, config, surfaces):
-    """Section of a device with a section of its uncertainty, if one of its surfaces is among these."""
-    try:
-        is_uncertain = any(config["pairs"][device["pair"]][side] in surfaces for side in SIDES)
-    except (KeyError, TypeError):
-        return device  # other relations report what is missing
-    return {"uncertainty": {}} | device if is_uncertain else device
 
 
 def _problem(name, entry, key, message):
@@ -175,7 +157,7 @@ def _refusals(entry, library) -> Iterator[tuple[str, str]]:
 
 
 def _without(missing, library):
-    """Message about a surface that nothing describes but its rms."""
+    """Message about a surface with nothing but an rms."""
     return (
         f"is without {', '.join(missing)}, must state rms_nm, skewness, kurtosis and psd; or rms_nm and like: one of "
         f"{', '.join(library)}, a typical surface for what is not known; or rms_nm, hurst, correlation_length_nm and "
@@ -184,7 +166,7 @@ def _without(missing, library):
 
 
 def _refusals_of_described(entry, library):
-    """As `_refusals`, of a surface that is to be completed."""
+    """Yield the same for a surface to be completed."""
     if "like" in entry and entry["like"] not in library:
         hint = did_you_mean(entry["like"], library)
         yield "like", f"must be one of {', '.join(library)}, the library of typical surfaces{hint}"
@@ -207,7 +189,7 @@ def _refusals_of_described(entry, library):
 
 
 def _refusals_of_uncertainty(entry):
-    """As `_refusals`, of what is known of the quantities of a surface."""
+    """Yield the same for the known errors of the quantities of a surface."""
     for key in ("unknown", "uncertainty"):
         if key in entry and "scans" in entry:
             yield key, "must not be given beside scans, which give the errors of the surface"
@@ -220,7 +202,7 @@ def _refusals_of_uncertainty(entry):
 
 
 def origins(config: Mapping[str, Any]) -> dict[tuple, tuple]:
-    """Keys that users stated, as paths with their values, by those of complete surfaces that follow from them."""
+    """Keys stated by users, as paths with their values, by the keys of complete surfaces derived from them."""
     found = {}
     for name, entry in config["surfaces"].items():
         if isinstance(entry, dict) and is_described(entry):

@@ -1,4 +1,4 @@
-"""Grid of the drawn surfaces where a configuration does not state it: as fine and as wide as the surfaces need.
+"""Grid of the drawn surfaces by default: as fine and as wide as the surfaces need.
 
 The distance between heights is the largest whole part of 10 nm whose Nyquist wave number is not below the end of any
 spectrum, or the smallest one whose fields take half of the memory of a job, which leaves room for longer tips. The
@@ -13,6 +13,7 @@ from itertools import chain, count
 from typing import Any
 
 from stiction.config import memory, scans
+from stiction.config.messages import faulty
 from stiction.config.units import NM_PER_UM, from_si, in_si
 from stiction.models import SIDES
 from stiction.rounding import is_at_most
@@ -23,7 +24,7 @@ _SPACING, _MARGIN, _STEP = memory.GRID["spacing_nm"], memory.GRID["margin_um"], 
 
 
 def completed(config: dict[str, Any], estimates: Mapping[str, dict], faults: Collection[tuple] = ()) -> dict[str, Any]:
-    """Configuration, which need not be valid, with all keys of section ``sampling``, and heights that have a density.
+    """Configuration, valid or not, with all keys of section ``sampling``, and heights with a density.
 
     Variants on grids that are not finer than one that follows the surfaces are left out. The estimates are the
     preliminary numbers of measured surfaces. Surfaces with one of the faults, keys that are wrong on their own, do not
@@ -35,7 +36,7 @@ def completed(config: dict[str, Any], estimates: Mapping[str, dict], faults: Col
     config = scans.with_heights(config, estimates)
     if {"spacing_nm", "margin_um"} <= set(sampling):
         return config
-    wrong = {path[1] for path in faults if path[:1] == ("surfaces",) and len(path) > 1}
+    wrong = faulty(faults, "surfaces")
     waves = [_waves(config, name, estimates) for name in dict.fromkeys(used(config)) if name not in wrong]
     waves = list(filter(None, waves))
     chosen = {"margin_um": max((_margin(length) for _, length in waves), default=_MARGIN)} | sampling
@@ -47,14 +48,14 @@ def completed(config: dict[str, Any], estimates: Mapping[str, dict], faults: Col
 
 
 def _section(config, *place):
-    """Nested section of a configuration; empty where there is none."""
+    """Nested section of a configuration, empty if missing."""
     for name in place:
         config = config.get(name) if isinstance(config, dict) and isinstance(name, str) else None
     return config if isinstance(config, dict) else {}
 
 
 def used(config: Mapping[str, Any]) -> Iterator[str]:
-    """Names of the surfaces of pairs that run, of devices and of test beams, as often as they occur."""
+    """Names of the surfaces of pairs in the run, of devices and of test beams, as often as they occur."""
     running = _section(config, "run").get("pairs")
     devices = chain.from_iterable(_section(config, section).values() for section in ("devices", "test_beams"))
     pairs = [
@@ -67,7 +68,7 @@ def used(config: Mapping[str, Any]) -> Iterator[str]:
 
 
 def _waves(config, name, estimates):
-    """Largest wave number of a surface [rad/µm] and correlation length [µm]; ``None`` if they are not known."""
+    """Largest wave number of a surface [rad/µm] and correlation length [µm], ``None`` if unknown."""
     entry = _section(config, "surfaces", name)
     if name in estimates:
         return estimates[name]["end_rad_per_um"], estimates[name]["correlation_um"][scans.complete(entry)["psd"]]
@@ -81,7 +82,7 @@ def _waves(config, name, estimates):
 
 @functools.cache
 def published_correlation(**psd: float) -> float:
-    """Correlation length of a published spectrum [µm]; raises a ValueError if it does not decay."""
+    """Correlation length of a published spectrum [µm]. Raises a ValueError if it does not decay."""
     return from_si(correlation_length(in_si(CutoffSelfAffine, psd)), "um")
 
 
@@ -91,18 +92,19 @@ def _margin(correlation):
 
 
 def _parts(config, end):
-    """Number of parts of the paper's distance that carry waves up to a wave number [rad/µm], as memory allows."""
+    """Number of parts of the paper's distance for waves up to a wave number [rad/µm], within the memory."""
     nyquist = math.pi / _SPACING * NM_PER_UM
     largest = max(_areas(config))
 
     def too_many(parts):
-        return memory.of_field(largest, 1, _SPACING / parts) > memory.LARGEST / 2
+        """Whether the largest field takes half of the memory of a job."""
+        return memory.field_memory(largest, 1, _SPACING / parts) > memory.LARGEST / 2
 
     return next(n for n in count(1) if is_at_most(end, n * nyquist) or too_many(n + 1))
 
 
 def _areas(config):
-    """Areas of the fields that are drawn [µm²]."""
+    """Areas of the drawn fields [µm²]."""
     yield memory.FIELD_UM**2
     sampling, width = config["sampling"], _section(config, "beam").get("width_um")
     try:

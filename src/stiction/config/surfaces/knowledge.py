@@ -1,14 +1,14 @@
-"""How well the quantities of surfaces without scans are known: as stated, or as typical surfaces scatter.
+"""Errors of the quantities of surfaces without scans: as stated, or as typical surfaces scatter.
 
 The library of typical surfaces is given as sections of a configuration with moments and the parameters of Eq. (7).
 """
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
+from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.surface import self_affine
 
 #: Quantities of `stiction.analysis.shifts` by the words of key ``unknown``, and by the keys of ``uncertainty``.
@@ -30,9 +30,26 @@ class Knowledge(NamedTuple):
 
     @property
     def section(self) -> dict[str, list]:
-        """Settings of a job, with numbers that are the same on every machine."""
+        """Settings of a job, with the same numbers on every machine."""
         rounded = [[float(f"{value:.9g}") for value in row] for row in self.covariance]
         return {"quantities": list(self.quantities), "covariance": rounded}
+
+
+def with_uncertain_devices(config: dict[str, Any], surfaces: Collection[str]) -> dict[str, Any]:
+    """Configuration with a section of uncertainty in every device on one of these surfaces."""
+    devices = config.get("devices")
+    if not (surfaces and isinstance(devices, dict)):
+        return config
+    return config | {"devices": {name: _with_uncertainty(device, config, surfaces) for name, device in devices.items()}}
+
+
+def _with_uncertainty(device, config, surfaces):
+    """Section of a device with a section of its uncertainty, if one of its surfaces is among these."""
+    try:
+        is_uncertain = any(config["pairs"][device["pair"]][side] in surfaces for side in SIDES)
+    except (KeyError, TypeError):
+        return device  # other relations report what is missing
+    return {"uncertainty": {}} | device if is_uncertain else device
 
 
 def slope(psd: Mapping[str, float]) -> float:
@@ -42,13 +59,12 @@ def slope(psd: Mapping[str, float]) -> float:
 
 
 def knowledge(entry: Mapping[str, Any], library: Library) -> Knowledge:
-    """What the section of a surface in normal form says about the errors of its quantities.
+    """Errors of the quantities of a surface, from its section in normal form.
 
     A stated uncertainty takes the place of the scatter over the library.
     """
     variances = {quantity: deviation**2 for quantity, deviation in _deviations(entry).items()}
-    unknown = assumed(entry)
-    names = tuple(name for name in _ALL if name in unknown or variances.get(name))
+    names = uncertain(entry)
     places = [_ALL.index(name) for name in names]
     covariance = scatter(library)[np.ix_(places, places)]
     for place, name in enumerate(names):
@@ -58,8 +74,14 @@ def knowledge(entry: Mapping[str, Any], library: Library) -> Knowledge:
     return Knowledge(names, covariance)
 
 
+def uncertain(entry: Mapping[str, Any]) -> tuple[str, ...]:
+    """Uncertain quantities of the section of a surface: assumed, or with an uncertainty above zero."""
+    unknown, deviations = assumed(entry), _deviations(entry)
+    return tuple(name for name in _ALL if name in unknown or deviations.get(name))
+
+
 def assumed(entry: Mapping[str, Any]) -> dict[str, str]:
-    """Quantities of a surface that are assumed, with their words in key ``unknown``."""
+    """Assumed quantities of a surface, with their words in key ``unknown``."""
     stated = _deviations(entry)
     words = {_QUANTITIES[word]: word for word in entry.get("unknown", ())}
     return {name: word for name, word in words.items() if name not in stated}
@@ -93,7 +115,7 @@ def scatter(library: Library) -> np.ndarray:
 
 
 def sentences(name: str, entry: Mapping[str, Any], library: Library) -> list[str]:
-    """Sentence on what is unknown of a surface in normal form, for those who read results; none if nothing is."""
+    """Sentence on the unknowns of a surface in normal form, for readers of results, or none."""
     if not (unknown := assumed(entry)):
         return []
     known = knowledge(entry, library)
@@ -109,7 +131,7 @@ def sentences(name: str, entry: Mapping[str, Any], library: Library) -> list[str
 
 
 def _assumed(word, value, error):
-    """An assumed value with its standard uncertainty, in words."""
+    """Assumed value with its standard uncertainty, in words."""
     label, unit, relative = _WORDS[word]
     scale = 100 * error if relative else error / 2 if word == "hurst" else error
     number = "" if value is None else f" {value:.3g}{unit}"

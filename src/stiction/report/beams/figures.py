@@ -40,7 +40,7 @@ from stiction.stages.beams.releases import ended, stuck_energies, stuck_lengths
 
 @styled
 def beam_shapes(beams: xr.Dataset) -> Figure:
-    """Figure 14: shapes of some released beams, one highlighted; histogram of the crack lengths of S-shapes."""
+    """Figure 14: shapes of some released beams, one highlighted. Histogram of the crack lengths of S-shapes."""
     figure, ((shapes, histogram),) = panels(1, 2, (DOUBLE, 2.5))
     stuck = ended(beams, "S-shape")
     deflection, x = TO_UM * beams.deflection.values, TO_UM * beams.node.values
@@ -102,7 +102,7 @@ _CLOSE = 0.12
 
 @styled
 def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat: Mapping[str, float]) -> Figure:
-    """Figure 15: apparent adhesion energy over the humidity; models G and NG on the left, GEO on the right.
+    """Figure 15: apparent adhesion energy against humidity. Models G and NG on the left, GEO on the right.
 
     The share of S-shapes is stated at each mean if it is below 100 %; if such labels of a pair would cover each other,
     the shares have panels of their own below those of the energies. Beams in dry air are beside the axis.
@@ -171,12 +171,12 @@ def _rows_of_panels(pairs, published):
 
 
 def _kinds(below):
-    """What the rows of a pair show, as the end of their titles."""
+    """Contents of the rows of a pair, as the end of their titles."""
     return ("",) if below is None else ("", ": share of S-shapes")
 
 
 def _labels_meet(released, published):
-    """Whether labels of the shares of a pair would cover each other in a panel."""
+    """Whether labels of the fractions of a pair would cover each other in a panel."""
     humidities = np.array([*(humidity for humidity, _ in released), *published.relative_humidity])
     length = max(np.ptp(humidities), 0.1)
     for models in _COLUMNS:
@@ -203,12 +203,12 @@ def _panels_of_shares(row, released, limits):
 
 
 def _aside(panel, points):
-    """Transform of data with a shift to the right in points, which does not depend on the limits of the axes."""
+    """Transform of data with a shift to the right in points, independent of the limits of the axes."""
     return panel.transData + ScaledTranslation(points / 72, 0, panel.figure.dpi_scale_trans)
 
 
 def _bounds(panel, flat, weakest):
-    """Energy of flat surfaces in saturated air, if any, and of the longest crack that fits into the beam [J m⁻²]."""
+    """Energy of flat surfaces in saturated air, if any, and of the longest crack within the beam [J m⁻²]."""
     style = {"color": "black", "linewidth": 0.8}
     if flat:
         panel.axhline(TO_MJ * flat, linestyle="-.", label="flat surfaces in saturated air", **style)
@@ -249,7 +249,7 @@ def _band(panel, axis, model):
 
 
 def _reach(beams):
-    """Energy that an axis must reach to show the mean and standard deviation of some beams [J m⁻²]."""
+    """Energy on an axis high enough for the mean and standard deviation of some beams [J m⁻²]."""
     energies = stuck_energies(beams)
     return 1.1 * (energies.mean() + energies.std()) if len(energies) else 0.0
 
@@ -288,7 +288,7 @@ def _labels(panel, released, model, weakest):
 
 
 def _percent(share):
-    """A share below one as text, of two digits."""
+    """Fraction below one as text, of two digits."""
     return f"{100 * share:.2g} %" if share < 0.995 else "> 99 %"
 
 
@@ -318,7 +318,7 @@ STAGES = (
     ),
     figure_stage(
         "figure_15",
-        "adhesion energy over the relative humidity",
+        "adhesion energy against relative humidity",
         _CATEGORY,
         inputs=lambda plan, at: {
             "beams": by_outcome("beams", plan.outcomes),

@@ -1,4 +1,4 @@
-"""The model in one picture: a rough surface, its force curves, released beams, and crack lengths over the humidity."""
+"""Model in one picture: a rough surface, its force curves, released beams, and crack lengths against humidity."""
 
 from collections.abc import Mapping
 
@@ -41,7 +41,7 @@ def overview(
     released: Mapping[tuple[float, str], xr.Dataset],
     published: pd.DataFrame,
 ) -> Figure:
-    """From surface to crack length: (a) surface, (b) force curves, (c) shapes of beams, (d) crack lengths of a pair.
+    """Draw the way to a crack length: (a) surface, (b) force curves, (c) shapes of beams, (d) crack lengths of a pair.
 
     ``released`` has the datasets of stage beams of the pair by humidity and model, NG, GEO or both; the others are of
     one surface or case. Table III is as published, rows of the paper's own pairs.
@@ -57,7 +57,7 @@ def overview(
 
 
 def _surface(figure, panel, character):
-    """A square part of the surface, seen from above."""
+    """Square part of the surface, seen from above."""
     spacing = float(character.x[1] - character.x[0])
     points = min(int(_SHOWN / spacing), *character.elevation.shape)
     side = TO_UM * points * spacing

@@ -39,7 +39,7 @@ def table_3(
     warnings: Sequence[str] = (),
     errors: Mapping[str, xr.Dataset] | None = None,
 ) -> Table:
-    """Table III: crack lengths and adhesion energies of released beams; beams of model GEO have the forces of NG.
+    """Table III: crack lengths and adhesion energies of released beams. Beams of model GEO have the forces of NG.
 
     The published table has the rows of the paper's own pairs. ``by_scans`` are relative standard errors of ē due to
     finite scans, by pair and humidity, of pairs with measured surfaces; warnings are sentences about single cases;
@@ -88,7 +88,7 @@ def _row_3(key, beams, forces, published):
 
 
 def _simulated(beams, forces):
-    """Crack length and energies of one case; errors are over beams and over the samples that all beams share."""
+    """Crack length and energies of one case, with errors over beams and over their common samples."""
     meso = stage_forces.energies(forces)
     quantities = {
         "crack_length": ("um", stuck_lengths(beams) / UM, CRACK_LENGTH_POWER),
@@ -123,7 +123,7 @@ def _by_scans(row, relative):
 
 
 def _by_model(row, errors):
-    """Error of the model of one case; that of Gaussian heights was not computed."""
+    """Error of the model of one case. For Gaussian heights it was not computed."""
     known = row["model"] != "G"
     return beside.change(errors[row["pair"]].sel(humidity=row["relative_humidity"]) if known else None)
 
@@ -168,7 +168,7 @@ def fit_quality(fits: Mapping[Outcome, xr.Dataset]) -> Table:
 
 
 def _row_fit(key, fit):
-    """Case, share of samples without a law, and errors of those with one; NaN for fewer than two."""
+    """Case, fraction of samples without a law, and errors of the others, NaN for fewer than two."""
     row = dict(zip(("pair", "relative_humidity", "model"), key, strict=True))
     curve, energy = 100 * fit.curve_error.values, 100 * fit.energy_error.values
     mean = error = median = high = largest = np.nan
@@ -230,7 +230,7 @@ def _row_resampling(key, beams, resampled):
 
 
 def _crack_length(beams):
-    """Mean crack length of the S-shaped beams and its standard error over beams; NaN for fewer than two [µm]."""
+    """Mean crack length of the S-shaped beams and its standard error over beams, NaN for fewer than two [µm]."""
     stuck = stuck_lengths(beams) / UM
     return mean_with_error(stuck) if len(stuck) >= 2 else (np.nan, np.nan)
 
@@ -247,8 +247,8 @@ def _table_3(data, settings):
     scanned = ((pair, pair_errors(study)) for pair, study in data["by_scans"].items())
     by_scans = {(pair, humidity): error for pair, errors in scanned for humidity, error in errors.items()}
     water = {pair: in_si(Water, section) for pair, section in settings["water"].items()}
-    warnings = pair_warnings.of_films(data["beams"], water)
-    flags = pair_warnings.of_surfaces(data, settings["surfaces"], settings["assumed"])
+    warnings = pair_warnings.film_warnings(data["beams"], water)
+    flags = pair_warnings.surface_notes(data, settings["surfaces"], settings["assumed"])
     warnings += [f"Pair {pair}: {sentence}" for pair, said in flags.items() for sentence in said]
     known = published.compared(data, settings)
     return table_3(data["beams"], data["forces"], known, by_scans, warnings, data.get("errors"))
@@ -265,7 +265,7 @@ STAGES = (
                 "by_scans": by_name("studies/scan_uncertainty", plan.scanned_pairs),
                 "published": published.file("table_3"),
             }
-            | beside.of_pairs(plan)
+            | beside.error_inputs(plan)
             | surface_flags.inputs(plan, *plan.pairs)
         ),
         settings=lambda plan, at: {

@@ -1,1 +1,1 @@
-"""Table and figure of the uncertainty of devices; those of stoppers."""
+"""Table and figure of the uncertainty of devices, and of stoppers."""

@@ -43,7 +43,7 @@ _ROW, _AROUND, _LEGEND, _FILLED = 0.22, 0.62, 0.3, 0.8
 
 @styled
 def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence[str]]) -> Figure:
-    """Stoppers: P(stuck) over the restoring force, and pull-off force over the humidity; a column for each.
+    """Stoppers: P(stuck) against restoring force, and pull-off force against humidity, a column for each.
 
     Datasets and the sentences of warnings, which the table of stoppers contains, are by device.
     """
@@ -63,7 +63,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
 
 
 def _stuck_over_force(panel, dataset):
-    """Share of the patches that hold more than a force, at every humidity of the device, with its band."""
+    """Fraction of the patches with a larger pull-off force, at every humidity of the device, with its band."""
     restoring = TO_UN * float(dataset.restoring_force)
     for k, humidity in enumerate(dataset.humidity.values):
         forces = TO_UN * dataset.pull_off.sel(humidity=humidity).values
@@ -116,7 +116,7 @@ def _force_over_humidity(panel, dataset):
 
 @styled
 def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
-    """Tornado of a device: effect of each measurement and their total; beside it, choices of the model.
+    """Tornado of a device: effect of each measurement and their total. Beside it, choices of the model.
 
     The budgets are by device, humidity and, for those of tips, ``tip``.
     """
@@ -155,7 +155,7 @@ def _measurements(cases):
 
 
 def _both_sides(budget, inputs, slope_errors):
-    """Bar of the effect of some inputs in both directions, and its error [%]; zero if a budget has none of them."""
+    """Bar of the effect of some inputs in both directions, and its error [%]. Zero if a budget has none of them."""
     own = [name for name in budget.names if name in inputs]
     if not own:
         return 0.0, 0.0, 0.0
@@ -172,7 +172,7 @@ def _choices(cases):
 
 
 def _from_zero(dataset, choice):
-    """Bar of the effect of a choice of the model, and its error [%]; zero if a budget does not have this choice."""
+    """Bar of the effect of a choice of the model, and its error [%]. Zero if a budget does not have this choice."""
     if choice not in dataset.choice.values:
         return 0.0, 0.0, 0.0
     of_choice = dataset.sel(choice=choice)
@@ -180,7 +180,7 @@ def _from_zero(dataset, choice):
 
 
 def _tornado(panel, rows: Mapping[str, Sequence[tuple]]):
-    """Draw rows of bars (low, high, error) from top to bottom; the bars of a row are those of the humidities."""
+    """Draw rows of bars (low, high, error) from top to bottom. The bars of a row are those of the humidities."""
     for place, bars in enumerate(rows.values()):
         height = _FILLED / len(bars)
         for k, ((low, high, error), shade) in enumerate(zip(bars, shades(len(bars)), strict=True)):

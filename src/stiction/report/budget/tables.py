@@ -1,4 +1,4 @@
-"""Tables of stoppers and of the uncertainty of devices: P(stuck) of patches, and what to measure better."""
+"""Tables of stoppers and of the uncertainty of devices: P(stuck) of patches, and advice on measurements."""
 
 from collections.abc import Iterable, Mapping, Sequence
 
@@ -59,20 +59,20 @@ def stoppers(
     errors: Mapping[str, xr.Dataset] | None = None,
     not_modelled: str = "",
 ) -> Table:
-    """Stoppers: pull-off force, P(stuck), restoring force needed, worst humidity; everything is by device.
+    """Stoppers: pull-off force, P(stuck), restoring force needed, worst humidity. Everything is by device.
 
     The caption ends with what is not in the model.
     """
-    rows = [row for device, dataset in datasets.items() for row in _of_stopper(device, dataset)]
-    rows = [row | model_errors.of_device(errors, row["device"], row["relative_humidity"], FORCE) for row in rows]
+    rows = [row for device, dataset in datasets.items() for row in _stopper_rows(device, dataset)]
+    rows = [row | model_errors.device_change(errors, row["device"], row["relative_humidity"], FORCE) for row in rows]
     rows = [row | {"warnings": " ".join(warnings[row["device"]])} for row in rows]
     caption = (
-        "Stoppers: force that pulls a patch off, an upper bound if it tilts or bends, mean ± standard error and "
+        "Stoppers: pull-off force of a patch, an upper bound if it tilts or bends, mean ± standard error and "
         "standard deviation over the patches; "
-        "P(stuck): share of the patches that hold more than the restoring force, with its 95 % band; safe force: "
-        "restoring force that is exceeded by the pull-off force of at most this share of all patches, with 95 % "
-        "confidence; fitted: by a line through the largest 5 % of the forces, where too few patches bound the share; "
-        "extrapolated: by this line beyond what was verified; – where there are too few patches."
+        "P(stuck): fraction of the patches with a pull-off force above the restoring force, with its 95 % band; safe "
+        "force: restoring force exceeded by the pull-off force of at most this fraction of all patches, with 95 % "
+        "confidence; fitted: by a line through the largest 5 % of the forces, if too few patches bound the fraction; "
+        "extrapolated: by this line beyond its verified range; –: too few patches."
     )
     humid = [dataset for dataset in datasets.values() if ends(dataset)]
     if humid:
@@ -90,7 +90,7 @@ def stoppers(
     return Table.of(rows, with_list(" ".join(said), listed), columns)
 
 
-def _of_stopper(device, dataset):
+def _stopper_rows(device, dataset):
     """Numbers of one stopper at each of its humidities and, in humid air, the largest along its fine axis."""
     for humidity, *stuck in shares_stuck(dataset):
         forces = dataset.pull_off.sel(humidity=humidity).values / UN
@@ -118,7 +118,7 @@ def _stopper(dataset, pull, stuck, safe):
 
 
 def _columns_of_stoppers(rows):
-    """Columns for reading; those of the safe forces depend on the shares."""
+    """Columns for reading. The columns of the safe forces depend on the fractions."""
     shares = dict.fromkeys(name.rpartition("_")[2] for row in rows for name in row if name.startswith("safe_force_uN"))
     return DEVICE | {
         "RH": (_humidities, "relative_humidity", "lowest_humidity", "highest_humidity"),
@@ -134,19 +134,19 @@ def _columns_of_stoppers(rows):
 
 
 def _with_basis(force, basis):
-    """A safe force, and what it rests on if that is not sampled patches."""
+    """Safe force, and its basis unless it is sampled patches."""
     return number(force, ".3g") + (f" ({basis})" if basis in (Basis.FITTED, Basis.EXTRAPOLATED) else "")
 
 
 def _humidities(humidity, lowest, highest):
-    """Humidity of a row, or the range of all, which dry air may precede."""
+    """Humidity of a row, or the range of all, possibly after dry air."""
     if np.isnan(humidity):
         return " to ".join(dict.fromkeys(map(humidity_text, (lowest, highest))))
     return humidity_text(humidity)
 
 
 def percentage(share: float, low: float, high: float) -> str:
-    """A share and its band, in percent.
+    """Fraction and its band, in percent.
 
     Examples
     --------
@@ -157,7 +157,7 @@ def percentage(share: float, low: float, high: float) -> str:
 
 
 def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:
-    """Worst humidity as text, also if it is an end of the humidities that were computed.
+    """Worst humidity as text, marked at an end of the computed humidities.
 
     Examples
     --------
@@ -185,17 +185,17 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
         [
             row
             for (device, rh, *_), one in datasets.items()
-            for row in [*_of_budget(device, rh, one), *_of_model(device, rh, one, errors)]
+            for row in [*_budget_rows(device, rh, one), *_model_rows(device, rh, one, errors)]
         ]
     )
     sentences = [f"{device}, {air(humidity)}: {advised(one)}" for (device, humidity, *_), one in datasets.items()]
     omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in datasets.items()}
     caption = with_list(
-        "Relative standard uncertainty of the mean length at which beams stick as S-shapes, of the length at which "
-        "few are held by their tip, of the mean length at which bridges are held by their middle, and of the mean "
-        "pull-off force of stoppers, due to every measurement, the others being exact, ± standard error of the "
-        "simulation. Remaining: what would be left if the measurement were exact. Scatter between devices and other "
-        "choices of the model, with the sign of their effect, are no part of the total."
+        "Relative standard uncertainty of a result due to each measurement, if all others were exact, ± standard error "
+        "of the simulation. The result is the mean length of beams stuck as S-shapes, the length at which few stick "
+        "at their tip, the mean length of bridges stuck at their middle, or the mean pull-off force of stoppers. "
+        "Remaining: the uncertainty left if the measurement were exact. Scatter between devices and other choices of "
+        "the model, with the sign of their effect, are no part of the total."
         + (f" {column.caption(errors)}" if errors else ""),
         [*sentences, *omitted],
     )
@@ -203,17 +203,17 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
 
 
 def advised(dataset: xr.Dataset) -> str:
-    """Sentence on what to measure better."""
+    """Sentence on the most useful measurement."""
     uncertainty = budget_of(dataset)
     if np.isnan(uncertainty.total):
-        return "So few of the simulated devices stick that they do not show what an input changes."
+        return "Too few of the simulated devices stick to show the effect of an input."
     if uncertainty.total == 0:
         return "No uncertainty of an input is stated."
     return advice(uncertainty, groups_of(dataset), response_text(dataset))
 
 
 def decided(datasets: Iterable[xr.Dataset], assumed: Sequence[str]) -> list[str]:
-    """Sentence about the most uncertain of some budgets, if inputs that are assumed are what to measure first."""
+    """Sentence about the most uncertain of some budgets, if assumed inputs are the first to measure."""
     budgets = [(budget_of(dataset), dataset) for dataset in datasets]
     budgets = [budget for budget in budgets if np.isfinite(budget[0].total)]
     uncertainty, dataset = max(budgets, key=lambda budget: budget[0].total, default=(None, None))
@@ -229,17 +229,17 @@ def decided(datasets: Iterable[xr.Dataset], assumed: Sequence[str]) -> list[str]
 
 
 def response_text(dataset: xr.Dataset) -> str:
-    """What the inputs move, in words."""
+    """Quantity changed by the inputs, in words."""
     response, share = response_of(dataset)
     return END_STATES[response].budget.format(f"{1 / share:g}" if share else "")
 
 
 def counted_as_exact(dataset: xr.Dataset) -> str:
-    """Sentence on what has no stated uncertainty."""
+    """Sentence on inputs without a stated uncertainty."""
     return f"Counted as exact: {', '.join(map(str, dataset.exact.values))}."
 
 
-def _of_budget(device, humidity, dataset):
+def _budget_rows(device, humidity, dataset):
     """Numbers of one device at one humidity: inputs, measurements, totals, scatter, choices."""
     uncertainty, errors = budget_of(dataset), dataset.slope_error.values
     head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[response_of(dataset)[0]].by}
@@ -258,11 +258,11 @@ def _of_budget(device, humidity, dataset):
         yield head | {"part": "choice", "name": str(name), "effect_percent": effect, "effect_se_percent": error}
 
 
-def _of_model(device, humidity, dataset, errors):
+def _model_rows(device, humidity, dataset, errors):
     """Row of the error of the model, if it is known."""
     response, _ = response_of(dataset)
     head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[response].by}
-    for error in filter(None, [model_errors.of_device(errors, device, humidity, response)]):
+    for error in filter(None, [model_errors.device_change(errors, device, humidity, response)]):
         effect = {"effect_percent": error["model_error_percent"], "effect_se_percent": error["model_error_se_percent"]}
         yield head | {"part": MODEL[error["interpolated"]], "name": "model error: full elastic contact"} | effect
 
@@ -274,12 +274,12 @@ def _effect(budget, inputs, slope_errors):
 
 
 def _part(part, name):
-    """What a row is about."""
+    """Subject of a row."""
     return f"choice: {choice_label(name)}" if part == "choice" else name
 
 
 def _effect_as_text(part, effect, error):
-    """Effect with its standard error, if it has one; that of a choice, or of the model, has a sign."""
+    """Effect with its standard error, if it has one. Effects of a choice, or of the model, have a sign."""
     if part in MODEL:
         return column.marked(effect, error, part == MODEL[1])
     if not error > 0 or np.isnan(effect):
@@ -304,7 +304,7 @@ STAGES = (
                 "stoppers": by_name("devices/stoppers", plan.devices.stoppers),
                 "warnings": device_warnings.files_of(*plan.devices.stoppers),
             }
-            | model_errors.of_devices(plan, *plan.devices.stoppers)
+            | model_errors.error_inputs(plan, *plan.devices.stoppers)
         ),
         settings=lambda plan, at: {"not_modelled": device_warnings.not_modelled(plan, *plan.devices.stoppers)},
         compute=lambda data, settings: stoppers(
@@ -318,7 +318,7 @@ STAGES = (
         "uncertainty of devices, and what to measure better",
         inputs=lambda plan, at: (
             {"budgets": budgets_of(plan, *plan.devices.budgeted)}
-            | model_errors.of_devices(plan, *plan.devices.budgeted)
+            | model_errors.error_inputs(plan, *plan.devices.budgeted)
         ),
         compute=lambda data: budget(data["budgets"], data.get("errors")),
         jobs=lambda plan: [{}] if plan.devices.budgeted else [],

@@ -34,7 +34,7 @@ _CAPTION = (
     "Crack lengths of Table III, model NG, under several readings of an asperity, from the ratio of the mean adhesion "
     "energies of the same strips to the power -1/4: change against spheres on summits, on the grid of the contact and "
     "with attraction of the solids, at the lowest and at the highest humidity; root mean square over the humidities of "
-    "the deviation from the published length, and from that under full elastic contact where it was computed; "
+    "the deviation from the published length, and from the length under full elastic contact, if computed; "
     "processor time of a strip over that of spheres on summits; ± standard error over strips. Island: a sphere of the "
     "area of every island; fitted: a sphere by least squares; shape: every island with its true shape, solved alone. "
     "vdW: the medium through which the solids attract, or none."
@@ -59,7 +59,7 @@ def _rows(
             others, count = base[: len(energies)], {"strips": len(energies)}
             whole = {"time_over_summits": cost(study, **labels)}
             whole |= _rms("published", energies, others, lengths / known)
-            whole |= _rms("full_contact", *_of_full_contact(energies, humidities, full[pair]))
+            whole |= _rms("full_contact", *_common_energies(energies, humidities, full[pair]))
             labels = {
                 "reading": labels["reading"],
                 "spacing_nm": TO_NM * labels["spacing"],
@@ -80,15 +80,15 @@ def _rms(name, *compared):
     return {f"rms_{name}_percent": 100 * rms, f"rms_{name}_se_percent": 100 * error}
 
 
-def _of_full_contact(energies, humidities, study):
-    """Energies of a reading and of full contact, in the strips and at the humidities that both have."""
+def _common_energies(energies, humidities, study):
+    """Energies of a reading and of full contact, in common strips and at common humidities."""
     at, full, _ = full_contact.energies(study)
     strips = min(len(energies), len(full))
     return energies[:strips, np.isin(humidities, at)], full[:strips]
 
 
 def table(*data) -> Table:
-    """Numbers of every case, and a line for each reading; parameters as in ``_rows``."""
+    """Numbers of every case, and a line for each reading. Parameters as in ``_rows``."""
     frame = pd.DataFrame(_rows(*data))
     lines = frame.groupby(["pair", "vdw", "reading", "spacing_nm"], sort=False)
     return Table(frame, _CAPTION, pd.DataFrame([_line(*group) for group in lines]))
@@ -131,7 +131,7 @@ _COLUMNS_OF_PARTS = {
 
 
 def parts(studies: Mapping[str, xr.Dataset], full: Mapping[str, xr.Dataset]) -> Table:
-    """Parts of the error of the model at every humidity of full contact; parameters as in ``_rows``."""
+    """Parts of the error of the model at every humidity of full contact. Parameters as in ``_rows``."""
     rows = []
     for pair, study in studies.items():
         humidities, of_models = _energies_of_models(study, full[pair])
@@ -148,7 +148,7 @@ def parts(studies: Mapping[str, xr.Dataset], full: Mapping[str, xr.Dataset]) -> 
 
 
 def _energies_of_models(study, of_full):
-    """Humidities of full contact, and energies of the strips that all models have, with attraction of the solids."""
+    """Humidities of full contact, and energies of the strips common to all models, with attraction of the solids."""
     at, full, _ = full_contact.energies(of_full)
     known, by_model = np.isin(study.humidity.values, at), {"full": full}
     coarse, fine = (float(study.spacing[k]) for k in (0, -1))
@@ -172,7 +172,7 @@ _STYLES = {
 
 @styled
 def figure(*data) -> Figure:
-    """Change of the crack lengths by each reading, with attraction of the solids and without; as ``_rows``."""
+    """Change of the crack lengths by each reading, with and without attraction of the solids. Data as of ``_rows``."""
     frame, full = pd.DataFrame(_rows(*data)), data[1]
     pairs, media = (list(dict.fromkeys(frame[column])) for column in ("pair", "vdw"))
     figure, columns, lines = columns_of_panels(

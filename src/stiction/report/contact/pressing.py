@@ -1,4 +1,4 @@
-"""Table and figure of study pressing: adhesion after surfaces were pressed together, over that before."""
+"""Table and figure of study pressing: adhesion after pressing surfaces together, relative to before."""
 
 from collections.abc import Iterator, Mapping
 
@@ -33,7 +33,7 @@ _CAPTION = (
 
 
 def _rows(studies: Mapping[str, xr.Dataset]) -> Iterator[dict]:
-    """One row for each pair, press and humidity; the first press is adhesion alone, without pressure."""
+    """One row for each pair, press and humidity. The first press is adhesion alone, without pressure."""
     for pair, study in studies.items():
         fresh = study.fresh_energy.values
         after = [study.adhered_energy.values, *study.pressed_energy.transpose("step", "sample", "humidity").values]
@@ -46,7 +46,7 @@ def _rows(studies: Mapping[str, xr.Dataset]) -> Iterator[dict]:
 
 
 def _press(study, number):
-    """Means over the strips of a press; only its pressure, 0, if it is adhesion alone."""
+    """Means over the strips of a press. Only its pressure, 0, if it is adhesion alone."""
     columns = {"pressure_MPa": ("pressure", TO_MPA), "distance_nm": ("separation", TO_NM)}
     columns |= {"contact_percent": ("contact_share", 100), "at_hardness_percent": ("hardness_share", 100)}
     ratios = {}
@@ -59,7 +59,7 @@ def _press(study, number):
 
 
 def table(studies: Mapping[str, xr.Dataset]) -> Table:
-    """Numbers of every press and humidity, and a line for each press; parameters as in ``_rows``."""
+    """Numbers of every press and humidity, and a line for each press. Parameters as in ``_rows``."""
     frame = pd.DataFrame(_rows(studies))
     lines = [_line(*group) for group in frame.groupby(["pair", "press"], sort=False)]
     return Table(frame, _CAPTION.format(strips=frame.strips.max()), pd.DataFrame(lines))
@@ -80,7 +80,7 @@ def _line(key, rows):
 
 @styled
 def figure(studies: Mapping[str, xr.Dataset]) -> Figure:
-    """Ratio of the energies over the mean pressure, for each humidity; parameters as in ``_rows``."""
+    """Ratio of the energies against the mean pressure, for each humidity. Parameters as in ``_rows``."""
     frame = pd.DataFrame(_rows(studies))
     figure, columns, lines = columns_of_panels(len(studies), 1, at_most_double(1.3 * SINGLE), 3.0)
     for (panel,), pair in zip(columns, studies, strict=True):
@@ -101,7 +101,7 @@ def figure(studies: Mapping[str, xr.Dataset]) -> Figure:
 
 
 def _pairs(plan):
-    """Pairs that run and are pressed."""
+    """Pairs in the run and in the study of pressing."""
     known = plan.config["studies"]["pressing"]["distance_nm"]
     return [pair for pair in plan.humid_pairs if pair in known]
 

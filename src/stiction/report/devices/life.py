@@ -1,4 +1,4 @@
-"""The life of devices: what brings them into contact, whether they stick, what holds and what frees them."""
+"""Life of devices: causes of contact, adhesion then, and ways to free them."""
 
 from collections.abc import Mapping
 
@@ -8,8 +8,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from stiction.config.units import from_si
 from stiction.constants import FREE_FALL
-from stiction.life.holding import BREAKDOWN
+from stiction.contact.voltage import BREAKDOWN
 from stiction.plan.names import by_name
 from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN
 from stiction.report.style import (
@@ -25,12 +26,20 @@ from stiction.report.table import Table, table_stage
 from stiction.stages.devices.life import (
     AFTER,
     AT_VOLTAGE,
+    BESIDE,
     COLLAPSE,
+    DIMPLES,
+    FAST,
     FIELD,
+    ON_DIMPLES,
+    PULLED,
     QUESTIONS,
     RELEASED,
+    RESTORING,
     SHOCK,
+    TILTED,
     VOLTAGE,
+    WEDGE,
     Answer,
     answers_of,
 )
@@ -45,6 +54,7 @@ _UNITS = {
     "N m-1": (1.0, "N/m"),
     "J m-2": (TO_MJ, "mJ/m²"),
     "1": (100.0, "%"),
+    "rad": (from_si(1.0, "deg"), "°"),
 }
 #: What the answers are, for the table and for pages.
 CAPTION = (
@@ -86,7 +96,7 @@ def table(datasets: Mapping[str, xr.Dataset]) -> Table:
 
 
 def significant(value: float) -> str:
-    """Number with three significant digits and without an exponent; – for NaN.
+    """Number with three significant digits and without an exponent, – for NaN.
 
     Examples
     --------
@@ -105,12 +115,13 @@ def significant(value: float) -> str:
 
 
 def sentences(dataset: xr.Dataset) -> list[str]:
-    """The life of a device in words: what brings it into contact, what drying does, and many touchdowns."""
+    """Life of a device in words: causes of contact, drying, and many touchdowns."""
     answers, length = {answer.name: answer for answer in answers_of(dataset)}, float(dataset.length)
     at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
     said = [*_touching(answers, at), *_pulled_in(answers, potential), *_drying(answers, at, length)]
-    return [*said, *_biased(answers, potential), *_often(answers, int(dataset.touchdowns))]
+    said += [*_dimpled(answers), *_tilted(answers), *_biased(answers, potential), *_fast(answers)]
+    return [*said, *_often(answers, int(dataset.touchdowns))]
 
 
 def _touching(answers, at):
@@ -122,28 +133,52 @@ def _touching(answers, at):
 
 
 def _pulled_in(answers, potential):
-    """Whether its own voltage pulls a device in."""
+    """Sentence on the pull-in of a device by its own voltage."""
     if VOLTAGE not in answers or potential < answers[VOLTAGE].low:
         return []
     return [f"Its own voltage of {significant(potential)} V pulls it in."]
 
 
+def _dimpled(answers):
+    """Whether a beam sticks on its dimples, and whether it touches beside them."""
+    if DIMPLES not in answers:
+        return []
+    pulls, holds = answers[PULLED], answers[DIMPLES]
+    often = max((one for one in answers.values() if one.name.startswith(f"{ON_DIMPLES}_")), key=lambda one: one.high)
+    said = (
+        f"Its dimples together are pulled off by {_low(pulls)} µN and held by {_low(holds)} µN on average: "
+        f"{_low(often)} to {_high(often)} % of the beams stick on them in the worst of its air."
+    )
+    if answers[BESIDE].low > 0:
+        return [f"{said} Beside them, {_low(answers[BESIDE])} % of the gap is left."]
+    return [f"{said} But it touches beside them, where they do not protect it."]
+
+
+def _tilted(answers):
+    """Force on a stopper at its tilts, and the tilt that makes it that of a wedge."""
+    if TILTED not in answers:
+        return []
+    one, wedge = answers[TILTED], answers[WEDGE]
+    ends, limit = (" to ".join(dict.fromkeys((_low(each), _high(each)))) for each in (one, wedge))
+    return [f"Its {one.what}, is {ends} µN. Beyond a tilt of {limit}°, a longer side of its area hardly holds more."]
+
+
 def _biased(answers, potential):
-    """What a voltage does to a device that touches, and whether its dielectric stands the field."""
+    """Effect of a voltage on a touching device, and on its dielectric."""
     if AT_VOLTAGE not in answers:
         return []
     one, field = answers[AT_VOLTAGE], answers[FIELD]
     is_length, on = one.unit == "m", f"While {significant(potential)} V are on,"
-    said = [
-        f"{on} its safe length is {_low(one)} µm." if is_length else f"{on} up to {_high(one)} µN hold it in addition."
-    ]
+    what, unit = ("its safe length is", "µm") if is_length else ("they hold it with a further", "µN")
+    ends = list(dict.fromkeys(end for end, value in ((_low(one), one.low), (_high(one), one.high)) if value == value))
+    said = [f"{on} {what} {' to '.join(ends)} {unit}."]
     if field.high > BREAKDOWN:
         said.append(f"The field in its dielectric, {_high(field)} V/nm, is above 1 V/nm, where thin oxides break down.")
     return said
 
 
 def _drying(answers, at, length):
-    """Which beams stand while liquids dry, what becomes of one of this length, and what comes free afterwards."""
+    """Beams standing while liquids dry, the fate of one of this length, and beams releasing afterwards."""
     standing = _liquids(answers, COLLAPSE)
     if not standing:
         return []
@@ -167,7 +202,7 @@ _FATES = {
 
 
 def _fate(answer, length):
-    """What becomes of a beam of a length [m] while a liquid dries, key of `_FATES`."""
+    """Fate of a beam of a length [m] while a liquid dries, key of `_FATES`."""
     if not length > answer.low:
         return "stands"
     return "may" if length <= answer.high else "collapses"
@@ -181,6 +216,17 @@ def _inverted(values):
 def _liquids(answers, name):
     """Answers of one kind by the liquid that they are about."""
     return {key.removeprefix(f"{name}_"): one for key, one in answers.items() if key.startswith(f"{name}_")}
+
+
+def _fast(answers):
+    """Safe length, or restoring force, of fast separation in words, if it differs from slow and a bound is known."""
+    one = answers.get(FAST) or answers.get(RESTORING)
+    if one is None or not one.low < one.high < np.inf:
+        return []
+    needs = f"its safe length can fall from {_high(one)} to {_low(one)} µm"
+    if one.unit == "N":
+        needs = f"it can need a restoring force of {_high(one)} instead of {_low(one)} µN"
+    return [f"If it separates faster than water evaporates, as in a shock, {needs}."]
 
 
 def _often(answers, touchdowns):
@@ -213,7 +259,7 @@ def _high(answer: Answer) -> str:
 
 @styled
 def figure(datasets: Mapping[str, xr.Dataset]) -> Figure:
-    """Lengths of beams, or forces of stoppers, that limit their lives, on one axis; a panel for each device."""
+    """Limits of the lives of devices on one axis: lengths of beams, or forces of stoppers, a panel for each device."""
     rows = {name: _rows(dataset) for name, dataset in datasets.items()}
     height = _AROUND + _ROW * max(map(len, rows.values()))
     made, columns, lines = columns_of_panels(len(rows), 1, at_most_double(1.6 * SINGLE), height)
@@ -226,7 +272,7 @@ def figure(datasets: Mapping[str, xr.Dataset]) -> Figure:
 
 
 def _rows(dataset):
-    """Answers of a device that are lengths or, for a stopper, forces, and finite."""
+    """Finite answers of a device in lengths or, for a stopper, forces."""
     unit = "m" if np.isfinite(float(dataset.length)) else "N"
     return [one for one in answers_of(dataset) if one.unit == unit and np.isfinite(one.high)]
 
@@ -246,22 +292,25 @@ def _bars(panel: Axes, answers, length):
     panel.set(xlabel=f"{what} [{unit}]", xlim=(0, 1.05 * panel.dataLim.x1), ylim=(-0.5, len(answers) - 0.3), yticks=[])
 
 
+#: What table and figure declare alike.
+_OF_ALL: dict = {
+    "inputs": lambda plan, at: {"life": by_name("devices/life", plan.devices.sections)},
+    "jobs": lambda plan: [{}] if plan.devices.sections else [],
+    "targets": ("devices",),
+}
+
 STAGES = (
     table_stage(
         "life",
         "what brings devices into contact, holds and frees them",
-        inputs=lambda plan, at: {"life": by_name("devices/life", plan.devices.sections)},
         compute=lambda data: table(data["life"]),
-        jobs=lambda plan: [{}] if plan.devices.sections else [],
-        targets=("devices",),
+        **_OF_ALL,
     ),
     figure_stage(
         "life",
         "what limits the life of devices, on one axis",
         "Devices",
-        inputs=lambda plan, at: {"life": by_name("devices/life", plan.devices.sections)},
         compute=lambda data: figure(data["life"]),
-        jobs=lambda plan: [{}] if plan.devices.sections else [],
-        targets=("devices",),
+        **_OF_ALL,
     ),
 )

@@ -12,20 +12,23 @@ import yaml
 from stiction.config.cases import DRY, case_id
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of, restoring_force
 from stiction.config.materials import material_of
+from stiction.devices.risk import one_in
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
 from stiction.report import html
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import figures as figures_devices
-from stiction.report.devices import life, own_length, sentences
+from stiction.report.devices import first_screen, life, own_length, sentences
 from stiction.report.devices import tables as tables_devices
-from stiction.report.format import MISSING, humidity_text, one_in
+from stiction.report.drawings.devices import device_drawing
+from stiction.report.format import MISSING, humidity_text
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import STYLE
+from stiction.report.surfaces.words import described
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import provenance
@@ -42,24 +45,30 @@ _OF_MAPS = (
     "meets it; dashed: the safe value does, with a confidence of 95 %. Dots: computed points; cross: the surface as it "
     "is given.",
 )
+#: Why a table of safe lengths and one of a budget have cells without a number.
+_MISSING_LENGTHS = (
+    "all drawn surfaces have the same tips, whose scatter is part of the error due to the number of beams; or too few "
+    "beams stick for an estimate"
+)
+_MISSING_EFFECTS = "this input does not act here, or too few of the simulated devices stick to show what it changes"
 #: Terms that pages explain.
 _GLOSSARY = Path(__file__).with_name("terms.yaml")
 
 
 @cache
 def _terms():
-    """Terms by what a page has."""
+    """Terms by part of a page."""
     return _read(yaml.safe_load(_GLOSSARY.read_text(encoding="utf-8")))
 
 
 def _read(part):
-    """A section of the glossary, or the text of a term, whose parts are joined."""
+    """Section of the glossary, or the text of a term with its parts joined."""
     if isinstance(part, dict):
         return {name: _read(inner) for name, inner in part.items()}
     return part if isinstance(part, str) else " ".join(part)
 
 
-def of_beam(
+def beam_page(
     name: str,
     section: Mapping,
     safe_lengths: Mapping[float, xr.Dataset],
@@ -90,18 +99,18 @@ def of_beam(
     """
     cases = {(name, humidity): dataset for humidity, dataset in safe_lengths.items()}
     table = tables_devices.safe_lengths(cases, warnings, errors).cells.drop(columns="device")
-    sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}))]
+    sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}), _MISSING_LENGTHS)]
     if charts:
         axis = {(name, humidity): dataset for humidity, dataset in charts.items()}
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets, errors)
-    of_shortest = sentences.of_shortest(safe_lengths, budgets)
+    of_shortest = sentences.shortest_budgets(safe_lengths, budgets)
     decided = tables_budget.decided(of_shortest.values(), section.get("assumed", ()))
     answer = [*own_length.sentences(safe_lengths, of_shortest), *sentences.few_sentences(safe_lengths)]
     answer += [sentences.build_sentence(safe_lengths, budgets), *decided, *_rough_enough(roughness)]
     if test_beams is not None:
-        sections.append(_of_test_beams(name, test_beams))
+        sections.append(_test_beam_section(name, test_beams))
         answer.append(tables_test_beams.built(test_beams))
     answer += [sentences.safe_sentence(humidity, dataset) for humidity, dataset in safe_lengths.items()]
     answer += model_errors.sentences(name, errors)
@@ -119,10 +128,13 @@ def of_beam(
         | (terms["charts"] if charts else {})
         | _words_of_budgets(budgets)
     )
-    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
+    summary = _with_model_error(
+        first_screen.beam_screen(section, safe_lengths, budgets, listed, test_beams), name, errors
+    )
+    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary)
 
 
-def of_stopper(
+def stopper_page(
     name: str,
     section: Mapping,
     stopper: xr.Dataset,
@@ -132,25 +144,34 @@ def of_stopper(
     errors: Mapping[str, xr.Dataset] | None = None,
     roughness: xr.Dataset | None = None,
 ) -> Page:
-    """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
+    """Page of a stopper. Parameters as in `beam_page`, with one dataset of stage stoppers and a list of warnings."""
     table = tables_budget.stoppers({name: stopper}, {name: []}, errors).cells.drop(columns=["device"])
     sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: stopper}, {}))]
     sections += [*_sure(name, budgets, errors), *_how_rough(name, roughness)]
     decided = tables_budget.decided(budgets.values(), section.get("assumed", ()))
     answer, listed = [sentences.verdict(stopper), *decided, *_rough_enough(roughness)], list(warnings)
     if test_beams is not None:
-        sections.append(_of_test_beams(name, test_beams))
+        sections.append(_test_beam_section(name, test_beams))
         answer.append(tables_test_beams.built(test_beams))
         listed += tables_test_beams.warnings(test_beams)
     answer += [sentences.stuck_sentence(*row, force=float(stopper.restoring_force)) for row in shares_stuck(stopper)]
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
     answer += [*sentences.safe_force_sentences(stopper), *worst, *model_errors.sentences(name, errors)]
     words = _terms()["stoppers"] | (_terms()["worst_humidity"] if worst else {}) | _words_of_budgets(budgets)
-    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words)
+    summary = _with_model_error(first_screen.stopper_screen(section, stopper, budgets, listed), name, errors)
+    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary)
+
+
+def _with_model_error(summary, name, errors):
+    """First screen with the error of the model of the contact, beside a number."""
+    if not summary.basis:
+        return summary
+    unstated = "The error of the model of the contact is not stated: run.studies leaves out full_contact."
+    return replace(summary, basis=[*summary.basis, *(model_errors.sentences(name, errors)[:1] or [unstated])])
 
 
 def _words_of_budgets(budgets):
-    """Terms that the budgets use."""
+    """Terms used by the budgets."""
     if not budgets:
         return {}
     words = dict(_terms()["budgets"])
@@ -167,7 +188,7 @@ def _title(name, section):
 def _facts_of(section):
     """Dimensions and conditions of a device, by name."""
     facts = {"surfaces": f"pair {section['pair']}"} | section.get("surfaces", {})
-    stated = section if kind_of(section).is_beam else section | {"restoring_force_uN": restoring_force(section)}
+    stated = _with_force(section)
     for key in (key for key in KEYS if key in stated):
         (name, unit), value = KEYS[key], stated[key]
         values = value if isinstance(value, list) else [value]
@@ -177,8 +198,13 @@ def _facts_of(section):
     return facts | _asked(section)
 
 
+def _with_force(section):
+    """Section of a device, of a stopper with its restoring force."""
+    return section if kind_of(section).is_beam else section | {"restoring_force_uN": restoring_force(section)}
+
+
 def _asked(section):
-    """What is required of a device and over which roughness it is asked for, by name; nothing if it is not asked."""
+    """Requirement of a device and its range of roughness, by name, or nothing without a requirement."""
     if "requirement" not in section:
         return {}
     required, over = section["requirement"], section["roughness"]
@@ -195,7 +221,7 @@ def _asked(section):
 
 
 def _sure(name, budgets, errors):
-    """Section on the uncertainty of the result and what to measure better; none if no input is uncertain."""
+    """Section on the uncertainty of the result and on measurements, none if no input is uncertain."""
     if not budgets:
         return []
     cases = {(name, *key): dataset for key, dataset in budgets.items()}
@@ -205,11 +231,11 @@ def _sure(name, budgets, errors):
     ]
     said += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
     cells, drawn = _side_by_side(tables_budget.budget(cases, errors).cells), figures_budget.budget(cases)
-    return [Section("Uncertainty, and what should be measured better", said, cells, drawn)]
+    return [Section("Uncertainty, and what should be measured better", said, cells, drawn, _MISSING_EFFECTS)]
 
 
-def _of_test_beams(name, update):
-    """Section on what the test beams of a device say."""
+def _test_beam_section(name, update):
+    """Section on the evidence of the test beams of a device."""
     said = [
         tables_test_beams.explained(update),
         *tables_test_beams.combinations(update),
@@ -221,12 +247,12 @@ def _of_test_beams(name, update):
 
 
 def _rough_enough(roughness):
-    """Which roughness suffices, among the first sentences; nothing if this was not asked."""
+    """Sufficient roughness, among the first sentences, or nothing without a requirement."""
     return [] if roughness is None else tables_roughness.briefly(roughness)
 
 
 def _how_rough(name, roughness):
-    """Section on how rough a surface must be; none if this was not asked."""
+    """Section on how rough a surface must be, none without a requirement."""
     if roughness is None:
         return []
     cells = tables_roughness.roughness({name: roughness}).cells.drop(columns="device")
@@ -250,12 +276,12 @@ def _side_by_side(cells):
 
 
 def _inputs(plan, at):
-    """Everything that the page of a device shows."""
+    """Inputs of the page of a device."""
     devices, section = plan.devices, plan.config["devices"][at.device]
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
     budgets = budgets_of(plan, at.device) if at.device in devices.budgeted else {}
     own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
-    own |= {"life": f"devices/life/{at.device}"} | model_errors.of_devices(plan, at.device)
+    own |= {"life": f"devices/life/{at.device}"} | model_errors.error_inputs(plan, at.device)
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
     own |= {"style": File(STYLE), "templates": [File(_GLOSSARY), *html.files(TEMPLATE)]}
@@ -275,7 +301,7 @@ def _settings(plan, at):
     names = {f"surface of the {part}": pair[part] for part in ("beam", "substrate")}
     materials = [material_of(plan.config, name) for name in names.values()]
     surfaces = {
-        part: f"{name}: {sentences.described(plan.config['surfaces'][name], material)}"
+        part: f"{name}: {described(plan.config['surfaces'][name], material)}"
         for (part, name), material in zip(names.items(), materials, strict=True)
     }
     not_modelled = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
@@ -288,11 +314,12 @@ def _page(data, at, settings):
     warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
     more = {name: data.get(name) for name in ("test_beams", "errors", "roughness")}
     if "stopper" in data:
-        page = of_stopper(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
+        page = stopper_page(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
-        page = of_beam(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
-    return replace(with_life(page, at.device, data["life"]), not_modelled=settings["not_modelled"])
+        page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
+    drawing = device_drawing(_with_force(settings)).svg
+    return replace(with_life(page, at.device, data["life"]), not_modelled=settings["not_modelled"], drawing=drawing)
 
 
 def with_life(page: Page, name: str, answers: xr.Dataset) -> Page:

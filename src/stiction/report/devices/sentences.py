@@ -1,68 +1,42 @@
-"""Sentences on the pages of devices: the length to build, the force that suffices, and who sticks in which air."""
+"""Sentences on the pages of devices: the length to build, the sufficient force, and devices stuck in each air."""
 
 from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
 
-from stiction.devices.risk import Basis, samples_for
-from stiction.report.format import UM, UN, airs, one_in
+from stiction.devices.risk import Basis, one_in, samples_for
+from stiction.report.format import UM, UN, airs
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import EITHER
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
 
-#: Keys of a surface, what they are called and their unit.
-_OF_SURFACES = {
-    "rms_nm": ("rms", " nm"),
-    "skewness": ("skewness", ""),
-    "kurtosis": ("kurtosis", ""),
-    "mean_summit_radius_um": ("mean radius of summits", " µm"),
-    "summit_density_per_um2": ("density of summits", " per µm²"),
-}
-#: The same of its material.
-_OF_MATERIALS = {"contact_angle_deg": ("contact angle", "°"), "coating_nm": ("coating", " nm")}
 
-
-def described(surface: Mapping, material: Mapping) -> str:
-    """A surface of the configuration by its numbers, or by its scans, and by its material.
-
-    Examples
-    --------
-    >>> described({"rms_nm": 3.4, "skewness": -0.76, "kurtosis": 3.9}, {})
-    'rms 3.4 nm, skewness -0.76, kurtosis 3.9'
-    >>> described({"rms_nm": 3.4, "material": "FDTS"}, {"contact_angle_deg": 110, "coating_nm": 1.2})
-    'rms 3.4 nm, FDTS, contact angle 110°, coating 1.2 nm'
-    """
-    stated = _stated(surface, _OF_SURFACES)
-    if "scans" in surface:
-        files = len(surface["scans"]["files"])
-        stated.append(f"described by {files} {'scan' if files == 1 else 'scans'}")
-    stated += [surface["material"]] if "material" in surface else []
-    return ", ".join(stated + _stated(material, _OF_MATERIALS))
-
-
-def _stated(section, words):
-    """Numbers that a section states, in words."""
-    return [f"{name} {section[key]:g}{unit}" for key, (name, unit) in words.items() if key in section]
+def length_to_build(
+    safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
+) -> tuple[float, float, float]:
+    """Least safe length [m], uncertainty of its logarithm due to the measurements, and the length less twice it [m]."""
+    least = min(_safe(dataset).item() for dataset in safe_lengths.values())
+    totals = [budget_of(budget).total for budget in shortest_budgets(safe_lengths, budgets).values()]
+    total = max((total for total in totals if np.isfinite(total)), default=0.0)
+    return least, total, float(np.exp(-2 * total)) * least
 
 
 def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> str:
-    """The length to build for all humidities of a device, for the middle one of the shares.
+    """Length to build for all humidities of a device, for the middle fraction.
 
-    It is the least safe length, less twice the largest uncertainty of what holds the shortest devices, if any is known;
-    that is one of the logarithm of the length.
+    It is the least safe length, less twice the largest uncertainty of what holds the shortest devices, if any is known.
 
     Parameters
     ----------
     safe_lengths, budgets : dict
-        As in `stiction.report.devices.pages.of_beam`.
+        As in `stiction.report.devices.pages.beam_page`.
     """
-    least = min(_safe(dataset).item() for dataset in safe_lengths.values())
-    totals = [budget_of(budget).total for budget in of_shortest(safe_lengths, budgets).values()]
-    total = max((total for total in totals if np.isfinite(total)), default=0.0)
-    part, few = np.exp(-2 * total), one_in(_chosen(_any(safe_lengths)))
+    least, total, length = length_to_build(safe_lengths, budgets)
+    totals = [budget_of(budget).total for budget in shortest_budgets(safe_lengths, budgets).values()]
+    few = one_in(_chosen(_any(safe_lengths)))
     sentence = (
-        f"Build it no longer than {part * least / UM:.0f} µm: then at most {few} sticks "
+        f"Build it no longer than {length / UM:.0f} µm: then at most {few} sticks "
         f"{airs(safe_lengths)} (95 % confidence, given the drawn surfaces)."
     )
     if not np.isfinite(totals).all():
@@ -71,14 +45,15 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
         sentence += " No uncertainty of the measurements is subtracted, because none is stated."
     if total == 0:
         return sentence
+    less = f"{100 * (1 - length / least):.2g} %"
     return (
-        f"{sentence} The shortest safe length, {least / UM:.0f} µm, is reduced by {100 * (1 - part):.2g} %, twice the "
-        "uncertainty due to the measurements."
+        f"{sentence} The shortest safe length, {least / UM:.0f} µm, is reduced by {less}, twice the uncertainty due to "
+        "the measurements."
     )
 
 
 def _any(safe_lengths):
-    """One of the datasets of a device, which have the same shares and shapes."""
+    """One of the datasets of a device. All have the same shares and shapes."""
     return next(iter(safe_lengths.values()))
 
 
@@ -88,27 +63,25 @@ def _safe(dataset):
 
 
 def _chosen(dataset):
-    """The share of stuck devices for which sentences state lengths: the middle one [-]."""
+    """Fraction of stuck devices for lengths in sentences: the middle one [-]."""
     return float(dataset.share[dataset.sizes["share"] // 2])
 
 
-def of_shortest(
+def shortest_budgets(
     safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
 ) -> dict[tuple, xr.Dataset]:
-    """Budgets of what holds the shortest devices: of tips, if there are tips."""
+    """Budgets of the shortest stuck devices: of tips, if there are tips."""
     of_tips = EITHER in _any(safe_lengths)["shape"].values
     return {key: budget for key, budget in budgets.items() if ("tip" in key) == of_tips}
 
 
 def verdict(stopper: xr.Dataset) -> str:
-    """Whether the restoring force of a stopper suffices, for the smallest share that its patches can bound."""
+    """Answer on the restoring force of a stopper, for the smallest fraction with a bound from its patches."""
     force, where = float(stopper.restoring_force), airs(stopper.humidity.values)
     stated, any_air = stopper.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(stopper)[1]
-    sampled = stated.where(stopper.basis == Basis.SAMPLED)
-    known = [float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))]
-    if not known:
+    share = bounded_share(stopper)
+    if share is None:
         return _verdict_of_few(stopper)
-    share = min(known)
     at_these, anywhere = (float(needed.sel(share=share)) for needed in (stated, any_air))
     head = f"The restoring force of {force / UN:g} µN"
     tail = f"at most {one_in(share)} sticks (95 % confidence, given the drawn surfaces)."
@@ -121,8 +94,15 @@ def verdict(stopper: xr.Dataset) -> str:
     return f"{head} suffices {' and '.join(dry + humid)}: {tail}"
 
 
+def bounded_share(stopper: xr.Dataset) -> float | None:
+    """Smallest fraction with a bound from the patches of a stopper alone at all its humidities, or none."""
+    stated = stopper.safe_force.sel(part="safe").max("humidity", skipna=False)
+    sampled = stated.where(stopper.basis == Basis.SAMPLED)
+    return min((float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))), default=None)
+
+
 def _verdict_of_few(stopper):
-    """The verdict where there are too few patches to bound any of the shares from above."""
+    """Answer with too few patches to bound any of the fractions from above."""
     (humidity, _, low, _), share = max(shares_stuck(stopper), key=lambda row: row[2]), float(stopper.share.max())
     if low <= share:
         return "There are too few patches to say whether the restoring force suffices."
@@ -134,7 +114,7 @@ def _verdict_of_few(stopper):
 
 
 def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
-    """The safe lengths of a device at one humidity in words, for the middle one of the shares."""
+    """Safe lengths of a device at one humidity in words, for the middle fraction."""
     share = _chosen(dataset)
     lengths = dataset.safe_length.sel(share=share) / UM
     shortest, longest = float(lengths.min()), float(lengths.max())
@@ -149,17 +129,17 @@ def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
 
 
 def few_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
-    """How many devices stick at most at each humidity at which hardly any does."""
+    """Largest fractions of stuck devices, at each humidity with hardly any stuck."""
     return [few_sentence(humidity, one) for humidity, one in safe_lengths.items() if _few_stick(one)]
 
 
 def _few_stick(dataset):
-    """Whether the safe length of the chosen share is as long as the simulated devices, or that of flat surfaces."""
+    """Whether the safe length of the chosen fraction is as long as the simulated devices, or as on flat surfaces."""
     return dataset.basis.sel(share=_chosen(dataset)).values[-1] in (Basis.LONGEST, Basis.FLAT)
 
 
 def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
-    """How many devices stick at most at one humidity, in words, where so few do that no smaller share is known."""
+    """Largest fraction of stuck devices at one humidity, in words, if so few stick that no smaller one is known."""
     held, number, share = dataset.isel(shape=-1), int(dataset.beams), _chosen(dataset)
     shortest, most, reach = float(held.shortest), float(held.most_stuck), float(held.reach)
     none = f"shorter than {shortest / UM:.0f} µm " if np.isfinite(shortest) else ""
@@ -176,7 +156,7 @@ def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
 
 
 def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force: float) -> str:
-    """P(stuck) of a stopper at one humidity in words; restoring force [N].
+    """P(stuck) of a stopper at one humidity in words, with its restoring force [N].
 
     Examples
     --------
@@ -196,7 +176,7 @@ _ON = {
 
 
 def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
-    """Restoring forces that would suffice at the humidities of a stopper, and in any air of its fine axis.
+    """Sufficient restoring forces at the humidities of a stopper, and in any air of its fine axis.
 
     For the shares that its patches can bound.
     """
@@ -212,7 +192,7 @@ def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
 
 
 def worst_sentence(stopper: xr.Dataset) -> str:
-    """The worst humidity of a stopper in words."""
+    """Worst humidity of a stopper in words."""
     worst = float(stopper.worst_humidity)
     share, least, most = (100 * share for share in in_any_air(stopper)[0])
     stuck = f" In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
@@ -229,7 +209,7 @@ def worst_sentence(stopper: xr.Dataset) -> str:
 
 
 def _range(stopper):
-    """Range of humidities along which the worst was sought, in words."""
+    """Range of humidities in the search of the worst, in words."""
     low, high = ends(stopper)
     return f" from {low:g} to {high:g}"
 

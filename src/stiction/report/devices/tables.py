@@ -1,4 +1,4 @@
-"""Tables of devices: lengths of beams that come free, at their humidities and along the axes of charts."""
+"""Tables of devices: lengths of releasing beams, at their humidities and along the axes of charts."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -20,58 +20,57 @@ from stiction.stages.devices.device_warnings import curves, not_modelled
 from stiction.stages.devices.end_states import END_STATES
 
 _SAFE_LENGTHS = (
-    "Safe length: the largest length at which, with a confidence of 95 % given the drawn surfaces, at most a share p "
-    "of the devices sticks. A cantilever is held by its beam (S-shape) or by its tip alone (arc), a bridge by its "
-    "middle. Estimate: length at "
-    "which a share p sticks, with its standard errors due to the number of beams and to that of sampled surfaces. "
-    "Every beam has its own tip, whose scatter is part of the first. Basis: sampled, by order statistics; fitted, by "
-    "a line through the shortest 5 %; extrapolated, beyond what was verified."
+    "Safe length: the largest length with at most a fraction p of the devices stuck, with a confidence of 95 % given "
+    "the drawn surfaces. A cantilever sticks along its beam (S-shape) or at its tip alone (arc), a bridge at its "
+    "middle. Estimate: length with a fraction p stuck, with standard errors due to the number of beams and to the "
+    "number of sampled surfaces. Every beam has its own tip, and the scatter of the tips is part of the first error. "
+    "Basis: sampled, by order statistics; fitted, by a line through the shortest 5 %; extrapolated, by this line "
+    "beyond its verified range."
 )
 #: What other bases of a safe length mean, where they occur.
 _FEW = {
-    Basis.LONGEST: "longest, the longest simulated devices, of which at most a share p sticks",
+    Basis.LONGEST: "longest, the longest simulated devices, with at most a fraction p stuck",
     Basis.FLAT: "flat, the length that sticks on flat surfaces, as too few of the simulated devices stick for a line",
 }
 _BOUND = (
-    "Bound: for a cantilever, the length that "
-    "sticks in saturated air, where water fills all gaps; for a bridge, the length below which even flooded flats in "
-    "contact do not hold its middle at this humidity, on which this bound depends, and up to which it is safe. That of "
-    "a tip bounds tips on average: if roughness follows its slope, a single one holds harder than flooded flats, and "
-    "a line through the lengths of few beams ends below."
+    "Bound: for a cantilever, the sticking length of flat surfaces in saturated air, with water in all gaps. For a "
+    "bridge: no surface, however smooth, can hold a bridge shorter than this at this humidity. For a tip the bound "
+    "holds only on average. A single rough tip can stick harder than flat, flooded surfaces, so a fitted length may "
+    "fall below it."
 )
 _DRY_BOUND = (
-    "Bound: for a cantilever, the length that sticks on flats in contact, as no water condenses; for a bridge, the "
-    "length below which even such flats do not hold its middle, and up to which it is safe. That of a tip bounds tips "
-    "on average: if roughness follows its slope, a single one holds harder than flats, and a line through the lengths "
-    "of few beams ends below."
+    "Bound: for a cantilever, the sticking length of flats in contact, as no water condenses. For a bridge: no "
+    "surface, however smooth, can hold a bridge shorter than this. For a tip the bound holds only on average. A single "
+    "rough tip can stick harder than flats, so a fitted length may fall below it."
 )
 _CHART = (
-    "Safe length of beams of the thicknesses and gaps of a chart over the relative humidity: the largest length at "
-    "which, with a confidence of 95 % given the drawn surfaces, at most a share p sticks. From: finite elements, or a "
-    "power law between them, with its largest error at beams to which it was not fitted."
+    "Safe length of beams of the thicknesses and gaps of a chart against relative humidity: the largest length with at "
+    "most a fraction p stuck, with a confidence of 95 % given the drawn surfaces. From: finite elements, or a power "
+    "law between them, with its largest error at beams outside its fit."
 )
 _CHART_BOUND = (
-    "Bound: for a cantilever, the "
-    "length that sticks where water fills all gaps; for a bridge, that below which even flooded flats do not hold its "
-    "middle at this humidity. A single rough tip may hold a shorter beam than flooded flats do."
+    "Bound: for a cantilever, the sticking length of flat surfaces with water in all gaps. For a bridge: no surface, "
+    "however smooth, can hold a bridge shorter than this at this humidity. A single rough tip can hold a shorter beam "
+    "than flooded flats."
 )
 _DRY_CHART_BOUND = (
-    "Bound: for a cantilever, the length that sticks on flats in contact, as no water condenses; for a bridge, that "
-    "below which even such flats do not hold its middle. A single rough tip may hold a shorter beam than flats do."
+    "Bound: for a cantilever, the sticking length of flats in contact, as no water condenses. For a bridge: no "
+    "surface, however smooth, can hold a bridge shorter than this. A single rough tip can hold a shorter beam than "
+    "flats."
 )
 _CHART_WARNINGS = "The warnings are about the shortest length of each thickness and gap."
 #: Ends what is said about bounds if water condenses in some cases only.
-_WHERE_DRY = "Where no water condenses, bounds are those of flats in contact."
+_WHERE_DRY = "Without condensation, bounds are those of flats in contact."
 
 #: P(stuck) of a beam at the length that its device states.
 _AT_LENGTH = (
-    "P(stuck): share of the devices that stick at the length that they have, with its 95 % band given the drawn "
-    "surfaces, and the standard error due to the number of these."
+    "P(stuck): fraction of the devices stuck at their given length, with its 95 % band given the drawn surfaces, and "
+    "the standard error due to the number of these surfaces."
 )
 
 
 def _at_length(dataset: xr.Dataset) -> dict[str, float]:
-    """Columns of a row of the table of safe lengths, from a dataset of one shape; none without a stated length."""
+    """Columns of a row of the table of safe lengths, from a dataset of one shape, none without a given length."""
     if "length_of_device" not in dataset:
         return {}
     stuck, low, high = map(float, dataset.stuck_at_length)
@@ -81,7 +80,7 @@ def _at_length(dataset: xr.Dataset) -> dict[str, float]:
 
 
 def _percent(stuck, low, high, error):
-    """A share with its band and error in percent; – for devices without a length."""
+    """Fraction with its band and error in percent, – for devices without a length."""
     if np.isnan(stuck):
         return MISSING
     surfaces = f", ± {100 * error:.2g}" if error > 0 else ""
@@ -100,7 +99,7 @@ def safe_lengths(
     errors: Mapping[str, xr.Dataset] | None = None,
     not_modelled: str = "",
 ) -> Table:
-    """Safe lengths of all beams, one row per device, humidity, shape and share; errors of the model are by device.
+    """Safe lengths of all beams, one row per device, humidity, shape and share. Errors of the model are by device.
 
     The caption ends with what is not in the model.
     """
@@ -110,7 +109,7 @@ def safe_lengths(
         for shape in map(str, dataset["shape"].values):
             head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[shape].by}
             head |= _at_length(dataset.sel(shape=shape))
-            last = model_errors.of_device(errors, device, humidity, shape)
+            last = model_errors.device_change(errors, device, humidity, shape)
             last |= {"warnings": " ".join(warnings[device, humidity, shape])}
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
@@ -129,7 +128,7 @@ def safe_lengths(
 
 
 def _few(datasets):
-    """What lengths rest on where few devices stick; nothing where enough of them do."""
+    """Basis of lengths with few stuck devices, or nothing if enough of them stick."""
     bases = {str(basis) for dataset in datasets.values() for basis in dataset.basis.values.flat}
     if not (found := [text for basis, text in _FEW.items() if basis in bases]):
         return []
@@ -137,7 +136,7 @@ def _few(datasets):
 
 
 def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where_dry: str) -> str:
-    """What the bounds of some cases are: of humid air, with what is different where no water condenses, or of dry air.
+    """Meaning of the bounds of some cases: of humid air, with a difference without condensation, or of dry air.
 
     Cases have datasets with the height of their film, which is zero where no water condenses.
     """
@@ -148,7 +147,7 @@ def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where
 
 
 def _caption(text, warnings, not_modelled):
-    """Caption with what is not modelled and, below each other, numbered warnings."""
+    """Caption with missing effects and, below each other, numbered warnings."""
     listed = with_numbers(warnings)
     return with_list(" ".join([text, not_modelled, *(["Warnings:"] if listed else [])]), listed)
 
@@ -191,7 +190,7 @@ def chart(
     warnings: Mapping[tuple[str, float, float, str], list],
     not_modelled: str = "",
 ) -> Table:
-    """Safe lengths along the axes of all charts, curve by curve; a line of text has the lengths of all shares.
+    """Safe lengths along the axes of all charts, curve by curve. A line of text has the lengths of all shares.
 
     Warnings are by name, thickness [m], gap [m] and shape. The caption ends with what is not in the model.
     """
@@ -212,7 +211,7 @@ def chart(
 
 
 def _beam(point):
-    """Size of a beam of a chart, what its lengths come from, and its limit."""
+    """Size of a beam of a chart, the source of its lengths, and its limit."""
     computed = bool(point.by_elements)
     return {
         "thickness_um": round(float(point.thickness) / UM, 9),  # as in the configuration
@@ -242,13 +241,13 @@ def _beam_as_text(beam, lengths):
 STAGES = (
     table_stage(
         "safe_lengths",
-        "lengths of beams that come free",
+        "lengths of releasing beams",
         inputs=lambda plan, at: (
             {
                 "lengths": by_case("devices/safe_lengths", plan.devices.cases),
                 "warnings": device_warnings.files_of(*plan.devices.beams),
             }
-            | model_errors.of_devices(plan, *plan.devices.beams)
+            | model_errors.error_inputs(plan, *plan.devices.beams)
         ),
         settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.beams)},
         compute=lambda data, settings: safe_lengths(
@@ -259,7 +258,7 @@ STAGES = (
     ),
     table_stage(
         "chart",
-        "safe length over the relative humidity",
+        "safe length against relative humidity",
         inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.charted)},
         settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.charted)},
         compute=lambda data, settings: chart(data["charts"], device_warnings.read(data["warnings"]).curves, **settings),

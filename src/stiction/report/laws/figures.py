@@ -29,7 +29,7 @@ _DOTTED = {"color": "0.3", "linestyle": ":", "linewidth": 0.8}
 
 
 def typical(fit: xr.Dataset, kept: int) -> int:
-    """Number of the sample, among the first ``kept``, whose law has the median error of these."""
+    """Number of the sample of median error among the first ``kept``."""
     # ASSUME: the paper's typical curve is one of median error.
     errors = fit.curve_error.sel(sample=slice(0, kept - 1))
     return int(errors.sample[np.argsort(errors.values)[errors.size // 2]])
@@ -82,7 +82,7 @@ def _components(panel, vector, limit):
 
 @styled
 def force_curves(pairs: Mapping[str, tuple[xr.Dataset, xr.Dataset, np.ndarray]]) -> Figure:
-    """Figure 12: force curves of Gaussian and of non-Gaussian surfaces, and those that the chaos model generates.
+    """Figure 12: force curves of Gaussian and of non-Gaussian surfaces, and curves from the chaos model.
 
     Each pair has its datasets of stage forces for models G and NG, and the generated laws (n, 4).
     """
@@ -119,7 +119,7 @@ def _enlarged(panel, forces, depth):
 
 
 def _window(*cases):
-    """Distances (2,) at which the kept curves of some cases attract or approach f_limit, and their deepest force."""
+    """Distances (2,) of attraction or approach to f_limit of the kept curves of some cases, and their deepest force."""
     first = min(float(forces.limit_distance[: forces.sizes["curve"]].min()) for forces in cases)
     depth = max(-float(forces.force.min()) for forces in cases)
     reach = [forces.distance[(forces.force < -_FOLLOWED * depth).any("curve")].max() for forces in cases]

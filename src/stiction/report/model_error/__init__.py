@@ -1,1 +1,1 @@
-"""The error of the model of the contact: its table, its column in other tables, its sentences."""
+"""Error of the model of the contact: its table, its column in other tables, its sentences."""

@@ -1,4 +1,4 @@
-"""The error of the model of the contact beside a prediction: its numbers, its column and the caption of this."""
+"""Error of the model of the contact beside a prediction: its numbers, its column and the column's caption."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -42,7 +42,7 @@ COLUMN = {"model error [%]": (marked, "model_error_percent", "model_error_se_per
 
 
 def caption(errors: Mapping[Any, xr.Dataset]) -> str:
-    """What the column shows, from the datasets with the errors."""
+    """Meaning of the column, from the datasets with the errors."""
     applied = any(bool(error.applied) for error in errors.values())
     does = "has changed what is stated" if applied else "would change what is stated"
     return (
@@ -52,6 +52,6 @@ def caption(errors: Mapping[Any, xr.Dataset]) -> str:
     )
 
 
-def of_pairs(plan: Any) -> dict[str, Any]:
-    """Errors of all pairs, as inputs of a stage; none unless they are wanted."""
+def error_inputs(plan: Any) -> dict[str, Any]:
+    """Errors of all pairs, as inputs of a stage, none unless they are wanted."""
     return {"errors": by_name("studies/model_error", plan.humid_pairs)} if plan.states_model_error else {}

@@ -1,4 +1,4 @@
-"""The error of the model of the contact beside the predictions for devices: rows of tables, sentences of pages."""
+"""Error of the model of the contact beside the predictions for devices: rows of tables, sentences of pages."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -13,8 +13,8 @@ from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import EITHER, FORCE
 
 
-def of_device(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: float, shape: str) -> dict[str, Any]:
-    """Change of a device by full contact, in an end state; nothing without datasets of stage device_model_error."""
+def device_change(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: float, shape: str) -> dict[str, Any]:
+    """Change of a device by full contact, in an end state, or nothing without datasets of stage device_model_error."""
     if not errors:
         return {}
     error = errors.get(device)
@@ -23,7 +23,7 @@ def of_device(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: fl
 
 
 def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]:
-    """What full contact changes of a device in words, and which side of it is safe; none without errors.
+    """Changes of a device by full contact in words, and the safe side of them, none without errors.
 
     The errors are known of devices whose pair has humid air.
     """
@@ -37,7 +37,7 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     error = errors[device]
     shape = str(error["shape"].values[0])
     what = "pull-off force" if shape == FORCE else f"lengths held by the {END_STATES[shape].by}"
-    rows = {float(humidity): of_device(errors, device, humidity, shape) for humidity in error.humidity.values}
+    rows = {float(humidity): device_change(errors, device, humidity, shape) for humidity in error.humidity.values}
     known = {humidity: row for humidity, row in rows.items() if np.isfinite(row["model_error_percent"])}
     if not known:
         return [f"The model's error in the {what} is not known {airs(rows)}, beyond the humidities of the pair."]
@@ -51,8 +51,8 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     said += [] if error.applied else [_safe_side(known, -1 if shape == FORCE else 1)]
     gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
     if error.across_gaps:
-        return [*said, f"It leaves out the attraction across gaps that this prediction contains, and which acts {gaps}"]
-    return [*said, f"Attraction across gaps, which is in neither model, acts {gaps}"]
+        return [*said, f"It leaves out the attraction across gaps of this prediction. That attraction acts {gaps}"]
+    return [*said, f"Attraction across gaps is in neither model. It acts {gaps}"]
 
 
 def _percent(row):
@@ -62,7 +62,7 @@ def _percent(row):
 
 
 def _safe_side(known, sign):
-    """Whether what is stated is on the safe side: longer beams and smaller forces stick less under full contact."""
+    """Sentence on the safe side: longer beams and smaller forces stick less under full contact."""
     unsafe = {
         humidity: abs(row["model_error_percent"])
         for humidity, row in known.items()
@@ -74,8 +74,8 @@ def _safe_side(known, sign):
     return f"What is stated is not on the safe side of it {airs(unsafe)}: {mend} by {max(unsafe.values()):.2g} %."
 
 
-def of_devices(plan: Any, *devices: str) -> dict[str, Any]:
-    """Errors of some devices, as inputs of a stage; none unless they are wanted.
+def error_inputs(plan: Any, *devices: str) -> dict[str, Any]:
+    """Errors of some devices, as inputs of a stage, none unless they are wanted.
 
     Devices on pairs in dry air alone are left out: full contact is computed where water condenses.
     """

@@ -46,7 +46,7 @@ def _rows(
     published: pd.DataFrame,
     variants: Mapping[Outcome, xr.Dataset] | None = None,
 ) -> list[dict]:
-    """One row for each pair and humidity; the ratio of the energies is NaN where full contact was not computed."""
+    """One row for each pair and humidity. The ratio of the energies is NaN without full contact."""
     rows = []
     for (pair, humidity), released in beams.items():
         case = {"pair": pair, "relative_humidity": humidity}
@@ -66,7 +66,7 @@ def _rows(
                 "energy_ratio_se": float(ratio.energy_ratio_error),
             }
             | change(error)
-            | _of_beams(case, variants or {})
+            | _beam_change(case, variants or {})
             | {
                 "crack_length_um": length,
                 "full_contact_um": longer,
@@ -83,8 +83,8 @@ def _rows(
     return rows
 
 
-def _of_beams(case, variants):
-    """Change of the crack length of beams on corrected force laws, where they were computed."""
+def _beam_change(case, variants):
+    """Change of the crack length of beams on corrected force laws, if computed."""
     keys = [(*case.values(), name) for name in (CORRECTED, "base")]
     change = np.nan, np.nan
     if set(keys) <= set(variants):
@@ -94,7 +94,7 @@ def _of_beams(case, variants):
 
 
 def table(*data) -> Table:
-    """Error of the model for every case; parameters as in ``_rows``."""
+    """Error of the model for every case. Parameters as in ``_rows``."""
     rows = _rows(*data)
     return Table.of(rows, _CAPTION.format(strips=rows[0]["strips"]), _COLUMNS)
 
@@ -116,7 +116,7 @@ _COLUMNS = PAIR | {
 
 @styled
 def figure(*data) -> Figure:
-    """Error of the model over the humidity, and deviations from the published lengths; parameters as in ``_rows``."""
+    """Error of the model against humidity, and deviations from the published lengths. Parameters as in ``_rows``."""
     frame = pd.DataFrame(_rows(*data))
     pairs = list(dict.fromkeys(frame.pair))
     count = 2 if frame.published_um.notna().any() else 1

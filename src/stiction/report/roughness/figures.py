@@ -1,4 +1,4 @@
-"""Figure of roughness: safe length or force over the roughness of a surface, and which roughness suffices."""
+"""Figure of roughness: safe length or force against the roughness of a surface, and sufficient roughnesses."""
 
 import numpy as np
 import xarray as xr
@@ -34,7 +34,7 @@ _VALUES = ("safe", "estimate")
 
 @styled
 def roughness(dataset: xr.Dataset) -> Figure:
-    """Estimate with its band of 95 %, safe value and crossings with the required one; a panel for each end state.
+    """Estimate with its band of 95 %, safe value and crossings with the required one. A panel for each end state.
 
     Of a map, the curve with the second quantity as given is drawn.
     """
@@ -79,7 +79,7 @@ def _curve(panel, line, colour):
 
 
 def _crossings(panel, curve, subject, colour):
-    """Places where a curve meets what is required, with their 95 % intervals."""
+    """Places with the requirement met by a curve, with their 95 % intervals."""
     own = np.array(
         [at == subject for at in zip(curve.crossing_humidity.values, curve.crossing_shape.values, strict=True)]
     )
@@ -92,7 +92,7 @@ def _crossings(panel, curve, subject, colour):
 
 @styled
 def roughness_map(data: xr.Dataset) -> Figure:
-    """Margin over what is required, and lines where it is met, over the two quantities of a dataset of stage roughness.
+    """Margin to the requirement, and lines of zero margin, against the two quantities of a dataset of stage roughness.
 
     The panels are by humidity and end state.
     """
@@ -122,7 +122,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
 
 
 def _axis(axis, scale, data, dimension="roughness"):
-    """Scale and label of a varied quantity; a skewness has its kurtosis in brackets at every computed value."""
+    """Scale and label of a varied quantity. A skewness has its kurtosis in brackets at every computed value."""
     key = "key" if dimension == "roughness" else "other_key"
     axis.set_label_text(labelled(data, key))
     if ROUGHNESSES[data.attrs[key]].logarithmic:
@@ -138,7 +138,7 @@ def _axis(axis, scale, data, dimension="roughness"):
 
 
 def _stage(name, shows, draw, devices):
-    """Stage that draws a figure of each of some devices of a plan."""
+    """Stage for a figure of each of some devices of a plan."""
     return figure_stage(
         f"{name}_{{device}}",
         shows,

@@ -1,4 +1,4 @@
-"""Table of roughness: lengths and forces over the roughness of a surface, and which roughness suffices."""
+"""Table of roughness: lengths and forces against the roughness of a surface, and sufficient roughnesses."""
 
 from collections.abc import Mapping
 
@@ -8,9 +8,9 @@ import xarray as xr
 from stiction.config.cases import air
 from stiction.config.kinds import ROUGHNESSES
 from stiction.config.units import from_si, without_unit
-from stiction.devices.risk import VERIFIED, samples_for
+from stiction.devices.risk import VERIFIED, one_in, samples_for
 from stiction.plan.names import by_name
-from stiction.report.format import UM, airs, one_in, with_error
+from stiction.report.format import UM, airs, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import FORCE
@@ -24,7 +24,7 @@ DIFFERENT = 3
 
 
 def form(*datasets: xr.Dataset) -> str:
-    """What stays while the quantities of some curves and maps are varied, and what changes with them."""
+    """Constants while the quantities of some curves and maps are varied, and their changes."""
     varied = (
         "Two quantities of one surface are varied."
         if any("other" in dataset.dims for dataset in datasets)
@@ -33,22 +33,22 @@ def form(*datasets: xr.Dataset) -> str:
     stays = "The form of its heights and the shape of its spectrum stay"
     if any(KURTOSIS in dataset for dataset in datasets):
         stays = (
-            "A skewness comes with the kurtosis of the surface or, where no density of maximum entropy has both, with "
-            "the largest one that such a density has, which is stated beside it. All else of the form of its heights "
-            "and the shape of its spectrum stays"
+            "A skewness comes with the kurtosis of the surface. If no density of maximum entropy has both, it comes "
+            "with the largest kurtosis of such a density, shown beside it. All else of the form of its heights and the "
+            "shape of its spectrum stays"
         )
     return f"{varied} {stays}; a process that changes one of them usually changes all."
 
 
 def in_unit(dataset: xr.Dataset, values: float | np.ndarray, key: str = "key") -> float | np.ndarray:
-    """Values of a varied quantity in the unit of its key, which is an attribute: ``key`` or ``other_key``."""
+    """Values of a varied quantity in the unit of its key, given by an attribute: ``key`` or ``other_key``."""
     name = dataset.attrs[key]
     unit = name.removeprefix(without_unit(name)).removeprefix("_")
     return from_si(values, unit) if unit else values
 
 
 def name_of(dataset: xr.Dataset, key: str = "key") -> str:
-    """A varied quantity in words.
+    """Varied quantity in words.
 
     Examples
     --------
@@ -59,7 +59,7 @@ def name_of(dataset: xr.Dataset, key: str = "key") -> str:
 
 
 def labelled(dataset: xr.Dataset, key: str = "key") -> str:
-    """A varied quantity with its unit, for axes and tables.
+    """Varied quantity with its unit, for axes and tables.
 
     Examples
     --------
@@ -70,7 +70,7 @@ def labelled(dataset: xr.Dataset, key: str = "key") -> str:
 
 
 def answers(dataset: xr.Dataset) -> list[str]:
-    """Which roughness suffices, one sentence for each humidity and end state, and why some is not computed.
+    """Sufficient roughnesses, one sentence for each humidity and end state, and reasons against others.
 
     Those of a map are about each of its curves.
     """
@@ -79,26 +79,26 @@ def answers(dataset: xr.Dataset) -> list[str]:
 
 
 def _answers(curve):
-    """As `answers`, of one curve."""
+    """Sentences of `answers`, of one curve."""
     said = {"flagged": "Where", "refused": "Not computed where"}
     notes = [note for name, begins in said.items() for note in _notes(curve, name, begins)]
     return [_answer(curve, *subject) for subject in _subjects(curve)] + notes
 
 
 def briefly(dataset: xr.Dataset) -> list[str]:
-    """Where which roughness suffices, one sentence for each humidity and end state; of a map, at what is given."""
+    """Places of sufficient roughness, one sentence for each humidity and end state, of a map at its given value."""
     curves = [curve for curve in curves_of(dataset) if not _is_changed(curve)]
     return [f"{_enough(curve, *subject)}." for curve in curves for subject in _subjects(curve)] + extrapolated(dataset)
 
 
 def extrapolated(dataset: xr.Dataset) -> list[str]:
-    """That the allowed share is extrapolated, if it is beyond what the devices bound and what was verified."""
+    """Note on an extrapolated fraction, beyond the bound from the devices and beyond verification."""
     share, samples = float(dataset.share), int(dataset.samples)
     if share >= VERIFIED or samples >= samples_for(share):
         return []
     return [
-        f"What holds for {one_in(share)} is extrapolated: from {samples} simulated devices, by a line through the 5 % "
-        f"that stick most easily, which was verified down to {one_in(VERIFIED)}."
+        f"The result for {one_in(share)} is extrapolated from {samples} simulated devices, by a line through the 5 % "
+        f"that stick most easily. The line was verified down to {one_in(VERIFIED)}."
     ]
 
 
@@ -108,7 +108,7 @@ def _subjects(curve):
 
 
 def _at_other(curve):
-    """Beginning of the sentences on a curve of a map; nothing for others."""
+    """Beginning of the sentences on a curve of a map, nothing for others."""
     if "other" not in curve.coords:
         return ""
     key, given = "other_key", "" if _is_changed(curve) else ", as given"
@@ -117,19 +117,19 @@ def _at_other(curve):
 
 
 def _peaked(curve):
-    """Kurtosis of a curve of a map over the skewness; nothing for others."""
+    """Kurtosis of a curve of a map along the skewness, nothing for others."""
     if curve.attrs["other_key"] != "skewness":
         return ""
     return f" and the kurtosis {float(curve[KURTOSIS][0]):.3g}"
 
 
 def _is_changed(curve):
-    """Whether the second quantity of a curve is another one than that of the surface."""
+    """Whether the second quantity of a curve differs from the surface's."""
     return "other" in curve.coords and float(curve.other) != float(curve.other_given)
 
 
 def _answer(curve, humidity, shape):
-    """Which roughness suffices at a humidity against one end state."""
+    """Sufficient roughness at a humidity against one end state."""
     places = [
         with_error(in_unit(curve, float(row.crossing_place)), in_unit(curve, float(row.crossing_error))) + _unit(curve)
         for row in _rows(curve, "crossing", humidity, shape)
@@ -140,7 +140,7 @@ def _answer(curve, humidity, shape):
 
 
 def _enough(curve, humidity, shape):
-    """Where the safe value at a humidity against one end state meets what is required."""
+    """Place of the requirement on the safe values at a humidity against one end state."""
     required = f"{float(curve.required) / UM:g} {_required_unit(curve)}"
     wanted = (
         f"a restoring force of {required}" if shape == FORCE else f"a length of {required} ({END_STATES[shape].by})"
@@ -150,7 +150,7 @@ def _enough(curve, humidity, shape):
 
 
 def _where(dataset, curve, rows):
-    """Roughness at which the safe value of a curve meets what is required."""
+    """Roughness with the safe value of a curve at the requirement."""
     known = curve.roughness.values[curve.safe.notnull().values]
     if not len(known):
         return "nothing is computed"
@@ -165,7 +165,7 @@ def _where(dataset, curve, rows):
 
 
 def _worst(curve, humidity, shape):
-    """Where a stopper is held most if this is inside the range, beyond the errors of both ends."""
+    """Roughness of strongest adhesion of a stopper if it is inside the range, beyond the errors of both ends."""
     known = curve.sel(humidity=humidity, shape=shape).dropna("roughness", subset=["estimate"])
     forces, errors = known.estimate.values, known.error.values
     if shape != FORCE or not len(forces):
@@ -197,22 +197,22 @@ def _rows(curve, dimension, humidity, shape):
 
 
 def _shown(dataset, value, key="key"):
-    """A value of a varied quantity as text."""
+    """Value of a varied quantity as text."""
     return f"{in_unit(dataset, float(value), key):.3g}"
 
 
 def _range(dataset, low, high):
-    """A range of the varied quantity as text."""
+    """Range of the varied quantity as text."""
     return f"{_shown(dataset, low)} to {_shown(dataset, high)}{_unit(dataset)}"
 
 
 def _share(dataset):
-    """The allowed share as text."""
+    """Allowed fraction as text."""
     return one_in(float(dataset.share))
 
 
 def _notes(curve, name, begins):
-    """What a variable says about single points, each sentence with the places of which it is true."""
+    """Sentences of a variable about single points, each with its places."""
     places = {}
     for humidity in curve.humidity.values:
         for value in curve.roughness.values:
@@ -228,7 +228,7 @@ def _unit(dataset, key="key"):
 
 
 def _required_unit(dataset):
-    """Unit of what is required, as shown."""
+    """Unit of the requirement, as shown."""
     return "µN" if dataset.required.attrs["units"] == "N" else "µm"
 
 
@@ -246,8 +246,8 @@ def roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
     sentences = [f"{device}: {sentence}" for device, dataset in datasets.items() for sentence in answers(dataset)]
     of_maps = any("other" in row for row in rows)
     caption = (
-        "Safe length of a beam, or safe restoring force of a stopper, over the roughness of a surface: with a "
-        "confidence of 95 % given the drawn surfaces, at most a share p sticks. Estimate: where a share p sticks, ± "
+        "Safe length of a beam, or safe restoring force of a stopper, against the roughness of a surface: with a "
+        "confidence of 95 % given the drawn surfaces, at most a fraction p sticks. Estimate: a fraction p sticks, ± "
         "standard error due to the numbers of devices and of drawn surfaces. P(stuck): at the required length or "
         f"force, with its 95 % band. {form(*datasets.values())} Devices: number of simulated devices at every "
         "roughness."
@@ -301,7 +301,7 @@ def _second(name, value):
 
 
 def _kurtosis(value):
-    """Kurtosis that comes with a skewness, if one is varied."""
+    """Kurtosis of a skewness, if one is varied."""
     return "" if np.isnan(value) else f"{value:.3g}"
 
 

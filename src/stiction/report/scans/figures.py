@@ -1,4 +1,4 @@
-"""Sheet of a measured surface: map, height density, spectrum and summits with their errors, and what limits them."""
+"""Sheet of a measured surface: map, height density, spectrum and summits with their errors, and their limits."""
 
 import re
 import textwrap
@@ -47,7 +47,7 @@ def surface_sheet(name: str, estimate: xr.Dataset, spectrum: xr.Dataset | None) 
 
 @styled
 def refused_sheet(name: str, scan: Scan | None, reasons: Sequence[str]) -> Figure:
-    """Sheet of a surface that cannot be estimated: why, and the levelled map of a scan of it if there is one."""
+    """Sheet of a surface without an estimate: the reasons, and the levelled map of a scan if there is one."""
     lines = _lines(reasons)
     figure, axes = panels(1, 1, (DOUBLE, (_PANELS if scan else 1) + _LINE_HEIGHT * len(lines)))
     if scan is None:
@@ -86,7 +86,7 @@ def _title(name, estimate):
 
 
 def _scans(count, frame):
-    """Number, size and points of scans that are alike."""
+    """Number, size and points of scans of one size."""
     size, points = " × ".join(f"{TO_UM * length:.4g}" for length in frame.size), " × ".join(map(str, frame.shape))
     return f"{count} scan{'s' * (count > 1)} of {size} µm, {points} points"
 
@@ -102,7 +102,7 @@ def _map(figure: Figure, panel: Axes, estimate):
 
 
 def _heights(figure: Figure, panel: Axes, heights, size):
-    """Map of heights [m]: blue below and red above the mean, undefined points grey; sides [m]."""
+    """Map of heights [m]: blue below and red above the mean, undefined points grey. Sides [m]."""
     z = TO_NM * heights
     limit = _SATURATED * np.nanstd(z)
     extent = [0, TO_UM * size[0], 0, TO_UM * size[1]]
@@ -134,7 +134,7 @@ def _density(panel, estimate):
 
 
 def _spectrum(panel, estimate):
-    """Rings with their errors, the band near the slow axis and Eq. (7); grey beyond the reach of the microscope."""
+    """Rings with their errors, the band near the slow axis and Eq. (7). Grey beyond the reach of the microscope."""
     rings, reach = stage_estimate.rings(estimate), stage_estimate.reach(estimate)
     inside = (rings.wavenumber > 0) & (rings.density > 0)  # the others are hidden by noise
     zeta, density = rings.wavenumber[inside] / TO_UM, TO_NM**4 * rings.density[inside]

@@ -84,10 +84,10 @@ def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
         "the scans measure (skewness and kurtosis with their correlation), and of the mean crack length l_s; the total "
         "± its standard error due to sampling. Needed: scans of each surface, the fewest in all, with which the error "
         f"of ē is below {100 * GOAL:g} %. Last columns: change of ē if the measured surfaces had the other value of "
-        "that key, ± standard error due to sampling and, for heights, to the scans, which measure the shape of the "
+        "the key, ± standard error due to sampling and, for heights, to the scans. Scans measure the shape of the "
         "height density less precisely than the moments."
     )
-    return Table.of(rows, caption, _UNCERTAINTY | _of_choices(rows))
+    return Table.of(rows, caption, _UNCERTAINTY | _choice_columns(rows))
 
 
 def _rows(pair, study, k):
@@ -112,7 +112,7 @@ def _rows(pair, study, k):
 
 
 def _crack_length(error):
-    """Relative error of the mean crack length by that of ē."""
+    """Relative error of the mean crack length from the error of ē."""
     return {"crack_length_percent": 100 * abs(CRACK_LENGTH_POWER) * error}
 
 
@@ -125,7 +125,7 @@ _UNCERTAINTY = (
 )
 
 
-def _of_choices(rows):
+def _choice_columns(rows):
     """Columns of the changes by other choices, as far as any row has them."""
     chosen = [name for name in ALTERNATIVES_OF_SCANS if any(f"{name}_percent" in row for row in rows)]
     return {f"other {name} [%]": (signed, f"{name}_percent", f"{name}_se_percent") for name in chosen}

@@ -1,4 +1,4 @@
-"""Figures of the studies that go with the main result: 13, 16 to 19 and the model comparison."""
+"""Figures of the studies for the main result: 13, 16 to 19 and the model comparison."""
 
 from collections.abc import Mapping
 from itertools import groupby
@@ -136,7 +136,7 @@ def summit_stresses(datasets: Mapping[str, xr.Dataset]) -> Figure:
 
 
 def _cells(panel, dataset, counts, top):
-    """Numbers of summits in cells, coloured by ``counts``; all panels reach from 0 to ``top``."""
+    """Numbers of summits in cells, coloured by ``counts``. All panels reach from 0 to ``top``."""
     interference = TO_NM * dataset.interference
     extent = (0, 1.05 * interference.values.max(initial=0) or 1, 0, top)
     panel.set(xlabel=r"interference $\delta$ [nm]", xlim=extent[:2], ylim=extent[2:])
@@ -145,7 +145,7 @@ def _cells(panel, dataset, counts, top):
 
 
 def _share(dataset):
-    """Share of the contact area that yields, as text."""
+    """Fraction of yielding contact area, as text."""
     share, error = float(dataset.plastic_share), float(dataset.plastic_share_error)
     if np.isnan(share):
         return "hardly any contact"
@@ -291,7 +291,7 @@ def _ground(panel, mesh):
 
 
 def _meshes(panel, mesh):
-    """Energy Γ under every mesh and ē; in an inset, their difference where it is small."""
+    """Energy Γ under every mesh and ē, with an inset of small differences."""
     target = float(forcelaw.energy(mesh.law.values))
     excess = 100 * (mesh.energy.values / target - 1)
     inset = _small_differences(panel, excess, TO_UM * mesh.element_length.values)
@@ -311,7 +311,7 @@ def _meshes(panel, mesh):
 
 
 def _small_differences(panel, excess, lengths):
-    """Inset for the differences of Γ from ē [%] that are about as small as that of the paper, which is shaded."""
+    """Inset for the differences of Γ from ē about as small as the paper's, which is shaded [%]."""
     inset = panel.inset_axes([0.19, 0.31, 0.52, 0.38])
     near = excess[np.abs(excess) < 1.5 * _PAPER_ERROR]
     low, high = min([0, *near]), max([_PAPER_ERROR, *near])
@@ -333,7 +333,7 @@ def _small_differences(panel, excess, lengths):
 
 @styled
 def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataFrame) -> Figure:
-    """Crack lengths under several variants of the model, compared with the base, the paper and what was measured.
+    """Crack lengths under several variants of the model, compared with the base, the paper and measurements.
 
     More choices than there are colours continue in further panels below, each group of choices with its legend. The
     datasets are by pair and variant, and every pair has every variant; Table III has the rows of the paper's own pairs.
@@ -357,7 +357,7 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
 
 
 def _groups(names):
-    """Choices in groups of at most as many as there are colours; those of one key are together if they are no more."""
+    """Choices in groups of at most as many as there are colours. Choices of one key stay together if possible."""
     groups, most = [[]], len(_COLOURS)
     for _, names_of_key in groupby(names, lambda name: name.rpartition("_")[0]):
         of_key = list(names_of_key)
@@ -393,7 +393,7 @@ def _experiment(panel, table):
 
 
 def _styles(names):
-    """Colour, line and marker of every variant; base black and above the others."""
+    """Colour, line and marker of every variant, the base's black and above the others."""
     styles = {"base": {"color": "black", "marker": "o", "linestyle": "-", "label": "base", "zorder": 3}}
     for k, name in enumerate(name for name in names if name != "base"):
         # No more names than colours; the eight other markers and the seven other line styles.
@@ -424,7 +424,7 @@ def _deviation(panel, dataset, table, style):
 
 
 def _curve(panel, humidity, change, error, style):
-    """Relative changes as a curve; markers and error bars of at most `_MARKED` points, which can be told apart."""
+    """Relative changes as a curve, with markers and error bars of at most `_MARKED` points, for legibility."""
     known = np.flatnonzero(np.isfinite(change))
     marked = known[:: max(1, -(-len(known) // _MARKED))].tolist()
     panel.errorbar(humidity, 100 * change, 100 * error, markevery=marked, errorevery=marked, **style)
@@ -439,7 +439,7 @@ def _sensitivities(data, settings):
 
 
 def _variants(data, settings):
-    """All pairs and variants; a variant that changes nothing for a pair, which the plan leaves out, equals the base."""
+    """All pairs and variants. A variant without an effect on a pair, left out of the plan, equals the base."""
     known = by_pair(data["studies"])
     pairs, names = (dict.fromkeys(parts) for parts in zip(*known, strict=True))
     whole = {(pair, name): known.get((pair, name), known[pair, "base"]) for pair in pairs for name in names}

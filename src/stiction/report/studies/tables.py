@@ -24,6 +24,7 @@ _LABELS = {
     "poisson_ratio": "ν = {}",
     "strips_per_element": "elements of {} strips",
     "reach": "vdW: across {} gaps",
+    "adsorbed_nm": "{} nm of adsorbed water",
     "contact": "{} elastic contact",
 }
 
@@ -44,7 +45,7 @@ def variant_label(name: str) -> str:
 
 
 def sensitivity(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataFrame) -> Table:
-    """Fig. 13 in numbers, beside the published slopes of the mean; datasets by pair and shifted moment."""
+    """Fig. 13 in numbers, beside the published slopes of the mean. Datasets by pair and shifted moment."""
     frame = pd.DataFrame([row for at, dataset in datasets.items() for row in _slopes(dataset, *at, published)])
     caption = (
         "Fig. 13: normalised sensitivity (|x|/y) dy/dx of mean and standard deviation y of the meso-scale adhesion "
@@ -92,8 +93,7 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
         "Table III, model NG, under other model choices: change of the mean crack length and of the mean meso-scale "
         "energy against the base case, at the lowest and at the highest humidity; root mean square over the "
         "humidities of the deviation from the published and from the measured crack length; ± standard error. Removed: "
-        "by what share the variant reduces the mean square deviation from the published length; negative if it "
-        "increases it."
+        "reduction of the mean square deviation from the published length by the variant, negative for an increase."
     )
     return Table(frame, caption, pd.DataFrame(cells))
 
@@ -157,7 +157,7 @@ def _summary(key, group):
 
 
 def _removed(group, base):
-    """Share of the mean square deviation from the published length that a variant removes, with its error [-]."""
+    """Fraction of the mean square deviation from the published length removed by a variant, with its error [-]."""
     known = (group.published_um.notna() & group.crack_length_um.notna()).values & base.crack_length_um.notna().values
     if not known.any() or group is base:
         return np.nan, np.nan
@@ -169,7 +169,7 @@ def _removed(group, base):
 
 
 def _rms_deviation(group, column):
-    """Root mean square deviation from the references in a column and its standard error; None without references."""
+    """Root mean square deviation from the references in a column and its standard error, None without references."""
     known = group[group[column].notna() & group.crack_length_um.notna()]
     if not len(known):
         return None

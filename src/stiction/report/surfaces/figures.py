@@ -136,7 +136,7 @@ _CLOSED = {"color": "black", "linestyle": "--", "linewidth": 0.8, "label": "clos
 
 @styled
 def spectra(surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Dataset]]) -> Figure:
-    """Figure 10: target spectrum, closed form and iterative algorithm; ratio to the target; error by iteration.
+    """Figure 10: target spectrum, closed form and iterative algorithm. Ratio to the target. Error by iteration.
 
     Each surface has its datasets of stages heights, spectrum, character (non-Gaussian) and iteration, in this order.
     """
@@ -184,14 +184,14 @@ def _relations(panel, heights, spectrum, character, iteration):
 
 
 def _whole_rings(spectrum):
-    """Wave numbers and target of the rings that neither contain 0 nor cross the cut-off."""
+    """Wave numbers and target of the rings without 0 and not across the cut-off."""
     zeta, target = spectrum.wavenumber.values, spectrum.target.values
     inside = (zeta > 0) & (zeta + zeta[1] / 2 <= float(spectrum.cutoff))
     return zeta[inside], target[inside]
 
 
 def _misfits(panel, iteration):
-    """Error of the iterated spectra, of the closed form, and that of a correct spectrum due to sampling."""
+    """Error of the iterated spectra, of the closed form, and of a correct spectrum due to sampling."""
     number = iteration.iteration
     panel.plot(number, 100 * iteration.misfit, **_ITERATED | {"marker": "o", "label": "iterated"})
     panel.plot(number, 100 * iteration.sampling_misfit, color="0.5", linestyle="-.", label="sampling alone")
@@ -241,7 +241,7 @@ def _mean_radius(panel, radius):
     panel.annotate(f"{number} µm", (0.96, radius), (0, 3), place, "offset points", **style)
 
 
-def _of_surfaces(data):
+def _datasets_by_surface(data):
     """Datasets of several stages by surface."""
     return {name: tuple(data[stage][name] for stage in data if stage != "style") for name in data["heights"]}
 
@@ -304,7 +304,7 @@ STAGES = (
             "character": by_name("character", plan.surfaces, "_NG"),
             "iteration": by_name("iteration", plan.surfaces),
         },
-        compute=lambda data: spectra(_of_surfaces(data)),
+        compute=lambda data: spectra(_datasets_by_surface(data)),
         study="iteration",
         targets=("figures",),
     ),

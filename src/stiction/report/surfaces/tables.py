@@ -119,7 +119,7 @@ def table_2(
 
 
 def _rows_2(surface, fit, published, defects):
-    """Published parameters of a surface, if any, and the identified ones; the defect of those in use."""
+    """Published parameters of a surface, if any, and the identified ones, with the defect of those in use."""
     match = rows(published, surface=surface)
     if len(match):
         known = match[list(_PARAMETERS)].iloc[0].to_dict()

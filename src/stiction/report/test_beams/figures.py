@@ -44,7 +44,7 @@ def test_beams(update: xr.Dataset) -> Figure:
 
 
 def _band(humidity, part, placed):
-    """Places along a band through some humidities, in order; that of a single one has a width."""
+    """Places along a band through some humidities, in order, with a width for a single one."""
     if len(part) == 1:
         half = min([_ALONE, *(_NEXT * np.diff(sorted(placed.values())))])
         return humidity[part] + np.array([-half, half]), [part[0], part[0]]
@@ -53,7 +53,7 @@ def _band(humidity, part, placed):
 
 
 def _lengths(panel, data, room):
-    """Crack lengths and counts of one array over the humidity; returns the entries of the legend by their name.
+    """Crack lengths and counts of one array against humidity. Returns the entries of the legend by their name.
 
     Counts in dry air have ``room`` for their numbers, a share of the axis.
     """
@@ -91,7 +91,7 @@ def _lengths(panel, data, room):
 
 
 def _on_the_left(placed):
-    """Places whose numbers of counts are on the left: dry air, and the last of several humidities, at the frame."""
+    """Places with numbers of counts on the left: dry air, and the last of several humidities, at the frame."""
     humid = sorted(place for humidity, place in placed.items() if humidity > 0)
     return [place for humidity, place in placed.items() if humidity == 0] + humid[1:][-1:]
 

@@ -1,4 +1,4 @@
-"""Tables of test beams: what they say about a device, in numbers and sentences."""
+"""Tables of test beams: their evidence about a device, in numbers and sentences."""
 
 from collections.abc import Mapping
 
@@ -39,12 +39,12 @@ _STUCK = ("expected_stuck", "updated_stuck", 100)
 
 
 def is_reliable(update: xr.Dataset) -> bool:
-    """Whether inputs and model, as stated, explain the data: otherwise, no result may rest on them."""
+    """Whether inputs and model, as given, explain the data. Otherwise no result may rest on them."""
     return float(update.p_value) >= UNLIKELY
 
 
 def combinations(update: xr.Dataset) -> list[str]:
-    """What the test beams determine, and which inputs they do not tell apart."""
+    """Inputs determined by the test beams, and inputs not told apart by them."""
     names = update.input.values
     sentences = []
     for remaining, correlations in zip(update.remaining.values, update.correlation.values, strict=True):
@@ -62,7 +62,7 @@ def combinations(update: xr.Dataset) -> list[str]:
 
 
 def advised(update: xr.Dataset) -> str:
-    """Which further test beams would help the device most, where it is known least."""
+    """Most useful further test beams, at the least known result of the device."""
     if update.result_after.isnull().all():
         return f"Which further test beams would help is not known: {_FEW}."
     worst = int(np.nanargmax(update.result_after.values))
@@ -78,7 +78,7 @@ def advised(update: xr.Dataset) -> str:
 
 
 def explained(update: xr.Dataset) -> str:
-    """Whether the data agree with the model."""
+    """Agreement of the data with the model."""
     left_out = f"Left out are {update.attrs['left_out']}: {_FEW}." if update.attrs["left_out"] else ""
     if not update.sizes["datum"]:
         return left_out
@@ -92,7 +92,7 @@ def explained(update: xr.Dataset) -> str:
 
 
 def built(update: xr.Dataset) -> str:
-    """What to build before and after the measurement, for the middle one of the shares.
+    """Length or force to build before and after the measurement, for the middle fraction.
 
     As `stiction.report.devices.sentences.build_sentence`: the least safe length, less twice the largest uncertainty of
     what holds the devices, here with the error of the model as far as it applies; of a stopper the largest safe force,
@@ -122,7 +122,7 @@ def built(update: xr.Dataset) -> str:
 
 
 def _margin(update, of, percent):
-    """What is between the mean and what is stated; after counts, the uncertainty is not normal."""
+    """Difference between the mean and the given number. After counts, the uncertainty is not normal."""
     margin = f"twice the uncertainty of the {of}"
     if not update.sizes["count"]:
         return margin
@@ -130,12 +130,12 @@ def _margin(update, of, percent):
 
 
 def _show_errors_of_tips(update):
-    """Whether crack lengths were measured, whose errors of the model tips have as well."""
+    """Whether crack lengths were measured. Tips have their errors of the model as well."""
     return ARC in update.response.values and bool(update.measured.notnull().any())
 
 
 def _beyond_cracks(update):
-    """What the cracks say about errors of the model where no crack holds the device; empty without crack lengths."""
+    """Evidence of the cracks on errors of the model elsewhere in the device, empty without crack lengths."""
     if MIDDLE in update.response.values:
         return " Cracks do not say how much the model errs at bridges."
     if not _show_errors_of_tips(update):
@@ -148,7 +148,7 @@ def _beyond_cracks(update):
 
 
 def _built(update, response):
-    """Lengths, or forces, to build before and after the measurement for one way in which a device is held [µm, µN]."""
+    """Lengths, or forces, to build before and after the measurement for one shape of adhesion [µm, µN]."""
     share = update.share.values[update.sizes["share"] // 2]
     chosen = update.isel(result=np.flatnonzero(update.response.values == response))
     sign = 1 if response == FORCE else -1
@@ -160,7 +160,7 @@ def _built(update, response):
 
 
 def again(update: xr.Dataset) -> str:
-    """How the linear update compares with results that were computed again at its inputs."""
+    """Comparison of the linear update with results computed again at its inputs."""
     if update.attrs["refused"]:
         return f"At the inputs that the test beams suggest, nothing can be computed again: {update.attrs['refused']}."
     return (
@@ -171,7 +171,7 @@ def again(update: xr.Dataset) -> str:
 
 
 def _again(update):
-    """Each result that was computed again."""
+    """Each recomputed result that is known."""
     return [update.isel(again=k) for k in range(update.sizes["again"]) if np.isfinite(update.linear[k])]
 
 
@@ -207,7 +207,7 @@ def stuck(update: xr.Dataset) -> list[str]:
 
 
 def _percent(share):
-    """A share for reading."""
+    """Fraction for reading."""
     return f"{100 * float(share):.2g} %"
 
 
@@ -241,8 +241,8 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
 
 
 def _rows(device, update):
-    """Numbers of one device: data, results, what is safe, inputs."""
-    for part in (_data, _results, _safe_sizes, _of_inputs):
+    """Numbers of one device: data, results, safe sizes, inputs."""
+    for part in (_data, _results, _safe_sizes, _input_rows):
         yield from part(device, update)
 
 
@@ -251,7 +251,7 @@ def _data(device, update):
     for datum in update.datum.values:
         at = update.sel(datum=datum)
         computed = TO_UM * float(at.computed)
-        numbers = _of_length(computed, *(float(at[f"datum_{key}"]) for key in ("before", "shift", "after")))
+        numbers = _length_numbers(computed, *(float(at[f"datum_{key}"]) for key in ("before", "shift", "after")))
         error = float(at.measured * at.datum_measured_error)
         own = {"measured": TO_UM * float(at.measured), "measured_se": TO_UM * error} if error > 0 else {}
         head = {"device": device, "relative_humidity": float(at.datum_humidity), "part": "crack length [µm]"}
@@ -267,11 +267,11 @@ def _data(device, update):
 
 
 def _results(device, update):
-    """What the budgets of the device are of."""
+    """Results of the budgets of the device."""
     for result in update.result.values:
         at = update.sel(result=result)
         length = TO_UM * float(at.centre)
-        numbers = _of_length(length, *(float(at[f"result_{key}"]) for key in ("before", "shift", "after")))
+        numbers = _length_numbers(length, *(float(at[f"result_{key}"]) for key in ("before", "shift", "after")))
         head = {"device": device, "relative_humidity": float(at.humidity_of_result)}
         yield head | {"part": END_STATES[str(at.response.values)].result, "name": device} | numbers
 
@@ -292,7 +292,7 @@ def _safe_sizes(device, update):
                 yield head | {"part": "stuck at the restoring force [%]"} | _both(of_shape, *_STUCK)
 
 
-def _of_inputs(device, update):
+def _input_rows(device, update):
     """Inputs in their standard uncertainties."""
     for name in update.input.values:
         at = update.sel(input=name)
@@ -308,19 +308,19 @@ def _both(update, before, after, scale):
     return {"before": scale * float(update[before]), "after": scale * updated}
 
 
-def _of_length(length, before, shift, after):
-    """A length before and after the measurement, with standard deviations, from those of its logarithm."""
+def _length_numbers(length, before, shift, after):
+    """Length before and after the measurement, with standard deviations, from its logarithm's."""
     updated = length * np.exp(shift)
     return {"before": length, "before_std": length * before, "after": updated, "after_std": updated * after}
 
 
 def _number(value, deviation):
-    """A number, with its standard deviation if it has one."""
+    """Number, with its standard deviation if it has one."""
     return with_error(value, deviation) if deviation > 0 else number(value, ".1f" if abs(value) >= 1 else ".2g")
 
 
 def _measured(value, error):
-    """A count, or a mean with its standard error."""
+    """Count, or a mean with its standard error."""
     return number(value, "g") if np.isnan(error) else with_error(value, error)
 
 
@@ -336,12 +336,12 @@ _COLUMNS = DEVICE | {
 
 
 def warnings(update: xr.Dataset) -> list[str]:
-    """What the test beams contradict, and where the prediction goes beyond them, in sentences with numbers."""
+    """Contradictions of the test beams, and predictions beyond them, in sentences with numbers."""
     return [*_contradictions(update), *_moved(update), *_nonlinear(update), *_extrapolated(update)]
 
 
 def _contradictions(update):
-    """Data that the inputs, or inputs and model together, do not explain."""
+    """Data not explained by the inputs, or by inputs and model together."""
     of_inputs = float(update.p_value_of_inputs)
     if not is_reliable(update):
         yield _wrong(update)
@@ -361,7 +361,7 @@ def _contradictions(update):
 
 
 def _wrong(update):
-    """That nothing explains the data."""
+    """Sentence on data explained by nothing."""
     return (
         "Neither the errors of the inputs nor those of the model, as stated, explain the test beams (p = "
         f"{float(update.p_value):.1g}): something else is wrong, such as a dimension, a humidity or plastic contact. "
@@ -370,7 +370,7 @@ def _wrong(update):
 
 
 def _moved(update):
-    """Inputs, and rests of the model, that err more than their standard deviations let expect."""
+    """Inputs, and rests of the model, with errors beyond their standard deviations."""
     known = update.isel(input=np.flatnonzero(update.prior_deviation.values > 0))
     for name, score in zip(known.input.values, (known["shift"] / known.prior_deviation).values, strict=True):
         if abs(score) > LARGE:
@@ -381,7 +381,7 @@ def _moved(update):
 
 
 def _nonlinear(update):
-    """Results that change otherwise than in the linear update."""
+    """Results with other changes than in the linear update."""
     different = []
     for result in _again(update):
         apart = float(result.rerun - result.linear)
@@ -390,9 +390,9 @@ def _nonlinear(update):
             different.append(f"{with_error(100 * apart, 100 * error)} % ({result['again'].values})")
     if different:
         yield (
-            f"The update is not linear: results that were computed again differ from it by {', '.join(different)}. If "
-            "that matters beside their standard uncertainties, state the inputs that the test beams suggest, and "
-            "compute the device again with them."
+            f"The update is not linear: results computed again differ from it by {', '.join(different)}. If this "
+            "matters beside their standard uncertainties, set the inputs to the values from the test beams and "
+            "compute the device again."
         )
 
 

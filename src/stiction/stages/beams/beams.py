@@ -1,4 +1,4 @@
-"""Stage beams (Secs. III-C and IV): press beams down, release them and find where their cracks arrest."""
+"""Stage beams (Secs. III-C and IV): press beams down, release them and find the arrest of their cracks."""
 
 from dataclasses import replace
 
@@ -20,7 +20,7 @@ Settings = releases.Settings
 
 
 def compute(chaos: xr.Dataset, case: Case, settings: Settings, threads: int = 1) -> xr.Dataset:
-    """Release all beams of a case; models NG and GEO have the same force laws.
+    """Release all beams of a case. Models NG and GEO have the same force laws.
 
     The name of the case is part of the addresses of random numbers; ``threads``, the number of beams computed in
     parallel, does not affect the results.

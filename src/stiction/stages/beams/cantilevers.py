@@ -9,7 +9,7 @@ from stiction.plan.stage import select
 
 @dataclass(frozen=True)
 class Stiffness:
-    """The part of section ``solid`` on which beams depend."""
+    """Section ``solid``: part for beams."""
 
     young_modulus: float  #: E [Pa]
 
@@ -27,7 +27,7 @@ class Dimensions:
 
 @dataclass(frozen=True)
 class Gap:
-    """The part of a pair's section on which beams depend."""
+    """Section of a pair: part for beams."""
 
     gap: float  #: h [m]
     young_modulus: float | None = None  #: E of the beam, if it is not that of section ``solid`` [Pa]
@@ -35,14 +35,14 @@ class Gap:
 
 @dataclass(frozen=True)
 class StripLength:
-    """The part of section ``sampling`` on which beams depend."""
+    """Section ``sampling``: part for beams."""
 
     strip_length: float  #: l_meso [m]
 
 
 @dataclass(frozen=True, kw_only=True)
 class Cantilevers:
-    """Sections of the settings of any job with beams: what the nominal beams of some pairs depend on."""
+    """Sections of the settings of any job with beams: sources of the nominal beams of some pairs."""
 
     solid: Stiffness
     beam: Dimensions
@@ -68,7 +68,7 @@ def strips_along(beam: Dimensions, sampling: StripLength) -> int:
 
 
 def sections(plan: Any, *pairs: str) -> dict[str, Any]:
-    """Sections of the configuration from which `cantilever` builds the nominal beams of pairs."""
+    """Sections of the configuration for `cantilever`, the nominal beams of pairs."""
     sizes = select(Dimensions, plan.config["beam"])
     gaps = {pair: select(Gap, plan.config["pairs"][pair] | plan.materials.beam_modulus(pair)) for pair in pairs}
     del sizes["samples"]  # the number of beams does not affect a nominal beam

@@ -20,7 +20,7 @@ from stiction.stages.laws import forces as stage_forces
 
 @dataclass(frozen=True)
 class Meshes:
-    """Meshes of the study; combinations that do not fill each other and the beam are left out."""
+    """Meshes of the study. Combinations not filling each other and the beam are left out."""
 
     elements: tuple[float, ...]  #: lengths of the elements [m]
     strips: tuple[float, ...]  #: distances of the contact points [m]
@@ -28,7 +28,7 @@ class Meshes:
 
 @dataclass(frozen=True, kw_only=True)
 class Settings(Cantilevers):
-    """Everything that the study depends on apart from the forces."""
+    """Settings of the study, without the forces."""
 
     mesh: Meshes
     case: str

@@ -1,4 +1,4 @@
-"""Where results of pairs are beyond the limits of the model, in sentences of `stiction.devices.limits`."""
+"""Results of pairs beyond the limits of the model, in sentences of `stiction.devices.limits`."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ class OfPairs(Cantilevers):
     water: dict[str, Water]  #: by pair
 
 
-def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
+def beam_warnings(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
     """Warnings about the beams of a case of the main line: dataset of stage beams, length of the strips [m]."""
     s_shaped = ended(beams, "S-shape")
     warnings = [limits.arcs_of_elements(float(ended(beams, "arc").mean()), strip)]
@@ -57,26 +57,26 @@ def of_beams(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
 def contact_warnings(
     plastic: Plastic, materials: StatedProperties, effect: str = limits.SHORTER, remedy: str = limits.DISTANCE
 ) -> list[str | None]:
-    """Warnings, or None, about the contact of a pair, with the remedy where its plasticity was not studied."""
+    """Warnings, or None, about the contact of a pair, with the remedy if its plasticity was not studied."""
     about = (limit(*material) for material in materials for limit in (limits.default_material, limits.spacer))
     return [limits.plastic_contact(*plastic, effect, remedy), *about]
 
 
 def plastic_contact(plasticity: Mapping[str, xr.Dataset], pair: str) -> Plastic:
-    """How plastic the contact of a pair is, from the datasets of study plasticity."""
+    """Plastic fraction of the contact of a pair and its pressure, from the datasets of study plasticity."""
     if pair not in plasticity:
         return NOT_STUDIED
     return float(plasticity[pair].plastic_share), float(plasticity[pair].pressure)
 
 
-def of_pairs(
+def main_line_warnings(
     beams: Mapping[tuple[str, float, str], xr.Dataset],
     plasticity: Mapping[str, xr.Dataset],
     materials: Mapping[str, StatedProperties],
     settings: OfPairs,
     remedy: str = limits.DISTANCE,
 ) -> Warnings:
-    """Warnings about the main line; plasticity is that of the pairs for which it was studied; others have a remedy.
+    """Warnings about the main line, with the plasticity of studied pairs and a remedy for the others.
 
     Each pair has the names of its materials, each with the properties that are stated.
     """
@@ -90,20 +90,20 @@ def of_pairs(
     for (pair, humidity, model), dataset in beams.items():
         nominal = cantilever(settings, pair)
         film = limits.given(limits.thin_film(settings.water[pair].film(humidity)[0]))
-        warnings[f"pair {pair}, {air(humidity)}, {model}"] = film + of_beams(
+        warnings[f"pair {pair}, {air(humidity)}, {model}"] = film + beam_warnings(
             dataset, nominal, settings.sampling.strip_length
         )
     return warnings
 
 
 def _without_water(pair, cases, water):
-    """Warning, or None, about a pair that no water wets; pair, humidity and model of all cases."""
+    """Warning, or None, about a pair without water. All cases give pair, humidity and model."""
     wettest = max((humidity for of, humidity, _ in cases if of == pair), default=0.0)
     return limits.no_water(water.film(wettest)[0], wettest)
 
 
-def of_films(cases: Collection[tuple[str, float, str]], water: Mapping[str, Water]) -> list[str]:
-    """Warnings about pairs that no water wets, and about films that are hardly a liquid, at each humidity of a pair.
+def film_warnings(cases: Collection[tuple[str, float, str]], water: Mapping[str, Water]) -> list[str]:
+    """Warnings about pairs without water, and about films too thin for a liquid, at each humidity of a pair.
 
     The cases are pair, humidity and model.
     """
@@ -131,7 +131,7 @@ def with_numbers(warnings: Mapping[Any, list[str]]) -> list[str]:
 
 
 def as_markdown(warnings: Warnings, not_modelled: str) -> str:
-    """Warnings as a page, each sentence with all its subjects, and a sentence on what is not in the model."""
+    """Warnings as a page, each sentence with all its subjects, and a sentence on effects not in the model."""
     sentences, _ = numbered(warnings)
     about = ["; ".join(name for name, said in warnings.items() if sentence in said) for sentence in sentences]
     lines = [f"- {literal(f'{names}: {sentence}')}" for names, sentence in zip(about, sentences, strict=True)]
@@ -139,12 +139,12 @@ def as_markdown(warnings: Warnings, not_modelled: str) -> str:
     return "\n".join(["# Where results are beyond the model", "", *(lines or none), "", literal(not_modelled), ""])
 
 
-def of_surfaces(
+def surface_notes(
     data: Mapping[str, Mapping[str, xr.Dataset]],
     surfaces: Mapping[str, Sequence[str]],
     assumed: Mapping[str, Sequence[str]] = {},
 ) -> Warnings:
-    """Flags of the measured surfaces of every pair, and sentences on what is assumed of the others.
+    """Flags of the measured surfaces of every pair, and sentences on assumptions about the others.
 
     Datasets of ``surface_flags.inputs``, measured surfaces and sentences by pair.
     """
@@ -155,12 +155,12 @@ def of_surfaces(
     }
 
 
-def _of_pairs(data, settings):
+def _warnings(data, settings):
     """Warnings about all pairs as a page."""
     nominal = in_si(OfPairs, settings["pairs"])
     remedy = limits.DISTANCE if settings["plasticity_runs"] else limits.NAMED
-    warnings = of_pairs(data["beams"], data["plasticity"], settings["materials"], nominal, remedy)
-    for pair, flags in of_surfaces(data, settings["surfaces"], settings["assumed"]).items():
+    warnings = main_line_warnings(data["beams"], data["plasticity"], settings["materials"], nominal, remedy)
+    for pair, flags in surface_notes(data, settings["surfaces"], settings["assumed"]).items():
         warnings[f"pair {pair}"] += flags
     return as_markdown(warnings, settings["not_modelled"])
 
@@ -188,7 +188,7 @@ STAGES = (
             "surfaces": {pair: plan.scans.sides(pair) for pair in plan.pairs},
             "assumed": plan.assumed(*plan.pairs),
         },
-        compute=_of_pairs,
+        compute=_warnings,
         save=lambda page, paths: save_text(page, paths["markdown"]),
         message="Where the results of pairs are beyond the model.",
         targets=("all",),

@@ -29,7 +29,7 @@ STATES = tuple(state.label for state in EndState)
 
 @dataclass(frozen=True, kw_only=True)
 class OnStrips(Cantilevers):
-    """What beams on random strips depend on apart from their number, their scatter and the force laws."""
+    """Settings of beams on random strips, without their number, their scatter and the force laws."""
 
     seed: int
     sampling: StripLength
@@ -38,7 +38,7 @@ class OnStrips(Cantilevers):
 
 @dataclass(frozen=True, kw_only=True)
 class Settings(OnStrips):
-    """Everything that the beams of a case depend on apart from the force laws."""
+    """Settings of the beams of a case, without the force laws."""
 
     samples: int  #: number of beams
     scatter: float  #: relative standard deviation of each dimension [-]
@@ -51,7 +51,7 @@ def without_scatter(settings: OnStrips, samples: int) -> Settings:
 
 
 def released(model: ChaosModel, case: Case, settings: Settings, threads: int = 1, shapes: int = 0) -> dict:
-    """Release beams of a case on force laws drawn from a chaos model; arrays of `stiction.beam.montecarlo.columns`."""
+    """Release beams of a case on force laws drawn from a chaos model. Arrays of `stiction.beam.montecarlo.columns`."""
     address = partial(stream, settings.seed, "beams", case)
     return released_on(partial(draw_laws, model), case, settings, address, threads, shapes)
 
@@ -59,7 +59,7 @@ def released(model: ChaosModel, case: Case, settings: Settings, threads: int = 1
 def released_on(
     draw: Callable, case: Case, settings: Settings, address: Callable, threads: int = 1, shapes: int = 0
 ) -> dict:
-    """Release beams of a case on force laws drawn by ``draw(n, rng)``; ``address(k)`` returns the stream of beam k.
+    """Release beams of a case on force laws drawn by ``draw(n, rng)``. Beam k has the stream ``address(k)``.
 
     Raises
     ------
@@ -83,28 +83,28 @@ def _resolved(beam, strips, laws, case):
 
 
 def longest_strip(model: ChaosModel, case: Case, settings: OnStrips) -> float:
-    """Longest strip that resolves the cracks of a case on the laws from which `released` chooses the elements [m]."""
+    """Longest strip for the cracks of a case, on the laws of the mesh of `released` [m]."""
     laws = draw_laws(model, _LAWS, stream(settings.seed, "beams", case, "mesh"))
     return longest(cantilever(settings, case.pair), laws)[0]
 
 
 def ended(beams: xr.Dataset, state: str) -> np.ndarray:
-    """Whether each beam of a dataset ended in the given state, ``S-shape``, ``arc`` or ``free``; (n,) bool."""
+    """Mark the beams of a dataset by their final state, ``S-shape``, ``arc`` or ``free``, (n,) bool."""
     return beams.state.values == STATES.index(state)
 
 
 def stuck_lengths(beams: xr.Dataset) -> np.ndarray:
-    """Crack lengths of the beams of a dataset that ended S-shaped (m,) [m]; those of others have no meaning."""
+    """Crack lengths of the S-shaped beams of a dataset (m,) [m]. Those of others have no meaning."""
     return beams.crack_length.values[ended(beams, "S-shape")]
 
 
 def stuck_energies(beams: xr.Dataset) -> np.ndarray:
-    """Apparent adhesion energies Γ, Eq. (13), of the beams of stage beams that ended S-shaped (m,) [J m⁻²]."""
+    """Apparent adhesion energies Γ, Eq. (13), of the S-shaped beams of stage beams (m,) [J m⁻²]."""
     return beams.adhesion_energy.values[ended(beams, "S-shape")]
 
 
 def sections(plan: Any, case: Case) -> dict[str, Any]:
-    """Sections of the configuration on which the beams of a case depend, apart from their number."""
+    """Sections of the configuration for the beams of a case, without their number."""
     strips = select(StripLength, plan.config["sampling"])
     nominal = {"seed": plan.config["seed"], "sampling": strips} | cantilevers.sections(plan, case.pair)
     return nominal | ({} if plan.paper.has_mesh(case) else {"refined": True})

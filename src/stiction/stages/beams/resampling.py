@@ -15,7 +15,7 @@ from stiction.streams import stream
 
 @dataclass(frozen=True, kw_only=True)
 class Settings(releases.OnStrips):
-    """Everything that the beams depend on apart from the forces."""
+    """Settings of the beams, without the forces."""
 
     beams: int  #: number of beams
 
@@ -29,7 +29,7 @@ def compute(forces: xr.Dataset, case: str, settings: Settings) -> xr.Dataset:
 
 
 def layout(columns: dict[str, np.ndarray]) -> xr.Dataset:
-    """Dataset of the end state of every beam on resampled force laws; as `stiction.stages.beams.beams.layout`."""
+    """Dataset of the end state of every beam on resampled force laws. As `stiction.stages.beams.beams.layout`."""
     return xr.Dataset(
         {
             "state": ("sample", np.asarray(columns["state"], np.int8)),

@@ -26,7 +26,7 @@ class Settings(releases.OnStrips):
 
 
 def compute(contact: xr.Dataset, case: Case, settings: Settings) -> xr.Dataset:
-    """Run the stages after contact at the humidity of a case; model NG, nominal dimensions."""
+    """Run the stages after contact at the humidity of a case. Model NG, nominal dimensions."""
     vectors, limit = curves.vectors(first(contact, settings.samples), case.humidity, settings.water)
     model = fit(vectors, limit, settings.chaos.order, settings.chaos.dimension_tolerance)
     beams = releases.without_scatter(settings, settings.beam.samples)
@@ -58,7 +58,7 @@ def by_pair(cases: Mapping[tuple[str, float, str], xr.Dataset]) -> dict[tuple[st
 
 
 def cases_of(dataset: xr.Dataset) -> Iterator[tuple[float, Variant]]:
-    """Every case of the dataset: relative humidity [-] and the results under the variant."""
+    """Yield every case of the dataset: relative humidity [-] and the results under the variant."""
     for k, humidity in enumerate(dataset.humidity.values):
         chosen = dataset.isel(humidity=k)
         stuck = releases.ended(chosen, "S-shape")
@@ -66,14 +66,16 @@ def cases_of(dataset: xr.Dataset) -> Iterator[tuple[float, Variant]]:
 
 
 def _inputs(plan, at):
-    """Contact of the pair of a case under a variant, which other variants may share.
+    """Contact of the pair of a case under a variant, possibly shared with other variants.
 
     That of the base is the contact of the main line, unless the variants have more samples.
     """
     pair, shared = at.case.pair, plan.variants.contact_under(at.variant)
     other = f"studies/variants/{'islands' if plan.variants.has_islands(shared) else 'contact'}/{pair}_{shared}"
     of_main_line = shared == "base" and plan.variants.has_samples
-    return {"contact": f"contact/{pair}_NG" if of_main_line else other} | corrections.of_pair(plan, pair, at.variant)
+    return {"contact": f"contact/{pair}_NG" if of_main_line else other} | corrections.correction_inputs(
+        plan, pair, at.variant
+    )
 
 
 def _settings(plan, at):

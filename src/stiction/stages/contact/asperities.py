@@ -1,4 +1,4 @@
-"""Study asperities: adhesion energies of the same strips under several readings of what an asperity is."""
+"""Study asperities: adhesion energies of the same strips under several definitions of an asperity."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -40,12 +40,12 @@ class Settings:
 
     @property
     def attractions(self) -> tuple[str, ...]:
-        """Media of the attraction of the solids that are compared: that of the configuration, and none."""
+        """Media of the compared attractions of the solids: the configuration's, and none."""
         return tuple(dict.fromkeys((self.solids.van_der_waals, "none")))
 
 
 def compute(grids: Sequence[EquivalentSurface], pair: str, seed: int, settings: Settings) -> xr.Dataset:
-    """Energies of all strips on every grid, under every reading and attraction, and the time that they take.
+    """Energies of all strips on every grid, under every reading and attraction, and their computing time.
 
     Islands have their true shape on the first grid alone: on one that is twice as fine they take minutes per strip.
 
@@ -83,6 +83,7 @@ class _Medium(NamedTuple):
 
     @classmethod
     def of(cls, settings, name):
+        """Both solids of the settings with a medium between them."""
         one, other = bodies(settings)
         both = (between(one, other, name) for between in (solids.asperity_between, solids.attraction_between))
         return cls(solids.composite_modulus(one, other), *both)
@@ -128,7 +129,7 @@ def layout(
 
 
 def energies_of_readings(study: xr.Dataset) -> Iterator[tuple[dict, np.ndarray]]:
-    """Every reading, attraction and grid, and e of the strips in which it was computed (n, h) [J m⁻²].
+    """Yield every reading, attraction and grid, and e of its computed strips (n, h) [J m⁻²].
 
     The first is that of a sphere on every summit, on the grid of the contact, with attraction of the solids.
     """
@@ -140,13 +141,13 @@ def energies_of_readings(study: xr.Dataset) -> Iterator[tuple[dict, np.ndarray]]
 
 
 def cost(study: xr.Dataset, spacing: float, reading: str, attraction: str) -> float:
-    """Median processor time of a strip under a reading and attraction, over that of the first reading [-]."""
+    """Median processor time of a strip under a reading and attraction, relative to the first reading [-]."""
     seconds = study.seconds.sel(reading=reading, spacing=spacing, attraction=attraction)
     return float(seconds.median() / study.seconds[0, 0, :, 0].median())
 
 
 def _settings(plan, at):
-    """Surfaces of the pair, on the grid of the contact and on one twice as fine; solids, water and sizes.
+    """Surfaces of the pair, on the grid of the contact and on one twice as fine. Solids, water and sizes.
 
     ASSUME: attraction across gaps is left out, as in `stiction.stages.contact.full_contact.settings_of`.
     """

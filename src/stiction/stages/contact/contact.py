@@ -39,7 +39,7 @@ def compute_each(
     settings: Settings,
     samples: range | None = None,
 ) -> list[xr.Dataset]:
-    """As `compute`, for several choices of the two surfaces with the same random numbers.
+    """Contacts as by `compute`, for several choices of the two surfaces with the same random numbers.
 
     A surface with the same tuple of datasets in several choices is drawn once for all of them.
     """
@@ -48,7 +48,7 @@ def compute_each(
     streams = streams_of_sides(settings.seed, pair)
     contacts = contacts_of_samples(pairs, streams, progress(samples, "surface pairs"))
     datasets = [layout(*curves, rough.distances, samples) for curves, rough in zip(contacts, pairs, strict=True)]
-    return [of_tips(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
+    return [tip_dataset(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
 
 
 def drawn(data: Mapping[str, Any], pair: str, settings: Settings) -> xr.Dataset:
@@ -57,7 +57,7 @@ def drawn(data: Mapping[str, Any], pair: str, settings: Settings) -> xr.Dataset:
 
 
 def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceGrid, samples: range) -> xr.Dataset:
-    """Dataset of p_s(sample, distance) and A(sample, height), independent of humidity; float32.
+    """Dataset of p_s(sample, distance) and A(sample, height), independent of humidity, in float32.
 
     Solid pressures p_s are (n, n_solid) [Pa] and bearing areas A (n, n_bearing) [-], those of tips (n, n_slopes,
     n_solid) and so on; ``samples`` are their numbers within the study.
@@ -77,8 +77,8 @@ def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceG
     )
 
 
-def of_tips(contact: xr.Dataset, pair: TiltedPair) -> xr.Dataset:
-    """Dataset of tips: with their slopes, and the length of the strip to which pressures and areas refer."""
+def tip_dataset(contact: xr.Dataset, pair: TiltedPair) -> xr.Dataset:
+    """Dataset of tips: with their slopes, and the reference length of pressures and areas along the strip."""
     slopes = ("slope", list(pair.tilt.slopes), {"units": "1"})
     return contact.assign(length=((), pair.length, {"units": "m"})).assign_coords(slope=slopes)
 
@@ -95,7 +95,7 @@ def drawn_chunk(data: Mapping[str, Any], at: Any, settings: Settings) -> xr.Data
 
 
 def joined(chunks: Iterable[xr.Dataset], settings: Settings) -> xr.Dataset:
-    """Join the contact of all samples from the chunks in their order; of an iterator, one chunk is held at a time.
+    """Join the contact of all samples from the chunks in their order. Of an iterator, one chunk is held at a time.
 
     Raises
     ------

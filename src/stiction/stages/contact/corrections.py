@@ -1,4 +1,4 @@
-"""Correction of force laws to full elastic contact, for every stage that makes force laws from a contact."""
+"""Correction of force laws to full elastic contact, for every stage with force laws from a contact."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -16,8 +16,8 @@ def correction(error: xr.Dataset) -> Correction:
     return Correction(error.humidity.values, error.energy_ratio.values, error.pull_off_ratio.values)
 
 
-def of_pair(plan: Any, pair: str, variant: str = "base", model: str = "NG") -> dict[str, str]:
-    """Error of the model of a pair, as input of a stage that corrects its force laws; none if they stay as they are.
+def correction_inputs(plan: Any, pair: str, variant: str = "base", model: str = "NG") -> dict[str, str]:
+    """Error of the model of a pair, as input of a stage with corrected force laws, otherwise none.
 
     Those of Gaussian heights do, for which full contact is not computed.
     """
@@ -26,7 +26,7 @@ def of_pair(plan: Any, pair: str, variant: str = "base", model: str = "NG") -> d
 
 
 def corrected(settings: S, data: Mapping[str, Any]) -> S:
-    """Settings of a stage with the correction that its inputs have."""
+    """Settings of a stage with the correction from its inputs."""
     if "model_error" not in data:
         return settings
     return replace(settings, water=replace(settings.water, correction=correction(data["model_error"])))

@@ -1,4 +1,4 @@
-"""Force curves at a humidity from the dataset of stage contact; shared by several stages, not a stage itself."""
+"""Force curves at a humidity from the dataset of stage contact. Shared by several stages, not a stage itself."""
 
 from functools import partial
 
@@ -8,6 +8,7 @@ import xarray as xr
 from stiction.config.units import from_si
 from stiction.contact import environment, forcelaw, gaps
 from stiction.contact.environment import ForceCurves, Water
+from stiction.contact.separation import keep_volume
 from stiction.stages.contact.contact import tables
 
 
@@ -42,6 +43,37 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
     ValueError
         If the film is higher than the contact of the tips reaches.
     """
+    tips = _wedges(contact, humidity, water, endless=True)
+    return contact.slope.values, forcelaw.largest_attractions(*tips) * float(contact.length)
+
+
+def fast_tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """As the forces of `tip_forces`, of tips that separate faster than water evaporates, at least these (m, s) [N/m].
+
+    They are infinite where no summits stop a tip.
+    """
+    slow = _wedges(contact, humidity, water, endless=True)
+    solid, bearing, starts, step, layer = slow
+    largest, force = forcelaw.largest_attractions(*slow).astype(float), np.empty(solid.shape[-1])
+    distance = starts[0] + step * np.arange(force.size)
+    for each in np.ndindex(largest.shape):
+        forcelaw.apparent_force(solid[each], bearing[each], (*starts, starts[0]), step, *layer, force)
+        fast = keep_volume(force, distance, bearing[each], starts[1], layer)
+        largest[each] = np.inf if fast is None else max(largest[each], -fast[0].min())
+    return largest * float(contact.length)
+
+
+def tilted_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """Largest attraction of each tilted patch at each slope, per its width (m, s) [N/m]; errors as of `tip_forces`.
+
+    ASSUME: the ratio of the pull-off force on parallel patches to full elastic contact is that on tilted ones.
+    """
+    forces = forcelaw.largest_attractions(*_wedges(contact, humidity, water, endless=False)) * float(contact.length)
+    return forces * water.correction.at(humidity)[1] if water.correction else forces
+
+
+def _wedges(contact, humidity, water, endless):
+    """Arguments of `forcelaw.largest_attractions` of strips that go on below their stored heights or end there."""
     layer, reach = water.film(humidity), -float(contact.height[0])
     if layer[0] > reach:
         raise ValueError(
@@ -49,13 +81,12 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
             f"humidity of {humidity:g} is {from_si(layer[0], 'nm'):.3g} nm high: state this humidity with the device"
         )
     solid, bearing, starts, step = tables(contact)
-    if water.gaps is not None:
-        work = partial(water.gaps.work, height=layer[0])
+    if water.reaches_across:
+        work = partial(water.work_across, height=layer[0])
         pressure, _ = gaps.gap_pressures(bearing, starts[1], contact.distance.values, step, work)
         rest = work(contact.distance.values + reach) / (contact.slope.values[:, None] * float(contact.length))
-        solid = solid + pressure - rest.astype(np.float32)
-    largest = forcelaw.largest_attractions(solid, bearing, starts, step, layer)
-    return contact.slope.values, largest * float(contact.length)
+        solid = solid + pressure - endless * rest.astype(np.float32)
+    return solid, bearing, starts, step, layer
 
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
@@ -65,8 +96,35 @@ def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     return forces * water.correction.at(humidity)[1] if water.correction else forces
 
 
+def fast_pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """Values of `pull_offs` in a separation faster than water evaporates, infinite without resistance of summits."""
+    _, fast = _separations(contact, humidity, water)
+    forces = np.array([np.inf if one is None else -one[0].min() for one in fast])
+    return forces * water.correction.at(humidity)[1] if water.correction else forces
+
+
+def fast_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """Values of `energies` in a separation faster than water evaporates, infinite without resistance of summits."""
+    sampled, fast = _separations(contact, humidity, water)
+    beyond = np.zeros(sampled.samples) if sampled.beyond is None else sampled.beyond
+    energies = [
+        np.inf if one is None else forcelaw.adhesion_energy(sampled.distance, one[0], beyond[k] + one[1])
+        for k, one in enumerate(fast)
+    ]
+    return np.array(energies) * (water.correction.at(humidity)[0] if water.correction else 1.0)
+
+
+def _separations(contact, humidity, water):
+    """Force curves at a relative humidity, and those of fast separations one by one."""
+    sampled, (_, bearing, starts, _) = force_curves(contact, humidity, water), tables(contact)
+    layer = water.film(humidity)
+    return sampled, (
+        keep_volume(sampled.curve(k), sampled.distance, bearing[k], starts[1], layer) for k in range(sampled.samples)
+    )
+
+
 def share_flat(contact: xr.Dataset, humidity: float, water: Water) -> float:
-    """Share of the samples at a relative humidity that count as flat surfaces, because no summits stop them [-]."""
+    """Fraction of the samples at a relative humidity to count as flat surfaces, not stopped by summits [-]."""
     sampled = force_curves(contact, humidity, water)
     return forcelaw.share_flat(sampled.curve, sampled.samples) if sampled.flat else 0.0
 

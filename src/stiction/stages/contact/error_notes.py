@@ -1,4 +1,4 @@
-"""Notes in error messages: which patch or contact an error of the force curves concerns."""
+"""Notes in error messages: patch or contact of an error of the force curves."""
 
 from collections.abc import Iterator
 from contextlib import AbstractContextManager, contextmanager

@@ -17,7 +17,7 @@ from stiction.progress import progress
 from stiction.stages.contact import contact, pairs
 from stiction.stages.contact.curves import force_curves
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 #: Variables of a sample at a humidity: unit and meaning.
 _VARIABLES = {
@@ -81,7 +81,7 @@ def strips(
 
 
 def _both_models(distance, force, strip, hardness):
-    """Variables of one strip at one humidity; ``distance``, ``force``: curve of the sum over summits."""
+    """Variables of one strip at one humidity. ``distance``, ``force``: curve of the sum over summits."""
     found = elements.separation(*strip, (distance, force))
     pressure = found.closed.pressure
     touching = pressure[pressure > 0] / hardness
@@ -127,7 +127,7 @@ def pull_offs(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def settings_of(plan: Any, at: At) -> dict[str, Any]:
-    """As those of the contact, with the lowest, the middle and the highest humidity of the pair.
+    """Settings of the contact, with the lowest, the middle and the highest humidity of the pair.
 
     ASSUME: attraction across gaps is left out, so that both models have the same forces.
     """
@@ -142,7 +142,7 @@ STAGES = (
     Stage.writing(
         "full_contact",
         "studies/full_contact/{pair}",
-        inputs=lambda plan, at: of_pair(plan, at.pair),
+        inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=settings_of,
         kind=Settings,
         compute=lambda data, at, settings: compute(both(data), at.pair, settings),

@@ -13,7 +13,7 @@ from stiction.stages.contact import full_contact
 
 @dataclass(frozen=True)
 class Settings:
-    """Humidities at which the error is stated."""
+    """Humidities for the error of the model."""
 
     humidities: tuple[float, ...]  #: [-]
     applied: bool = False  #: whether the predictions are corrected by it

@@ -35,7 +35,7 @@ class Contact:
 
 
 class Surfaces(Protocol):
-    """Sections of the settings of any job that draws pairs of surfaces."""
+    """Sections of the settings of any job with drawn pairs of surfaces."""
 
     sampling: Sampling
     contact: Contact
@@ -43,7 +43,7 @@ class Surfaces(Protocol):
 
 
 class Solids(Protocol):
-    """Sections of the settings of any job that computes the forces of summits."""
+    """Sections of the settings of any job with forces of summits."""
 
     solid: Solid
     van_der_waals: str
@@ -52,7 +52,7 @@ class Solids(Protocol):
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the contact of a pair depends on apart from its surfaces; independent of humidity."""
+    """Settings of the contact of a pair, without its surfaces and independent of humidity."""
 
     seed: int
     sampling: Sampling
@@ -78,26 +78,26 @@ def asperity_of(settings: Solids) -> Asperity:
 def equivalent_surface(
     surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], model: str, settings: Surfaces
 ) -> EquivalentSurface:
-    """Sum of two surfaces from their (heights, spectrum) datasets, that of the beam first."""
+    """Sum of two surfaces from their (heights, spectrum) datasets, the beam's first."""
     grid = settings.sampling.strips(settings.beam.width)
     beam, substrate = (rough_surface(heights, spectrum, model, grid) for heights, spectrum in surfaces)
     return EquivalentSurface(beam, substrate, *_discretised(settings.contact))
 
 
 def _discretised(contact):
-    """Step of the distances, every n-th point, and what an asperity is."""
+    """Step of the distances, every n-th point, and the definition of an asperity."""
     return contact.distance_step, contact.every, Definition(contact.asperity)
 
 
 def surface_pair(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], model: str, settings: Settings) -> SurfacePair:
-    """Pair of surfaces from their (heights, spectrum) datasets, that of the beam first."""
+    """Pair of surfaces from their (heights, spectrum) datasets, the beam's first."""
     return surface_pairs([surfaces], model, settings)[0]
 
 
 def surface_pairs(
     alternatives: Sequence[Sequence[tuple[xr.Dataset, xr.Dataset]]], model: str, settings: Settings
 ) -> list[SurfacePair]:
-    """As `surface_pair`, for several pairs; equal tuples of datasets give the same object."""
+    """Pairs of surfaces from datasets as of `surface_pair`. Equal tuples of datasets give the same object."""
     grid, solid = settings.sampling.strips(settings.beam.width), asperity_of(settings)
     distinct = {id(datasets): datasets for surfaces in alternatives for datasets in surfaces}
     built = {key: rough_surface(*datasets, model, grid) for key, datasets in distinct.items()}

@@ -15,7 +15,7 @@ from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import pairs
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,7 +27,7 @@ class Settings(pairs.Settings):
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
-    """Find the touching summits of all strips, the share of their contact area that yields, and the mean pressure."""
+    """Find the touching summits of all strips, the yielding fraction of their contact area, and the mean pressure."""
     rough_pair = surface_pair(surfaces, "NG", settings)
     streams = streams_of_sides(settings.seed, pair)
     touching = []
@@ -54,7 +54,7 @@ def layout(
     pressure: float,
     hardness: float = HARDNESS,
 ) -> xr.Dataset:
-    """Stress of every touching summit, the share of the contact area that yields, and the pressure at which it does.
+    """Stress of every touching summit, the yielding fraction of the contact area, and the pressure of yielding.
 
     The summits have an interference [m], radius [m], stress [Pa] and strip, (n,) each; the share A_P / A comes with its
     standard error [-]. At the distance of the mean planes [m], the pressure is the mean of the surfaces without
@@ -76,7 +76,7 @@ def layout(
 
 
 def _settings(plan, at):
-    """As those of the contact, with the number of strips and the distance of App. A, and with the hardness."""
+    """Settings of the contact, with the number of strips and the distance of App. A, and with the hardness."""
     study = plan.config["studies"]["plasticity"]
     size = {"strips": study["strips"], "distance_nm": study["distance_nm"][at.pair]}
     return select(Settings, plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None) | size)
@@ -86,7 +86,7 @@ STAGES = (
     Stage.writing(
         "plasticity",
         "studies/plasticity/{pair}",
-        inputs=lambda plan, at: of_pair(plan, at.pair),
+        inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=_settings,
         kind=Settings,
         compute=lambda data, at, settings: compute(both(data), at.pair, settings),

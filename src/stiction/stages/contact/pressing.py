@@ -13,7 +13,7 @@ from stiction.contact.halfspace import HalfSpace
 from stiction.plan.stage import Stage
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.pairs import bodies
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 #: Variables of a strip that is pressed: unit and meaning.
 _PRESSED = {
@@ -45,13 +45,13 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
     """
     hardness = solids.softer_hardness(*bodies(settings))
     strips = [
-        _of_strip(*strip, np.linspace(0, 1, settings.steps + 1), settings.distance, hardness)
+        _strip_pressed(*strip, np.linspace(0, 1, settings.steps + 1), settings.distance, hardness)
         for strip in full_contact.strips(surfaces, pair, settings)
     ]
     return layout(*map(np.array, zip(*strips, strict=True)), settings.humidities)
 
 
-def _of_strip(space, heights, cases, shares, closest, hardness):
+def _strip_pressed(space, heights, cases, shares, closest, hardness):
     """Energies (2 + n_steps, n_humidity) and variables of the presses (n_steps, n_variables) of one strip."""
     fresh = [at_rest(space, heights, *each)[0] for each in cases]
     before = [state.energy(heights, adhesion) for state, (adhesion, _) in zip(fresh, cases, strict=True)]
@@ -68,7 +68,7 @@ def _of_strip(space, heights, cases, shares, closest, hardness):
         ]
         for flat in (own, *([state.flattening] * len(cases) for state in pressed))
     ]
-    return -np.array([before, *after]), [_of_press(state) for state in pressed]
+    return -np.array([before, *after]), [_press_variables(state) for state in pressed]
 
 
 def _energy(space, heights, adhesion, curve):
@@ -77,7 +77,7 @@ def _energy(space, heights, adhesion, curve):
 
 
 def _pressed(space: HalfSpace, heights: np.ndarray, distances: np.ndarray, hardness: float) -> Iterator[State]:
-    """States of a strip at distances that decrease, all but the first.
+    """Yield states of a strip at decreasing distances, all but the first.
 
     ASSUME: while surfaces are pressed, their attraction is left out, which is small against the pressure.
     """
@@ -93,15 +93,15 @@ def _pressed(space: HalfSpace, heights: np.ndarray, distances: np.ndarray, hardn
         yield state
 
 
-def _of_press(state):
-    """Variables of a strip that is pressed."""
+def _press_variables(state):
+    """Variables of a pressed strip."""
     touching = state.pressure > 0
     at_hardness = (state.pressure >= np.float32(state.hardness)).sum() / touching.sum()
     return [state.force, state.distance, touching.mean(), at_hardness, state.flattening.max()]
 
 
 def layout(energies: np.ndarray, presses: np.ndarray, humidities: Sequence[float]) -> xr.Dataset:
-    """Energies of every strip, and the states to which it was pressed.
+    """Energies of every strip, and the states of its presses.
 
     Energies (n, 2 + n_steps, n_humidity) are those of fresh strips, after adhesion alone, and after each press [J m⁻²];
     presses (n, n_steps, n_variables) are in the order of the variables of this module [SI].
@@ -118,7 +118,7 @@ def layout(energies: np.ndarray, presses: np.ndarray, humidities: Sequence[float
 
 
 def _settings(plan, at):
-    """As those of study full_contact, with the number of strips and the distances of this one."""
+    """Settings of study full_contact, with the number of strips and the distances of this one."""
     study = plan.config["studies"]["pressing"]
     size = {"strips": study["samples"], "distance_nm": study["distance_nm"][at.pair], "steps": study["steps"]}
     return full_contact.settings_of(plan, at) | size
@@ -128,7 +128,7 @@ STAGES = (
     Stage.writing(
         "pressed",
         "studies/pressing/{pair}",
-        inputs=lambda plan, at: of_pair(plan, at.pair),
+        inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=_settings,
         kind=Settings,
         compute=lambda data, at, settings: compute(both(data), at.pair, settings),

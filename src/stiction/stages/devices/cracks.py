@@ -1,4 +1,4 @@
-"""Stage cracks: where the cracks of long beams of a device stop at a humidity, and the error of few sampled surfaces.
+"""Stage cracks: arrest of the cracks of long beams of a device at a humidity, and the error of few surfaces.
 
 Of a bridge, the stage finds the shortest length that its middle holds instead.
 A simulation of long beams gives P(stuck) at every length (`stiction.devices.risk`). For the error due to the number of
@@ -6,6 +6,7 @@ sampled surfaces, force laws are fitted to each of some groups of the samples al
 with the same random numbers.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 
@@ -42,7 +43,7 @@ GROUPS, PER_GROUP = 10, 50
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the cracks depend on apart from the contact."""
+    """Settings of the cracks, without the contact."""
 
     seed: int
     chaos: Truncation
@@ -75,7 +76,7 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
 def layout(
     opening: Opening, arrested: np.ndarray, of_group: list[np.ndarray], beam: Beam, laws: np.ndarray, rms: float
 ) -> xr.Dataset:
-    """Dataset of the lengths at which the cracks of a device stop at a humidity.
+    """Dataset of the lengths of arrest of the cracks of a device at a humidity.
 
     Lengths with all samples of contact (n,), as from `stiction.stages.devices.opening.arrests`, and with each group of
     them alone [m]; the part of the device that finite elements resolve; a sample (k, 4) of the force laws [SI]; rms of
@@ -102,6 +103,14 @@ def lengths(cracks: xr.Dataset) -> tuple[np.ndarray, np.ndarray, float]:
     """Crack or held lengths with all samples (n,), with each group alone (g, n), and the foundation length [m]."""
     name = next(opening.length for opening in BEAMS.values() if opening.length in cracks)
     return cracks[name].values, cracks[f"{name}_of_group"].values, float(cracks.foundation_length)
+
+
+def with_lengths(cracks: xr.Dataset, changed: Callable[[np.ndarray], np.ndarray]) -> xr.Dataset:
+    """Dataset with other lengths, a function of those of any shape [m]."""
+    name = next(opening.length for opening in BEAMS.values() if opening.length in cracks)
+    return cracks.assign(
+        {key: cracks[key].copy(data=changed(cracks[key].values)) for key in (name, f"{name}_of_group")}
+    )
 
 
 STAGES = (

@@ -1,4 +1,4 @@
-"""Where results of devices are beyond the limits of the model, in sentences of `stiction.devices.limits`."""
+"""Results of devices beyond the limits of the model, in sentences of `stiction.devices.limits`."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -31,7 +31,7 @@ from stiction.stages.surfaces import surface_flags
 
 @dataclass(frozen=True)
 class OfDevice:
-    """A device and its pair."""
+    """Device and its pair."""
 
     device: DesignedBeam
     materials: StatedProperties = ()  #: of its pair
@@ -39,7 +39,7 @@ class OfDevice:
 
 @dataclass(frozen=True)
 class OfStopper:
-    """A stopper and its pair."""
+    """Stopper and its pair."""
 
     pair: str
     water: Water
@@ -49,10 +49,10 @@ class OfStopper:
     materials: StatedProperties = ()  #: of its pair
 
 
-def of_device(
+def beam_warnings(
     safe_lengths: xr.Dataset, of: OfDevice, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0
 ) -> dict[str, list[str]]:
-    """Warnings about a device at a humidity, by the shape in which it sticks; dataset of stage safe_lengths.
+    """Warnings about a device at a humidity, by the shape of its adhesion. Dataset of stage safe_lengths.
 
     Each shape is checked at the shortest of its lengths, where slopes are largest. That no water condenses is worth a
     sentence at a humidity, but not in dry air.
@@ -62,15 +62,15 @@ def of_device(
         limits.no_water(float(safe_lengths.film), humidity), limits.flat_patches(float(safe_lengths.share_flat))
     )
     return {
-        shape: without + _of_length(float(shortest.sel(shape=shape)), safe_lengths, of, plastic)
+        shape: without + _length_warnings(float(shortest.sel(shape=shape)), safe_lengths, of, plastic)
         for shape in map(str, safe_lengths["shape"].values)
     }
 
 
-def of_chart(
+def chart_warnings(
     charts: Sequence[xr.Dataset], of: OfDevice, plastic: Plastic = NOT_STUDIED
 ) -> dict[tuple[float, float, str], list[str]]:
-    """Warnings about the chart of a device by thickness [m], gap [m] and shape; a dataset of stage chart per humidity.
+    """Warnings about the chart of a device by thickness [m], gap [m] and shape. A dataset of stage chart per humidity.
 
     Each curve is checked at its shortest length.
     """
@@ -81,7 +81,7 @@ def of_chart(
         shortest = shortest.assign(longest_strip=min(curve.longest_strip for curve in along))
         of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
         length = float(shortest.safe_length.min())
-        warnings[thickness, gap, shape] = _of_length(
+        warnings[thickness, gap, shape] = _length_warnings(
             length, shortest, of_size, plastic, min(filter(None, (float(curve.film) for curve in along)), default=0.0)
         )
     return warnings
@@ -92,15 +92,15 @@ def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
     return list(product(*(chart[name].values.tolist() for name in ("thickness", "gap", "shape"))))
 
 
-def _of_length(length, dataset, of, plastic, thinnest=None):
-    """Warnings about a device of a length [m]; film, rms and the longest strip from a dataset.
+def _length_warnings(length, dataset, of, plastic, thinnest=None):
+    """Warnings about a device of a length [m]. Film, rms and longest strip from a dataset.
 
     The thinnest film [m] is that of the dataset, or along the axis of a chart.
     """
     device = of.device
     sizes = device.gap, device.width, device.thickness, length / device.opening.arms
     is_bridge = device.opening.arms == 2
-    return limits.of_beam(*sizes, float(dataset.film), float(dataset.rms)) + limits.given(
+    return limits.beam_warnings(*sizes, float(dataset.film), float(dataset.rms)) + limits.given(
         limits.long_strips(device.strip, float(dataset.longest_strip), is_bridge),
         limits.thin_film(thinnest or float(dataset.film)),
         limits.stretched_bridge(device.gap, device.thickness) if is_bridge else None,
@@ -108,7 +108,7 @@ def _of_length(length, dataset, of, plastic, thinnest=None):
     )
 
 
-def _of_water(of):
+def _water_warnings(of):
     """Warnings, or None, about the thinnest and the thickest film on the patch of a stopper."""
     humid = [*filter(None, of.humidities), *of.worst_humidities] if any(of.humidities) else []
     films = [of.water.film(humidity)[0] for humidity in humid] or [0.0]
@@ -124,10 +124,10 @@ class OfDevices(NamedTuple):
     patches: dict[str, list[str]]  #: of stoppers, by name
 
 
-def of_stopper(of: OfStopper, plastic: Plastic = NOT_STUDIED, share_flat: float = 0.0) -> list[str]:
-    """Warnings about a stopper, of whose patches a share is flat [-]; other parameters as of `of_device`."""
+def stopper_warnings(of: OfStopper, plastic: Plastic = NOT_STUDIED, share_flat: float = 0.0) -> list[str]:
+    """Warnings about a stopper with a fraction of flat patches [-]. Other parameters as of `beam_warnings`."""
     return limits.given(
-        *_of_water(of), limits.flat_patches(share_flat), *contact_warnings(plastic, of.materials, limits.STRONGER)
+        *_water_warnings(of), limits.flat_patches(share_flat), *contact_warnings(plastic, of.materials, limits.STRONGER)
     )
 
 
@@ -164,22 +164,22 @@ def left_out_changes(dataset: xr.Dataset) -> dict[tuple[float, str], tuple[float
     return dict(zip(keys, zip(dataset.change.values.tolist(), dataset.error.values.tolist(), strict=True), strict=True))
 
 
-def of_left_out_gaps(changes: Mapping[tuple[float, str], tuple[float, float]], shape: str) -> list[str]:
-    """Warning about what attraction across gaps would change of what holds in a shape, from `left_out_changes`."""
+def gap_warnings(changes: Mapping[tuple[float, str], tuple[float, float]], shape: str) -> list[str]:
+    """Warning about the effect of attraction across gaps on adhesion in a shape, from `left_out_changes`."""
     response = ARC if shape == EITHER else shape
     of_shape = {humidity: change for (humidity, of), change in changes.items() if of == response}
     return limits.given(limits.without_gaps(of_shape, shorter=shape != FORCE))
 
 
 def left_out_gaps(plan: Any, device: str) -> dict[str, str]:
-    """Dataset of a device whose results are without attraction across gaps, as input of a stage; none for others."""
+    """Dataset of a device with results without attraction across gaps, as input of a stage, none for others."""
     pair = plan.config["devices"][device]["pair"]
     is_left_out = plan.air_of_devices.reach(pair) == "touching" and plan.config["van_der_waals"] != "none"
     return {"left_out_gaps": f"devices/left_out_gaps/{device}"} if is_left_out else {}
 
 
 def _inputs(plan, at):
-    """Everything that the warnings about a device are about."""
+    """Inputs of the warnings about a device."""
     devices, section = plan.devices, plan.config["devices"][at.device]
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]] if at.device in devices.beams else []
     charts = devices.chart_cases(at.device) if at.device in devices.charted else []
@@ -193,7 +193,7 @@ def _inputs(plan, at):
 
 
 def _settings(plan, at):
-    """A device, its pair and the stated properties of its materials."""
+    """Device, its pair and the stated properties of its materials."""
     section = plan.config["devices"][at.device]
     own = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
     said = plan.assumed(section["pair"]).get(section["pair"])
@@ -204,26 +204,28 @@ def _settings(plan, at):
     return assumed | {"stopper": select(OfStopper, own)}
 
 
-def _of_one_device(data, settings):
-    """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
+def _device_warnings(data, settings):
+    """Warnings about a device: about its lengths, its curves and its patch, each with a suffix to its name."""
     flags = surface_flags.together(data) + settings.get("assumed", [])
     changes = left_out_changes(data["left_out_gaps"]) if "left_out_gaps" in data else {}
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])
-        gaps = of_left_out_gaps(changes, FORCE)
+        gaps = gap_warnings(changes, FORCE)
         (stopper,) = data["stoppers"].values()
         plastic = plastic_contact(data["plasticity"], of.pair)
-        return [], [], [[[], of_stopper(of, plastic, float(stopper.share_flat)) + gaps + flags]]
+        return [], [], [[[], stopper_warnings(of, plastic, float(stopper.share_flat)) + gaps + flags]]
     of = in_si(OfDevice, settings["beam"])
     plastic = plastic_contact(data["plasticity"], of.device.pair)
     lengths = [
-        [[humidity, shape], sentences + of_left_out_gaps(_at(changes, humidity), shape) + flags]
+        [[humidity, shape], sentences + gap_warnings(_at(changes, humidity), shape) + flags]
         for (_, humidity), dataset in data["lengths"].items()
-        for shape, sentences in of_device(dataset, of, plastic, humidity).items()
+        for shape, sentences in beam_warnings(dataset, of, plastic, humidity).items()
     ]
     charts = list(data["charts"].values())
     curves = (
-        [[curve, sentences + flags] for curve, sentences in of_chart(charts, of, plastic).items()] if charts else []
+        [[curve, sentences + flags] for curve, sentences in chart_warnings(charts, of, plastic).items()]
+        if charts
+        else []
     )
     return lengths, curves, []
 
@@ -234,7 +236,7 @@ def _at(changes, humidity):
 
 
 def not_modelled(plan: Any, *devices: str) -> str:
-    """Sentence on what is not in the results of some devices."""
+    """Sentence on effects missing in the results of some devices."""
     sections = (plan.config["devices"][name] for name in devices)
     return plan.air_of_devices.not_modelled(
         (section["pair"], humidity) for section in sections for humidity in section["humidities"]
@@ -252,7 +254,7 @@ STAGES = (
         files={"json": "devices/warnings/{device}.json"},
         inputs=_inputs,
         settings=_settings,
-        compute=_of_one_device,
+        compute=_device_warnings,
         save=lambda warnings, paths: save_text(json.dumps(warnings, ensure_ascii=False, indent=1), paths["json"]),
         message="Where the results of device {device} are beyond the model.",
     ),

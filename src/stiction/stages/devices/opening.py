@@ -26,6 +26,7 @@ from stiction.contact import forcelaw
 from stiction.devices import bridges
 from stiction.devices.arcs import arc_length
 from stiction.devices.bridges import half_of_bridge, held_lengths, longest_strip, longest_tried, middle_zone
+from stiction.life import holding
 from stiction.plan.stage import chosen, select
 from stiction.streams import stream
 
@@ -47,7 +48,7 @@ LAWS = 10_000
 
 @dataclass(frozen=True)
 class DesignedBeam:
-    """Dimensions of a beam that must come free, and its ground."""
+    """Dimensions of a designed beam, and its ground."""
 
     kind: str  #: key of `BEAMS`
     pair: str  #: part of the addresses of random numbers
@@ -61,7 +62,7 @@ class DesignedBeam:
 
     @property
     def opening(self) -> "Opening":
-        """How beams of its kind open."""
+        """Opening of beams of its kind."""
         return BEAMS[self.kind]
 
     @property
@@ -72,7 +73,7 @@ class DesignedBeam:
 
 
 class Seeded(Protocol):
-    """Settings of any job that releases beams of a device."""
+    """Settings of any job with released beams of a device."""
 
     seed: int
     device: DesignedBeam
@@ -89,7 +90,7 @@ def addresses(settings: Seeded) -> Callable:
 
 
 def _unresolved(device, laws):
-    """As `long_beam`, with the elements of the paper."""
+    """Long beam with the elements of the paper."""
     part = device.beam
     parts = int(np.ceil(LONG * arrest_length(forcelaw.energy(laws).mean(), part) / part.length))
     points = parts * PART
@@ -97,7 +98,7 @@ def _unresolved(device, laws):
 
 
 def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
-    """Beam of a device that is longer than its cracks, with elements that resolve them, and its number of strips.
+    """Beam of a device longer than its cracks, with elements fine enough for them, and its number of strips.
 
     Raises
     ------
@@ -109,7 +110,7 @@ def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
 
 
 def ground_of(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
-    """Part of a device that finite elements resolve on force laws (n, 4), and its number of strips.
+    """Part of a device in finite elements on force laws (n, 4), and its number of strips.
 
     There are none where strips are too long: a patch that counts as a flat surface may be much stiffer than all others.
     """
@@ -119,7 +120,7 @@ def ground_of(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
 
 
 def least_length(device: DesignedBeam, laws: np.ndarray) -> float:
-    """Length below which no ground holds a device that is nowhere stronger than some force laws (n, 4) [m]."""
+    """Length of a device that comes free of any ground no stronger than some force laws (n, 4) [m]."""
     strongest = device.opening.contribution(laws).max(axis=0)
     return float(device.opening.bound(strongest, device.beam))
 
@@ -141,7 +142,7 @@ def arrests(
 def reach(
     device: DesignedBeam, ground: tuple[Beam, int], draw: Callable, arrested: np.ndarray, address: Callable
 ) -> float:
-    """Length up to which devices with these ``arrested`` lengths (n,) were simulated [m]; infinite if all are finite.
+    """Largest simulated length of devices with these ``arrested`` lengths (n,), infinite if all are finite [m].
 
     Other parameters as of `arrests`.
     """
@@ -162,7 +163,7 @@ def _energies_and_pull_offs(laws):
 
 @dataclass(frozen=True, kw_only=True)
 class Opening:
-    """How beams of one kind open, and what then holds them."""
+    """Opening of beams of one kind, and their places of adhesion."""
 
     arms: int  #: number of clamped ends, from each of which a crack opens
     sizes: tuple[str, ...]  #: fields of `DesignedBeam` that a measurement may determine
@@ -177,6 +178,8 @@ class Opening:
     contribution: Callable[[np.ndarray], np.ndarray]
     length_on_mean: Callable[[np.ndarray, Beam], float]
     bound: Callable[[np.ndarray, Beam], float]  #: length below which nothing of at most a contribution holds it
+    #: Lengths (n,) at a voltage from those without it, and from the mean e and f_max (2,) without and with it.
+    at_voltage: Callable[[np.ndarray, np.ndarray, np.ndarray, Beam], np.ndarray]
 
     @property
     def has_tip(self) -> bool:
@@ -185,8 +188,8 @@ class Opening:
 
 
 #: How beams open by kind. ASSUME: crack lengths follow the mean energy of the samples as in Eq. (13), and lengths of
-#: bridges their mean energy and pull-off force as in ``bridges.least_length``, as far as the error of the samples is
-#: concerned.
+#: bridges their mean energy and pull-off force as in ``bridges.least_length``, as far as errors of the samples and
+#: effects of a voltage are concerned.
 BEAMS = {
     "cantilever": Opening(
         arms=1,
@@ -201,6 +204,9 @@ BEAMS = {
         contribution=forcelaw.energy,
         length_on_mean=lambda sample, beam: arrest_length(sample.mean(), beam),
         bound=arc_length,
+        at_voltage=lambda lengths, without, at, beam: holding.length_at_voltage(
+            lengths, beam, float(at[0] - without[0]), holding.S_SHAPE
+        ),
     ),
     "bridge": Opening(
         arms=2,
@@ -215,15 +221,23 @@ BEAMS = {
         contribution=_energies_and_pull_offs,
         length_on_mean=lambda sample, beam: bridges.least_length(*sample.mean(axis=0), beam),
         bound=lambda strongest, beam: bridges.least_length(*strongest, beam),
+        at_voltage=lambda lengths, without, at, beam: (
+            lengths * (bridges.least_length(*at, beam) / bridges.least_length(*without, beam))
+        ),
     ),
 }
 
 
 def settings_of_beam(plan: Any, case: Case) -> dict[str, Any]:
-    """A device at a humidity: force laws, dimensions and number of beams; more than any one stage needs."""
+    """Device at a humidity: force laws, dimensions and number of beams. More than any one stage needs."""
     pair = plan.contact_of_device(case)
     own = {"device": section_of_beam(plan, case.device, pair), "humidity": case.humidity}
     return plan.seen_by(pair) | plan.config["design"] | own | {"water": plan.air_of_devices.water(pair)}
+
+
+def at_voltage(plan: Any, device: str, settings: dict[str, Any]) -> dict[str, Any]:
+    """Settings of a device with its voltage beside its water."""
+    return settings | {"water": settings["water"] | {"capacitor": plan.devices.capacitor(device)}}
 
 
 def section_of_beam(plan: Any, name: str, contact: str | None = None) -> dict[str, Any]:

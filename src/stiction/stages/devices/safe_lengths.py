@@ -9,12 +9,15 @@ import xarray as xr
 from stiction.contact.environment import Water
 from stiction.devices import arcs, risk
 from stiction.devices.risk import Known, SafeLength
+from stiction.estimates import mean_with_error
 from stiction.life.freeing import probability_for
 from stiction.plan.stage import Stage, chosen, select
 from stiction.stages.contact import curves
+from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices import cracks as stage_cracks
-from stiction.stages.devices.contact_names import tips_of
-from stiction.stages.devices.opening import DesignedBeam, settings_of_beam
+from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
+from stiction.stages.devices.opening import DesignedBeam, at_voltage, settings_of_beam
 from stiction.stages.devices.sticking import by_shape, known, safe_lengths, sticking_lengths
 
 #: Points along the axis of the lengths.
@@ -23,7 +26,7 @@ _POINTS = 300
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the safe lengths depend on apart from the cracks and the contact of the tips."""
+    """Settings of the safe lengths, without the cracks and the contact of the tips."""
 
     seed: int
     water: Water
@@ -34,7 +37,7 @@ class Settings:
 
 
 def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
-    """P(stuck) and safe lengths; each beam has one of the tips, and a bridge has none."""
+    """P(stuck) and safe lengths. Each beam has one of the tips, and a bridge has none."""
     lengths, of_group, foundation = stage_cracks.lengths(cracks)
     device, held = settings.device, None
     if tips is not None:
@@ -53,6 +56,24 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
     if settings.length is None:
         return dataset
     return dataset.assign(at_length(sticking, groups, float(cracks.reach), settings.length))
+
+
+def compute_at_voltage(
+    contact: xr.Dataset, cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings
+) -> xr.Dataset:
+    """Safe lengths at a voltage, from the contact of the strips and the cracks without voltage, see `compute`.
+
+    Tips are held by the attraction across their gaps, and cracks by the mean energy that it adds to the strips
+    (`stiction.life.holding`). ASSUME: strips gain the same, as far as cracks are concerned.
+    """
+    device, waters = settings.device, (replace(settings.water, capacitor=None), settings.water)
+    with on_patch(device.strip, device.width):
+        without, at = (curves.vectors(contact, settings.humidity, water)[0][:, :2] for water in waters)
+    means = without.mean(axis=0), at.mean(axis=0)
+    moved = stage_cracks.with_lengths(cracks, lambda lengths: device.opening.at_voltage(lengths, *means, device.beam))
+    added, error = mean_with_error(at[:, 0] - without[:, 0])
+    energies = {"voltage_energy": ((), added, {"units": "J m-2"}), "voltage_error": ((), error, {"units": "J m-2"})}
+    return compute(moved, tips, settings).assign(energies)
 
 
 def at_length(
@@ -126,7 +147,7 @@ def layout(
 
 
 def _axis(sticking, reach):
-    """Lengths of the curves of P(stuck), from below the shortest that sticks to where all do or the simulation ends."""
+    """Lengths of the curves of P(stuck), from below the shortest stuck one to all stuck or the last simulated."""
     lengths = np.concatenate(list(sticking.values()))
     ends = lengths[np.isfinite(lengths) & (lengths <= reach)]
     low, high = ends.min(initial=reach), 1.02 * ends.max(initial=0.0)
@@ -134,12 +155,12 @@ def _axis(sticking, reach):
 
 
 def chosen_share(dataset: xr.Dataset) -> float:
-    """The fraction of stuck devices for which sentences state lengths: the middle one [-]."""
+    """Fraction of stuck devices for lengths in sentences: the middle one [-]."""
     return float(dataset.share[dataset.sizes["share"] // 2])
 
 
 def _for_touchdowns(plan, at):
-    """Settings of the safe length of one touchdown that leaves the middle fraction stuck after all of them."""
+    """Settings of the safe length of one touchdown for the middle fraction stuck after all of them."""
     settings, shares = settings_of_beam(plan, at.case), plan.config["design"]["shares"]
     touchdowns = plan.config["devices"][at.case.device]["touchdowns"]
     return select(Settings, settings, shares=[probability_for(shares[len(shares) // 2], touchdowns)])
@@ -164,5 +185,20 @@ STAGES = (
         files={"dataset": "devices/touchdowns/{case}"},
         settings=_for_touchdowns,
         message="Safe lengths of {case} for many touchdowns.",
+    ),
+    Stage.writing(
+        "at_voltage",
+        "devices/at_voltage/{case}",
+        inputs=lambda plan, at: (
+            _SAFE_LENGTHS.inputs(plan, at)
+            | {"contact": contact_of(plan, at.case)}
+            | corrections_of(plan, at.case.device)
+        ),
+        settings=lambda plan, at: select(Settings, at_voltage(plan, at.case.device, settings_of_beam(plan, at.case))),
+        kind=Settings,
+        compute=lambda data, settings: compute_at_voltage(
+            data["contact"], data["cracks"], data.get("tips"), corrected(settings, data)
+        ),
+        message="Safe lengths of {case} at its voltage.",
     ),
 )

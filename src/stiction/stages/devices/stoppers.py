@@ -1,8 +1,8 @@
 """Stage stoppers: pull-off force of a patch of a pair against its restoring force, over the humidity."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -16,9 +16,10 @@ from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.contact.corrections import corrected
-from stiction.stages.contact.curves import pull_offs, share_flat
+from stiction.stages.contact.curves import energies, pull_offs, share_flat, tilted_forces
 from stiction.stages.contact.error_notes import on_patch
-from stiction.stages.devices.contact_names import contact_of, corrections_of
+from stiction.stages.devices.contact_names import contact_of, corrections_of, dimples_of, tilted_of
+from stiction.stages.devices.opening import at_voltage
 from stiction.streams import stream
 
 #: Shares of stuck patches for which a restoring force is stated, down to one in a million.
@@ -31,7 +32,7 @@ PROBABILITIES = np.array([0.05, 0.5, 0.95])
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the forces of a stopper depend on apart from its contact."""
+    """Settings of the forces of a stopper, without its contact."""
 
     seed: int
     water: Water
@@ -62,8 +63,84 @@ def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = No
     return layout(settings, chosen, axis, along).assign(share_flat=((), flat, {"units": "1"}))
 
 
+@dataclass(frozen=True)
+class Tilted(Settings):
+    """Settings of a tilted stopper."""
+
+    slopes: tuple[float, ...] = ()  #: at its tilts, increasing [-]
+
+
+def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Dataset:
+    r"""Pull-off forces of a stopper at its tilts, and the slope at the transition to a wedge.
+
+    Without tilt, the patches are those of `compute`. A tilted one touches with an edge of its first side a, as long as
+    its second side w. Smooth surfaces with the adhesion energy e then hold the force :math:`w e / s` at the slope s,
+    without a. It equals the force f_max w a of parallel ones at the slope :math:`e / f_\mathrm{max} a`. On rough
+    surfaces, whose wedge has few summits, each patch finds a distance of its own and holds more. The data are the
+    contacts of parallel and of tilted patches, in the wettest air and in dry air.
+    """
+    width, found, wedges = settings.contact[1], [], []
+    for humidity in settings.humidities:
+        end, water = "_dry" if humidity == 0 and "dry" in data else "", settings.water.at(humidity)
+        parallel, tilted = data["dry" if end else "contact"], data.get(f"tilted{end}")
+        flat = forces(parallel, humidity, settings)
+        rows = [] if settings.slopes[0] else [flat]
+        if tilted is not None:
+            own = tilted.sel(slope=[slope for slope in settings.slopes if slope], method="nearest")
+            rows += list(width * tilted_forces(own, humidity, water).T)
+        found.append(rows)
+        wedges.append(energies(parallel, humidity, water).mean() * width / flat.mean())
+    return layout_tilted(settings, np.swapaxes(found, 0, 1), np.array(wedges))
+
+
+def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) -> xr.Dataset:
+    """Dataset of a tilted stopper: forces (tilts, n_rh, m) [N], and slopes at the transition to a wedge (n_rh,) [-]."""
+    newton, none, over = {"units": "N"}, {"units": "1"}, ("tilt", "humidity")
+    stuck = [[_stuck(row, settings.restoring_force) for row in rows] for rows in pull_off]
+    safe, bases = zip(*(_safe(rows, settings.seed) for rows in pull_off), strict=True)
+    mean, error = mean_with_error(np.moveaxis(pull_off, -1, 0))
+    return xr.Dataset(
+        {
+            "pull_off": ((*over, "sample"), pull_off, newton),
+            "mean": (over, mean, newton),
+            "mean_error": (over, error, newton),
+            "stuck": (("bound", *over), np.moveaxis(stuck, -1, 0), none | {"long_name": "P(stuck) and its 95 % band"}),
+            "safe_force": (("part", *over, "share"), np.moveaxis(safe, 0, 1), newton),
+            "basis": ("share", bases[0]),
+            "wedge": ("humidity", wedges, none | {"long_name": "slope beyond which the force is that of a wedge"}),
+        },
+        coords={
+            "tilt": ("tilt", np.arctan(settings.slopes), {"units": "rad"}),
+            "humidity": list(settings.humidities),
+            "share": list(SHARES),
+            "bound": ["estimate", "low", "high"],
+            "part": ["safe", "estimate", "error"],
+        },
+    )
+
+
+@dataclass(frozen=True)
+class Dimples:
+    """Everything that the forces of a row of dimples depend on apart from the contact of one."""
+
+    water: Water
+    humidity: float  #: [-]
+    contact: tuple[float, float]  #: sides of the area of a dimple [m]
+    number: int  #: of dimples
+
+
+def compute_dimples(contact: xr.Dataset, settings: Dimples) -> xr.Dataset:
+    """Pull-off forces of rows of dimples, each row the sum of other patches."""
+    with on_patch(*settings.contact):
+        single = pull_offs(contact, settings.humidity, settings.water)
+    forces = pull_off_force(single, settings.contact[0] * settings.contact[1])
+    rows = len(forces) // settings.number
+    held = forces[: rows * settings.number].reshape(rows, settings.number).sum(axis=1)
+    return xr.Dataset({"pull_off": ("row", held, {"units": "N"})})
+
+
 def axis_of(settings: Settings) -> np.ndarray:
-    """Humidities among which the worst is sought: the fine axis and, before it, dry air if it is one of the device [-].
+    """Humidities in the search of the worst: the fine axis and, before it, dry air if the device has it [-].
 
     A device in dry air alone, or with surfaces that no water wets, has no other air.
     """
@@ -116,7 +193,7 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
 
 
 def _worst(axis, along):
-    """Worst humidity and its standard error, which contains that of a place between two points of the axis.
+    """Worst humidity and its standard error, with the error of a place between two points of the axis.
 
     The latter is their distance / √12. Dry air, if it is worse than all humid air, has no error.
     """
@@ -133,12 +210,12 @@ def _stuck(pull_off, force):
 
 
 def numbers_of_fits(seed: int) -> np.random.Generator:
-    """Random numbers of the errors of fitted forces: the same for all stoppers, so that their errors compare."""
+    """Random numbers of the errors of fitted forces: the same for all stoppers, for comparable errors."""
     return stream(seed, "safe force")
 
 
 def _safe(rows, seed):
-    """Safe forces of rows of patches, their estimates and errors (3, rows, shares) [N], and what each share rests on.
+    """Safe forces of rows of patches, their estimates and errors (3, rows, shares) [N], and the basis of each share.
 
     NaN, resting on nothing, for shares for which there are too few patches.
     """
@@ -152,12 +229,12 @@ def _safe(rows, seed):
 
 
 def is_at_an_end(dataset: xr.Dataset) -> bool:
-    """Whether the worst humidity is an end of the fine axis, so that the largest force may lie beyond it."""
+    """Whether the worst humidity is an end of the fine axis. The largest force may then lie beyond it."""
     return float(dataset.worst_humidity) in ends(dataset)
 
 
 def ends(dataset: xr.Dataset) -> tuple[float, ...]:
-    """Lowest and highest humidity of the fine axis [-]; none if the device is in dry air alone."""
+    """Lowest and highest humidity of the fine axis [-]. None if the device is in dry air alone."""
     humid = dataset.axis.values[dataset.axis.values > 0]
     return tuple(map(float, humid[[0, -1]])) if humid.size else ()
 
@@ -182,21 +259,66 @@ def _settings(plan, at):
 
 
 def _inputs(plan, at):
-    """Contact in the wettest air of a stopper, and in dry air if that is one of its humidities."""
+    """Contact in the wettest air of a stopper, and in dry air if it is one of its humidities."""
     humidities = plan.config["devices"][at.device]["humidities"]
     wettest, driest = (case_id(at.device, end(humidities)) for end in (max, min))
     dry = {"dry": contact_of(plan, driest)} if 0 in humidities else {}
     return {"contact": contact_of(plan, wettest)} | dry | corrections_of(plan, at.device)
 
 
+_STOPPERS = Stage.writing(
+    "stoppers",
+    "devices/stoppers/{device}",
+    inputs=_inputs,
+    settings=_settings,
+    kind=Settings,
+    compute=lambda data, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
+    message="Pull-off force of stopper {device}.",
+)
+
+
+def _inputs_tilted(plan, at):
+    """Inputs of a stopper, with the contacts of tilted patches if a tilt is not zero, see `_inputs`."""
+    inputs, humidities = _inputs(plan, at), plan.config["devices"][at.device]["humidities"]
+    if not any(plan.devices.slopes(at.device)):
+        return inputs
+    dry = {"tilted_dry": tilted_of(plan, case_id(at.device, 0))} if 0 in humidities else {}
+    return inputs | {"tilted": tilted_of(plan, case_id(at.device, max(humidities)))} | dry
+
+
+def _settings_of_dimples(plan, at):
+    """Water, humidity and dimples of a beam."""
+    water = plan.air_of_devices.water(plan.contact_of_device(at.case))
+    dimples = plan.devices.sections[at.case.device]["dimples"]
+    return select(Dimples, dimples | {"water": water, "humidity": at.case.humidity})
+
+
 STAGES = (
+    _STOPPERS,
     Stage.writing(
-        "stoppers",
-        "devices/stoppers/{device}",
-        inputs=_inputs,
-        settings=_settings,
-        kind=Settings,
-        compute=lambda data, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
-        message="Pull-off force of stopper {device}.",
+        "dimples",
+        "devices/dimples/{case}",
+        inputs=lambda plan, at: {"contact": dimples_of(plan, at.case)} | corrections_of(plan, at.case.device),
+        settings=_settings_of_dimples,
+        kind=Dimples,
+        compute=lambda data, settings: compute_dimples(data["contact"], corrected(settings, data)),
+        message="Pull-off force of the dimples of {case}.",
+    ),
+    replace(
+        _STOPPERS,
+        name="tilted_stoppers",
+        files={"dataset": "devices/tilted/{device}"},
+        inputs=_inputs_tilted,
+        settings=lambda plan, at: _settings(plan, at) | {"slopes": plan.devices.slopes(at.device)},
+        kind=Tilted,
+        compute=lambda data, settings: compute_tilted(data, corrected(settings, data)),
+        message="Pull-off force of tilted stopper {device}.",
+    ),
+    replace(
+        _STOPPERS,
+        name="stoppers_at_voltage",
+        files={"dataset": "devices/at_voltage/{device}"},
+        settings=lambda plan, at: at_voltage(plan, at.device, _settings(plan, at)),
+        message="Pull-off force of stopper {device} at its voltage.",
     ),
 )

@@ -18,7 +18,7 @@ _DRAWS = 100_000
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that a chaos model depends on apart from the force laws."""
+    """Settings of a chaos model, without the force laws."""
 
     chaos: Truncation
     seed: int
@@ -70,13 +70,13 @@ def layout(model: ChaosModel, report: tuple[np.ndarray, np.ndarray], rejected: f
 
 
 def chaos_model(dataset: xr.Dataset) -> ChaosModel:
-    """Chaos model from its dataset; it can draw force laws."""
+    """Chaos model from its dataset. It can draw force laws."""
     coordinates = PrincipalCoordinates(*(dataset[name].values for name in ("scale", "mean", "variance", "axes")))
     return ChaosModel(coordinates, dataset.coefficient.values, dataset.multi_index.values, float(dataset.limit))
 
 
 def generated_laws(dataset: xr.Dataset, number: int, case: str, seed: int) -> np.ndarray:
-    """Force laws of a case drawn from its chaos model, Eq. (12), for Fig. 12; (number, 4) [SI]."""
+    """Force laws of a case drawn from its chaos model, Eq. (12), for Fig. 12, (number, 4) [SI]."""
     return chaos.draw_laws(chaos_model(dataset), number, stream(seed, "figure 12", case))
 
 

@@ -13,7 +13,7 @@ Settings = stage_forces.Settings
 
 
 def compute(contact: xr.Dataset, forces: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Compare every curve whose vector v has a force law with this force law."""
+    """Compare every curve with the force law of its vector v, if there is one."""
     vectors, limit = stage_forces.vectors_of_curves(forces)
     samples = np.flatnonzero(admissible(vectors, limit))
     distance, curve, *_ = force_curves(contact, settings.humidity, settings.water)
@@ -22,7 +22,7 @@ def compute(contact: xr.Dataset, forces: xr.Dataset, settings: Settings) -> xr.D
 
 
 def layout(samples: np.ndarray, errors: tuple[np.ndarray, np.ndarray], total: int) -> xr.Dataset:
-    """Dataset of the relative errors of Eq. (12) with respect to the curves of the samples that have a force law.
+    """Dataset of the relative errors of Eq. (12) with respect to the curves of lawful samples.
 
     Numbers of these samples (n,), out of ``total``, and errors of the curve and of the adhesion energy, (n,) each [-].
     """

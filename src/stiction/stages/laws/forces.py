@@ -23,7 +23,7 @@ _KEPT = 200
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the forces depend on apart from the contact."""
+    """Settings of the forces, without the contact."""
 
     water: Water
     humidity: float  #: [-]
@@ -71,7 +71,7 @@ def vectors(forces: xr.Dataset) -> tuple[np.ndarray, float]:
 
 
 def vectors_of_curves(forces: xr.Dataset) -> tuple[np.ndarray, float]:
-    """As `vectors`, of the curves themselves: of the sum over summits, without a correction to full elastic contact."""
+    """Vectors of the curves themselves: of the sum over summits, without a correction to full elastic contact."""
     sampled, limit = vectors(forces)
     if _RATIOS[0] not in forces:
         return sampled, limit
@@ -102,7 +102,7 @@ STAGES = (
         "forces/{case}_{model}",
         inputs=lambda plan, at: (
             {"contact": f"contact/{plan.contact(at.case)}_{at.model}"}
-            | corrections.of_pair(plan, at.case.pair, model=at.model)
+            | corrections.correction_inputs(plan, at.case.pair, model=at.model)
         ),
         settings=lambda plan, at: select(Settings, plan.at(at.case)),
         kind=Settings,

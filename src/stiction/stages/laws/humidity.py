@@ -17,7 +17,7 @@ _PROBABILITIES = np.array([0.05, 0.5, 0.95])
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the energies depend on apart from the contact."""
+    """Settings of the energies, without the contact."""
 
     water: Water
     points: int  #: number of humidities
@@ -25,7 +25,7 @@ class Settings:
 
 
 def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Compute the energy of every sample at every humidity; store the quantiles."""
+    """Compute the energy of every sample at every humidity. Store the quantiles."""
     humidities = np.linspace(*settings.range, settings.points)
     of_humidities = np.array([energies(contact, float(h), settings.water) for h in progress(humidities, "humidities")])
     return layout(humidities, _PROBABILITIES, of_humidities)
@@ -58,11 +58,11 @@ STAGES = (
         "humidity",
         "humidity/{pair}_{model}",
         inputs=lambda plan, at: (
-            {"contact": f"contact/{at.pair}_{at.model}"} | corrections.of_pair(plan, at.pair, model=at.model)
+            {"contact": f"contact/{at.pair}_{at.model}"} | corrections.correction_inputs(plan, at.pair, model=at.model)
         ),
         settings=_settings,
         kind=Settings,
         compute=lambda data, settings: compute(data["contact"], corrections.corrected(settings, data)),
-        message="Adhesion energy of {model} surfaces of pair {pair} over the relative humidity.",
+        message="Adhesion energy of {model} surfaces of pair {pair} against relative humidity.",
     ),
 )

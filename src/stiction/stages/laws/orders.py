@@ -1,4 +1,4 @@
-"""Study orders (App. B, Fig. 18): the order of the polynomials at which the chaos model has converged."""
+"""Study orders (App. B, Fig. 18): order of the polynomials for a converged chaos model."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ _EDGES = np.linspace(-4, 4, 65)
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the study depends on apart from forces and chaos model."""
+    """Settings of the study, without forces and chaos model."""
 
     seed: int
     draws: int
@@ -30,7 +30,7 @@ class Settings:
 
 
 def compute(forces: xr.Dataset, model: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Draw from the model truncated at each order; compare the marginals with the kernel density and the samples.
+    """Draw from the model truncated at each order. Compare the marginals with the kernel density and the samples.
 
     Returns
     -------

@@ -16,7 +16,7 @@ _POINTS = 200
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the study depends on apart from the forces."""
+    """Settings of the study, without the forces."""
 
     shares: tuple[float, ...]  #: shares of the samples that are compared with all samples [-]
     case: str

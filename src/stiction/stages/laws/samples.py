@@ -16,7 +16,7 @@ _COEFFICIENTS = {
 
 
 def laws(forces: xr.Dataset) -> xr.Dataset:
-    """Coefficients of Eq. (12) of all samples that have a force law, from the dataset of stage forces.
+    """Coefficients of Eq. (12) of all lawful samples, from the dataset of stage forces.
 
     The coordinate ``sample`` is the number of the sample. With these columns in this order, `stiction.law_pressure` and
     `stiction.law_energy` evaluate the laws.

@@ -53,7 +53,7 @@ class Uncertainty(NamedTuple):
 
 
 def errors_of(estimate: xr.Dataset, quantities: Sequence[str]) -> Errors:
-    """Errors of a surface from its dataset of stage estimate; its heights have the moments if these have slopes."""
+    """Errors of a surface from its dataset of stage estimate. Its heights have the moments if these have slopes."""
     names = MOMENT_QUANTITIES if set(MOMENT_QUANTITIES) <= set(quantities) else MODE_QUANTITIES
     modes = estimate.mode_covariance.values
     heights = estimate.covariance.values if names == MOMENT_QUANTITIES else modes
@@ -62,7 +62,7 @@ def errors_of(estimate: xr.Dataset, quantities: Sequence[str]) -> Errors:
 
 
 def errors_by_surface(slopes: Mapping[str, xr.Dataset], estimates: Mapping[str, xr.Dataset]) -> dict[str, Errors]:
-    """Surface to the errors of its estimate in the quantities of its slopes; datasets of these names by surface."""
+    """Surface to the errors of its estimate in the quantities of its slopes. Datasets of these names by surface."""
     return {name: errors_of(estimate, study_slopes.quantities(slopes[name])) for name, estimate in estimates.items()}
 
 
@@ -73,16 +73,17 @@ def compute(
     choices: Mapping[str, xr.Dataset],
     settings: Settings,
 ) -> xr.Dataset:
-    """Relative standard errors of ē by surface and part, the scans that would be sufficient, and the effect of choices.
+    """Relative standard errors of ē by surface and part, sufficient numbers of scans, and the effect of choices.
 
     Slopes and errors of the estimates are by surface. The base is the contact of the pair, of as many samples at least
     as those of the choices, keys of `stiction.models.ALTERNATIVES_OF_SCANS` with the contact under the other value.
     """
 
-    def of_all(of_one):
-        return np.array([of_one(dataset, errors[name]) for name, dataset in slopes.items()])
+    def by_surface(part):
+        """Values of one function for every surface."""
+        return np.array([part(dataset, errors[name]) for name, dataset in slopes.items()])
 
-    uncertainty = Uncertainty(*map(of_all, (_parts, _sampling, _form)))
+    uncertainty = Uncertainty(*map(by_surface, (_parts, _sampling, _form)))
     changes = {name: _changes(contact, base, settings) for name, contact in choices.items()}
     return layout(list(slopes), settings.humidities, uncertainty, [errors[name].scans for name in slopes], changes)
 
@@ -158,7 +159,7 @@ def layout(
 
 
 def scans_needed(errors: np.ndarray, scans: np.ndarray, goal: float) -> np.ndarray:
-    r"""Numbers of scans of the surfaces of a pair that reduce its error to the goal with the fewest scans in all.
+    r"""Numbers of scans of the surfaces of a pair to reduce its error to the goal, with the fewest scans in all.
 
     With the error σᵢ of one scan of surface i, that of the pair is :math:`\sqrt{\sum_i \sigma_i^2 / n_i}`.
 
@@ -182,7 +183,7 @@ def scans_needed(errors: np.ndarray, scans: np.ndarray, goal: float) -> np.ndarr
 
 
 def _fewest(variances):
-    """Whole numbers nᵢ of the least sum for which Σ varianceᵢ / nᵢ is at most 1; both (n_surfaces,).
+    """Whole numbers nᵢ of the least sum with Σ varianceᵢ / nᵢ of at most 1, both (n_surfaces,).
 
     Every nᵢ is at least its variance. Each further scan is one of the surface to which it brings most. For any number
     of scans this gives the smallest variance in all, because further scans of a surface bring less and less.
@@ -200,7 +201,7 @@ def pair_errors(dataset: xr.Dataset) -> dict[float, float]:
 
 
 def _inputs(plan, at):
-    """Slopes and estimates of the measured surfaces of a pair, its contact, and that under other evaluations."""
+    """Slopes and estimates of the measured surfaces of a pair, its contact, and contacts under other evaluations."""
     surfaces = plan.scans.sides(at.pair)
     return {
         "slopes": {name: f"studies/slopes/{at.pair}_{name}" for name in surfaces},

@@ -18,7 +18,7 @@ _STATISTICS = ("mean", "standard deviation")
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the sensitivity depends on apart from the contact."""
+    """Settings of the sensitivity, without the contact."""
 
     water: Water
     humidities: tuple[float, ...]  #: [-]

@@ -16,7 +16,7 @@ from stiction.stages.contact.curves import energies
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the slopes depend on apart from the contact."""
+    """Settings of the slopes, without the contact."""
 
     water: Water
     humidities: tuple[float, ...]  #: [-]
@@ -53,7 +53,7 @@ def layout(
 
 
 def quantities(dataset: xr.Dataset) -> tuple[str, ...]:
-    """Quantities whose slopes the dataset has, keys of `stiction.analysis.shifts.STEPS`."""
+    """Quantities with slopes in the dataset, keys of `stiction.analysis.shifts.STEPS`."""
     return tuple(dataset["quantity"].values.tolist())
 
 

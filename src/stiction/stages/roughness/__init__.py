@@ -1,1 +1,1 @@
-"""Stages of roughness: devices over the roughness of a surface, and which roughness suffices."""
+"""Stages of roughness: devices along the roughness of a surface, and sufficient roughnesses."""

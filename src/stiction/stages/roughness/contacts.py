@@ -21,7 +21,7 @@ from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import GROUND, TIPS
 from stiction.stages.surfaces.descriptions import description, drawn_as
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 #: Folder of the contacts of patches; those of tips have one in it.
 FOLDER = "devices/contact"
@@ -32,7 +32,7 @@ CURVES = 5
 
 
 class Varied(NamedTuple):
-    """A quantity that is varied: one key of section ``roughness`` of a device."""
+    """Varied quantity: one key of section ``roughness`` of a device."""
 
     surface: str
     key: str  #: of `stiction.config.kinds.ROUGHNESSES`
@@ -40,11 +40,11 @@ class Varied(NamedTuple):
     high: float
 
     def value(self, number: int) -> float | None:
-        """Value of a point in the unit of the key, ``None`` as it is given; evenly spaced, or by equal factors."""
+        """Value of a point in the unit of the key, ``None`` as it is given. Evenly spaced, or by equal factors."""
         return None if number == POINTS - 1 else self._spaced(number, POINTS - 1)
 
-    def of_curve(self, number: int) -> float | None:
-        """As `value`, of a curve of a map."""
+    def value_of_curve(self, number: int) -> float | None:
+        """Value of a curve of a map, see `value`."""
         return None if number == 0 else self._spaced(number - 1, CURVES - 1)
 
     def _spaced(self, number, count):
@@ -52,14 +52,14 @@ class Varied(NamedTuple):
         return float(spaced(self.low, self.high, count)[number].round(9))
 
     def named(self, name: str, value: float | None) -> dict[str, float | None]:
-        """A value by a name with the unit of the key."""
+        """Value by a name with the unit of the key."""
         unit = self.key.removeprefix(without_unit(self.key))
         return {name + unit * (value is not None): value}
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that such a contact depends on apart from its surfaces."""
+    """Settings of such a contact, without its surfaces."""
 
     contact: pairs.Settings
     pair: str  #: part of the addresses of random numbers
@@ -71,7 +71,7 @@ class Settings:
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Settings) -> xr.Dataset:
-    """Dataset of stage contact with the value of the quantity, and of another one with that as given, as variables.
+    """Dataset of stage contact with the value of the quantity, and of an unchanged second one, as variables.
 
     So is the kurtosis, which may change with the skewness, see `stiction.analysis.shifts.with_value`.
     """
@@ -99,7 +99,7 @@ def roughness_of(contact: xr.Dataset) -> float:
 
 
 def varied(plan: Any, device: str) -> list[Varied]:
-    """What is varied of the surfaces of a device: along its curves and, for a map, from curve to curve."""
+    """Varied quantities of the surfaces of a device: along its curves and, for a map, from curve to curve."""
     section = plan.config["devices"][device]["roughness"]
     return [Varied(section["surface"], key, *section[key]) for key in ROUGHNESSES if key in section]
 
@@ -124,7 +124,7 @@ def contacts_of(plan: Any, device: str, number: int) -> dict[str, dict[bool, str
     }
 
 
-def _of_patch(plan, pair, device):
+def _patch_settings(plan, pair, device):
     """Settings of the contact of the patch of a device, with as many stoppers as its share of stuck ones needs.
 
     Those of smaller shares than have been verified are extrapolated. The pair is that of the device in its air.
@@ -136,20 +136,21 @@ def _of_patch(plan, pair, device):
     return GROUND.settings(plan, At(**ground._replace(pair=pair)._asdict()), samples)
 
 
-def _of_tips(plan, pair, device):
-    """As `_of_patch`, of the tips of a cantilever."""
+def _tip_settings(plan, pair, device):
+    """Settings of the tips of a cantilever, see `_patch_settings`."""
     tips = plan.devices.tips(device)._replace(pair=pair)
     return TIPS.settings(plan, At(**tips._asdict()), plan.config["design"]["beams"])
 
 
 def _stage(name, folder, contact, words, in_air=PairInAir):
-    """Stage of one contact of a point; ``contact`` gives its settings by plan, pair in its air and device."""
+    """Stage of one contact of a point. ``contact`` gives its settings by plan, pair in its air and device."""
 
     def settings(plan, at):
+        """Settings of the contact of a point, with its values of the varied quantities."""
         pair = plan.config["devices"][at.device]["pair"]
         what, *others = varied(plan, at.device)
         curve, point = divmod(int(at.number), POINTS)
-        values = [(what, what.value(point)), *((other, other.of_curve(curve)) for other in others)]
+        values = [(what, what.value(point)), *((other, other.value_of_curve(curve)) for other in others)]
         own = plan.config["surfaces"][what.surface]
         surface = {one.key: value for one, value in values if value is not None and one.key in own}
         if surface:  # on which the reach of tips depends
@@ -163,7 +164,7 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
     return Stage.writing(
         name,
         f"{folder}/roughness/{{device}}{in_air('')}_{{number}}",
-        inputs=lambda plan, at: of_pair(plan, plan.config["devices"][at.device]["pair"]),
+        inputs=lambda plan, at: surface_inputs(plan, plan.config["devices"][at.device]["pair"]),
         settings=settings,
         kind=Settings,
         compute=lambda data, settings: compute(both(data), settings),
@@ -176,8 +177,8 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
 
 
 STAGES = (
-    _stage("roughness_contact", FOLDER, _of_patch, "the patch"),
-    _stage("roughness_tip_contact", f"{FOLDER}/tips", _of_tips, "the tips"),
-    _stage("roughness_dry_contact", FOLDER, _of_patch, "the patch, in dry air,", PairInAir.in_dry_air),
-    _stage("roughness_dry_tip_contact", f"{FOLDER}/tips", _of_tips, "the tips, in dry air,", PairInAir.in_dry_air),
+    _stage("roughness_contact", FOLDER, _patch_settings, "the patch"),
+    _stage("roughness_tip_contact", f"{FOLDER}/tips", _tip_settings, "the tips"),
+    _stage("roughness_dry_contact", FOLDER, _patch_settings, "the patch, in dry air,", PairInAir.in_dry_air),
+    _stage("roughness_dry_tip_contact", f"{FOLDER}/tips", _tip_settings, "the tips, in dry air,", PairInAir.in_dry_air),
 )

@@ -1,4 +1,4 @@
-"""Stage roughness: safe length or force of a device over the roughness of a surface, and which roughness suffices.
+"""Stage roughness: safe length or force of a device along the roughness of a surface, and sufficient roughnesses.
 
 Every point of the curve is the device on surfaces of another roughness, with the same random numbers; the last one has
 the surfaces as they are given, and thus the results of the device itself.
@@ -42,7 +42,7 @@ GROUPS = 20
 
 
 class Response(NamedTuple):
-    """Length [m], or restoring force [N], at which the allowed share p sticks; and the share that sticks at another."""
+    """Length [m], or restoring force [N], with the allowed fraction p stuck, and the fraction stuck at another."""
 
     safe: float  #: one-sided 95 % bound
     estimate: float  #: infinite if no device sticks at any length
@@ -53,7 +53,7 @@ class Response(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class OfBeam:
-    """Everything that a point depends on apart from its contacts: a beam that has to have a length."""
+    """Settings of a point, without its contacts: a beam with a required length."""
 
     seed: int
     chaos: Truncation
@@ -66,17 +66,17 @@ class OfBeam:
 
     @property
     def required(self) -> tuple[float, str]:
-        """What is required, with its unit."""
+        """Required number, with its unit."""
         return self.length, "m"
 
     @property
     def shares(self) -> tuple[float, ...]:
-        """All shares, as in other settings of safe lengths."""
+        """Fractions, as in other settings of safe lengths."""
         return (self.share,)
 
     @property
     def shapes(self) -> tuple[str, ...]:
-        """End states in which the device may stick."""
+        """End states of a stuck device."""
         return self.device.opening.shapes
 
     def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> tuple[list[Response], str]:
@@ -93,7 +93,7 @@ class OfBeam:
         ], flag or ""
 
     def _response(self, lengths, safe, known, scatter):
-        """Response from sticking lengths (n,) [m], their safe length, what else is known, and the samples' error."""
+        """Response from stuck lengths (n,) [m], their safe length, other known lengths, and the samples' error."""
         shares = risk.stuck_share(np.array([self.length]), lengths, known.reach)
         error = float(np.hypot(safe.error, scatter * safe.estimate)) if np.isfinite(safe.estimate) else 0.0
         return Response(safe.length, safe.estimate, error, known.flat, tuple(float(part[0]) for part in shares))
@@ -105,6 +105,7 @@ class OfBeam:
         parts, groups = self.device.opening.contribution(laws), min(GROUPS, len(laws))
 
         def length(samples):
+            """Sticking length on the mean of samples [m]."""
             return self.device.opening.length_on_mean(samples, self.device.beam)
 
         return risk.error_of_surfaces([length(parts[k::groups]) for k in range(groups)]) / length(parts)
@@ -112,7 +113,7 @@ class OfBeam:
 
 @dataclass(frozen=True, kw_only=True)
 class OfStopper:
-    """As `OfBeam`, of a stopper that a force restores."""
+    """Settings as of `OfBeam`, of a stopper with a restoring force."""
 
     seed: int
     water: Water
@@ -125,7 +126,7 @@ class OfStopper:
 
     @property
     def required(self) -> tuple[float, str]:
-        """What is required, with its unit."""
+        """Required number, with its unit."""
         return self.restoring_force, "N"
 
     def responses(self, contact: xr.Dataset, _tips: None, humidity: float) -> tuple[list[Response], str]:
@@ -136,7 +137,7 @@ class OfStopper:
         return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)], ""
 
 
-def of_job(settings: dict[str, Any]) -> OfBeam | OfStopper:
+def point_settings(settings: dict[str, Any]) -> OfBeam | OfStopper:
     """Settings of a point from those of a job: those of beams have their dimensions."""
     return in_si(OfBeam if "device" in settings else OfStopper, settings)
 
@@ -147,7 +148,7 @@ def of_job(settings: dict[str, Any]) -> OfBeam | OfStopper:
 def compute(
     contacts: Mapping[bool, xr.Dataset], tips: Mapping[bool, xr.Dataset], settings: OfBeam | OfStopper
 ) -> xr.Dataset:
-    """One point of the curve: lengths or forces at all humidities; what cannot be computed comes with the reason.
+    """One point of the curve: lengths or forces at all humidities, or the reason against them.
 
     The contacts are those of `stiction.stages.roughness.contacts`; there are none of tips of other devices.
     """
@@ -201,7 +202,7 @@ def layout(
 
 
 def joined(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Dataset:
-    """Curve of all points over the roughness, where it crosses what is required, and in which ranges it suffices.
+    """Curve of all points along the roughness, its crossings of the requirement, and its sufficient ranges.
 
     Parameters
     ----------
@@ -277,7 +278,7 @@ def curves_of(dataset: xr.Dataset) -> list[xr.Dataset]:
 
 
 def _margins(curve, name):
-    """Margins of a curve over what is required, and their standard errors."""
+    """Margins of a curve to the requirement, and their standard errors."""
     more_is_better = curve.required.attrs["units"] == "m"
     known = np.isfinite(curve.estimate.values) & (curve.estimate.values > 0)
     errors = np.divide(curve.error.values, curve.estimate.values, out=np.zeros(known.size), where=known)
@@ -299,7 +300,7 @@ def _rows(dimension, rows, *names):
 
 
 def _settings(plan, at):
-    """What is required of a device, and everything that its length or force depends on apart from the contact."""
+    """Requirement of a device, and settings of its length or force, without the contact."""
     section = plan.config["devices"][at.device]
     air = plan.air_of_devices
     wettest = air.contact(section["pair"], max(section["humidities"]))
@@ -311,7 +312,7 @@ def _settings(plan, at):
 
 
 def _what(plan, device):
-    """What is varied, and of which surface."""
+    """Varied quantities, and their surface."""
     first, *others = varied(plan, device)
     return {"key": first.key, "surface": first.surface} | ({"other": others[0].key} if others else {})
 
@@ -324,7 +325,7 @@ STAGES = (
         inputs=lambda plan, at: contacts_of(plan, at.device, int(at.number)) | corrections_of(plan, at.device),
         settings=_settings,
         compute=lambda data, settings: compute(
-            data["contact"], data.get("tips", {}), corrected(of_job(settings), data)
+            data["contact"], data.get("tips", {}), corrected(point_settings(settings), data)
         ),
         message="Device {device} at roughness {number}.",
         cluster=True,

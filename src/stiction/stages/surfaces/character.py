@@ -32,7 +32,7 @@ class Strips:
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the statistics depend on apart from the surface."""
+    """Settings of the statistics, without the surface."""
 
     seed: int
     sampling: Sampling
@@ -41,7 +41,7 @@ class Settings:
 
 
 def compute(heights: xr.Dataset, spectrum: xr.Dataset, surface: str, model: str, settings: Settings) -> xr.Dataset:
-    """Draw strips and store their moments and summits; draw periodic fields and store their spectra and a patch."""
+    """Draw strips and store their moments and summits. Draw periodic fields and store their spectra and a patch."""
     grid = settings.sampling.strips(settings.beam.width)
     drawn = rough_surface(heights, spectrum, model, grid)
     strips, summits = _strips(drawn, surface, settings)
@@ -100,6 +100,7 @@ def statistics(character: xr.Dataset, units: Sequence[float] = (1, 1, 1, 1, 1)) 
     """
 
     def estimate(mean):
+        """Statistics from the means of powers of the heights and of summits, in the units of the tables."""
         *powers, density, curvature, with_summit = mean
         variance, third, fourth = central_moments(*powers)
         rms = np.sqrt(variance)

@@ -16,7 +16,7 @@ _LAG = np.linspace(0, 1e-6, 401)
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the study depends on apart from the spectra."""
+    """Settings of the study, without the spectra."""
 
     surfaces: tuple[str, ...]  #: names
 

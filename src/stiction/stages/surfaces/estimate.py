@@ -44,7 +44,7 @@ _REACH = {
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that an estimate depends on apart from the scans."""
+    """Settings of an estimate, without the scans."""
 
     seed: int
     evaluation: evaluation.Settings
@@ -54,7 +54,7 @@ class Settings:
 
 
 def compute(scans: Sequence[xr.Dataset], surface: str, settings: Settings) -> xr.Dataset:
-    """Estimate a surface from its scans; a warning states each limit of the estimate.
+    """Estimate a surface from its scans. A warning states each limit of the estimate.
 
     Raises
     ------
@@ -69,7 +69,7 @@ def compute(scans: Sequence[xr.Dataset], surface: str, settings: Settings) -> xr
 
 
 def layout(estimate: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
-    """Dataset of an estimate; the notes on the files follow the sentences on the estimate."""
+    """Dataset of an estimate. The notes on the files follow the sentences on the estimate."""
     return xr.Dataset(
         _moments(estimate) | _spectrum(estimate) | _heights(estimate) | _summits(estimate) | _scans(estimate, notes),
         coords={
@@ -113,7 +113,7 @@ def _moments(estimate):
 
 
 def _spectrum(estimate):
-    """Variables of the spectrum, its fit, and the wave numbers that the scans resolve."""
+    """Variables of the spectrum, its fit, and the wave numbers resolved by the scans."""
     inspection, largest = estimate.inspection, estimate.inspection.largest
     rings, fit = inspection.rings, inspection.fit
     slow = spectra.rings(largest.periodogram, largest.periodogram.near_slow_axis)
@@ -230,7 +230,7 @@ def rings(estimate: xr.Dataset) -> Rings:
 
 
 def frames(estimate: xr.Dataset) -> list[tuple[int, Frame]]:
-    """Number of the scans of each size, and their points and size; the largest first."""
+    """Number of the scans of each size, and their points and size. The largest first."""
     return [
         (
             int(of_size.scans),
@@ -241,22 +241,22 @@ def frames(estimate: xr.Dataset) -> list[tuple[int, Frame]]:
 
 
 def counted(estimate: xr.Dataset) -> list[tuple[int, Frame]]:
-    """Those that count for the moments."""
+    """Frames counted for the moments."""
     return frames(estimate)[: int(estimate.counted)]
 
 
 def reach(estimate: xr.Dataset) -> Reach:
-    """Wave numbers that the scans resolve."""
+    """Wave numbers resolved by the scans."""
     return Reach(*(float(estimate[name]) for name in _REACH))
 
 
 def distance(estimate: xr.Dataset) -> float:
-    """Distance of the moments of the maximum-entropy density from the measured ones; NaN without it [errors]."""
+    """Distance of the moments of the maximum-entropy density from the measured ones. NaN without it [errors]."""
     return float(estimate.feasible.sel(shape="distance"))
 
 
 def feasible(estimate: xr.Dataset) -> tuple[float, float]:
-    """Skewness and kurtosis of the maximum-entropy density; NaN without it [-]."""
+    """Skewness and kurtosis of the maximum-entropy density. NaN without it [-]."""
     return tuple(float(estimate.feasible.sel(shape=name)) for name in MOMENTS[1:])
 
 

@@ -112,7 +112,7 @@ def measured_moments(heights: xr.Dataset) -> Moments:
 
 
 def substitution(heights: xr.Dataset) -> str:
-    """Sentence about moments that replace the measured ones; empty if the density has the measured moments."""
+    """Sentence about moments in place of the measured ones, or nothing if the density has the measured ones."""
     skewness, kurtosis, distance = measured_moments(heights)
     if not distance:
         return ""

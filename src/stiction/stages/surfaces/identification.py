@@ -15,7 +15,7 @@ from stiction.surface.translation import Translation
 
 @dataclass(frozen=True)
 class Patches:
-    """Square patches of surface on which a trial spectrum is evaluated."""
+    """Square patches of surface for the evaluation of a trial spectrum."""
 
     patches: int  #: number of patches
     patch: float  #: side [m]
@@ -31,7 +31,7 @@ class Summits:
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that an identification depends on apart from the height density."""
+    """Settings of an identification, without the height density."""
 
     seed: int
     identification: Patches
@@ -54,6 +54,7 @@ def compute(heights: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset
     grid = StripGrid(patch, patch, settings.spacing, margin=0.0)
 
     def patches(*part):
+        """Streams of the random numbers of all patches, the same at every call."""
         numbers = range(settings.identification.patches)
         return lambda: (stream(settings.seed, "identification", surface, *part, k) for k in numbers)
 

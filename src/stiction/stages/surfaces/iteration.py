@@ -28,7 +28,7 @@ class Steps:
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the study depends on apart from the surface."""
+    """Settings of the study, without the surface."""
 
     seed: int
     iteration: Steps
@@ -36,7 +36,7 @@ class Settings:
 
 
 def compute(heights: xr.Dataset, spectrum: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset:
-    """Run the number of iterations of the settings; store all spectra, of unit variance, and their misfits."""
+    """Run the number of iterations of the settings. Store all spectra, of unit variance, and their misfits."""
     target, wanted = parameters.spectrum_of(spectrum), settings.iteration
     translation = Translation(density(heights, "NG"))
     grid = StripGrid.periodic(FIELD, settings.spacing)

@@ -20,7 +20,7 @@ def labelled(heights: np.ndarray, pixel: tuple[float, float], name: str) -> xr.D
 
 
 def height_map(scan: Scan) -> xr.DataArray:
-    """Heights of a scan, as the file has them, with x along the fast axis [m]; see `labelled`.
+    """Heights of a scan, as the file has them, with x along the fast axis [m]. See `labelled`.
 
     Examples
     --------

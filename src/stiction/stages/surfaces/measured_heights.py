@@ -1,4 +1,4 @@
-"""Heights of a measured surface (Sec. II-A): the dataset of stage heights from that of stage estimate."""
+"""Heights of a measured surface (Sec. II-A): the dataset of stage heights from stage estimate."""
 
 from dataclasses import dataclass
 
@@ -21,7 +21,7 @@ class Settings:
 
 
 def compute(estimate: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Density of the measured moments, of the nearest ones that have one, or of the measured quantiles.
+    """Density of the measured moments, of the nearest feasible ones, or of the measured quantiles.
 
     Raises
     ------

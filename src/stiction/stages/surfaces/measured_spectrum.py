@@ -1,4 +1,4 @@
-"""Spectrum of a measured surface (Sec. II-B): the dataset of stage spectrum from that of stage estimate."""
+"""Spectrum of a measured surface (Sec. II-B): the dataset of stage spectrum from stage estimate."""
 
 import warnings
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from stiction.surface.spectrum import uncorrelated_beyond
 
 @dataclass(frozen=True)
 class Settings:
-    """Source of the spectrum, its cut-off, and what it is used for."""
+    """Source of the spectrum, its cut-off, and its use."""
 
     psd: str  #: ``fitted`` (Eq. (7)) or ``tabulated``
     beyond: str  #: ``cut`` at the end of the measured spectrum, or ``continued`` to the Nyquist wave number of the grid
@@ -75,7 +75,7 @@ def _within_correlation(spectrum, use):
 
 
 def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:
-    """Cut-off [rad m⁻¹], and a sentence if the grid cuts the measured spectrum off; empty if it does not.
+    """Cut-off [rad m⁻¹], and a sentence if the grid cuts the measured spectrum off, otherwise nothing.
 
     The measured spectrum ends at the Nyquist wave number of the scans at most [rad m⁻¹].
     """

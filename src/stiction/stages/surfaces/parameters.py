@@ -27,7 +27,7 @@ def variables(spectrum: Spectrum) -> xr.Dataset:
 
 
 def spectrum_of(dataset: xr.Dataset) -> Spectrum:
-    """Eq. (7) from the dataset of stage identification, the spectrum from that of stage spectrum."""
+    """Spectrum of Eq. (7) from the dataset of stage identification, or as tabulated from stage spectrum."""
     if "node" in dataset.dims:
         return TabulatedSpectrum(dataset.table_wavenumber.values, dataset.table_density.values, float(dataset.cutoff))
     return CutoffSelfAffine(**{name: float(dataset[name]) for name in _UNITS})

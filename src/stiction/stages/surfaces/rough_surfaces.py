@@ -1,4 +1,4 @@
-"""Rough surfaces, from which samples are drawn, from the datasets of stages heights and spectrum."""
+"""Rough surfaces for drawing samples, from the datasets of stages heights and spectrum."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -27,7 +27,7 @@ class Sampling:
 
 @dataclass(frozen=True)
 class Width:
-    """The part of section ``beam`` on which surfaces and contact depend."""
+    """Section ``beam``: part for surfaces and contact."""
 
     width: float  #: w [m]
 
@@ -37,13 +37,13 @@ def rough_surface(heights: xr.Dataset, spectrum: xr.Dataset, model: str, grid: S
     return RoughSurface(underlying(spectrum, model), Translation(density(heights, model)), moments(heights).rms, grid)
 
 
-def of_pair(plan: Any, pair: str) -> dict[str, list[str]]:
-    """Names of the datasets of both surfaces of a pair, by stage; `both` takes the datasets."""
+def surface_inputs(plan: Any, pair: str) -> dict[str, list[str]]:
+    """Names of the datasets of both surfaces of a pair, by stage, for `both`."""
     return {stage: [f"{stage}/{name}" for name in plan.sides(pair)] for stage in ("heights", "spectrum")}
 
 
 def both(data: Mapping[str, Sequence[xr.Dataset]]) -> list[tuple[xr.Dataset, xr.Dataset]]:
-    """Datasets (heights, spectrum) of beam and substrate; a surface that is on both sides is one tuple."""
+    """Datasets (heights, spectrum) of beam and substrate. A surface on both sides is one tuple."""
     pairs = {
         id(heights): (heights, spectrum) for heights, spectrum in zip(data["heights"], data["spectrum"], strict=True)
     }

@@ -15,7 +15,7 @@ from stiction.scans.scan import Scan
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that a scan depends on apart from its file."""
+    """Settings of a scan, without its file."""
 
     file: str  #: name of the file without folders
     sha256: str  #: of its content
@@ -23,7 +23,7 @@ class Settings:
 
 
 def compute(path: str | Path, settings: Settings) -> xr.Dataset:
-    """Read the heights of a file; a warning states the notes on its limits.
+    """Read the heights of a file. A warning states the notes on its limits.
 
     Raises
     ------
@@ -37,7 +37,7 @@ def compute(path: str | Path, settings: Settings) -> xr.Dataset:
 
 
 def layout(file: ScanFile) -> xr.Dataset:
-    """Dataset of the heights of one scan, less their mean, in single precision; NaN where they are undefined."""
+    """Dataset of the heights of one scan, less their mean, in single precision, NaN where undefined."""
     scan = file.scan
     fast, slow = (np.arange(n) * pixel for n, pixel in zip(scan.heights.shape, scan.frame.pixel, strict=True))
     elevation = np.asarray(scan.heights - np.nanmean(scan.heights), np.float32)
@@ -59,7 +59,7 @@ def layout(file: ScanFile) -> xr.Dataset:
 
 
 def scan_of(dataset: xr.Dataset) -> Scan:
-    """The scan, in double precision."""
+    """Scan, in double precision."""
     return Scan(
         dataset.elevation.values.astype(float), tuple(map(float, dataset["size"].values)), str(dataset.file.item())
     )

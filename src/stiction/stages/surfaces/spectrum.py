@@ -18,7 +18,7 @@ RESEMBLES = 2.0
 
 @dataclass(frozen=True)
 class Use:
-    """Surface and strips for which an identified spectrum is used."""
+    """Surface and strips as users of an identified spectrum."""
 
     surface: str  #: its name
     strip_length: float  #: l_meso [m]
@@ -27,7 +27,7 @@ class Use:
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that a spectrum depends on apart from the height density."""
+    """Settings of a spectrum, without the height density."""
 
     spacing: float  #: of the grid on which the surface will be drawn [m]
     psd: CutoffSelfAffine | str  #: spectrum of the heights, used up to a factor, or ``identified``
@@ -92,7 +92,7 @@ def layout(
     achieved: TabulatedSpectrum,
     defect: float,
 ) -> xr.Dataset:
-    """Dataset of a spectrum, of that of the underlying Gaussian field and of the achieved spectrum of the heights.
+    """Dataset of a spectrum, of the underlying Gaussian field's and of the achieved spectrum of the heights.
 
     The three spectra have unit variance and are given at the wave numbers of ``underlying``.
     """
@@ -108,7 +108,7 @@ def layout(
 
 
 def underlying(spectrum: xr.Dataset, model: str) -> Spectrum:
-    """Spectrum of the Gaussian field underlying a surface; for model ``G`` it is the spectrum of the heights."""
+    """Spectrum of the Gaussian field underlying a surface. For model ``G`` it is the spectrum of the heights."""
     target = parameters.spectrum_of(spectrum)
     if model == "G":
         return target
@@ -116,12 +116,12 @@ def underlying(spectrum: xr.Dataset, model: str) -> Spectrum:
 
 
 def achieved(spectrum: xr.Dataset, wavenumber: np.ndarray) -> np.ndarray:
-    """Spectrum of the drawn heights, of unit variance, at wave numbers (n,) [rad m⁻¹]; (n,) [m²]."""
+    """Spectrum of the drawn heights, of unit variance, at wave numbers (n,) [rad m⁻¹], (n,) [m²]."""
     return np.interp(wavenumber, spectrum.wavenumber, spectrum.achieved)
 
 
 def defect(spectrum: xr.Dataset) -> float:
-    """Share of the variance that no Gaussian field provides [-]."""
+    """Fraction of the variance not provided by any Gaussian field [-]."""
     return float(spectrum.defect)
 
 

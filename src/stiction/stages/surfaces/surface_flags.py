@@ -1,4 +1,4 @@
-"""Flags of measured surfaces, as warnings beside every number that rests on them."""
+"""Flags of measured surfaces, as warnings beside every number from them."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -9,7 +9,7 @@ from stiction.plan.names import by_name
 
 
 def flags(*datasets: xr.Dataset) -> list[str]:
-    """Sentences on what limits a measured surface, from the datasets of its estimate and of its spectrum."""
+    """Sentences on the limits of a measured surface, from the datasets of its estimate and of its spectrum."""
     return [flag for dataset in datasets for flag in str(dataset["flags"].item()).splitlines()]
 
 

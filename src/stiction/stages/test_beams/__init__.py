@@ -1,1 +1,1 @@
-"""Stages of test beams: what they say about a device, and whether the linear update holds."""
+"""Stages of test beams: their evidence about a device, and the validity of the linear update."""

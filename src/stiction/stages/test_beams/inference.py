@@ -1,4 +1,4 @@
-"""Stage test_beams: what crack lengths and counts of test beams say about the inputs of a device, and what follows.
+"""Stage test_beams: evidence of crack lengths and counts about the inputs of a device, and its consequences.
 
 Device and test beams have budgets of the same form (`stiction.stages.devices.budget`). Their dimensions are inputs of
 their own; all other inputs of the same name are one input.
@@ -67,7 +67,7 @@ class Stuck:
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the update depends on apart from budgets and safe lengths."""
+    """Settings of the update, without budgets and safe lengths."""
 
     seed: int
     discrepancy: Discrepancy
@@ -78,7 +78,7 @@ class Settings:
 
 
 def shape_of(response: str) -> str:
-    """What holds a device, as in its safe lengths, by what its budget is of: tips give the lengths of either shape."""
+    """Shape of adhesion in the safe lengths of a device, by its budget: tips give the lengths of either shape."""
     return EITHER if response == ARC else response
 
 
@@ -92,7 +92,7 @@ class Result(NamedTuple):
 
     @property
     def response(self) -> str:
-        """What holds it."""
+        """Response of its budget."""
         return response_of(self.budget)[0]
 
     @property
@@ -102,7 +102,7 @@ class Result(NamedTuple):
 
     @property
     def reduced(self) -> float:
-        """u, the logarithm of the crack length over that at an adhesion energy of 1 J/m²; zero of other results [-]."""
+        """Logarithm u of the crack length over the length at an adhesion energy of 1 J/m², zero of others [-]."""
         if self.response != S_SHAPE:
             return 0.0
         return float(np.log(self.budget.centre / arrest_length(1.0, self.beam.beam)))
@@ -119,12 +119,12 @@ class Result(NamedTuple):
 
     @property
     def own(self) -> list[str]:
-        """Names of the inputs that no other result has, and of the rest of the model."""
+        """Names of the inputs of this result alone, and of the rest of the model."""
         return [*(f"{name} of {self.owner}" for name in OWN), inference.rest(self.condition)]
 
     @property
     def condition(self) -> str:
-        """Under which the model errs by the same rest."""
+        """Condition of one common rest of the model."""
         return f"{self.owner}, {air(self.humidity)}{', arc' if self.response == ARC else ''}"
 
 
@@ -160,12 +160,12 @@ def compute(
     if len(lengths.differences):
         device = with_errors_of_cracks(of_device, device, own)
     parts = [
-        of_inputs(prior, posterior, own + 2),
-        of_data(beams, responses, prior, posterior, settings),
-        of_counts(counts, posterior, stuck),
-        of_results(of_device, device, own, prior, posterior),
-        of_further(beams, responses, of_device, device, posterior),
-        of_agreement(prior, lengths, counts, own),
+        input_dataset(prior, posterior, own + 2),
+        length_dataset(beams, responses, prior, posterior, settings),
+        count_dataset(counts, posterior, stuck),
+        result_dataset(of_device, device, own, prior, posterior),
+        further_dataset(beams, responses, of_device, device, posterior),
+        agreement_dataset(prior, lengths, counts, own),
     ]
     left_out = "; ".join(result.condition for result in every if not result.is_known)
     merged = xr.merge(parts, combine_attrs="no_conflicts").assign_attrs(left_out=left_out)
@@ -185,7 +185,7 @@ def common_inputs(results: Sequence[Result]) -> Knowledge:
 def with_discrepancy(
     inputs: Knowledge, beams: Sequence[Result], others: Sequence[Result], stated: Discrepancy
 ) -> tuple[Knowledge, np.ndarray]:
-    """As `stiction.devices.inference.with_discrepancy`; responses are those of test beams and, after them, of others.
+    """Responses with the discrepancy of `stiction.devices.inference`: of test beams and, after them, of others.
 
     ASSUME: cracks say nothing about how much the model errs at the middle of a bridge and at stoppers, and at tips only
     what `with_errors_of_cracks` takes from them. Without a discrepancy, these have the uncertainty of their budget.
@@ -201,7 +201,7 @@ def with_discrepancy(
 
 
 def with_errors_of_cracks(results: Sequence[Result], responses: np.ndarray, own: int) -> np.ndarray:
-    """Responses of a device (n, k), in which tips err with the model of its cracks in the same air.
+    """Responses of a device (n, k) with tips under the model error of its cracks in the same air.
 
     The first ``own`` responses are to inputs, the others to the discrepancy of the model.
 
@@ -218,7 +218,7 @@ def with_errors_of_cracks(results: Sequence[Result], responses: np.ndarray, own:
 
 
 def measured(beams: Sequence[Result], responses: np.ndarray, crack_lengths: Mapping[str, CrackLengths]) -> Lengths:
-    """Measured mean crack lengths beside those that were computed.
+    """Measured mean crack lengths beside the computed ones.
 
     ASSUME: the crack lengths of single beams are independent; the error of a computed mean is negligible.
     """
@@ -233,13 +233,13 @@ def measured(beams: Sequence[Result], responses: np.ndarray, crack_lengths: Mapp
 
 
 def _place(result, crack_lengths):
-    """Place of a result of test beams among the humidities at which crack lengths of its array were measured."""
+    """Place of a result of test beams among the humidities with measured crack lengths of its array."""
     measured_at = crack_lengths[result.owner].humidity if result.owner in crack_lengths else ()
     return measured_at.index(result.humidity) if result.humidity in measured_at else None
 
 
 def known_counts(stuck: Mapping[str, Stuck], results: Sequence[Result]) -> dict[str, Stuck]:
-    """Counts at the humidities at which some results tell of every shape that may hold a beam."""
+    """Counts at humidities with results for every shape."""
     known = {(result.owner, result.humidity, result.response) for result in results}
     kept = {}
     for name, data in stuck.items():
@@ -256,7 +256,7 @@ def counted(
     grounds: Mapping[tuple[str, bool], xr.Dataset],
     tips: Mapping[tuple[str, bool], xr.Dataset],
 ) -> Counts:
-    """Numbers of stuck beams beside the lengths that beams and tips hold.
+    """Numbers of stuck beams beside the lengths of stuck beams and tips.
 
     ASSUME: beams were counted whose tips had touched the substrate, and may be held by them. Crack lengths are
     lognormal.
@@ -270,7 +270,9 @@ def counted(
         shapes = {}
         for humidity in set(data.humidity):
             met = grounds[name, humidity > 0], tips[name, humidity > 0]
-            shapes[humidity] = of_shapes(results[places[name, humidity, S_SHAPE]], *met, data.water.at(humidity))
+            shapes[humidity] = lengths_and_scores(
+                results[places[name, humidity, S_SHAPE]], *met, data.water.at(humidity)
+            )
         for humidity, length in zip(data.humidity, data.length, strict=True):
             behind, of_humidity = shapes[humidity]
             rows.append(responses[[places[name, humidity, shape] for shape in _COUNTED]])
@@ -281,8 +283,10 @@ def counted(
     return Counts(np.reshape(rows, (*shape, responses.shape[1])), np.reshape(lengths, shape), scores, *numbers)
 
 
-def of_shapes(cracks: Result, ground: xr.Dataset, tips: xr.Dataset, water: Water) -> tuple[np.ndarray, list[PPoly]]:
-    """Lengths that beams need behind an S-shaped crack and an arc (2,) [m], and the normal scores of both."""
+def lengths_and_scores(
+    cracks: Result, ground: xr.Dataset, tips: xr.Dataset, water: Water
+) -> tuple[np.ndarray, list[PPoly]]:
+    """Lengths of beams for an S-shaped crack and an arc (2,) [m], and the normal scores of both."""
     beam, humidity = cracks.beam.beam, cracks.humidity
     laws = shared_laws([curves.vectors(ground, humidity, water)])[0]
     held = arcs.longest_free(*curves.tip_forces(tips, humidity, water), beam)
@@ -293,8 +297,8 @@ def of_shapes(cracks: Result, ground: xr.Dataset, tips: xr.Dataset, water: Water
 # Datasets
 
 
-def of_inputs(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Dataset:
-    """The first inputs before and after the measurement, and their combinations that the data determine or do not."""
+def input_dataset(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Dataset:
+    """First inputs before and after the measurement, and their combinations with or without evidence."""
     before, after = (first_inputs(state, count) for state in (prior, posterior))
     combinations = inference.combinations(before, after)
     return xr.Dataset(
@@ -309,10 +313,10 @@ def of_inputs(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Dataset:
     )
 
 
-def of_data(
+def length_dataset(
     beams: Sequence[Result], responses: np.ndarray, prior: Knowledge, posterior: Knowledge, settings: Settings
 ) -> xr.Dataset:
-    """Measured and computed crack lengths, and those that are expected before and after the measurement.
+    """Measured and computed crack lengths, and expected ones before and after the measurement.
 
     Those that were not measured, where beams were only counted, are not a number.
     """
@@ -337,7 +341,7 @@ def of_data(
 
 
 def _measured_length(result, crack_lengths):
-    """Measured mean length [m], its relative standard error and the length of the beams [m]; or no numbers."""
+    """Measured mean length, its relative standard error and the length of the beams [m], or no numbers."""
     at = _place(result, crack_lengths)
     if at is None:
         return dict.fromkeys(("measured", "error", "beam_length"), np.nan)
@@ -346,7 +350,7 @@ def _measured_length(result, crack_lengths):
     return {"measured": data.mean[at], "error": error, "beam_length": data.length}
 
 
-def of_counts(counts: Counts, posterior: Knowledge, stuck: Mapping[str, Stuck]) -> xr.Dataset:
+def count_dataset(counts: Counts, posterior: Knowledge, stuck: Mapping[str, Stuck]) -> xr.Dataset:
     """Counted beams and their P(stuck) before and after the measurement, for the expected inputs."""
     rows = [(name, *row) for name, data in stuck.items() for row in zip(data.humidity, data.length, strict=True)]
     names, humidities, lengths = zip(*rows, strict=True) if rows else ((), (), ())
@@ -370,8 +374,8 @@ def first_inputs(knowledge: Knowledge, count: int) -> Knowledge:
     return Knowledge(knowledge.names[:count], knowledge.mean[:count], knowledge.covariance[:count, :count])
 
 
-def of_agreement(prior: Knowledge, lengths: Lengths, counts: Counts, own: int) -> xr.Dataset:
-    """Whether the data agree with inputs and model, and with the inputs alone, of which there are ``own``."""
+def agreement_dataset(prior: Knowledge, lengths: Lengths, counts: Counts, own: int) -> xr.Dataset:
+    """Agreement of the data with inputs and model, and with the first ``own`` inputs alone."""
     inputs = first_inputs(prior, own)
     alone = [replace(data, responses=data.responses[..., :own]) for data in (lengths, counts)]
     p_values = {
@@ -393,10 +397,10 @@ def _quantiles(of, posterior, responses):
     return {f"{of}_quantile": ((of, "score"), quantiles, {"units": "1"}), "score": ("score", inference.SCORES)}
 
 
-def of_results(
+def result_dataset(
     of_device: Sequence[Result], responses: np.ndarray, own: int, prior: Knowledge, posterior: Knowledge
 ) -> xr.Dataset:
-    """Results of a device before and after the measurement: mean crack lengths, lengths that few tips hold, forces.
+    """Results of a device before and after the measurement: mean crack lengths, lengths of few stuck tips, forces.
 
     The first ``own`` responses are to inputs. ASSUME: where cracks show less adhesion than the inputs explain, tips do
     not adhere less, which is the safe side; they are as uncertain.
@@ -423,7 +427,7 @@ def of_results(
     return found.assign({name: found[name] - longer for name in ("result_shift", "result_quantile")})
 
 
-def of_further(
+def further_dataset(
     beams: Sequence[Result],
     responses: np.ndarray,
     of_device: Sequence[Result],
@@ -460,7 +464,7 @@ def of_further(
 
 
 def with_lengths(update: xr.Dataset, safe_lengths: Mapping[float, xr.Dataset]) -> xr.Dataset:
-    """The dataset with safe lengths before and after the measurement, and P(stuck) of beams of the former ones.
+    """Dataset with safe lengths before and after the measurement, and P(stuck) of beams of the former lengths.
 
     ASSUME: safe lengths shift as the mean length of S-shapes and bridges, or as the length that few tips hold, as the
     budgets do.
@@ -470,6 +474,7 @@ def with_lengths(update: xr.Dataset, safe_lengths: Mapping[float, xr.Dataset]) -
     )
 
     def share(humidity, shape, length, quantiles):
+        """P(stuck) of a length [m] at a humidity, after a shift with these quantiles."""
         lengths, shares = sticking(safe_lengths[humidity].sel(shape=shape))
         return inference.expected_share(np.log(length / lengths), np.diff(shares, prepend=0.0), quantiles)
 
@@ -493,7 +498,7 @@ def sticking(dataset: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
 
 
 def with_forces(update: xr.Dataset, stopper: xr.Dataset) -> xr.Dataset:
-    """The dataset with safe forces of a stopper before and after, and P(stuck) at its restoring force.
+    """Dataset with safe forces of a stopper before and after, and P(stuck) at its restoring force.
 
     ASSUME: the forces of all patches shift as their mean.
     """
@@ -501,6 +506,7 @@ def with_forces(update: xr.Dataset, stopper: xr.Dataset) -> xr.Dataset:
     stated = xr.full_like(safe.isel(share=0, drop=True), float(stopper.restoring_force))
 
     def share(humidity, _, force, quantiles):
+        """P(stuck) of a restoring force [N] at a humidity, after a shift with these quantiles."""
         held = np.maximum(stopper.pull_off.sel(humidity=humidity).values, np.finfo(float).tiny)
         return inference.expected_share(np.log(held / force), np.full(len(held), 1 / len(held)), -quantiles[::-1])
 
@@ -511,11 +517,11 @@ def _before_and_after(update, safe):
     """Safe lengths or forces before and after the measurement."""
     return {
         "safe": safe,
-        "updated_safe": safe * np.exp(_of_shapes(update, "result_shift").reindex_like(safe.isel(share=0))),
+        "updated_safe": safe * np.exp(_by_shape(update, "result_shift").reindex_like(safe.isel(share=0))),
     }
 
 
-def _of_shapes(update, name):
+def _by_shape(update, name):
     """Numbers of the results of a device by humidity and shape."""
     shapes = list(map(shape_of, update.response.values))
     keys = {"humidity": ("result", update.humidity_of_result.values), "shape": ("result", shapes)}
@@ -531,8 +537,8 @@ def _of_shapes(update, name):
 def _shares(update, sizes, share):
     """P(stuck) of some sizes before and after the measurement, averaged over the uncertainty of the inputs."""
     quantiles = {
-        "expected_stuck": _of_shapes(update, "result_before") * update.score,
-        "updated_stuck": _of_shapes(update, "result_quantile"),
+        "expected_stuck": _by_shape(update, "result_before") * update.score,
+        "updated_stuck": _by_shape(update, "result_quantile"),
     }
     stacked = sizes.stack(at=sizes.dims)
     expected = {name: [] for name in quantiles}
@@ -550,7 +556,7 @@ def _shares(update, sizes, share):
 
 
 def _settings(plan, at):
-    """Dimensions of a device and of its test beams, what was measured, and the discrepancy of the model."""
+    """Dimensions of a device and of its test beams, the measured data, and the discrepancy of the model."""
     names = plan.config["devices"][at.device]["test_beams"]
     arrays = {name: plan.config["test_beams"][name] for name in names}
     data = {
@@ -588,7 +594,7 @@ def _predicted(plan, device):
 
 
 def _contacts(plan, device):
-    """Contacts on which the counted test beams of a device stick, and those of their tips, as in `compute`."""
+    """Contacts of the counted test beams of a device, and of their tips, as in `compute`."""
     arrays, of_arrays = plan.config["test_beams"], plan.of_test_beams
     cases = {
         (name, humidity > 0): case_id(name, humidity)

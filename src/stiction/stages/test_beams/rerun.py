@@ -1,4 +1,4 @@
-"""Stage test_beams_rerun: test beams and their device computed again, with the inputs that the test beams suggest.
+"""Stage test_beams_rerun: test beams and their device again, with the inputs from the test beams.
 
 The update of stage test_beams is linear in the inputs. Here, surfaces, solids, air and dimensions are those of its
 result, with the random numbers of the slopes. Lengths that tips hold are left out: they need a contact of their own.
@@ -23,10 +23,10 @@ from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact.changes.patches import GROUND
 from stiction.stages.contact.changes.solids import with_property
 from stiction.stages.contact.contact import first
-from stiction.stages.contact.corrections import corrected, of_pair
+from stiction.stages.contact.corrections import corrected, correction_inputs
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices import budget as stage_budget
-from stiction.stages.devices.budget import AnyBudget, budgets_of, budgets_of_arrays, effect, of_job
+from stiction.stages.devices.budget import AnyBudget, budget_settings, budgets_of, budgets_of_arrays, effect
 from stiction.stages.devices.contact_names import contact_of, patch_of
 from stiction.stages.devices.uncertain_inputs import changed
 from stiction.stages.surfaces.descriptions import description, drawn_as
@@ -43,7 +43,7 @@ def compute(
     contacts: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
     settings: Sequence[AnyBudget],
 ) -> xr.Dataset:
-    """The update of stage test_beams, with the linear changes of some results and those found by computing them again.
+    """Update of stage test_beams, with the linear changes of some results and their recomputed changes.
 
     The budgets are by device or array, and humidity; each has the name of its patch and its settings. A patch has the
     contact with the stated inputs and that of its first samples with the errors of the update.
@@ -79,7 +79,7 @@ def compared(
 def at_mean(
     surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset]], pair: str, base: dict[str, Any], errors: Mapping[str, float]
 ) -> xr.Dataset:
-    """Contact of a pair whose surfaces and solids err, by the name of the input, such as ``rms of B2``.
+    """Contact of a pair after errors of surfaces and solids, by the name of the input, such as ``rms of B2``.
 
     The surfaces are datasets (heights, spectrum) by name; ``base`` has the settings of the contact with the stated
     inputs, as of a job. The name of the pair is part of the addresses of random numbers.
@@ -108,17 +108,17 @@ def with_reruns(
 
 
 def _cases(plan, device):
-    """Plan and case of all budgets of a device and its test beams that are not of tips, by their names and humidity."""
+    """Plan and case of all budgets of a device and its test beams, except tips, by their names and humidity."""
     plans = (plan, budgets_of(plan, device)), (plan.of_test_beams, budgets_of_arrays(plan, device))
     return {key: (of, case_id(*key), name) for of, budgets in plans for key, name in budgets.items() if len(key) == 2}
 
 
 def _inputs(plan, at):
-    """The update, the budgets, and the surfaces and contacts with the stated inputs."""
+    """Update, the budgets, and the surfaces and contacts with the stated inputs."""
     cases = _cases(plan, at.device)
     patches = {patch_of(of, case): (of, case) for of, case, _ in cases.values()}
     sides = dict.fromkeys(side for patch in patches for side in plan.sides(patch.pair))
-    ratios = {patch.name: of_pair(plan, PairInAir(patch.pair).pair).get("model_error") for patch in patches}
+    ratios = {patch.name: correction_inputs(plan, PairInAir(patch.pair).pair).get("model_error") for patch in patches}
     return {
         "updated": f"devices/test_beams/{at.device}",
         "budgets": {key: name for key, (*_, name) in cases.items()},
@@ -141,17 +141,17 @@ def _settings(plan, at):
 
 
 def _settings_of_contact(plan, patch):
-    """Settings of a contact that is compared with the first samples of that of a patch."""
+    """Settings of a contact for a comparison with the first samples of a patch's."""
     return GROUND.settings(plan, At(**patch._asdict()), plan.samples_of_slopes)
 
 
 def _computed(data, settings):
-    """Contacts with the errors of the update, and everything that is computed again; or the reason why it is not."""
+    """Contacts with the errors of the update, and all recomputed results, or the reason against them."""
     surfaces = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     update = data["updated"]
     errors, contacts, model_errors = errors_of(update), {}, data["model_errors"]
     wanted = [
-        corrected(of_job(own), {"model_error": model_errors[patch]} if patch in model_errors else {})
+        corrected(budget_settings(own), {"model_error": model_errors[patch]} if patch in model_errors else {})
         for own, patch in zip(settings["budgets"], settings["patches"], strict=True)
     ]
     try:

@@ -1,1 +1,1 @@
-"""Contacts of a pair with one thing changed: a table, and a module for what each change computes."""
+"""Contacts of a pair with one thing changed: a table, and a module for the computation of each change."""

@@ -27,7 +27,7 @@ class Settings(pairs.Settings):
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> list[xr.Dataset]:
-    """Contact with less and with more of each moment, in this order; all samples have the same random numbers."""
+    """Contact with less and with more of each moment, in this order. All samples have the same random numbers."""
     beam, substrate = surfaces
     surface = description(*beam)
     # ASSUME: the spectrum of the heights keeps its shape when a moment changes.

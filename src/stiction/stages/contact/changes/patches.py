@@ -1,4 +1,4 @@
-"""Kinds of patch on which the surfaces of a pair meet, and what the declaration of a change there consists of."""
+"""Kinds of patch for the contact of the surfaces of a pair, and the parts of the declaration of a change there."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -10,19 +10,19 @@ from stiction.plan.devices import OF_TIPS, Patch
 from stiction.plan.stage import Names, select
 from stiction.stages.contact import contact
 from stiction.stages.contact.pairs import Settings
-from stiction.stages.surfaces.rough_surfaces import of_pair
+from stiction.stages.surfaces.rough_surfaces import surface_inputs
 
 
 @dataclass(frozen=True, eq=False)
 class Place:
-    """Kind of patch on which the two surfaces of a pair meet."""
+    """Kind of patch for the contact of the two surfaces of a pair."""
 
     file: str  #: patch in the names of files
     words: str  #: patch in messages, after its pair
     size: Callable[[Any, Any], dict]  #: settings that differ from those of the strips, by the plan and the wildcards
 
     def settings(self, plan: Any, at: Any, samples: int) -> dict[str, Any]:
-        """Settings of the contact of a patch as it is; of tips, the number of samples is that of the beams."""
+        """Settings of the unchanged contact of a patch. For tips, the number of samples is the number of beams."""
         return merged(select(Settings, plan.seen_by(at.pair, samples=samples)), self.size(plan, at))
 
 
@@ -40,22 +40,31 @@ def _size_of_tips(plan, at):
     return _size(plan, at) | {"contact": own, "tilt": tilt}
 
 
+def _size_of_tilted(plan, at):
+    """Area of tilted stoppers with larger steps of the distance."""
+    step = OF_TIPS * plan.config["contact"]["distance_step_nm"]
+    tilt = plan.devices.inclination(Patch(at.pair, int(at.length), int(at.width)))
+    return _size(plan, at) | {"contact": {"distance_step_nm": step}, "tilt": tilt}
+
+
 #: Strips along the beam, as in the paper.
 STRIPS = Place("{pair}", "", lambda plan, at: {})
 #: Patch on which a device sticks: strips of another size, or the whole area of a stopper.
 GROUND = Place("{pair}_{length}x{width}", ", {length} x {width} nm,", _size)
 #: Tilted strips that hold the tips of cantilevers.
 TIPS = Place(GROUND.file, f"{GROUND.words} at the tips of beams,", _size_of_tips)
+#: Area in which a tilted stopper touches.
+TILTED = Place(GROUND.file, f"{GROUND.words} of tilted stoppers,", _size_of_tilted)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Change:
-    """What is changed in the contact of a patch."""
+    """Change of the contact of a patch."""
 
     settings: Callable[[Any, Any, Place], dict]  #: by the plan, the wildcards and the kind of patch
     kind: type | None = Settings  #: dataclass of the settings
     #: By the plan, the wildcards, and a function that names the contact of the patch with another change.
-    inputs: Callable[[Any, Any, Callable], Mapping[str, Names]] = lambda plan, at, named: of_pair(plan, at.pair)
+    inputs: Callable[[Any, Any, Callable], Mapping[str, Names]] = lambda plan, at, named: surface_inputs(plan, at.pair)
     compute: Callable[..., Any] = contact.drawn
     each: Callable[[Any], Sequence[str]] | None = None  #: ends of the names of files that one job writes, by the plan
     end: str = ""  #: of the names of files

@@ -16,7 +16,7 @@ from stiction.stages.contact.changes.patches import Change
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.surfaces import measured_heights
 from stiction.stages.surfaces.descriptions import description, drawn_as
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 
 def compute(
@@ -27,7 +27,7 @@ def compute(
     settings: Settings,
     estimate: xr.Dataset | None = None,
 ) -> list[xr.Dataset]:
-    """Contact with less and with more of a quantity, in this order; the samples have the same random numbers.
+    """Contact with less and with more of a quantity, in this order. The samples have the same random numbers.
 
     The two surfaces and the pair are as in stage contact. The named surface has the quantity, a key of
     `stiction.analysis.shifts.STEPS`, shifted; on both sides of the pair if both have this surface. With an estimate,
@@ -57,12 +57,12 @@ def difference(contact: xr.Dataset) -> float:
 
 
 def _with_estimate(plan, at, _named):
-    """The two surfaces, and the estimate of the surface if one of its modes is shifted.
+    """Two surfaces, and the estimate of the surface if one of its modes is shifted.
 
     Modes are those of the measured heights, which the surface may not have.
     """
     estimate = {"estimate": f"estimate/{at.surface}"} if at.quantity in MODE_QUANTITIES[1:] else {}
-    return of_pair(plan, at.pair) | estimate
+    return surface_inputs(plan, at.pair) | estimate
 
 
 #: A quantity of one surface.

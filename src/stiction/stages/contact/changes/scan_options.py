@@ -1,4 +1,4 @@
-"""Contact of a pair whose measured surfaces are evaluated by the other choice of ``beyond`` or of ``heights``."""
+"""Contact of a pair with its measured surfaces evaluated by the other choice of ``beyond`` or of ``heights``."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,13 +14,13 @@ from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import Change
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import measured_heights, measured_spectrum
-from stiction.stages.surfaces.rough_surfaces import both, of_pair
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 from stiction.stages.surfaces.spectrum import Use
 
 
 @dataclass(frozen=True)
 class Source:
-    """What is taken of an estimate."""
+    """Parts taken from an estimate."""
 
     heights: str  #: ``moments`` or ``measured``
     psd: str  #: ``fitted`` or ``tabulated``
@@ -41,7 +41,7 @@ def compute(
     choice: str,
     settings: Settings,
 ) -> xr.Dataset:
-    """Contact with the other value of a choice, for all measured surfaces of the pair; surfaces as in stage contact.
+    """Contact with the other value of a choice, for all measured surfaces of the pair. Surfaces as in stage contact.
 
     Samples have the random numbers of the base; another cut-off gives another surface nevertheless. The estimates are
     by measured surface, the choice is a key of `stiction.models.ALTERNATIVES_OF_SCANS`.
@@ -92,8 +92,10 @@ def _with_sources(plan, at, place):
 
 
 def _with_estimates(plan, at, _named):
-    """The two surfaces, and the estimates of the measured ones."""
-    return of_pair(plan, at.pair) | {"estimates": {name: f"estimate/{name}" for name in plan.scans.sides(at.pair)}}
+    """Two surfaces, and the estimates of the measured ones."""
+    return surface_inputs(plan, at.pair) | {
+        "estimates": {name: f"estimate/{name}" for name in plan.scans.sides(at.pair)}
+    }
 
 
 #: An option for the evaluation of scans.

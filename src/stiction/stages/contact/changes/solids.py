@@ -29,7 +29,7 @@ def with_property(settings: dict[str, Any], name: str, change: Callable[[float],
 
 
 def _with_other(material, name, change):
-    """Material with another value of a property; of its Hamaker constants through all media by the same factor."""
+    """Material with another value of a property. Its Hamaker constants through all media change by the same factor."""
     key = OF_CONTACT[name].key
     value = (material | {"hamaker_constant_zJ": hamaker_constants(material)})[key]
     if isinstance(value, dict):

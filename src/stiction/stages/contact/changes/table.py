@@ -1,4 +1,4 @@
-"""Contacts of a pair: what is changed x the kind of patch on which its surfaces meet.
+"""Contacts of a pair: changes x kinds of patch for the contact of its surfaces.
 
 A row of `TABLE` is a change, and a cell of it a kind of patch for which it is computed. Each change is described in its
 module, with the function that computes it. All contacts of a patch have the same random numbers, so that their
@@ -8,13 +8,13 @@ differences are those of the changes.
 from stiction.plan.stage import Stage
 from stiction.stages.contact import contact
 from stiction.stages.contact.changes.moments import MOMENTS
-from stiction.stages.contact.changes.patches import GROUND, STRIPS, TIPS, Change, Place
+from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS, Change, Place
 from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.scan_options import SCAN_OPTION
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
 from stiction.stages.contact.changes.variants import SUMMITS, VARIANT, VARIANT_OF_ISLANDS
 from stiction.stages.contact.pairs import Settings
-from stiction.stages.surfaces.rough_surfaces import of_pair
+from stiction.stages.surfaces.rough_surfaces import surface_inputs
 
 #: No change.
 AS_IT_IS = Change(settings=lambda plan, at, place: place.settings(plan, at, plan.config["contact"]["samples"]))
@@ -23,6 +23,7 @@ TABLE = {
     AS_IT_IS: {
         GROUND: ("device_contact", "devices/contact"),
         TIPS: ("tip_contact", "devices/contact/tips"),
+        TILTED: ("tilted_contact", "devices/contact/tilted"),
     },
     QUANTITY: {
         STRIPS: ("slope_contact", "studies/slopes/contact"),
@@ -71,6 +72,7 @@ def _stage(change, place):
     """Stage of a cell of the table."""
 
     def inputs(plan, at):
+        """Inputs of a change, with names of contacts on this patch."""
         return change.inputs(plan, at, lambda other, **different: file_of(other, place, **vars(at) | different))
 
     rule, _ = TABLE[change][place]
@@ -102,7 +104,7 @@ OF_PAIR = (
     Stage.writing(
         "contact_chunk",
         "contact/{pair}_{model}/{chunk}-of-{number}",
-        inputs=lambda plan, at: of_pair(plan, at.pair),
+        inputs=lambda plan, at: surface_inputs(plan, at.pair),
         settings=lambda plan, at: AS_IT_IS.settings(plan, at, STRIPS),
         kind=Settings,
         compute=contact.drawn_chunk,

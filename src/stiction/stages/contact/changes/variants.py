@@ -34,7 +34,7 @@ from stiction.surface.spectrum import CutoffSelfAffine
 
 @dataclass(frozen=True)
 class Surface:
-    """Description of one surface from which it is drawn."""
+    """Description of one surface, for drawing it."""
 
     rms: float  #: [m]
     skewness: float  #: [-]
@@ -53,7 +53,7 @@ class Sides:
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the summits of a pair depend on, including its surfaces."""
+    """Settings of the summits of a pair, with its surfaces."""
 
     seed: int
     sampling: Sampling
@@ -65,7 +65,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class Solids:
-    """Solids of a pair; everything else about the contact is determined by the summits."""
+    """Solids of a pair. Everything else about the contact is determined by the summits."""
 
     solid: Solid
     van_der_waals: str
@@ -214,7 +214,7 @@ def contact_of(summits: xr.Dataset, settings: Solids) -> xr.Dataset:
 
 
 def contact_of_islands(data: Mapping[str, Any], pair: str, settings: dict[str, Any]) -> xr.Dataset:
-    """Contact of all samples whose asperities are islands, from the inputs and plain settings of a job."""
+    """Contact of all samples with islands as asperities, from the inputs and plain settings of a job."""
     surfaces, solids = arguments(data, pair, settings), in_si(Solids, settings["solids"])
     _, _, _, changed, _ = surfaces
     islands = SurfacePair(**vars(equivalent_under(*surfaces)), asperity=asperity_of(solids))
@@ -224,7 +224,7 @@ def contact_of_islands(data: Mapping[str, Any], pair: str, settings: dict[str, A
     return stage_contact.layout(*curves, islands.distances, samples)
 
 
-def _of_summits(plan, at, place):
+def _summit_settings(plan, at, place):
     """Settings of the summits without the variant, and its changes. Patches of devices have the samples of slopes."""
     settings, size = plan.variants.summits(at.pair, at.variant), place.size(plan, at)
     if size:
@@ -238,7 +238,7 @@ SUMMITS = Change(
     words="under variant {variant}",
     end="_{variant}",
     inputs=lambda plan, at, named: inputs(plan, at),
-    settings=_of_summits,
+    settings=_summit_settings,
     kind=None,
     compute=summits_of_job,
     label="variant_summits",
@@ -268,7 +268,7 @@ VARIANT_OF_ISLANDS = Change(
     end="_{variant}",
     inputs=lambda plan, at, named: inputs(plan, at),
     settings=lambda plan, at, place: (
-        _of_summits(plan, at, place) | {"solids": plan.variants.solids(at.pair, at.variant)}
+        _summit_settings(plan, at, place) | {"solids": plan.variants.solids(at.pair, at.variant)}
     ),
     kind=None,
     compute=contact_of_islands,

@@ -1,0 +1,160 @@
+"""Index of the results of a run: devices, surfaces, figures, tables, checks, warnings and provenance on one page.
+
+It is no rule of the workflow: a rule would compute everything that it lists, also what a run was not asked for. It
+lists what the configuration of the last run wants and the folder holds, and is written only if that has changed.
+"""
+
+import csv
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from stiction.command import front_page
+from stiction.config.kinds import kind_of
+from stiction.config.materials import material_of
+from stiction.config.reading import paper
+from stiction.models import SIDES
+from stiction.plan.planner import Planner
+from stiction.plan.stage import WILDCARDS, expression
+from stiction.report.drawings.devices import device_drawing
+from stiction.report.html import rendered
+from stiction.report.surfaces.words import described
+from stiction.run.atomic import save_text
+from stiction.run.provenance import code_of, recorded, started
+
+#: Name of the page, and of the folder of results in names of files.
+INDEX, _RESULTS = "index.html", "results/"
+
+
+@dataclass(frozen=True)
+class Item:
+    """Result of a stage: a figure, a table, a page of a device."""
+
+    category: str
+    title: str
+    shown: str  #: file that shows it, relative to the page
+    files: Mapping[str, str]  #: all its files by their endings
+
+
+def write(results: Path, rules: Iterable[Mapping[str, Any]]) -> None:
+    """Write the index of a folder of results unless it is there already. Rules are those of the planner."""
+    page, file = index(results, rules), results / INDEX
+    if not (file.exists() and file.read_text(encoding="utf-8") == page):
+        save_text(page, file)
+
+
+def write_for_last_run(results: Path) -> Path | None:
+    """Write the index of a folder by the configuration of its last run, and name it. Nothing without a run.
+
+    Runs that failed or were stopped write no index.
+
+    Raises
+    ------
+    ValueError
+        If the record of runs is damaged.
+    """
+    if not (runs := recorded(results / "provenance.json")):
+        return None
+    write(results, Planner(runs[-1]["config"], {}, _now, _now).rules)
+    return results / INDEX
+
+
+def _now(_key: Any, compute: Callable[[], Any]) -> Any:
+    """Compute a planner's value without keeping it."""
+    return compute()
+
+
+def index(results: Path, rules: Iterable[Mapping[str, Any]]) -> str:
+    """Page with the results of the last run of a folder."""
+    runs = recorded(results / "provenance.json")
+    last, config, found = runs[-1], runs[-1]["config"], list(items(results, rules))
+    changes = front_page.differing(config, paper())
+    return rendered(
+        "index.html",
+        title=front_page.subjects(config) or f"surfaces {', '.join(_used(config))}",
+        made=f"Last run: {started(last)}, {next(code_of(last))}.",
+        devices=list(_devices(results, config, found)),
+        pairs=list(front_page.pair_answers(results, config)),
+        surfaces=list(_surfaces(results, config)),
+        figures=_by_category(item for item in found if item.shown.endswith(".png")),
+        tables=[item for item in found if item.category == "Tables"],
+        verdict=_text(results / "verdict.txt").strip(),
+        checks=list(csv.DictReader(_text(results / "checks.csv").splitlines())),
+        judged=bool(front_page.warning_pages(results, config)),
+        warnings=list(front_page.warnings(results, config)),
+        provenance=list(front_page.provenance(last, len(runs))),
+        changes=yaml.safe_dump(changes, allow_unicode=True, sort_keys=False) if changes else "",
+    )
+
+
+def items(results: Path, rules: Iterable[Mapping[str, Any]]) -> Iterator[Item]:
+    """Results wanted by the targets of a configuration, as far as the folder holds them."""
+    for rule in rules:
+        if not rule["shown"]:
+            continue
+        key, patterns = rule["shown"]["file"], rule["files"]
+        wanted = [path.removeprefix(_RESULTS) for path in rule["wanted"]]
+        for paths in zip(*(wanted[k :: len(patterns)] for k in range(len(patterns))), strict=True):
+            files = dict(zip(patterns, paths, strict=True))
+            if (results / files[key]).exists():
+                at = expression(patterns[key], WILDCARDS).fullmatch(_RESULTS + files[key]).groupdict()
+                ends = {Path(file).suffix[1:]: file for file in files.values() if (results / file).exists()}
+                yield Item(rule["shown"]["category"], rule["shown"]["title"].format(**at), files[key], ends)
+
+
+def _by_category(figures: Iterable[Item]) -> dict[str, list[Item]]:
+    """Figures by their category, in the order of the rules."""
+    ordered: dict[str, list[Item]] = {}
+    for figure in figures:
+        ordered.setdefault(figure.category, []).append(figure)
+    return ordered
+
+
+def _devices(results: Path, config: Mapping, found: Sequence[Item]) -> Iterator[dict[str, Any]]:
+    """Devices with their first answer, their page and the number of warnings."""
+    pages = {item.shown for item in found}
+    said = list(front_page.warnings(results, config))
+    for name, section in config.get("devices", {}).items():
+        page, (answer, *_) = f"devices/{name}.html", [*_text(results / "devices" / f"{name}.txt").splitlines(), ""]
+        yield {
+            "name": name,
+            "kind": kind_of(section).words,
+            "drawing": device_drawing(section).svg,
+            "page": page if page in pages else "",
+            "answer": answer,
+            "warnings": sum(name in _subjects_of(sentence) for sentence in said),
+        }
+
+
+def _subjects_of(sentence: str) -> list[str]:
+    """Names of the devices at the start of a warning, as in ``C1, RH 0.9; R1: Too long.``."""
+    return [part.split(",")[0].strip() for part in sentence.split(":")[0].split(";")]
+
+
+def _surfaces(results: Path, config: Mapping) -> Iterator[dict[str, Any]]:
+    """Surfaces of the run: measured ones with their sheet and flags, others by their numbers."""
+    flags = [flag.partition(": ") for flag in front_page.listed(_text(results / "tables" / "scans.md"))]
+    for name in _used(config):
+        section, sheet = config["surfaces"][name], f"figures/surface_sheet_{name}.png"
+        yield {
+            "name": name,
+            "described": described(section, material_of(config, name)),
+            "flags": [flag for surface, _, flag in flags if surface == name],
+            "sheet": sheet if (results / sheet).exists() else "",
+        }
+
+
+def _used(config: Mapping) -> list[str]:
+    """Surfaces of the pairs and devices of a run, or those with scans if it has neither."""
+    pairs = [*config["run"]["pairs"], *(device["pair"] for device in config.get("devices", {}).values())]
+    sides = [config["pairs"][pair][side] for pair in pairs for side in SIDES]
+    scanned = [name for name, section in config["surfaces"].items() if "scans" in section]
+    return list(dict.fromkeys([*sides, *scanned]))
+
+
+def _text(path: Path) -> str:
+    """Text of a file. Empty if it is missing."""
+    return path.read_text(encoding="utf-8") if path.exists() else ""

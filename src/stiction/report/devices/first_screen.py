@@ -1,0 +1,209 @@
+"""First screen of the page of a device: answer, its cause, advice on changes and measurements, and one table."""
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from stiction.config.cases import air
+from stiction.devices import limits
+from stiction.devices.risk import one_in
+from stiction.report.budget import tables as tables_budget
+from stiction.report.budget.tables import percentage
+from stiction.report.devices import sentences
+from stiction.report.format import UM, UN, airs, humidity_text, number, with_error
+from stiction.report.page import Summary
+from stiction.report.test_beams.tables import is_reliable
+from stiction.stages.devices.budget import budget_of
+from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.devices.opening import EITHER, S_SHAPE
+from stiction.stages.devices.stoppers import shares_stuck
+
+#: Powers of thickness and gap in the length that sticks at an adhesion energy, of beams without tension; Eq. (13).
+_OF_THICKNESS, _OF_GAP = 3 / 4, 1 / 2
+#: How to learn what to measure where no uncertainty is stated.
+_UNSTATED = "State the uncertainties of the inputs in section uncertainty: the budget then says what to measure better."
+
+
+def beam_screen(
+    section: Mapping[str, Any],
+    safe_lengths: Mapping[float, xr.Dataset],
+    budgets: Mapping[tuple, xr.Dataset],
+    warnings: Sequence[str],
+    test_beams: xr.Dataset | None = None,
+) -> Summary:
+    """First screen of a cantilever or bridge.
+
+    Section of the configuration, humidity to the dataset of stage safe_lengths, budgets as on its page, all warnings
+    and, if there are test beams, the dataset of stage test_beams_rerun.
+    """
+    least, total, safe = sentences.length_to_build(safe_lengths, budgets)
+    humidity, worst = min(safe_lengths.items(), key=lambda case: float(_chosen(case[1]).safe_length.min()))
+    point = _chosen(worst).isel(shape=-1)
+    verdict = _verdict(section.get("length_um"), safe / UM, safe_lengths)
+    estimate = with_error(float(point.estimate) / UM, float(np.hypot(point.beams_error, _finite(point))) / UM)
+    where = f"{air(humidity)}, the worst" if len(safe_lengths) > 1 else air(humidity)
+    basis = [
+        f"At most {one_in(float(point.share))} sticks {airs(safe_lengths)}, with 95 % confidence, from "
+        f"{int(worst.beams)} simulated beams at each humidity.",
+        f"Estimate at {where}: {estimate} µm (standard error of the simulation)."
+        if np.isfinite(point.estimate)
+        else f"At {where}, too few beams stick for an estimate.",
+        f"Subtracted for the measurements: {100 * (1 - safe / least):.2g} %, twice their standard uncertainty."
+        if total
+        else "Nothing is subtracted for the measurements.",
+    ]
+    points = {
+        "What decides": " ".join(_decides_beam(humidity, worst, budgets, section)),
+        "What to change": _change_beam(section, safe / UM),
+        "What to measure": _measure(sentences.shortest_budgets(safe_lengths, budgets).values()),
+    }
+    return _unless_forbidden(Summary(*verdict, basis, points, _table_of_beam(safe_lengths, test_beams)), warnings)
+
+
+def _chosen(dataset):
+    """Lengths for the middle one of the shares, by shape."""
+    return dataset.isel(share=dataset.sizes["share"] // 2)
+
+
+def _finite(point):
+    """Standard error due to the number of surfaces, zero if it is part of the beams' error."""
+    return point.surfaces_error.fillna(0)
+
+
+def _verdict(length, safe, safe_lengths):
+    """Tone, sign and answer for a device of a length, or for any [µm]."""
+    answer = f"Safe up to {safe:.0f} µm"
+    if length is None:
+        return "good", "Length to build", f"{answer}."
+    cases = {humidity: dataset.isel(shape=-1) for humidity, dataset in safe_lengths.items()}
+    humidity, worst = max(cases.items(), key=lambda case: float(case[1].stuck_at_length.sel(end="high")))
+    stuck, low, high = map(float, worst.stuck_at_length)
+    if length <= safe:
+        sign = "good", "Safe"
+    else:
+        sign = ("bad", "Too long") if low > float(_chosen(worst).share) else ("open", "Not shown to be safe")
+    return *sign, f"{answer}; your {length:g} µm: {_stuck(stuck, low, high)} at {air(humidity)}."
+
+
+def _stuck(stuck, low, high):
+    """Fraction stuck with its band of 95 % confidence."""
+    return f"{100 * stuck:.3g} % stick ({100 * low:.3g} to {100 * high:.3g} %)"
+
+
+def _decides_beam(humidity, worst, budgets, section):
+    """Humidity and end state of the shortest safe length, and a decisive assumed input."""
+    lengths = _chosen(worst).safe_length
+    shape = str(lengths["shape"].values[int(lengths.argmin("shape"))])
+    yield f"{air(humidity)}, held by the {END_STATES[shape].by}."
+    if shape == EITHER:
+        yield f"If the tip could not touch: {float(lengths.sel(shape=S_SHAPE)) / UM:.0f} µm."
+    yield from tables_budget.decided(budgets.values(), section.get("assumed", ()))
+
+
+def _change_beam(section, safe):
+    """Sizes for a safe given length, or the effect of sizes on the safe length [µm]."""
+    length = section.get("length_um")
+    if section.get("residual_stress_MPa", 0):
+        return (
+            "A thicker beam, a wider gap or more tension lets longer bridges release; key chart computes the first two."
+        )
+    if length is None or length <= safe:
+        thicker, wider = (100 * (1.1**power - 1) for power in (_OF_THICKNESS, _OF_GAP))
+        return f"10 % more thickness allow {thicker:.0f} % more length, 10 % more gap {wider:.0f} %."
+    thickness, gap = (
+        section[key] * (length / safe) ** (1 / power)
+        for key, power in (("thickness_um", _OF_THICKNESS), ("gap_um", _OF_GAP))
+    )
+    return (
+        f"For {length:g} µm, by the power law of Eq. (13): a thickness of {thickness:.3g} µm or a gap of {gap:.3g} µm. "
+        "Compute the new device before you build it."
+    )
+
+
+def _measure(budgets: Iterable[xr.Dataset]) -> str:
+    """Advice of the most uncertain budget."""
+    stated = [dataset for dataset in budgets if budget_of(dataset).total != 0]
+    if not stated:
+        return _UNSTATED
+    return tables_budget.advised(max(stated, key=lambda dataset: np.nan_to_num(budget_of(dataset).total)))
+
+
+def _table_of_beam(safe_lengths, test_beams):
+    """Safe lengths by humidity, with and without tip and test beams, and P(stuck) at the stated length."""
+    rows = []
+    for humidity, dataset in safe_lengths.items():
+        lengths = _chosen(dataset).safe_length
+        row = {"RH": humidity_text(humidity), "safe length [µm]": number(float(lengths.min()) / UM, ".0f")}
+        if EITHER in lengths["shape"].values:
+            row["if the tip cannot touch [µm]"] = number(float(lengths.sel(shape=S_SHAPE)) / UM, ".0f")
+        if test_beams is not None:
+            row["with test beams [µm]"] = number(_with_test_beams(test_beams, humidity) / UM, ".0f")
+        if "length_of_device" in dataset:
+            at = f"P(stuck) at {float(dataset.length_of_device) / UM:g} µm [%]"
+            row[at] = percentage(*map(float, dataset.isel(shape=-1).stuck_at_length))
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _with_test_beams(update, humidity):
+    """Safe length after test beams, before any margin [m], NaN if they are unreliable."""
+    if not is_reliable(update) or humidity not in update.humidity:
+        return np.nan
+    return float(_chosen(update).updated_safe.sel(humidity=humidity).min())
+
+
+def stopper_screen(
+    section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset], warnings: Sequence[str]
+) -> Summary:
+    """First screen of a stopper: its section, dataset of stage stoppers, budgets and warnings."""
+    force, share = float(stopper.restoring_force), sentences.bounded_share(stopper)
+    humidity, *stuck = max(shares_stuck(stopper), key=lambda row: row[3])
+    needed = np.nan if share is None else float(stopper.safe_force.sel(part="safe", share=share).max(skipna=False))
+    own = f"with {force / UN:g} µN, {_stuck(*stuck)} at {air(humidity)}"
+    if share is None:
+        verdict = "open", "Not known", f"There are too few patches to bound a force; {own}."
+    else:
+        weak = ("bad", "Too weak") if stuck[1] > share else ("open", "Not shown to suffice")
+        sign = ("good", "Suffices") if force >= needed else weak
+        verdict = *sign, f"At least {needed / UN:.3g} µN needed; {own}."
+    basis = [
+        f"At most {one_in(share)} sticks {airs(stopper.humidity.values)}, with 95 % confidence." if share else "",
+        f"From {stopper.sizes['sample']} simulated patches at each humidity.",
+        "No margin for the measurements is added.",
+    ]
+    change = f"A restoring force of at least {needed / UN:.3g} µN." if force < needed else "Nothing in these airs."
+    points = {
+        "What decides": " ".join(
+            [
+                f"{air(humidity)}, where most stick.",
+                *tables_budget.decided(budgets.values(), section.get("assumed", ())),
+            ]
+        ),
+        "What to change": change if share else "Compute more patches: contact.samples.",
+        "What to measure": _measure(budgets.values()),
+    }
+    cells = _table_of_stopper(stopper, share)
+    return _unless_forbidden(Summary(*verdict, list(filter(None, basis)), points, cells), warnings)
+
+
+def _table_of_stopper(stopper, share):
+    """P(stuck) and the force needed by humidity."""
+    rows = []
+    for humidity, *stuck in shares_stuck(stopper):
+        row = {"RH": humidity_text(humidity), "P(stuck) [%]": percentage(*stuck)}
+        if share is not None:
+            safe = stopper.safe_force.sel(part="safe", share=share, humidity=humidity)
+            row[f"force for {one_in(share)} [µN]"] = number(float(safe) / UN, ".3g")
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _unless_forbidden(summary: Summary, warnings: Sequence[str]) -> Summary:
+    """Summary with a warning in place of its number, if one forbids relying on it."""
+    forbidding = [warning for warning in warnings if limits.forbids(warning)]
+    if not forbidding:
+        return summary
+    return Summary("bad", "Do not rely on a number", " ".join(forbidding), (), summary.points, summary.cells)

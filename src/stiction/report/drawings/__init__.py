@@ -1,0 +1,1 @@
+"""Drawings of devices, of their places of adhesion, and of the method, as SVG."""
