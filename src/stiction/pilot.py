@@ -1,4 +1,4 @@
-"""Pilot: the first samples of a run, drawn before any job, decide what no relation between keys can.
+"""Pilot: first samples of a run, drawn before any job, for decisions beyond the relations between keys.
 
 They show whether the summits of every patch resist the adhesion (Sec. III-B1), and whether strips resolve the cracks
 (Sec. III-C). Samples and criteria are those of the jobs. A patch is refused if one of its samples does not resist or,
@@ -57,7 +57,7 @@ _PRELIMINARY = 1.25
 
 @dataclass(frozen=True)
 class Use:
-    """What sticks on a patch at some humidities, and the keys that say so."""
+    """Use of a patch at some humidities, and its keys."""
 
     patch: Patch
     models: tuple[str, ...]  #: of the surfaces
@@ -77,7 +77,7 @@ class Use:
 def problems(
     config: dict, preliminary: dict[str, dict], code: object, remember: Callable[[object, Callable], Any]
 ) -> list[Problem]:
-    """Problems that the first samples of a configuration show, one for each key and patch.
+    """Problems in the first samples of a configuration, one for each key and patch.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def problems(
     of_patch = cache(partial(Samples, plan, cache(partial(_surface, plan)), ["pilot", code], remember))
 
     def samples(use, model, humidity):
-        """First samples of the patch of a use, whose solids attract each other through the air of a humidity."""
+        """First samples of the patch of a use, with attraction of its solids through the air of a humidity."""
         air = plan.air_of_devices if use.of_devices else plan.air
         return of_patch(use.patch._replace(pair=air.contact(use.patch.pair, humidity)), model, air.of_devices)
 
@@ -112,7 +112,7 @@ def problems(
 
 
 def _guessed(config):
-    """Keys and values of the surfaces whose spectrum the run will improve, by name."""
+    """Keys and values of the surfaces with a spectrum to be improved by the run, by name."""
     guesses = {}
     for name, entry in config["surfaces"].items():
         if is_measured(entry):
@@ -124,7 +124,7 @@ def _guessed(config):
 
 
 def _tips_beyond_memory(plan):
-    """Cantilevers whose tips need fields beyond the memory of a job: problems of their gaps."""
+    """Yield problems of the gaps of cantilevers, with tips in fields beyond the memory of a job."""
     margin, spacing = (plan.config["sampling"][key] for key in ("margin_um", "spacing_nm"))
     for name in plan.devices.with_tips:
         length, width = (side / NM_PER_UM for side in plan.devices.tips(name)[1:])
@@ -138,7 +138,7 @@ def _tips_beyond_memory(plan):
 
 
 def _pairs(plan):
-    """Strips of the pairs that run, at their humidities and at that of the figures."""
+    """Yield strips of the pairs in the run, at their humidities and the figures'."""
     config = plan.config
     for number, pair in enumerate(plan.pairs):
         beam = cantilever(in_si(Cantilevers, sections(plan, pair)), pair)
@@ -159,7 +159,7 @@ def _pairs(plan):
 
 
 def _refined(plan, pair, humidities):
-    """Those at which the elements of the beams of a pair follow their force laws."""
+    """Humidities with elements of the beams of a pair after their force laws."""
     return [humidity for humidity in humidities if not plan.paper.has_mesh(case_id(pair, humidity))]
 
 
@@ -204,7 +204,7 @@ def _devices(plan, section):
 
 
 def _refusals(use: Use, samples: Callable, preliminary: bool) -> Iterator[tuple[tuple, str]]:
-    """Keys and messages of what is wrong with a use."""
+    """Yield keys and messages of the problems of a use."""
     law = use.longest_strip is not None
     try:
         shown = {
@@ -226,7 +226,7 @@ def _refusals(use: Use, samples: Callable, preliminary: bool) -> Iterator[tuple[
 
 
 def _longest(use, laws):
-    """Longest strip that resolves the cracks of a use, and its jackknife error [nm]."""
+    """Longest strip to resolve the cracks of a use, and its jackknife error [nm]."""
     laws = np.array(laws)
     without = [use.longest_strip(np.delete(laws, k, axis=0)) for k in range(len(laws))]
     error = np.std(without) * np.sqrt(len(laws) - 1)
@@ -234,7 +234,7 @@ def _longest(use, laws):
 
 
 def _too_long(use, length, error, samples):
-    """Message about strips that are longer than samples allow, with a length or thickness that would do."""
+    """Message about strips too long by the samples, with a sufficient length or thickness."""
     strip, enough = use.patch.length / NM_PER_UM, (length - _CERTAIN * error) / NM_PER_UM
     evidence = f"{samples} allow {length / NM_PER_UM:.3g} ± {error / NM_PER_UM:.1g} µm"
     if use.thickness is None:
@@ -248,7 +248,7 @@ def _too_long(use, length, error, samples):
 
 
 def _weak(use, humidities, weak):
-    """Key and message of a patch, a sample of which does not resist the adhesion at the first of some humidities."""
+    """Key and message of a patch with a sample too weak against the adhesion at the first of some humidities."""
     pull, repulsion = (f"{from_si(weak[key], 'MPa'):.3g} MPa" for key in ("pull", "repulsion"))
     resist = (
         f"{in_air(humidities[0])}{' and others' * (len(set(humidities)) > 1)}, water and van der Waals forces pull "
@@ -270,7 +270,7 @@ def _weak(use, humidities, weak):
 
 
 def _surface(plan, name):
-    """Datasets (heights, spectrum) of a surface that is described by numbers."""
+    """Datasets (heights, spectrum) of a surface described by numbers."""
     entry, rms = plan.config["surfaces"][name], plan.config["surfaces"][name]["rms_nm"]
     if "form" in entry:
         measured = heights.Settings(to_si(rms, "nm"), np.nan, np.nan)
@@ -300,7 +300,7 @@ class Samples:
     of_devices: bool
 
     def at(self, humidity: float, law: bool, preliminary: bool) -> dict[str, Any]:
-        """What they show at a humidity, see `shown_by`."""
+        """Findings of the samples at a humidity, see `shown_by`."""
         entries = [self._entry(name) for name in self.plan.sides(self.patch.pair)]
         air = self.plan.air_of_devices if self.of_devices else self.plan.air
         water = air.water(self.patch.pair)

@@ -238,9 +238,9 @@ def test_gaussian_scans_are_not_refused(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("ignore::UserWarning")
-def test_none_of_forty_gaussian_scans_is_refused_before_a_run_or_in_it(tmp_path):
+def test_none_of_twenty_gaussian_scans_is_refused_before_a_run_or_in_it(tmp_path):
     distances = []
-    for k, drawn in enumerate(gaussian(4e-6, 40)):
+    for k, drawn in enumerate(gaussian(4e-6, 20)):
         path = write(tmp_path / f"{k}.gwy", drawn.heights, drawn.size)
         (found,) = validate(configured(path)).values()
         assert found["feasible"] is not None
@@ -248,7 +248,7 @@ def test_none_of_forty_gaussian_scans_is_refused_before_a_run_or_in_it(tmp_path)
         estimated = stage_estimate.compute([read], "Etched", stage_estimate.Settings(1, estimate.Settings(), 8))
         used = heights.compute(estimated, heights.Settings("Etched", "moments"))
         distances.append(measured_moments(used).distance)
-    assert 8 < np.count_nonzero(distances) < 32  # every other one is beyond the border
+    assert 4 < np.count_nonzero(distances) < 16  # every other one is beyond the border
 
 
 def test_surfaces_whose_moments_have_no_density_get_the_measured_one(tmp_path):

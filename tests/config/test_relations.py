@@ -226,3 +226,26 @@ def test_water_condenses_up_to_contact_angles_that_add_up_to_180_degrees(more, w
     config = Keys({"run": {"pairs": ["d"]}, "pairs": pairs, "surfaces": surfaces, "materials": angles}, [])
     (meeting,) = meetings.pair_meetings(config)
     assert bool(meeting.wetting(more)) == wet
+
+
+def test_adsorbed_water_is_part_of_the_film_that_a_gap_must_exceed():
+    narrow = {"run": {"pairs": ["b"]}, "pairs": {"b": {"gap_um": 0.35}}}
+    assert not problems(merged(PAPER, narrow))
+    lines = problems(merged(PAPER, narrow | {"water": {"adsorbed_nm": 4}}))
+    (line,) = [one for one in lines if one.startswith("pairs.b.gap_um")]
+    assert "is 0.35, must be at least 0.3973 µm, 20 times the sum of the height of the water film, 16.463 nm" in line
+    assert "water.adsorbed_nm = 4" in line
+
+
+@pytest.mark.parametrize("value", [-0.1, 5.1, "thick", None, [0.5]])
+@pytest.mark.parametrize("key", ["water.adsorbed_nm", "devices.C1.uncertainty.adsorbed_nm"])
+def test_a_height_of_adsorbed_water_that_no_surface_has_is_refused_in_one_sentence(key, value):
+    device = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
+    overlay = {"devices": {"C1": device | {"humidities": [0.67], "uncertainty": {}}}, "water": {}}
+    section = overlay
+    for name in key.split(".")[:-1]:
+        section = section[name]
+    section["adsorbed_nm"] = value
+    (line,) = problems(merged(PAPER, overlay))
+    assert line.startswith(f"{key} is ")
+    assert "must be a number at least 0 and at most 5" in line

@@ -1,6 +1,7 @@
 """Plan of a configuration, compared with counts and names found by hand."""
 
 import pytest
+from plans import job_settings
 
 from stiction.config.cases import Case
 from stiction.config.files import load
@@ -9,6 +10,7 @@ from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.models import surface_model
 from stiction.plan.plan import Plan
+from stiction.report.studies.tables import variant_label
 
 PAPER = Plan(load())
 #: A pair like the paper's pair a under another name.
@@ -60,6 +62,25 @@ def test_every_model_choice_is_a_variant_and_the_base_comes_first():
     assert PAPER.variants.changes["spacing_nm_5"] == {"sampling": {"spacing_nm": 5}}
     assert PAPER.variants.changes["strips_per_element_2"] == {"beam": {"elements": 500}}
     assert len(PAPER.variants.pairs) == 27
+
+
+def test_adsorbed_water_is_a_variant_on_the_contact_of_the_base():
+    films = plan(water={"adsorbed_nm": 0.2}, studies={"variants": {"adsorbed_nm": [0.5, 0.2]}}).variants
+    assert films.changes["adsorbed_nm_0.5"] == {"water": {"adsorbed_nm": 0.5}}
+    assert films.contact_under("adsorbed_nm_0.5") == "base"
+    assert [films.water("b", name).get("adsorbed_nm") for name in ("base", "adsorbed_nm_0.5")] == [0.2, 0.5]
+    assert ("b", "adsorbed_nm_0.5") in films.pairs
+    assert ("b", "adsorbed_nm_0.2") not in films.pairs  # as the base
+    assert "adsorbed_nm_0.5" not in films.choices("b")
+    assert variant_label("adsorbed_nm_0.5") == "0.5 nm of adsorbed water"
+
+
+def test_no_adsorbed_water_is_no_setting():
+    none, some = (plan(water={"adsorbed_nm": height}) for height in (0, 0.3))
+    for name in ("forces/b_rh067_NG", "humidity/b_NG", "studies/variants/b_rh067_base"):
+        assert job_settings(none, name) == job_settings(PAPER, name) != job_settings(some, name)
+    assert job_settings(some, "contact/b_NG") == job_settings(PAPER, "contact/b_NG")
+    assert in_si(Water, some.air.water("b")) == Water(300.0, adsorbed=0.3e-9)
 
 
 def test_a_variant_that_changes_nothing_about_a_pair_is_left_out():

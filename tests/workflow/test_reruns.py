@@ -6,7 +6,7 @@ import os
 import re
 import shutil
 import subprocess
-from functools import reduce
+from functools import cache, reduce
 from itertools import product
 from pathlib import Path
 
@@ -24,6 +24,7 @@ from stiction.plan.graph import Graph, stages, structured
 from stiction.plan.plan import Plan
 from stiction.plan.stage import File
 from stiction.run import storage
+from stiction.run.fingerprint import PACKAGE, fingerprint
 
 #: Two pairs, one figure case, so that every rule has few jobs.
 SMALL = """
@@ -130,6 +131,7 @@ MATRIX = [
     ("spacing of Table I", "character: {spacing_nm: 10}", "identification character", (), "results/contact|forces"),
     ("patches of identification", "identification: {patches: 4}", "identification", (), "spectrum|_base"),
     ("water", "water: {temperature_K: 310}", "full_contact pressed readings forces humidity sensitivity variant cracks safe_lengths chart", (), "results/contact"),
+    ("adsorbed water", "water: {adsorbed_nm: 0.1}", "full_contact pressed readings forces humidity sensitivity variant cracks safe_lengths chart", (), "results/contact"),
     ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (),
      "studies/(sens|plas|variants/(contact|summits))|psd_identified|tips"),
     ("distance step", "contact: {distance_step_nm: 0.1}",
@@ -404,10 +406,6 @@ SPOTS = [
         " ".join(RULES - {"table_1", "table_2", "table_3", "checks", "verdict", "device_limits"}),
     ),
 ]
-SPOT_ROWS = [
-    pytest.param(*row, id=row[0], marks=[pytest.mark.slow] * (row[0] not in {"contact/meniscus", "config/plan"}))
-    for row in SPOTS
-]
 #: The computation of a stage and the layout of its dataset are in one module, so that a new variable in the dataset is
 #: a change of that module only. It reruns the stage and the readers of its dataset, and nothing else.
 LAYOUTS = {
@@ -462,25 +460,54 @@ LAYOUTS = {
     "stages/devices/safe_lengths": {"safe_lengths"},
     "stages/devices/chart": {"chart"},
 }
-LAYOUT_ROWS = [
-    pytest.param(name, stages, id=name, marks=[pytest.mark.slow] * (name != "stages/laws/forces"))
-    for name, stages in LAYOUTS.items()
+
+
+@cache
+def codes():
+    """Names of the modules in the fingerprint of the code of every rule, which is a parameter of all its jobs."""
+    script = fingerprint(ROOT / "workflow" / "scripts" / "stage.py")
+    modules = {rule: PACKAGE.joinpath(*stage.code.split(".")[1:]) for rule, (stage, _) in stages().items()}
+    return {rule: {*fingerprint(modules[rule].with_suffix(".py")), *script} for rule in RULES}
+
+
+def readers_of(path):
+    """Rules with a module in the fingerprint of their code, and all their readers."""
+    met = {rule for rule, names in codes().items() if f"stiction.{path.replace('/', '.')}" in names}
+    # Chunks are temporary and must be recomputed to be joined.
+    return behind(met | ({"contact_chunk"} if "contact" in met else set()))
+
+
+#: One module of each kind: physics, stage, command line, configuration, log, drawing; the other rows are slow tests.
+CHANGED = ["contact/meniscus", "stages/laws/forces", "config/plan"]
+CHANGED += [
+    pytest.param(path, marks=pytest.mark.slow)
+    for path in ("beam/release", "stages/contact/contact", "run/logs", "report/beams/tables", "study", "models")
 ]
 
 
-@pytest.mark.parametrize(("module", "stages"), LAYOUT_ROWS)
-def test_a_new_variable_in_a_dataset_reruns_its_stage_and_its_readers_and_no_others(tree, module, stages):
-    path = tree.folder / "src" / "stiction" / f"{module}.py"
-    code = path.read_text()
-    assert code.count("return xr.Dataset(") + code.count("return parameters.variables(") == 1
-    path.write_text(re.sub(r"    return (xr\.Dataset|parameters\.variables)\(", r"    more = 1\n    return \1(", code))
-    assert known(tree.rerun()) == behind(stages)
-
-
-@pytest.mark.parametrize(("path", "must", "must_not"), SPOT_ROWS)
-def test_a_changed_module_reruns_the_rules_that_use_it(tree, path, must, must_not):
+@pytest.mark.parametrize("path", CHANGED)
+def test_a_changed_module_reruns_the_rules_with_it_in_their_fingerprint_and_their_readers(tree, path):
     tree.append(f"src/stiction/{path}.py", "\nCHANGED = 1\n")
-    rerun = known(tree.rerun())
+    assert known(tree.rerun()) == readers_of(path)
+
+
+@pytest.mark.slow
+def test_a_changed_script_reruns_every_rule(tree):
+    tree.append("workflow/scripts/stage.py", "\nCHANGED = 1\n")
+    assert known(tree.rerun()) == RULES
+
+
+@pytest.mark.parametrize(("module", "rules"), LAYOUTS.items(), ids=LAYOUTS)
+def test_a_new_variable_in_a_dataset_reruns_its_stage_and_its_readers_and_no_others(module, rules):
+    """It changes the module of the stage, see above."""
+    code = (PACKAGE / f"{module}.py").read_text()
+    assert code.count("return xr.Dataset(") + code.count("return parameters.variables(") == 1
+    assert readers_of(module) == behind(rules)
+
+
+@pytest.mark.parametrize(("path", "must", "must_not"), SPOTS, ids=[path for path, *_ in SPOTS])
+def test_a_changed_module_reruns_the_rules_that_use_it(path, must, must_not):
+    rerun = readers_of(path)
     assert set(must.split()) <= rerun
     assert not set(must_not.split()) & rerun
 
@@ -518,7 +545,6 @@ def test_a_change_of_the_drawing_code_reruns_no_computation(tree):
     assert known(tree.rerun()) == set()
 
 
-PACKAGE = ROOT / "src" / "stiction"
 IMPORT = re.compile(r"^\s*(?:from (stiction[\w.]*) import (.+)|import (stiction[\w.]*))", re.MULTILINE)
 
 
@@ -551,23 +577,15 @@ def reached(file):
     return modules - SILENT
 
 
-CODE = sorted(
-    path.relative_to(ROOT)
-    for path in [*PACKAGE.rglob("*.py"), ROOT / "workflow" / "scripts" / "stage.py"]
-    if path.name != "__init__.py"
-)
+CODE = sorted(path.relative_to(PACKAGE) for path in PACKAGE.rglob("*.py") if path.name != "__init__.py")
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("path", CODE, ids=[str(path.with_suffix("")).removeprefix("src/stiction/") for path in CODE])
-def test_every_module_and_script_reruns_its_rules_and_their_readers(tree, path):
-    tree.append(path, "\nCHANGED = 1\n")
-    script = ROOT / "workflow" / "scripts" / "stage.py"
+def test_every_module_reruns_the_rules_that_reach_it_and_their_readers():
     modules = {name: ROOT / "src" / f"{stage.code.replace('.', '/')}.py" for name, (stage, _) in stages().items()}
-    if path.parts[0] == "workflow":
-        met = set(RULES)
-    else:
-        met = {name for name in RULES if ROOT / path in reached(modules[name]) | reached(script) | {modules[name]}}
-    if "contact" in met:  # chunks are temporary and must be recomputed to be joined
-        met |= {"contact_chunk"}
-    assert known(tree.rerun()) == behind(met)
+    code = {name: reached(modules[name]) | {modules[name]} for name in RULES}
+    of_all = reached(ROOT / "workflow" / "scripts" / "stage.py")
+    assert len(CODE) > 200
+    for path in CODE:
+        met = {name for name in RULES if PACKAGE / path in code[name] | of_all}
+        met |= {"contact_chunk"} if "contact" in met else set()
+        assert readers_of(str(path.with_suffix(""))) == behind(met), path

@@ -30,8 +30,8 @@ READ_BY = {
     " tip_solid_contact tip_choice_contact tip_budget",
     "identification": "device_choice_summits",
     "contact_chunk": "contact",
-    "contact": "cracks chart budget",
-    "device_contact": "cracks stoppers budget",
+    "contact": "cracks chart budget separation",
+    "device_contact": "cracks stoppers budget separation",
     "tip_contact": "safe_lengths chart tip_budget",
     "slope_contact": "budget",
     "device_slope_contact": "budget",
@@ -45,8 +45,10 @@ READ_BY = {
     "cracks": "safe_lengths",
     "safe_lengths": "table_safe_lengths figure_risk device_warnings device_page life",
     "touchdowns": "life",
+    "separation": "life",
     "at_voltage": "life",
     "stoppers_at_voltage": "life",
+    "dimples": "life",
     "tilted_contact": "tilted_stoppers",
     "tilted_stoppers": "life",
     "life": "table_life figure_life device_page",
@@ -79,6 +81,8 @@ MATRIX = [
     ("voltage of a stopper", "devices: {S1: {voltage_V: 3, dielectric: {thickness_nm: 100, permittivity: 4}}}",
      "stoppers_at_voltage", (), "R1|C1|contact|devices/stoppers/"),
     ("tilt of a stopper", "devices: {S1: {tilt_deg: [0, 0.1]}}", "tilted_contact", (), "R1|C1|devices/contact/b|devices/stoppers/"),
+    ("dimples of a bridge", "devices: {R1: {length_um: 200, dimples: {number: 2, at_um: 100, height_um: 1, contact_um: [3, 3]}}}",
+     "dimples safe_lengths", OF_STOPPERS | OF_CHARTS, "C1|S1|contact|cracks"),
     ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget", (), "R1|S1|contact|chart"),
     ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", (),
      "C1|R1|slopes/contact|stoppers"),
@@ -92,7 +96,7 @@ MATRIX = [
      "S1|R1|modulus|hamaker|slopes|choices|heights|spectrum|contact/b|3000x3000|cracks|safe|chart"),
     ("uncertainty of a property of the solids", "devices: {C1: {uncertainty: {hamaker_constant_zJ: 15}}}",
      "budget tip_budget", (), "R1|S1|contact|chart"),
-    ("one humidity of a stopper", "devices: {S1: {humidities: [0.7, 0.9]}}", "stoppers budget device_warnings", OF_BEAMS,
+    ("one humidity of a stopper", "devices: {S1: {humidities: [0.7, 0.9]}}", "stoppers budget device_warnings separation", OF_BEAMS,
      "C1|R1|contact|S1_rh070"),
     ("area of a stopper", "devices: {S1: {contact_um: [3, 2]}}", "device_contact solid_contact device_choice_summits",
      OF_BEAMS, "C1|R1|1500x"),
@@ -104,8 +108,11 @@ MATRIX = [
     ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", "stoppers device_warnings", OF_BEAMS, "C1|R1|budget|contact"),
     ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
      "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
-    ("water", "water: {temperature_K: 310}", "cracks safe_lengths chart stoppers budget tip_budget", (), "contact"),
-    ("attraction across gaps", "attraction: {wavelength_nm: 90}", "cracks safe_lengths chart stoppers budget tip_budget", (),
+    ("water", "water: {temperature_K: 310}", "cracks safe_lengths chart stoppers budget tip_budget separation", (), "contact"),
+    ("adsorbed water", "water: {adsorbed_nm: 0.1}", "cracks safe_lengths chart stoppers budget tip_budget separation", (), "contact"),
+    ("uncertainty of the adsorbed water", "devices: {C1: {uncertainty: {adsorbed_nm: 0.1}}}", "budget tip_budget", (),
+     "R1|S1|contact|chart"),
+    ("attraction across gaps", "attraction: {wavelength_nm: 90}", "cracks safe_lengths chart stoppers budget tip_budget separation", (),
      "contact"),
     ("skewness of a surface", "surfaces: {B2: {skewness: -0.7}}", "heights device_choice_summits", (), "Sub1.nc"),
     ("skewness of another surface", "surfaces: {B1: {skewness: -0.7}}", "", (), ""),
@@ -142,7 +149,7 @@ FURTHER = {
 }
 FURTHER |= {"humidities of a chart", "width of a beam", "strips of a beam", "stress in a bridge", "hardness of a body"}
 FURTHER |= {"tension of a liquid", "number of touchdowns", "voltage of a beam", "voltage of a stopper"}
-FURTHER |= {"tilt of a stopper"}
+FURTHER |= {"tilt of a stopper", "dimples of a bridge", "adsorbed water", "uncertainty of the adsorbed water"}
 FURTHER |= {"Hamaker constant of a body", "uncertainty of a property of the solids"}
 FURTHER |= {"another property of the solids of a cantilever becomes uncertain"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]
@@ -156,7 +163,7 @@ LAYOUTS |= {
     "stages/devices/cracks": {"cracks", "safe_lengths"},
     "stages/devices/safe_lengths": {"safe_lengths"},
 }
-LAYOUTS |= {"stages/devices/life": {"life"}}
+LAYOUTS |= {"stages/devices/life": {"life"}, "stages/devices/separation": {"separation"}}
 
 
 def behind(rules):

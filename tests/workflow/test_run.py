@@ -149,9 +149,7 @@ def test_surfaces_without_summits_and_few_samples_are_tabulated_and_drawn(tmp_pa
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "moments", ["skewness: -0.5, kurtosis: 3.6", "skewness: 0, kurtosis: 3", "skewness: 0.3, kurtosis: 3.2"]
-)
+@pytest.mark.parametrize("moments", ["skewness: 0, kurtosis: 3", "skewness: 0.3, kurtosis: 3.2"])
 def test_everything_can_be_computed_and_drawn_for_a_surface_of_the_user(tmp_path, overlay, moments):
     mine = overlay(MINE.replace("skewness: -0.5, kurtosis: 3.6", moments))
     done = snakemake(tmp_path, "all", "--keep-going", configs=(SMOKE, mine), check=False)

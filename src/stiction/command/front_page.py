@@ -75,7 +75,7 @@ def answers(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
 
 
 def of_pairs(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
-    """How the beams of every pair end, a sentence each; nothing if Table III has not been computed."""
+    """Yield the ends of the beams of every pair, a sentence each, or nothing before Table III is computed."""
     table = results / "tables" / "table_3.csv"
     rows = csv.DictReader(_text(table).splitlines() if table.exists() else ())
     for pair, of_pair in groupby((row for row in rows if row["model"] == "NG"), lambda row: row["pair"]):

@@ -31,7 +31,7 @@ INDEX, _RESULTS = "index.html", "results/"
 
 @dataclass(frozen=True)
 class Item:
-    """A result of a stage: a figure, a table, a page of a device."""
+    """Result of a stage: a figure, a table, a page of a device."""
 
     category: str
     title: str
@@ -40,14 +40,14 @@ class Item:
 
 
 def write(results: Path, rules: Iterable[Mapping[str, Any]]) -> None:
-    """Write the index of a folder of results unless it is there already; rules are those of the planner."""
+    """Write the index of a folder of results unless it is there already. Rules are those of the planner."""
     page, file = index(results, rules), results / INDEX
     if not (file.exists() and file.read_text(encoding="utf-8") == page):
         save_text(page, file)
 
 
 def of_last_run(results: Path) -> Path | None:
-    """Write the index of a folder by the configuration of its last run, and name it; nothing without a run.
+    """Write the index of a folder by the configuration of its last run, and name it. Nothing without a run.
 
     Runs that failed or were stopped write no index.
 
@@ -63,12 +63,12 @@ def of_last_run(results: Path) -> Path | None:
 
 
 def _now(_key: Any, compute: Callable[[], Any]) -> Any:
-    """Compute what a planner would keep."""
+    """Compute a planner's value without keeping it."""
     return compute()
 
 
 def index(results: Path, rules: Iterable[Mapping[str, Any]]) -> str:
-    """Page that lists the results of the last run of a folder."""
+    """Page with the results of the last run of a folder."""
     runs = recorded(results / "provenance.json")
     last, config, found = runs[-1], runs[-1]["config"], list(items(results, rules))
     changes = front_page.differing(config, paper())
@@ -91,7 +91,7 @@ def index(results: Path, rules: Iterable[Mapping[str, Any]]) -> str:
 
 
 def items(results: Path, rules: Iterable[Mapping[str, Any]]) -> Iterator[Item]:
-    """Results that the targets of a configuration want, as far as the folder holds them."""
+    """Results wanted by the targets of a configuration, as far as the folder holds them."""
     for rule in rules:
         if not rule["shown"]:
             continue
@@ -130,12 +130,12 @@ def _devices(results: Path, config: Mapping, found: Sequence[Item]) -> Iterator[
 
 
 def _subjects_of(sentence: str) -> list[str]:
-    """Names of the devices with which a warning starts, as in ``C1, RH 0.9; R1: Too long.``."""
+    """Names of the devices at the start of a warning, as in ``C1, RH 0.9; R1: Too long.``."""
     return [part.split(",")[0].strip() for part in sentence.split(":")[0].split(";")]
 
 
 def _surfaces(results: Path, config: Mapping) -> Iterator[dict[str, Any]]:
-    """Surfaces of the run: measured ones with their sheet and flags, others by the numbers that describe them."""
+    """Surfaces of the run: measured ones with their sheet and flags, others by their numbers."""
     flags = [flag.partition(": ") for flag in front_page.listed(_text(results / "tables" / "scans.md"))]
     for name in _used(config):
         section, sheet = config["surfaces"][name], f"figures/surface_sheet_{name}.png"
@@ -156,5 +156,5 @@ def _used(config: Mapping) -> list[str]:
 
 
 def _text(path: Path) -> str:
-    """Text of a file; empty if it is missing."""
+    """Text of a file. Empty if it is missing."""
     return path.read_text(encoding="utf-8") if path.exists() else ""

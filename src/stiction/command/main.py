@@ -284,7 +284,7 @@ def _report(arguments):
 
 
 def _show(arguments):
-    """Write the index of the results as they are now, name it, and open it where there is a display."""
+    """Write the index of the present results, name it, and open it if there is a display."""
     import webbrowser
 
     from stiction.command import index  # imports the libraries for numbers

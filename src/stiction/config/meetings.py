@@ -20,7 +20,7 @@ from stiction.rounding import is_at_most
 #: Relations between what meets, its gaps and the air between.
 relation = Relations()
 
-TEMPERATURE = "water.temperature_K"
+TEMPERATURE, ADSORBED = "water.temperature_K", "water.adsorbed_nm"
 
 
 @dataclass(frozen=True)
@@ -130,14 +130,16 @@ def gaps_are_far_above_the_film(config):
         for gap, air in meeting.gaps:
             values = dict(config.known(gap, air))
             if len(values) == 2 and meeting.sides:
-                refusal = _too_low(np.min(values[gap]), values[air], meeting)
-                yield gap, refusal, air, *meeting.given(TEMPERATURE)
+                adsorbed = dict(config.known(ADSORBED))
+                refusal = _too_low(np.min(values[gap]), values[air], meeting, adsorbed.get(ADSORBED, 0))
+                yield gap, refusal, air, *meeting.given(TEMPERATURE, *adsorbed)
 
 
-def _too_low(gap, humidities, meeting):
-    """Refusal of a gap [µm] not far above the film at the highest humidity."""
+def _too_low(gap, humidities, meeting, adsorbed):
+    """Refusal of a gap [µm] not far above the film at the highest humidity, with the adsorbed water [nm]."""
     angles, humid = meeting.wetting(), above_zero(humidities)
-    heights = meniscus_height(humid, meeting.config[TEMPERATURE], angles) if angles and humid else 0.0
+    wet = angles and humid
+    heights = meniscus_height(humid, meeting.config[TEMPERATURE], angles) + to_si(adsorbed, "nm") if wet else 0.0
     height, rms = float(np.max(heights)), math.hypot(*(to_si(side["rms_nm"], "nm") for side in meeting.sides))
     least = from_si(limits.least_gap(height, rms), "um")
     if gap >= least:

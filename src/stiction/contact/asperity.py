@@ -37,14 +37,14 @@ def reduced_modulus(young_modulus: float, poisson_ratio: float) -> float:
 
 
 def hertz_force(interference: float | np.ndarray, radius: float | np.ndarray, modulus: float) -> float | np.ndarray:
-    """Elastic force of a sphere on a flat [N]; interference [m], radius [m], reduced modulus [Pa]."""
+    """Elastic force of a sphere on a flat [N], from interference [m], radius [m] and reduced modulus [Pa]."""
     return 4 / 3 * modulus * np.sqrt(radius) * np.maximum(interference, 0) ** 1.5
 
 
 def hertz_maximum_stress(
     interference: float | np.ndarray, radius: float | np.ndarray, modulus: float
 ) -> float | np.ndarray:
-    """Largest contact stress, Eq. (14) [Pa]; interference [m], radius [m], reduced modulus [Pa]."""
+    """Largest contact stress, Eq. (14) [Pa], from interference [m], radius [m] and reduced modulus [Pa]."""
     return 2 / np.pi * modulus * np.sqrt(np.maximum(interference, 0) / radius)
 
 
@@ -143,19 +143,19 @@ def weak_load(interference: float, transition: float) -> float:
 
 
 class Ranges(NamedTuple):
-    """Ranges of the distances at which spheres stand for asperities."""
+    """Ranges of the distances with spheres in place of asperities."""
 
     first: np.ndarray  #: number of the first distance of each, (m,) int32
     end: np.ndarray  #: number of the distance behind the last, (m,) int32
 
 
 def everywhere(spheres: int, distances: int) -> Ranges:
-    """Ranges of spheres that are in force at all distances; number of spheres and of distances."""
+    """Ranges of spheres at all distances, from the number of spheres and of distances."""
     return Ranges(np.zeros(spheres, np.int32), np.full(spheres, distances, np.int32))
 
 
 class Asperity(Protocol):
-    """Elastic sphere on a flat; interchangeable models of one asperity."""
+    """Elastic sphere on a flat. Interchangeable models of one asperity."""
 
     def force(self, interference: float | np.ndarray, radius: float) -> float | np.ndarray:
         """Force [N] of a sphere of this radius [m] at interferences (n,) [m]."""
@@ -180,7 +180,7 @@ class Asperity(Protocol):
 
 @dataclass(frozen=True)
 class HertzAsperity:
-    """An `Asperity` without attraction."""
+    """`Asperity` without attraction."""
 
     modulus: float  #: reduced modulus E' [Pa]
 
@@ -209,7 +209,7 @@ class TableScales(NamedTuple):
 
 @dataclass(frozen=True)
 class MaugisTable:
-    """An `Asperity` with attraction: its load tabulated over ln λ and √(δ̄ - δ̄_min).
+    """`Asperity` with attraction: its load tabulated over ln λ and √(δ̄ - δ̄_min).
 
     The square root removes the vertical tangent of the load at the point of snap-off. Beyond the table the load has the
     closed form of deep contact, `deep_load`, beyond its last row that of this row: JKR within 3e-3 πwR, and before its
@@ -266,7 +266,7 @@ class MaugisTable:
         )
 
     def force(self, interference: float | np.ndarray, radius: float) -> float | np.ndarray:
-        """Force of one sphere without interpolation in λ [N]; 0 beyond snap-off. Interference (n,) [m], radius [m]."""
+        """Force of one sphere without interpolation in λ [N], 0 beyond snap-off. Interference (n,) [m], radius [m]."""
         load, delta = maugis_branch(transition_parameter(radius, self.modulus, self.attraction), 20000)
         scaled = np.asarray(interference) / interference_scale(radius, self.modulus, self.attraction)
         held = np.interp(np.sqrt(np.maximum(scaled - delta[0], 0)), np.sqrt(delta - delta[0]), load)

@@ -8,7 +8,7 @@ from stiction.rounding import is_at_most
 
 
 def interpolated(ratios: np.ndarray, humidities: np.ndarray, at: float | np.ndarray) -> float | np.ndarray:
-    """Ratios at some humidities, from those (h,) at the computed ones, which increase; NaN beyond them [-].
+    """Ratios at some humidities, from ratios (h,) at the computed, increasing ones, NaN beyond them [-].
 
     ASSUME: between the computed humidities, the logarithm of a ratio is linear in the humidity.
 

@@ -68,7 +68,7 @@ class Adhesion:
 
     @classmethod
     def of(cls, film: tuple[float, float], solids: DugdaleAttraction | None, space: HalfSpace) -> "Adhesion":
-        """Of a film (height, tension), see `stiction.contact.meniscus.film`, and van der Waals forces or none.
+        """Adhesion of a film (height, tension), see `stiction.contact.meniscus.film`, and van der Waals forces or none.
 
         Raises
         ------
@@ -101,7 +101,7 @@ class Adhesion:
 
 @dataclass(frozen=True)
 class State:
-    """A strip in equilibrium at a distance."""
+    """Strip in equilibrium at a distance."""
 
     distance: float  #: d [m]
     pressure: np.ndarray  #: p (n1, n2) [Pa]
@@ -116,7 +116,7 @@ class State:
         return _mean(self.pressure) - _mean(self.attraction)
 
     def energy(self, heights: np.ndarray, adhesion: Adhesion) -> float:
-        """U per apparent area of a strip of heights z (n1, n2) [J m⁻²]; stationary in the errors of p and q."""
+        """Energy U per apparent area of a strip of heights z (n1, n2), stationary in the errors of p and q [J m⁻²]."""
         displacement = self.gap - (np.float32(self.distance) - heights)
         elastic = (self.pressure - self.attraction) * displacement / 2
         # p g is zero in equilibrium; without it, U would have the error of p to first order.
@@ -124,12 +124,12 @@ class State:
 
     @property
     def residual(self) -> float:
-        """Largest gap of an element in contact, and overlap of one that is not at the hardness [m]."""
+        """Largest gap of an element in contact, and overlap of one below the hardness [m]."""
         return float(_residual(self.pressure, self.gap, np.float32(self.hardness)))
 
     @property
     def flattening(self) -> np.ndarray:
-        """Overlap of the elements at the hardness, by which their heights are less afterwards (n1, n2) [m]."""
+        """Overlap of the elements at the hardness, the later decrease of their heights (n1, n2) [m]."""
         return np.where(self.pressure >= np.float32(self.hardness), np.maximum(-self.gap, 0), np.float32(0))
 
 
@@ -146,7 +146,7 @@ def equilibrium(
     hardness: float = np.inf,
     coarser: float = 1.0,
 ) -> State:
-    """State of a strip of heights z (n1, n2) float32 [m] at a distance d [m]; elastic, without attraction by default.
+    """State of a strip of heights z (n1, n2) float32 [m] at a distance d [m]. Elastic, without attraction by default.
 
     It begins with the pressure and the attraction of another state, by default with contact without attraction, and
     settles ``coarser`` times less than to `SETTLED` and `TOLERANCE`.
@@ -178,7 +178,7 @@ def equilibrium(
 
 @kernel
 def _traction(gap, height, tension, stress, end, ramp):
-    """Attraction q at gaps (n,) [Pa]: of a film up to its height, and a stress that ends in a ramp."""
+    """Attraction q at gaps (n,) [Pa]: of a film up to its height, and a stress with a ramp at its end."""
     traction, none = np.empty_like(gap), np.float32(0)
     for i in range(gap.size):
         inside = _larger(end - gap[i], none)
@@ -188,7 +188,7 @@ def _traction(gap, height, tension, stress, end, ramp):
 
 @kernel
 def _relaxed(wanted, attraction, factor):
-    """Attraction (n1, n2) moved by a factor of the way to the one wanted, mean size of that way and of the attraction.
+    """Attraction (n1, n2) after a part of the way to the wanted one, mean size of this way and of the attraction.
 
     All in Pa.
     """
@@ -204,7 +204,7 @@ def _relaxed(wanted, attraction, factor):
 
 
 def _supported(space, undeformed, pressure, attraction, hardness, tolerance, share=0.0):
-    """Pressure 0 <= p <= H without overlap where p < H, p and gap (n1, n2) [Pa], [m]; residual at the beginning [m].
+    """Pressure 0 <= p <= H without overlap at p < H, p and gap (n1, n2) [Pa], [m], and the first residual [m].
 
     Projected gradients with the steps of J. Barzilai and J. M. Borwein, IMA J. Numer. Anal. 8, 141 (1988), of one
     displacement each. Conjugate gradients need two wherever the projection changes their direction, which is nearly
@@ -264,7 +264,7 @@ def _moved(pressure, gap, descended, undeformed, displacement, hardness):
 
 @kernel
 def _residual(pressure, gap, hardness):
-    """Largest gap of an element in contact, and overlap of one that is not at the hardness [m]."""
+    """Largest gap of an element in contact, and overlap of one below the hardness [m]."""
     largest = np.zeros(gap.shape[1], np.float32)
     for i in range(gap.shape[0]):
         for j in range(gap.shape[1]):
@@ -274,20 +274,20 @@ def _residual(pressure, gap, hardness):
 
 @kernel(inline="always")
 def _error(pressure, gap, hardness):
-    """Gap of an element in contact, or overlap of one that is not at the hardness, else 0 [m]."""
+    """Gap of an element in contact, or overlap of one below the hardness, else 0 [m]."""
     none = np.float32(0)
     return _larger(gap if pressure > 0 else none, -gap if pressure < hardness else none)
 
 
 @kernel(inline="always")
 def _larger(first, second):
-    """The larger of two numbers; unlike max, which looks for NaN, without a branch."""
+    """Larger of two numbers, without the branch of max for NaN."""
     return first if first > second else second
 
 
 @dataclass(frozen=True)
 class Separation:
-    """A strip from the state without force to the largest attraction."""
+    """Strip from the state without force to the largest attraction."""
 
     adhesion_energy: float  #: e [J m⁻²]
     pull_off: float  #: f_max [Pa]
@@ -314,6 +314,7 @@ def separation(
     """
 
     def at(distance, before):
+        """State at a distance [m], from a state before it."""
         return equilibrium(space, heights, distance, adhesion, before)
 
     closed, states = at_rest(space, heights, adhesion, curve)
@@ -327,9 +328,10 @@ def separation(
 def at_rest(
     space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, curve: tuple[np.ndarray, np.ndarray]
 ) -> tuple[State, int]:
-    """State without force, which has the adhesion energy, and the number of states; parameters of `separation`."""
+    """State without force, with the adhesion energy, and the number of states. Parameters of `separation`."""
 
     def at(distance, before, coarser=1.0):
+        """State at a distance [m], from a state before it, on a coarser tolerance."""
         return equilibrium(space, heights, distance, adhesion, before, coarser=coarser)
 
     return _without_force(at, curve, lambda state: state.energy(heights, adhesion))
@@ -341,7 +343,7 @@ def _step(curve):
 
 
 def _beyond_extremum(at, state, step, end):
-    """Distances and forces, in steps, beyond the largest attraction and a distance; state a step before the former."""
+    """Distances and forces, in steps, beyond the largest attraction and a distance. State a step before the former."""
     curve, before = [(state.distance, state.force)], state
     lowest, falls = state.force, True
     while falls or state.distance < end:
@@ -355,7 +357,7 @@ def _beyond_extremum(at, state, step, end):
 
 
 def _without_force(at, curve, energy):
-    """State without force, and number of states; ``at(distance, before, coarser)`` is a state after another.
+    """State without force, and number of states. ``at(distance, before, coarser)`` is a state after another.
 
     The curve of another model, shifted to the force of the first state, leads near it, steps to a change of sign, and
     secants to a force too small to change the energy.
@@ -378,7 +380,7 @@ def _without_force(at, curve, energy):
 
 
 def _shift(curve, force, step):
-    """Distance between a repulsive force and none in the curve of another model [m]; a step towards it from others."""
+    """Distance between a repulsive force and none in the curve of another model [m], or a step towards it."""
     if force <= 0:
         return -step
     try:

@@ -33,7 +33,7 @@ def _node(values, index, left):
 
 @kernel
 def _add_interpolated(values, offset, left, factor, out):
-    """Add ``factor`` times a curve, linear between nodes, to ``out``, which starts ``offset`` steps into the curve."""
+    """Add ``factor`` times a curve, linear between nodes, to ``out``, from ``offset`` steps into the curve."""
     first = int(np.floor(offset))
     weight = offset - first
     for i in range(out.size):
@@ -113,6 +113,7 @@ def humid_curves(
     out = np.empty(distance.size)
 
     def curve(k):
+        """Force curve of sample k [Pa], in a common array."""
         apparent_force(solid[k], bearing[k], (*starts, starts[0]), step, height, tension, out)
         return out
 
@@ -153,7 +154,7 @@ def largest_attractions(
 
 @kernel
 def _deepest(force):
-    """Largest attraction of a curve, by a parabola through its lowest three nodes; that of a node at its ends."""
+    """Largest attraction of a curve, by a parabola through its lowest three nodes, or a node's at its ends."""
     i = np.argmin(force)
     if i == 0 or i == force.size - 1:
         return -force[i]
@@ -167,14 +168,14 @@ def _deepest(force):
 
 @kernel
 def _crossing(distance, force, index, level):
-    """Distance at which the line between nodes ``index`` and ``index + 1`` takes the value ``level`` [m]."""
+    """Distance of the value ``level`` on the line between nodes ``index`` and ``index + 1`` [m]."""
     part = (level - force[index]) / (force[index + 1] - force[index])
     return distance[index] + part * (distance[index + 1] - distance[index])
 
 
 @kernel
 def _reach(force, start, level):
-    """Last node before ``start`` where the force is at least ``level``."""
+    """Last node before ``start`` with a force of at least ``level``."""
     for i in range(start - 1, -1, -1):
         if force[i] >= level:
             return i
@@ -212,7 +213,7 @@ def extremum(distance: np.ndarray, force: np.ndarray) -> tuple[float, float]:
 
 @kernel
 def _mean_attraction(left, right):
-    """Mean of max(-f, 0) over a step in which f is linear [Pa]."""
+    """Mean of max(-f, 0) over a step with linear f [Pa]."""
     if left * right < 0:
         return 0.5 * min(left, right) ** 2 / abs(left - right)
     return max(-0.5 * (left + right), 0.0)
@@ -243,7 +244,7 @@ def adhesion_energy(distance: np.ndarray, force: np.ndarray, beyond: float = 0.0
 
 @kernel
 def limit_distance(distance: np.ndarray, force: np.ndarray, limit: float) -> float:
-    """Distance d_limit left of the minimum at which the force first reaches ``limit`` [m]; parameters as in `extremum`.
+    """Distance d_limit left of the minimum, at the first force of ``limit`` [m]. Parameters as in `extremum`.
 
     Raises
     ------
@@ -254,7 +255,7 @@ def limit_distance(distance: np.ndarray, force: np.ndarray, limit: float) -> flo
 
 
 def _each_sample(evaluate, curve, samples):
-    """``evaluate(force, k)`` of the curves one by one (samples, ...); an error contains the number of the sample."""
+    """``evaluate(force, k)`` of the curves one by one (samples, ...). An error contains the number of the sample."""
     rows = []
     for k in range(samples):
         force = curve(k)
@@ -272,7 +273,7 @@ def repulsions(forces: np.ndarray) -> np.ndarray:
 
 
 def together(forces: np.ndarray, needed: float) -> int | None:
-    """How many times the area resists, as far as samples show: of how many every mean curve rises to a force [Pa].
+    """Number of areas for resistance, as far as samples show: every mean curve of them rises to a force [Pa].
 
     Curves (n, n_d) [Pa]; the least power of two, ``None`` if not even the mean of most samples rises.
     """
@@ -285,7 +286,7 @@ def together(forces: np.ndarray, needed: float) -> int | None:
 
 @contextmanager
 def _remedy(curve, samples):
-    """Add to an error about curves that do not resist the adhesion how large a patch would."""
+    """Add the size of a sufficient patch to an error about curves without resistance to the adhesion."""
     try:
         yield
     except ValueError as error:
@@ -301,7 +302,7 @@ def resists(force: np.ndarray) -> bool:
 
 
 def share_flat(curve: Callable[[int], np.ndarray], samples: int) -> float:
-    """Share of sampled curves that do not resist the adhesion, and count as flat surfaces in contact [-]."""
+    """Fraction of sampled curves without resistance to the adhesion, counted as flat surfaces in contact [-]."""
     return float(np.mean([not resists(curve(k)) for k in range(samples)]))
 
 
@@ -358,14 +359,14 @@ def parametrise(
 
 
 def _well(distance, force, beyond, flat):
-    """Place and size of the largest attraction and its energy; those of flat surfaces have no place."""
+    """Place and size of the largest attraction and its energy. Flat surfaces have no place."""
     if flat is not None and not resists(force):
         return np.nan, flat[1], flat[0]
     return *extremum(distance, force), adhesion_energy(distance, force, beyond)
 
 
 def _limit(distance, force, limit, flat):
-    """d_limit of a curve; NaN of one that counts as flat."""
+    """Limit d_limit of a curve, NaN of a flat one."""
     if flat is None or repulsions(force[None])[0] >= limit:
         return limit_distance(distance, force, limit)
     if not resists(force):
@@ -381,10 +382,11 @@ def adhesion_energies(
     beyond: np.ndarray | None = None,
     flat: tuple[float, float] | None = None,
 ) -> np.ndarray:
-    """Energies e of all sampled curves (m,) [J m⁻²]; parameters of `parametrise`, errors of `adhesion_energy`."""
+    """Energies e of all sampled curves (m,) [J m⁻²]. Parameters of `parametrise`, errors of `adhesion_energy`."""
     beyond = np.zeros(samples) if beyond is None else beyond
 
     def energy_of(force, k):
+        """Adhesion energy of curve k [J m⁻²], the flat surfaces' if it does not resist."""
         return adhesion_energy(distance, force, beyond[k]) if flat is None or resists(force) else flat[0]
 
     return _each_sample(energy_of, curve, samples)
@@ -393,9 +395,10 @@ def adhesion_energies(
 def pull_offs(
     distance: np.ndarray, curve: Callable[[int], np.ndarray], samples: int, flat: tuple[float, float] | None = None
 ) -> np.ndarray:
-    """Largest attraction f_max of all sampled curves (m,) [Pa]; parameters of `parametrise`, errors of `extremum`."""
+    """Largest attraction f_max of all sampled curves (m,) [Pa]. Parameters of `parametrise`, errors of `extremum`."""
 
     def pull_off(force, _):
+        """Largest attraction of a curve [Pa], the flat surfaces' if it does not resist."""
         return extremum(distance, force)[1] if flat is None or resists(force) else flat[1]
 
     return _each_sample(pull_off, curve, samples)
@@ -405,7 +408,7 @@ def pull_offs(
 
 
 def _rise(ratio):
-    """Distance, in lengths 1/a_left, in which a law rises from its minimum to a multiple of f_max."""
+    """Distance, in lengths 1/a_left, of the rise of a law from its minimum to a multiple of f_max."""
     return np.log(1 + np.sqrt(1 + ratio))
 
 
@@ -422,7 +425,7 @@ def _right_range(vectors, a_left):
 
 
 def admissible(vectors: np.ndarray, f_limit: float) -> np.ndarray:
-    """Whether vectors (n, 4) have a force law of Eq. (12), that is a_right > 0; (n,) bool.
+    """Mark vectors (n, 4) with a force law of Eq. (12), i.e. a_right > 0, (n,) bool.
 
     The branch d < d_max alone has the energy 0.5 f_max / a_left; a vector with smaller e has no force law.
     """
@@ -430,7 +433,7 @@ def admissible(vectors: np.ndarray, f_limit: float) -> np.ndarray:
 
 
 def coefficients(vectors: np.ndarray, f_limit: float) -> np.ndarray:
-    r"""Coefficients of Eq. (12) that reproduce the vectors.
+    r"""Coefficients of Eq. (12) for the vectors.
 
     .. math:: a_\mathrm{left} = \frac{\ln(1 + \sqrt{1 + f_\mathrm{limit} / f_\mathrm{max}})}
         {d_\mathrm{max} - d_\mathrm{limit}}, \quad
@@ -471,7 +474,7 @@ def coefficients(vectors: np.ndarray, f_limit: float) -> np.ndarray:
 
 
 def coefficients_where_lawful(vectors: np.ndarray, f_limit: float) -> tuple[np.ndarray, np.ndarray]:
-    """As `coefficients`, with a_right <= 0 or infinite where a vector is not `admissible`, and where it is (n,)."""
+    """Coefficients of vectors, with a_right <= 0 or infinite unless `admissible`, and whether they are (n,)."""
     a_left = _left_steepness(vectors, f_limit)
     reach = _right_range(vectors, a_left)
     with np.errstate(divide="ignore"):
@@ -479,7 +482,7 @@ def coefficients_where_lawful(vectors: np.ndarray, f_limit: float) -> tuple[np.n
 
 
 def pressure(law: np.ndarray, distance: float | np.ndarray) -> float | np.ndarray:
-    """Force per unit area of Eq. (12) [Pa]; laws (..., 4) and distance [m] broadcast."""
+    """Force per unit area of Eq. (12) [Pa]. Laws (..., 4) and distance [m] broadcast."""
     f_max, d_max, a_left, a_right = np.moveaxis(np.asarray(law), -1, 0)
     separation = distance - d_max
     decay = np.exp(-np.where(separation < 0, a_left, a_right) * separation)
@@ -487,7 +490,7 @@ def pressure(law: np.ndarray, distance: float | np.ndarray) -> float | np.ndarra
 
 
 def energy(law: np.ndarray) -> float | np.ndarray:
-    """Adhesion energy e of Eq. (12), the integral of its attraction; laws (..., 4) [J m⁻²]."""
+    """Adhesion energy e of Eq. (12), the integral of its attraction. Laws (..., 4) [J m⁻²]."""
     f_max, _, a_left, a_right = np.moveaxis(np.asarray(law), -1, 0)
     return f_max * (1.5 / a_right + 0.5 / a_left)
 

@@ -50,7 +50,7 @@ class FlatAttraction:
 
     @property
     def largest_pressure(self) -> float:
-        """Bound of the tension between the flats at any gap, positive: that without retardation and spacer [Pa]."""
+        """Bound of the tension between the flats at any gap, positive: without retardation and spacer [Pa]."""
         return self.hamaker_constant / (6 * np.pi * self._at_rest**3) * 2 / np.sqrt(27)
 
     @property
@@ -58,7 +58,7 @@ class FlatAttraction:
         return DugdaleAttraction(self.hamaker_constant).equilibrium_distance
 
     def work(self, gap: float | np.ndarray) -> float | np.ndarray:
-        """Work per area to separate the flats from a gap to infinity [J m⁻²]; gap >= 0 [m], any shape."""
+        """Work per area to separate the flats from a gap to infinity [J m⁻²]. Gap >= 0 [m], any shape."""
         at_rest, gap = self._at_rest, np.asarray(gap) + self.spacer
         near = at_rest / (at_rest + gap)
         scale = self.hamaker_constant / (12 * np.pi * at_rest**2)
@@ -77,7 +77,7 @@ class LayeredFlats:
         return sum(pair.largest_pressure for pair in self.pairs)
 
     def work(self, gap: float | np.ndarray) -> float | np.ndarray:
-        """Work per area to separate the flats from a gap to infinity [J m⁻²]; gap >= 0 [m], any shape."""
+        """Work per area to separate the flats from a gap to infinity [J m⁻²]. Gap >= 0 [m], any shape."""
         return sum(pair.work(gap) for pair in self.pairs)
 
 
@@ -91,7 +91,7 @@ def work_across_film(
 def gap_pressures(
     bearing: np.ndarray, first: float, distance: np.ndarray, step: float, work: Callable[[np.ndarray], np.ndarray]
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Pressure across the gaps of every sample, and the energy that is left beyond the last distance.
+    """Pressure across the gaps of every sample, and the energy left beyond the last distance.
 
     The bearing area is linear between nodes, and the work is integrated over each of its steps exactly. Points that
     the flat has passed, with negative gaps, attract nothing; neither do those below the first node.

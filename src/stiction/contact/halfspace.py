@@ -24,7 +24,7 @@ _ALIASES = 6
 
 @dataclass(frozen=True)
 class HalfSpace:
-    """Elements of a strip that displace each other."""
+    """Elements of a strip under mutual displacement."""
 
     shape: tuple[int, int]  #: number of elements
     spacing: float  #: Δ [m]
@@ -33,7 +33,7 @@ class HalfSpace:
 
     @property
     def unit(self) -> float:
-        """Displacement Δ/E' per pressure, in which the displacement by an element is a pure number [m Pa⁻¹]."""
+        """Displacement Δ/E' per pressure, the unit of the displacement by an element [m Pa⁻¹]."""
         return self.spacing / self.modulus
 
     @property
@@ -76,7 +76,7 @@ def love(i: np.ndarray, j: np.ndarray) -> np.ndarray:
 
 
 def periodic_waves(shape: tuple[int, int]) -> np.ndarray:
-    r"""Fourier transform of the displacement by one element that repeats with the strip, in units of p Δ/E'.
+    r"""Fourier transform of the displacement by one element, periodic with the strip, in units of p Δ/E'.
 
     .. math:: \hat u = \sum_{\mathbf g} \frac{2}{|\mathbf k|} \operatorname{sinc} \frac{k_1}{2}
               \operatorname{sinc} \frac{k_2}{2} , \quad \mathbf k = 2 \pi (\mathbf n / \mathbf N + \mathbf g) / \Delta

@@ -1,4 +1,4 @@
-r"""Water condensed between two surfaces (Sec. III-A1, capillary forces); those of the paper wet perfectly.
+r"""Water condensed between two surfaces (Sec. III-A1, capillary forces). The paper's wet perfectly.
 
 ASSUME: the surface energy and the molar volume of water vary with temperature as measured, and are those of the paper
 at its 300 K: a published correlation gives only their ratio to 300 K. The paper rounds both (72 mN/m, 18 cm³/mol; the
@@ -28,7 +28,7 @@ _EXPANSION = (1.0, 16.879850e-3)
 
 
 def tabulated_surface_tension(temperature: float) -> float:
-    r"""Surface tension of water, IAPWS release R1-76(2014) [N m⁻¹]; temperature [K].
+    r"""Surface tension of water, IAPWS release R1-76(2014) [N m⁻¹]. Temperature [K].
 
     .. math:: \gamma = B \tau^\mu (1 + b \tau), \quad \tau = 1 - T / T_c
 
@@ -42,7 +42,7 @@ def tabulated_surface_tension(temperature: float) -> float:
 
 
 def tabulated_density(temperature: float) -> float:
-    """Density of air-free water at atmospheric pressure, Kell (1975), from 0 to 150 °C [kg m⁻³]; temperature [K].
+    """Density of air-free water at atmospheric pressure, Kell (1975), from 0 to 150 °C [kg m⁻³]. Temperature [K].
 
     Examples
     --------
@@ -55,12 +55,12 @@ def tabulated_density(temperature: float) -> float:
 
 
 def surface_energy(temperature: float) -> float:
-    """Liquid-vapour surface energy γ_LG of water; at 300 K exactly that of the paper [N m⁻¹]; temperature [K]."""
+    """Liquid-vapour surface energy γ_LG of water, at 300 K exactly the paper's [N m⁻¹]. Temperature [K]."""
     return WATER_SURFACE_ENERGY * (tabulated_surface_tension(temperature) / tabulated_surface_tension(_REFERENCE))
 
 
 def molar_volume(temperature: float) -> float:
-    """Molar volume V_m of liquid water; at 300 K exactly that of the paper [m³ mol⁻¹]; temperature [K]."""
+    """Molar volume V_m of liquid water, at 300 K exactly the paper's [m³ mol⁻¹]. Temperature [K]."""
     return WATER_MOLAR_VOLUME * (tabulated_density(_REFERENCE) / tabulated_density(temperature))
 
 
@@ -98,7 +98,7 @@ def laplace_pressure(humidity: float | np.ndarray, temperature: float) -> float 
 
 
 def kelvin_radius(humidity: float | np.ndarray, temperature: float) -> float | np.ndarray:
-    """Mean radius of curvature of the meniscus, Eq. (9); negative [m]."""
+    """Mean radius of curvature of the meniscus, Eq. (9), negative [m]."""
     return surface_energy(temperature) / laplace_pressure(humidity, temperature)
 
 
@@ -127,7 +127,7 @@ def meniscus_height(
 
 
 def least_humidity(temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:
-    r"""Humidity at which the film between two flats is `MOLECULES` molecules thick; below, it is no liquid [-].
+    r"""Humidity of a film `MOLECULES` molecules thick between two flats [-]. Below, it is no liquid.
 
     .. math:: \mathrm{RH} = \exp \Bigl( -\frac{\gamma V_m (\cos\theta_1 + \cos\theta_2)}
         {\mathcal{R} T \cdot 3 d_{H_2 O}} \Bigr)
@@ -144,7 +144,7 @@ def least_humidity(temperature: float, contact_angles: tuple[float, float] = (0.
 
 
 def dry_air(humidity: float, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> str | None:
-    """Refusal of a humidity below the `least_humidity`, as the end of a sentence; ``None`` if it is not below."""
+    """Refusal of a humidity below the `least_humidity`, as the end of a sentence, otherwise ``None``."""
     least = least_humidity(temperature, contact_angles)
     if humidity >= least:
         return None
@@ -158,7 +158,7 @@ def dry_air(humidity: float, temperature: float, contact_angles: tuple[float, fl
 
 
 def require_humidity(humidity: float) -> None:
-    """Refuse a relative humidity that no air has [-]."""
+    """Refuse a relative humidity impossible in air [-]."""
     if not (isinstance(humidity, Real) and 0 <= humidity < 1):
         raise ValueError(f"relative humidity must be 0, in dry air, or above 0 and below 1, got {humidity}")
 
@@ -183,7 +183,7 @@ def film(humidity: float, temperature: float, contact_angles: tuple[float, float
 
 
 def flooded_energy(temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:
-    """Adhesion energy of flats in saturated air, γ (cos θ₁ + cos θ₂) [J m⁻²]; temperature [K], angles [rad].
+    """Adhesion energy of flats in saturated air, γ (cos θ₁ + cos θ₂) [J m⁻²]. Temperature [K], angles [rad].
 
     It is tension times height of the water at any humidity, and the limit of wet rough surfaces.
     """
@@ -202,7 +202,7 @@ def is_wetted(contact_angles: tuple[float, float]) -> bool:
 
 
 def _wetting(contact_angles):
-    """Sum of the cosines of the contact angles of two solids, which must be positive."""
+    """Sum of the cosines of the contact angles of two solids. It must be positive."""
     wetting = np.cos(contact_angles[0]) + np.cos(contact_angles[1])
     if not wetting > 0:
         degrees = " and ".join(f"{np.degrees(angle):.3g}" for angle in contact_angles)

@@ -28,7 +28,7 @@ LEVELS_PER_RMS = 30
 
 @dataclass(frozen=True)
 class DistanceGrid:
-    """Equally spaced distances; solid contact needs only distances >= 0, the water negative ones as well."""
+    """Equally spaced distances. Solid contact needs only distances >= 0, the water negative ones as well."""
 
     step: float  #: [m]
     below: int  #: number of grid points with negative distance
@@ -51,7 +51,7 @@ class DistanceGrid:
 
 
 class Definition(StrEnum):
-    """What an asperity is: the part of the surface to which a sphere is fitted in step (i)."""
+    """Definition of an asperity: the part of the surface for the fit of a sphere in step (i)."""
 
     SUMMIT = "summit"  #: a point higher than its eight neighbours, with its curvature there
     ISLAND = "island"  #: a connected part of the surface above the flat, with its area
@@ -59,7 +59,7 @@ class Definition(StrEnum):
 
 
 class Summits(NamedTuple):
-    """Spheres that stand for the asperities of an equivalent surface."""
+    """Spheres in place of the asperities of an equivalent surface."""
 
     tops: np.ndarray  #: heights, (m,) [m]
     curvatures: np.ndarray  #: mean curvatures, (m,) [m⁻¹]
@@ -69,7 +69,7 @@ class Summits(NamedTuple):
 
 @dataclass(frozen=True)
 class EquivalentSurface:
-    """The sum z = z₁ + z₂ of two rough surfaces and the step of the distances: all of a pair but its elasticity."""
+    """Sum z = z₁ + z₂ of two rough surfaces and the step of the distances: all of a pair but its elasticity."""
 
     beam: RoughSurface
     substrate: RoughSurface
@@ -87,7 +87,7 @@ class EquivalentSurface:
 
     @property
     def spacing(self) -> float:
-        """Of the grid of the contact [m]."""
+        """Spacing of the grid of the contact [m]."""
         return self.beam.grid.spacing * self.every
 
     @property
@@ -97,7 +97,7 @@ class EquivalentSurface:
         return DistanceGrid.covering(lowest, highest, self.step)
 
     def draw(self, beam_rng: np.random.Generator, substrate_rng: np.random.Generator) -> np.ndarray:
-        """Draw one equivalent surface z = z₁ + z₂; (n1, n2) float32 [m]."""
+        """Draw one equivalent surface z = z₁ + z₂, (n1, n2) float32 [m]."""
         heights = self.beam.draw(beam_rng)
         self.substrate.add_to(heights, substrate_rng)
         return np.ascontiguousarray(heights[:: self.every, :: self.every])
@@ -151,7 +151,7 @@ class EquivalentSurface:
         )
 
     def _lost(self, tops):
-        """Numbers of the first distances at which asperities with these tops (m,) [m] do not touch any more."""
+        """Numbers of the first distances without contact of asperities with these tops (m,) [m]."""
         return np.floor(tops / self.step).astype(int) + 1
 
     def bearing_area(self, heights: np.ndarray) -> np.ndarray:
@@ -194,7 +194,7 @@ def solid_pressure(asperity: Asperity, summits: Summits, distances: DistanceGrid
 
 @kernel
 def bearing_area(heights: np.ndarray, step: float, below: int, above: int) -> np.ndarray:
-    """Share of the points that are higher than each distance, ``step * arange(-below, above)`` [-]."""
+    """Fraction of the points higher than each distance, ``step * arange(-below, above)`` [-]."""
     cells = np.empty(heights.shape[1], np.int32)
     count = np.zeros(below + above + 1, np.int64)
     for i in range(heights.shape[0]):
@@ -211,7 +211,7 @@ def bearing_area(heights: np.ndarray, step: float, below: int, above: int) -> np
 
 @kernel
 def _cells_below(heights, step, below, above, cells):
-    """Number of distances ``step * arange(-below, above)`` that are not above each point of a row."""
+    """Number of distances ``step * arange(-below, above)`` not above each point of a row."""
     inverse = np.float32(1 / step)
     lowest, highest = np.float32(-below - 1), np.float32(above - 1)
     for j in range(heights.size):

@@ -32,7 +32,7 @@ _Within = Callable[[float], tuple[np.ndarray, "HalfSpace | Regions"]]
 
 @dataclass(frozen=True)
 class Regions:
-    """Elements in one row, region after region, that displace those of their own region; as in a half-space."""
+    """Elements in one row, region after region, with displacements in their own region alone, as in a half-space."""
 
     rows: np.ndarray  #: of the elements in the strip (m,) int32
     columns: np.ndarray  #: (m,) int32
@@ -56,6 +56,7 @@ def alone(heights: np.ndarray, space: HalfSpace) -> _Within:
     offsets = (space.unit * love(*np.ix_(*along))).astype(np.float32)
 
     def within(level):
+        """Places of the points above a level [m], and their regions."""
         places, ends = _connected(heights, level, space.periodic)
         rows, columns = (k.astype(np.int32) for k in np.unravel_index(places, heights.shape))
         return places, Regions(rows, columns, ends, offsets, space.unit)
@@ -64,14 +65,14 @@ def alone(heights: np.ndarray, space: HalfSpace) -> _Within:
 
 
 def together(space: HalfSpace) -> _Within:
-    """All elements of a strip, which displace each other."""
+    """All elements of a strip, with mutual displacements."""
     everything = np.arange(space.shape[0] * space.shape[1])
     return lambda level: (everything, space)
 
 
 @dataclass(frozen=True)
 class Strip:
-    """A strip of heights z and films of water on its undeformed surfaces, as in Sec. III-A."""
+    """Strip of heights z and films of water on its undeformed surfaces, as in Sec. III-A."""
 
     heights: np.ndarray  #: z (n1, n2) float32 [m]
     grid: DistanceGrid  #: distances
@@ -130,7 +131,7 @@ def solid_pressure(strip: Strip, within: _Within, attraction: Adhesion) -> np.nd
 
 @kernel
 def _connected(heights, level, periodic):
-    """Places of the points above a level (m,), region after region, and where each region ends (k,)."""
+    """Places of the points above a level (m,), region after region, and the end of each region (k,)."""
     rows, columns = heights.shape
     unseen = heights.ravel() > level
     places, ends = np.empty(unseen.sum(), np.int64), np.empty(unseen.sum(), np.int64)

@@ -16,7 +16,7 @@ from stiction.contact.vanderwaals import DugdaleAttraction, LayeredAttraction, a
 
 @dataclass(frozen=True)
 class Solid:
-    """Material of one body; polysilicon unless stated otherwise."""
+    """Material of one body. Polysilicon unless stated otherwise."""
 
     young_modulus: float = 164e9  #: E [Pa]
     poisson_ratio: float = 0.23  #: ν [-]
@@ -47,7 +47,7 @@ class Solid:
                 )
 
     def attracting(self, factor: float) -> "Solid":
-        """The same with a factor of its Hamaker constants; those of its coating stay."""
+        """Solid with a factor of its Hamaker constants. Those of its coating stay."""
         scaled = {medium: factor * constant for medium, constant in self.hamaker_constant.items()}
         return replace(self, hamaker_constant=scaled)
 
@@ -62,7 +62,7 @@ def composite_modulus(first: Solid, second: Solid) -> float:
 
 
 def softer_hardness(first: Solid, second: Solid) -> float:
-    """Hardness of the body that yields first [Pa]."""
+    """Hardness of the softer body [Pa]."""
     return min(first.hardness, second.hardness)
 
 
@@ -118,7 +118,7 @@ def asperity_between(first: Solid, second: Solid, medium: str) -> Asperity:
 
 
 def attraction_between(first: Solid, second: Solid, medium: str) -> DugdaleAttraction | LayeredAttraction | None:
-    """Van der Waals attraction of two solids through a stated medium; ``None`` for ``"none"``."""
+    """Van der Waals attraction of two solids through a stated medium, ``None`` for ``"none"``."""
     if medium == "none":
         return None
     pairs = tuple(attraction(medium, *pair) for pair in interfaces(first, second, medium))

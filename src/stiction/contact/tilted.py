@@ -1,4 +1,4 @@
-r"""Contact of a strip of rough surface that is tilted about its edge: the tip of a beam (independent of humidity).
+r"""Contact of a strip of rough surface tilted about its edge: the tip of a beam (independent of humidity).
 
 A tip with the slope θ touches as a wedge. At the distance d between the mean planes at the edge, a point of height z at
 the distance x from the edge is as high as one of height z - θx on a strip without slope. The first row of grid points
@@ -24,7 +24,7 @@ LARGEST_RADIUS = 2e-6
 
 
 class Edge(StrEnum):
-    """What the edge of a tip carries."""
+    """Load of the edge of a tip."""
 
     ROUNDED = "rounded"  #: nothing
     SQUARE = "square"  #: forces of its own maxima
@@ -47,7 +47,7 @@ class TiltedPair(SurfacePair):
 
     @property
     def depth(self) -> float:
-        """How far below the mean plane the distances begin, which are measured from there [m].
+        """Depth of the first distances below the mean plane [m].
 
         ASSUME: no tip is pressed deeper than three times the rms of the heights. The edge of a narrow beam, whose wedge
         has few summits, may be drawn below its mean plane.
@@ -62,7 +62,7 @@ class TiltedPair(SurfacePair):
 
     @property
     def length(self) -> float:
-        """Of the part of the strip that its points stand for [m]."""
+        """Length of the represented part of the strip [m]."""
         return (len(range(0, self.beam.grid.shape[0], self.every)) - 1 + first_weight(self.tilt.edge)) * self.spacing
 
     def contact(self, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -95,7 +95,7 @@ class TiltedPair(SurfacePair):
 
 
 def first_weight(edge: Edge) -> float:
-    """Share of a cell of the grid that wets on the row of points at the edge [-].
+    """Fraction of a cell of the grid wetted on the row of points at the edge [-].
 
     The strip then ends where its first summits do: half of a point outside the first inner row, or on the edge itself.
     With another weight, lengths would depend on the grid: with half of a cell at a rounded edge, those of pair b change
@@ -106,7 +106,7 @@ def first_weight(edge: Edge) -> float:
 
 @kernel
 def _lowered(heights, i, rise, out):
-    """Write rows i - 1, i and i + 1 of a strip that falls by ``rise`` per row, seen from row i, to ``out`` (3, n2)."""
+    """Write rows i - 1, i and i + 1 of a strip falling by ``rise`` per row, seen from row i, to ``out`` (3, n2)."""
     for k in range(3):
         for j in range(heights.shape[1]):
             out[k, j] = heights[i + k - 1, j] - (k - 1) * rise
@@ -127,7 +127,7 @@ def _collect(heights, spacing, rise, rows, tops, curvatures):
 
 
 def summits_by_row(heights: np.ndarray, spacing: float, rise: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Maxima of a strip (n1, n2) [m] that falls by ``rise`` [m] per row: row, height without slope, mean curvature.
+    """Maxima of a strip (n1, n2) [m] falling by ``rise`` [m] per row: row, height without slope, mean curvature.
 
     Each (m,) [-], [m], [m⁻¹]; the slope does not change the curvature. Edges have no summits.
     """
@@ -138,7 +138,7 @@ def summits_by_row(heights: np.ndarray, spacing: float, rise: float) -> tuple[np
 
 
 def edge_maxima(heights: np.ndarray, spacing: float, rise: float) -> tuple[np.ndarray, np.ndarray]:
-    """Heights and curvatures of the maxima on the edge of a strip (n1, n2) [m] that falls by ``rise`` [m] per row.
+    """Heights and curvatures of the maxima on the edge of a strip (n1, n2) [m] falling by ``rise`` [m] per row.
 
     Each (m,) [m], [m⁻¹]. They are higher than their five neighbours; the curvature is that along the edge, and at least
     that of the `LARGEST_RADIUS`.
@@ -155,7 +155,7 @@ def edge_maxima(heights: np.ndarray, spacing: float, rise: float) -> tuple[np.nd
 def tilted_bearing_area(
     heights: np.ndarray, level: tuple[float, float], first: float, step: float, numbers: tuple[int, int]
 ) -> np.ndarray:
-    """Share of the area of a strip (n1, n2) [m] that is higher than each distance at its edge [-].
+    """Fraction of the area of a strip (n1, n2) [m] higher than each distance at its edge [-].
 
     ``level``: by how much the strip falls per row, and the depth from which the distances are measured [m]. Its first
     row has the weight ``first``. ``numbers`` are those of the distances, ``step * arange(-below, above)`` [m].

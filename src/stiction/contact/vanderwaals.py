@@ -26,7 +26,7 @@ def combined(first: float, second: float) -> float:
 
 @dataclass(frozen=True)
 class DugdaleAttraction:
-    """Constant stress up to a cut-off distance; a `stiction.contact.asperity.Attraction`."""
+    """Constant stress up to a cut-off distance. A `stiction.contact.asperity.Attraction`."""
 
     hamaker_constant: float  #: ℌ [J]
     spacer: float = 0.0  #: thickness t of both coatings, which keep the solids apart [m]
@@ -39,17 +39,17 @@ class DugdaleAttraction:
 
     @property
     def equilibrium_distance(self) -> float:
-        """Distance D₀ at which the force between two half spaces vanishes [m]."""
+        """Distance D₀ of zero force between two half spaces [m]."""
         return (2 / 15) ** (1 / 6) * MOLECULAR_DISTANCE
 
     @property
     def closest_distance(self) -> float:
-        """Distance D = D₀ + t of half spaces whose coatings touch [m]."""
+        """Distance D = D₀ + t of half spaces with coatings in contact [m]."""
         return self.equilibrium_distance + self.spacer
 
     @property
     def work_of_adhesion(self) -> float:
-        r"""Work per area ω_vdW to separate two half spaces whose coatings touch, Eq. (10) without coatings [J m⁻²].
+        r"""Work ω_vdW per area to separate half spaces with coatings in contact, Eq. (10) without coatings [J m⁻²].
 
         The work of the attraction from D on, less that of the repulsion, which is a quarter of it at D = D₀ and 0.2 %
         for a spacer of 0.2 nm:
@@ -61,7 +61,7 @@ class DugdaleAttraction:
 
     @property
     def range(self) -> float:
-        """Distance h_vdW beyond which the stress vanishes [m].
+        """Distance h_vdW at the end of the stress [m].
 
         With coatings the stress is the attraction of half spaces at the distance D, 2 ω / D, which repulsion does not
         weaken there. It thus ends at the distance D / 2, and not before that of touching solids: the tangent of the
@@ -75,7 +75,7 @@ class DugdaleAttraction:
         return self.work_of_adhesion / self.range
 
     def work(self, gap: float | np.ndarray) -> float | np.ndarray:
-        """Work per area to separate the flats from a gap >= 0 to infinity [J m⁻²]; gap [m], any shape."""
+        """Work per area to separate the flats from a gap >= 0 to infinity [J m⁻²]. Gap [m], any shape."""
         return self.work_of_adhesion * np.maximum(1 - gap / self.range, 0.0)
 
 
@@ -100,14 +100,14 @@ class LayeredAttraction:
 
     @property
     def range(self) -> float:
-        """Distance beyond which the stress vanishes [m]."""
+        """Distance at the end of the stress [m]."""
         return self.work_of_adhesion / self.stress
 
     work = DugdaleAttraction.work
 
 
 def attraction(through: str, hamaker_constant: float | None = None, spacer: float = 0.0) -> DugdaleAttraction | None:
-    """Attraction through ``"water"`` or ``"dry"`` air; ``None`` for ``"none"``.
+    """Attraction through ``"water"`` or ``"dry"`` air, ``None`` for ``"none"``.
 
     ``hamaker_constant`` is that of the two solids through this medium [J]; without it, that of polysilicon. Coatings of
     the thickness ``spacer`` [m] keep them apart.

@@ -25,7 +25,7 @@ BREAKDOWN = 1e9
 
 @dataclass(frozen=True)
 class Dielectric:
-    """What keeps a device and its substrate apart at a voltage."""
+    """Dielectric between a device and its substrate at a voltage."""
 
     thickness: float  #: [m]
     permittivity: float  #: relative [-]
@@ -38,7 +38,7 @@ class Dielectric:
 
 @dataclass(frozen=True)
 class Capacitor:
-    """A device and its substrate at a voltage."""
+    """Device and its substrate at a voltage."""
 
     dielectric: Dielectric
     voltage: float = 0.0  #: [V]
@@ -46,21 +46,21 @@ class Capacitor:
 
     @property
     def potential(self) -> float:
-        """Largest difference of potential V [V]; ASSUME: voltages of both signs occur."""
+        """Largest difference of potential V [V]. ASSUME: voltages of both signs occur."""
         return abs(self.voltage) + abs(self.offset)
 
     @property
     def field(self) -> float:
-        """Field in the dielectric between surfaces that touch, V / t [V m⁻¹]."""
+        """Field in the dielectric between surfaces in contact, V / t [V m⁻¹]."""
         return self.potential / self.dielectric.thickness
 
     @property
     def largest_pressure(self) -> float:
-        """Tension between flats that touch, ε₀ V² / 2 D² [Pa]."""
+        """Tension between flats in contact, ε₀ V² / 2 D² [Pa]."""
         return VACUUM_PERMITTIVITY * self.potential**2 / (2 * self.dielectric.distance**2)
 
     def work(self, gap: float | np.ndarray) -> float | np.ndarray:
-        """Work per area to separate flats from a gap to infinity [J m⁻²]; gap >= 0 [m], any shape.
+        """Work per area to separate flats from a gap >= 0 [m] to infinity [J m⁻²], any shape.
 
         Examples
         --------

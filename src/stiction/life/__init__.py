@@ -1,1 +1,1 @@
-"""Life of a device beside its adhesion: what brings it into contact, what drying does, what frees it again."""
+"""Life of a device beside its adhesion: causes of contact, drying, and ways to free it again."""

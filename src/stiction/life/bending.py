@@ -1,4 +1,4 @@
-r"""Beams bent by a load that grows as their gap closes, and the fold beyond which they collapse.
+r"""Beams bent by a load growing as their gap closes, and the fold before their collapse.
 
 With x in units of the length L, the deflection U in units of the gap h and the load in units of EI h / L⁴,
 
@@ -38,7 +38,7 @@ _TOLERANCE, _ITERATIONS = 1e-12, 500
 
 
 class _Basis(NamedTuple):
-    """Deflections by which a beam bends, each with a curvature of one Legendre polynomial."""
+    """Deflections of a bent beam, each with a curvature of one Legendre polynomial."""
 
     series: np.ndarray  #: (n, m), Legendre coefficients of the deflections on [-1, 1], where the length is 2
     areas: np.ndarray  #: (n + 1, m), of the integrals of the deflections
@@ -51,7 +51,7 @@ class _Basis(NamedTuple):
 
 @cache
 def _basis(clamps):
-    """`_Basis` of beams with one or two clamps; bridges are symmetric about their middle."""
+    """Basis of beams with one or two clamps. Bridges are symmetric about their middle."""
     orders = np.arange(_POLYNOMIALS) if clamps == 1 else 2 + 2 * np.arange(_POLYNOMIALS)
     curvatures = np.eye(orders[-1] + 1)[:, orders]
     slopes, series, areas = (legendre.legint(curvatures, m=m, lbnd=-1) for m in (1, 2, 3))
@@ -70,14 +70,14 @@ def _basis(clamps):
 
 @dataclass(frozen=True)
 class Bent:
-    """A beam in units of its length, gap and stiffness."""
+    """Beam in units of its length, gap and stiffness."""
 
     clamps: int  #: 1, a cantilever, or 2, a bridge
     tension: float = 0.0  #: τ [-]
     stretching: float = 0.0  #: s [-], of a bridge between rigid clamps
 
     def under(self, load: Callable[[np.ndarray], np.ndarray], deflection: float) -> tuple[float, np.ndarray]:
-        """Load factor λ that bends the end or middle to a deflection, and the coefficients of the beam (m,).
+        """Load factor λ to bend the end or middle to a deflection, and the coefficients of the beam (m,).
 
         ``load`` gives f from the deflections (p,) at the points of the integrals, ``deflection`` is a part of the gap.
 
@@ -90,20 +90,21 @@ class Bent:
         return self._balanced(lambda u: basis.at.T @ (basis.weights * load(basis.at @ u)), deflection)
 
     def fold_of_drop(self) -> float:
-        r"""Smallest λ at which a connected drop at the end or middle pulls the beam down, over all places of its edge.
+        r"""Smallest λ of a connected drop at the end or middle to pull the beam down, over all places of its edge.
 
         Its pressure is uniform, and that of a meniscus where it begins, at x = a: :math:`f = 1 / (1 - U(a))`. Without
         stretching, U(a) is S(a) times the load, and :math:`\lambda = 1 / 4 S(a)`, at U(a) = 1/2.
         """
 
         def largest(begin):
+            """Largest λ of a drop from x = ``begin`` to the end [-]."""
             factor, there = self.under_part(begin, 1.0)
             return factor / (4 * there)
 
         return _least(largest, 1.0 if self.clamps == 1 else 0.5)[1]
 
     def under_part(self, begin: float, deflection: float) -> tuple[float, float]:
-        """As `under`, for a uniform load from x = ``begin`` to the end, or of a bridge to 1 - ``begin``.
+        """Load factor and deflection at ``begin``, for a uniform load up to the end, or of a bridge to 1 - ``begin``.
 
         Returns the load factor and the deflection at ``begin``.
         """
@@ -127,11 +128,11 @@ class Bent:
         raise NotConverged("deflection of a beam, in parts of its gap", float(change), _TOLERANCE, _ITERATIONS)
 
     def fold(self, power: int) -> float:
-        """Largest λ of a load (1 - U)^-power along the whole beam; beyond it there is no equilibrium."""
+        """Largest λ of a load (1 - U)^-power along the whole beam. Beyond it there is no equilibrium."""
         return -_least(lambda deflection: -self.under(lambda u: (1 - u) ** -power, deflection)[0], 1.0)[1]
 
     def overshoot(self) -> float:
-        r"""Deflection of the end or middle if each mode adds to it with its own sign, over that under a uniform load.
+        r"""Deflection of the end or middle with all modes of one sign, relative to a uniform load's.
 
         A uniform load that is not static moves mode n by at most a factor times its static part :math:`c_n`, at a
         time of its own. The end thus moves by at most this factor times :math:`\sum |c_n|`, where the static deflection

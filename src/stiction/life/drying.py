@@ -1,4 +1,4 @@
-r"""What drying does to beams that were released in a liquid: which collapse, and which of these come free again.
+r"""Drying of beams released in a liquid: collapsing beams, and releasing ones among them.
 
 **Collapse.** A liquid under the beam is connected, so that its pressure is the same everywhere, that of its meniscus at
 x = a: :math:`p = 2 \gamma \cos\theta / g(a)`. It retreats towards the tip, or the middle of a bridge, while it dries.
@@ -33,7 +33,7 @@ from stiction.life.bending import Bent
 
 
 def longest_standing(beam: Beam, clamps: int, adhesion: float) -> float:
-    """Longest beam that does not collapse while a connected liquid dries [m].
+    """Longest beam to stand while a connected liquid dries [m].
 
     ``adhesion`` is the adhesion tension γ cos θ of the liquid [N m⁻¹]. Infinite if it does not wet the beam.
 
@@ -47,12 +47,12 @@ def longest_standing(beam: Beam, clamps: int, adhesion: float) -> float:
 
 
 def longest_standing_each(beam: Beam, clamps: int, adhesion: float) -> float:
-    """As `longest_standing`, if each cross-section has liquid of its own: the safe bound [m]."""
+    """Longest beam to stand if each cross-section has its own liquid: the safe bound of `longest_standing` [m]."""
     return _longest(beam, clamps, adhesion, lambda one: one.fold(1))
 
 
 def _longest(beam: Beam, clamps: int, adhesion: float, fold: Callable[[Bent], float]) -> float:
-    """Length at which λ reaches its fold, which depends on the length if there is tension."""
+    """Length with λ at its fold. With tension, the fold depends on the length."""
     if adhesion <= 0:
         return np.inf
     by_fold = beam.bending_stiffness * beam.gap**2 / (2 * adhesion * beam.width)
@@ -61,6 +61,7 @@ def _longest(beam: Beam, clamps: int, adhesion: float, fold: Callable[[Bent], fl
         return float(slack)
 
     def excess(length):
+        """Load factor at the fold over the beam's, less 1, at a length [m]."""
         return fold(Bent(clamps, (beam.decay * length) ** 2)) * by_fold / length**4 - 1
 
     longer = slack
@@ -70,7 +71,7 @@ def _longest(beam: Beam, clamps: int, adhesion: float, fold: Callable[[Bent], fl
 
 
 def longest_free(beam: Beam, clamps: int, adhesion: float) -> float:
-    """Longest beam that comes free after a liquid has dried [m]; of bridges, that on which two cracks meet.
+    """Longest beam to release after a liquid has dried, for bridges the length of two meeting cracks [m].
 
     Infinite if the liquid does not wet the beam.
 

@@ -1,8 +1,8 @@
 r"""What frees a device: the force of its spring, a shock, and how often it may touch.
 
-A shock frees a stopper if its inertia adds what the spring lacks, :math:`a = (F_\mathrm{hold} - F) / m`. The force
-:math:`F_\mathrm{hold}` is that of slow separation. A shock separates surfaces faster than water evaporates: menisci
-then keep their volume and hold more, so that this acceleration is the least that is needed.
+A shock frees a stopper if its inertia adds what the spring lacks, :math:`a = (F_\mathrm{hold} - F) / m`. With the force
+:math:`F_\mathrm{hold}` of slow separation it is the least acceleration that is needed. A shock can separate surfaces
+faster than water evaporates: menisci keep their volume, `stiction.contact.separation`, and can hold more.
 
 A device touches n times. If it meets other summits each time, it sticks with :math:`1 - (1 - P)^n`. If it meets the
 same ones, it sticks the first time or never, with P. How much touchdowns have in common is unknown: both are bounds.
@@ -15,14 +15,14 @@ from stiction.devices.bridges import pull
 
 
 def force_at_contact(beam: Beam, clamps: int) -> float:
-    """Force with which a beam pulls at its tip, 3 EI h / L³, or at its middle [N]."""
+    """Force of a beam at its tip, 3 EI h / L³, or at its middle, in contact [N]."""
     if clamps == 2:
         return float(pull(beam.length, beam)[0])
     return 3 * beam.bending_stiffness * beam.gap / beam.length**3
 
 
 def freeing_acceleration(hold: float, restoring_force: float, mass: float) -> float:
-    """Least acceleration away from the substrate that frees a stopper [m s⁻²]; zero if its spring does.
+    """Least acceleration away from the substrate to free a stopper, zero if its spring does [m s⁻²].
 
     Examples
     --------
@@ -33,7 +33,7 @@ def freeing_acceleration(hold: float, restoring_force: float, mass: float) -> fl
 
 
 def stuck_after(probability: float, touchdowns: int) -> float:
-    """P(stuck) after n independent touchdowns [-], 1 - (1 - P)^n, from that of one.
+    """P(stuck) after n independent touchdowns [-], 1 - (1 - P)^n, from one touchdown's.
 
     Examples
     --------
@@ -44,7 +44,7 @@ def stuck_after(probability: float, touchdowns: int) -> float:
 
 
 def probability_for(stuck: float, touchdowns: int) -> float:
-    """P(stuck) of one touchdown that leaves a fraction stuck after n independent ones, `stuck_after` inverted [-].
+    """P(stuck) of one touchdown for a fraction stuck after n independent ones, inverse of `stuck_after` [-].
 
     Examples
     --------

@@ -1,4 +1,4 @@
-r"""What a voltage adds to the adhesion of a device that touches.
+r"""Voltage as an addition to the adhesion of a touching device.
 
 Surfaces attract each other across their gaps as `stiction.contact.voltage` says, with the gap D of air of the same
 capacity as the dielectric.

@@ -1,4 +1,4 @@
-r"""What brings a device into contact: voltage, and shock.
+r"""Causes of the contact of a device: voltage, and shock.
 
 **Voltage.** Substrate and beam are electrodes along the whole length, at the distance h - u. They attract each other
 with :math:`\epsilon_0 V^2 w / 2 (h - u)^2` per length. In the units of `stiction.life.bending`
@@ -38,13 +38,13 @@ HALF_SINE = 1.7685
 
 
 def bent(beam: Beam, clamps: int, rigid: bool = False) -> Bent:
-    """Beam with one or two clamps in units of its length; rigid clamps let a bridge stretch."""
+    """Beam with one or two clamps in units of its length. Rigid clamps let a bridge stretch."""
     stretching = 6 * (beam.gap / beam.thickness) ** 2 if rigid and clamps == 2 else 0.0
     return Bent(clamps, (beam.decay * beam.length) ** 2, stretching)
 
 
 def pull_in_voltage(beam: Beam, clamps: int, rigid: bool = False) -> float:
-    """Voltage at which a beam is pulled in [V].
+    """Voltage of the pull-in of a beam [V].
 
     Examples
     --------
@@ -57,7 +57,7 @@ def pull_in_voltage(beam: Beam, clamps: int, rigid: bool = False) -> float:
 
 
 def touching_acceleration(beam: Beam, clamps: int, density: float, rigid: bool = False) -> float:
-    """Acceleration at which the tip or middle of a beam touches, if it grows slowly [m s⁻²]; density [kg m⁻³].
+    """Slowly growing acceleration for contact of the tip or middle of a beam [m s⁻²]. Density [kg m⁻³].
 
     Examples
     --------
@@ -70,12 +70,12 @@ def touching_acceleration(beam: Beam, clamps: int, density: float, rigid: bool =
 
 
 def half_sine_factor(beam: Beam, clamps: int) -> float:
-    """Bound of the deflection by a half-sine shock of any duration, over that by a slow one of the same peak [-]."""
+    """Bound of the deflection by a half-sine shock of any duration, relative to a slow one of the same peak [-]."""
     return HALF_SINE * bent(beam, clamps).overshoot()
 
 
 def stopper_voltage(stiffness: float, way: float, area: float, gap: float) -> float:
-    """Voltage on an electrode that brings a stopper into contact [V].
+    """Voltage on an electrode for contact of a stopper [V].
 
     Parameters
     ----------

@@ -1,1 +1,1 @@
-"""What is computed for a configuration: the declarations of all stages, and the jobs that follow from them."""
+"""Jobs of a configuration: the declarations of all stages, and the plan of their jobs."""

@@ -70,7 +70,7 @@ def _sections(settings: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:
 
 
 def _contact_time(section):
-    """CPU time of the samples of surface pairs that a section describes [s]."""
+    """CPU time of the samples of surface pairs in a section [s]."""
     samples = section["contact"].get("samples") if section.keys() >= _DRAWN else None
     if not samples:
         return 0.0
@@ -81,7 +81,7 @@ def _contact_time(section):
 
 
 def _beams(section):
-    """Number of beams that a section describes: of devices, of all sizes of a chart, or samples of a beam."""
+    """Number of beams in a section: of devices, of all sizes of a chart, or samples of a beam."""
     sizes = math.prod(len(section.get(key, [0])) for key in ("thicknesses_um", "gaps_um"))
     has_elements = isinstance(section.get("beam"), Mapping) and "elements" in section["beam"]
     number = section.get("beams", section.get("samples") if has_elements else None)

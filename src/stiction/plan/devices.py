@@ -1,4 +1,4 @@
-"""Plan of the devices of a configuration: their cases, the strips on which they stick, the axes of their charts."""
+"""Plan of the devices of a configuration: their cases, their strips of contact, the axes of their charts."""
 
 import math
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ ALL_QUANTITIES = MOMENT_QUANTITIES + SPECTRUM_QUANTITIES
 
 
 class Patch(NamedTuple):
-    """Area in which the two surfaces of a pair meet, in whole nanometres as in the names of files."""
+    """Area of contact of the two surfaces of a pair, in whole nanometres as in the names of files."""
 
     pair: str
     length: int  #: along a beam [nm]
@@ -58,13 +58,13 @@ def patch(pair: str, length_um: float, width_um: float) -> Patch:
 
 @dataclass(frozen=True)
 class DevicePlan:
-    """Names of everything that is computed for the devices of one configuration."""
+    """Names of all results for the devices of one configuration."""
 
     config: dict  #: complete and valid
 
     @property
     def sections(self) -> dict[str, dict]:
-        """Sections of all devices by name; empty if the configuration has none."""
+        """Sections of all devices by name. Empty if the configuration has none."""
         return self.config.get("devices", {})
 
     def kind(self, device: str) -> Kind:
@@ -97,7 +97,7 @@ class DevicePlan:
         return [name for name in self.beams if "chart" in self.sections[name]]
 
     def chart_cases(self, device: str) -> list[str]:
-        """A device at each humidity along the axis of its chart, and in dry air, beside the axis, if it states that."""
+        """Cases of a device at each humidity along the axis of its chart, and in dry air if listed."""
         dry = [humidity for humidity in self.sections[device]["humidities"] if humidity == 0]
         return [case_id(device, humidity) for humidity in [*dry, *self.axis(device)]]
 
@@ -109,11 +109,11 @@ class DevicePlan:
 
     @property
     def pressed_pairs(self) -> list[str]:
-        """Pairs of beams whose plasticity is studied."""
+        """Pairs of beams in the study of plasticity."""
         return self.pressed(*self.beams)
 
     def pressed(self, *devices: str) -> list[str]:
-        """Pairs of some devices whose plasticity is studied."""
+        """Pairs of some devices in the study of plasticity."""
         pairs = dict.fromkeys(self.sections[name]["pair"] for name in devices)
         return [pair for pair in pairs if pair in self.config["studies"]["plasticity"]["distance_nm"]]
 
@@ -122,27 +122,27 @@ class DevicePlan:
         return self.kind(device).strip(self.sections[device], self.config["sampling"]["strip_length_um"])
 
     def ground(self, device: str) -> Patch:
-        """Patch on which a device sticks: strips along a beam, or the whole area of a stopper."""
+        """Patch of contact of a device: strips along a beam, or the whole area of a stopper."""
         section = self.sections[device]
         return patch(section["pair"], *self.kind(device).sides(section, self.config["sampling"]["strip_length_um"]))
 
     def capacitor(self, device: str) -> dict:
-        """Voltage of a device and its dielectric; empty without a voltage."""
+        """Voltage of a device and its dielectric, empty without a voltage."""
         return chosen(self.sections[device], ("voltage_V", "offset_V", "dielectric"))
 
     def has_strips_of_pair(self, device: str) -> bool:
-        """Whether a device sticks on the strips of its pair in the main line, whose contact it then shares."""
+        """Whether a device sticks on the strips of its pair in the main line, and so shares their contact."""
         main = self.config["sampling"]["strip_length_um"], self.config["beam"]["width_um"]
         return self.ground(device) == patch(self.sections[device]["pair"], *main)
 
     # Tilted stoppers
 
     def slopes(self, device: str) -> list[float]:
-        """Slopes of a stopper at its tilts, increasing [-]; none if it states no tilt."""
+        """Slopes of a stopper at its tilts, increasing [-], none without a tilt."""
         return [math.tan(to_si(tilt, "deg")) for tilt in self.sections[device].get("tilt_deg", ())]
 
     def inclination(self, area: Patch) -> dict:
-        """Slopes and reach of the contact of tilted stoppers that touch with this area.
+        """Slopes and reach of the contact of tilted stoppers with this area.
 
         The reach covers film, heights of six times the rms of both surfaces, and the gaps to the far side of the
         stopper. ASSUME: no attraction across gaps beyond `FAR`.
@@ -156,13 +156,13 @@ class DevicePlan:
     # Tips of cantilevers
 
     def tips(self, device: str) -> Patch:
-        """Tilted strips that hold the tips of the beams of a device: as long as the wedge with the smallest slope."""
+        """Tilted strips at the tips of the beams of a device: as long as the wedge with the smallest slope."""
         section, point = self.sections[device], self.config["sampling"]["spacing_nm"] * self.config["contact"]["every"]
         points = math.ceil(self._reach(device) / self._slopes(device)[0] / point)
         return patch(section["pair"], points * point / NM_PER_UM, section["width_um"])
 
     def tilt(self, tips: Patch) -> dict:
-        """Slopes, reach and edge of the strips that hold the tips of devices and of counted test beams.
+        """Slopes, reach and edge of the strips at the tips of devices and of counted test beams.
 
         Raises
         ------
@@ -188,22 +188,24 @@ class DevicePlan:
         return slopes_of_tips(*(self._saturated_slope(section, *size) for size in sizes))
 
     def _saturated_slope(self, device, thickness, gap):
-        """Slope of the tip of a beam [µm] at the length that it holds in saturated air, perfectly wetting."""
+        """Slope of the tip of a beam [µm] at its shortest length of adhesion in saturated, perfectly wetting air."""
         solid = self.config["solid"] | material_of(self.config, self.config["pairs"][device["pair"]]["beam"])
         sizes = to_si(device["width_um"], "um"), to_si(thickness, "um")
         beam = Beam(1.0, *sizes, to_si(solid["young_modulus_GPa"], "GPa"), to_si(gap, "um"), 1)
         return tip_slope(arc_length(flooded_energy(self.config["water"]["temperature_K"]), beam), beam.gap)
 
     def _reach(self, device):
-        """How far below the mean plane of its edge a tip can be wet: film in the wettest air and peaks [nm].
+        """Depth of a wet tip below the mean plane of its edge: film in the wettest air and peaks [nm].
 
         A power of two to the 1/4, so that small changes of the air and of the surfaces leave the strips as they are.
         ASSUME: peaks of three times the rms of both surfaces.
         """
         section = self.sections[device]
         wettest = max(section["humidities"] + section.get("chart", {}).get("humidities", []))
-        film = float(meniscus_height(wettest, self.config["water"]["temperature_K"])) if wettest else 0.0
-        least = from_si(film, "nm") + 3 * self._rms_of_both(section["pair"])
+        water = self.config["water"]
+        film = from_si(float(meniscus_height(wettest, water["temperature_K"])), "nm") if wettest else 0.0
+        adsorbed = water.get("adsorbed_nm", 0) if wettest else 0
+        least = film + adsorbed + 3 * self._rms_of_both(section["pair"])
         return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
 
     def _rms_of_both(self, pair):
@@ -244,7 +246,7 @@ class DevicePlan:
         return [name for name in self.sections if stated[name] or self.quantities(name)]
 
     def uncertain_solids(self, device: str) -> list[str]:
-        """Properties of the material of a device that are uncertain, keys of ``OF_CONTACT``."""
+        """Uncertain properties of the material of a device, keys of ``OF_CONTACT``."""
         stated = self.sections[device].get("uncertainty", {})
         return [name for name, entry in OF_CONTACT.items() if stated.get(entry.key)]
 
@@ -258,7 +260,7 @@ class DevicePlan:
         return names
 
     def quantities(self, device: str) -> list[tuple[str, str]]:
-        """Surfaces of a device and their uncertain quantities: of scans, or those that are stated to be uncertain.
+        """Surfaces of a device and their uncertain quantities: from scans, or stated to be uncertain.
 
         The heights of surfaces without scans are, too, if the size of one scan is stated.
 
@@ -275,14 +277,14 @@ class DevicePlan:
         return [(name, quantity) for name, of_surface in by_surface.items() for quantity in of_surface]
 
     def known(self, device: str) -> dict[str, Knowledge]:
-        """What is stated about the errors of each surface of a device that has no scans."""
+        """Stated errors of each surface of a device without scans."""
         library = paper()["surfaces"]
         return {
             name: knowledge(entry, library) for name, entry in self._surfaces(device).items() if not is_measured(entry)
         }
 
     def assumed(self, device: str) -> list[str]:
-        """Inputs of the budget of a device that are assumed, not measured, such as ``skewness of B2``."""
+        """Inputs of the budget of a device assumed without measurement, such as ``skewness of B2``."""
         return [
             f"{quantity} of {name}" for name, entry in self._surfaces(device).items() for quantity in assumed(entry)
         ]

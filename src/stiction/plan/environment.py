@@ -1,4 +1,4 @@
-"""The air around the pairs of a configuration: where water condenses, and what the solids attract each other through.
+"""Air around the pairs of a configuration: condensation of water, and the medium of attraction.
 
 The one module that decides which contacts a pair has in its airs. Their names, and the words of a user for its
 humidities, are in `stiction.config.cases`.
@@ -29,7 +29,7 @@ class Air:
     of_devices: bool = False  #: whether devices stick in it, none of which is a case of the paper
 
     def reach(self, pair: str) -> str:
-        """Where the solids of a pair attract each other, ``touching`` or ``all``: as stated.
+        """Range of attraction between the solids of a pair, ``touching`` or ``all``: as stated.
 
         ASSUME: otherwise across all gaps, which is the safe side. The cases of the paper, in humid air, have its model,
         and corrections to full elastic contact are ratios of forces without attraction across gaps.
@@ -48,7 +48,7 @@ class Air:
         return PairMaterials(self.config)
 
     def contact(self, pair: str, humidity: float) -> PairInAir:
-        """Contact of a pair at a humidity: that in dry air where no water condenses.
+        """Contact of a pair at a humidity. Without condensation, it is the contact in dry air.
 
         Its summits attract each other through air. One contact is enough if they do so at any humidity.
 
@@ -69,11 +69,11 @@ class Air:
         return is_wetted(tuple(to_si(angle, "deg") for angle in self._contact_angles(pair)))
 
     def humid(self, pair: str) -> list[float]:
-        """Humidities of a pair at which water condenses: studies over the humidity leave out dry air."""
+        """Humidities of a pair with condensation of water: studies against humidity leave out dry air."""
         return [rh for rh in self.config["pairs"][pair]["humidities"] if rh > 0] if self.is_wetted(pair) else []
 
     def not_modelled(self, cases: Iterable[tuple[str, float]]) -> str:
-        """Sentence on what is not in the results of some cases, each a pair and a humidity."""
+        """Sentence on the effects missing in the results of some cases, each a pair and a humidity."""
         cases = list(cases)
         pairs = list(dict.fromkeys(pair for pair, _ in cases))
         touching = [pair for pair in pairs if self.reach(pair) == "touching"]
@@ -86,25 +86,26 @@ class Air:
         return limits.not_modelled(left_out, any(humidity > 0 and self.is_wetted(pair) for pair, humidity in cases))
 
     def around(self, contact: str, config: dict | None = None) -> dict[str, Any]:
-        """Configuration in which the summits of a contact attract each other through its own medium."""
+        """Configuration with attraction of the summits of a contact through its own medium."""
         medium, config = PairInAir(contact).medium, config or self.config
         return config | {"van_der_waals": medium} if medium else config
 
     def water(self, contact: str, config: dict | None = None) -> dict[str, Any]:
-        """Section ``water`` of a contact: with the contact angles if one is not zero, and the attraction across gaps.
+        """Section ``water`` of a contact, without zeros: with the contact angles, and the attraction across gaps.
 
-        Another configuration may be given for the attraction, such as that of a variant.
+        Another configuration may be given for water and attraction, such as that of a variant.
         """
         angles = self._contact_angles(contact)
         gaps = self._gaps(contact, self.around(contact, config))
-        return self.config["water"] | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
+        water = {key: value for key, value in (config or self.config)["water"].items() if value}
+        return water | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
 
     def across_gaps(self, contact: str) -> dict[str, Any]:
         """As `water`, with attraction across gaps."""
         return self.water(contact, self.config | {"attraction": self.config["attraction"] | {"reach": "all"}})
 
     def without_gaps(self, contact: str) -> dict[str, Any]:
-        """As `water`, without attraction across gaps."""
+        """Settings of `water`, without attraction across gaps."""
         return {key: value for key, value in self.water(contact).items() if key != "gaps"}
 
     def _contact_angles(self, pair):
@@ -131,10 +132,10 @@ class Air:
         return combined(*(hamaker_constants(material)[medium] for material in self._materials.stated(pair)))
 
     def hamaker_constant(self, contact: str) -> float:
-        """That of the two bodies of a contact, zero without van der Waals forces [zJ]."""
+        """Hamaker constant of the two bodies of a contact, zero without van der Waals forces [zJ]."""
         medium = self.around(contact)["van_der_waals"]
         return 0.0 if medium == "none" else self._hamaker_constant(contact, medium)
 
     def beam_hamaker_constant(self, pair: str) -> float:
-        """That of two bodies like the beam of a pair, through the medium between the solids [zJ]."""
+        """Hamaker constant of two bodies like the beam of a pair, through the medium between the solids [zJ]."""
         return hamaker_constant(self._materials.stated(pair)[0], self.config["van_der_waals"])

@@ -1,4 +1,4 @@
-"""Jobs of a configuration: which stage writes a file, from which files and settings; and their results in memory."""
+"""Jobs of a configuration: stage, input files and settings behind each file, and results in memory."""
 
 import pkgutil
 from collections.abc import Iterator, Mapping
@@ -17,7 +17,7 @@ _PACKAGE = Path(__file__).parents[1]
 
 
 def modules() -> Iterator[str]:
-    """Names of all modules that may declare stages, sorted within their folders."""
+    """Yield the names of all modules with possible stages, sorted within their folders."""
     for folder in FOLDERS:
         packaged = pkgutil.walk_packages([str(_PACKAGE / folder)], f"stiction.{folder}.")
         yield from sorted(module.name for module in packaged if not module.ispkg)
@@ -56,17 +56,17 @@ class Job:
 
     @cached_property
     def settings(self) -> dict:
-        """Plain numbers, strings, lists and dicts that determine the result."""
+        """Plain numbers, strings, lists and dicts behind the result."""
         return self.stage.settings(self.plan, self.at)
 
     @property
     def names(self) -> list[str]:
-        """Names of the files that the job writes."""
+        """Names of the files written by the job."""
         return [pattern.format(**vars(self.at)) for pattern in self.stage.patterns(self.plan).values()]
 
     @property
     def seconds(self) -> float:
-        """Estimate of its CPU time [s]; a job that joins chunks draws nothing."""
+        """Estimate of its CPU time [s]. A job joining chunks draws nothing."""
         if "chunks" in self.inputs:
             return cost.PER_JOB
         datasets = len(self.names) if self.stage.each else 1
@@ -79,12 +79,12 @@ class Job:
 
 @dataclass(frozen=True)
 class Graph:
-    """All jobs of a configuration."""
+    """Jobs of a configuration."""
 
     plan: Plan
 
     def __reduce__(self):
-        """Pickle the plan alone: declarations hold functions that other processes find in the modules of the stages."""
+        """Pickle the plan alone. Other processes find the functions of declarations in the modules of the stages."""
         return Graph, (self.plan,)
 
     @cached_property
@@ -97,7 +97,7 @@ class Graph:
         ]
 
     def job(self, file: str) -> Job:
-        """Job that writes a file.
+        """Job for a file.
 
         Raises
         ------
@@ -110,7 +110,7 @@ class Graph:
         raise KeyError(f"no stage writes {file}")
 
     def needed(self, *targets: str) -> list[Job]:
-        """All jobs that some targets of the workflow need, without results of an earlier run."""
+        """Find all jobs for some targets of the workflow, without results of an earlier run."""
         found, waiting = {}, []
         for stage, _ in stages().values():
             if set(targets) & set(stage.targets) and stage.patterns(self.plan):
@@ -151,7 +151,7 @@ class Results:
         return cls(Graph(Plan(config)))
 
     def __getitem__(self, file: str) -> xr.Dataset:
-        """Dataset by the name of its file, such as ``contact/b_NG``; raises a KeyError if no stage writes it."""
+        """Dataset by the name of its file, such as ``contact/b_NG``. Raises a KeyError if no stage writes it."""
         if file in self._known:
             return self._known[file]
         job = self.graph.job(file)
@@ -166,7 +166,7 @@ class Results:
         return {name: structured(files, self._read) for name, files in job.inputs.items()}
 
     def _read(self, file):
-        """A dataset, or the name of a file that is none."""
+        """Read a dataset, or return the name of another file."""
         return file if isinstance(file, File) else self[file]
 
 

@@ -1,4 +1,4 @@
-"""What the surfaces of the pairs of a configuration are made of, as the jobs of a pair see it."""
+"""Materials of the surfaces of the pairs of a configuration, in the view of the jobs of a pair."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ class PairMaterials:
     config: dict  #: complete and valid
 
     def sides(self, pair: str) -> list[str]:
-        """Names of the surfaces of a pair, that of the beam first."""
+        """Names of the surfaces of a pair, the beam's first."""
         return [self.config["pairs"][PairInAir(pair).pair][side] for side in SIDES]
 
     def stated(self, pair: str) -> list[dict]:
@@ -29,7 +29,7 @@ class PairMaterials:
         return [material_of(self.config, surface) for surface in self.sides(pair)]
 
     def settings(self, pair: str, properties: Sequence[str], solid: dict | None = None) -> dict[str, dict]:
-        """Some properties of the materials of a pair by side; empty if those of section solid and polysilicon hold.
+        """Some properties of the materials of a pair by side. Empty if those of section solid and polysilicon hold.
 
         What a material does not state is taken from section ``solid``, by default that of the configuration.
         """
@@ -40,12 +40,12 @@ class PairMaterials:
         return {"materials": {side: others | material for side, material in zip(SIDES, stated, strict=True)}}
 
     def alike(self, pair: str) -> list[str]:
-        """Sides of a pair whose bodies have the material of the beam."""
+        """Sides of a pair with the material of the beam."""
         bodies = self.settings(pair, ELASTIC).get("materials", {})
         return [side for side in SIDES if bodies.get(side) == bodies.get("beam")]
 
     def in_words(self, pair: str) -> list:
-        """Names of the materials of a pair, each with its stated properties in words; section solid if it is one."""
+        """Names of the materials of a pair, each with its stated properties in words. Section solid if it is one."""
         named, solid = self.config.get("materials", {}), self.config["solid"]
         words = {entry.key: entry.words for entry in PROPERTIES.values()} | OF_COATINGS
         if abs(solid["young_modulus_GPa"] / paper()["solid"]["young_modulus_GPa"] - 1) > _POLYSILICON:

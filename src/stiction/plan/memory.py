@@ -1,4 +1,4 @@
-"""Memory to request for jobs: enough for the largest field that they draw, and twice as much after each failure."""
+"""Memory to request for jobs: enough for their largest field, and twice as much after each failure."""
 
 from stiction.config.memory import FIELD_UM, USUAL, field_memory, patch_of, spacings_of
 from stiction.config.units import NM_PER_UM
@@ -34,4 +34,6 @@ def _largest_field_memory(config):
     for device in devices.sections.values():
         length, width = patch_of(device, sampling)
         drawn += [((length + margin, width + margin), at) for at in spacings_of(device, spacing, others)]
+        if "dimples" in device:
+            drawn.append((tuple(side + margin for side in device["dimples"]["contact_um"]), spacing))
     return max(field_memory(*side, at) for side, at in drawn)

@@ -1,4 +1,4 @@
-"""Names of datasets by key, as inputs of the stages that read many of them."""
+"""Names of datasets by key, as inputs of stages with many of them."""
 
 from collections.abc import Iterable
 

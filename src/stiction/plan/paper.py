@@ -1,4 +1,4 @@
-"""Parts of a configuration that are those of the paper, so that published values can be compared with results."""
+"""Parts of a configuration equal to the paper's, for the comparison of results with published values."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,7 +18,7 @@ _OF_MESH = {"beam": ("length_um", "thickness_um", "elements"), "sampling": ("str
 
 
 def _same(section, other, only=None, but=()):
-    """Whether two sections agree in some keys, by default in all; ``False`` if the other section is ``None``."""
+    """Whether two sections agree in some keys, by default in all. ``False`` if the other section is ``None``."""
     if other is None:
         return False
     keys = only or {*section, *other} - set(but)
@@ -36,7 +36,7 @@ def is_surface(config: dict, name: str) -> bool:
 
 
 def is_pair(config: dict, name: str) -> bool:
-    """Whether a pair has the surfaces, gap and beam of the paper, so that published values can be compared with it."""
+    """Whether a pair has surfaces, gap and beam of the paper, for comparison with published values."""
     pair = config["pairs"][name]
     return (
         _has(config, _OF_BEAM)
@@ -47,7 +47,7 @@ def is_pair(config: dict, name: str) -> bool:
 
 @dataclass(frozen=True)
 class PaperCase:
-    """What a plan shares with the case study of the paper."""
+    """Parts of a plan shared with the case study of the paper."""
 
     plan: Any  #: a `stiction.plan.plan.Plan`
 
@@ -58,12 +58,12 @@ class PaperCase:
 
     @cached_property
     def surfaces(self) -> list[str]:
-        """Surfaces of the paper among those that are computed."""
+        """Surfaces of the paper among the computed ones."""
         return [name for name in self.plan.surfaces if is_surface(self.config, name)]
 
     @cached_property
     def pairs(self) -> list[str]:
-        """Pairs of the paper among those that run."""
+        """Pairs of the paper in the run."""
         return [pair for pair in self.plan.pairs if is_pair(self.config, pair)]
 
     def has_mesh(self, case: Case) -> bool:
@@ -76,7 +76,7 @@ class PaperCase:
 
     @cached_property
     def _highest_on_mesh(self):
-        """Highest humidity of the paper of each pair whose beams may have the elements of the paper."""
+        """Highest humidity of the paper for each pair with beams on the elements of the paper."""
         if not _has(self.config, _OF_MESH):
             return {}
         return {
@@ -93,7 +93,7 @@ class PaperCase:
         return _same(solid, paper()["solid"], only=["young_modulus_GPa"])
 
     def _has_heights(self, surface):
-        """Whether a surface has the moments of the paper, and the published spectrum or the summits that give it."""
+        """Whether a surface has the moments of the paper, and its published spectrum or its summits."""
         entry = self.config["surfaces"][surface]
         spectrum = ["published_psd"] if entry["psd"] == "published" else SUMMITS
         return _same(entry, paper()["surfaces"].get(surface), only=[*MOMENTS, *spectrum])

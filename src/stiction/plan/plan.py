@@ -28,7 +28,7 @@ from stiction.plan.variants import Variants
 
 @dataclass(frozen=True)
 class Plan:
-    """Names of everything that is computed for one configuration."""
+    """Names of all results for one configuration."""
 
     config: dict  #: complete, valid and in normal form
     preliminary: dict[str, dict] = field(default_factory=dict)  #: numbers of measured surfaces, computed if missing
@@ -60,7 +60,7 @@ class Plan:
 
     @cached_property
     def paper(self) -> PaperCase:
-        """What is as in the paper."""
+        """What this configuration shares with the paper's."""
         return PaperCase(self)
 
     @cached_property
@@ -70,16 +70,16 @@ class Plan:
 
     @cached_property
     def of_test_beams(self) -> "Plan":
-        """Plan in which the arrays of test beams are the devices."""
+        """Plan with the arrays of test beams as devices."""
         return replace(self, config=self.config | {"devices": as_cantilevers(self.config)})
 
     @property
     def pairs(self) -> list[str]:
-        """Pairs that run."""
+        """Pairs in the run."""
         return self.config["run"]["pairs"]
 
     def sides(self, pair: str) -> list[str]:
-        """As `stiction.plan.materials.PairMaterials.sides`."""
+        """Sides of a pair, see `stiction.plan.materials.PairMaterials.sides`."""
         return self.materials.sides(pair)
 
     def contact(self, case: Case) -> PairInAir:
@@ -87,12 +87,12 @@ class Plan:
         return self.air.contact(case.pair, case.humidity)
 
     def contact_of_device(self, case: Case) -> PairInAir:
-        """As `contact`, of a case of a device."""
+        """Contact of a case of a device, see `contact`."""
         return self.air_of_devices.contact(self.config["devices"][case.device]["pair"], case.humidity)
 
     @cached_property
     def surfaces(self) -> list[str]:
-        """Surfaces of the pairs that run, in the order of the configuration."""
+        """Surfaces of the pairs in the run, in the order of the configuration."""
         used = {name for pair in self.pairs for name in self.sides(pair)}
         return [name for name in self.config["surfaces"] if name in used]
 
@@ -115,50 +115,50 @@ class Plan:
         return others | own | self.materials.settings(pair, properties)
 
     def at(self, case: Case) -> dict[str, Any]:
-        """As `seen_by`, with the humidity of a case."""
+        """Configuration of `seen_by`, with the humidity of a case."""
         return self.seen_by(self.contact(case)) | {"humidity": case.humidity}
 
     def over_humidities(self, pair: str) -> dict[str, Any]:
-        """As `seen_by`, with the humidities of a pair."""
+        """Configuration of `seen_by`, with the humidities of a pair."""
         return self.seen_by(pair) | {"humidities": self.air.humid(pair)}
 
     @property
     def humid_pairs(self) -> list[str]:
-        """Pairs that run between whose surfaces water condenses at some humidity."""
+        """Pairs in the run with condensation between their surfaces at some humidity."""
         return [pair for pair in self.pairs if self.air.humid(pair)]
 
     @property
     def humid_cases(self) -> list[Case]:
-        """Those of `cases` in which water condenses."""
+        """Cases with condensation of water."""
         return [case_id(pair, humidity) for pair in self.pairs for humidity in self.air.humid(pair)]
 
     @property
     def samples_of_slopes(self) -> int:
-        """Number of samples of a contact that is compared with the first samples of the contact itself."""
+        """Number of samples of a contact compared with the first samples of the contact itself."""
         return min(self.config["studies"]["slopes"]["samples"], self.config["contact"]["samples"])
 
     @property
     def estimated(self) -> list[str]:
-        """Surfaces of the pairs that run that are described by scans."""
+        """Surfaces of the pairs in the run described by scans."""
         return [name for name in self.surfaces if name in self.scans.surfaces]
 
     @property
     def described(self) -> list[str]:
-        """Surfaces of the pairs that run that are described by numbers."""
+        """Surfaces of the pairs in the run described by numbers."""
         return [name for name in self.surfaces if name not in self.scans.surfaces]
 
     @cached_property
     def scanned_pairs(self) -> list[str]:
-        """Pairs with a surface described by scans, between whose surfaces water condenses."""
+        """Pairs with a surface described by scans, and condensation between their surfaces."""
         return [pair for pair in self.humid_pairs if self.scans.sides(pair)]
 
     def quantities(self, surface: str) -> tuple[str, ...]:
-        """Quantities of a surface that have slopes, see `stiction.analysis.shifts`; those of scans include modes."""
+        """Quantities of a surface with slopes, see `stiction.analysis.shifts`. Those of scans include modes."""
         modes = MODE_QUANTITIES if surface in self.scans.surfaces else ()
         return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
 
     def assumed(self, *pairs: str) -> dict[str, list[str]]:
-        """Sentences on what is not known of the surfaces of some pairs and is assumed, by pair; no empty ones."""
+        """Sentences on assumed properties of the surfaces of some pairs, by pair, without empty ones."""
         library, entries = paper()["surfaces"], self.config["surfaces"]
         by_surface = {name: sentences(name, entries[name], library) for name in self.scans.others}
         named = {pair: dict.fromkeys(self.sides(pair)) for pair in pairs}
@@ -167,7 +167,7 @@ class Plan:
 
     @cached_property
     def with_summits(self) -> list[str]:
-        """Surfaces with measured summits, whose spectrum can therefore be identified."""
+        """Surfaces with measured summits, for the identification of their spectrum."""
         return [name for name in self.surfaces if self.has_summits(name)]
 
     def has_summits(self, surface: str) -> bool:
@@ -176,7 +176,7 @@ class Plan:
 
     @cached_property
     def cases(self) -> list[Case]:
-        """Every pair at each of its humidities."""
+        """Cases of every pair at each of its humidities."""
         return [case_id(pair, humidity) for pair in self.pairs for humidity in self.config["pairs"][pair]["humidities"]]
 
     @cached_property
@@ -193,13 +193,13 @@ class Plan:
 
     @property
     def figure_pair(self) -> str:
-        """Pair of the figures: that of the configuration if it runs, otherwise the first that runs."""
+        """Pair of the figures: the configuration's if it is in the run, otherwise the first one."""
         wanted = self.config["figures"]["pair"]
         return wanted if wanted in self.pairs else self.pairs[0]
 
     @property
     def figure_pairs(self) -> list[str]:
-        """Pairs of the figures that show several: that of the figures, with the other copies of section ``compare``."""
+        """Pairs of figures of several: the pair of the figures, with the other copies of section ``compare``."""
         end = next((end for end in values(self.config) if self.figure_pair.endswith(end)), "")
         original = self.figure_pair.removesuffix(end)
         copies = {original + other for other in values(self.config)} if end else {self.figure_pair}
@@ -232,14 +232,14 @@ class Plan:
 
     @property
     def other_surfaces(self) -> list[str]:
-        """All surfaces except that of the figures."""
+        """Surfaces other than the figures'."""
         return [name for name in self.surfaces if name != self.figure_surface]
 
     # Studies
 
     @property
     def studies(self) -> list[str]:
-        """Studies that run, by their section: by default those of the paper.
+        """Studies in the run, by their section: by default those of the paper.
 
         Those over the humidity need pairs that water wets.
         """
@@ -256,7 +256,7 @@ class Plan:
 
     @property
     def pressed_pairs(self) -> list[str]:
-        """Pairs whose plasticity is studied."""
+        """Pairs in the study of plasticity."""
         known = self.config["studies"]["plasticity"]["distance_nm"]
         return [pair for pair in self.pairs if pair in known and "plasticity" in self.studies]
 
@@ -268,7 +268,7 @@ class Plan:
 
     @cached_property
     def shifted_moments(self) -> list[str]:
-        """Moments for which sensitivities are computed: those that can be shifted in all pairs of the figures."""
+        """Moments with sensitivities: movable in all pairs of the figures."""
         return ["rms", *filter(self._can_be_shifted, ("skewness", "kurtosis"))] if self.pairs else []
 
     def _can_be_shifted(self, moment):
@@ -288,7 +288,7 @@ class Plan:
         return at[0] * at[1] > 0 and exists
 
     def _feasible_shape(self, surface):
-        """Skewness and kurtosis of the maximum-entropy density of a surface; ``None`` if its heights are measured."""
+        """Skewness and kurtosis of the maximum-entropy density of a surface, ``None`` if its heights are measured."""
         from stiction.surface.feasible import nearest_feasible
 
         entry, names = self.config["surfaces"][surface], ("skewness", "kurtosis")

@@ -1,4 +1,4 @@
-"""What Snakemake needs of the declared stages: rules, and input files and settings of every job.
+"""Rules, input files and settings of jobs for Snakemake, from the declared stages.
 
 Declarations are in the modules of the stages, whose libraries take longer to import than a plan takes. What follows
 from them is therefore kept between plans, as long as neither code nor configuration change.
@@ -22,7 +22,7 @@ RESULTS, DATASET = "results/", ".nc"
 
 
 class NotPlanned(ValueError):
-    """A file is asked for that no job of the configuration writes."""
+    """Error for a requested file without a job of the configuration."""
 
 
 class Planner:
@@ -38,7 +38,7 @@ class Planner:
 
     @cached_property
     def _determined_by(self):
-        """Hash of everything that determines the jobs: code, configuration and files of scans."""
+        """Hash of all sources of the jobs: code, configuration and files of scans."""
         files = sorted(file for kind in ("*.py", "*.yaml") for file in PACKAGE.rglob(kind))
         code = {str(file.relative_to(PACKAGE)): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
         scans = [Path(file) for surface in self.plan.scans.surfaces for file in self.plan.scans.files(surface).values()]
@@ -53,12 +53,12 @@ class Planner:
         return self._codes[file]
 
     def _known(self, key, compute):
-        """What is kept under a key, or computed now; plain numbers, strings, lists and dicts."""
+        """Value kept under a key, or computed now: plain numbers, strings, lists and dicts."""
         return self._remember_jobs([self._determined_by, key], compute)
 
     @cached_property
     def _graph(self):
-        """All declarations, whose modules are imported here."""
+        """Graph of all declarations. Their modules are imported here."""
         from stiction.plan.graph import Graph
 
         return Graph(self.plan)
@@ -67,11 +67,11 @@ class Planner:
 
     @cached_property
     def rules(self) -> list[dict]:
-        """What every rule consists of apart from the inputs and settings of its jobs."""
+        """Rules, without the inputs and settings of their jobs."""
         return self._known("rules", self._rules)
 
     def _rules(self):
-        """Rules of all declared stages that write a file under this configuration."""
+        """Rules of all declared stages with a file under this configuration."""
         from stiction.plan.graph import stages
 
         return [self._rule(stage, module) for stage, module in stages().values() if stage.patterns(self.plan)]
@@ -97,11 +97,11 @@ class Planner:
         }
 
     def wanted(self, target: str) -> list[str]:
-        """Files that a target of the workflow wants."""
+        """Files wanted by a target of the workflow."""
         return [file for rule in self.rules if target in rule["targets"] for file in rule["wanted"]]
 
     def code(self, rule: Mapping[str, Any]) -> dict[str, str | None]:
-        """Fingerprint of the module in which a stage computes and of all that it imports; versions of libraries."""
+        """Fingerprint of the module of the computation of a stage and of all its imports, and versions of libraries."""
         file = PACKAGE.joinpath(*rule["code"].split(".")[1:]).with_suffix(".py")
         return self._code(str(file)) | {name: version_of(name) for name in rule["libraries"]}
 
@@ -112,7 +112,7 @@ class Planner:
         return self._known(f"{rule} {sorted(wildcards.items())}", lambda: self._job(rule, wildcards))
 
     def _job(self, rule, wildcards):
-        """As `job`, from the declaration."""
+        """Job from the declaration, see `job`."""
         from stiction.plan.graph import Job, stages
 
         job = Job(stages()[rule][0], At(**wildcards), self.plan)
@@ -158,7 +158,7 @@ class Planner:
         return [f"{RESULTS}{name}{DATASET}" for name in listed], label, keys
 
     def settings(self, path: str) -> dict | None:
-        """Settings of the job that writes a dataset; ``None`` if the configuration has no such job."""
+        """Settings of the job for a dataset, ``None`` without such a job in the configuration."""
         for rule, matches in self._expressions:
             if match := matches.fullmatch(path):
                 try:

@@ -29,7 +29,7 @@ def run(job: Any) -> None:
 
 
 def _caption(stage, job, template, more) -> str:
-    """Text beside a figure: its title, its caption as in the report, and what the figure itself adds."""
+    """Text beside a figure: its title, its caption as in the report, and additions by the figure itself."""
     from jinja2 import StrictUndefined, Template  # comes with Snakemake
 
     caption = Template(Path(template).read_text(encoding="utf-8"), undefined=StrictUndefined).render(snakemake=job)
@@ -38,12 +38,12 @@ def _caption(stage, job, template, more) -> str:
 
 
 def _listed(paths) -> list[str]:
-    """Paths of an input, which Snakemake gives as a list or, if there is one, as text."""
+    """Paths of an input as a list. Snakemake gives a single one as text."""
     return [paths] if isinstance(paths, str) else list(paths)
 
 
 def _loaded(paths: Any, label: str | None, keys: Any, part: dict, stage: Stage) -> Any:
-    """Data of an input, structured as it was declared; paths of files that are no datasets.
+    """Data of an input, structured as it was declared. Paths of files other than datasets stay paths.
 
     ``keys`` are those of a dict, ``True`` for an order, and ``None`` for one dataset.
     """

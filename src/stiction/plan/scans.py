@@ -1,4 +1,4 @@
-"""Surfaces of a configuration that are described by scans, as the jobs that read them see them."""
+"""Surfaces of a configuration described by scans, in the view of the jobs reading them."""
 
 import os
 from dataclasses import dataclass
@@ -17,34 +17,34 @@ class Scans:
 
     @property
     def surfaces(self) -> list[str]:
-        """All surfaces that are described by scans."""
+        """Surfaces described by scans."""
         return [name for name, entry in self.config["surfaces"].items() if is_measured(entry)]
 
     @property
     def others(self) -> list[str]:
-        """All surfaces that are described by numbers."""
+        """Surfaces described by numbers."""
         return [name for name in self.config["surfaces"] if name not in self.surfaces]
 
     def sides(self, pair: str) -> list[str]:
-        """Surfaces of a pair that are described by scans, each once."""
+        """Surfaces of a pair described by scans, each once."""
         return [name for name in dict.fromkeys(PairMaterials(self.config).sides(pair)) if name in self.surfaces]
 
     def files(self, surface: str) -> dict[str, str]:
-        """Files of the scans of a surface, by number; none if it is described by numbers."""
+        """Files of the scans of a surface, by number. None if it is described by numbers."""
         files = self.config["surfaces"][surface].get("scans", {}).get("files", ())
         return {str(number): file for number, file in enumerate(files)}
 
     def path(self, surface: str, number: str) -> str:
-        """File of a scan, relative to the working directory, so that a moved folder changes nothing."""
+        """File of a scan, relative to the working directory, so a moved folder changes nothing."""
         return os.path.relpath(self.files(surface)[number])
 
     def scan(self, surface: str, number: str) -> dict[str, Any]:
-        """File of a scan by its content, and how it is read; the folder of the file does not affect the result."""
+        """File of a scan by its content, and settings for reading it. The file's folder does not affect the result."""
         path = self.files(surface)[number]
         return {"file": Path(path).name, "sha256": digest(path), "source": source(self.config["surfaces"][surface])}
 
     def estimate(self, surface: str) -> dict[str, Any]:
-        """How the scans of a surface are evaluated, with the names of the files."""
+        """Settings for the evaluation of the scans of a surface, with the names of the files."""
         return {
             "seed": self.config["seed"],
             "evaluation": evaluation(self.config["surfaces"][surface], self.config["scans"]),

@@ -1,4 +1,4 @@
-"""Declaration of a stage: the files that its jobs write and read, their settings, and what they compute.
+"""Declaration of a stage: files written and read by its jobs, their settings, and their computation.
 
 A stage is declared once, in its module. Snakemake, the Python interface and the search for stale results read the same
 declaration (`stiction.plan.graph`).
@@ -68,7 +68,7 @@ class At(SimpleNamespace):
 
 
 class File(str):
-    """Path of an input that is no dataset."""
+    """Path of an input other than a dataset."""
 
 
 #: A name, or names in an order or by key.
@@ -76,12 +76,12 @@ Names = str | Sequence[str] | Mapping[Any, str]
 
 
 def _nothing(_plan, _at) -> dict:
-    """No inputs and no settings."""
+    """Return no inputs and no settings."""
     return {}
 
 
 def _once(plan) -> list[dict]:
-    """The one job of a stage without wildcards, about the pairs that run."""
+    """Return the only job of a stage without wildcards, about the pairs in the run."""
     return [{}] if plan.pairs else []
 
 
@@ -120,7 +120,7 @@ def titled(name: str, shows: str) -> str:
 
 @dataclass(frozen=True, kw_only=True)
 class Shown:
-    """How the report shows a file of a stage."""
+    """Settings for a file of a stage in the report."""
 
     file: str  #: key of the file
     title: str  #: may contain wildcards
@@ -130,7 +130,7 @@ class Shown:
 
 @dataclass(frozen=True, kw_only=True)
 class Stage:
-    """What the jobs of a stage write, read and compute.
+    """Stage of the workflow: files written and read by its jobs, and their computation.
 
     ``inputs`` and ``settings`` are functions of the plan of a configuration (`stiction.plan.plan.Plan`) and of the
     wildcards of a job. ``compute`` takes what its parameters name: an input, structured as ``inputs`` structures its
@@ -169,11 +169,11 @@ class Stage:
 
     @classmethod
     def writing(cls, name: str, file: str, **declared: Any) -> "Stage":
-        """Stage that writes a dataset; with ``each``, one for each end, which replaces ``{each}`` in the name."""
+        """Stage with a dataset, or with ``each``, one for each ending, in place of ``{each}`` in the name."""
         return cls(name=name, files={"dataset": file}, **declared)
 
     def on(self, name: str, file: str, **changed: Any) -> "Stage":
-        """The same stage for another dataset, on a patch of a device, say."""
+        """Same stage for another dataset, on a patch of a device, say."""
         return replace(self, name=name, files={"dataset": file}, minutes=120, **changed)
 
     @property
@@ -186,12 +186,12 @@ class Stage:
         )
 
     def wanted(self, plan: Any) -> list[dict]:
-        """Wildcards of the jobs whose files the targets want."""
+        """Wildcards of the jobs for the files of the targets."""
         return self.jobs(plan) if self.targets and (not self.study or self.study in plan.studies) else []
 
     @property
     def code(self) -> str:
-        """Module of ``compute``, whose code and that of its imports is the code of a job; the declaration is not."""
+        """Module of ``compute``. Its code and imports are the code of a job, the declaration's are not."""
         return self.compute.__module__
 
     def converted(self, settings: dict) -> Any:
@@ -211,7 +211,7 @@ class Stage:
 
 
 def declared(module: str) -> tuple[Stage, ...]:
-    """Stages that a module declares, by the name of the module."""
+    """Stages declared by a module."""
     return getattr(import_module(module), "STAGES", ())
 
 
@@ -239,7 +239,7 @@ def chosen(section: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
 
 
 def select(kind: type, section: Mapping[str, Any], **given: Any) -> dict[str, Any]:
-    """Settings that a dataclass takes from a section of the configuration: exactly its fields.
+    """Settings for a dataclass from a section of the configuration: exactly its fields.
 
     Nested sections are reduced to the fields of their dataclasses. Fields with a default are left out where the section
     does not have them.

@@ -1,4 +1,4 @@
-"""Variants of a configuration: one changed model choice each, where the paper leaves the choice open."""
+"""Variants of a configuration: one changed model choice each, left open by the paper."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,15 +16,17 @@ from stiction.plan.stage import chosen
 #: Key that a variant changes, and its section; the source of the spectrum is a key of each surface.
 _CHANGED = {
     **{"van_der_waals": None, "psd": None, "asperity": "contact", "every": "contact", "spacing_nm": "sampling"},
-    **{"poisson_ratio": "solid", "reach": "attraction"},
+    **{"poisson_ratio": "solid", "reach": "attraction", "adsorbed_nm": "water"},
 }
+#: Sections of what is between the solids, which does not affect their contact.
+_BETWEEN = {"attraction", "water"}
 #: Sections of the solids, which do not affect the summits.
 _SOLIDS = ("solid", "van_der_waals")
 
 
 @dataclass(frozen=True)
 class Variants:
-    """Variants of a plan, and what each of them changes."""
+    """Variants of a plan, and their changes."""
 
     plan: Any  #: a `stiction.plan.plan.Plan`
 
@@ -39,7 +41,7 @@ class Variants:
 
     @cached_property
     def finer_beams(self) -> dict[str, dict]:
-        """Changes of the variants that refine only the mesh; surfaces and contact are those of the base."""
+        """Changes of the variants with only a finer mesh. Surfaces and contact are the base's."""
         length, strip = self.config["beam"]["length_um"], self.config["sampling"]["strip_length_um"]
         strips = self.config["studies"]["variants"]["strips_per_element"]
         meshes = {f"strips_per_element_{n}": round(length / (strip * n)) for n in strips}
@@ -59,7 +61,7 @@ class Variants:
         return {"base": {}} | changes | {name: {"beam": mesh} for name, mesh in self.finer_beams.items()} | full
 
     def surface(self, variant: str, surface: str) -> dict:
-        """Description of a surface under a variant, from which it is drawn."""
+        """Description of a surface under a variant, for drawing it."""
         entry, psd = self.config["surfaces"][surface], self._psd_under(variant, surface)
         used = [*MOMENTS, "published_psd"] if psd == "published" else MOMENTS
         return chosen(entry, used) | {"psd": psd}
@@ -69,7 +71,7 @@ class Variants:
         return self.plan.air.water(pair, merged(self.config, self.changes[variant]))
 
     def _psd_under(self, variant, surface):
-        """Source of the spectrum of a surface: that of the variant where available, otherwise unchanged."""
+        """Source of the spectrum of a surface: the variant's if available, otherwise unchanged."""
         entry = self.config["surfaces"][surface]
         known = {"published": "published_psd" in entry, "identified": self.plan.has_summits(surface)}
         wanted = self.changes[variant].get("psd", entry["psd"])
@@ -103,13 +105,13 @@ class Variants:
         return next(name for name in self.changes if self._all_summits(pair, name) == wanted)
 
     def has_islands(self, variant: str) -> bool:
-        """Whether the asperities are islands under a variant; their contact depends on more than the summits."""
+        """Whether the asperities are islands under a variant. Their contact depends on more than the summits."""
         changed = self.changes[variant].get("contact", {})
         return (self.config["contact"] | changed).get("asperity", "summit") != "summit"
 
     def contact_under(self, variant: str) -> str:
         """Variant whose contact a variant has: that of the base if only what follows from it differs."""
-        after = variant in self.finer_beams or variant == CORRECTED or "attraction" in self.changes[variant]
+        after = variant in self.finer_beams or variant == CORRECTED or bool(_BETWEEN & self.changes[variant].keys())
         return "base" if after else variant
 
     @property
@@ -123,7 +125,7 @@ class Variants:
         return merged(summits["base"], summits["changes"])
 
     def _under(self, pair, variant):
-        """All settings that distinguish the variants of a pair."""
+        """All settings by which the variants of a pair differ."""
         contact = self.solids(pair, variant)
         if "materials" in contact:  # of both sides, with all properties of section solid
             del contact["solid"]
@@ -131,30 +133,30 @@ class Variants:
         return self._all_summits(pair, variant), contact, *after
 
     def choices(self, pair: str) -> list[str]:
-        """Variants that change the contact of a pair, which need not run; devices have summits under all of them."""
+        """Variants with another contact of a pair, in the run or not. Devices have summits under all of them."""
         contacts = [
             name for name in self.changes if self.contact_under(name) == name != "base" and not self.has_islands(name)
         ]
         return [name for name in contacts if self._under(pair, name) != self._under(pair, "base")]
 
     def choices_of_solids(self, pair: str) -> list[str]:
-        """Those of `choices` that leave the surfaces as they are, on patches of any size."""
+        """Variants of `choices` with unchanged surfaces, on patches of any size."""
         return [name for name in self.choices(pair) if self.with_summits_of(pair, name) == "base"]
 
     def choices_of_device(self, case: Case) -> list[str]:
-        """Those of `choices` for a device at a humidity: short strips have those of the solids alone."""
+        """Variants of `choices` for a device at a humidity. Short strips have those of the solids alone."""
         of_pair = self.choices_of_solids if self.plan.devices.kind(case.device).has_short_strips else self.choices
         return of_pair(self.plan.contact_of_device(case))
 
     def water_of_choices(self, contact: str, choices: Sequence[str]) -> dict[str, dict]:
-        """Section ``water`` of a contact of devices under those of `choices` that change attraction across gaps."""
+        """Section ``water`` of a contact of devices under `choices` with other attraction across gaps."""
         air = self.plan.air_of_devices
         waters = {name: air.water(contact, merged(self.config, self.changes[name])) for name in choices}
         return {name: water for name, water in waters.items() if water != air.water(contact)}
 
     @cached_property
     def pairs(self) -> list[tuple[str, str]]:
-        """Pairs and their variants, without those that change nothing for the pair."""
+        """Pairs and their variants, without those equal to the base for the pair."""
         return [
             (pair, variant)
             for pair in self.plan.humid_pairs

@@ -42,7 +42,7 @@ _POINTS = 2000
 
 @dataclass(frozen=True)
 class Reach:
-    """Wave numbers that a scan resolves."""
+    """Wave numbers resolved by a scan."""
 
     low: float  #: [rad m⁻¹]
     high: float  #: [rad m⁻¹]
@@ -88,7 +88,7 @@ def _peak_curvature(z, half, pixel):
 
 @dataclass(frozen=True)
 class WhittleFit:
-    """Plateau and power law of Eq. (7) that fit a measured spectrum."""
+    """Plateau and power law of Eq. (7) fitted to a measured spectrum."""
 
     plateau: float  #: s⁰ [m⁴]
     corner: float  #: ζ₀ [rad m⁻¹]
@@ -122,7 +122,7 @@ class WhittleFit:
 
 
 def fit_to_the_end(rings: Rings, within: Reach) -> tuple[WhittleFit, Reach]:
-    """`fit` up to the end of the measured spectrum at most, and the reach with that end.
+    """Fit up to the end of the measured spectrum at most, by `fit`. Return it and the reach with that end.
 
     Aliases and noise raise a spectrum, so that a drop is real: the surface, or what tip and instrument leave of it, has
     no shorter waves. A fit that includes waves beyond the end bends towards them, and hides it. Where the rings
@@ -145,7 +145,7 @@ def fit_to_the_end(rings: Rings, within: Reach) -> tuple[WhittleFit, Reach]:
 
 @dataclass(frozen=True)
 class _Part:
-    """Fit to a part of the reach, and the end that it shows."""
+    """Fit to a part of the reach, and its end."""
 
     fitted: WhittleFit
     high: float  #: [rad m⁻¹]
@@ -156,12 +156,12 @@ class _Part:
         return end / _SOON <= self.high <= end
 
     def shows(self, end):
-        """Whether it shows an end, as far as parts of the reach can tell, with a power law that is long enough."""
+        """Whether this part shows an end, up to the resolution of the parts, with a long enough power law."""
         return 1 / _STEP < self.end / end < _STEP and self.fitted.corner <= end / _SOON
 
 
 def _showing(parts, nyquist):
-    """Parts near the ends that all parts near them show, those near the last end first, and then the longest."""
+    """Parts near the ends shown by all parts near them, from the last end, longest part first."""
     ends = sorted({part.end for part in parts if parts[-1].high <= part.end / _SOON < nyquist / _SOON}, reverse=True)
     near = [[part for part in parts if part.near(end)] for end in ends]
     shown = (of_end for end, of_end in zip(ends, near, strict=True) if all(part.shows(end) for part in of_end))
@@ -169,20 +169,20 @@ def _showing(parts, nyquist):
 
 
 def _shorter(known):
-    """Wave numbers at which a fit to rings may end before these do, the largest first [rad m⁻¹]."""
+    """Wave numbers before the end of the rings for the ends of fits, the largest first [rad m⁻¹]."""
     steps = int(np.log(len(known.wavenumber) / FEWEST_RINGS) / np.log(_STEP))
     return known.wavenumber[np.geomspace(len(known.wavenumber), FEWEST_RINGS, steps + 1).astype(int)[1:] - 1]
 
 
 def _deviance(known, part):
-    """Deviance of rings from the fit to a part; rings beyond it count as if they were at half of the fit [-]."""
+    """Deviance of rings from the fit to a part. Rings beyond it count as if they were at half of the fit [-]."""
     ratio = known.density / part.fitted.spectrum(2 * known.wavenumber[-1])(known.wavenumber)
     ratio = np.where(known.wavenumber <= part.high, np.maximum(ratio, np.finfo(float).tiny), _ENDED)
     return 2 * np.sum(known.modes * (ratio - 1 - np.log(ratio)))
 
 
 def _up_to_the_end(rings, within, fitted, high):
-    """Fit with all rings up to the end that a fit up to ``high`` shows, unless they are unlikely, and its reach."""
+    """Fit with all rings up to the end shown by a fit up to ``high``, unless they are unlikely, and its reach."""
     last = min(_end(rings, within, fitted), within.high)
     whole = fit(rings, replace(within, high=last))
     if whole.likely or whole.misfit <= fitted.misfit:
@@ -192,7 +192,7 @@ def _up_to_the_end(rings, within, fitted, high):
 
 
 def _end(rings, within, fitted):
-    """Wave number beyond which all rings are below half of the fit; the Nyquist one if there is none [rad m⁻¹]."""
+    """First wave number with all rings beyond below half of the fit, or the Nyquist one without any [rad m⁻¹]."""
     known = rings.between(within.low, within.nyquist)
     last = np.flatnonzero(known.density >= _ENDED * fitted.spectrum(within.nyquist)(known.wavenumber))[-1]
     if len(known.wavenumber) - 1 - last < _RINGS_BEYOND:
@@ -216,6 +216,7 @@ def fit(rings: Rings, within: Reach) -> WhittleFit:
         raise ValueError(f"{FEWEST_RINGS} rings are needed within the reach of the scan, there are {len(wavenumber)}")
 
     def objective(parameters):
+        """Half of the deviance per weight of the rings, at the best plateau."""
         relative = shape(wavenumber, *parameters)
         plateau = np.average(density / relative, weights=weight)
         return np.log(plateau) + np.average(np.log(relative), weights=weight)  # P / s is 1 on average at its optimum

@@ -12,6 +12,7 @@ from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.devices.budget import Budget
 from stiction.devices.materials import OF_CONTACT
+from stiction.estimates import jackknife
 from stiction.models import MOMENT_QUANTITIES
 from stiction.plan.plan import Plan
 from stiction.stages.contact import contact, curves
@@ -115,3 +116,14 @@ def test_a_contact_angle_of_20_degrees_costs_a_quarter_of_the_energy_and_one_of_
         ratio = wetted.mean() / perfect
         error = (wetted - ratio * energies[0]).std() / perfect / np.sqrt(len(wetted))
         assert abs(ratio - 1 - loss) < 4 * error + 0.005  # rounded
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("humidity", "added", "expected"), [(0.44, 0.50, 632 / 894), (0.67, 0.63, 551 / 684)])
+def test_adsorbed_films_shorten_lengths_as_in_an_independent_study_of_energies(humidity, added, expected, base):
+    # Films of van der Waals forces of 10 zJ, 3 t: lengths with them over those without, by the power -1/4 of energies.
+    films = (replace(WATER, adsorbed=add * 1e-9) for add in (added, 0.0))
+    energies = np.transpose([curves.energies(base, humidity, water) for water in films])
+    ratio, error = jackknife(lambda means: (means[..., 0] / means[..., 1]) ** -0.25, energies)
+    assert abs(ratio - expected) < 4 * error
+    assert abs(ratio - 1) > 40 * error  # control

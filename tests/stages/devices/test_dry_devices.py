@@ -245,7 +245,7 @@ def test_the_bound_of_a_dry_cantilever_is_that_of_flats_in_contact():
 
 
 def test_a_budget_in_dry_air_has_no_inputs_of_the_air():
-    stated = Uncertainty(thickness=1e-7, humidity=0.01, temperature=2.0, contact_angle=0.1)
+    stated = Uncertainty(thickness=1e-7, humidity=0.01, temperature=2.0, contact_angle=0.1, adsorbed=1e-10)
     names = {}
     for humidity in (0.0, 0.67):
         settings = replace(BEAM, water=ACROSS, humidity=humidity, uncertainty=stated)
@@ -259,6 +259,7 @@ def test_a_budget_in_dry_air_has_no_inputs_of_the_air():
         "temperature",
         "contact angle on the beam",
         "contact angle on the substrate",
+        "adsorbed water",
     }
 
 
@@ -304,15 +305,15 @@ def captions(datasets):
 def test_nothing_is_said_of_water_that_fills_gaps_where_none_condenses(humidity):
     for text in captions({humidity: without_water(TIPS)}):
         assert "flats in contact" in text
-        assert not [word for word in ("saturated", "flooded", "fills", "at this humidity") if word in text]
+        assert not [word for word in ("saturated", "flooded", "all gaps", "at this humidity") if word in text]
 
 
 def test_bounds_in_both_airs_are_told_apart():
     for text in captions({0.0: without_water(TIPS), 0.67: TIPS}):
-        assert "where water fills all gaps" in text
+        assert "with water in all gaps" in text
         assert re.search("(Without condensation, bounds are those|In dry air: that) of flats in contact", text)
     for text in captions({0.67: TIPS}):
-        assert "Where no water" not in text
+        assert "Without condensation" not in text
         assert "Dry air" not in text
 
 

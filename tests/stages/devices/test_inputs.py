@@ -51,6 +51,16 @@ def test_a_stress_or_an_angle_that_may_be_zero_errs_upwards_only():
     assert_allclose([angle.step, deviation], [0.2, 0.2])
 
 
+def test_adsorbed_water_errs_upwards_from_nothing_and_around_its_height():
+    none, deviation = uncertain(Uncertainty(adsorbed=0.2e-9))["adsorbed water"]
+    assert [state.water.adsorbed for state in none.states] == [0, 0.2e-9]
+    assert (none.step, deviation, none.group) == (0.2e-9, 0.2e-9, "the adsorbed water")
+    some, _ = uncertain(Uncertainty(adsorbed=0.2e-9), water=replace(WATER, adsorbed=0.5e-9))["adsorbed water"]
+    assert_allclose([state.water.adsorbed for state in some.states], [0.3e-9, 0.7e-9])
+    moved = [inputs.changed(some.states[0], {"adsorbed water": by}).water.adsorbed for by in (0.1e-9, -1e-9)]
+    assert_allclose(moved, [0.4e-9, 0])
+
+
 def test_contact_angles_err_together_each_over_a_step_of_its_own():
     zero, small_angle, least, middle, most = np.radians([0, 10, 60, 70, 80])
     settings = replace(SETTINGS, uncertainty=Uncertainty(contact_angle=small_angle))

@@ -355,7 +355,7 @@ def test_the_table_has_the_share_at_the_length_of_those_devices_that_have_one():
     assert list(one.share_stuck) == [0.0] * 3 + [0.5] * 3
     assert other.length_um.isna().all()
     assert list(table.cells["P(stuck) [%]"])[-1] == "–"
-    assert "length that they have" in table.caption
+    assert "at their given length" in table.caption
     assert "length [µm]" not in tables_devices.safe_lengths({("C2", 0.67): safe()}, silent).cells
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 from ground import C1, R1, safe_with_tips, safe_without_tips
 from legends import covering
 from numpy.testing import assert_allclose
@@ -154,14 +155,90 @@ def test_a_stopper_touches_under_its_restoring_force_and_is_freed_by_what_it_lac
     assert_allclose(found["restoring_force"].low, force, rtol=1e-12)
     assert_allclose(found["stiffness"].low, force / 1.899e-6, rtol=1e-12)
     assert_allclose(found["freeing"].low, (force - 18.99e-6) / 50e-12, rtol=1e-9)
-    assert np.isnan(found["freeing"].high)
+    # Without water, which could keep its volume, slow and fast separation are the same.
+    assert found["freeing"].high == found["freeing"].low
     assert_allclose(found["stuck_after"].high, freeing.stuck_after(found["stuck_after"].low, 4), rtol=1e-12)
 
 
-def test_in_dry_air_a_shock_that_frees_slowly_frees_fast():
-    dry = stopper_dataset().isel(humidity=[0]).assign_coords(humidity=[0.0])
-    (shock,) = [one for one in life.of_stopper(dry, STOPPER) if one.name == "freeing"]
-    assert shock.low == shock.high
+def fast_forces(*factors):
+    """Dataset of stage separation of a stopper: the forces of `stopper_dataset` times a factor at each humidity."""
+    forces = stopper_dataset().pull_off
+    return forces.isel(humidity=slice(len(factors))).to_dataset() * np.array(factors)[:, None]
+
+
+def test_fast_separation_bounds_what_frees_a_stopper_from_above():
+    slow = answers(STOPPER)
+    fast = {one.name: one for one in life.of_stopper(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 2.5))}
+    for name in ("restoring_force", "stiffness"):
+        assert slow[name].low == slow[name].high == fast[name].low
+        assert_allclose(fast[name].high, 1.5 * fast[name].low, rtol=1e-12)
+    force = fast["restoring_force"].high
+    assert_allclose(fast["freeing"].high, (force - 18.99e-6) / 50e-12, rtol=1e-9)
+    assert fast["freeing"].low == slow["freeing"].low
+    assert set(slow) == set(fast)
+    # The second humidity holds half of the force of the first one, slowly.
+    second = {one.name: one for one in life.of_stopper(stopper_dataset(), STOPPER, separation=fast_forces(1.0, 3.0))}
+    assert_allclose(second["restoring_force"].high, 1.5 * slow["restoring_force"].low, rtol=1e-12)
+
+
+def test_patches_that_no_summits_stop_leave_fast_separation_without_a_bound():
+    flat = fast_forces(1.0, 1.0)
+    flat.pull_off[0, -30:] = np.inf
+    found = {one.name: one for one in life.of_stopper(stopper_dataset(), STOPPER, separation=flat)}
+    for name in ("restoring_force", "stiffness", "freeing"):
+        assert np.isnan(found[name].high)
+        assert found[name].low == answers(STOPPER)[name].low
+    flat.pull_off[0] = 1.2 * flat.pull_off[1]
+    flat.pull_off[0, -1] = np.inf  # one of 400 is less than the fraction of which the bound is
+    assert np.isfinite(life.of_stopper(stopper_dataset(), STOPPER, separation=flat)[-1].high)
+
+
+def energies(ratios, errors):
+    """Dataset of stage separation of a beam."""
+    data = {"energy_ratio": ("humidity", ratios), "energy_ratio_error": ("humidity", errors)}
+    return xr.Dataset(data, coords={"humidity": [0.44, 0.67]})
+
+
+def test_fast_separation_shortens_the_safe_length_as_its_energy_says(lengths):
+    least = {h: min(float(v) for v in one.safe_length.sel(share=1e-3)) for h, one in lengths.items()}
+    for ratios in ([2.7, 1.0], [1.0, 81.0], [16.0, 2.0]):
+        found = {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies(ratios, [0.1, 0.1]))}[
+            "fast"
+        ]
+        shorter = min(least[0.44] * ratios[0] ** -0.25, least[0.67] * ratios[1] ** -0.25)
+        assert_allclose((found.low, found.high), (shorter, min(least.values())), rtol=1e-12)
+    assert "fast" not in answers(OF, lengths)
+
+
+def test_its_error_has_that_of_the_length_and_a_quarter_of_that_of_the_ratio(lengths):
+    def fast(errors):
+        return {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies([50.0, 1.0], errors))}[
+            "fast"
+        ]
+
+    alone, both = fast([0.0, 0.0]), fast([10.0, 0.0])
+    assert_allclose(np.hypot(alone.error / alone.low, 0.2 / 4), both.error / both.low, rtol=1e-9)
+
+
+def test_strips_that_no_summits_stop_leave_a_beam_without_a_bound(lengths):
+    found = {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies([np.inf, 2.0], [np.nan, 0.1]))}[
+        "fast"
+    ]
+    assert np.isnan(found.low)
+    assert np.isnan(found.error)
+    assert found.high == min(float(one.safe_length.sel(share=1e-3).min()) for one in lengths.values())
+
+
+def test_sentences_say_what_fast_separation_needs_if_it_is_more(lengths):
+    beam = life.layout(life.of_beam(lengths, {}, OF, separation=energies([16.0, 2.0], [0.1, 0.1])), OF)
+    (said,) = [one for one in report.sentences(beam) if "faster than water" in one]
+    assert "safe length can fall from" in said
+    stopper = life.layout(life.of_stopper(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 1.0)), STOPPER)
+    (said,) = [one for one in report.sentences(stopper) if "faster than water" in one]
+    assert "it can need a restoring force of" in said
+    for none in (fast_forces(1.0, 1.0), None):
+        same = life.layout(life.of_stopper(stopper_dataset(), STOPPER, separation=none), STOPPER)
+        assert not any("faster than water" in one for one in report.sentences(same))
 
 
 def test_the_force_for_many_touchdowns_is_that_of_a_smaller_fraction_if_there_are_patches_enough():

@@ -34,6 +34,17 @@ def test_lengths_in_saturated_air_are_those_of_flooded_flats_by_shape():
     assert_allclose(tip, arc_length(energy, C1.beam), rtol=1e-9)
 
 
+def test_adsorbed_films_shorten_the_lengths_of_flooded_flats_by_their_work():
+    wet = Water(300.0, adsorbed=0.5e-9)
+    for humidity in (0.44, 0.9):
+        energy = 2 * 0.072 + wet.film(humidity)[1] * 0.5e-9
+        alone, tip = sticking.flooded_lengths(C1, wet, humidity)
+        assert_allclose(apparent_adhesion_energy(alone, C1.beam), energy, rtol=1e-9)
+        assert_allclose(tip, arc_length(energy, C1.beam), rtol=1e-9)
+        flat = replace(R1, hamaker_constant=0.0)
+        assert sticking.flooded_lengths(flat, wet, humidity) < sticking.flooded_lengths(flat, WATER, humidity)
+
+
 def test_the_bound_of_a_bridge_is_that_of_flooded_flats_in_contact_at_its_humidity():
     tension = 8.314462618 * 300 * -np.log(0.67) / 1.8e-5
     (water,) = sticking.flooded_lengths(replace(R1, hamaker_constant=0.0), WATER, 0.67)

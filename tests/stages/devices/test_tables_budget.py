@@ -112,7 +112,7 @@ def test_the_text_lists_once_for_each_device_what_counts_as_exact():
     caption = tables_budget.budget(BUDGETS).caption
     assert caption.count("C1: Counted as exact: the heights of B2, ") == 1
     assert "S1: Counted as exact: " in caption
-    assert tables_budget.counted_as_exact(BEAMS["C1", 0.67]).endswith(", the temperature, the contact angles.")
+    assert tables_budget.counted_as_exact(BEAMS["C1", 0.67]).endswith(", the contact angles, the adsorbed water.")
 
 
 def test_an_exact_slope_is_shown_without_an_error():

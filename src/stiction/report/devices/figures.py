@@ -43,7 +43,7 @@ _ROOM = 0.05
 
 
 def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[str]], table: str) -> None:
-    """Say below a figure which table has the warnings, by their numbers, in its caption, and add them to its own."""
+    """Name the table of the warnings below a figure, their numbers in its caption, and add them to its own."""
     if sentences := with_numbers(warnings):
         numbers = "(1)" if len(sentences) == 1 else f"(1) to ({len(sentences)})"
         figure.set_label("\n".join(["Warnings:", *sentences]))
@@ -123,7 +123,7 @@ def _shares(panel: Axes, dataset, colour):
 
 
 def _explain(panel, datasets):
-    """Add line styles and markers that occur to the legend of a panel; what has the same line shares an entry."""
+    """Add the used line styles and markers to the legend of a panel. Equal lines share an entry."""
     legends: dict[str, list[str]] = {}
     for shape, state in END_STATES.items():
         if any(shape in dataset["shape"].values for dataset in datasets.values()):
@@ -181,7 +181,7 @@ def _shapes_of(dataset):
 
 
 def _thicknesses(panel, whole, shape, marks, placed):
-    """Curves of all thicknesses of one device, gap and shape, their bounds, and what a power law gave.
+    """Curves of all thicknesses of one device, gap and shape, their bounds, and marks of power laws.
 
     Points are at the places of their humidities; no line leads to dry air.
 

@@ -1,4 +1,4 @@
-"""The life of devices: what brings them into contact, whether they stick, what holds and what frees them."""
+"""Life of devices: causes of contact, adhesion then, and ways to free them."""
 
 from collections.abc import Mapping
 
@@ -26,10 +26,16 @@ from stiction.report.table import Table, table_stage
 from stiction.stages.devices.life import (
     AFTER,
     AT_VOLTAGE,
+    BESIDE,
     COLLAPSE,
+    DIMPLES,
+    FAST,
     FIELD,
+    ON_DIMPLES,
+    PULLED,
     QUESTIONS,
     RELEASED,
+    RESTORING,
     SHOCK,
     TILTED,
     VOLTAGE,
@@ -90,7 +96,7 @@ def table(datasets: Mapping[str, xr.Dataset]) -> Table:
 
 
 def significant(value: float) -> str:
-    """Number with three significant digits and without an exponent; – for NaN.
+    """Number with three significant digits and without an exponent, – for NaN.
 
     Examples
     --------
@@ -109,12 +115,13 @@ def significant(value: float) -> str:
 
 
 def sentences(dataset: xr.Dataset) -> list[str]:
-    """The life of a device in words: what brings it into contact, what drying does, and many touchdowns."""
+    """Life of a device in words: causes of contact, drying, and many touchdowns."""
     answers, length = {answer.name: answer for answer in answers_of(dataset)}, float(dataset.length)
     at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
     said = [*_touching(answers, at), *_pulled_in(answers, potential), *_drying(answers, at, length)]
-    return [*said, *_tilted(answers), *_biased(answers, potential), *_often(answers, int(dataset.touchdowns))]
+    said += [*_dimpled(answers), *_tilted(answers), *_biased(answers, potential), *_fast(answers)]
+    return [*said, *_often(answers, int(dataset.touchdowns))]
 
 
 def _touching(answers, at):
@@ -126,10 +133,25 @@ def _touching(answers, at):
 
 
 def _pulled_in(answers, potential):
-    """Whether its own voltage pulls a device in."""
+    """Sentence on the pull-in of a device by its own voltage."""
     if VOLTAGE not in answers or potential < answers[VOLTAGE].low:
         return []
     return [f"Its own voltage of {significant(potential)} V pulls it in."]
+
+
+def _dimpled(answers):
+    """Whether a beam sticks on its dimples, and whether it touches beside them."""
+    if DIMPLES not in answers:
+        return []
+    pulls, holds = answers[PULLED], answers[DIMPLES]
+    often = max((one for one in answers.values() if one.name.startswith(f"{ON_DIMPLES}_")), key=lambda one: one.high)
+    said = (
+        f"Its dimples together are pulled off by {_low(pulls)} µN and held by {_low(holds)} µN on average: "
+        f"{_low(often)} to {_high(often)} % of the beams stick on them in the worst of its air."
+    )
+    if answers[BESIDE].low > 0:
+        return [f"{said} Beside them, {_low(answers[BESIDE])} % of the gap is left."]
+    return [f"{said} But it touches beside them, where they do not protect it."]
 
 
 def _tilted(answers):
@@ -142,7 +164,7 @@ def _tilted(answers):
 
 
 def _biased(answers, potential):
-    """What a voltage does to a device that touches, and whether its dielectric stands the field."""
+    """Effect of a voltage on a touching device, and on its dielectric."""
     if AT_VOLTAGE not in answers:
         return []
     one, field = answers[AT_VOLTAGE], answers[FIELD]
@@ -156,7 +178,7 @@ def _biased(answers, potential):
 
 
 def _drying(answers, at, length):
-    """Which beams stand while liquids dry, what becomes of one of this length, and what comes free afterwards."""
+    """Beams standing while liquids dry, the fate of one of this length, and beams releasing afterwards."""
     standing = _liquids(answers, COLLAPSE)
     if not standing:
         return []
@@ -180,7 +202,7 @@ _FATES = {
 
 
 def _fate(answer, length):
-    """What becomes of a beam of a length [m] while a liquid dries, key of `_FATES`."""
+    """Fate of a beam of a length [m] while a liquid dries, key of `_FATES`."""
     if not length > answer.low:
         return "stands"
     return "may" if length <= answer.high else "collapses"
@@ -194,6 +216,17 @@ def _inverted(values):
 def _liquids(answers, name):
     """Answers of one kind by the liquid that they are about."""
     return {key.removeprefix(f"{name}_"): one for key, one in answers.items() if key.startswith(f"{name}_")}
+
+
+def _fast(answers):
+    """Safe length, or restoring force, of fast separation in words, if it differs from slow and a bound is known."""
+    one = answers.get(FAST) or answers.get(RESTORING)
+    if one is None or not one.low < one.high < np.inf:
+        return []
+    needs = f"its safe length can fall from {_high(one)} to {_low(one)} µm"
+    if one.unit == "N":
+        needs = f"it can need a restoring force of {_high(one)} instead of {_low(one)} µN"
+    return [f"If it separates faster than water evaporates, as in a shock, {needs}."]
 
 
 def _often(answers, touchdowns):
@@ -226,7 +259,7 @@ def _high(answer: Answer) -> str:
 
 @styled
 def figure(datasets: Mapping[str, xr.Dataset]) -> Figure:
-    """Lengths of beams, or forces of stoppers, that limit their lives, on one axis; a panel for each device."""
+    """Limits of the lives of devices on one axis: lengths of beams, or forces of stoppers, a panel for each device."""
     rows = {name: _rows(dataset) for name, dataset in datasets.items()}
     height = _AROUND + _ROW * max(map(len, rows.values()))
     made, columns, lines = columns_of_panels(len(rows), 1, at_most_double(1.6 * SINGLE), height)
@@ -239,7 +272,7 @@ def figure(datasets: Mapping[str, xr.Dataset]) -> Figure:
 
 
 def _rows(dataset):
-    """Answers of a device that are lengths or, for a stopper, forces, and finite."""
+    """Finite answers of a device in lengths or, for a stopper, forces."""
     unit = "m" if np.isfinite(float(dataset.length)) else "N"
     return [one for one in answers_of(dataset) if one.unit == unit and np.isfinite(one.high)]
 

@@ -1,4 +1,4 @@
-"""Sentences on P(stuck) of a beam at the length that its device states."""
+"""Sentences on P(stuck) of a beam at the length of its device."""
 
 from collections.abc import Mapping, Sequence
 
@@ -10,7 +10,7 @@ from stiction.stages.devices.budget import budget_of
 
 
 def sentences(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> list[str]:
-    """P(stuck) at the length of a device in each of its airs, the worst first; none without a stated length.
+    """P(stuck) at the length of a device in each of its airs, the worst first, none without a given length.
 
     Parameters
     ----------
@@ -25,7 +25,7 @@ def sentences(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, 
 
 
 def _total(humidity, budgets):
-    """Relative uncertainty of the length at a humidity due to the measurements [-]; 0 if none is stated."""
+    """Relative uncertainty of the length at a humidity due to the measurements, 0 without any [-]."""
     totals = [budget_of(budget).total for key, budget in budgets.items() if key[0] == humidity]
     return max(filter(np.isfinite, totals), default=0.0)
 
@@ -45,7 +45,7 @@ def _sentence(humidity, held, total):
 
 
 def _measured(held: xr.Dataset, length: float, total: float) -> str:
-    """What the measurements leave uncertain of P(stuck): lengths that stick change by a relative amount ``total``."""
+    """Uncertainty of P(stuck) left by the measurements: stuck lengths change by a relative amount ``total``."""
     if total == 0:
         return ""
     at: Sequence[float] = length / np.array([1 + total, max(1 - total, 0.01)])

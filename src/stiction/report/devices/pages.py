@@ -56,12 +56,12 @@ _GLOSSARY = Path(__file__).with_name("terms.yaml")
 
 @cache
 def _terms():
-    """Terms by what a page has."""
+    """Terms by part of a page."""
     return _read(yaml.safe_load(_GLOSSARY.read_text(encoding="utf-8")))
 
 
 def _read(part):
-    """A section of the glossary, or the text of a term, whose parts are joined."""
+    """Section of the glossary, or the text of a term with its parts joined."""
     if isinstance(part, dict):
         return {name: _read(inner) for name, inner in part.items()}
     return part if isinstance(part, str) else " ".join(part)
@@ -141,7 +141,7 @@ def of_stopper(
     errors: Mapping[str, xr.Dataset] | None = None,
     roughness: xr.Dataset | None = None,
 ) -> Page:
-    """Page of a stopper; parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
+    """Page of a stopper. Parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
     table = tables_budget.stoppers({name: stopper}, {name: []}, errors).cells.drop(columns=["device"])
     sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: stopper}, {}))]
     sections += [*_sure(name, budgets, errors), *_how_rough(name, roughness)]
@@ -201,7 +201,7 @@ def _with_force(section):
 
 
 def _asked(section):
-    """What is required of a device and over which roughness it is asked for, by name; nothing if it is not asked."""
+    """Requirement of a device and its range of roughness, by name, or nothing without a requirement."""
     if "requirement" not in section:
         return {}
     required, over = section["requirement"], section["roughness"]
@@ -218,7 +218,7 @@ def _asked(section):
 
 
 def _sure(name, budgets, errors):
-    """Section on the uncertainty of the result and what to measure better; none if no input is uncertain."""
+    """Section on the uncertainty of the result and on measurements, none if no input is uncertain."""
     if not budgets:
         return []
     cases = {(name, *key): dataset for key, dataset in budgets.items()}
@@ -232,7 +232,7 @@ def _sure(name, budgets, errors):
 
 
 def _of_test_beams(name, update):
-    """Section on what the test beams of a device say."""
+    """Section on the evidence of the test beams of a device."""
     said = [
         tables_test_beams.explained(update),
         *tables_test_beams.combinations(update),
@@ -244,12 +244,12 @@ def _of_test_beams(name, update):
 
 
 def _rough_enough(roughness):
-    """Which roughness suffices, among the first sentences; nothing if this was not asked."""
+    """Sufficient roughness, among the first sentences, or nothing without a requirement."""
     return [] if roughness is None else tables_roughness.briefly(roughness)
 
 
 def _how_rough(name, roughness):
-    """Section on how rough a surface must be; none if this was not asked."""
+    """Section on how rough a surface must be, none without a requirement."""
     if roughness is None:
         return []
     cells = tables_roughness.roughness({name: roughness}).cells.drop(columns="device")
@@ -273,7 +273,7 @@ def _side_by_side(cells):
 
 
 def _inputs(plan, at):
-    """Everything that the page of a device shows."""
+    """Inputs of the page of a device."""
     devices, section = plan.devices, plan.config["devices"][at.device]
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
     budgets = budgets_of(plan, at.device) if at.device in devices.budgeted else {}

@@ -1,4 +1,4 @@
-"""Sentences on the pages of devices: the length to build, the force that suffices, and who sticks in which air."""
+"""Sentences on the pages of devices: the length to build, the sufficient force, and devices stuck in each air."""
 
 from collections.abc import Mapping
 
@@ -54,7 +54,7 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
 
 
 def _any(safe_lengths):
-    """One of the datasets of a device, which have the same shares and shapes."""
+    """One of the datasets of a device. All have the same shares and shapes."""
     return next(iter(safe_lengths.values()))
 
 
@@ -64,14 +64,14 @@ def _safe(dataset):
 
 
 def _chosen(dataset):
-    """The share of stuck devices for which sentences state lengths: the middle one [-]."""
+    """Fraction of stuck devices for lengths in sentences: the middle one [-]."""
     return float(dataset.share[dataset.sizes["share"] // 2])
 
 
 def of_shortest(
     safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
 ) -> dict[tuple, xr.Dataset]:
-    """Budgets of what holds the shortest devices: of tips, if there are tips."""
+    """Budgets of the shortest stuck devices: of tips, if there are tips."""
     of_tips = EITHER in _any(safe_lengths)["shape"].values
     return {key: budget for key, budget in budgets.items() if ("tip" in key) == of_tips}
 
@@ -115,7 +115,7 @@ def _verdict_of_few(stopper):
 
 
 def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
-    """The safe lengths of a device at one humidity in words, for the middle one of the shares."""
+    """Safe lengths of a device at one humidity in words, for the middle fraction."""
     share = _chosen(dataset)
     lengths = dataset.safe_length.sel(share=share) / UM
     shortest, longest = float(lengths.min()), float(lengths.max())
@@ -130,17 +130,17 @@ def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
 
 
 def few_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
-    """How many devices stick at most at each humidity at which hardly any does."""
+    """Largest fractions of stuck devices, at each humidity with hardly any stuck."""
     return [few_sentence(humidity, one) for humidity, one in safe_lengths.items() if _few_stick(one)]
 
 
 def _few_stick(dataset):
-    """Whether the safe length of the chosen share is as long as the simulated devices, or that of flat surfaces."""
+    """Whether the safe length of the chosen fraction is as long as the simulated devices, or as on flat surfaces."""
     return dataset.basis.sel(share=_chosen(dataset)).values[-1] in (Basis.LONGEST, Basis.FLAT)
 
 
 def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
-    """How many devices stick at most at one humidity, in words, where so few do that no smaller share is known."""
+    """Largest fraction of stuck devices at one humidity, in words, if so few stick that no smaller one is known."""
     held, number, share = dataset.isel(shape=-1), int(dataset.beams), _chosen(dataset)
     shortest, most, reach = float(held.shortest), float(held.most_stuck), float(held.reach)
     none = f"shorter than {shortest / UM:.0f} µm " if np.isfinite(shortest) else ""
@@ -157,7 +157,7 @@ def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
 
 
 def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force: float) -> str:
-    """P(stuck) of a stopper at one humidity in words; restoring force [N].
+    """P(stuck) of a stopper at one humidity in words, with its restoring force [N].
 
     Examples
     --------
@@ -177,7 +177,7 @@ _ON = {
 
 
 def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
-    """Restoring forces that would suffice at the humidities of a stopper, and in any air of its fine axis.
+    """Sufficient restoring forces at the humidities of a stopper, and in any air of its fine axis.
 
     For the shares that its patches can bound.
     """
@@ -193,7 +193,7 @@ def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
 
 
 def worst_sentence(stopper: xr.Dataset) -> str:
-    """The worst humidity of a stopper in words."""
+    """Worst humidity of a stopper in words."""
     worst = float(stopper.worst_humidity)
     share, least, most = (100 * share for share in in_any_air(stopper)[0])
     stuck = f" In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
@@ -210,7 +210,7 @@ def worst_sentence(stopper: xr.Dataset) -> str:
 
 
 def _range(stopper):
-    """Range of humidities along which the worst was sought, in words."""
+    """Range of humidities in the search of the worst, in words."""
     low, high = ends(stopper)
     return f" from {low:g} to {high:g}"
 

@@ -1,4 +1,4 @@
-"""Tables of devices: lengths of beams that come free, at their humidities and along the axes of charts."""
+"""Tables of devices: lengths of releasing beams, at their humidities and along the axes of charts."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -70,7 +70,7 @@ _AT_LENGTH = (
 
 
 def _at_length(dataset: xr.Dataset) -> dict[str, float]:
-    """Columns of a row of the table of safe lengths, from a dataset of one shape; none without a stated length."""
+    """Columns of a row of the table of safe lengths, from a dataset of one shape, none without a given length."""
     if "length_of_device" not in dataset:
         return {}
     stuck, low, high = map(float, dataset.stuck_at_length)
@@ -80,7 +80,7 @@ def _at_length(dataset: xr.Dataset) -> dict[str, float]:
 
 
 def _percent(stuck, low, high, error):
-    """A share with its band and error in percent; – for devices without a length."""
+    """Fraction with its band and error in percent, – for devices without a length."""
     if np.isnan(stuck):
         return MISSING
     surfaces = f", ± {100 * error:.2g}" if error > 0 else ""
@@ -99,7 +99,7 @@ def safe_lengths(
     errors: Mapping[str, xr.Dataset] | None = None,
     not_modelled: str = "",
 ) -> Table:
-    """Safe lengths of all beams, one row per device, humidity, shape and share; errors of the model are by device.
+    """Safe lengths of all beams, one row per device, humidity, shape and share. Errors of the model are by device.
 
     The caption ends with what is not in the model.
     """
@@ -128,7 +128,7 @@ def safe_lengths(
 
 
 def _few(datasets):
-    """What lengths rest on where few devices stick; nothing where enough of them do."""
+    """Basis of lengths with few stuck devices, or nothing if enough of them stick."""
     bases = {str(basis) for dataset in datasets.values() for basis in dataset.basis.values.flat}
     if not (found := [text for basis, text in _FEW.items() if basis in bases]):
         return []
@@ -136,7 +136,7 @@ def _few(datasets):
 
 
 def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where_dry: str) -> str:
-    """What the bounds of some cases are: of humid air, with what is different where no water condenses, or of dry air.
+    """Meaning of the bounds of some cases: of humid air, with a difference without condensation, or of dry air.
 
     Cases have datasets with the height of their film, which is zero where no water condenses.
     """
@@ -147,7 +147,7 @@ def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where
 
 
 def _caption(text, warnings, not_modelled):
-    """Caption with what is not modelled and, below each other, numbered warnings."""
+    """Caption with missing effects and, below each other, numbered warnings."""
     listed = with_numbers(warnings)
     return with_list(" ".join([text, not_modelled, *(["Warnings:"] if listed else [])]), listed)
 
@@ -190,7 +190,7 @@ def chart(
     warnings: Mapping[tuple[str, float, float, str], list],
     not_modelled: str = "",
 ) -> Table:
-    """Safe lengths along the axes of all charts, curve by curve; a line of text has the lengths of all shares.
+    """Safe lengths along the axes of all charts, curve by curve. A line of text has the lengths of all shares.
 
     Warnings are by name, thickness [m], gap [m] and shape. The caption ends with what is not in the model.
     """
@@ -211,7 +211,7 @@ def chart(
 
 
 def _beam(point):
-    """Size of a beam of a chart, what its lengths come from, and its limit."""
+    """Size of a beam of a chart, the source of its lengths, and its limit."""
     computed = bool(point.by_elements)
     return {
         "thickness_um": round(float(point.thickness) / UM, 9),  # as in the configuration

@@ -1,4 +1,4 @@
-"""Page of all warnings about devices, which the last lines of a run count: limits of the model, and test beams."""
+"""Page of all warnings about devices, counted by the last lines of a run: limits of the model, and test beams."""
 
 from collections.abc import Mapping
 
@@ -14,7 +14,7 @@ from stiction.stages.devices.device_warnings import OfDevices, subjects
 
 
 def page(limits: OfDevices, test_beams: Mapping[str, xr.Dataset], not_modelled: str) -> str:
-    """Warnings about devices, and about what their test beams say, by name of the device."""
+    """Warnings about devices, and about the evidence of their test beams, by name of the device."""
     said = {f"{name}, test beams": tables_test_beams.warnings(update) for name, update in test_beams.items()}
     return as_markdown(subjects(limits) | said, not_modelled)
 

@@ -24,6 +24,7 @@ _LABELS = {
     "poisson_ratio": "ν = {}",
     "strips_per_element": "elements of {} strips",
     "reach": "vdW: across {} gaps",
+    "adsorbed_nm": "{} nm of adsorbed water",
     "contact": "{} elastic contact",
 }
 

@@ -15,7 +15,7 @@ _OF_MATERIALS = {"contact_angle_deg": ("contact angle", "°"), "coating_nm": ("c
 
 
 def described(surface: Mapping, material: Mapping) -> str:
-    """A surface of the configuration by its numbers, or by its scans, and by its material.
+    """Surface of the configuration by its numbers, or by its scans, and by its material.
 
     Examples
     --------
@@ -33,5 +33,5 @@ def described(surface: Mapping, material: Mapping) -> str:
 
 
 def _stated(section, words):
-    """Numbers that a section states, in words."""
+    """Numbers of a section, in words."""
     return [f"{name} {section[key]:g}{unit}" for key, (name, unit) in words.items() if key in section]

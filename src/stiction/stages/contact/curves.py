@@ -8,6 +8,7 @@ import xarray as xr
 from stiction.config.units import from_si
 from stiction.contact import environment, forcelaw, gaps
 from stiction.contact.environment import ForceCurves, Water
+from stiction.contact.separation import keep_volume
 from stiction.stages.contact.contact import tables
 
 
@@ -76,6 +77,33 @@ def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     sampled = force_curves(contact, humidity, water)
     forces = forcelaw.pull_offs(*sampled[:3], sampled.flat)
     return forces * water.correction.at(humidity)[1] if water.correction else forces
+
+
+def fast_pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """As `pull_offs`, of surfaces that separate faster than water evaporates; infinite where no summits stop them."""
+    _, fast = _separations(contact, humidity, water)
+    forces = np.array([np.inf if one is None else -one[0].min() for one in fast])
+    return forces * water.correction.at(humidity)[1] if water.correction else forces
+
+
+def fast_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """As `energies`, of surfaces that separate faster than water evaporates; infinite where no summits stop them."""
+    sampled, fast = _separations(contact, humidity, water)
+    beyond = np.zeros(sampled.samples) if sampled.beyond is None else sampled.beyond
+    energies = [
+        np.inf if one is None else forcelaw.adhesion_energy(sampled.distance, one[0], beyond[k] + one[1])
+        for k, one in enumerate(fast)
+    ]
+    return np.array(energies) * (water.correction.at(humidity)[0] if water.correction else 1.0)
+
+
+def _separations(contact, humidity, water):
+    """Force curves at a relative humidity, and those of fast separations one by one."""
+    sampled, (_, bearing, starts, _) = force_curves(contact, humidity, water), tables(contact)
+    layer = water.film(humidity)
+    return sampled, (
+        keep_volume(sampled.curve(k), sampled.distance, bearing[k], starts[1], layer) for k in range(sampled.samples)
+    )
 
 
 def share_flat(contact: xr.Dataset, humidity: float, water: Water) -> float:

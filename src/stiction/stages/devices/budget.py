@@ -1,4 +1,4 @@
-"""Stage budget: which input of a device moves its length, or the pull-off force of a stopper, by how much.
+"""Stage budget: the effect of each input of a device on its length, or on the pull-off force of a stopper.
 
 A cantilever has a budget of its sticking length as an S-shape, and another one of the length that its tip holds:
 its contact is that of the tips. Slopes are central differences with common random numbers: sample k of two contacts has
@@ -36,7 +36,7 @@ from stiction.stages.devices.uncertain_inputs import Input, Known, Settings, Sta
 
 @dataclass(frozen=True)
 class Responses:
-    """Lengths [m] or forces [N] of the same devices at several states, and what they share."""
+    """Lengths [m] or forces [N] of the same devices at several states, and their common part."""
 
     values: np.ndarray  #: (states, devices); infinite where a beam has no S-shaped crack
     centre: Callable[[np.ndarray], float]  #: the number that stands for all devices of a state
@@ -52,7 +52,7 @@ Respond = Callable[[Sequence[State]], Responses]
 
 @dataclass(frozen=True, kw_only=True)
 class BeamBudget(Settings):
-    """Budget of the mean length at which beams stick: as S-shapes, or as bridges that are held by their middle."""
+    """Budget of the mean length of adhesion of beams: as S-shapes, or of bridges at their middle."""
 
     device: DesignedBeam
     beams: int  #: number of beams for every slope
@@ -60,12 +60,12 @@ class BeamBudget(Settings):
 
     @property
     def response(self) -> str:
-        """What the inputs move."""
+        """Quantity changed by the inputs."""
         return self.device.opening.shapes[0]
 
     @property
     def sizes(self) -> tuple[str, ...]:
-        """What a measurement of the device itself could determine."""
+        """Sizes open to a measurement of the device itself."""
         return self.device.opening.sizes
 
     def state(self, contact: xr.Dataset) -> State:
@@ -81,7 +81,7 @@ class BeamBudget(Settings):
 
 @dataclass(frozen=True, kw_only=True)
 class TipBudget(Settings):
-    """Budget of the length that the tips of a share of all cantilevers hold; methods as of `BeamBudget`."""
+    """Budget of the length with a fraction of the tips of all cantilevers stuck. Methods as of `BeamBudget`."""
 
     device: DesignedBeam
     share: float  #: p [-]
@@ -90,13 +90,13 @@ class TipBudget(Settings):
     sizes, state = BeamBudget.sizes, BeamBudget.state
 
     def responder(self, _state: State) -> Respond:
-        """How the devices respond: arcs of all tips."""
+        """Response of the devices: arcs of all tips."""
         return partial(of_tips, share=self.share)
 
 
 @dataclass(frozen=True, kw_only=True)
 class PatchBudget(Settings):
-    """Budget of the mean pull-off force of a stopper; methods as of `BeamBudget`."""
+    """Budget of the mean pull-off force of a stopper. Methods as of `BeamBudget`."""
 
     contact: tuple[float, float]  #: sides of the patch [m]
     share: ClassVar[float] = 0.0
@@ -108,7 +108,7 @@ class PatchBudget(Settings):
         return State(contact, self.humidity, self.water, area=self.contact[0] * self.contact[1], alike=self.alike)
 
     def responder(self, _state: State) -> Respond:
-        """How the devices respond: pull-off forces of all patches."""
+        """Response of the devices: pull-off forces of all patches."""
         return of_stoppers
 
 
@@ -156,7 +156,7 @@ def of_stoppers(states: Sequence[State]) -> Responses:
 
 
 def of_tips(states: Sequence[State], share: float) -> Responses:
-    """Longest arcs that come free of all sampled tips at several states; a share p of them stands for all.
+    """Longest releasing arcs of all sampled tips at several states. Their quantile at p stands for all.
 
     ASSUME: no crack stops on beams that are so short that only a share p of the tips hold them.
     """
@@ -168,7 +168,7 @@ def of_tips(states: Sequence[State], share: float) -> Responses:
 
 
 def _held(lengths, share):
-    """Length that a share of all hold, infinite if too few do: that of a small share from the fit of the short end."""
+    """Length with a fraction stuck, infinite if too few stick. Small fractions take the fit of the short end."""
     known = np.isfinite(lengths)
     if share > TAIL:
         return float(np.quantile(lengths, share)) if known.all() or known.mean() > share + 1 / len(lengths) else np.inf
@@ -186,6 +186,7 @@ def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, addr
     laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water) for state in states])
 
     def lengths(state, laws):
+        """Crack lengths in a state on force laws [m]."""
         part = replace(state.device.beam, length=mesh.length, elements=mesh.elements)
         return arrests(state.device, (part, strips), partial(_picked, laws), number, address)
 
@@ -198,7 +199,7 @@ def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, addr
 
 
 def shared_laws(parametrised: Sequence[tuple[np.ndarray, float]]) -> list[np.ndarray]:
-    """Force laws of the samples that have one at every state, from vectors and f_limit of each; (m, 4) each."""
+    """Force laws of the samples lawful at every state, from vectors and f_limit of each, (m, 4) each."""
     lawful = np.logical_and.reduce([forcelaw.admissible(vectors, limit) for vectors, limit in parametrised])
     return [forcelaw.coefficients(vectors[lawful], limit) for vectors, limit in parametrised]
 
@@ -221,7 +222,7 @@ def slopes(inputs: Sequence[Input], respond: Respond) -> np.ndarray:
 
 
 def _slope(responses, step):
-    """Slope between two states and its standard error, of the devices and of the samples that they share."""
+    """Slope between two states and its standard error, of the devices and of their common samples."""
     value, own = log_slope(responses.centre, *responses.values, step)
     if responses.shared is None:
         return value, own
@@ -285,7 +286,7 @@ def budget_of(dataset: xr.Dataset) -> Budget:
 
 
 def groups_of(dataset: xr.Dataset) -> dict[str, list[str]]:
-    """Inputs by the measurement that determines them."""
+    """Inputs by the measurement for them."""
     groups = {}
     for name, group in zip(dataset.input.values, dataset.group.values, strict=True):
         groups.setdefault(str(group), []).append(str(name))
@@ -293,7 +294,7 @@ def groups_of(dataset: xr.Dataset) -> dict[str, list[str]]:
 
 
 def response_of(dataset: xr.Dataset) -> tuple[str, float]:
-    """What the inputs move, ``S_SHAPE``, ``ARC`` or ``FORCE``, and the share p of an arc [-]."""
+    """Quantity changed by the inputs, ``S_SHAPE``, ``ARC`` or ``FORCE``, and the fraction p of an arc [-]."""
     return dataset.centre.attrs["response"], float(dataset.centre.attrs["share"])
 
 
@@ -328,14 +329,14 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
 
 
 def _with_choices(plan, pair, settings, choices):
-    """Settings of a budget with its choices of the model, and with the water under those that change it."""
+    """Settings of a budget with its choices of the model, and with the water of choices with another."""
     changed = plan.variants.water_of_choices(pair, choices)
     own = settings["budget"] | ({"waters": changed} if changed else {})
     return settings | {"budget": own, "choices": choices}
 
 
 def settings_of_tips(plan: Any, at: At, share: float | None = None) -> dict[str, Any]:
-    """As `settings_of`, of the length that a share of the tips of a cantilever hold, by default the middle one."""
+    """Settings of `settings_of`, for the length of a fraction of stuck tips, by default the middle one."""
     settings, shares = settings_of(plan, at), plan.config["design"]["shares"]
     own = {key: value for key, value in settings["budget"].items() if key not in ("beams", "waters")}
     settings |= {"budget": own | {"share": share or shares[len(shares) // 2]}}
@@ -364,7 +365,7 @@ def budgets_of(plan: Any, *devices: str) -> dict[tuple, str]:
 
 
 def _memory_of_tips(plan, view, names):
-    """Memory of the largest budget of tips [MB], which holds all its contacts; ``view`` has these beams as devices."""
+    """Memory of the largest budget of tips, with all its contacts [MB]. ``view`` has these beams as devices."""
     slopes = []
     for name in names:
         contacts = contacts_of_tip_budget(view, case_id(name, view.devices.sections[name]["humidities"][0]))
@@ -398,9 +399,10 @@ def budgets_of_arrays(plan: Any, device: str) -> dict[tuple, str]:
 
 
 def _inputs_of_test_beams(contacts):
-    """As those of a cantilever, or of its tips; other choices of the model are left out."""
+    """Inputs of a cantilever, or of its tips. Other choices of the model are left out."""
 
     def inputs(plan, at):
+        """Inputs of an array, as of a device."""
         plan, name = plan.of_test_beams, at.case.device
         return _inputs(plan, name) | contacts(plan, at.case) | {"choices": {}}
 

@@ -26,7 +26,7 @@ from stiction.stages.devices.opening import DesignedBeam, settings_of_beam
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that a chart depends on at one humidity apart from the contact of strips and tips."""
+    """Settings of a chart at one humidity, without the contact of strips and tips."""
 
     seed: int
     chaos: Truncation
@@ -41,7 +41,7 @@ class Settings:
 
 @dataclass(frozen=True)
 class Filled:
-    """Lengths of beams of all sizes, and where they come from."""
+    """Lengths of beams of all sizes, and their source."""
 
     lengths: np.ndarray  #: (sizes, ...) [m]
     by_elements: np.ndarray  #: whether each size was computed by finite elements (sizes,) bool
@@ -49,7 +49,7 @@ class Filled:
 
 
 def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
-    """Safe lengths of all thicknesses and gaps; inputs as in the stages cracks and safe_lengths."""
+    """Safe lengths of all thicknesses and gaps. Inputs as in the stages cracks and safe_lengths."""
     met = sticking.ground(contact, tips, settings.humidity, settings)
 
     def by_elements(thickness, gap):
@@ -89,7 +89,7 @@ def filled(
 
 
 def corners_and_tests(thicknesses: int, gaps: int) -> tuple[np.ndarray, np.ndarray]:
-    """Sizes to which a power law is fitted and those that test it, (thicknesses * gaps,) bool each.
+    """Sizes for the fit of a power law and for its test, (thicknesses * gaps,) bool each.
 
     It is tested in the middle of both axes, and in the middle of each along the least value of the other: departures
     along the two axes may cancel where both are met. No corner tests it.
@@ -102,7 +102,7 @@ def corners_and_tests(thicknesses: int, gaps: int) -> tuple[np.ndarray, np.ndarr
 
 
 def _power_laws(sizes, computed, test):
-    """Power law of each shape and share with its error; none if no size is left or one of them errs too much."""
+    """Power law of each shape and share with its error. None if no size is left or one of them errs too much."""
     known = list(computed)
     if len(known) == len(sizes):
         return []
@@ -143,7 +143,7 @@ def layout(filled: Filled, rms: float, settings: Settings) -> xr.Dataset:
 
 
 def _settings(plan, at):
-    """As those of the cracks and the safe lengths, for all thicknesses and gaps of the chart of a device."""
+    """Settings of the cracks and the safe lengths, for all thicknesses and gaps of the chart of a device."""
     section = plan.config["devices"][at.case.device]
     sizes = {"gaps_um": [section["gap_um"]]} | chosen(section["chart"], ("thicknesses_um", "gaps_um"))
     return select(Settings, settings_of_beam(plan, at.case) | sizes)

@@ -1,10 +1,10 @@
-"""Names of the contacts that the stages of devices read."""
+"""Names of the contacts used by the stages of devices."""
 
 from typing import Any
 
 from stiction.config.cases import Case
 from stiction.models import SHIFTS
-from stiction.plan.devices import Patch
+from stiction.plan.devices import Patch, patch
 from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS
 from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
@@ -14,15 +14,21 @@ from stiction.stages.contact.corrections import correction_inputs
 
 
 def contact_of(plan: Any, case: Case) -> str:
-    """Contact of the patch on which a device sticks at a humidity: that of its pair in the main line if it is equal."""
+    """Contact of the patch of a device at a humidity: the pair's in the main line if it is equal."""
     if plan.devices.has_strips_of_pair(case.device):
         return f"contact/{plan.contact_of_device(case)}_NG"
     return file_of(AS_IT_IS, GROUND, **patch_of(plan, case)._asdict())
 
 
 def patch_of(plan: Any, case: Case) -> Patch:
-    """Patch on which a device sticks, named with its pair in the air of a case, see `stiction.plan.environment`."""
+    """Patch of contact of a device, named with its pair in the air of a case, see `stiction.plan.environment`."""
     return plan.devices.ground(case.device)._replace(pair=plan.contact_of_device(case))
+
+
+def dimples_of(plan: Any, case: Case) -> str:
+    """Contact of one dimple under a beam at a humidity."""
+    sides = plan.devices.sections[case.device]["dimples"]["contact_um"]
+    return file_of(AS_IT_IS, GROUND, **patch(plan.contact_of_device(case), *sides)._asdict())
 
 
 def tilted_of(plan: Any, case: Case) -> str:
@@ -31,19 +37,19 @@ def tilted_of(plan: Any, case: Case) -> str:
 
 
 def tips_of(plan: Any, case: Case) -> dict[str, str]:
-    """Contact of the strips that hold the tips of a cantilever at a humidity; none for a bridge."""
+    """Contact of the strips at the tips of a cantilever at a humidity, none for a bridge."""
     if not plan.devices.kind(case.device).has_tip:
         return {}
     return {"tips": file_of(AS_IT_IS, TIPS, **_tips(plan, case)._asdict())}
 
 
 def _tips(plan, case):
-    """As `patch_of`, of the tips of a cantilever."""
+    """Patch of the tips of a cantilever, named as by `patch_of`."""
     return plan.devices.tips(case.device)._replace(pair=plan.contact_of_device(case))
 
 
 def corrections_of(plan: Any, device: str) -> dict[str, str]:
-    """As `stiction.stages.contact.corrections.correction_inputs`, of the pair of a device."""
+    """Corrections of the pair of a device, see `stiction.stages.contact.corrections.of_pair`."""
     return correction_inputs(plan, plan.config["devices"][device]["pair"])
 
 

@@ -1,4 +1,4 @@
-"""Stage cracks: where the cracks of long beams of a device stop at a humidity, and the error of few sampled surfaces.
+"""Stage cracks: arrest of the cracks of long beams of a device at a humidity, and the error of few surfaces.
 
 Of a bridge, the stage finds the shortest length that its middle holds instead.
 A simulation of long beams gives P(stuck) at every length (`stiction.devices.risk`). For the error due to the number of
@@ -42,7 +42,7 @@ GROUPS, PER_GROUP = 10, 50
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the cracks depend on apart from the contact."""
+    """Settings of the cracks, without the contact."""
 
     seed: int
     chaos: Truncation
@@ -80,7 +80,7 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
 def layout(
     opening: Opening, arrested: np.ndarray, of_group: list[np.ndarray], beam: Beam, laws: np.ndarray, rms: float
 ) -> xr.Dataset:
-    """Dataset of the lengths at which the cracks of a device stop at a humidity.
+    """Dataset of the lengths of arrest of the cracks of a device at a humidity.
 
     Lengths with all samples of contact (n,), as from `stiction.stages.devices.opening.arrests`, and with each group of
     them alone [m]; the part of the device that finite elements resolve; a sample (k, 4) of the force laws [SI]; rms of

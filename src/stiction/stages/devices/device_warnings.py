@@ -1,4 +1,4 @@
-"""Where results of devices are beyond the limits of the model, in sentences of `stiction.devices.limits`."""
+"""Results of devices beyond the limits of the model, in sentences of `stiction.devices.limits`."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -31,7 +31,7 @@ from stiction.stages.surfaces import surface_flags
 
 @dataclass(frozen=True)
 class OfDevice:
-    """A device and its pair."""
+    """Device and its pair."""
 
     device: DesignedBeam
     materials: StatedProperties = ()  #: of its pair
@@ -39,7 +39,7 @@ class OfDevice:
 
 @dataclass(frozen=True)
 class OfStopper:
-    """A stopper and its pair."""
+    """Stopper and its pair."""
 
     pair: str
     water: Water
@@ -52,7 +52,7 @@ class OfStopper:
 def of_device(
     safe_lengths: xr.Dataset, of: OfDevice, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0
 ) -> dict[str, list[str]]:
-    """Warnings about a device at a humidity, by the shape in which it sticks; dataset of stage safe_lengths.
+    """Warnings about a device at a humidity, by the shape of its adhesion. Dataset of stage safe_lengths.
 
     Each shape is checked at the shortest of its lengths, where slopes are largest. That no water condenses is worth a
     sentence at a humidity, but not in dry air.
@@ -70,7 +70,7 @@ def of_device(
 def of_chart(
     charts: Sequence[xr.Dataset], of: OfDevice, plastic: Plastic = NOT_STUDIED
 ) -> dict[tuple[float, float, str], list[str]]:
-    """Warnings about the chart of a device by thickness [m], gap [m] and shape; a dataset of stage chart per humidity.
+    """Warnings about the chart of a device by thickness [m], gap [m] and shape. A dataset of stage chart per humidity.
 
     Each curve is checked at its shortest length.
     """
@@ -122,7 +122,7 @@ class OfDevices(NamedTuple):
 
 
 def of_stopper(of: OfStopper, plastic: Plastic = NOT_STUDIED, share_flat: float = 0.0) -> list[str]:
-    """Warnings about a stopper, of whose patches a share is flat [-]; other parameters as of `of_device`."""
+    """Warnings about a stopper with a fraction of flat patches [-]. Other parameters as of `of_device`."""
     return limits.given(
         *_of_water(of), limits.flat_patches(share_flat), *contact_warnings(plastic, of.materials, limits.STRONGER)
     )
@@ -162,21 +162,21 @@ def left_out_changes(dataset: xr.Dataset) -> dict[tuple[float, str], tuple[float
 
 
 def of_left_out_gaps(changes: Mapping[tuple[float, str], tuple[float, float]], shape: str) -> list[str]:
-    """Warning about what attraction across gaps would change of what holds in a shape, from `left_out_changes`."""
+    """Warning about the effect of attraction across gaps on adhesion in a shape, from `left_out_changes`."""
     response = ARC if shape == EITHER else shape
     of_shape = {humidity: change for (humidity, of), change in changes.items() if of == response}
     return limits.given(limits.without_gaps(of_shape, shorter=shape != FORCE))
 
 
 def left_out_gaps(plan: Any, device: str) -> dict[str, str]:
-    """Dataset of a device whose results are without attraction across gaps, as input of a stage; none for others."""
+    """Dataset of a device with results without attraction across gaps, as input of a stage, none for others."""
     pair = plan.config["devices"][device]["pair"]
     is_left_out = plan.air_of_devices.reach(pair) == "touching" and plan.config["van_der_waals"] != "none"
     return {"left_out_gaps": f"devices/left_out_gaps/{device}"} if is_left_out else {}
 
 
 def _inputs(plan, at):
-    """Everything that the warnings about a device are about."""
+    """Inputs of the warnings about a device."""
     devices, section = plan.devices, plan.config["devices"][at.device]
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]] if at.device in devices.beams else []
     charts = devices.chart_cases(at.device) if at.device in devices.charted else []
@@ -190,7 +190,7 @@ def _inputs(plan, at):
 
 
 def _settings(plan, at):
-    """A device, its pair and the stated properties of its materials."""
+    """Device, its pair and the stated properties of its materials."""
     section = plan.config["devices"][at.device]
     own = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
     said = plan.assumed(section["pair"]).get(section["pair"])
@@ -202,7 +202,7 @@ def _settings(plan, at):
 
 
 def _of_one_device(data, settings):
-    """Warnings about a device: about its lengths, its curves and its patch, each with what follows its name."""
+    """Warnings about a device: about its lengths, its curves and its patch, each with a suffix to its name."""
     flags = surface_flags.together(data) + settings.get("assumed", [])
     changes = left_out_changes(data["left_out_gaps"]) if "left_out_gaps" in data else {}
     if "stopper" in settings:
@@ -231,7 +231,7 @@ def _at(changes, humidity):
 
 
 def not_modelled(plan: Any, *devices: str) -> str:
-    """Sentence on what is not in the results of some devices."""
+    """Sentence on effects missing in the results of some devices."""
     sections = (plan.config["devices"][name] for name in devices)
     return plan.air_of_devices.not_modelled(
         (section["pair"], humidity) for section in sections for humidity in section["humidities"]

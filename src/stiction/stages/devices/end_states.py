@@ -8,7 +8,7 @@ from stiction.stages.devices.opening import ARC, EITHER, FORCE, MIDDLE, S_SHAPE
 
 @dataclass(frozen=True, kw_only=True)
 class EndState:
-    """A way in which a device may stick."""
+    """Final state of a stuck device."""
 
     by: str  #: what holds it, in tables
     legend: str = ""  #: the same in legends

@@ -1,4 +1,4 @@
-"""Stage left_out_gaps: what attraction across gaps would change of a device whose results are without it.
+"""Stage left_out_gaps: effect of attraction across gaps on a device with results without it.
 
 Devices attract across gaps, unless a configuration states otherwise or corrects them to full elastic contact, whose
 ratios are without it. The change is an effect of a choice of the model, as in a budget: of the same devices on the same
@@ -40,7 +40,7 @@ def compute(contacts: Sequence[xr.Dataset], budgets: Sequence[AnyBudget], waters
 
 
 def _parts(plan, device):
-    """Contact and settings of everything that may hold a device, at each of its humidities."""
+    """Yield contact and settings of every place of adhesion of a device, at each of its humidities."""
     for humidity in plan.config["devices"][device]["humidities"]:
         case = case_id(device, humidity)
         yield contact_of(plan, case), settings_of(plan, At(case=case))["budget"]
@@ -49,7 +49,7 @@ def _parts(plan, device):
 
 
 def _settings(plan, at):
-    """Settings of the budgets, with the water that has attraction across gaps."""
+    """Settings of the budgets, with water and attraction across gaps."""
     pair = plan.config["devices"][at.device]["pair"]
     across = plan.air_of_devices.across_gaps(pair)
     own = [budget for _, budget in _parts(plan, at.device)]
@@ -57,7 +57,7 @@ def _settings(plan, at):
 
 
 def _computed(data: Mapping[str, Any], settings: Mapping[str, Any]) -> xr.Dataset:
-    """Changes of everything that may hold a device."""
+    """Changes of every place of adhesion of a device."""
     budgets = [corrected(of_job(budget), data) for budget in settings["budgets"]]
     return compute(data["contacts"], budgets, [in_si(Water, settings["water"])] * len(budgets))
 

@@ -1,4 +1,4 @@
-"""Stage life: what brings a device into contact, whether it then sticks, what holds it, and what frees it.
+"""Stage life: causes of the contact of a device, its adhesion then, and ways to free it.
 
 Every answer is a number between two bounds, which are equal where the model leaves nothing open. Voltage and shock of a
 beam are those of its length: the stated one, or its least safe length.
@@ -21,10 +21,12 @@ from stiction.constants import DENSITY, LIQUIDS
 from stiction.contact.voltage import BREAKDOWN, Capacitor, Dielectric
 from stiction.devices.bridges import half_of_bridge
 from stiction.devices.risk import Basis, samples_for
-from stiction.devices.stoppers import safe_force
+from stiction.devices.stoppers import safe_force, stuck_patches
 from stiction.estimates import mean_with_error
 from stiction.life import drying, freeing, holding, touch
+from stiction.life.dimples import row
 from stiction.plan.stage import Stage, select
+from stiction.stages.devices import separation as stage_separation
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
 from stiction.stages.devices.safe_lengths import chosen_share
 
@@ -33,7 +35,9 @@ QUESTIONS = TOUCH, STICK, HOLD, FREE = "touch", "stick", "hold", "free"
 #: Names of answers that sentences are about.
 VOLTAGE, SHOCK, COLLAPSE, RELEASED, AFTER = "voltage", "shock", "collapse", "released", "after"
 AT_VOLTAGE, FIELD = "at_voltage", "field"
+FAST, RESTORING = "fast", "restoring_force"
 TILTED, WEDGE = "force_tilted", "wedge"
+ON_DIMPLES, BESIDE, DIMPLES, PULLED = "stuck_dimples", "beside_dimples", "dimples", "dimples_force"
 #: Sources of the answers about voltages and tilts.
 _OF_VOLTAGE, _OF_TILT = "stage at_voltage, stiction.life.holding", "stage tilted_stoppers"
 
@@ -54,7 +58,7 @@ class Answer(NamedTuple):
 
 @dataclass(frozen=True)
 class Liquid:
-    """A liquid in which devices are released."""
+    """Liquid for the release of devices."""
 
     surface_tension: float  #: γ [N m⁻¹]
     contact_angle: float = 0.0  #: θ on the device [rad]. ASSUME: 0, the safe side, where it is not stated
@@ -77,7 +81,7 @@ class Errors:
 
 @dataclass(frozen=True, kw_only=True)
 class Stated:
-    """What any device may state beside its dimensions."""
+    """Keys of any device beside its dimensions."""
 
     touchdowns: int = 1
     voltage: float = 0.0  #: [V]
@@ -95,15 +99,25 @@ class Stated:
         return self.capacitor.potential if self.capacitor else 0.0
 
 
+@dataclass(frozen=True)
+class Dimples:
+    """A row of dimples across a beam."""
+
+    number: int
+    at: float  #: distance from a clamp [m]
+    height: float  #: [m]
+
+
 @dataclass(frozen=True, kw_only=True)
 class OfBeam(Stated):
-    """A beam, and what it meets beside its ground."""
+    """Beam and its surroundings beside its ground."""
 
     device: DesignedBeam
     density: float  #: ρ [kg m⁻³]
     liquids: dict[str, Liquid]
     uncertainty: Errors
     length: float = 0.0  #: as stated [m]; otherwise the least safe length counts
+    dimples: Dimples | None = None
 
     @property
     def clamps(self) -> int:
@@ -117,7 +131,7 @@ class OfBeam(Stated):
         return half_of_bridge(Beam(*sizes, elements=1), device.residual_stress)
 
     def number(self, of: Callable[[Beam], float], length: float) -> tuple[float, float]:
-        """A number that depends on the beam, and its standard uncertainty to first order; NaN if no input has any."""
+        """Number of the beam, and its standard uncertainty to first order, NaN if no input has any."""
         squares, value = 0.0, of(self.beam(length))
         for field in fields(self.uncertainty):
             mean, error = getattr(self.device, field.name), getattr(self.uncertainty, field.name)
@@ -130,7 +144,7 @@ class OfBeam(Stated):
 
 @dataclass(frozen=True)
 class Electrode:
-    """An electrode that pulls a stopper down."""
+    """Electrode for pulling a stopper down."""
 
     area: float  #: [m²]
     gap: float  #: from the moving part at rest [m]
@@ -138,7 +152,7 @@ class Electrode:
 
 @dataclass(frozen=True, kw_only=True)
 class OfStopper(Stated):
-    """A stopper, and what it meets beside its ground; zero where nothing is stated."""
+    """Stopper and its surroundings beside its ground, zero if not given."""
 
     restoring_force: float  #: [N]
     contact: tuple[float, float]  #: sides of its area [m]
@@ -156,8 +170,12 @@ def of_beam(
     after: Mapping[float, xr.Dataset],
     of: OfBeam,
     biased: Mapping[float, xr.Dataset] | None = None,
+    separation: xr.Dataset | None = None,
 ) -> list[Answer]:
-    """Answers about a beam from its safe lengths by humidity: for one touchdown, after all, and at its voltage."""
+    """Answers about a beam from its safe lengths by humidity: for one touchdown, after all, and at its voltage.
+
+    The dataset of its fast separation is needed where water condenses.
+    """
     share = chosen_share(next(iter(lengths.values())))
     safe = {humidity: _safe(dataset, share) for humidity, dataset in lengths.items()}
     length = length_of(lengths, of)
@@ -174,11 +192,12 @@ def of_beam(
     answers += _touched(of, length) + _held(of, length) if 0 < length < np.inf else []
     answers += [answer for name, liquid in of.liquids.items() for answer in _dried(of, name, liquid.adhesion)]
     answers += _after_touchdowns(of, share, min(safe.values()), after) if after else []
+    answers += _separated_fast(safe, separation) if separation is not None else []
     return _in_order(answers + _at_voltage(of, min(safe.values()), biased))
 
 
 def length_of(lengths: Mapping[float, xr.Dataset], of: OfBeam) -> float:
-    """Length at which a beam is asked for voltage and shock [m]: the stated one, or its least safe length."""
+    """Length of a beam for voltage and shock [m]: the given one, or its least safe length."""
     return of.length or min(_safe(dataset, chosen_share(dataset))[0] for dataset in lengths.values())
 
 
@@ -192,7 +211,7 @@ def _safe(dataset, share):
 
 
 def _touched(of, length):
-    """Voltage and shock that bring a beam of a length [m] into contact."""
+    """Voltage and shock for contact of a beam of a length [m]."""
     clamps, end = of.clamps, "tip" if of.clamps == 1 else "middle"
     forms = {
         1: ("V² = 0.2801 E t³ h³ / (ε₀ L⁴)", "a = 2 E t² h / (3 ρ L⁴)"),
@@ -226,7 +245,7 @@ def _touched(of, length):
 
 
 def _dried(of, liquid, adhesion):
-    """Lengths that stand while a liquid dries, and that come free afterwards."""
+    """Lengths of beams standing while a liquid dries, and releasing afterwards."""
     clamps = of.clamps
     each, error = of.number(lambda beam: drying.longest_standing_each(beam, clamps, adhesion), 1.0)
     free, free_error = of.number(lambda beam: drying.longest_free(beam, clamps, adhesion), 1.0)
@@ -258,7 +277,7 @@ def _dried(of, liquid, adhesion):
 
 
 def _held(of, length):
-    """Adhesion that holds a beam of a length [m], and the force with which it pulls."""
+    """Adhesion of a stuck beam of a length [m], and its pulling force."""
     clamps = of.clamps
     along, error = of.number(lambda beam: float(apparent_adhesion_energy(length / clamps, beam)), length)
     force, force_error = of.number(lambda beam: freeing.force_at_contact(beam, clamps), length)
@@ -332,6 +351,67 @@ def _field(of):
     return Answer(FIELD, HOLD, what, np.nan, of.capacitor.field, np.nan, "V m-1", form, "stiction.contact.voltage")
 
 
+def dimple_answers(of: OfBeam, dimples: Mapping[float, xr.Dataset]) -> list[Answer]:
+    """Answers about a beam on its dimples, from the forces of rows of them by humidity; none without any."""
+    if not dimples:
+        return []
+    number, bent = of.dimples.number, _bent_to_dimples(of)
+    means = {humidity: tuple(map(float, mean_with_error(one.pull_off.values))) for humidity, one in dimples.items()}
+    worst = max(means, key=means.get)
+    what, form = f"mean force on its {number} dimples together {in_air(worst)}", "sum of largest attractions x area"
+    mean, error = means[worst]
+    held = Answer(DIMPLES, HOLD, what, mean, mean, error, "N", form, "stage dimples")
+    force = np.array([bent[-1].low])
+    sticking = [
+        Answer(
+            f"{ON_DIMPLES}_{humidity:g}",
+            STICK,
+            f"probability of sticking on its {number} dimples {in_air(humidity)}",
+            *(float(end[0]) for end in stuck_patches(one.pull_off.values, force)[1:]),
+            *(np.nan, "1", "fraction of random rows, 95 %", "stage dimples"),
+        )
+        for humidity, one in dimples.items()
+    ]
+    return [*bent, held, *sticking]
+
+
+def _bent_to_dimples(of):
+    """Gap that is left beside the dimples of a beam while they touch, and the force with which it pulls there."""
+    at, height = of.dimples.at, of.dimples.height
+
+    def left(beam):
+        return 1 - row(beam, of.clamps, at).deepest * (beam.gap - height) / beam.gap
+
+    def pull(beam):
+        return row(beam, of.clamps, at).stiffness * (beam.gap - height)
+
+    (rest, rest_error), (force, error) = of.number(left, of.length), of.number(pull, of.length)
+    what, form = "part of the gap that is left beside its dimples", "bent by the force on the row alone"
+    source = "stiction.life.dimples"
+    beside = Answer(BESIDE, TOUCH, what, max(rest, 0.0), max(rest, 0.0), rest_error, "1", form, source)
+    what, form = f"force with which it pulls at its {of.dimples.number} dimples together", "k (h - h_d)"
+    return [beside, Answer(PULLED, FREE, what, force, force, error, "N", form, source)]
+
+
+def _separated_fast(safe, separation):
+    """Safe length of a beam that separates faster than water evaporates, from its safe lengths and their errors.
+
+    ASSUME: the ratio of the mean energies of strips also holds where cracks stop, and at tips. It leaves the pull-off
+    force of a smooth wedge as it is, so that this is the safe side.
+    """
+    ratios = separation.energy_ratio.to_series().to_dict()
+    errors = separation.energy_ratio_error.to_series().to_dict()
+    at, (length, error, _) = min(safe.items(), key=lambda one: one[1][0] * ratios.get(one[0], 1.0) ** -0.25)
+    ratio = ratios.get(at, 1.0)
+    shorter, most = length * ratio**-0.25, min(safe.values())[0]
+    form = f"L (e / e_V)^(1/4), e_V / e = {ratio:.3g} {in_air(at)} (at least); slow separation (at most)"
+    what = "safe length if it separates faster than water evaporates"
+    numbers = np.nan, most, np.nan
+    if 0 < shorter < np.inf:
+        numbers = shorter, most, shorter * float(np.hypot(error / length, errors.get(at, 0.0) / (4 * ratio)))
+    return [Answer(FAST, FREE, what, *numbers, "m", form, "stage separation")]
+
+
 def _after_touchdowns(of, share, once, after):
     """Safe length and P(stuck) after all touchdowns, from the safe length of one, and its standard error [m]."""
     independent = min(_safe(dataset, chosen_share(dataset)) for dataset in after.values())
@@ -359,9 +439,13 @@ def _after_touchdowns(of, share, once, after):
 
 
 def of_stopper(
-    stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | None = None, tilted: xr.Dataset | None = None
+    stopper: xr.Dataset,
+    of: OfStopper,
+    biased: xr.Dataset | None = None,
+    tilted: xr.Dataset | None = None,
+    separation: xr.Dataset | None = None,
 ) -> list[Answer]:
-    """Answers about a stopper from the datasets of its pull-off forces: as it is, at its voltage, and tilted."""
+    """Answers about a stopper from the datasets of its pull-off forces: as it is, at its voltage, tilted, and fast."""
     worst = int(stopper.mean_along.argmax("axis"))
     mean, error = (float(stopper[name][worst]) for name in ("mean_along", "mean_along_error"))
     where = in_air(round(float(stopper.worst_humidity), 2))
@@ -377,13 +461,13 @@ def of_stopper(
     ]
     what = f"mean pull-off force {where}, the worst air"
     answers.append(Answer("force", HOLD, what, mean, mean, error, "N", "largest attraction x area", "stage stoppers"))
-    answers += _moved(of) + _freed(stopper, of) + _often(stopper, of)
+    answers += _moved(of) + _freed(stopper, of, separation) + _often(stopper, of)
     answers += [] if tilted is None else _tilted(tilted)
     return _in_order(answers + (_pulled(stopper, of, biased) if of.capacitor else []))
 
 
 def _tilted(tilted):
-    """How many stoppers stick at their tilts, the force on them, and the tilt that makes it that of a wedge."""
+    """Fraction of stoppers stuck at their tilts, the force on them, and the tilt at the transition to a wedge."""
     ends = dict.fromkeys(f"{from_si(float(tilt), 'deg'):.3g}" for tilt in tilted.tilt)
     by, form = (
         f"tilted by {' to '.join(ends)}°",
@@ -422,7 +506,7 @@ def _tilted(tilted):
 
 
 def _pulled(stopper, of, biased):
-    """Force that a voltage adds to that on a stopper, and how many stick while it is on."""
+    """Force of a voltage in addition to that on a stopper, and the fraction stuck while it is on."""
     flat = of.capacitor.largest_pressure * of.contact[0] * of.contact[1]
     low, error, sticking = np.nan, np.nan, []
     if biased is not None:
@@ -438,7 +522,7 @@ def _pulled(stopper, of, biased):
 
 
 def _moved(of):
-    """Shock and voltage that bring a stopper into contact, as far as mass and electrode are stated."""
+    """Shock and voltage for contact of a stopper, as far as mass and electrode are given."""
     answers = []
     if of.mass:
         slow = of.restoring_force / of.mass
@@ -454,37 +538,34 @@ def _moved(of):
     return answers
 
 
-def _freed(stopper, of):
-    """Restoring force, stiffness and shock that free all but a small fraction of the stoppers."""
+def _freed(stopper, of, separation):
+    """Restoring force, stiffness and shock that free all but a small fraction of the stoppers, slowly and fast."""
     bounded = [float(share) for share in stopper.share[stopper.basis == Basis.SAMPLED]]
     if not bounded:
         return []
     at = stopper.safe_force.sel(share=min(bounded))
     at = at.isel(humidity=int(at.sel(part="safe").argmax("humidity")))
     force, error = float(at.sel(part="safe")), float(at.sel(part="error"))
+    fast = [] if separation is None else [safe_force(row, min(bounded))[0] for row in separation.pull_off.values]
+    most = max([force, *fast]) if np.isfinite(fast).all() else np.nan
     but = f"all but {_one_in(min(bounded))}, {in_air(float(at.humidity))}"
-    form, source = "quantile of the pull-off force, 95 %", "stage stoppers"
-    answers = [
-        Answer("restoring_force", FREE, f"restoring force that frees {but}", force, force, error, "N", form, source)
-    ]
+    source, bound = "stages stoppers and separation", "faster than water evaporates, in any of its air (at most)"
+    form = f"quantile of the pull-off force, 95 %; {bound}"
+    answers = [Answer(RESTORING, FREE, f"restoring force that frees {but}", force, most, error, "N", form, source)]
     if of.gap:
-        stiffness, spread = force / of.gap, error / of.gap
-        what, form = f"stiffness of the spring that frees {but}", "k = F / gap"
-        answers.append(Answer("stiffness", FREE, what, stiffness, stiffness, spread, "N m-1", form, source))
+        what, form = f"stiffness of the spring that frees {but}", f"k = F / gap; {bound}"
+        numbers = (number / of.gap for number in (force, most, error))
+        answers.append(Answer("stiffness", FREE, what, *numbers, "N m-1", form, source))
     if of.mass:
-        shock = freeing.freeing_acceleration(force, of.restoring_force, of.mass)
-        # Without water nothing keeps its volume: the shock of slow separation is all that is needed.
-        most = np.nan if float(at.humidity) else shock
-        form = "a = (F_hold - F) / m (at least); water that keeps its volume holds more"
-        what = f"shock that frees {but}"
-        answers.append(
-            Answer("freeing", FREE, what, shock, most, error / of.mass, "m s-2", form, "stiction.life.freeing")
-        )
+        shocks = (freeing.freeing_acceleration(hold, of.restoring_force, of.mass) for hold in (force, most))
+        what, form = f"shock that frees {but}", f"a = (F_hold - F) / m; {bound}"
+        numbers = *shocks, error / of.mass
+        answers.append(Answer("freeing", FREE, what, *numbers, "m s-2", form, "stiction.life.freeing"))
     return answers
 
 
 def _often(stopper, of):
-    """P(stuck) after all touchdowns in the worst stated air, and the force that leaves a small fraction stuck."""
+    """P(stuck) after all touchdowns in the worst given air, and the force for a small fraction stuck."""
     if of.touchdowns == 1:
         return []
     once = float(stopper.stuck.sel(bound="estimate").max())
@@ -502,7 +583,7 @@ def _often(stopper, of):
 
 
 def _one_in(share):
-    """A fraction in words."""
+    """Fraction in words."""
     return f"1 in {1 / share:.6g}"
 
 
@@ -514,20 +595,16 @@ def _in_order(answers):
 # Dataset
 
 
-def compute(
-    settings: dict[str, Any],
-    lengths: Mapping[float, xr.Dataset] | None = None,
-    after: Mapping[float, xr.Dataset] | None = None,
-    stopper: xr.Dataset | None = None,
-    biased: Mapping[float, xr.Dataset] | xr.Dataset | None = None,
-    tilted: xr.Dataset | None = None,
-) -> xr.Dataset:
+def compute(data: Mapping[str, Any], settings: dict[str, Any]) -> xr.Dataset:
     """Answers about a device, from its safe lengths by humidity or from the forces of a stopper."""
-    if stopper is not None:
+    if "stopper" in data:
         of = in_si(OfStopper, settings["stopper"])
-        return layout(of_stopper(stopper, of, biased, tilted), of)
-    of = in_si(OfBeam, settings["beam"])
-    return layout(of_beam(lengths, after, of, biased), of, length_of(lengths, of))
+        own = (data.get(name) for name in ("biased", "tilted", "separation"))
+        return layout(of_stopper(data["stopper"], of, *own), of)
+    of, lengths = in_si(OfBeam, settings["beam"]), data["lengths"]
+    answers = of_beam(lengths, data.get("after", {}), of, data.get("biased"), data.get("separation"))
+    answers += dimple_answers(of, data.get("dimples", {}))
+    return layout(_in_order(answers), of, length_of(lengths, of))
 
 
 def layout(answers: Sequence[Answer], of: Stated, length: float = np.nan) -> xr.Dataset:
@@ -561,22 +638,25 @@ def _inputs(plan, at):
     Beyond the breakdown of the dielectric, no voltage is there that could hold, and flats alone bound what it does.
     """
     section, capacitor = plan.config["devices"][at.device], plan.devices.capacitor(at.device)
+    fast = stage_separation.of_device(plan, at.device)
     is_biased = bool(capacitor) and in_si(Capacitor, capacitor).field <= BREAKDOWN
     if not plan.devices.kind(at.device).is_beam:
         biased = {"biased": f"devices/at_voltage/{at.device}"} if is_biased else {}
         tilted = {"tilted": f"devices/tilted/{at.device}"} if "tilt_deg" in section else {}
-        return {"stopper": f"devices/stoppers/{at.device}"} | biased | tilted
+        return {"stopper": f"devices/stoppers/{at.device}"} | biased | tilted | fast
     cases = {humidity: case_id(at.device, humidity) for humidity in section["humidities"]}
     more, biased = cases if "touchdowns" in section else {}, cases if is_biased else {}
-    return {
+    dimpled = cases if "dimples" in section else {}
+    return fast | {
         "lengths": {humidity: f"devices/safe_lengths/{case}" for humidity, case in cases.items()},
         "after": {humidity: f"devices/touchdowns/{case}" for humidity, case in more.items()},
         "biased": {humidity: f"devices/at_voltage/{case}" for humidity, case in biased.items()},
+        "dimples": {humidity: f"devices/dimples/{case}" for humidity, case in dimpled.items()},
     }
 
 
 def _settings(plan, at):
-    """A device, the liquids and its density, or what a stopper states."""
+    """Settings of a device, the liquids and its density, or of a stopper."""
     section = plan.config["devices"][at.device]
     if not plan.devices.kind(at.device).is_beam:
         return {"stopper": select(OfStopper, section, restoring_force_uN=restoring_force(section))}

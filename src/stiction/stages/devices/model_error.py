@@ -1,4 +1,4 @@
-"""Error of the model of the contact in the lengths and forces of a device: what full elastic contact would change."""
+"""Error of the model of the contact in the lengths and forces of a device: the effect of full elastic contact."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ class Settings:
 
 
 def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.ndarray:
-    """Length at which a beam sticks [m], or pull-off pressure of a stopper [Pa], at each humidity (h,).
+    """Length of adhesion of a beam [m], or pull-off pressure of a stopper [Pa], at each humidity (h,).
 
     The means are those of the energy e [J m⁻²] and of the largest attraction f_max [Pa], (h, 2).
 

@@ -53,7 +53,7 @@ LAWS = 10_000
 
 @dataclass(frozen=True)
 class DesignedBeam:
-    """Dimensions of a beam that must come free, and its ground."""
+    """Dimensions of a designed beam, and its ground."""
 
     kind: str  #: key of `BEAMS`
     pair: str  #: part of the addresses of random numbers
@@ -67,7 +67,7 @@ class DesignedBeam:
 
     @property
     def opening(self) -> "Opening":
-        """How beams of its kind open."""
+        """Opening of beams of its kind."""
         return BEAMS[self.kind]
 
     @property
@@ -78,7 +78,7 @@ class DesignedBeam:
 
 
 class Seeded(Protocol):
-    """Settings of any job that releases beams of a device."""
+    """Settings of any job with released beams of a device."""
 
     seed: int
     device: DesignedBeam
@@ -95,7 +95,7 @@ def addresses(settings: Seeded) -> Callable:
 
 
 def _unresolved(device, laws):
-    """As `long_beam`, with the elements of the paper."""
+    """Long beam with the elements of the paper."""
     part = device.beam
     parts = int(np.ceil(LONG * arrest_length(forcelaw.energy(laws).mean(), part) / part.length))
     points = parts * PART
@@ -103,7 +103,7 @@ def _unresolved(device, laws):
 
 
 def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
-    """Beam of a device that is longer than its cracks, with elements that resolve them, and its number of strips.
+    """Beam of a device longer than its cracks, with elements fine enough for them, and its number of strips.
 
     Raises
     ------
@@ -133,7 +133,7 @@ def arrests(
 def reach(
     device: DesignedBeam, ground: tuple[Beam, int], draw: Callable, arrested: np.ndarray, address: Callable
 ) -> float:
-    """Length up to which devices with these ``arrested`` lengths (n,) were simulated [m]; infinite if all are finite.
+    """Largest simulated length of devices with these ``arrested`` lengths (n,), infinite if all are finite [m].
 
     Other parameters as of `arrests`.
     """
@@ -154,7 +154,7 @@ def _energies_and_pull_offs(laws):
 
 @dataclass(frozen=True, kw_only=True)
 class Opening:
-    """How beams of one kind open, and what then holds them."""
+    """Opening of beams of one kind, and their places of adhesion."""
 
     arms: int  #: number of clamped ends, from each of which a crack opens
     sizes: tuple[str, ...]  #: fields of `DesignedBeam` that a measurement may determine
@@ -217,7 +217,7 @@ BEAMS = {
 
 
 def settings_of_beam(plan: Any, case: Case) -> dict[str, Any]:
-    """A device at a humidity: force laws, dimensions and number of beams; more than any one stage needs."""
+    """Device at a humidity: force laws, dimensions and number of beams. More than any one stage needs."""
     pair = plan.contact_of_device(case)
     own = {"device": section_of_beam(plan, case.device, pair), "humidity": case.humidity}
     return plan.seen_by(pair) | plan.config["design"] | own | {"water": plan.air_of_devices.water(pair)}

@@ -26,7 +26,7 @@ _POINTS = 300
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the safe lengths depend on apart from the cracks and the contact of the tips."""
+    """Settings of the safe lengths, without the cracks and the contact of the tips."""
 
     seed: int
     water: Water
@@ -37,7 +37,7 @@ class Settings:
 
 
 def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
-    """P(stuck) and safe lengths; each beam has one of the tips, and a bridge has none."""
+    """P(stuck) and safe lengths. Each beam has one of the tips, and a bridge has none."""
     lengths, of_group, foundation = stage_cracks.lengths(cracks)
     device, held = settings.device, None
     if tips is not None:
@@ -59,7 +59,7 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
 def compute_at_voltage(
     contact: xr.Dataset, cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings
 ) -> xr.Dataset:
-    """As `compute` while a voltage is on, from the contact of the strips and the cracks without voltage.
+    """Safe lengths at a voltage, from the contact of the strips and the cracks without voltage, see `compute`.
 
     Tips are held by the attraction across their gaps, and cracks by the mean energy that it adds to the strips
     (`stiction.life.holding`). ASSUME: strips gain the same, as far as cracks are concerned.
@@ -145,7 +145,7 @@ def layout(
 
 
 def _axis(sticking, reach):
-    """Lengths of the curves of P(stuck), from below the shortest that sticks to where all do or the simulation ends."""
+    """Lengths of the curves of P(stuck), from below the shortest stuck one to all stuck or the last simulated."""
     lengths = np.concatenate(list(sticking.values()))
     ends = lengths[np.isfinite(lengths) & (lengths <= reach)]
     low, high = ends.min(initial=reach), 1.02 * ends.max(initial=0.0)
@@ -153,12 +153,12 @@ def _axis(sticking, reach):
 
 
 def chosen_share(dataset: xr.Dataset) -> float:
-    """The fraction of stuck devices for which sentences state lengths: the middle one [-]."""
+    """Fraction of stuck devices for lengths in sentences: the middle one [-]."""
     return float(dataset.share[dataset.sizes["share"] // 2])
 
 
 def _for_touchdowns(plan, at):
-    """Settings of the safe length of one touchdown that leaves the middle fraction stuck after all of them."""
+    """Settings of the safe length of one touchdown for the middle fraction stuck after all of them."""
     settings, shares = settings_of_beam(plan, at.case), plan.config["design"]["shares"]
     touchdowns = plan.config["devices"][at.case.device]["touchdowns"]
     return select(Settings, settings, shares=[probability_for(shares[len(shares) // 2], touchdowns)])

@@ -12,7 +12,6 @@ from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws
 from stiction.contact.environment import Water, flooded_law
-from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, bridges, risk
 from stiction.devices.risk import NOTHING, Basis, Known, SafeLength
 from stiction.stages.contact import curves
@@ -23,7 +22,7 @@ from stiction.streams import stream
 
 
 class Settings(Protocol):
-    """Settings of any job that computes safe lengths."""
+    """Settings of any job with safe lengths."""
 
     seed: int
     water: Water
@@ -32,7 +31,7 @@ class Settings(Protocol):
 
 
 class BeamSettings(Protocol):
-    """Settings of any job that releases beams, from the contact on."""
+    """Settings of any job with released beams, from the contact on."""
 
     seed: int
     chaos: Truncation
@@ -43,7 +42,7 @@ class BeamSettings(Protocol):
 
 @dataclass(frozen=True)
 class Ground:
-    """What beams of any thickness and gap meet at one humidity."""
+    """Ground of beams of any thickness and gap at one humidity."""
 
     model: ChaosModel  #: of the force laws of strips
     laws: np.ndarray  #: sample of these (k, 4) [SI]
@@ -51,7 +50,7 @@ class Ground:
 
 
 def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settings: BeamSettings) -> Ground:
-    """Force laws at a relative humidity, from the contact of the strips and of the tips; ``None`` for a bridge."""
+    """Force laws at a relative humidity, from the contact of the strips and of the tips, or ``None`` for a bridge."""
     with on_patch(settings.device.strip, settings.device.width):
         model = opening.fitted(*curves.vectors(contact, humidity, settings.water), settings.chaos)
     laws = draw_laws(model, opening.LAWS, opening.addresses(settings)("mesh"))
@@ -74,17 +73,17 @@ def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> tuple
 def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list[float]:
     """Lengths that stick on flooded flats, one for each end state [m].
 
-    A cantilever has the length that sticks in saturated air or, where no water condenses, that of flats in contact. A
-    voltage adds its work between flats.
+    A cantilever has the length that sticks in saturated air or, where no water condenses, that of flats in contact.
+    Adsorbed films add their work at the humidity, and a voltage its work between flats.
     Only that of a beam is a bound: roughness that follows the slope of a tip lets it hold harder than a flat one. The
     worst air of a bridge is not the wettest: it has the length below which its middle comes free of flats in contact at
     this humidity, a bound for any surfaces.
     """
-    wet = water.temperature, water.contact_angles
     if not device.opening.has_tip:
         law = flooded_law(humidity, water, device.hamaker_constant)
         return [bridges.least_length(*law, device.beam)]
-    energy = flooded_energy(*wet) if water.film(humidity)[0] else float(water.gaps.through("dry").work(0.0))
+    wet = water.film(humidity)[0]
+    energy = water.flooded_energy(humidity) if wet else float(water.gaps.through("dry").work(0.0))
     if water.capacitor:
         energy += water.capacitor.work(0.0)
     return [float(arrest_length(energy, device.beam)), arcs.arc_length(energy, device.beam)]
@@ -105,7 +104,7 @@ def sticking_lengths(
 
 
 def known(device: DesignedBeam, water: Water, humidity: float, reach: float) -> dict[str, Known]:
-    """What is known of the lengths of a device without samples, by shape; they were simulated up to a reach [m].
+    """Known lengths of a device without samples, by shape, with the reach of the simulation [m].
 
     No surfaces hold a bridge up to the length of `flooded_lengths`, but a single tip may hold a shorter beam.
     """

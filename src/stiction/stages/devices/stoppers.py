@@ -18,7 +18,7 @@ from stiction.progress import progress
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.curves import energies, pull_offs, share_flat, tilted_forces
 from stiction.stages.contact.error_notes import on_patch
-from stiction.stages.devices.contact_names import contact_of, corrections_of, tilted_of
+from stiction.stages.devices.contact_names import contact_of, corrections_of, dimples_of, tilted_of
 from stiction.stages.devices.opening import at_voltage
 from stiction.streams import stream
 
@@ -32,7 +32,7 @@ PROBABILITIES = np.array([0.05, 0.5, 0.95])
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that the forces of a stopper depend on apart from its contact."""
+    """Settings of the forces of a stopper, without its contact."""
 
     seed: int
     water: Water
@@ -65,13 +65,13 @@ def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = No
 
 @dataclass(frozen=True)
 class Tilted(Settings):
-    """As `Settings`, of a stopper that tilts."""
+    """Settings of a tilted stopper."""
 
     slopes: tuple[float, ...] = ()  #: at its tilts, increasing [-]
 
 
 def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Dataset:
-    r"""Pull-off forces of a stopper at its tilts, and the slope beyond which its force is that of a wedge.
+    r"""Pull-off forces of a stopper at its tilts, and the slope at the transition to a wedge.
 
     Without tilt, the patches are those of `compute`. A tilted one touches with an edge of its first side a, as long as
     its second side w. Smooth surfaces with the adhesion energy e then hold the force :math:`w e / s` at the slope s,
@@ -94,7 +94,7 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
 
 
 def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) -> xr.Dataset:
-    """Dataset of a tilted stopper: forces (tilts, n_rh, m) [N], and slopes beyond which it is a wedge (n_rh,) [-]."""
+    """Dataset of a tilted stopper: forces (tilts, n_rh, m) [N], and slopes at the transition to a wedge (n_rh,) [-]."""
     newton, none, over = {"units": "N"}, {"units": "1"}, ("tilt", "humidity")
     stuck = [[_stuck(row, settings.restoring_force) for row in rows] for rows in pull_off]
     safe, bases = zip(*(_safe(rows, settings.seed) for rows in pull_off), strict=True)
@@ -119,8 +119,28 @@ def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) ->
     )
 
 
+@dataclass(frozen=True)
+class Dimples:
+    """Everything that the forces of a row of dimples depend on apart from the contact of one."""
+
+    water: Water
+    humidity: float  #: [-]
+    contact: tuple[float, float]  #: sides of the area of a dimple [m]
+    number: int  #: of dimples
+
+
+def compute_dimples(contact: xr.Dataset, settings: Dimples) -> xr.Dataset:
+    """Pull-off forces of rows of dimples, each row the sum of other patches."""
+    with on_patch(*settings.contact):
+        single = pull_offs(contact, settings.humidity, settings.water)
+    forces = pull_off_force(single, settings.contact[0] * settings.contact[1])
+    rows = len(forces) // settings.number
+    held = forces[: rows * settings.number].reshape(rows, settings.number).sum(axis=1)
+    return xr.Dataset({"pull_off": ("row", held, {"units": "N"})})
+
+
 def axis_of(settings: Settings) -> np.ndarray:
-    """Humidities among which the worst is sought: the fine axis and, before it, dry air if it is one of the device [-].
+    """Humidities in the search of the worst: the fine axis and, before it, dry air if the device has it [-].
 
     A device in dry air alone, or with surfaces that no water wets, has no other air.
     """
@@ -173,7 +193,7 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
 
 
 def _worst(axis, along):
-    """Worst humidity and its standard error, which contains that of a place between two points of the axis.
+    """Worst humidity and its standard error, with the error of a place between two points of the axis.
 
     The latter is their distance / √12. Dry air, if it is worse than all humid air, has no error.
     """
@@ -190,12 +210,12 @@ def _stuck(pull_off, force):
 
 
 def numbers_of_fits(seed: int) -> np.random.Generator:
-    """Random numbers of the errors of fitted forces: the same for all stoppers, so that their errors compare."""
+    """Random numbers of the errors of fitted forces: the same for all stoppers, for comparable errors."""
     return stream(seed, "safe force")
 
 
 def _safe(rows, seed):
-    """Safe forces of rows of patches, their estimates and errors (3, rows, shares) [N], and what each share rests on.
+    """Safe forces of rows of patches, their estimates and errors (3, rows, shares) [N], and the basis of each share.
 
     NaN, resting on nothing, for shares for which there are too few patches.
     """
@@ -209,12 +229,12 @@ def _safe(rows, seed):
 
 
 def is_at_an_end(dataset: xr.Dataset) -> bool:
-    """Whether the worst humidity is an end of the fine axis, so that the largest force may lie beyond it."""
+    """Whether the worst humidity is an end of the fine axis. The largest force may then lie beyond it."""
     return float(dataset.worst_humidity) in ends(dataset)
 
 
 def ends(dataset: xr.Dataset) -> tuple[float, ...]:
-    """Lowest and highest humidity of the fine axis [-]; none if the device is in dry air alone."""
+    """Lowest and highest humidity of the fine axis [-]. None if the device is in dry air alone."""
     humid = dataset.axis.values[dataset.axis.values > 0]
     return tuple(map(float, humid[[0, -1]])) if humid.size else ()
 
@@ -239,7 +259,7 @@ def _settings(plan, at):
 
 
 def _inputs(plan, at):
-    """Contact in the wettest air of a stopper, and in dry air if that is one of its humidities."""
+    """Contact in the wettest air of a stopper, and in dry air if it is one of its humidities."""
     humidities = plan.config["devices"][at.device]["humidities"]
     wettest, driest = (case_id(at.device, end(humidities)) for end in (max, min))
     dry = {"dry": contact_of(plan, driest)} if 0 in humidities else {}
@@ -258,7 +278,7 @@ _STOPPERS = Stage.writing(
 
 
 def _inputs_tilted(plan, at):
-    """As `_inputs`, with the contacts of tilted patches if a tilt is not zero."""
+    """Inputs of a stopper, with the contacts of tilted patches if a tilt is not zero, see `_inputs`."""
     inputs, humidities = _inputs(plan, at), plan.config["devices"][at.device]["humidities"]
     if not any(plan.devices.slopes(at.device)):
         return inputs
@@ -266,8 +286,24 @@ def _inputs_tilted(plan, at):
     return inputs | {"tilted": tilted_of(plan, case_id(at.device, max(humidities)))} | dry
 
 
+def _settings_of_dimples(plan, at):
+    """Water, humidity and dimples of a beam."""
+    water = plan.air_of_devices.water(plan.contact_of_device(at.case))
+    dimples = plan.devices.sections[at.case.device]["dimples"]
+    return select(Dimples, dimples | {"water": water, "humidity": at.case.humidity})
+
+
 STAGES = (
     _STOPPERS,
+    Stage.writing(
+        "dimples",
+        "devices/dimples/{case}",
+        inputs=lambda plan, at: {"contact": dimples_of(plan, at.case)} | corrections_of(plan, at.case.device),
+        settings=_settings_of_dimples,
+        kind=Dimples,
+        compute=lambda data, settings: compute_dimples(data["contact"], corrected(settings, data)),
+        message="Pull-off force of the dimples of {case}.",
+    ),
     replace(
         _STOPPERS,
         name="tilted_stoppers",

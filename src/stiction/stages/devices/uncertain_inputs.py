@@ -33,7 +33,7 @@ _OF_DIMENSIONS = Step(0.05)
 
 @dataclass(frozen=True)
 class State:
-    """Everything that devices depend on at one value of each input."""
+    """State of devices at one value of each input."""
 
     contact: xr.Dataset
     humidity: float  #: [-]
@@ -43,7 +43,7 @@ class State:
     alike: tuple[str, ...] = SIDES  #: bodies of the material of the beam or stopper
 
     def attracting(self, factor: float) -> "State":
-        """State in which the Hamaker constants of these bodies have a factor across gaps; its contact stays."""
+        """State with a factor of the Hamaker constants of these bodies across gaps. Its contact stays."""
         gaps = self.water.gaps
         return replace(self, water=replace(self.water, gaps=gaps and gaps.scaled(factor, self.alike)))
 
@@ -60,14 +60,14 @@ class Input:
 
 @dataclass(frozen=True)
 class Known:
-    """How well the quantities of a surface are known."""
+    """Errors of the quantities of a surface."""
 
     quantities: tuple[str, ...]  #: keys of `stiction.analysis.shifts.STEPS`
     covariance: np.ndarray  #: of their errors (k, k)
 
 
 class Block(NamedTuple):
-    """Inputs whose errors have a common cause."""
+    """Inputs with a common cause of their errors."""
 
     inputs: list[Input]
     covariance: np.ndarray  #: of their errors (k, k)
@@ -75,7 +75,7 @@ class Block(NamedTuple):
 
 @dataclass(frozen=True)
 class Varied:
-    """Input that is a number of a state, and whose standard uncertainty a device may state."""
+    """Input as a number of a state, with a standard uncertainty from the section of a device."""
 
     field: str  #: of `Uncertainty`; inputs with the same one err together
     name: str  #: for reading
@@ -95,7 +95,7 @@ class Varied:
         return Input(self.name, self.group or f"the {self.name}", states, step), relative
 
     def moved(self, state: State, by: float) -> State:
-        """State whose input errs by an amount, in its logarithm if its step is relative."""
+        """State after an error of the input, in its logarithm if its step is relative."""
         value = self.value(state)
         return self.changed(state, self.step.moved(value, by) if self.step else max(value + by, self.least))
 
@@ -104,6 +104,7 @@ def _size(name, step=None, least=-np.inf):
     """Dimension, or stress, of a beam."""
 
     def changed(state, value):
+        """State with another value of the dimension."""
         return replace(state, device=replace(state.device, **{name: value}))
 
     return Varied(name, name.replace("_", " "), lambda state: getattr(state.device, name), changed, step, least)
@@ -113,6 +114,7 @@ def _contact_angle(side):
     """Contact angle on one of the two surfaces, with the other one as it is."""
 
     def changed(state, value):
+        """State with another contact angle of the side [rad]."""
         angles = tuple(value if k == side else angle for k, angle in enumerate(state.water.contact_angles))
         return replace(state, water=replace(state.water, contact_angles=angles))
 
@@ -131,6 +133,13 @@ OF_AIR = (
         lambda state, at: replace(state, water=replace(state.water, temperature=at)),
     ),
     *map(_contact_angle, range(len(SIDES))),
+    Varied(
+        "adsorbed",
+        "adsorbed water",
+        lambda state: state.water.adsorbed,
+        lambda state, height: replace(state, water=replace(state.water, adsorbed=height)),
+        least=0.0,
+    ),
 )
 #: Fields of the uncertainties of the properties of solids, by their names.
 _OF_SOLIDS = {name: without_unit(one.key) for name, one in OF_CONTACT.items()}
@@ -148,7 +157,7 @@ Uncertainty = make_dataclass(
 
 @dataclass(frozen=True)
 class Settings:
-    """Everything that any budget depends on apart from contact and surfaces."""
+    """Settings of any budget, without contact and surfaces."""
 
     seed: int
     water: Water
@@ -175,7 +184,7 @@ def uncertain(
     known: Mapping[str, Known],
     settings: Settings,
 ) -> tuple[list[Input], np.ndarray]:
-    """All uncertain inputs and the covariance of their errors; where no water condenses, those of the air are none.
+    """Uncertain inputs and the covariance of their errors. Without condensation, the air has none.
 
     The state has the stated values of all inputs. There are contacts with less and with more of each quantity of a
     surface, by both, and of each uncertain property of the solids, by its step in
@@ -190,7 +199,7 @@ def uncertain(
 
 
 def changed(state: State, errors: Mapping[str, float]) -> State:
-    """State whose dimensions, air, modulus of the beam and attraction across gaps err, by the names of the inputs.
+    """State after errors of dimensions, air, modulus of the beam and attraction across gaps, by input.
 
     Its contact stays.
     """
@@ -206,7 +215,7 @@ def changed(state: State, errors: Mapping[str, float]) -> State:
 
 
 def countable(sizes: Sequence[str], settings: Settings) -> list[str]:
-    """Everything that a measurement of a device with these sizes could determine, for reading."""
+    """Names of all possible measurements of a device with these sizes."""
     surfaces = [f"the {part} of {name}" for name in settings.surfaces for part in ("heights", "spectrum")]
     solids = [entry.group for entry in OF_CONTACT.values()]
     air = [entry.group or f"the {entry.name}" for entry in OF_AIR if settings.water.film(settings.humidity)[0]]
@@ -227,7 +236,7 @@ def of_surface(
 
 
 def of_numbers(state: State, varied: Sequence[Varied], stated: Uncertainty) -> Iterator[Block]:
-    """Blocks of those of some inputs that are uncertain."""
+    """Yield blocks of the uncertain ones among some inputs."""
     for key, together in groupby(varied, lambda number: number.field):
         if deviation := getattr(stated, key):
             inputs, deviations = zip(*(number.around(state, deviation) for number in together), strict=True)
@@ -235,7 +244,7 @@ def of_numbers(state: State, varied: Sequence[Varied], stated: Uncertainty) -> I
 
 
 def of_solids(state: State, solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings) -> Iterator[Block]:
-    """Uncertain properties of the solids; the slopes of those with a relative step are in their logarithms.
+    """Uncertain properties of the solids. The slopes of those with a relative step are in their logarithms.
 
     ASSUME: a beam bends with Young's modulus alone, without the 1 - ν² of a plate; only the contact has the other two.
     """
@@ -256,7 +265,7 @@ def of_solids(state: State, solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
 
 
 def around(value: float, deviation: float, least: float = -np.inf) -> tuple[float, float]:
-    """Values one standard uncertainty below and above, or from the value itself where it cannot be lower.
+    """Values one standard uncertainty below and above, or from the value itself at its lower limit.
 
     ASSUME: an input at its lower end, such as a zero contact angle, has a one-sided error; the secant over one standard
     uncertainty is its slope. The derivative of a length by a contact angle of zero vanishes.
@@ -271,7 +280,7 @@ def around(value: float, deviation: float, least: float = -np.inf) -> tuple[floa
 def covariances(
     surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset]], estimates: Mapping[str, xr.Dataset], settings: Settings
 ) -> dict[str, Known]:
-    """What is known of the quantities of every uncertain surface."""
+    """Errors of the quantities of every uncertain surface."""
     return {
         name: of_scans(estimates[name], described[0]) if name in estimates else of_stated(name, described, settings)
         for name, described in surfaces.items()
@@ -279,14 +288,14 @@ def covariances(
 
 
 def of_stated(name: str, described: tuple[xr.Dataset, xr.Dataset], settings: Settings) -> Known:
-    """What is known of a surface by numbers: errors as stated, and those of the scan that gave its moments."""
+    """Errors of a surface by numbers: as given, and from the scan behind its moments."""
     stated = [settings.known[name]] if name in settings.known else []
     side = settings.uncertainty.scan
     return together([*stated, *([of_one_scan(*described, side)] if side else [])])
 
 
 def together(causes: Sequence[Known]) -> Known:
-    """Quantities whose errors have several independent causes."""
+    """Quantities with several independent causes of their errors."""
     used = {quantity for cause in causes for quantity in cause.quantities}
     quantities = tuple(name for name in MOMENT_QUANTITIES + SPECTRUM_QUANTITIES if name in used)
     covariance = np.zeros((len(quantities), len(quantities)))

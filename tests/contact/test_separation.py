@@ -1,0 +1,138 @@
+"""Menisci of constant volume: closed forms of spheres, wedges and flats, and rough surfaces from their heights."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import trapezoid
+from scipy.optimize import brentq
+
+from stiction.contact.forcelaw import humid_curves, limit_distance
+from stiction.contact.meniscus import film, flooded_energy
+from stiction.contact.pair import bearing_area
+from stiction.contact.separation import keep_volume
+from stiction.streams import stream
+
+NM = 1e-9
+STEP = 0.05 * NM
+LAYER = film(0.65, 300.0)
+HEIGHT, TENSION = LAYER
+
+
+def slow_curve(area, first, distance, wall=1e9):
+    """Curve of stiff solids that touch at distance 0, between the first two nodes at most, in equilibrium [Pa]."""
+    nodes = first + STEP * np.arange(len(area))
+    solid = np.where(distance < -0.5 * STEP, wall, 0.0)
+    return solid - TENSION * np.interp(distance - HEIGHT, nodes, area, left=1.0, right=0.0)
+
+
+def separated(area, first, reach=300 * NM):
+    """Distances, slow and fast curves, and the work left to the fast one, of stiff solids that rest just below 0."""
+    distance = STEP * np.arange(-1, round(reach / STEP))
+    slow = slow_curve(area, first, distance)
+    fast, left = keep_volume(slow, distance, area, first, LAYER)
+    return distance, slow, fast, left
+
+
+def profile(power):
+    """Bearing area of a body, a power of the depth below its summit, and the height of its first node [m]."""
+    heights = STEP * np.arange(-2000, 3)
+    return np.maximum(-heights / (200 * NM), 0.0) ** power, heights[0]
+
+
+def test_a_sphere_has_the_same_pull_off_and_twice_the_work():
+    area, first = profile(1)  # 2 π R z over the area
+    distance, slow, fast, left = separated(area, first)
+    out = distance >= 0
+    exact = slow[1] * (1 - distance[out] / np.hypot(HEIGHT, distance[out]))
+    assert_allclose(fast[out], exact, rtol=1e-4)
+    assert_allclose(fast.min(), slow.min(), rtol=1e-4)
+    work = [-trapezoid(curve[out], distance[out]) for curve in (slow, fast)]
+    assert_allclose((work[1] + left) / work[0], 2, rtol=1e-3)
+
+
+def test_a_wedge_has_the_same_pull_off():
+    # A strip tilted by a slope s holds V = (h² - D²) / 2 s, as a sphere does up to a factor.
+    area, first = profile(1)
+    steeper = separated(area / 3, first)
+    assert_allclose(steeper[2][1:], separated(area, first)[2][1:] / 3, rtol=1e-6)
+
+
+def test_two_flats_pull_inversely_to_the_square_of_their_distance_and_need_all_of_their_surface_energy():
+    gap, area = 2 * NM, np.array([1.0, 0.0])  # higher stops touch while the flats are a gap apart
+    first = -gap - STEP / 2
+    distance = first + STEP * np.arange(30, 40_000)
+    slow = slow_curve(area, first, distance)
+    at_rest = limit_distance(distance, slow, 0.0) + gap
+    fast, left = keep_volume(slow, distance, area, first, LAYER)
+    far = distance > 0
+    # The steep edge of the flats is half a step wide on either side.
+    assert_allclose(-fast[far], flooded_energy(300.0) * at_rest / (distance[far] + gap) ** 2, rtol=0.03)
+    assert_allclose(-trapezoid(fast[far], distance[far]) + left, flooded_energy(300.0), rtol=0.03)
+    assert -fast.min() > TENSION * 1.05  # control: more than in equilibrium
+
+
+def rough(seed):
+    """Map of normal heights [m]; its bearing area and the height of its first node [m]."""
+    heights = 2 * NM * stream(7, seed).standard_normal((20, 20))
+    below, above = (int(np.ceil(end / STEP)) + 1 for end in (-heights.min(), heights.max()))
+    return heights, bearing_area(heights, STEP, below, above + 1).astype(np.float32), -below * STEP
+
+
+def volume(heights, height, distance):
+    """Water up to a height in the gaps of a map, per area [m]."""
+    gaps = distance - heights
+    return np.mean(np.where((gaps > 0) & (gaps < height), gaps, 0.0))
+
+
+def rough_curves(seed, softness=2e6):
+    """Heights, distances, slow and fast curve of a map whose solids resist as an exponential."""
+    heights, area, first = rough(seed)
+    solid = softness * np.exp(-(STEP * np.arange(len(area) + round(first / STEP)) / (1.2 * NM)) + 4)
+    distance, curve = humid_curves(solid[None], area[None], (0.0, first), STEP, LAYER)
+    slow = curve(0).copy()
+    return heights, distance, slow, *keep_volume(slow, distance, area, first, LAYER)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_rough_surfaces_keep_the_volume_of_water_that_their_gaps_hold_at_rest(seed):
+    heights, distance, slow, fast, _ = rough_curves(seed)
+    rest = limit_distance(distance, slow, 0.0)
+    kept, energy = volume(heights, HEIGHT, rest), flooded_energy(300.0)
+    off = []
+    for at in np.searchsorted(distance, rest + np.array([0.3, 1, 3, 6]) * NM):
+        d = distance[at]
+        height = brentq(lambda h, d=d: volume(heights, h, d) - kept, 1e-12, d - heights.min())
+        water = slow[at] + TENSION * np.mean(heights > d - HEIGHT) - fast[at]
+        off.append(water / (energy / height * np.mean(heights > d - height)) - 1)
+    # A point of 400 is a volume or an area of 0.25 %, and some of the wetted points are few.
+    assert np.max(np.abs(off)) < 0.1
+    assert np.all(slow[distance <= rest] == fast[distance <= rest])
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_fast_separation_needs_more_work_and_dries_the_whole_wetted_area(seed):
+    heights, distance, slow, fast, left = rough_curves(seed)
+    rest = limit_distance(distance, slow, 0.0)
+    out = distance >= rest
+    more = trapezoid((slow - fast)[out], distance[out]) + left
+    assert more > 0.2 * -trapezoid(slow[out], distance[out])
+    # Work of the water: that of drying, and of the tension on what the flat has passed.
+    water = TENSION * np.mean(heights > distance[out][:, None, None] - HEIGHT, axis=(1, 2)) + (slow - fast)[out]
+    passed = np.mean(heights > distance[out][:, None, None], axis=(1, 2))
+    dried = flooded_energy(300.0) * np.mean(heights > rest - HEIGHT)
+    least, most = dried, dried + 2 * trapezoid(TENSION * passed, distance[out])
+    assert 0.97 * least < trapezoid(water, distance[out]) + left < 1.03 * most
+
+
+def test_surfaces_that_no_summits_stop_come_to_no_rest():
+    area, first = profile(1)
+    distance = STEP * np.arange(200)
+    assert keep_volume(slow_curve(area, first, distance), distance, area, first, LAYER) is None
+
+
+def test_water_that_cannot_flow_holds_as_in_equilibrium_where_it_fills_no_gap():
+    area, first = profile(1)
+    distance, slow, _, _ = separated(area, first)
+    dry, left = keep_volume(slow, distance, area, first, (0.0, 0.0))
+    assert np.all(dry == slow)
+    assert left == 0
