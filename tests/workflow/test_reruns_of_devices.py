@@ -32,7 +32,7 @@ READ_BY = {
     "contact_chunk": "contact",
     "contact": "cracks chart budget separation",
     "device_contact": "cracks stoppers budget separation",
-    "tip_contact": "safe_lengths chart tip_budget",
+    "tip_contact": "safe_lengths chart tip_budget separation",
     "slope_contact": "budget",
     "device_slope_contact": "budget",
     "solid_contact": "budget",
@@ -48,6 +48,7 @@ READ_BY = {
     "separation": "life",
     "at_voltage": "life",
     "stoppers_at_voltage": "life",
+    "dimples": "life",
     "tilted_contact": "tilted_stoppers",
     "tilted_stoppers": "life",
     "life": "table_life figure_life device_page",
@@ -80,6 +81,8 @@ MATRIX = [
     ("voltage of a stopper", "devices: {S1: {voltage_V: 3, dielectric: {thickness_nm: 100, permittivity: 4}}}",
      "stoppers_at_voltage", (), "R1|C1|contact|devices/stoppers/"),
     ("tilt of a stopper", "devices: {S1: {tilt_deg: [0, 0.1]}}", "tilted_contact", (), "R1|C1|devices/contact/b|devices/stoppers/"),
+    ("dimples of a bridge", "devices: {R1: {length_um: 200, dimples: {number: 2, at_um: 100, height_um: 1, contact_um: [3, 3]}}}",
+     "dimples safe_lengths", OF_STOPPERS | OF_CHARTS, "C1|S1|contact|cracks"),
     ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget", (), "R1|S1|contact|chart"),
     ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", (),
      "C1|R1|slopes/contact|stoppers"),
@@ -122,14 +125,14 @@ MATRIX = [
     ("humidities of a chart", "devices: {C1: {chart: {humidities: [0.6, 0.9]}}}",
      "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact chart", OF_STOPPERS,
      "cracks|S1|R1|contact/b|contact/slopes"),
-    ("gap of a beam", "devices: {C1: {gap_um: 19}}", "cracks safe_lengths chart budget tip_budget", OF_STOPPERS, "contact|S1|R1"),
+    ("gap of a beam", "devices: {C1: {gap_um: 19}}", "separation cracks safe_lengths chart budget tip_budget", OF_STOPPERS, "contact|S1|R1"),
     ("width of a beam", "devices: {C1: {width_um: 24}}",
      "device_contact tip_contact device_slope_contact solid_contact device_choice_summits tip_slope_contact"
      " tip_solid_contact tip_choice_contact",
      OF_STOPPERS, "S1|R1|b_NG"),
     ("strips of a beam", "devices: {C1: {strip_um: 1.2}}",
      "device_contact device_slope_contact solid_contact device_choice_summits chart tip_budget", OF_STOPPERS, "S1|R1|b_NG|tips"),
-    ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "cracks safe_lengths", OF_STOPPERS | OF_CHARTS, "contact|C1|S1|chart"),
+    ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "separation cracks safe_lengths", OF_STOPPERS | OF_CHARTS, "contact|C1|S1|chart"),
     ("Hamaker constant of a body", BODY + "{hamaker_constant_zJ: {water: 20, dry: 200}}}",
      "contact_chunk device_contact tip_contact slope_contact solid_contact device_choice_contact plasticity"
      " tip_slope_contact tip_solid_contact tip_choice_contact", (), "heights|spectrum|summits"),
@@ -146,7 +149,7 @@ FURTHER = {
 }
 FURTHER |= {"humidities of a chart", "width of a beam", "strips of a beam", "stress in a bridge", "hardness of a body"}
 FURTHER |= {"tension of a liquid", "number of touchdowns", "voltage of a beam", "voltage of a stopper"}
-FURTHER |= {"tilt of a stopper", "adsorbed water", "uncertainty of the adsorbed water"}
+FURTHER |= {"tilt of a stopper", "dimples of a bridge", "adsorbed water", "uncertainty of the adsorbed water"}
 FURTHER |= {"Hamaker constant of a body", "uncertainty of a property of the solids"}
 FURTHER |= {"another property of the solids of a cantilever becomes uncertain"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]
