@@ -30,9 +30,10 @@ SECTIONS = [{key: one[key] for key in ("test_beams", "devices") if key in one} f
 COUNTS = [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]
 #: Islands as a variant, which the paper does not run.
 ISLANDS = {"variants": {"asperity": ["island"]}}
-#: A voltage and a tilt, which the devices of the examples do not have.
+#: Voltage, dimples and tilt, which the devices of the examples do not have.
 BIASED = {"voltage_V": 5, "dielectric": {"thickness_nm": 100, "permittivity": 3.9}}
-MORE = {"devices": {"C1": BIASED, "S1": BIASED | {"tilt_deg": [0, 0.1]}}, "studies": ISLANDS}
+DIMPLED = {"length_um": 250, "dimples": {"number": 2, "at_um": 200, "height_um": 1, "contact_um": [2, 2]}}
+MORE = {"devices": {"C1": BIASED | DIMPLED, "S1": BIASED | {"tilt_deg": [0, 0.1]}}, "studies": ISLANDS}
 PLAN = Plan(load(*SECTIONS, {"test_beams": {"paperB": {"stuck": COUNTS}}} | MORE))
 GRAPH, SCHEMA = Graph(PLAN), schema()
 #: Stages of surfaces described by scans; `tests/workflow/test_from_scans.py` runs them.

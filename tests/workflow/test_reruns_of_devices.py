@@ -48,6 +48,7 @@ READ_BY = {
     "separation": "life",
     "at_voltage": "life",
     "stoppers_at_voltage": "life",
+    "dimples": "life",
     "tilted_contact": "tilted_stoppers",
     "tilted_stoppers": "life",
     "life": "table_life figure_life device_page",
@@ -80,6 +81,8 @@ MATRIX = [
     ("voltage of a stopper", "devices: {S1: {voltage_V: 3, dielectric: {thickness_nm: 100, permittivity: 4}}}",
      "stoppers_at_voltage", (), "R1|C1|contact|devices/stoppers/"),
     ("tilt of a stopper", "devices: {S1: {tilt_deg: [0, 0.1]}}", "tilted_contact", (), "R1|C1|devices/contact/b|devices/stoppers/"),
+    ("dimples of a bridge", "devices: {R1: {length_um: 200, dimples: {number: 2, at_um: 100, height_um: 1, contact_um: [3, 3]}}}",
+     "dimples safe_lengths", OF_STOPPERS | OF_CHARTS, "C1|S1|contact|cracks"),
     ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget", (), "R1|S1|contact|chart"),
     ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", (),
      "C1|R1|slopes/contact|stoppers"),
@@ -146,7 +149,7 @@ FURTHER = {
 }
 FURTHER |= {"humidities of a chart", "width of a beam", "strips of a beam", "stress in a bridge", "hardness of a body"}
 FURTHER |= {"tension of a liquid", "number of touchdowns", "voltage of a beam", "voltage of a stopper"}
-FURTHER |= {"tilt of a stopper", "adsorbed water", "uncertainty of the adsorbed water"}
+FURTHER |= {"tilt of a stopper", "dimples of a bridge", "adsorbed water", "uncertainty of the adsorbed water"}
 FURTHER |= {"Hamaker constant of a body", "uncertainty of a property of the solids"}
 FURTHER |= {"another property of the solids of a cantilever becomes uncertain"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]

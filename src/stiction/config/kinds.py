@@ -103,13 +103,13 @@ KINDS = {
     "cantilever": Kind(
         words="beam clamped at one end",
         keys=("thickness_um", "gap_um", "width_um"),
-        optional=("length_um", "strip_um", "chart"),
+        optional=("length_um", "strip_um", "chart", "dimples"),
         has_tip=True,
     ),
     "bridge": Kind(
         words="beam clamped at both ends",
         keys=("thickness_um", "gap_um", "width_um", "residual_stress_MPa"),
-        optional=("length_um", "strip_um", "chart"),
+        optional=("length_um", "strip_um", "chart", "dimples"),
         # ASSUME: strips of 0.5 µm resolve the middle of a bridge, which is held on 2 to 6 µm. Shorter ones hold more:
         # on pair b (t = h = 2 µm, 50 MPa, p = 0.001), 0.25, 0.5 and 1.5 µm give 233, 236 and 242 µm at RH 0.44, 176,
         # 175 and 181 µm at 0.67, 112.2, 112.2 and 113.2 µm at 0.92, with standard errors of about 1 %. Windows of one

@@ -122,6 +122,25 @@ def electrodes_pull_on_a_spring_across_a_gap(config):
             yield f"{key}.gap_um", message, f"devices.{name}.gap_um"
 
 
+#: Fewest independent rows of dimples whose forces are sums of sampled patches.
+SUMS = 50
+
+
+@relation
+def dimples_are_under_their_beam(config):
+    """Require a row of dimples on the length of its beam, lower than its gap, and patches enough for sums of them."""
+    for name, dimples in config.entries("devices", "dimples"):
+        device, key = config["devices"][name], f"devices.{name}.dimples"
+        if "length_um" not in device:
+            yield key, "must come with length_um, the length of the beam"
+        elif dimples["at_um"] >= device["length_um"]:
+            yield f"{key}.at_um", "must be below length_um of the beam", f"devices.{name}.length_um"
+        if "gap_um" in device and dimples["height_um"] >= device["gap_um"]:
+            yield f"{key}.height_um", "must be below gap_um of the beam", f"devices.{name}.gap_um"
+        if dimples["number"] * SUMS > config["contact.samples"]:
+            yield f"{key}.number", f"must be at most 1 / {SUMS} of contact.samples", "contact.samples"
+
+
 @relation
 def asperities_of_devices_are_summits(config):
     """Require summits for tips of beams and for the budgets of devices."""
@@ -174,6 +193,10 @@ def devices_fit_into_memory(config):
             spacings = memory.spacings_of(device, sampling["spacing_nm"], config[others])
             if refusal := next(filter(None, (field_too_large(*sides, at) for at in spacings)), None):
                 yield f"devices.{name}.{key}", refusal, others
+    for name, sides in config.entries("devices", "dimples.contact_um"):
+        fields = (side + sampling["margin_um"] for side in sides)
+        if refusal := field_too_large(*fields, sampling["spacing_nm"]):
+            yield f"devices.{name}.dimples.contact_um", refusal
 
 
 @relation

@@ -26,9 +26,13 @@ from stiction.report.table import Table, table_stage
 from stiction.stages.devices.life import (
     AFTER,
     AT_VOLTAGE,
+    BESIDE,
     COLLAPSE,
+    DIMPLES,
     FAST,
     FIELD,
+    ON_DIMPLES,
+    PULLED,
     QUESTIONS,
     RELEASED,
     RESTORING,
@@ -116,7 +120,7 @@ def sentences(dataset: xr.Dataset) -> list[str]:
     at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
     said = [*_touching(answers, at), *_pulled_in(answers, potential), *_drying(answers, at, length)]
-    said += [*_tilted(answers), *_biased(answers, potential), *_fast(answers)]
+    said += [*_dimpled(answers), *_tilted(answers), *_biased(answers, potential), *_fast(answers)]
     return [*said, *_often(answers, int(dataset.touchdowns))]
 
 
@@ -133,6 +137,21 @@ def _pulled_in(answers, potential):
     if VOLTAGE not in answers or potential < answers[VOLTAGE].low:
         return []
     return [f"Its own voltage of {significant(potential)} V pulls it in."]
+
+
+def _dimpled(answers):
+    """Whether a beam sticks on its dimples, and whether it touches beside them."""
+    if DIMPLES not in answers:
+        return []
+    pulls, holds = answers[PULLED], answers[DIMPLES]
+    often = max((one for one in answers.values() if one.name.startswith(f"{ON_DIMPLES}_")), key=lambda one: one.high)
+    said = (
+        f"Its dimples together are pulled off by {_low(pulls)} µN and held by {_low(holds)} µN on average: "
+        f"{_low(often)} to {_high(often)} % of the beams stick on them in the worst of its air."
+    )
+    if answers[BESIDE].low > 0:
+        return [f"{said} Beside them, {_low(answers[BESIDE])} % of the gap is left."]
+    return [f"{said} But it touches beside them, where they do not protect it."]
 
 
 def _tilted(answers):
@@ -273,22 +292,25 @@ def _bars(panel: Axes, answers, length):
     panel.set(xlabel=f"{what} [{unit}]", xlim=(0, 1.05 * panel.dataLim.x1), ylim=(-0.5, len(answers) - 0.3), yticks=[])
 
 
+#: What table and figure declare alike.
+_OF_ALL: dict = {
+    "inputs": lambda plan, at: {"life": by_name("devices/life", plan.devices.sections)},
+    "jobs": lambda plan: [{}] if plan.devices.sections else [],
+    "targets": ("devices",),
+}
+
 STAGES = (
     table_stage(
         "life",
         "what brings devices into contact, holds and frees them",
-        inputs=lambda plan, at: {"life": by_name("devices/life", plan.devices.sections)},
         compute=lambda data: table(data["life"]),
-        jobs=lambda plan: [{}] if plan.devices.sections else [],
-        targets=("devices",),
+        **_OF_ALL,
     ),
     figure_stage(
         "life",
         "what limits the life of devices, on one axis",
         "Devices",
-        inputs=lambda plan, at: {"life": by_name("devices/life", plan.devices.sections)},
         compute=lambda data: figure(data["life"]),
-        jobs=lambda plan: [{}] if plan.devices.sections else [],
-        targets=("devices",),
+        **_OF_ALL,
     ),
 )

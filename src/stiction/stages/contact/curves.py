@@ -97,14 +97,14 @@ def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
 
 
 def fast_pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
-    """As `pull_offs`, of surfaces that separate faster than water evaporates; infinite where no summits stop them."""
+    """Values of `pull_offs` in a separation faster than water evaporates, infinite without resistance of summits."""
     _, fast = _separations(contact, humidity, water)
     forces = np.array([np.inf if one is None else -one[0].min() for one in fast])
     return forces * water.correction.at(humidity)[1] if water.correction else forces
 
 
 def fast_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
-    """As `energies`, of surfaces that separate faster than water evaporates; infinite where no summits stop them."""
+    """Values of `energies` in a separation faster than water evaporates, infinite without resistance of summits."""
     sampled, fast = _separations(contact, humidity, water)
     beyond = np.zeros(sampled.samples) if sampled.beyond is None else sampled.beyond
     energies = [

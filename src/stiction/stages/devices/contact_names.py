@@ -4,7 +4,7 @@ from typing import Any
 
 from stiction.config.cases import Case
 from stiction.models import SHIFTS
-from stiction.plan.devices import Patch
+from stiction.plan.devices import Patch, patch
 from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS
 from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
@@ -25,6 +25,12 @@ def patch_of(plan: Any, case: Case) -> Patch:
     return plan.devices.ground(case.device)._replace(pair=plan.contact_of_device(case))
 
 
+def dimples_of(plan: Any, case: Case) -> str:
+    """Contact of one dimple under a beam at a humidity."""
+    sides = plan.devices.sections[case.device]["dimples"]["contact_um"]
+    return file_of(AS_IT_IS, GROUND, **patch(plan.contact_of_device(case), *sides)._asdict())
+
+
 def tilted_of(plan: Any, case: Case) -> str:
     """Contact of a tilted stopper at a humidity."""
     return file_of(AS_IT_IS, TILTED, **patch_of(plan, case)._asdict())
@@ -43,7 +49,7 @@ def _tips(plan, case):
 
 
 def corrections_of(plan: Any, device: str) -> dict[str, str]:
-    """Corrections of the pair of a device, see `stiction.stages.contact.corrections.of_pair`."""
+    """Corrections of the pair of a device, see `stiction.stages.contact.corrections.correction_inputs`."""
     return correction_inputs(plan, plan.config["devices"][device]["pair"])
 
 

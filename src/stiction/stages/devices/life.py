@@ -20,10 +20,11 @@ from stiction.config.units import from_si, in_si
 from stiction.constants import DENSITY, LIQUIDS
 from stiction.contact.voltage import BREAKDOWN, Capacitor, Dielectric
 from stiction.devices.bridges import half_of_bridge
-from stiction.devices.risk import Basis, samples_for
-from stiction.devices.stoppers import safe_force
+from stiction.devices.risk import Basis, one_in, samples_for
+from stiction.devices.stoppers import safe_force, stuck_patches
 from stiction.estimates import mean_with_error
 from stiction.life import drying, freeing, holding, touch
+from stiction.life.dimples import row
 from stiction.plan.stage import Stage, select
 from stiction.stages.devices import separation as stage_separation
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
@@ -36,12 +37,13 @@ VOLTAGE, SHOCK, COLLAPSE, RELEASED, AFTER = "voltage", "shock", "collapse", "rel
 AT_VOLTAGE, FIELD = "at_voltage", "field"
 FAST, RESTORING = "fast", "restoring_force"
 TILTED, WEDGE = "force_tilted", "wedge"
+ON_DIMPLES, BESIDE, DIMPLES, PULLED = "stuck_dimples", "beside_dimples", "dimples", "dimples_force"
 #: Sources of the answers about voltages and tilts.
 _OF_VOLTAGE, _OF_TILT = "stage at_voltage, stiction.life.holding", "stage tilted_stoppers"
 
 
 class Answer(NamedTuple):
-    """One answer to a question; numbers in SI."""
+    """One answer to a question, with numbers in SI."""
 
     name: str
     question: str
@@ -97,6 +99,15 @@ class Stated:
         return self.capacitor.potential if self.capacitor else 0.0
 
 
+@dataclass(frozen=True)
+class Dimples:
+    """A row of dimples across a beam."""
+
+    number: int
+    at: float  #: distance from a clamp [m]
+    height: float  #: [m]
+
+
 @dataclass(frozen=True, kw_only=True)
 class OfBeam(Stated):
     """Beam and its surroundings beside its ground."""
@@ -106,6 +117,7 @@ class OfBeam(Stated):
     liquids: dict[str, Liquid]
     uncertainty: Errors
     length: float = 0.0  #: as stated [m]; otherwise the least safe length counts
+    dimples: Dimples | None = None
 
     @property
     def clamps(self) -> int:
@@ -153,7 +165,7 @@ class OfStopper(Stated):
 # Beams
 
 
-def of_beam(
+def beam_answers(
     lengths: Mapping[float, xr.Dataset],
     after: Mapping[float, xr.Dataset],
     of: OfBeam,
@@ -171,7 +183,7 @@ def of_beam(
         Answer(
             f"safe_length_{humidity:g}",
             STICK,
-            f"safe length {in_air(humidity)}: at most {_one_in(share)} sticks after one touchdown",
+            f"safe length {in_air(humidity)}: at most {one_in(share)} sticks after one touchdown",
             *(value, value, error),
             *("m", f"bound of random beams, 95 %, {basis}", "stage safe_lengths"),
         )
@@ -299,7 +311,7 @@ def _held(of, length):
 
 
 def _at_voltage(of, safe, biased):
-    """What a voltage adds, and the length that is then safe, from the safe length without it and its error [m].
+    """Effect of a voltage, and the length safe with it, from the safe length without it and its error [m].
 
     On flats in contact, and on rough surfaces from the safe lengths at the voltage by humidity, if there are any.
     """
@@ -343,6 +355,48 @@ def _field(of):
     return Answer(FIELD, HOLD, what, np.nan, of.capacitor.field, np.nan, "V m-1", form, "stiction.contact.voltage")
 
 
+def dimple_answers(of: OfBeam, dimples: Mapping[float, xr.Dataset]) -> list[Answer]:
+    """Answers about a beam on its dimples, from the forces of rows of them by humidity; none without any."""
+    if not dimples:
+        return []
+    number, bent = of.dimples.number, _bent_to_dimples(of)
+    means = {humidity: tuple(map(float, mean_with_error(one.pull_off.values))) for humidity, one in dimples.items()}
+    worst = max(means, key=means.get)
+    what, form = f"mean force on its {number} dimples together {in_air(worst)}", "sum of largest attractions x area"
+    mean, error = means[worst]
+    held = Answer(DIMPLES, HOLD, what, mean, mean, error, "N", form, "stage dimples")
+    force = np.array([bent[-1].low])
+    sticking = [
+        Answer(
+            f"{ON_DIMPLES}_{humidity:g}",
+            STICK,
+            f"probability of sticking on its {number} dimples {in_air(humidity)}",
+            *(float(end[0]) for end in stuck_patches(one.pull_off.values, force)[1:]),
+            *(np.nan, "1", "fraction of random rows, 95 %", "stage dimples"),
+        )
+        for humidity, one in dimples.items()
+    ]
+    return [*bent, held, *sticking]
+
+
+def _bent_to_dimples(of):
+    """Gap that is left beside the dimples of a beam while they touch, and the force with which it pulls there."""
+    at, height = of.dimples.at, of.dimples.height
+
+    def left(beam):
+        return 1 - row(beam, of.clamps, at).deepest * (beam.gap - height) / beam.gap
+
+    def pull(beam):
+        return row(beam, of.clamps, at).stiffness * (beam.gap - height)
+
+    (rest, rest_error), (force, error) = of.number(left, of.length), of.number(pull, of.length)
+    what, form = "part of the gap that is left beside its dimples", "bent by the force on the row alone"
+    source = "stiction.life.dimples"
+    beside = Answer(BESIDE, TOUCH, what, max(rest, 0.0), max(rest, 0.0), rest_error, "1", form, source)
+    what, form = f"force with which it pulls at its {of.dimples.number} dimples together", "k (h - h_d)"
+    return [beside, Answer(PULLED, FREE, what, force, force, error, "N", form, source)]
+
+
 def _separated_fast(lengths, separation):
     """Safe length of a beam that separates faster than water evaporates, by humidity and end state, in the worst one.
 
@@ -381,7 +435,7 @@ def _after_touchdowns(of, share, once, after):
         Answer(
             AFTER,
             FREE,
-            f"safe length for {numbers}: at most {_one_in(share)} sticks after all of them",
+            f"safe length for {numbers}: at most {one_in(share)} sticks after all of them",
             *(independent[0], max(once[0], independent[0]), independent[1], "m"),
             "P of one = 1 - (1 - p)^(1/n) (at least); the same summits each time (at most)",
             "stage touchdowns",
@@ -398,7 +452,7 @@ def _after_touchdowns(of, share, once, after):
 # Stoppers
 
 
-def of_stopper(
+def stopper_answers(
     stopper: xr.Dataset,
     of: OfStopper,
     biased: xr.Dataset | None = None,
@@ -460,7 +514,7 @@ def _tilted(tilted):
             float(safe.sel(part="safe").max()),
             float(safe.sel(part="error")[low]),
         )
-        what, form = f"restoring force that frees all but {_one_in(min(bounded))} {by}", "quantile of the force, 95 %"
+        what, form = f"restoring force that frees all but {one_in(min(bounded))} {by}", "quantile of the force, 95 %"
         answers.append(Answer("restoring_force_tilted", FREE, what, *numbers, "N", form, _OF_TILT))
     return answers
 
@@ -508,7 +562,7 @@ def _freed(stopper, of, separation):
     force, error = float(at.sel(part="safe")), float(at.sel(part="error"))
     fast = [] if separation is None else [safe_force(row, min(bounded))[0] for row in separation.pull_off.values]
     most = max([force, *fast]) if np.isfinite(fast).all() else np.nan
-    but = f"all but {_one_in(min(bounded))}, {in_air(float(at.humidity))}"
+    but = f"all but {one_in(min(bounded))}, {in_air(float(at.humidity))}"
     source, bound = "stages stoppers and separation", "faster than water evaporates, in any of its air (at most)"
     form = f"quantile of the pull-off force, 95 %; {bound}"
     answers = [Answer(RESTORING, FREE, f"restoring force that frees {but}", force, most, error, "N", form, source)]
@@ -536,15 +590,10 @@ def _often(stopper, of):
     rare = freeing.probability_for(share, of.touchdowns)
     if stopper.sizes["sample"] >= samples_for(rare):
         few, many = (max(safe_force(row, p)[::2] for row in stopper.pull_off.values) for p in (share, rare))
-        what = f"restoring force that frees all but {_one_in(share)} after {numbers}"
+        what = f"restoring force that frees all but {one_in(share)} after {numbers}"
         form = "the same summits each time (at least); P of one = 1 - (1 - p)^(1/n) (at most)"
         answers.append(Answer(AFTER, FREE, what, few[0], many[0], few[1], "N", form, "stage stoppers"))
     return answers
-
-
-def _one_in(share):
-    """Fraction in words."""
-    return f"1 in {1 / share:.6g}"
 
 
 def _in_order(answers):
@@ -555,21 +604,16 @@ def _in_order(answers):
 # Dataset
 
 
-def compute(
-    settings: dict[str, Any],
-    lengths: Mapping[float, xr.Dataset] | None = None,
-    after: Mapping[float, xr.Dataset] | None = None,
-    stopper: xr.Dataset | None = None,
-    biased: Mapping[float, xr.Dataset] | xr.Dataset | None = None,
-    tilted: xr.Dataset | None = None,
-    separation: xr.Dataset | None = None,
-) -> xr.Dataset:
+def compute(data: Mapping[str, Any], settings: dict[str, Any]) -> xr.Dataset:
     """Answers about a device, from its safe lengths by humidity or from the forces of a stopper."""
-    if stopper is not None:
+    if "stopper" in data:
         of = in_si(OfStopper, settings["stopper"])
-        return layout(of_stopper(stopper, of, biased, tilted, separation), of)
-    of = in_si(OfBeam, settings["beam"])
-    return layout(of_beam(lengths, after, of, biased, separation), of, length_of(lengths, of))
+        own = (data.get(name) for name in ("biased", "tilted", "separation"))
+        return layout(stopper_answers(data["stopper"], of, *own), of)
+    of, lengths = in_si(OfBeam, settings["beam"]), data["lengths"]
+    answers = beam_answers(lengths, data.get("after", {}), of, data.get("biased"), data.get("separation"))
+    answers += dimple_answers(of, data.get("dimples", {}))
+    return layout(_in_order(answers), of, length_of(lengths, of))
 
 
 def layout(answers: Sequence[Answer], of: Stated, length: float = np.nan) -> xr.Dataset:
@@ -603,7 +647,7 @@ def _inputs(plan, at):
     Beyond the breakdown of the dielectric, no voltage is there that could hold, and flats alone bound what it does.
     """
     section, capacitor = plan.config["devices"][at.device], plan.devices.capacitor(at.device)
-    fast = stage_separation.of_device(plan, at.device)
+    fast = stage_separation.separation_inputs(plan, at.device)
     is_biased = bool(capacitor) and in_si(Capacitor, capacitor).field <= BREAKDOWN
     if not plan.devices.kind(at.device).is_beam:
         biased = {"biased": f"devices/at_voltage/{at.device}"} if is_biased else {}
@@ -611,10 +655,12 @@ def _inputs(plan, at):
         return {"stopper": f"devices/stoppers/{at.device}"} | biased | tilted | fast
     cases = {humidity: case_id(at.device, humidity) for humidity in section["humidities"]}
     more, biased = cases if "touchdowns" in section else {}, cases if is_biased else {}
+    dimpled = cases if "dimples" in section else {}
     return fast | {
         "lengths": {humidity: f"devices/safe_lengths/{case}" for humidity, case in cases.items()},
         "after": {humidity: f"devices/touchdowns/{case}" for humidity, case in more.items()},
         "biased": {humidity: f"devices/at_voltage/{case}" for humidity, case in biased.items()},
+        "dimples": {humidity: f"devices/dimples/{case}" for humidity, case in dimpled.items()},
     }
 
 

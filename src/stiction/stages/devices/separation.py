@@ -93,7 +93,7 @@ def _ratio(fast, slow, factor):
     return tuple(map(float, jackknife(factor, np.column_stack([fast, slow]))))
 
 
-def of_device(plan: Any, device: str) -> dict[str, str]:
+def separation_inputs(plan: Any, device: str) -> dict[str, str]:
     """Dataset of a device, as input of a stage; none if no water condenses in any of its airs."""
     return {"separation": f"devices/separation/{device}"} if _wet(plan, device) else {}
 

@@ -18,7 +18,7 @@ from stiction.progress import progress
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.curves import energies, pull_offs, share_flat, tilted_forces
 from stiction.stages.contact.error_notes import on_patch
-from stiction.stages.devices.contact_names import contact_of, corrections_of, tilted_of
+from stiction.stages.devices.contact_names import contact_of, corrections_of, dimples_of, tilted_of
 from stiction.stages.devices.opening import at_voltage
 from stiction.streams import stream
 
@@ -117,6 +117,26 @@ def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) ->
             "part": ["safe", "estimate", "error"],
         },
     )
+
+
+@dataclass(frozen=True)
+class Dimples:
+    """Everything that the forces of a row of dimples depend on apart from the contact of one."""
+
+    water: Water
+    humidity: float  #: [-]
+    contact: tuple[float, float]  #: sides of the area of a dimple [m]
+    number: int  #: of dimples
+
+
+def compute_dimples(contact: xr.Dataset, settings: Dimples) -> xr.Dataset:
+    """Pull-off forces of rows of dimples, each row the sum of other patches."""
+    with on_patch(*settings.contact):
+        single = pull_offs(contact, settings.humidity, settings.water)
+    forces = pull_off_force(single, settings.contact[0] * settings.contact[1])
+    rows = len(forces) // settings.number
+    held = forces[: rows * settings.number].reshape(rows, settings.number).sum(axis=1)
+    return xr.Dataset({"pull_off": ("row", held, {"units": "N"})})
 
 
 def axis_of(settings: Settings) -> np.ndarray:
@@ -266,8 +286,24 @@ def _inputs_tilted(plan, at):
     return inputs | {"tilted": tilted_of(plan, case_id(at.device, max(humidities)))} | dry
 
 
+def _settings_of_dimples(plan, at):
+    """Water, humidity and dimples of a beam."""
+    water = plan.air_of_devices.water(plan.contact_of_device(at.case))
+    dimples = plan.devices.sections[at.case.device]["dimples"]
+    return select(Dimples, dimples | {"water": water, "humidity": at.case.humidity})
+
+
 STAGES = (
     _STOPPERS,
+    Stage.writing(
+        "dimples",
+        "devices/dimples/{case}",
+        inputs=lambda plan, at: {"contact": dimples_of(plan, at.case)} | corrections_of(plan, at.case.device),
+        settings=_settings_of_dimples,
+        kind=Dimples,
+        compute=lambda data, settings: compute_dimples(data["contact"], corrected(settings, data)),
+        message="Pull-off force of the dimples of {case}.",
+    ),
     replace(
         _STOPPERS,
         name="tilted_stoppers",

@@ -1,0 +1,112 @@
+"""Dimples under beams: sums of independent patches, the force of the beam at the row, and what life says of them."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import small
+import xarray as xr
+from ground import R1, safe_with_tips, safe_without_tips
+from numpy.testing import assert_allclose, assert_array_equal
+from plans import job_settings
+from test_stage_life import OF
+
+from stiction.config.files import load
+from stiction.config.units import in_si
+from stiction.contact.environment import Water
+from stiction.devices.stoppers import stuck_patches
+from stiction.life.dimples import row
+from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
+from stiction.report.devices import life as report
+from stiction.stages.contact import curves
+from stiction.stages.devices import life, stoppers
+from stiction.stages.devices.life import Dimples, Errors, OfBeam
+
+BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 3, "width_um": 30, "humidities": [0, 0.67]}
+ROW = {"number": 3, "at_um": 80, "height_um": 1, "contact_um": [2, 1]}
+OF_WATER = Water(300.0)
+AT = Dimples(3, 80e-6, 1e-6)
+
+
+def forces(mean, spread=0.2, number=400, seed=3):
+    """Dataset of stage dimples with lognormal forces."""
+    found = mean * np.exp(spread * np.random.default_rng(seed).standard_normal(number))
+    return xr.Dataset({"pull_off": ("row", found, {"units": "N"})})
+
+
+@pytest.fixture(scope="module")
+def lengths():
+    return {0.67: safe_with_tips(2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(400)))}
+
+
+def answers(lengths, of, dimples):
+    return {one.name: one for one in [*life.of_beam(lengths, {}, of), *life.dimple_answers(of, dimples)]}
+
+
+@pytest.mark.parametrize("number", [1, 3, 7])
+def test_the_force_of_a_row_is_the_sum_of_other_patches(number):
+    settings = stoppers.Dimples(OF_WATER, 0.67, (1.5e-6, 6e-6), number)
+    held = stoppers.compute_dimples(small.contact_of_pair(), settings).pull_off.values
+    single = 1.5e-6 * 6e-6 * curves.pull_offs(small.contact_of_pair(), 0.67, OF_WATER)
+    assert len(held) == len(single) // number
+    assert_allclose(held.sum(), single[: len(held) * number].sum(), rtol=1e-12)
+    if number == 1:
+        assert_array_equal(held, single)
+
+
+def test_a_row_holds_although_each_of_its_dimples_is_too_weak(lengths):
+    of = replace(OF, length=200e-6, dimples=AT)
+    pulled = answers(lengths, of, {0.67: forces(1e-6)})["dimples_force"].low
+    alone, together = ({0.67: forces(factor * pulled)} for factor in (0.5, 1.5))
+    assert answers(lengths, of, alone)["stuck_dimples_0.67"].high < 0.02
+    assert answers(lengths, of, together)["stuck_dimples_0.67"].low > 0.9
+
+
+@pytest.mark.parametrize("kind", ["cantilever", "bridge"])
+def test_life_compares_the_row_with_the_force_of_the_beam_there(lengths, kind):
+    of = replace(OF, length=200e-6, dimples=AT, device=OF.device if kind == "cantilever" else R1, liquids={})
+    found_lengths = lengths if kind == "cantilever" else {0.67: safe_without_tips()}
+    given = {0.0: forces(5e-6), 0.67: forces(2e-5, seed=4)}
+    found, bent = answers(found_lengths, of, given), row(of.beam(200e-6), of.clamps, AT.at)
+    force = bent.stiffness * (of.device.gap - AT.height)
+    assert_allclose(found["dimples_force"].low, force, rtol=1e-12)
+    for humidity, dataset in given.items():
+        _, low, high = stuck_patches(dataset.pull_off.values, np.array([force]))
+        one = found[f"stuck_dimples_{humidity:g}"]
+        assert (one.low, one.high) == (low[0], high[0])
+    assert_allclose(found["dimples"].low, given[0.67].pull_off.mean(), rtol=1e-12)
+    left = 1 - bent.deepest * (of.device.gap - AT.height) / of.device.gap
+    assert_allclose(found["beside_dimples"].low, max(left, 0.0), atol=1e-12)
+
+
+def test_errors_of_the_force_follow_thickness_and_gap(lengths):
+    errors = Errors(thickness=0.01 * OF.device.thickness, gap=0.02 * OF.device.gap)
+    found = answers(lengths, replace(OF, length=200e-6, dimples=AT, uncertainty=errors), {0.67: forces(1e-5)})
+    way = OF.device.gap / (OF.device.gap - AT.height)
+    pulled = found["dimples_force"]
+    assert_allclose(pulled.error / pulled.low, np.hypot(0.03, 0.02 * way), rtol=1e-3)
+
+
+def test_sentences_say_how_many_stick_and_whether_the_beam_touches_beside_its_dimples(lengths):
+    for height, said in ((1e-6, "But it touches beside them"), (19e-6, "% of the gap is left")):
+        of = replace(OF, length=200e-6, dimples=Dimples(3, 80e-6, height))
+        dataset = life.layout(list(answers(lengths, of, {0.67: forces(1e-5)}).values()), of, 200e-6)
+        (sentence,) = [one for one in report.sentences(dataset) if "dimples" in one]
+        assert said in sentence
+        assert "of the beams stick on them" in sentence
+    assert not any("dimples" in one for one in answers(lengths, OF, {}))
+
+
+def test_a_beam_with_dimples_has_a_job_for_them_at_each_humidity():
+    plan = Plan(load({"devices": {"C1": BEAM | {"length_um": 100, "dimples": ROW}, "C2": BEAM}}))
+    graph = Graph(plan)
+    assert list(graph.job("devices/life/C1").inputs["dimples"]) == [0, 0.67]
+    assert not graph.job("devices/life/C2").inputs["dimples"]
+    settings = in_si(stoppers.Dimples, job_settings(plan, "devices/dimples/C1_rh067"))
+    assert (settings.number, settings.humidity) == (3, 0.67)
+    assert_allclose(settings.contact, (2e-6, 1e-6), rtol=1e-12)
+    for case, pair in (("C1_rh067", "b"), ("C1_dry", "b_dry")):
+        assert graph.job(f"devices/dimples/{case}").inputs["contact"] == f"devices/contact/{pair}_2000x1000"
+    of = in_si(OfBeam, job_settings(plan, "devices/life/C1")["beam"])
+    assert_allclose((of.dimples.number, of.dimples.at, of.dimples.height), (3, 80e-6, 1e-6), rtol=1e-12)
