@@ -500,7 +500,7 @@ def _tilted(tilted):
             float(safe.sel(part="safe").max()),
             float(safe.sel(part="error")[low]),
         )
-        what, form = f"restoring force that frees all but {_one_in(min(bounded))} {by}", "quantile of the force, 95 %"
+        what, form = f"restoring force that frees all but {_one_in(min(bounded))}, {by}", "quantile of the force, 95 %"
         answers.append(Answer("restoring_force_tilted", FREE, what, *numbers, "N", form, _OF_TILT))
     return answers
 
