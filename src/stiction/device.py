@@ -18,7 +18,7 @@ from stiction.plan.graph import Results
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings, stuck
 from stiction.stages.devices.contact_names import contact_of, tips_of
-from stiction.stages.devices.device_warnings import left_out_changes, of_left_out_gaps
+from stiction.stages.devices.device_warnings import gap_warnings, left_out_changes
 from stiction.stages.devices.opening import FORCE
 from stiction.stages.surfaces import surface_flags
 
@@ -101,8 +101,8 @@ class Device:
         Beams and stoppers have one layout, that of `stiction.stages.devices.stuck`.
         """
         if self.kind.is_beam:
-            return stuck.of_beam(self.safe_lengths(humidity))
-        return stuck.of_stopper(self.forces(), in_numbers(humidity))
+            return stuck.stuck_beams(self.safe_lengths(humidity))
+        return stuck.stuck_stoppers(self.forces(), in_numbers(humidity))
 
     def plot(self) -> "Figure":
         """Figure of P(stuck) at all humidities: with the safe lengths of a beam, or the forces of a stopper."""
@@ -216,10 +216,10 @@ class Device:
         flags += settings.get("assumed", [])
         if "stopper" in settings:
             of = in_si(device_warnings.OfStopper, settings["stopper"])
-            own = device_warnings.of_stopper(of, share_flat=float(safe_lengths.share_flat))
-            return own + of_left_out_gaps(changes, FORCE) + flags
-        of_beam = device_warnings.of_device(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
-        with_gaps = {shape: said + of_left_out_gaps(changes, shape) for shape, said in of_beam.items()}
+            own = device_warnings.stopper_warnings(of, share_flat=float(safe_lengths.share_flat))
+            return own + gap_warnings(changes, FORCE) + flags
+        of_beam = device_warnings.beam_warnings(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
+        with_gaps = {shape: said + gap_warnings(changes, shape) for shape, said in of_beam.items()}
         return pair_warnings.numbered(with_gaps)[0] + flags
 
     def _result(self, stage, humidity, end=""):

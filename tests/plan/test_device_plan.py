@@ -93,7 +93,10 @@ def test_a_device_on_scans_has_a_budget_without_a_stated_uncertainty():
     found = DevicePlan(merged(PLAN.config, {"surfaces": {"B2": scanned}}))
     assert found.budgeted == ["C1", "C2", "S1"]
     assert found.quantities("C2") == [("B2", quantity) for quantity in MOMENT_QUANTITIES + SPECTRUM_QUANTITIES]
-    assert budget.of_job(job_settings(PLAN, "devices/budget/C2_rh067")["budget"]).uncertainty == inputs.Uncertainty()
+    assert (
+        budget.budget_settings(job_settings(PLAN, "devices/budget/C2_rh067")["budget"]).uncertainty
+        == inputs.Uncertainty()
+    )
 
 
 def test_heights_are_uncertain_if_a_scan_is_stated():
@@ -181,7 +184,7 @@ def test_a_budget_has_the_hamaker_constant_through_the_medium_if_it_is_uncertain
     stated = {"devices": {"S1": {"uncertainty": {"hamaker_constant_zJ": 3}}}, "van_der_waals": medium}
     found = job_settings(plan(**stated), "devices/budget/S1_rh090")["budget"]
     assert found["hamaker_constant_zJ"] == pytest.approx(expected)
-    assert budget.of_job(found).uncertainty.hamaker_constant == pytest.approx(3e-21)
+    assert budget.budget_settings(found).uncertainty.hamaker_constant == pytest.approx(3e-21)
     assert "hamaker_constant_zJ" not in job_settings(PLAN, "devices/budget/S1_rh090")["budget"]
     constants = {"hamaker_constant_zJ": {"water": 5, "dry": 65}}
     of_glass = {"materials": {"Glass": GLASS | constants}, "surfaces": {"B2": {"material": "Glass"}}}

@@ -20,7 +20,7 @@ SECTIONS = {
     "stopper": {"contact_um": [3, 12.5], "restoring_force_uN": 18.99},
 }
 DRAWINGS = [devices.beam(), devices.stopper_and_bridge(), method()]
-DRAWINGS += [devices.of_device({"kind": kind} | section) for kind, section in SECTIONS.items()]
+DRAWINGS += [devices.device_drawing({"kind": kind} | section) for kind, section in SECTIONS.items()]
 each_drawing = pytest.mark.parametrize("drawing", DRAWINGS, ids=lambda drawing: drawing.name)
 
 

@@ -71,10 +71,10 @@ def answers(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
     for name in config.get("devices", {}):
         yield f"Device {name}: {_text(results / 'devices' / f'{name}.txt').splitlines()[0]}"
     if config["run"]["pairs"]:
-        yield from of_pairs(results, config)
+        yield from pair_answers(results, config)
 
 
-def of_pairs(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
+def pair_answers(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
     """Yield the ends of the beams of every pair, a sentence each, or nothing before Table III is computed."""
     table = results / "tables" / "table_3.csv"
     rows = csv.DictReader(_text(table).splitlines() if table.exists() else ())

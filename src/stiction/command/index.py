@@ -19,7 +19,7 @@ from stiction.config.reading import paper
 from stiction.models import SIDES
 from stiction.plan.planner import Planner
 from stiction.plan.stage import WILDCARDS, expression
-from stiction.report.drawings.devices import of_device
+from stiction.report.drawings.devices import device_drawing
 from stiction.report.html import rendered
 from stiction.report.surfaces.words import described
 from stiction.run.atomic import save_text
@@ -46,7 +46,7 @@ def write(results: Path, rules: Iterable[Mapping[str, Any]]) -> None:
         save_text(page, file)
 
 
-def of_last_run(results: Path) -> Path | None:
+def write_for_last_run(results: Path) -> Path | None:
     """Write the index of a folder by the configuration of its last run, and name it. Nothing without a run.
 
     Runs that failed or were stopped write no index.
@@ -77,7 +77,7 @@ def index(results: Path, rules: Iterable[Mapping[str, Any]]) -> str:
         title=front_page.subjects(config) or f"surfaces {', '.join(_used(config))}",
         made=f"Last run: {started(last)}, {next(code_of(last))}.",
         devices=list(_devices(results, config, found)),
-        pairs=list(front_page.of_pairs(results, config)),
+        pairs=list(front_page.pair_answers(results, config)),
         surfaces=list(_surfaces(results, config)),
         figures=_by_category(item for item in found if item.shown.endswith(".png")),
         tables=[item for item in found if item.category == "Tables"],
@@ -122,7 +122,7 @@ def _devices(results: Path, config: Mapping, found: Sequence[Item]) -> Iterator[
         yield {
             "name": name,
             "kind": kind_of(section).words,
-            "drawing": of_device(section).svg,
+            "drawing": device_drawing(section).svg,
             "page": page if page in pages else "",
             "answer": answer,
             "warnings": sum(name in _subjects_of(sentence) for sentence in said),

@@ -291,7 +291,7 @@ def _show(arguments):
 
     results = Path(arguments.directory) / "results"
     try:
-        page = index.of_last_run(results)
+        page = index.write_for_last_run(results)
     except ValueError as damaged:
         raise launch.RefusedError(str(damaged)) from None
     if page is None:

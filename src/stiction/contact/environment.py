@@ -1,4 +1,4 @@
-r"""What is between two surfaces: condensed water, and attraction where there is none; force curves in it (Sec. III-A).
+r"""Environment of two surfaces: condensed water, or attraction in dry air, and force curves in it (Sec. III-A).
 
 The contact of the solids does not depend on it. Force curves at any humidity follow from the contact and the water.
 
@@ -110,7 +110,7 @@ class Water:
         return flooded_energy(self.temperature, self.contact_angles) + self.film(humidity)[1] * self.adsorbed
 
     def at(self, humidity: float) -> "Water":
-        """The same at a humidity: where no water condenses, the summits attract each other through air."""
+        """Water at a humidity. Without condensation, the summits attract each other through air."""
         if self.film(humidity)[0]:
             return self
         return replace(self, gaps=self.gaps and replace(self.gaps, summits="dry"))

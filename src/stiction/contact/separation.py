@@ -1,4 +1,4 @@
-r"""Menisci that keep their volume, because surfaces separate faster than water evaporates (not in the paper).
+r"""Menisci of constant volume, in a separation faster than water evaporates (not in the paper).
 
 At the distance d between the mean planes, water up to the height h wets everything above z = d - h, an area A(z). The
 gaps hold the volume per area
@@ -75,7 +75,7 @@ def keep_volume(
     first: float,
     layer: tuple[float, float],
 ) -> tuple[np.ndarray, float] | None:
-    """Force of a fast separation from that of a slow one, and the work that is left to the water beyond the distances.
+    """Force of a fast separation from a slow one's, and the work left to the water beyond the distances.
 
     Parameters
     ----------

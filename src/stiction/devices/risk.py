@@ -233,3 +233,15 @@ def error_of_surfaces(of_group: np.ndarray) -> float | np.ndarray:
     values = np.where(np.isfinite(values), values, np.nan)
     differ = np.ptp(values, axis=0) > 0
     return np.where(differ, values.std(axis=0, ddof=1) / np.sqrt(groups), np.nan)[()]
+
+
+def one_in(share: float) -> str:
+    """Fraction of devices in words.
+
+    Examples
+    --------
+    >>> one_in(1e-3), one_in(1e-6), one_in(0.03)
+    ('1 in 1000', '1 in 1000000', '1 in 33.3333')
+    """
+    number = 1 / share
+    return f"1 in {number:.0f}" if abs(number - round(number)) < 1e-6 * number else f"1 in {number:g}"

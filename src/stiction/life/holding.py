@@ -31,12 +31,12 @@ ARC, S_SHAPE = 3 / 8, 3 / 2
 
 
 def energy_of_voltage(capacitor: Capacitor, gap: float) -> float:
-    """Work Γ_V against a voltage from flats in contact to a gap h [m]; [J m⁻²]."""
+    """Work Γ_V against a voltage from flats in contact to a gap h [m] [J m⁻²]."""
     return capacitor.work(0.0) - capacitor.work(gap)
 
 
 def length_at_voltage(length: float | np.ndarray, beam: Beam, added: float, form: float) -> float | np.ndarray:
-    """Length that releases at a voltage, from that without voltage [m]; energy Γ_V [J m⁻²], form c [-].
+    """Length to release at a voltage, from one without voltage [m], the energy Γ_V [J m⁻²] and form c [-].
 
     An infinite length is that of a beam without adhesion. ASSUME: the voltage alone then holds it.
 

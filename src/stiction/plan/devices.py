@@ -73,22 +73,22 @@ class DevicePlan:
 
     @cached_property
     def beams(self) -> list[str]:
-        """Devices that crack open."""
+        """Devices opening by a crack."""
         return [name for name in self.sections if self.kind(name).is_beam]
 
     @cached_property
     def stoppers(self) -> list[str]:
-        """Devices that touch with their whole area."""
+        """Devices touching with their whole area."""
         return [name for name in self.sections if not self.kind(name).is_beam]
 
     @cached_property
     def with_tips(self) -> list[str]:
-        """Devices that a free end may hold."""
+        """Devices with a free end able to stick."""
         return [name for name in self.sections if self.kind(name).has_tip]
 
     @cached_property
     def cases(self) -> list[str]:
-        """Every beam at each of its humidities."""
+        """Cases of every beam at each of its humidities."""
         return [case_id(name, humidity) for name in self.beams for humidity in self.sections[name]["humidities"]]
 
     @cached_property
@@ -231,12 +231,12 @@ class DevicePlan:
 
     @cached_property
     def roughened(self) -> list[str]:
-        """Devices that are computed over the roughness of a surface."""
+        """Devices computed along the roughness of a surface."""
         return [name for name, device in self.sections.items() if "roughness" in device]
 
     @cached_property
     def mapped(self) -> list[str]:
-        """Those of `roughened` that are computed over two quantities."""
+        """Devices of `roughened` computed along two quantities."""
         return [name for name in self.roughened if len(ROUGHNESSES.keys() & self.sections[name]["roughness"]) > 1]
 
     @cached_property

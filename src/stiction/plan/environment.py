@@ -101,7 +101,7 @@ class Air:
         return water | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
 
     def across_gaps(self, contact: str) -> dict[str, Any]:
-        """As `water`, with attraction across gaps."""
+        """Settings of `water`, with attraction across gaps."""
         return self.water(contact, self.config | {"attraction": self.config["attraction"] | {"reach": "all"}})
 
     def without_gaps(self, contact: str) -> dict[str, Any]:

@@ -6,12 +6,12 @@ from stiction.plan.devices import DevicePlan
 
 
 def of_job(config: dict) -> int:
-    """Memory to reserve for each job of a configuration [MB]; stages with many samples or large scans may need more."""
+    """Memory to reserve for each job of a configuration [MB]. Stages with many samples or large scans may need more."""
     return round(max(USUAL, _largest_field_memory(config)))
 
 
 def of_attempt(first: int, attempt: int) -> int:
-    """Memory or time to reserve for an attempt of a job, from that of the first: twice as much after each failure.
+    """Memory or time to reserve for an attempt of a job, from the first: twice as much after each failure.
 
     Examples
     --------
@@ -22,7 +22,7 @@ def of_attempt(first: int, attempt: int) -> int:
 
 
 def _largest_field_memory(config):
-    """Memory of a job that draws the largest of all fields [MB]."""
+    """Memory of a job with the largest of all fields [MB]."""
     sampling, patch = config["sampling"], config["identification"]["patch_um"]
     spacing, others, margin = sampling["spacing_nm"], config["studies"]["variants"]["spacing_nm"], sampling["margin_um"]
     drawn = [((FIELD_UM, FIELD_UM), spacing), ((patch, patch), spacing)]

@@ -97,7 +97,7 @@ class Plan:
         return [name for name in self.config["surfaces"] if name in used]
 
     def simulated(self, surface: str) -> bool:
-        """Whether a surface is drawn for a pair that runs, a device or test beams."""
+        """Whether a surface is drawn for a pair in the run, a device or test beams."""
         users = (*self.config.get("devices", {}).values(), *self.config.get("test_beams", {}).values())
         pairs = [*self.pairs, *(user["pair"] for user in users if "pair" in user)]
         return any(surface in self.sides(pair) for pair in pairs)

@@ -110,7 +110,7 @@ class Variants:
         return (self.config["contact"] | changed).get("asperity", "summit") != "summit"
 
     def contact_under(self, variant: str) -> str:
-        """Variant whose contact a variant has: that of the base if only what follows from it differs."""
+        """Variant with the contact of a variant: the base's if only later steps differ."""
         after = variant in self.finer_beams or variant == CORRECTED or bool(_BETWEEN & self.changes[variant].keys())
         return "base" if after else variant
 

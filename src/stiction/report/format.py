@@ -15,18 +15,6 @@ TO_NM, TO_UM, TO_UN, TO_MPA, TO_GPA, TO_MJ = 1e9, 1e6, 1e6, 1e-6, 1e-9, 1e3
 MISSING = "–"
 
 
-def one_in(share: float) -> str:
-    """Fraction of devices in words.
-
-    Examples
-    --------
-    >>> one_in(1e-3), one_in(1e-6), one_in(0.03)
-    ('1 in 1000', '1 in 1000000', '1 in 33.3333')
-    """
-    number = 1 / share
-    return f"1 in {number:.0f}" if abs(number - round(number)) < 1e-6 * number else f"1 in {number:g}"
-
-
 def percent(value: float, reference: float) -> float:
     """Deviation from a reference [%], NaN without one.
 

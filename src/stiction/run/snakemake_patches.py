@@ -181,7 +181,7 @@ def limit_timers(workflow: Any) -> None:
 
 
 def keep_to_allotted_cores(workflow: Any) -> None:
-    """Let a group of jobs use no more cores than SLURM allotted to it; Snakemake would take all of the machine."""
+    """Let a group of jobs use only the cores allotted to it by SLURM. Snakemake would take all of the machine."""
     allotted, limits = os.environ.get("SLURM_CPUS_PER_TASK", ""), getattr(workflow, "global_resources", None)
     if allotted.isdecimal() and limits is not None:
         limits["_cores"] = int(allotted)
@@ -203,7 +203,7 @@ def files_of_configuration(workflow: Any) -> list[Path]:
 
 
 def read_in_jobs(workflow: Any, file: Path) -> None:
-    """Let jobs that start an interpreter of their own read one file of the configuration in place of this run's files.
+    """Let jobs with their own interpreter read one file of the configuration in place of this run's files.
 
     If Snakemake no longer says where it keeps them, jobs read the files of this run.
     """

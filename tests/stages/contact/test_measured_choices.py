@@ -200,7 +200,7 @@ def test_modes_of_a_surface_with_the_heights_of_its_moments_are_those_of_its_mea
 def test_the_budget_of_a_device_takes_the_covariance_of_the_estimate(files, estimated, form, names):
     plan = plan_of(files, heights=form)
     drawn = heights.compute(estimated, small.settings_of(heights, job_settings(plan, "heights/Etched")))
-    found = inputs.of_scans(estimated, drawn)
+    found = inputs.scan_errors(estimated, drawn)
     assert found.quantities == (*names, *SPECTRUM_QUANTITIES)
     of_heights = estimated.covariance if form == "moments" else estimated.mode_covariance
     assert_array_equal(found.covariance[: len(names), : len(names)], of_heights)

@@ -68,8 +68,10 @@ def solids(surfaces):
 @pytest.mark.slow
 @pytest.mark.parametrize("humidity", KNOWN)
 def test_slopes_of_pair_b_are_those_of_an_independent_study(humidity, surfaces, base, changed, solids):
-    known = {"B2": inputs.of_one_scan(*surfaces[0], 10e-6)}
-    settings = budget.of_job(job_settings(PLAN, f"devices/budget/{f'C1_rh{round(100 * humidity):03}'}")["budget"])
+    known = {"B2": inputs.errors_of_one_scan(*surfaces[0], 10e-6)}
+    settings = budget.budget_settings(
+        job_settings(PLAN, f"devices/budget/{f'C1_rh{round(100 * humidity):03}'}")["budget"]
+    )
     found = budget.compute(base, changed, {"modulus": solids["modulus"]}, {}, known, settings)
     slopes = dict(zip(found.input.values, zip(found.slope.values, found.slope_error.values, strict=True), strict=True))
     assert set(slopes) == set(KNOWN[humidity])
@@ -89,7 +91,9 @@ def test_slopes_of_pair_b_are_those_of_an_independent_study(humidity, surfaces, 
 @pytest.mark.parametrize("humidity", KNOWN)
 def test_slopes_of_the_solids_follow_the_energy_of_the_contact(humidity, base, solids):
     plan = Plan(merged(PLAN.config, {"devices": {"C1": {"uncertainty": SOLIDS}}}))
-    settings = budget.of_job(job_settings(plan, f"devices/budget/{f'C1_rh{round(100 * humidity):03}'}")["budget"])
+    settings = budget.budget_settings(
+        job_settings(plan, f"devices/budget/{f'C1_rh{round(100 * humidity):03}'}")["budget"]
+    )
     found = budget.compute(base, {}, solids, {}, {}, settings)
     slopes = dict(zip(found.input.values, zip(found.slope.values, found.slope_error.values, strict=True), strict=True))
     # Eq. (13): the length has the power -1/4 of the energy of the contact.

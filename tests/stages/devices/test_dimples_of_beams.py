@@ -41,7 +41,7 @@ def lengths():
 
 
 def answers(lengths, of, dimples):
-    return {one.name: one for one in [*life.of_beam(lengths, {}, of), *life.dimple_answers(of, dimples)]}
+    return {one.name: one for one in [*life.beam_answers(lengths, {}, of), *life.dimple_answers(of, dimples)]}
 
 
 @pytest.mark.parametrize("number", [1, 3, 7])

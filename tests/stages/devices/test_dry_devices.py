@@ -207,7 +207,7 @@ def test_a_stopper_in_dry_air_alone_is_in_no_humid_air(grounds):
     for restoring, verdict in ((1e-6, "does not suffice in dry air"), (21e-6, "suffices in dry air: at most 1 in 100")):
         settings = replace(SETTINGS, humidities=(0.0,), restoring_force=restoring)
         layout = stoppers.layout(settings, forces, np.array([0.0]), forces)
-        page = pages.of_stopper("S1", STOPPER | {"humidities": [0.0]}, layout, {}, []).html
+        page = pages.stopper_page("S1", STOPPER | {"humidities": [0.0]}, layout, {}, []).html
         assert f"force of {1e6 * restoring:g} µN {verdict}" in page
         assert "humidity of" not in page.replace("Humidity of the largest", "")
         assert "In dry air, " in page
@@ -297,7 +297,7 @@ def captions(datasets):
     return (
         tables_devices.safe_lengths({("C1", humidity): one for humidity, one in datasets.items()}, warnings).caption,
         tables_devices.chart({("C1", humidity): one for humidity, one in charts.items()}, warnings).caption,
-        pages.of_beam("C1", section, datasets, charts, {}, warnings).html,
+        pages.beam_page("C1", section, datasets, charts, {}, warnings).html,
     )
 
 

@@ -24,7 +24,7 @@ def least(dataset):
 
 def test_without_a_length_the_answer_is_the_safe_length_of_the_worst_air():
     lengths = {0.44: safe(), 0.67: safe(longest=500e-6)}
-    shown = first_screen.of_beam(CANTILEVER, lengths, {}, [])
+    shown = first_screen.beam_screen(CANTILEVER, lengths, {}, [])
     assert (shown.tone, shown.answer) == ("good", f"Safe up to {least(lengths[0.67]):.0f} µm.")
     assert shown.points["What decides"].startswith("RH 0.67, held by the beam or tip.")
     assert any("at relative humidities of 0.44, 0.67, with 95 % confidence, from 400" in text for text in shown.basis)
@@ -35,7 +35,7 @@ def test_without_a_length_the_answer_is_the_safe_length_of_the_worst_air():
 @pytest.mark.parametrize(("length", "sign"), [(150e-6, "Safe"), (275e-6, "Not shown to be safe"), (400e-6, "Too long")])
 def test_a_stated_length_is_judged_by_its_own_share(length, sign):
     dataset = of_length(length)
-    shown = first_screen.of_beam(CANTILEVER | {"length_um": 1e6 * length}, {0.67: dataset}, {}, [])
+    shown = first_screen.beam_screen(CANTILEVER | {"length_um": 1e6 * length}, {0.67: dataset}, {}, [])
     assert shown.sign == sign
     assert f"; your {1e6 * length:g} µm: " in shown.answer
     share, low, high = 100 * dataset.stuck_at_length.sel(shape=EITHER).values
@@ -45,17 +45,17 @@ def test_a_stated_length_is_judged_by_its_own_share(length, sign):
 
 def test_the_uncertainty_of_the_measurements_shortens_the_answer_as_in_words():
     lengths, budgets = {0.67: safe()}, {(0.67, "tip"): BUDGETS["C1", 0.67, "tip"]}
-    shown = first_screen.of_beam(CANTILEVER, lengths, budgets, [])
+    shown = first_screen.beam_screen(CANTILEVER, lengths, budgets, [])
     (metres,) = sentences.length_to_build(lengths, budgets)[2:]
     assert 1e6 * metres < least(lengths[0.67])
     assert f"Safe up to {1e6 * metres:.0f} µm" in shown.answer
     assert f"Build it no longer than {1e6 * metres:.0f} µm" in sentences.build_sentence(lengths, budgets)
     assert shown.points["What to measure"].startswith("Measure")
-    assert "uncertainty" in first_screen.of_beam(CANTILEVER, lengths, {}, []).points["What to measure"]
+    assert "uncertainty" in first_screen.beam_screen(CANTILEVER, lengths, {}, []).points["What to measure"]
 
 
 def test_the_sizes_to_change_need_the_adhesion_energy_of_the_safe_length():
-    shown = first_screen.of_beam(CANTILEVER | {"length_um": 400}, {0.67: of_length(400e-6)}, {}, [])
+    shown = first_screen.beam_screen(CANTILEVER | {"length_um": 400}, {0.67: of_length(400e-6)}, {}, [])
     thickness, gap = (float(part.split()[0]) for part in shown.points["What to change"].split(" of ")[2:])
     length = least(of_length(400e-6))
 
@@ -73,7 +73,7 @@ def test_a_stopper_is_judged_by_the_force_that_it_needs():
     needed = 1e6 * float(stopper.safe_force.sel(part="safe", share=sentences.bounded_share(stopper)).max())
     for force, sign in ((2 * needed, "Suffices"), (0.1 * needed, "Too weak")):
         changed = stopper.assign(restoring_force=force * 1e-6)
-        shown = first_screen.of_stopper(STOPPER, changed, {}, [])
+        shown = first_screen.stopper_screen(STOPPER, changed, {}, [])
         assert shown.sign == sign
         humidity, stuck, low, high = max(shares_stuck(changed), key=lambda row: row[3])
         own = f"with {force:g} µN, {100 * stuck:.3g} % stick ({100 * low:.3g} to {100 * high:.3g} %) at RH {humidity:g}"
@@ -82,17 +82,17 @@ def test_a_stopper_is_judged_by_the_force_that_it_needs():
 
 def test_a_warning_of_the_unsafe_side_stands_in_place_of_the_number():
     for shown in (
-        first_screen.of_beam(CANTILEVER, {0.67: safe()}, {}, ["Steep.", UNSAFE]),
-        first_screen.of_stopper(STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, [UNSAFE]),
+        first_screen.beam_screen(CANTILEVER, {0.67: safe()}, {}, ["Steep.", UNSAFE]),
+        first_screen.stopper_screen(STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, [UNSAFE]),
     ):
         assert (shown.tone, shown.answer, shown.basis) == ("bad", UNSAFE, ())
-    assert "Safe up to" in first_screen.of_beam(CANTILEVER, {0.67: safe()}, {}, ["Steep."]).answer
+    assert "Safe up to" in first_screen.beam_screen(CANTILEVER, {0.67: safe()}, {}, ["Steep."]).answer
 
 
 def test_a_number_comes_with_the_error_of_the_model_or_says_that_it_is_not_stated():
     for warnings, number in (([], 1), ([UNSAFE], 0)):
         shown = {("C1", 0.67, shape): warnings for shape in (S_SHAPE, EITHER)}
-        page = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, shown)
+        page = pages.beam_page("C1", CANTILEVER, {0.67: safe()}, {}, {}, shown)
         assert sum("error of the model" in text for text in page.summary.basis) == number
 
 
@@ -119,7 +119,7 @@ def test_a_cell_without_a_number_is_explained_where_it_stands(cell):
 
 def test_the_longest_lengths_are_those_of_beams_whose_tip_cannot_touch():
     dataset = safe()
-    shown = first_screen.of_beam(CANTILEVER, {0.67: dataset}, {}, [])
+    shown = first_screen.beam_screen(CANTILEVER, {0.67: dataset}, {}, [])
     without_tip = 1e6 * float(dataset.safe_length.sel(share=1e-3, shape=S_SHAPE))
     assert f"If the tip could not touch: {without_tip:.0f} µm." in shown.points["What decides"]
     assert shown.cells["if the tip cannot touch [µm]"].tolist() == [f"{without_tip:.0f}"]

@@ -137,11 +137,11 @@ def test_quantities_of_a_surface_keep_their_covariance_and_their_group():
 
 def test_one_scan_gives_the_covariance_of_its_closed_form():
     # 10 µm of B2: errors and correlation as of hundreds of drawn scans.
-    found = inputs.of_one_scan(*small.surfaces()[0], 10e-6)
+    found = inputs.errors_of_one_scan(*small.surfaces()[0], 10e-6)
     errors = np.sqrt(np.diag(found.covariance))
     assert_allclose(errors, [0.0161, 0.0433, 0.1416], rtol=0.02)
     assert_allclose(found.covariance[1, 2] / (errors[1] * errors[2]), -0.868, atol=0.01)
-    assert_allclose(inputs.of_one_scan(*small.surfaces()[0], 20e-6).covariance, found.covariance / 4, rtol=0.1)
+    assert_allclose(inputs.errors_of_one_scan(*small.surfaces()[0], 20e-6).covariance, found.covariance / 4, rtol=0.1)
 
 
 def test_errors_of_several_causes_add_up_where_they_are_of_the_same_quantity():
@@ -154,7 +154,7 @@ def test_errors_of_several_causes_add_up_where_they_are_of_the_same_quantity():
 
 def test_what_is_stated_about_a_surface_adds_to_the_error_of_a_scan():
     surfaces, side = {"B2": small.surfaces()[0]}, 10e-6
-    of_scan = inputs.of_one_scan(*surfaces["B2"], side).covariance
+    of_scan = inputs.errors_of_one_scan(*surfaces["B2"], side).covariance
     stated = replace(SETTINGS, known={"B2": Known(("kurtosis", "slope"), [[0.04, 0], [0, 0.25]])})
     alone = inputs.covariances(surfaces, {}, stated)["B2"]
     assert alone.quantities == ("kurtosis", "slope")

@@ -52,12 +52,10 @@ def test_every_result_has_its_change_as_a_warning():
     assert any("across gaps is left out" in one and "RH 0.44" in one and "unsafe" in one for one in said)
     changes = device_warnings.left_out_changes(TOUCHING["devices/left_out_gaps/C1"])
     for shape in (S_SHAPE, EITHER):
-        (sentence,) = device_warnings.of_left_out_gaps(
-            {key: of for key, of in changes.items() if key[0] == 0.44}, shape
-        )
+        (sentence,) = device_warnings.gap_warnings({key: of for key, of in changes.items() if key[0] == 0.44}, shape)
         number = 100 * changes[0.44, ARC if shape == EITHER else shape][0]
         assert f"change the length that holds by {number:+.2g} ±" in sentence
-    assert device_warnings.of_left_out_gaps({}, S_SHAPE) == []
+    assert device_warnings.gap_warnings({}, S_SHAPE) == []
 
 
 @pytest.mark.parametrize("device", ["S1", "C1"])

@@ -73,14 +73,14 @@ def test_a_budget_has_a_row_of_the_model_that_is_no_part_of_its_total():
 def test_a_page_says_by_how_much_and_which_side_is_safe():
     (dry, wet) = (safe(), safe(longest=500e-6))
     given = {"C1": CANTILEVER | {"humidities": [0.44, 0.67]}}
-    page = pages.of_beam("C1", given["C1"], {0.44: dry, 0.67: wet}, {}, {}, NONE, errors=ERRORS).html
+    page = pages.beam_page("C1", given["C1"], {0.44: dry, 0.67: wet}, {}, {}, NONE, errors=ERRORS).html
     assert "would change the lengths held by the beam by +11.0 ± 1.0 % at a relative humidity of 0.44" in page
     assert "It is not known for what the tip holds." in page
     assert "What is stated is on the safe side" in page
-    stopper = pages.of_stopper("S1", STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, [], errors=ERRORS).html
+    stopper = pages.stopper_page("S1", STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, [], errors=ERRORS).html
     assert "the pull-off force by -30.0 ± 1.0 % at a relative humidity of 0.44" in stopper
     assert "model error: full elastic contact" in stopper
-    assert "Full elastic contact" not in pages.of_stopper("S1", STOPPER, STOPPERS["S1"], {}, []).html
+    assert "Full elastic contact" not in pages.stopper_page("S1", STOPPER, STOPPERS["S1"], {}, []).html
 
 
 @pytest.mark.parametrize(

@@ -52,7 +52,7 @@ def safe(kind="cantilever", longest=600e-6, reach=np.inf):
 @pytest.fixture(scope="module")
 def stopper():
     budgets = {(0.67,): BUDGETS["S1", 0.67]}
-    return pages.of_stopper("S1", STOPPER, STOPPERS["S1"], budgets, ["Too hot."]).html
+    return pages.stopper_page("S1", STOPPER, STOPPERS["S1"], budgets, ["Too hot."]).html
 
 
 def test_a_page_is_one_file_with_its_figures(stopper):
@@ -104,7 +104,7 @@ def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_sec
     points = [curves.layout([[one]], [""], rms, 400, asked) for rms, one in responses.items()]
     rough = curves.joined(points, "rms_nm", "B2")
     section = STOPPER | {"requirement": {"share": 0.05}, "roughness": {"surface": "B2", "rms_nm": [2, 8]}}
-    page = pages.of_stopper("S1", section, STOPPERS["S1"], {}, [], roughness=rough)
+    page = pages.stopper_page("S1", section, STOPPERS["S1"], {}, [], roughness=rough)
     assert "<td>requirement</td><td>at most 1 in 20 sticks</td>" in page.html
     assert "<td>roughness of B2 asked for</td><td>rms from 2 to 8 nm</td>" in page.html
     shown = page.html.partition("<h2>How rough must it be?</h2>")[2].partition("<h2>Limits")[0]
@@ -203,7 +203,7 @@ def test_a_force_that_most_patches_exceed_does_not_suffice_however_few_they_are(
 
 def test_a_page_explains_the_terms_that_it_uses_and_no_others():
     silent = {("R1", 0.67, "middle"): []}
-    bridge = pages.of_beam(
+    bridge = pages.beam_page(
         "R1", CANTILEVER | {"kind": "bridge", "residual_stress_MPa": 50}, {0.67: safe("bridge")}, {}, {}, silent
     ).html
     assert "<dt>Held by the middle</dt>" in bridge
@@ -211,7 +211,7 @@ def test_a_page_explains_the_terms_that_it_uses_and_no_others():
     assert "Choice of the model" not in bridge
     silent = {("C1", 0.67, shape): [] for shape in SHAPES}
     budgets = {(0.67,): budget_dataset()}
-    beam = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, budgets, silent).html
+    beam = pages.beam_page("C1", CANTILEVER, {0.67: safe()}, {}, budgets, silent).html
     assert "<dt>Held by the tip</dt>" in beam
     assert "Held by the middle" not in beam
     assert "<dt>Van der Waals in dry gaps, or none</dt>" in beam
@@ -227,7 +227,7 @@ def test_surfaces_are_described_by_their_numbers_or_their_scans():
 
 def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():
     silent = {("C1", 0.67, shape): [] for shape in SHAPES}
-    assert "<dt>Bound</dt>" in pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
+    assert "<dt>Bound</dt>" in pages.beam_page("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
 
 
 SHAPES = S_SHAPE, EITHER
@@ -235,12 +235,12 @@ SHAPES = S_SHAPE, EITHER
 
 def test_a_beam_without_chart_and_budget_has_neither():
     silent = {("C1", 0.67, shape): [] for shape in SHAPES}
-    plain = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
+    plain = pages.beam_page("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
     assert "Uncertainty, and" not in plain
     assert "Other thicknesses" not in plain
     assert plain.count("<img") == 1
     budgets = {(0.44,): budget_dataset(2.0), (0.67,): budget_dataset(), (0.67, "tip"): budget_dataset(0.5, TIPS)}
-    both = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, budgets, silent).html
+    both = pages.beam_page("C1", CANTILEVER, {0.67: safe()}, {}, budgets, silent).html
     assert both.count("<img") == 2
     assert all(f"RH {humidity}: effect [%]" in both for humidity in (0.44, 0.67))
     assert both.count("Counted as exact: ") == 1
@@ -253,7 +253,7 @@ def test_warnings_of_a_beam_have_the_numbers_of_its_tables():
     warned = {("C1", 0.67, shape): ["Too steep."] * (shape == EITHER) for shape in SHAPES}
     curves = [("C1", *curve) for curve in device_warnings.curves(charted(0.5))]
     warned |= dict.fromkeys(curves, []) | {curves[0]: ["Too thin.", "Too steep."]}
-    page = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {0.5: charted(0.5)}, {}, warned).html
+    page = pages.beam_page("C1", CANTILEVER, {0.67: safe()}, {0.5: charted(0.5)}, {}, warned).html
     assert "<p>(1) Too steep.</p>\n<p>(2) Too thin.</p>" in page
     rows = re.findall(r"<td>([^<]*)</td>\s*</tr>", page.partition("How long")[2])  # last cells
     assert rows == [""] * 3 + ["1"] * 3 + ["2, 1"] + [""] * 7
@@ -265,7 +265,7 @@ def test_a_long_table_is_folded():
     charts = {humidity: charted(humidity) for humidity in np.linspace(0.4, 0.9, 9).round(3)}
     silent = {("C1", 0.67, shape): [] for shape in SHAPES}
     silent |= {("C1", *curve): [] for curve in device_warnings.curves(charted(0.5))}
-    page = pages.of_beam("C1", CANTILEVER, {0.67: safe()}, charts, {}, silent).html
+    page = pages.beam_page("C1", CANTILEVER, {0.67: safe()}, charts, {}, silent).html
     assert page.count("<details><summary>Table of 72 rows</summary>") == 1
 
 
@@ -316,7 +316,7 @@ def test_the_first_sentence_states_the_share_at_the_length_of_the_device():
     # Sticking lengths in either shape are 280 to 420 µm.
     cases = {0.44: of_length(300e-6), 0.67: of_length(350e-6)}
     silent = {("C1", humidity, shape): [] for humidity in cases for shape in (S_SHAPE, EITHER)}
-    page = pages.of_beam("C1", CANTILEVER | {"length_um": 300}, cases, {}, {}, silent)
+    page = pages.beam_page("C1", CANTILEVER | {"length_um": 300}, cases, {}, {}, silent)
     stuck, low, high = (100 * float(one) for one in cases[0.67].stuck_at_length.sel(shape=EITHER))
     assert stuck == 50
     safe_for = 1e6 * float(cases[0.67].safe_length.sel(shape=EITHER, share=1e-3))
@@ -362,7 +362,7 @@ def test_the_table_has_the_share_at_the_length_of_those_devices_that_have_one():
 def test_where_few_devices_stick_the_page_begins_with_how_many_do_at_most():
     silent = {("C1", 0.67, shape): [] for shape in (S_SHAPE, EITHER)}
     few = safe(longest=3000e-6, reach=1410e-6)  # 6 of 400 devices stick, by their tips
-    page = pages.of_beam("C1", CANTILEVER, {0.67: few}, {}, {}, silent)
+    page = pages.beam_page("C1", CANTILEVER, {0.67: few}, {}, {}, silent)
     assert page.answer[0] == (
         "At a relative humidity of 0.67, hardly any device sticks: none of the 400 simulated ones shorter than 1400 µm "
         "does, and at most 2.9 % of those of 1410 µm (95 % confidence, given the drawn surfaces). For 1 in 1000, the "
@@ -371,7 +371,7 @@ def test_where_few_devices_stick_the_page_begins_with_how_many_do_at_most():
     least = 1e6 * few.flooded_length.sel(shape=EITHER).item()
     assert page.answer[1].startswith(f"Build it no longer than {least:.0f} µm: then at most 1 in 1000 sticks")
     assert "<td>flat</td>" in page.html
-    assert pages.of_beam("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).answer[0].startswith("Build it no longer")
+    assert pages.beam_page("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).answer[0].startswith("Build it no longer")
 
 
 def test_where_no_device_sticks_in_enough_simulated_ones_the_longest_is_safe():
@@ -387,10 +387,10 @@ def test_where_no_device_sticks_in_enough_simulated_ones_the_longest_is_safe():
 
 def test_a_page_says_in_its_second_sentence_that_an_assumption_decides():
     budgets, section = {(0.67,): BUDGETS["S1", 0.67]}, STOPPER | {"assumed": ["rms of B2"]}
-    assumed = pages.of_stopper("S1", section, STOPPERS["S1"], budgets, []).answer[1]
+    assumed = pages.stopper_page("S1", section, STOPPERS["S1"], budgets, []).answer[1]
     assert assumed.startswith("What decides is assumed, not measured: heights of B2. If that were known")
     lengths, budgets = {0.67: safe()}, {(0.67, "tip"): BUDGETS["C1", 0.67, "tip"]}
     none = {("C1", 0.67, shape): [] for shape in (S_SHAPE, EITHER)}
-    beam = pages.of_beam("C1", CANTILEVER | {"assumed": ["rms of B2"]}, lengths, {}, budgets, none)
+    beam = pages.beam_page("C1", CANTILEVER | {"assumed": ["rms of B2"]}, lengths, {}, budgets, none)
     assert beam.answer[1].startswith("What decides is assumed")
-    assert not pages.of_beam("C1", CANTILEVER, lengths, {}, budgets, none).answer[1].startswith("What decides")
+    assert not pages.beam_page("C1", CANTILEVER, lengths, {}, budgets, none).answer[1].startswith("What decides")

@@ -31,7 +31,7 @@ C1 = DesignedBeam("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PA
 R1 = DesignedBeam("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 0.5e-6, residual_stress=50e6)
 #: Forces and energies are multiplied by what a test passes as contact.
 BASE = State(1.0, 0.67, WATER, C1, 9e-12)
-BEAMS = partial(budget.of_beams, mesh=PAPER, strips=1000, number=100, address=lambda k: stream(1, k))
+BEAMS = partial(budget.beam_responses, mesh=PAPER, strips=1000, number=100, address=lambda k: stream(1, k))
 COMMON = 1, WATER, 0.67, Uncertainty(), ("B2", "Sub1"), 164e9
 SETTINGS = BeamBudget(*COMMON, device=C1, beams=24)
 
@@ -125,7 +125,7 @@ def test_the_error_of_a_slope_contains_that_of_the_samples_that_all_beams_share(
 def test_the_error_of_the_samples_moves_a_bridge_as_its_closed_form():
     states = [replace(BASE, device=R1, contact=factor) for factor in (np.exp(-0.1), np.exp(0.1))]
     zone, strips = middle_zone(R1.beam, R1.strip, budget.shared_laws([curves.vectors(1.0)])[0])
-    found = budget.of_beams(states, mesh=zone, strips=strips, number=20, address=lambda k: stream(1, k))
+    found = budget.beam_responses(states, mesh=zone, strips=strips, number=20, address=lambda k: stream(1, k))
     noise = np.exp(np.random.default_rng(1).normal(size=(2, len(VECTORS), 1)))
     found = replace(found, shared=found.shared * noise)
     own, common = (log_slope(np.mean, *values, 0.2)[1] for values in (found.values, found.shared[..., 0]))
@@ -140,12 +140,14 @@ def test_the_error_of_the_samples_moves_a_bridge_as_its_closed_form():
 
 def test_stoppers_share_no_samples_and_their_force_is_that_of_their_area():
     area = around("area", 0.1, lambda factor: replace(BASE, area=9e-12 * factor))
-    assert_allclose(budget.slopes([area], budget.of_stoppers)[0], [1, 0], atol=1e-12)
-    assert_allclose(budget.of_stoppers([BASE]).values[0], 9e-12 * VECTORS[:, 1], rtol=1e-14)
+    assert_allclose(budget.slopes([area], budget.stopper_responses)[0], [1, 0], atol=1e-12)
+    assert_allclose(budget.stopper_responses([BASE]).values[0], 9e-12 * VECTORS[:, 1], rtol=1e-14)
 
 
 def test_a_choice_of_the_model_changes_the_mean_by_its_effect():
-    assert_allclose(budget.effect(BASE, replace(BASE, contact=2.0), budget.of_stoppers), [np.log(2), 0], atol=1e-12)
+    assert_allclose(
+        budget.effect(BASE, replace(BASE, contact=2.0), budget.stopper_responses), [np.log(2), 0], atol=1e-12
+    )
     assert_allclose(budget.effect(BASE, BASE, BEAMS), [0, 0], atol=1e-12)
 
 
@@ -160,13 +162,13 @@ def test_lengths_that_are_not_known_leave_the_median():
 def test_the_length_that_tips_hold_follows_the_powers_of_the_closed_form():
     # l⁴ = (3/8) E t³ h² / e, exactly, whatever the scatter of e.
     stiffer = around("modulus", 0.05, lambda factor: device(young_modulus=factor))
-    found = budget.slopes([*INPUTS, stiffer], partial(budget.of_tips, share=1e-3))
+    found = budget.slopes([*INPUTS, stiffer], partial(budget.tip_responses, share=1e-3))
     assert_allclose(found[:, 0], [-1 / 4, 3 / 4, 1 / 2, 1 / 4], rtol=1e-9)
     assert_allclose(found[:, 1], 0, atol=1e-9)
 
 
 def test_the_tips_that_hold_best_stand_for_all():
-    found = budget.of_tips([BASE], 1e-3)
+    found = budget.tip_responses([BASE], 1e-3)
     assert_allclose(found.values[0], arc_length(VECTORS[:, 0], C1.beam), rtol=1e-12)
     assert found.centre(found.values[0]) == fit_tail(found.values[0]).length(1e-3)
 

@@ -52,8 +52,8 @@ def lengths():
 def answers(of, lengths=None, after=None, biased=None):
     """Answers about a beam, or a stopper, by name."""
     if lengths is None:
-        return {one.name: one for one in life.of_stopper(stopper_dataset(), of, biased)}
-    return {one.name: one for one in life.of_beam(lengths, after or {}, of, biased)}
+        return {one.name: one for one in life.stopper_answers(stopper_dataset(), of, biased)}
+    return {one.name: one for one in life.beam_answers(lengths, after or {}, of, biased)}
 
 
 def at_voltage(lengths, factor, energy):
@@ -168,7 +168,7 @@ def fast_forces(*factors):
 
 def test_fast_separation_bounds_what_frees_a_stopper_from_above():
     slow = answers(STOPPER)
-    fast = {one.name: one for one in life.of_stopper(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 2.5))}
+    fast = {one.name: one for one in life.stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 2.5))}
     for name in ("restoring_force", "stiffness"):
         assert slow[name].low == slow[name].high == fast[name].low
         assert_allclose(fast[name].high, 1.5 * fast[name].low, rtol=1e-12)
@@ -177,67 +177,68 @@ def test_fast_separation_bounds_what_frees_a_stopper_from_above():
     assert fast["freeing"].low == slow["freeing"].low
     assert set(slow) == set(fast)
     # The second humidity holds half of the force of the first one, slowly.
-    second = {one.name: one for one in life.of_stopper(stopper_dataset(), STOPPER, separation=fast_forces(1.0, 3.0))}
+    second = {
+        one.name: one for one in life.stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.0, 3.0))
+    }
     assert_allclose(second["restoring_force"].high, 1.5 * slow["restoring_force"].low, rtol=1e-12)
 
 
 def test_patches_that_no_summits_stop_leave_fast_separation_without_a_bound():
     flat = fast_forces(1.0, 1.0)
     flat.pull_off[0, -30:] = np.inf
-    found = {one.name: one for one in life.of_stopper(stopper_dataset(), STOPPER, separation=flat)}
+    found = {one.name: one for one in life.stopper_answers(stopper_dataset(), STOPPER, separation=flat)}
     for name in ("restoring_force", "stiffness", "freeing"):
         assert np.isnan(found[name].high)
         assert found[name].low == answers(STOPPER)[name].low
     flat.pull_off[0] = 1.2 * flat.pull_off[1]
     flat.pull_off[0, -1] = np.inf  # one of 400 is less than the fraction of which the bound is
-    assert np.isfinite(life.of_stopper(stopper_dataset(), STOPPER, separation=flat)[-1].high)
+    assert np.isfinite(life.stopper_answers(stopper_dataset(), STOPPER, separation=flat)[-1].high)
 
 
-def energies(ratios, errors):
-    """Dataset of stage separation of a beam."""
-    data = {"energy_ratio": ("humidity", ratios), "energy_ratio_error": ("humidity", errors)}
-    return xr.Dataset(data, coords={"humidity": [0.44, 0.67]})
+def factors(values, errors=0.01):
+    """Dataset of stage separation of a cantilever: factors of both end states at each humidity."""
+    data = {"factor": (("humidity", "shape"), values), "factor_error": (("humidity", "shape"), errors + 0 * values)}
+    return xr.Dataset(data, coords={"humidity": [0.44, 0.67][: len(values)], "shape": list(C1.opening.shapes)})
 
 
-def test_fast_separation_shortens_the_safe_length_as_its_energy_says(lengths):
-    least = {h: min(float(v) for v in one.safe_length.sel(share=1e-3)) for h, one in lengths.items()}
-    for ratios in ([2.7, 1.0], [1.0, 81.0], [16.0, 2.0]):
-        found = {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies(ratios, [0.1, 0.1]))}[
-            "fast"
-        ]
-        shorter = min(least[0.44] * ratios[0] ** -0.25, least[0.67] * ratios[1] ** -0.25)
-        assert_allclose((found.low, found.high), (shorter, min(least.values())), rtol=1e-12)
+def fast(lengths, values, errors=0.01):
+    """Safe length of fast separation, and those of slow separation at all humidities in all end states [m]."""
+    found = {one.name: one for one in life.beam_answers(lengths, {}, OF, separation=factors(np.array(values), errors))}
+    return found["fast"], np.array([one.safe_length.sel(share=1e-3).values for one in lengths.values()])
+
+
+def test_fast_separation_shortens_the_safe_length_of_each_end_state_by_its_factor(lengths):
+    for values in ([[0.7, 0.9], [0.8, 1.0]], [[0.2, 0.9], [0.8, 1.0]], [[1.0, 1.0], [0.9, 0.1]]):
+        found, slow = fast(lengths, values)
+        assert_allclose((found.low, found.high), (np.min(slow * values), slow.min()), rtol=1e-12)
     assert "fast" not in answers(OF, lengths)
+    _, alone = fast(lengths, [[0.7, 0.9]])
+    assert_allclose(fast(lengths, [[1e-3, 1e-3]])[0].low, 1e-3 * alone[0].min(), rtol=1e-12)
+    assert_allclose(fast(lengths, [[1.0, 1.0]])[0].low, alone.min(), rtol=1e-12)  # 0.67 has no water
 
 
-def test_its_error_has_that_of_the_length_and_a_quarter_of_that_of_the_ratio(lengths):
-    def fast(errors):
-        return {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies([50.0, 1.0], errors))}[
-            "fast"
-        ]
-
-    alone, both = fast([0.0, 0.0]), fast([10.0, 0.0])
-    assert_allclose(np.hypot(alone.error / alone.low, 0.2 / 4), both.error / both.low, rtol=1e-9)
+def test_its_error_has_those_of_the_length_and_of_the_factor(lengths):
+    values = [[1.0, 0.5], [1.0, 1.0]]
+    (alone, slow), (both, _) = fast(lengths, values, 0.0), fast(lengths, values, 0.1)
+    assert_allclose(np.hypot(alone.error, 0.1 * slow[0, 1]), both.error, rtol=1e-9)
 
 
 def test_strips_that_no_summits_stop_leave_a_beam_without_a_bound(lengths):
-    found = {one.name: one for one in life.of_beam(lengths, {}, OF, separation=energies([np.inf, 2.0], [np.nan, 0.1]))}[
-        "fast"
-    ]
+    found, slow = fast(lengths, [[0.7, 0.9], [0.0, 0.9]], np.nan)
     assert np.isnan(found.low)
     assert np.isnan(found.error)
-    assert found.high == min(float(one.safe_length.sel(share=1e-3).min()) for one in lengths.values())
+    assert found.high == slow.min()
 
 
 def test_sentences_say_what_fast_separation_needs_if_it_is_more(lengths):
-    beam = life.layout(life.of_beam(lengths, {}, OF, separation=energies([16.0, 2.0], [0.1, 0.1])), OF)
+    beam = life.layout(life.beam_answers(lengths, {}, OF, separation=factors(np.array([[0.5, 0.5], [0.8, 0.9]]))), OF)
     (said,) = [one for one in report.sentences(beam) if "faster than water" in one]
     assert "safe length can fall from" in said
-    stopper = life.layout(life.of_stopper(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 1.0)), STOPPER)
+    stopper = life.layout(life.stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 1.0)), STOPPER)
     (said,) = [one for one in report.sentences(stopper) if "faster than water" in one]
     assert "it can need a restoring force of" in said
     for none in (fast_forces(1.0, 1.0), None):
-        same = life.layout(life.of_stopper(stopper_dataset(), STOPPER, separation=none), STOPPER)
+        same = life.layout(life.stopper_answers(stopper_dataset(), STOPPER, separation=none), STOPPER)
         assert not any("faster than water" in one for one in report.sentences(same))
 
 
@@ -247,7 +248,7 @@ def test_the_force_for_many_touchdowns_is_that_of_a_smaller_fraction_if_there_ar
     assert "after" not in answers(STOPPER)
     many = stopper_dataset()
     many = many.isel(sample=np.arange(1600) % 400)
-    found = {one.name: one for one in life.of_stopper(many, STOPPER)}["after"]
+    found = {one.name: one for one in life.stopper_answers(many, STOPPER)}["after"]
     forces = [
         max(safe_force(row, p)[0] for row in many.pull_off.values) for p in (0.01, freeing.probability_for(0.01, 4))
     ]
@@ -312,7 +313,7 @@ def test_a_stopper_at_a_voltage_is_held_by_more_on_flats_than_on_rough_patches()
     assert found["at_voltage"].high == flat
     assert_allclose(found["at_voltage"].error, gained.std(ddof=1) / len(gained) ** 0.5, rtol=1e-9)
     assert_allclose((found["stuck_at_voltage"].low, found["stuck_at_voltage"].high), 0.6, rtol=1e-12)
-    said = report.sentences(life.layout(life.of_stopper(dataset, of, biased), of))
+    said = report.sentences(life.layout(life.stopper_answers(dataset, of, biased), of))
     assert any(sentence.endswith(f" to {report.significant(1e6 * flat)} µN.") for sentence in said)
 
 
@@ -338,7 +339,7 @@ def test_a_voltage_holds_a_stopper_with_the_pressure_of_flats_on_its_area():
 @pytest.mark.parametrize(("voltage", "breaks", "pulls"), [(5.0, False, False), (120.0, True, False), (4e4, True, True)])
 def test_sentences_warn_of_breakdown_and_of_a_voltage_that_pulls_in(lengths, voltage, breaks, pulls):
     of = replace(OF, voltage=voltage, dielectric=Dielectric(100e-9, 4.0))
-    said = report.sentences(life.layout(life.of_beam(lengths, {}, of), of, life.length_of(lengths, of)))
+    said = report.sentences(life.layout(life.beam_answers(lengths, {}, of), of, life.length_of(lengths, of)))
     assert any("break down" in sentence for sentence in said) == breaks
     assert any("pulls it in" in sentence for sentence in said) == pulls
     assert any(f"While {report.significant(voltage)} V are on" in sentence for sentence in said)
@@ -369,8 +370,8 @@ def test_settings_come_from_the_device_its_material_and_the_liquids():
 def found(lengths):
     many = replace(OF, touchdowns=50)
     return {
-        "C1": life.layout(life.of_beam(lengths, lengths, many), many, life.length_of(lengths, OF)),
-        "S1": life.layout(life.of_stopper(stopper_dataset(), STOPPER), STOPPER),
+        "C1": life.layout(life.beam_answers(lengths, lengths, many), many, life.length_of(lengths, OF)),
+        "S1": life.layout(life.stopper_answers(stopper_dataset(), STOPPER), STOPPER),
     }
 
 
@@ -400,9 +401,9 @@ def test_sentences_say_below_which_voltage_and_shock_nothing_touches_and_what_dr
     assert "collapses when it is dried from water" in second
     assert "(water)" in third
     assert last.startswith("For 50 touchdowns its safe length is ")
-    short = life.layout(life.of_beam(lengths, {}, replace(OF, length=60e-6)), OF, 60e-6)
+    short = life.layout(life.beam_answers(lengths, {}, replace(OF, length=60e-6)), OF, 60e-6)
     assert report.sentences(short)[1] == "At 60 µm it stands when it is dried from water and mine."
-    between = life.layout(life.of_beam(lengths, {}, replace(OF, length=230e-6)), OF, 230e-6)
+    between = life.layout(life.beam_answers(lengths, {}, replace(OF, length=230e-6)), OF, 230e-6)
     assert (
         "may collapse when it is dried from water, and stands when it is dried from mine"
         in report.sentences(between)[1]

@@ -5,15 +5,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small
+from ground import C1, R1
 from numpy.testing import assert_allclose
 from scipy.integrate import trapezoid
 
 from stiction.config.files import load
 from stiction.contact.environment import Gaps, Water
+from stiction.contact.pair import DistanceGrid
 from stiction.contact.separation import keep_volume
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.run import storage
+from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import curves
 from stiction.stages.devices import separation
 
@@ -39,12 +42,38 @@ def test_every_patch_holds_at_least_as_much_as_slowly(contacts):
 
 
 @pytest.mark.parametrize("water", [WATER, ACROSS])
-def test_strips_need_more_energy_and_the_least_in_wet_air(contacts, water):
-    found = separation.compute(contacts, separation.Settings(water))
-    assert np.all(found.energy_ratio - 4 * found.energy_ratio_error > 1)
+def test_strips_need_more_energy_so_that_beams_are_shorter_by_its_fourth_root(contacts, water):
+    found = separation.compute(contacts, separation.Settings(water, device=R1))
+    assert np.all(found.factor + 4 * found.factor_error < 1)
     fast, slow = (of(small.contact_of_pair(), 0.44, water) for of in (curves.fast_energies, curves.energies))
     assert np.all(fast > slow)
-    assert_allclose(found.energy_ratio.sel(humidity=0.44), fast.mean() / slow.mean(), rtol=1e-12)
+    assert_allclose(found.factor.sel(humidity=0.44), [(slow.mean() / fast.mean()) ** 0.25], rtol=1e-12)
+    assert list(found["shape"].values) == ["middle"]
+
+
+def wedges(resisting=3):
+    """Contact of three tips that are smooth wedges on stiff ground, at two slopes; some find no ground."""
+    grid, slopes, length = DistanceGrid(0.05e-9, 200, 60), np.array([0.05, 0.1]), 3e-7
+    area = np.maximum(-grid.bearing, 0.0) / (slopes[:, None] * length)
+    solid = np.zeros((3, 2, 60))
+    solid[:resisting, :, 0] = 1e9
+    dataset = stage_contact.layout(solid, np.tile(area, (3, 1, 1)), grid, range(3)).assign(length=length)
+    return dataset.assign_coords(slope=slopes)
+
+
+def test_smooth_wedges_hold_as_long_beams_fast_as_slowly():
+    settings = separation.Settings(WATER, device=C1)
+    factor, error = separation.of_tips(wedges(), 0.67, settings)
+    assert_allclose(factor, 1, rtol=1e-2)  # they rest up to one distance above the ground
+    assert error < 1e-6
+    assert separation.of_tips(wedges(2), 0.67, settings)[0] == 0
+
+
+def test_a_cantilever_has_factors_of_its_beam_and_of_its_tip():
+    wet = {0.67: small.contact_of_pair()}
+    found = separation.compute(wet, separation.Settings(WATER, device=C1), {0.67: wedges()})
+    assert list(found["shape"].values) == ["S-shape", "S-shape or arc"]
+    assert_allclose(found.factor[0], [separation.of_strips(wet[0.67], 0.67, WATER)[0], 1], rtol=1e-2)
 
 
 def test_what_fast_separation_needs_more_is_the_work_of_the_water_alone():
@@ -59,12 +88,12 @@ def test_what_fast_separation_needs_more_is_the_work_of_the_water_alone():
     assert_allclose(difference, more, rtol=1e-3)
 
 
-def test_the_error_of_a_ratio_is_the_scatter_of_ratios_on_other_strips():
+def test_the_error_of_a_factor_is_the_scatter_of_factors_on_other_strips():
     rng, contact = np.random.default_rng(1), small.contact_of_pair()
     energies = np.array([of(contact, 0.44, WATER) for of in (curves.fast_energies, curves.energies)])
     again = [energies[:, rng.integers(20, size=20)].mean(axis=1) for _ in range(2000)]
-    scatter = np.std([fast / slow for fast, slow in again])
-    assert_allclose(separation.energy_ratio(contact, 0.44, WATER)[1], scatter, rtol=0.2)
+    scatter = np.std([(slow / fast) ** 0.25 for fast, slow in again])
+    assert_allclose(separation.of_strips(contact, 0.44, WATER)[1], scatter, rtol=0.2)
 
 
 def test_strips_that_no_summits_stop_have_no_bound():
@@ -72,8 +101,8 @@ def test_strips_that_no_summits_stop_have_no_bound():
     flat.solid_pressure[0] = 0.0
     assert np.isinf(curves.fast_pull_offs(flat, 0.67, ACROSS)[0])
     assert np.isfinite(curves.fast_pull_offs(flat, 0.67, ACROSS)[1:]).all()
-    ratio, error = separation.energy_ratio(flat, 0.67, ACROSS)
-    assert np.isinf(ratio)
+    factor, error = separation.of_strips(flat, 0.67, ACROSS)
+    assert factor == 0
     assert np.isnan(error)
 
 
@@ -86,13 +115,15 @@ def test_only_humid_air_has_a_fast_separation_and_on_the_contact_of_the_device()
         if humid:
             contacts = graph.job("devices/separation/C1").inputs["contacts"]
             assert list(contacts) == humid
+            assert list(graph.job("devices/separation/C1").inputs["tips"]) == humid
+            assert not graph.job("devices/separation/S1").inputs["tips"]
             assert contacts[0.67] == graph.job("devices/cracks/C1_rh067").inputs["contact"]
     dry = Graph(Plan(load({"devices": {"C1": BEAM | {"humidities": ["dry"]}}})))
     assert "separation" not in dry.job("devices/life/C1").inputs
 
 
 def test_a_dataset_comes_back_from_its_file(contacts, tmp_path):
-    for settings in (separation.Settings(WATER), separation.Settings(WATER, PATCH)):
+    for settings in (separation.Settings(WATER, device=R1), separation.Settings(WATER, PATCH)):
         found = separation.compute(contacts, settings)
         storage.save(found, tmp_path / "one.nc", "separation", {})
         assert storage.load(tmp_path / "one.nc", "separation").equals(found)

@@ -15,11 +15,13 @@ from stiction.devices import arcs, risk
 from stiction.plan.devices import DevicePlan
 from stiction.plan.plan import Plan
 from stiction.stages.contact import contact, curves
+from stiction.stages.devices import separation
 from stiction.stages.devices.opening import DesignedBeam
 from stiction.streams import stream
 
 WATER = Water(300.0)
-BEAM = DesignedBeam("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6).beam
+DEVICE = DesignedBeam("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
+BEAM = DEVICE.beam
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
 C1 |= {"humidities": [0.44, 0.67, 0.92]}
 #: Lengths that the tips of 1 in 100 and of 1 in 1000 beams hold, and their standard errors [µm]: 1696 tips with a
@@ -121,3 +123,19 @@ def test_lengths_do_not_depend_on_the_grid_but_they_would_with_another_weight_of
     shifted, errors = (lambda x: (x.mean(axis=1), x.std(axis=1) / np.sqrt(60)))(changes())
     assert np.all(np.abs(shifted - mean) > 0.007)
     assert np.any(np.abs(shifted) > 3 * errors + 0.01)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("humidity", [0.44, 0.67])
+def test_tips_that_separate_fast_hold_shorter_beams_least_so_the_strongest(humidity):
+    found = tips(600)
+    slow, fast = (
+        arcs.longest_free(found.slope.values, forces, BEAM)
+        for forces in (curves.tip_forces(found, humidity, WATER)[1], curves.fast_tip_forces(found, humidity, WATER))
+    )
+    factor, error = separation.of_tips(found, humidity, separation.Settings(WATER, device=DEVICE))
+    assert np.all(fast <= slow)
+    assert factor + 4 * error < 1
+    # The tips that hold the shortest beams gain least.
+    ratios = [np.quantile(fast, share) / np.quantile(slow, share) for share in (0.02, 0.1)]
+    assert min(ratios) > factor + 4 * error

@@ -171,12 +171,12 @@ def test_beams_of_pairs_a_and_b_at_the_humidities_of_the_paper_have_the_warnings
 
 def only(found, of, shape=EITHER, **more):
     """Warnings about a device in one shape."""
-    return device_warnings.of_device(found, of, **{"plastic": (0.0, 3e7)} | more)[shape]
+    return device_warnings.beam_warnings(found, of, **{"plastic": (0.0, 3e7)} | more)[shape]
 
 
 def test_a_device_within_the_limits_has_no_warning():
     found, of = device()
-    assert device_warnings.of_device(found, of, plastic=(0.02, 3e7)) == {S_SHAPE: [], EITHER: []}
+    assert device_warnings.beam_warnings(found, of, plastic=(0.02, 3e7)) == {S_SHAPE: [], EITHER: []}
 
 
 @pytest.mark.parametrize(
@@ -217,7 +217,7 @@ def test_plastic_contact_of_a_device_is_said_and_so_is_that_it_was_not_studied()
     (sentence,) = only(found, of, plastic=(0.58, 1.04e8))
     assert "58 %" in sentence
     assert "when the surfaces are pressed together with 104 MPa: beams that were pressed" in sentence
-    assert ["was not checked" in sentence for sentence in device_warnings.of_device(found, of)[S_SHAPE]] == [True]
+    assert ["was not checked" in sentence for sentence in device_warnings.beam_warnings(found, of)[S_SHAPE]] == [True]
 
 
 def test_a_gap_that_the_film_fills_is_said():
@@ -328,19 +328,19 @@ def test_the_air_of_the_shortest_length_of_a_curve_counts():
     of = device_warnings.OfDevice(C1)
     assert (
         "sum of film height and roughness"
-        in device_warnings.of_chart(along, of, (0.0, 3e7))[3 * UM, 20 * UM, S_SHAPE][0]
+        in device_warnings.chart_warnings(along, of, (0.0, 3e7))[3 * UM, 20 * UM, S_SHAPE][0]
     )
-    assert device_warnings.of_chart(along[:1], of, (0.0, 3e7))[3 * UM, 20 * UM, S_SHAPE] == []
+    assert device_warnings.chart_warnings(along[:1], of, (0.0, 3e7))[3 * UM, 20 * UM, S_SHAPE] == []
 
 
 def test_the_thinnest_film_of_a_curve_counts_whatever_the_air_of_its_shortest_length():
     along = [charted(800 * UM, film=1e-9), charted(700 * UM)]
-    found = device_warnings.of_chart(along, device_warnings.OfDevice(C1), (0.0, 3e7))
+    found = device_warnings.chart_warnings(along, device_warnings.OfDevice(C1), (0.0, 3e7))
     assert all("The film of water is 1 nm high" in " ".join(sentences) for sentences in found.values())
 
 
 def test_the_thickness_of_a_curve_counts():
-    found = device_warnings.of_chart([charted(50 * UM)], device_warnings.OfDevice(C1), (0.0, 3e7))
+    found = device_warnings.chart_warnings([charted(50 * UM)], device_warnings.OfDevice(C1), (0.0, 3e7))
     thin, thick = ([text for text in found[t * UM, 20 * UM, EITHER] if "thick" in text] for t in (2, 3))
     assert thin[0].startswith("A crack of 22 µm is only 11.2 times as long as the beam is thick")
     assert thick[0].startswith("A crack of 35 µm is only 11.7 times as long as the beam is thick")

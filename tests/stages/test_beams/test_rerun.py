@@ -14,7 +14,7 @@ from stiction.report.test_beams import tables as tables_test_beams
 from stiction.stages.devices import budget as stage_budget
 from stiction.stages.devices.budget import Responses
 from stiction.stages.devices.opening import S_SHAPE, DesignedBeam
-from stiction.stages.devices.uncertain_inputs import OF_AIR, OF_BEAMS, State, Uncertainty, changed, of_numbers
+from stiction.stages.devices.uncertain_inputs import OF_AIR, OF_BEAMS, State, Uncertainty, changed, number_blocks
 from stiction.stages.test_beams import rerun
 from stiction.stages.test_beams.inference import Result
 
@@ -45,7 +45,9 @@ class Analytic:
 def compared(exponent):
     """Linear and repeated change of such beams by the errors, with standard errors."""
     settings = Analytic(exponent)
-    inputs = [one for block in of_numbers(settings.state(EMPTY), (*OF_BEAMS, *OF_AIR), STATED) for one in block.inputs]
+    inputs = [
+        one for block in number_blocks(settings.state(EMPTY), (*OF_BEAMS, *OF_AIR), STATED) for one in block.inputs
+    ]
     slopes = stage_budget.slopes(inputs, settings.responder(None))
     budget = xr.Dataset(
         {

@@ -1,4 +1,4 @@
-"""First screen of the page of a device: the answer, what decides it, what to change and to measure, and one table."""
+"""First screen of the page of a device: answer, its cause, advice on changes and measurements, and one table."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
@@ -9,10 +9,11 @@ import xarray as xr
 
 from stiction.config.cases import air
 from stiction.devices import limits
+from stiction.devices.risk import one_in
 from stiction.report.budget import tables as tables_budget
 from stiction.report.budget.tables import percentage
 from stiction.report.devices import sentences
-from stiction.report.format import UM, UN, airs, humidity_text, number, one_in, with_error
+from stiction.report.format import UM, UN, airs, humidity_text, number, with_error
 from stiction.report.page import Summary
 from stiction.report.test_beams.tables import is_reliable
 from stiction.stages.devices.budget import budget_of
@@ -26,7 +27,7 @@ _OF_THICKNESS, _OF_GAP = 3 / 4, 1 / 2
 _UNSTATED = "State the uncertainties of the inputs in section uncertainty: the budget then says what to measure better."
 
 
-def of_beam(
+def beam_screen(
     section: Mapping[str, Any],
     safe_lengths: Mapping[float, xr.Dataset],
     budgets: Mapping[tuple, xr.Dataset],
@@ -57,7 +58,7 @@ def of_beam(
     points = {
         "What decides": " ".join(_decides_beam(humidity, worst, budgets, section)),
         "What to change": _change_beam(section, safe / UM),
-        "What to measure": _measure(sentences.of_shortest(safe_lengths, budgets).values()),
+        "What to measure": _measure(sentences.shortest_budgets(safe_lengths, budgets).values()),
     }
     return _unless_forbidden(Summary(*verdict, basis, points, _table_of_beam(safe_lengths, test_beams)), warnings)
 
@@ -68,7 +69,7 @@ def _chosen(dataset):
 
 
 def _finite(point):
-    """Standard error due to the number of surfaces; zero where it is part of that due to the number of beams."""
+    """Standard error due to the number of surfaces, zero if it is part of the beams' error."""
     return point.surfaces_error.fillna(0)
 
 
@@ -90,12 +91,12 @@ def _verdict(length, safe, safe_lengths):
 
 
 def _stuck(stuck, low, high):
-    """Share that sticks with its band of 95 % confidence."""
+    """Fraction stuck with its band of 95 % confidence."""
     return f"{100 * stuck:.3g} % stick ({100 * low:.3g} to {100 * high:.3g} %)"
 
 
 def _decides_beam(humidity, worst, budgets, section):
-    """Humidity and end state of the shortest safe length, and an assumed input that decides."""
+    """Humidity and end state of the shortest safe length, and a decisive assumed input."""
     lengths = _chosen(worst).safe_length
     shape = str(lengths["shape"].values[int(lengths.argmin("shape"))])
     yield f"{air(humidity)}, held by the {END_STATES[shape].by}."
@@ -105,7 +106,7 @@ def _decides_beam(humidity, worst, budgets, section):
 
 
 def _change_beam(section, safe):
-    """Sizes that would make the stated length safe, or what sizes change of the safe length [µm]."""
+    """Sizes for a safe given length, or the effect of sizes on the safe length [µm]."""
     length = section.get("length_um")
     if section.get("residual_stress_MPa", 0):
         return (
@@ -150,13 +151,13 @@ def _table_of_beam(safe_lengths, test_beams):
 
 
 def _with_test_beams(update, humidity):
-    """Safe length after test beams, before any margin [m]; NaN where they are not to be relied on."""
+    """Safe length after test beams, before any margin [m], NaN if they are unreliable."""
     if not is_reliable(update) or humidity not in update.humidity:
         return np.nan
     return float(_chosen(update).updated_safe.sel(humidity=humidity).min())
 
 
-def of_stopper(
+def stopper_screen(
     section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset], warnings: Sequence[str]
 ) -> Summary:
     """First screen of a stopper: its section, dataset of stage stoppers, budgets and warnings."""

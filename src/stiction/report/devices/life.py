@@ -292,22 +292,25 @@ def _bars(panel: Axes, answers, length):
     panel.set(xlabel=f"{what} [{unit}]", xlim=(0, 1.05 * panel.dataLim.x1), ylim=(-0.5, len(answers) - 0.3), yticks=[])
 
 
+#: What table and figure declare alike.
+_OF_ALL: dict = {
+    "inputs": lambda plan, at: {"life": by_name("devices/life", plan.devices.sections)},
+    "jobs": lambda plan: [{}] if plan.devices.sections else [],
+    "targets": ("devices",),
+}
+
 STAGES = (
     table_stage(
         "life",
         "what brings devices into contact, holds and frees them",
-        inputs=lambda plan, at: {"life": by_name("devices/life", plan.devices.sections)},
         compute=lambda data: table(data["life"]),
-        jobs=lambda plan: [{}] if plan.devices.sections else [],
-        targets=("devices",),
+        **_OF_ALL,
     ),
     figure_stage(
         "life",
         "what limits the life of devices, on one axis",
         "Devices",
-        inputs=lambda plan, at: {"life": by_name("devices/life", plan.devices.sections)},
         compute=lambda data: figure(data["life"]),
-        jobs=lambda plan: [{}] if plan.devices.sections else [],
-        targets=("devices",),
+        **_OF_ALL,
     ),
 )

@@ -5,7 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from stiction.report.format import UM, airs, one_in
+from stiction.devices.risk import one_in
+from stiction.report.format import UM, airs
 from stiction.stages.devices.budget import budget_of
 
 

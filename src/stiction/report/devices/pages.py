@@ -12,6 +12,7 @@ import yaml
 from stiction.config.cases import DRY, case_id
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of, restoring_force
 from stiction.config.materials import material_of
+from stiction.devices.risk import one_in
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
 from stiction.report import html
@@ -20,8 +21,8 @@ from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import first_screen, life, own_length, sentences
 from stiction.report.devices import tables as tables_devices
-from stiction.report.drawings.devices import of_device
-from stiction.report.format import MISSING, humidity_text, one_in
+from stiction.report.drawings.devices import device_drawing
+from stiction.report.format import MISSING, humidity_text
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.roughness import figures as figures_roughness
@@ -67,7 +68,7 @@ def _read(part):
     return part if isinstance(part, str) else " ".join(part)
 
 
-def of_beam(
+def beam_page(
     name: str,
     section: Mapping,
     safe_lengths: Mapping[float, xr.Dataset],
@@ -104,12 +105,12 @@ def of_beam(
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets, errors)
-    of_shortest = sentences.of_shortest(safe_lengths, budgets)
+    of_shortest = sentences.shortest_budgets(safe_lengths, budgets)
     decided = tables_budget.decided(of_shortest.values(), section.get("assumed", ()))
     answer = [*own_length.sentences(safe_lengths, of_shortest), *sentences.few_sentences(safe_lengths)]
     answer += [sentences.build_sentence(safe_lengths, budgets), *decided, *_rough_enough(roughness)]
     if test_beams is not None:
-        sections.append(_of_test_beams(name, test_beams))
+        sections.append(_test_beam_section(name, test_beams))
         answer.append(tables_test_beams.built(test_beams))
     answer += [sentences.safe_sentence(humidity, dataset) for humidity, dataset in safe_lengths.items()]
     answer += model_errors.sentences(name, errors)
@@ -127,11 +128,13 @@ def of_beam(
         | (terms["charts"] if charts else {})
         | _words_of_budgets(budgets)
     )
-    summary = _with_model_error(first_screen.of_beam(section, safe_lengths, budgets, listed, test_beams), name, errors)
+    summary = _with_model_error(
+        first_screen.beam_screen(section, safe_lengths, budgets, listed, test_beams), name, errors
+    )
     return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary)
 
 
-def of_stopper(
+def stopper_page(
     name: str,
     section: Mapping,
     stopper: xr.Dataset,
@@ -141,21 +144,21 @@ def of_stopper(
     errors: Mapping[str, xr.Dataset] | None = None,
     roughness: xr.Dataset | None = None,
 ) -> Page:
-    """Page of a stopper. Parameters as in `of_beam`, with one dataset of stage stoppers and a list of warnings."""
+    """Page of a stopper. Parameters as in `beam_page`, with one dataset of stage stoppers and a list of warnings."""
     table = tables_budget.stoppers({name: stopper}, {name: []}, errors).cells.drop(columns=["device"])
     sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: stopper}, {}))]
     sections += [*_sure(name, budgets, errors), *_how_rough(name, roughness)]
     decided = tables_budget.decided(budgets.values(), section.get("assumed", ()))
     answer, listed = [sentences.verdict(stopper), *decided, *_rough_enough(roughness)], list(warnings)
     if test_beams is not None:
-        sections.append(_of_test_beams(name, test_beams))
+        sections.append(_test_beam_section(name, test_beams))
         answer.append(tables_test_beams.built(test_beams))
         listed += tables_test_beams.warnings(test_beams)
     answer += [sentences.stuck_sentence(*row, force=float(stopper.restoring_force)) for row in shares_stuck(stopper)]
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
     answer += [*sentences.safe_force_sentences(stopper), *worst, *model_errors.sentences(name, errors)]
     words = _terms()["stoppers"] | (_terms()["worst_humidity"] if worst else {}) | _words_of_budgets(budgets)
-    summary = _with_model_error(first_screen.of_stopper(section, stopper, budgets, listed), name, errors)
+    summary = _with_model_error(first_screen.stopper_screen(section, stopper, budgets, listed), name, errors)
     return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary)
 
 
@@ -168,7 +171,7 @@ def _with_model_error(summary, name, errors):
 
 
 def _words_of_budgets(budgets):
-    """Terms that the budgets use."""
+    """Terms used by the budgets."""
     if not budgets:
         return {}
     words = dict(_terms()["budgets"])
@@ -231,7 +234,7 @@ def _sure(name, budgets, errors):
     return [Section("Uncertainty, and what should be measured better", said, cells, drawn, _MISSING_EFFECTS)]
 
 
-def _of_test_beams(name, update):
+def _test_beam_section(name, update):
     """Section on the evidence of the test beams of a device."""
     said = [
         tables_test_beams.explained(update),
@@ -311,11 +314,11 @@ def _page(data, at, settings):
     warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
     more = {name: data.get(name) for name in ("test_beams", "errors", "roughness")}
     if "stopper" in data:
-        page = of_stopper(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
+        page = stopper_page(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
-        page = of_beam(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
-    drawing = of_device(_with_force(settings)).svg
+        page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
+    drawing = device_drawing(_with_force(settings)).svg
     return replace(with_life(page, at.device, data["life"]), not_modelled=settings["not_modelled"], drawing=drawing)
 
 

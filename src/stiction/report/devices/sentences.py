@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from stiction.devices.risk import Basis, samples_for
-from stiction.report.format import UM, UN, airs, one_in
+from stiction.devices.risk import Basis, one_in, samples_for
+from stiction.report.format import UM, UN, airs
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import EITHER
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
@@ -15,25 +15,25 @@ from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, sha
 def length_to_build(
     safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
 ) -> tuple[float, float, float]:
-    """Least safe length [m], its relative uncertainty due to the measurements, and the length less twice that [m]."""
+    """Least safe length [m], its relative uncertainty due to the measurements, and the length less twice it [m]."""
     least = min(_safe(dataset).item() for dataset in safe_lengths.values())
-    totals = [budget_of(budget).total for budget in of_shortest(safe_lengths, budgets).values()]
+    totals = [budget_of(budget).total for budget in shortest_budgets(safe_lengths, budgets).values()]
     total = max((total for total in totals if np.isfinite(total)), default=0.0)
     return least, total, (1 - 2 * total) * least
 
 
 def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> str:
-    """The length to build for all humidities of a device, for the middle one of the shares.
+    """Length to build for all humidities of a device, for the middle fraction.
 
     It is the least safe length, less twice the largest uncertainty of what holds the shortest devices, if any is known.
 
     Parameters
     ----------
     safe_lengths, budgets : dict
-        As in `stiction.report.devices.pages.of_beam`.
+        As in `stiction.report.devices.pages.beam_page`.
     """
     least, total, length = length_to_build(safe_lengths, budgets)
-    totals = [budget_of(budget).total for budget in of_shortest(safe_lengths, budgets).values()]
+    totals = [budget_of(budget).total for budget in shortest_budgets(safe_lengths, budgets).values()]
     least, length = least / UM, length / UM
     if length <= 0:
         return f"No length can be stated: twice the uncertainty due to the measurements is {200 * total:.2g} % of it."
@@ -68,7 +68,7 @@ def _chosen(dataset):
     return float(dataset.share[dataset.sizes["share"] // 2])
 
 
-def of_shortest(
+def shortest_budgets(
     safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
 ) -> dict[tuple, xr.Dataset]:
     """Budgets of the shortest stuck devices: of tips, if there are tips."""
@@ -77,7 +77,7 @@ def of_shortest(
 
 
 def verdict(stopper: xr.Dataset) -> str:
-    """Whether the restoring force of a stopper suffices, for the smallest share that its patches can bound."""
+    """Answer on the restoring force of a stopper, for the smallest fraction with a bound from its patches."""
     force, where = float(stopper.restoring_force), airs(stopper.humidity.values)
     stated, any_air = stopper.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(stopper)[1]
     share = bounded_share(stopper)
@@ -96,14 +96,14 @@ def verdict(stopper: xr.Dataset) -> str:
 
 
 def bounded_share(stopper: xr.Dataset) -> float | None:
-    """Smallest share that the patches of a stopper alone bound at all its humidities; none if they are too few."""
+    """Smallest fraction with a bound from the patches of a stopper alone at all its humidities, or none."""
     stated = stopper.safe_force.sel(part="safe").max("humidity", skipna=False)
     sampled = stated.where(stopper.basis == Basis.SAMPLED)
     return min((float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))), default=None)
 
 
 def _verdict_of_few(stopper):
-    """The verdict where there are too few patches to bound any of the shares from above."""
+    """Answer with too few patches to bound any of the fractions from above."""
     (humidity, _, low, _), share = max(shares_stuck(stopper), key=lambda row: row[2]), float(stopper.share.max())
     if low <= share:
         return "There are too few patches to say whether the restoring force suffices."

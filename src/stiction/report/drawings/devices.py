@@ -224,7 +224,7 @@ _OF_KINDS: Mapping[str, tuple[Callable[..., list[str]], float, str]] = {
 }
 
 
-def of_device(section: Mapping) -> Drawing:
+def device_drawing(section: Mapping) -> Drawing:
     """Draw a device with its own sizes, from its section of the configuration."""
     parts, y, description = _OF_KINDS[section["kind"]]
     words = {key: _label(key, section[key]) for key in KEYS if key in section}

@@ -8,9 +8,9 @@ import xarray as xr
 from stiction.config.cases import air
 from stiction.config.kinds import ROUGHNESSES
 from stiction.config.units import from_si, without_unit
-from stiction.devices.risk import VERIFIED, samples_for
+from stiction.devices.risk import VERIFIED, one_in, samples_for
 from stiction.plan.names import by_name
-from stiction.report.format import UM, airs, one_in, with_error
+from stiction.report.format import UM, airs, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import FORCE

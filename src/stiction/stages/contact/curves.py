@@ -43,7 +43,24 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
     ValueError
         If the film is higher than the contact of the tips reaches.
     """
-    return contact.slope.values, _wedges(contact, humidity, water, endless=True)
+    tips = _wedges(contact, humidity, water, endless=True)
+    return contact.slope.values, forcelaw.largest_attractions(*tips) * float(contact.length)
+
+
+def fast_tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
+    """As the forces of `tip_forces`, of tips that separate faster than water evaporates, at least these (m, s) [N/m].
+
+    They are infinite where no summits stop a tip.
+    """
+    slow = _wedges(contact, humidity, water, endless=True)
+    solid, bearing, starts, step, layer = slow
+    largest, force = forcelaw.largest_attractions(*slow).astype(float), np.empty(solid.shape[-1])
+    distance = starts[0] + step * np.arange(force.size)
+    for each in np.ndindex(largest.shape):
+        forcelaw.apparent_force(solid[each], bearing[each], (*starts, starts[0]), step, *layer, force)
+        fast = keep_volume(force, distance, bearing[each], starts[1], layer)
+        largest[each] = np.inf if fast is None else max(largest[each], -fast[0].min())
+    return largest * float(contact.length)
 
 
 def tilted_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
@@ -51,12 +68,12 @@ def tilted_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.ndar
 
     ASSUME: the ratio of the pull-off force on parallel patches to full elastic contact is that on tilted ones.
     """
-    forces = _wedges(contact, humidity, water, endless=False)
+    forces = forcelaw.largest_attractions(*_wedges(contact, humidity, water, endless=False)) * float(contact.length)
     return forces * water.correction.at(humidity)[1] if water.correction else forces
 
 
 def _wedges(contact, humidity, water, endless):
-    """Largest attractions per width of strips that go on below their stored heights or end there (m, s) [N/m]."""
+    """Arguments of `forcelaw.largest_attractions` of strips that go on below their stored heights or end there."""
     layer, reach = water.film(humidity), -float(contact.height[0])
     if layer[0] > reach:
         raise ValueError(
@@ -69,7 +86,7 @@ def _wedges(contact, humidity, water, endless):
         pressure, _ = gaps.gap_pressures(bearing, starts[1], contact.distance.values, step, work)
         rest = work(contact.distance.values + reach) / (contact.slope.values[:, None] * float(contact.length))
         solid = solid + pressure - endless * rest.astype(np.float32)
-    return forcelaw.largest_attractions(solid, bearing, starts, step, layer) * float(contact.length)
+    return solid, bearing, starts, step, layer
 
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
@@ -80,14 +97,14 @@ def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
 
 
 def fast_pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
-    """As `pull_offs`, of surfaces that separate faster than water evaporates; infinite where no summits stop them."""
+    """Values of `pull_offs` in a separation faster than water evaporates, infinite without resistance of summits."""
     _, fast = _separations(contact, humidity, water)
     forces = np.array([np.inf if one is None else -one[0].min() for one in fast])
     return forces * water.correction.at(humidity)[1] if water.correction else forces
 
 
 def fast_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
-    """As `energies`, of surfaces that separate faster than water evaporates; infinite where no summits stop them."""
+    """Values of `energies` in a separation faster than water evaporates, infinite without resistance of summits."""
     sampled, fast = _separations(contact, humidity, water)
     beyond = np.zeros(sampled.samples) if sampled.beyond is None else sampled.beyond
     energies = [

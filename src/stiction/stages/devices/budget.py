@@ -76,7 +76,7 @@ class BeamBudget(Settings):
         """How the devices respond: cracks of long beams."""
         laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water)])[0]
         part, strips = self.device.opening.resolved(self.device, laws)
-        return partial(of_beams, mesh=part, strips=strips, number=self.beams, address=addresses(self))
+        return partial(beam_responses, mesh=part, strips=strips, number=self.beams, address=addresses(self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,7 +91,7 @@ class TipBudget(Settings):
 
     def responder(self, _state: State) -> Respond:
         """Response of the devices: arcs of all tips."""
-        return partial(of_tips, share=self.share)
+        return partial(tip_responses, share=self.share)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,14 +109,14 @@ class PatchBudget(Settings):
 
     def responder(self, _state: State) -> Respond:
         """Response of the devices: pull-off forces of all patches."""
-        return of_stoppers
+        return stopper_responses
 
 
 #: Settings of any budget.
 AnyBudget = BeamBudget | TipBudget | PatchBudget
 
 
-def of_job(settings: dict[str, Any]) -> AnyBudget:
+def budget_settings(settings: dict[str, Any]) -> AnyBudget:
     """Settings of a budget from those of a job: tips have a share, and patches no beam."""
     return in_si(TipBudget if "share" in settings else BeamBudget if "device" in settings else PatchBudget, settings)
 
@@ -147,7 +147,7 @@ def compute(
     return layout(inputs, slopes_with_errors, covariance, respond([state]), changes, settings)
 
 
-def of_stoppers(states: Sequence[State]) -> Responses:
+def stopper_responses(states: Sequence[State]) -> Responses:
     """Pull-off forces of all sampled patches at several states."""
     forces = [
         pull_off_force(curves.pull_offs(state.contact, state.humidity, state.water), state.area) for state in states
@@ -155,7 +155,7 @@ def of_stoppers(states: Sequence[State]) -> Responses:
     return Responses(np.array(forces), np.mean)
 
 
-def of_tips(states: Sequence[State], share: float) -> Responses:
+def tip_responses(states: Sequence[State], share: float) -> Responses:
     """Longest releasing arcs of all sampled tips at several states. Their quantile at p stands for all.
 
     ASSUME: no crack stops on beams that are so short that only a share p of the tips hold them.
@@ -175,7 +175,7 @@ def _held(lengths, share):
     return fit_tail(lengths).length(share) if known.sum() >= FEWEST else np.inf
 
 
-def of_beams(states: Sequence[State], mesh: Beam, strips: int, number: int, address: Callable) -> Responses:
+def beam_responses(states: Sequence[State], mesh: Beam, strips: int, number: int, address: Callable) -> Responses:
     """Crack lengths, or lengths of held bridges, of the same beams at several states, on resampled force laws.
 
     Finite elements resolve the ``mesh`` of all beams, with this number of strips; ``address(k)`` is the stream of beam
@@ -346,7 +346,7 @@ def settings_of_tips(plan: Any, at: At, share: float | None = None) -> dict[str,
 
 def _computed(data, settings):
     """Budget from the contacts with less and with more of every input, and those under other choices of the model."""
-    wanted = corrected(of_job(settings["budget"]), data)
+    wanted = corrected(budget_settings(settings["budget"]), data)
     described = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     shifted = {key: (less, data["more"][key]) for key, less in data["less"].items()}
     solids = {name: (less, data["solids_more"][name]) for name, less in data["solids_less"].items()}

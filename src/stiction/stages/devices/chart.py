@@ -54,7 +54,7 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
 
     def by_elements(thickness, gap):
         """Safe lengths of beams of one size (shapes, shares) [m]."""
-        device = _of_size(settings, thickness, gap)
+        device = _resized(settings, thickness, gap)
         lengths, reach = sticking.released(device, met, settings)
         known = sticking.known(device, settings.water, settings.humidity, reach)
         safe = sticking.by_shape(lengths, settings, known)
@@ -64,7 +64,7 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
     return layout(chart, surface_rms(contact), settings)
 
 
-def _of_size(settings, thickness, gap):
+def _resized(settings, thickness, gap):
     """The designed beam with another thickness and gap [m]."""
     return replace(settings.device, thickness=float(thickness), gap=float(gap))
 
@@ -120,7 +120,7 @@ def layout(filled: Filled, rms: float, settings: Settings) -> xr.Dataset:
     """
     grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
     shapes = list(settings.device.opening.shapes)
-    designed = (_of_size(settings, *size) for size in product(settings.thicknesses, settings.gaps))
+    designed = (_resized(settings, *size) for size in product(settings.thicknesses, settings.gaps))
     limits = [sticking.flooded_lengths(device, settings.water, settings.humidity) for device in designed]
     metres, none = {"units": "m"}, {"units": "1"}
     return xr.Dataset(

@@ -49,7 +49,7 @@ def _tips(plan, case):
 
 
 def corrections_of(plan: Any, device: str) -> dict[str, str]:
-    """Corrections of the pair of a device, see `stiction.stages.contact.corrections.of_pair`."""
+    """Corrections of the pair of a device, see `stiction.stages.contact.corrections.correction_inputs`."""
     return correction_inputs(plan, plan.config["devices"][device]["pair"])
 
 

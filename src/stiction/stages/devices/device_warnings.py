@@ -49,7 +49,7 @@ class OfStopper:
     materials: StatedProperties = ()  #: of its pair
 
 
-def of_device(
+def beam_warnings(
     safe_lengths: xr.Dataset, of: OfDevice, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0
 ) -> dict[str, list[str]]:
     """Warnings about a device at a humidity, by the shape of its adhesion. Dataset of stage safe_lengths.
@@ -62,12 +62,12 @@ def of_device(
         limits.no_water(float(safe_lengths.film), humidity), limits.flat_patches(float(safe_lengths.share_flat))
     )
     return {
-        shape: without + _of_length(float(shortest.sel(shape=shape)), safe_lengths, of, plastic)
+        shape: without + _length_warnings(float(shortest.sel(shape=shape)), safe_lengths, of, plastic)
         for shape in map(str, safe_lengths["shape"].values)
     }
 
 
-def of_chart(
+def chart_warnings(
     charts: Sequence[xr.Dataset], of: OfDevice, plastic: Plastic = NOT_STUDIED
 ) -> dict[tuple[float, float, str], list[str]]:
     """Warnings about the chart of a device by thickness [m], gap [m] and shape. A dataset of stage chart per humidity.
@@ -80,7 +80,7 @@ def of_chart(
         shortest = min(along, key=lambda curve: float(curve.safe_length.min()))
         of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
         length = float(shortest.safe_length.min())
-        warnings[thickness, gap, shape] = _of_length(
+        warnings[thickness, gap, shape] = _length_warnings(
             length, shortest, of_size, plastic, min(filter(None, (float(curve.film) for curve in along)), default=0.0)
         )
     return warnings
@@ -91,8 +91,8 @@ def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
     return list(product(*(chart[name].values.tolist() for name in ("thickness", "gap", "shape"))))
 
 
-def _of_length(length, dataset, of, plastic, thinnest=None):
-    """Warnings about a device of a length [m]; film and rms from a dataset.
+def _length_warnings(length, dataset, of, plastic, thinnest=None):
+    """Warnings about a device of a length [m]. Film and rms from a dataset.
 
     The thinnest film [m] is that of the dataset, or along the axis of a chart.
     """
@@ -105,7 +105,7 @@ def _of_length(length, dataset, of, plastic, thinnest=None):
     )
 
 
-def _of_water(of):
+def _water_warnings(of):
     """Warnings, or None, about the thinnest and the thickest film on the patch of a stopper."""
     humid = [*filter(None, of.humidities), *of.worst_humidities] if any(of.humidities) else []
     films = [of.water.film(humidity)[0] for humidity in humid] or [0.0]
@@ -121,10 +121,10 @@ class OfDevices(NamedTuple):
     patches: dict[str, list[str]]  #: of stoppers, by name
 
 
-def of_stopper(of: OfStopper, plastic: Plastic = NOT_STUDIED, share_flat: float = 0.0) -> list[str]:
-    """Warnings about a stopper with a fraction of flat patches [-]. Other parameters as of `of_device`."""
+def stopper_warnings(of: OfStopper, plastic: Plastic = NOT_STUDIED, share_flat: float = 0.0) -> list[str]:
+    """Warnings about a stopper with a fraction of flat patches [-]. Other parameters as of `beam_warnings`."""
     return limits.given(
-        *_of_water(of), limits.flat_patches(share_flat), *contact_warnings(plastic, of.materials, limits.STRONGER)
+        *_water_warnings(of), limits.flat_patches(share_flat), *contact_warnings(plastic, of.materials, limits.STRONGER)
     )
 
 
@@ -161,7 +161,7 @@ def left_out_changes(dataset: xr.Dataset) -> dict[tuple[float, str], tuple[float
     return dict(zip(keys, zip(dataset.change.values.tolist(), dataset.error.values.tolist(), strict=True), strict=True))
 
 
-def of_left_out_gaps(changes: Mapping[tuple[float, str], tuple[float, float]], shape: str) -> list[str]:
+def gap_warnings(changes: Mapping[tuple[float, str], tuple[float, float]], shape: str) -> list[str]:
     """Warning about the effect of attraction across gaps on adhesion in a shape, from `left_out_changes`."""
     response = ARC if shape == EITHER else shape
     of_shape = {humidity: change for (humidity, of), change in changes.items() if of == response}
@@ -201,26 +201,28 @@ def _settings(plan, at):
     return assumed | {"stopper": select(OfStopper, own)}
 
 
-def _of_one_device(data, settings):
+def _device_warnings(data, settings):
     """Warnings about a device: about its lengths, its curves and its patch, each with a suffix to its name."""
     flags = surface_flags.together(data) + settings.get("assumed", [])
     changes = left_out_changes(data["left_out_gaps"]) if "left_out_gaps" in data else {}
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])
-        gaps = of_left_out_gaps(changes, FORCE)
+        gaps = gap_warnings(changes, FORCE)
         (stopper,) = data["stoppers"].values()
         plastic = plastic_contact(data["plasticity"], of.pair)
-        return [], [], [[[], of_stopper(of, plastic, float(stopper.share_flat)) + gaps + flags]]
+        return [], [], [[[], stopper_warnings(of, plastic, float(stopper.share_flat)) + gaps + flags]]
     of = in_si(OfDevice, settings["beam"])
     plastic = plastic_contact(data["plasticity"], of.device.pair)
     lengths = [
-        [[humidity, shape], sentences + of_left_out_gaps(_at(changes, humidity), shape) + flags]
+        [[humidity, shape], sentences + gap_warnings(_at(changes, humidity), shape) + flags]
         for (_, humidity), dataset in data["lengths"].items()
-        for shape, sentences in of_device(dataset, of, plastic, humidity).items()
+        for shape, sentences in beam_warnings(dataset, of, plastic, humidity).items()
     ]
     charts = list(data["charts"].values())
     curves = (
-        [[curve, sentences + flags] for curve, sentences in of_chart(charts, of, plastic).items()] if charts else []
+        [[curve, sentences + flags] for curve, sentences in chart_warnings(charts, of, plastic).items()]
+        if charts
+        else []
     )
     return lengths, curves, []
 
@@ -249,7 +251,7 @@ STAGES = (
         files={"json": "devices/warnings/{device}.json"},
         inputs=_inputs,
         settings=_settings,
-        compute=_of_one_device,
+        compute=_device_warnings,
         save=lambda warnings, paths: save_text(json.dumps(warnings, ensure_ascii=False, indent=1), paths["json"]),
         message="Where the results of device {device} are beyond the model.",
     ),

@@ -17,7 +17,7 @@ from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.plan.stage import At, Stage
 from stiction.stages.contact.corrections import corrected
-from stiction.stages.devices.budget import AnyBudget, effect, of_job, settings_of, settings_of_tips
+from stiction.stages.devices.budget import AnyBudget, budget_settings, effect, settings_of, settings_of_tips
 from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
 
 
@@ -58,7 +58,7 @@ def _settings(plan, at):
 
 def _computed(data: Mapping[str, Any], settings: Mapping[str, Any]) -> xr.Dataset:
     """Changes of every place of adhesion of a device."""
-    budgets = [corrected(of_job(budget), data) for budget in settings["budgets"]]
+    budgets = [corrected(budget_settings(budget), data) for budget in settings["budgets"]]
     return compute(data["contacts"], budgets, [in_si(Water, settings["water"])] * len(budgets))
 
 

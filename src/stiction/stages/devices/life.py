@@ -20,7 +20,7 @@ from stiction.config.units import from_si, in_si
 from stiction.constants import DENSITY, LIQUIDS
 from stiction.contact.voltage import BREAKDOWN, Capacitor, Dielectric
 from stiction.devices.bridges import half_of_bridge
-from stiction.devices.risk import Basis, samples_for
+from stiction.devices.risk import Basis, one_in, samples_for
 from stiction.devices.stoppers import safe_force, stuck_patches
 from stiction.estimates import mean_with_error
 from stiction.life import drying, freeing, holding, touch
@@ -43,7 +43,7 @@ _OF_VOLTAGE, _OF_TILT = "stage at_voltage, stiction.life.holding", "stage tilted
 
 
 class Answer(NamedTuple):
-    """One answer to a question; numbers in SI."""
+    """One answer to a question, with numbers in SI."""
 
     name: str
     question: str
@@ -165,7 +165,7 @@ class OfStopper(Stated):
 # Beams
 
 
-def of_beam(
+def beam_answers(
     lengths: Mapping[float, xr.Dataset],
     after: Mapping[float, xr.Dataset],
     of: OfBeam,
@@ -183,7 +183,7 @@ def of_beam(
         Answer(
             f"safe_length_{humidity:g}",
             STICK,
-            f"safe length {in_air(humidity)}: at most {_one_in(share)} sticks after one touchdown",
+            f"safe length {in_air(humidity)}: at most {one_in(share)} sticks after one touchdown",
             *(value, value, error),
             *("m", f"bound of random beams, 95 %, {basis}", "stage safe_lengths"),
         )
@@ -192,7 +192,7 @@ def of_beam(
     answers += _touched(of, length) + _held(of, length) if 0 < length < np.inf else []
     answers += [answer for name, liquid in of.liquids.items() for answer in _dried(of, name, liquid.adhesion)]
     answers += _after_touchdowns(of, share, min(safe.values()), after) if after else []
-    answers += _separated_fast(safe, separation) if separation is not None else []
+    answers += _separated_fast(lengths, separation) if separation is not None else []
     return _in_order(answers + _at_voltage(of, min(safe.values()), biased))
 
 
@@ -205,9 +205,13 @@ def _safe(dataset, share):
     """Least safe length of all end states [m], the standard error of its estimate, and its basis."""
     one = dataset.sel(share=share)
     one = one.isel(shape=int(one.safe_length.argmin("shape")))
+    return *_length_and_error(one), str(one.basis.values)
+
+
+def _length_and_error(one):
+    """Safe length of one end state [m], and the standard error of its estimate; NaN if none is known."""
     errors = [float(one[name]) for name in ("beams_error", "surfaces_error")]
-    error = float(np.sqrt(np.nansum(np.square(errors)))) or np.nan
-    return float(one.safe_length), error, str(one.basis.values)
+    return float(one.safe_length), float(np.sqrt(np.nansum(np.square(errors)))) or np.nan
 
 
 def _touched(of, length):
@@ -307,7 +311,7 @@ def _held(of, length):
 
 
 def _at_voltage(of, safe, biased):
-    """What a voltage adds, and the length that is then safe, from the safe length without it and its error [m].
+    """Effect of a voltage, and the length safe with it, from the safe length without it and its error [m].
 
     On flats in contact, and on rough surfaces from the safe lengths at the voltage by humidity, if there are any.
     """
@@ -396,23 +400,33 @@ def _bent_to_dimples(of):
     return [beside, Answer(PULLED, FREE, what, force, force, error, "N", form, source)]
 
 
-def _separated_fast(safe, separation):
-    """Safe length of a beam that separates faster than water evaporates, from its safe lengths and their errors.
+def _separated_fast(lengths, separation):
+    """Safe length of a beam that separates faster than water evaporates, by humidity and end state, in the worst one.
 
-    ASSUME: the ratio of the mean energies of strips also holds where cracks stop, and at tips. It leaves the pull-off
-    force of a smooth wedge as it is, so that this is the safe side.
+    It is at most that of slow separation.
     """
-    ratios = separation.energy_ratio.to_series().to_dict()
-    errors = separation.energy_ratio_error.to_series().to_dict()
-    at, (length, error, _) = min(safe.items(), key=lambda one: one[1][0] * ratios.get(one[0], 1.0) ** -0.25)
-    ratio = ratios.get(at, 1.0)
-    shorter, most = length * ratio**-0.25, min(safe.values())[0]
-    form = f"L (e / e_V)^(1/4), e_V / e = {ratio:.3g} {in_air(at)} (at least); slow separation (at most)"
+    slow, fast = [], []
+    for humidity, dataset in lengths.items():
+        one = dataset.sel(share=chosen_share(dataset))
+        for shape in map(str, one["shape"].values):
+            length, spread = _length_and_error(one.sel(shape=shape))
+            factor, error = _factor(separation, humidity, shape)
+            slow.append(length)
+            shorter = length * factor if factor else 0.0
+            fast.append((shorter, float(np.hypot(spread * factor, length * error)), factor, in_air(humidity)))
+    shorter, error, factor, air = min(fast)
+    form = f"L x {factor:.3g} {air}, by (e / e_V)^(1/4) of strips or lengths of tips (at least); slow (at most)"
     what = "safe length if it separates faster than water evaporates"
-    numbers = np.nan, most, np.nan
-    if 0 < shorter < np.inf:
-        numbers = shorter, most, shorter * float(np.hypot(error / length, errors.get(at, 0.0) / (4 * ratio)))
+    numbers = (shorter, min(slow), error) if 0 < shorter < np.inf else (np.nan, min(slow), np.nan)
     return [Answer(FAST, FREE, what, *numbers, "m", form, "stage separation")]
+
+
+def _factor(separation, humidity, shape):
+    """Factor of the length by fast separation and its standard error [-]; 1 in air without water."""
+    if humidity not in separation.humidity.values:
+        return 1.0, 0.0
+    one = separation.sel(humidity=humidity, shape=shape)
+    return float(one.factor), float(one.factor_error)
 
 
 def _after_touchdowns(of, share, once, after):
@@ -424,7 +438,7 @@ def _after_touchdowns(of, share, once, after):
         Answer(
             AFTER,
             FREE,
-            f"safe length for {numbers}: at most {_one_in(share)} sticks after all of them",
+            f"safe length for {numbers}: at most {one_in(share)} sticks after all of them",
             *(independent[0], max(once[0], independent[0]), independent[1], "m"),
             "P of one = 1 - (1 - p)^(1/n) (at least); the same summits each time (at most)",
             "stage touchdowns",
@@ -441,7 +455,7 @@ def _after_touchdowns(of, share, once, after):
 # Stoppers
 
 
-def of_stopper(
+def stopper_answers(
     stopper: xr.Dataset,
     of: OfStopper,
     biased: xr.Dataset | None = None,
@@ -503,7 +517,7 @@ def _tilted(tilted):
             float(safe.sel(part="safe").max()),
             float(safe.sel(part="error")[low]),
         )
-        what, form = f"restoring force that frees all but {_one_in(min(bounded))}, {by}", "quantile of the force, 95 %"
+        what, form = f"restoring force that frees all but {one_in(min(bounded))}, {by}", "quantile of the force, 95 %"
         answers.append(Answer("restoring_force_tilted", FREE, what, *numbers, "N", form, _OF_TILT))
     return answers
 
@@ -551,7 +565,7 @@ def _freed(stopper, of, separation):
     force, error = float(at.sel(part="safe")), float(at.sel(part="error"))
     fast = [] if separation is None else [safe_force(row, min(bounded))[0] for row in separation.pull_off.values]
     most = max([force, *fast]) if np.isfinite(fast).all() else np.nan
-    but = f"all but {_one_in(min(bounded))}, {in_air(float(at.humidity))}"
+    but = f"all but {one_in(min(bounded))}, {in_air(float(at.humidity))}"
     source, bound = "stages stoppers and separation", "faster than water evaporates, in any of its air (at most)"
     form = f"quantile of the pull-off force, 95 %; {bound}"
     answers = [Answer(RESTORING, FREE, f"restoring force that frees {but}", force, most, error, "N", form, source)]
@@ -579,15 +593,10 @@ def _often(stopper, of):
     rare = freeing.probability_for(share, of.touchdowns)
     if stopper.sizes["sample"] >= samples_for(rare):
         few, many = (max(safe_force(row, p)[::2] for row in stopper.pull_off.values) for p in (share, rare))
-        what = f"restoring force that frees all but {_one_in(share)} after {numbers}"
+        what = f"restoring force that frees all but {one_in(share)} after {numbers}"
         form = "the same summits each time (at least); P of one = 1 - (1 - p)^(1/n) (at most)"
         answers.append(Answer(AFTER, FREE, what, few[0], many[0], few[1], "N", form, "stage stoppers"))
     return answers
-
-
-def _one_in(share):
-    """Fraction in words."""
-    return f"1 in {1 / share:.6g}"
 
 
 def _in_order(answers):
@@ -603,9 +612,9 @@ def compute(data: Mapping[str, Any], settings: dict[str, Any]) -> xr.Dataset:
     if "stopper" in data:
         of = in_si(OfStopper, settings["stopper"])
         own = (data.get(name) for name in ("biased", "tilted", "separation"))
-        return layout(of_stopper(data["stopper"], of, *own), of)
+        return layout(stopper_answers(data["stopper"], of, *own), of)
     of, lengths = in_si(OfBeam, settings["beam"]), data["lengths"]
-    answers = of_beam(lengths, data.get("after", {}), of, data.get("biased"), data.get("separation"))
+    answers = beam_answers(lengths, data.get("after", {}), of, data.get("biased"), data.get("separation"))
     answers += dimple_answers(of, data.get("dimples", {}))
     return layout(_in_order(answers), of, length_of(lengths, of))
 
@@ -641,7 +650,7 @@ def _inputs(plan, at):
     Beyond the breakdown of the dielectric, no voltage is there that could hold, and flats alone bound what it does.
     """
     section, capacitor = plan.config["devices"][at.device], plan.devices.capacitor(at.device)
-    fast = stage_separation.of_device(plan, at.device)
+    fast = stage_separation.separation_inputs(plan, at.device)
     is_biased = bool(capacitor) and in_si(Capacitor, capacitor).field <= BREAKDOWN
     if not plan.devices.kind(at.device).is_beam:
         biased = {"biased": f"devices/at_voltage/{at.device}"} if is_biased else {}

@@ -11,7 +11,7 @@ from stiction.devices.risk import stuck_share
 from stiction.stages.devices.opening import EITHER
 
 
-def of_beam(safe_lengths: xr.Dataset) -> xr.Dataset:
+def stuck_beams(safe_lengths: xr.Dataset) -> xr.Dataset:
     """P(stuck) over the length of a beam, whatever holds it, from the dataset of stage safe_lengths."""
     shapes = list(map(str, safe_lengths["shape"].values))
     held = safe_lengths.sel(shape=EITHER if EITHER in shapes else shapes[0])
@@ -19,7 +19,7 @@ def of_beam(safe_lengths: xr.Dataset) -> xr.Dataset:
     return _layout("length", held.length.values, "m", (held.stuck.values, low, high))
 
 
-def of_stopper(stopper: xr.Dataset, humidity: float) -> xr.Dataset:
+def stuck_stoppers(stopper: xr.Dataset, humidity: float) -> xr.Dataset:
     """P(stuck) over the restoring force of a stopper at a humidity, from the dataset of stage stoppers."""
     forces = stopper.pull_off.sel(humidity=humidity).values
     at = np.sort(forces)

@@ -191,9 +191,12 @@ def uncertain(
     `stiction.devices.materials.PROPERTIES`; ``known`` is what is known of the quantities of each surface.
     """
     stated = settings.uncertainty
-    blocks = [of_surface(state, name, shifted, measured) for name, measured in known.items()]
-    blocks += [*(of_numbers(state, OF_BEAMS, stated) if state.device else ()), *of_solids(state, solids, settings)]
-    blocks += of_numbers(state, OF_AIR, stated) if state.water.film(state.humidity)[0] else ()
+    blocks = [surface_block(state, name, shifted, measured) for name, measured in known.items()]
+    blocks += [
+        *(number_blocks(state, OF_BEAMS, stated) if state.device else ()),
+        *solid_blocks(state, solids, settings),
+    ]
+    blocks += number_blocks(state, OF_AIR, stated) if state.water.film(state.humidity)[0] else ()
     inputs = [entry for block in blocks for entry in block.inputs]
     return inputs, block_diag(np.empty((0, 0)), *(block.covariance for block in blocks))
 
@@ -222,7 +225,7 @@ def countable(sizes: Sequence[str], settings: Settings) -> list[str]:
     return [*surfaces, *(f"the {name.replace('_', ' ')}" for name in sizes), *solids, *dict.fromkeys(air)]
 
 
-def of_surface(
+def surface_block(
     state: State, surface: str, shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]], known: Known
 ) -> Block:
     """Quantities of a surface, of its heights and of its spectrum."""
@@ -235,7 +238,7 @@ def of_surface(
     return Block(inputs, known.covariance)
 
 
-def of_numbers(state: State, varied: Sequence[Varied], stated: Uncertainty) -> Iterator[Block]:
+def number_blocks(state: State, varied: Sequence[Varied], stated: Uncertainty) -> Iterator[Block]:
     """Yield blocks of the uncertain ones among some inputs."""
     for key, together in groupby(varied, lambda number: number.field):
         if deviation := getattr(stated, key):
@@ -243,7 +246,9 @@ def of_numbers(state: State, varied: Sequence[Varied], stated: Uncertainty) -> I
             yield Block(list(inputs), np.full((len(inputs), len(inputs)), deviations[0] ** 2))
 
 
-def of_solids(state: State, solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings) -> Iterator[Block]:
+def solid_blocks(
+    state: State, solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings
+) -> Iterator[Block]:
     """Uncertain properties of the solids. The slopes of those with a relative step are in their logarithms.
 
     ASSUME: a beam bends with Young's modulus alone, without the 1 - ν² of a plate; only the contact has the other two.
@@ -282,16 +287,18 @@ def covariances(
 ) -> dict[str, Known]:
     """Errors of the quantities of every uncertain surface."""
     return {
-        name: of_scans(estimates[name], described[0]) if name in estimates else of_stated(name, described, settings)
+        name: scan_errors(estimates[name], described[0])
+        if name in estimates
+        else number_errors(name, described, settings)
         for name, described in surfaces.items()
     }
 
 
-def of_stated(name: str, described: tuple[xr.Dataset, xr.Dataset], settings: Settings) -> Known:
+def number_errors(name: str, described: tuple[xr.Dataset, xr.Dataset], settings: Settings) -> Known:
     """Errors of a surface by numbers: as given, and from the scan behind its moments."""
     stated = [settings.known[name]] if name in settings.known else []
     side = settings.uncertainty.scan
-    return together([*stated, *([of_one_scan(*described, side)] if side else [])])
+    return together([*stated, *([errors_of_one_scan(*described, side)] if side else [])])
 
 
 def together(causes: Sequence[Known]) -> Known:
@@ -305,7 +312,7 @@ def together(causes: Sequence[Known]) -> Known:
     return Known(quantities, covariance)
 
 
-def of_scans(estimate: xr.Dataset, heights_of: xr.Dataset) -> Known:
+def scan_errors(estimate: xr.Dataset, heights_of: xr.Dataset) -> Known:
     """Covariance of the quantities of a surface described by scans.
 
     ASSUME: the errors of heights and spectrum are independent.
@@ -315,7 +322,7 @@ def of_scans(estimate: xr.Dataset, heights_of: xr.Dataset) -> Known:
     return Known(errors.names + SPECTRUM_QUANTITIES, block_diag(errors.heights, errors.spectrum))
 
 
-def of_one_scan(heights_of: xr.Dataset, spectrum_of: xr.Dataset, side: float) -> Known:
+def errors_of_one_scan(heights_of: xr.Dataset, spectrum_of: xr.Dataset, side: float) -> Known:
     """Covariance of rms, skewness and kurtosis of a surface, measured on one square scan of this side [m]."""
     translation = Translation(heights.density(heights_of, "NG"))
     underlying = spectrum.underlying(spectrum_of, "NG")

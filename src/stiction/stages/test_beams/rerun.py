@@ -26,7 +26,7 @@ from stiction.stages.contact.contact import first
 from stiction.stages.contact.corrections import corrected, correction_inputs
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices import budget as stage_budget
-from stiction.stages.devices.budget import AnyBudget, budgets_of, budgets_of_arrays, effect, of_job
+from stiction.stages.devices.budget import AnyBudget, budget_settings, budgets_of, budgets_of_arrays, effect
 from stiction.stages.devices.contact_names import contact_of, patch_of
 from stiction.stages.devices.uncertain_inputs import changed
 from stiction.stages.surfaces.descriptions import description, drawn_as
@@ -151,7 +151,7 @@ def _computed(data, settings):
     update = data["updated"]
     errors, contacts, model_errors = errors_of(update), {}, data["model_errors"]
     wanted = [
-        corrected(of_job(own), {"model_error": model_errors[patch]} if patch in model_errors else {})
+        corrected(budget_settings(own), {"model_error": model_errors[patch]} if patch in model_errors else {})
         for own, patch in zip(settings["budgets"], settings["patches"], strict=True)
     ]
     try:
