@@ -20,7 +20,7 @@ from stiction.contact import forcelaw
 from stiction.plan.plan import Plan
 from stiction.report.beams.figures import adhesion_energies, beam_shapes, converted
 from stiction.report.laws.figures import fitted_curve, force_curves, typical
-from stiction.report.style import humidity_axis, letter, panels, save
+from stiction.report.style import humidity_axis, humidity_colours, letter, panels, save
 from stiction.report.surfaces.figures import elevation_maps, height_densities, profiles, spectra, summits
 from stiction.stages.beams import beams as stage_beams
 from stiction.stages.laws import fit as study_fit
@@ -232,6 +232,19 @@ def test_panels_beyond_the_alphabet_have_marks():
     _, axes = panels(1, 28, (20, 1))
     letter(axes)
     assert [axes[0, k].get_title(loc="left") for k in (0, 25, 26, 27)] == ["(a)", "(z)", "(aa)", "(ab)"]
+
+
+def test_a_single_panel_has_no_mark():
+    _, axes = panels(1, 1, (2, 1))
+    letter(axes, ["C1"])
+    assert axes[0, 0].get_title(loc="left") == "C1"
+
+
+def test_a_humidity_has_its_colour_in_any_order_and_once():
+    colours = humidity_colours([0.67, 0.44, 0.67])
+    assert list(colours) == [0.44, 0.67]
+    np.testing.assert_array_equal(colours[0.44], humidity_colours([0.44, 0.67])[0.44])
+    assert not np.array_equal(colours[0.44], colours[0.67])
 
 
 @pytest.mark.parametrize("count", [1, *(pytest.param(n, marks=pytest.mark.slow) for n in (5, 12))])

@@ -83,6 +83,12 @@ def shades(count: int, lightest: float = 0.15) -> np.ndarray:
     return colormaps["viridis_r"](np.linspace(lightest, 1, count))
 
 
+def humidity_colours(humidities: Iterable[float]) -> dict[float, np.ndarray]:
+    """Colour of every relative humidity, the same in all figures with these humidities."""
+    ordered = sorted(set(humidities))
+    return dict(zip(ordered, shades(len(ordered), 0.25), strict=True))
+
+
 def panels(rows: int, columns: int, size: tuple[float, float], **shared) -> tuple[Figure, np.ndarray]:
     """New figure of ``size`` (width, height) [in] and its axes (rows, columns), ``shared`` as in Figure.subplots."""
     figure = Figure(figsize=size, layout="constrained")
@@ -223,10 +229,11 @@ def dry_tick(panel: Axes, placed: Mapping[float, float]) -> None:
 
 
 def letter(axes: Iterable[Axes], names: Sequence[str] | None = None) -> None:
-    """Title panels (a), (b), ... in reading order, each with its name."""
+    """Title panels (a), (b), ... in reading order, each with its name. A single panel has its name alone."""
     axes = np.ravel(axes)
-    for mark, panel, name in zip(_marks(len(axes)), axes, names or [""] * len(axes), strict=True):
-        panel.set_title(f"({mark}) {name}".rstrip(), loc="left")
+    marks = [f"({mark}) " for mark in _marks(len(axes))] if len(axes) > 1 else [""]
+    for mark, panel, name in zip(marks, axes, names or [""] * len(axes), strict=True):
+        panel.set_title(f"{mark}{name}".rstrip(), loc="left")
 
 
 def letter_lines(lines: Sequence[np.ndarray], names: Sequence[str]) -> None:

@@ -11,6 +11,7 @@ from legends import covering
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
 from stiction.report.style import save
+from stiction.stages.devices import safe_lengths
 
 S_SHAPE, EITHER = "S-shape", "S-shape or arc"
 WARNINGS = {("C1", 0.44, S_SHAPE): ["Too wet."], ("C1", 0.44, EITHER): ["Too wet.", "Too thin."]}
@@ -113,6 +114,29 @@ def test_a_humidity_has_one_colour_in_all_panels(found):
     first, second = ([line.get_color() for line in panel.get_legend().get_lines()] for panel in figure.axes)
     np.testing.assert_array_equal(first[1], second[0])
     assert not np.array_equal(first[0], first[1])
+
+
+def looks(legend):
+    """What the entries of a legend look like."""
+    return [(str(line.get_color()), line.get_linestyle(), line.get_marker()) for line in legend.get_lines()]
+
+
+def test_entries_of_a_legend_look_different(found):
+    (legend,) = figures_devices.risk(found, WARNINGS).legends
+    assert len(set(looks(legend))) == len(looks(legend)) > 3
+    assert "held by beam or tip / the middle" in [text.get_text() for text in legend.get_texts()]
+
+
+def test_the_risk_can_be_read_at_the_length_of_the_device(found):
+    sticking = {shape: np.linspace(200e-6, 400e-6, 100) for shape in (S_SHAPE, EITHER)}
+    own = safe_lengths.at_length(sticking, [sticking, sticking], np.inf, 300e-6)
+    figure = figures_devices.risk({("C1", 0.44): found["C1", 0.44].assign(own)}, WARNINGS)
+    (panel,) = figure.axes
+    share = 100 * float(own["stuck_at_length"][1][-1, 0])
+    assert panel.get_legend().get_texts()[0].get_text() == f"RH 0.44: {share:.3g} % at 300 µm (1) (2)"
+    assert [300, 300] in [list(line.get_xdata()) for line in panel.lines if line.get_linestyle() == ":"]
+    assert "length of the device" in [text.get_text() for text in figure.legends[0].get_texts()]
+    assert covering(figure) == []
 
 
 def test_the_table_of_charts_has_every_length_and_where_it_is_from():

@@ -41,7 +41,7 @@ def lengths():
 
 
 def answers(lengths, of, dimples):
-    return {one.name: one for one in [*life.of_beam(lengths, {}, of), *life.dimple_answers(of, dimples)]}
+    return {one.name: one for one in [*life.beam_answers(lengths, {}, of), *life.dimple_answers(of, dimples)]}
 
 
 @pytest.mark.parametrize("number", [1, 3, 7])
@@ -94,7 +94,7 @@ def test_sentences_say_how_many_stick_and_whether_the_beam_touches_beside_its_di
         dataset = life.layout(list(answers(lengths, of, {0.67: forces(1e-5)}).values()), of, 200e-6)
         (sentence,) = [one for one in report.sentences(dataset) if "dimples" in one]
         assert said in sentence
-        assert "of the beams stick on them" in sentence
+        assert "of the beams stick on it" in sentence
     assert not any("dimples" in one for one in answers(lengths, OF, {}))
 
 

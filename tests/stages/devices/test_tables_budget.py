@@ -11,7 +11,7 @@ from stiction.contact.environment import Water
 from stiction.plan.plan import Plan
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
-from stiction.report.style import DOUBLE, legend_below, panels, save, styled
+from stiction.report.style import DOUBLE, humidity_colours, legend_below, panels, save, styled
 from stiction.stages.devices import budget as study_budget
 from stiction.stages.devices import stoppers as study_stoppers
 from stiction.stages.devices.budget import Responses
@@ -244,6 +244,19 @@ def test_a_shorter_label_leaves_room_for_more_columns():
         styled(legend_below)(panel, [Line2D([], [], label=label) for _ in range(6)])
     short, long = (panel.get_legend()._ncols for panel in axes.flat)
     assert short > long > 1
+
+
+def test_every_legend_of_stoppers_explains_its_own_panel_and_humidities_have_one_colour():
+    figure = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {})
+    above, below = figure.axes
+    assert figure.legends == []
+    assert [text.get_text() for text in below.get_legend().get_texts()][:2] == ["mean", "5 to 95 % of the patches"]
+    colours = humidity_colours(STOPPERS["S1"].humidity.values.tolist())
+    drawn = [line.get_color() for line in above.get_legend().get_lines()]
+    np.testing.assert_array_equal(drawn, list(colours.values()))
+    bars = figures_budget.budget(BEAMS).legends[0].get_patches()
+    of_bars = humidity_colours(humidity for _, humidity, *_ in BEAMS)
+    np.testing.assert_array_equal([bar.get_facecolor() for bar in bars], list(of_bars.values()))
 
 
 def test_a_stopper_shows_the_share_of_patches_over_the_restoring_force():

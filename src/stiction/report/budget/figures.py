@@ -22,12 +22,12 @@ from stiction.report.style import (
     figure_stage,
     handles,
     humidity_axis,
+    humidity_colours,
     legend_below,
     letter,
     letter_lines,
     panels,
     places,
-    shades,
     styled,
 )
 from stiction.stages.devices import device_warnings
@@ -50,12 +50,11 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
     figure, columns, lines = columns_of_panels(len(datasets), 2, at_most_double(SINGLE), 5.0)
     for column, dataset in zip(columns, datasets.values(), strict=True):
         _stuck_over_force(column[0], dataset)
-        shared = _force_over_humidity(column[1], dataset)
+        _force_over_humidity(column[1], dataset)
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
         line[1, 0].set_ylabel("pull-off force [µN]")
     letter_lines(lines, list(datasets))
-    figure.legend(handles=shared, loc="outside upper center", ncols=2)
     if sentences := [f"{name}: {sentence}" for name, of_device in warnings.items() for sentence in of_device]:
         figure.set_label("\n".join(["Warnings:", *sentences]))
         figure.supxlabel("Warnings are written out in results/tables/stoppers.md", fontsize=6, ha="left", x=0.01)
@@ -65,12 +64,13 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
 def _stuck_over_force(panel, dataset):
     """Fraction of the patches with a larger pull-off force, at every humidity of the device, with its band."""
     restoring = TO_UN * float(dataset.restoring_force)
-    for k, humidity in enumerate(dataset.humidity.values):
+    colours = humidity_colours(dataset.humidity.values.tolist())
+    for k, (humidity, colour) in enumerate(colours.items()):
         forces = TO_UN * dataset.pull_off.sel(humidity=humidity).values
         at = np.sort(forces)
         share, low, high = stuck_share(-at, -forces)
-        panel.plot(at, share, color=f"C{k}", linestyle=dashes(k), label=air(float(humidity)))
-        panel.fill_between(at, low, high, color=f"C{k}", alpha=0.2, linewidth=0)
+        panel.plot(at, share, color=colour, linestyle=dashes(k), label=air(humidity))
+        panel.fill_between(at, low, high, color=colour, alpha=0.2, linewidth=0)
     panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
     panel.set(xlabel="restoring force [µN]", yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
     is_left = restoring < np.mean(panel.get_xlim())
@@ -88,10 +88,7 @@ def _stuck_over_force(panel, dataset):
 
 
 def _force_over_humidity(panel, dataset):
-    """Mean and 5 to 95 % of the pull-off force along the fine axis, and the worst humidity unless all air is dry.
-
-    Returns the entries of the legend that are the same for all stoppers.
-    """
+    """Mean and 5 to 95 % of the pull-off force along the fine axis, and the worst humidity unless all air is dry."""
     low, high = (TO_UN * dataset.quantile_along.sel(probability=p) for p in dataset.probability.values[[0, -1]])
     light = {"color": _COLOUR, "alpha": 0.2, "linewidth": 0}
     placed, humid = places([*dataset.axis.values.tolist(), float(dataset.worst_humidity)]), dataset.axis.values > 0
@@ -102,13 +99,14 @@ def _force_over_humidity(panel, dataset):
         reach = np.abs(np.stack([low, high]) - means.values)[:, ~humid]
         panel.errorbar(placed[0.0], means[~humid], reach, fmt="o", color=_COLOUR, markersize=3, alpha=0.6)
     panel.axhline(TO_UN * float(dataset.restoring_force), color="0.4", linestyle=":", linewidth=0.8)
+    entries = [mean, band]
     if humid.any():
         worst = float(dataset.worst_humidity)
         label = f"worst humidity {worst:.2f}" if worst else "worst in dry air"
-        legend_below(panel, panel.plot([placed[worst]], [float(means.max())], "v", color="black", label=label))
+        entries += panel.plot([placed[worst]], [float(means.max())], "v", color="black", label=label)
+    legend_below(panel, entries)
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
     humidity_axis(panel, placed)
-    return [mean, band]
 
 
 # Budget
@@ -123,19 +121,19 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
     parts = {}
     for (_, humidity, *_), dataset in datasets.items():
         parts.setdefault(response_text(dataset), {})[humidity] = dataset
+    colours = humidity_colours(humidity for _, humidity, *_ in datasets)
     bars = [(_measurements(cases), _choices(cases)) for cases in parts.values()]
     heights = [_ROW * max(map(len, of_row)) + _AROUND for of_row in bars]
     size = DOUBLE, sum(heights) + _LEGEND
     figure, axes = panels(len(bars), 2, size, height_ratios=heights, width_ratios=(3, 2))
     for line, of_row, cases in zip(axes, bars, parts.values(), strict=True):
         for panel, rows in zip(line, of_row, strict=True):
-            _tornado(panel, rows)
+            _tornado(panel, rows, [colours[humidity] for humidity in cases])
         scatter = ", ".join(f"{100 * float(dataset.scatter):.2g}" for dataset in cases.values())
         line[0].set_xlabel(f"standard uncertainty [%]; {SCATTER}: {scatter} %")
         line[1].set_xlabel("change [%]")
     letter(axes, [title for text in parts for title in (text, "choices of the model")])
-    humidities = list(next(iter(parts.values())))
-    marks = [Patch(color=shade, label=air(h)) for h, shade in zip(humidities, shades(len(humidities)), strict=True)]
+    marks = [Patch(color=colour, label=air(humidity)) for humidity, colour in colours.items()]
     figure.legend(handles=marks, loc="outside lower center", ncols=8)
     return figure
 
@@ -179,11 +177,11 @@ def _from_zero(dataset, choice):
     return (*sorted((0.0, 100 * float(of_choice.effect))), 100 * float(of_choice.effect_error))
 
 
-def _tornado(panel, rows: Mapping[str, Sequence[tuple]]):
+def _tornado(panel, rows: Mapping[str, Sequence[tuple]], colours: Sequence[np.ndarray]):
     """Draw rows of bars (low, high, error) from top to bottom. The bars of a row are those of the humidities."""
     for place, bars in enumerate(rows.values()):
         height = _FILLED / len(bars)
-        for k, ((low, high, error), shade) in enumerate(zip(bars, shades(len(bars)), strict=True)):
+        for k, ((low, high, error), shade) in enumerate(zip(bars, colours, strict=True)):
             at = place + (k - (len(bars) - 1) / 2) * height
             panel.barh(at, high - low, height, left=low, color=shade, linewidth=0)
             panel.errorbar(high if high > -low else low, at, xerr=error, color="black", linewidth=0.6, capsize=1)

@@ -20,6 +20,7 @@ from stiction.report.style import (
     figure_stage,
     handles,
     humidity_axis,
+    humidity_colours,
     legend_below,
     letter_lines,
     places,
@@ -61,26 +62,41 @@ def risk(datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tup
     names = list(dict.fromkeys(name for name, _ in datasets))
     _, numbers = numbered(warnings)
     most = max(sum(device == name for device, _ in datasets) for name in names)
-    humidities = sorted({humidity for _, humidity in datasets})
-    colours = dict(zip(humidities, shades(len(humidities), _LIGHTEST), strict=True))
+    colours = humidity_colours(humidity for _, humidity in datasets)
     figure, columns, lines = columns_of_panels(len(names), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
     for panel, name in zip(columns[:, 0], names, strict=True):
         cases = {humidity: dataset for (device, humidity), dataset in datasets.items() if device == name}
         named = []
         for humidity, dataset in cases.items():
             _shares(panel, dataset, colours[humidity])
-            label = f"{air(humidity)}{_marks(numbers, name, humidity)}"
+            label = f"{air(humidity)}{_at_length(dataset)}{_marks(numbers, name, humidity)}"
             named.append(Line2D([], [], color=colours[humidity], linewidth=3, label=label))
         legend_below(panel, named)
+        _own_length(panel, dataset)
         shares = np.concatenate([dataset.share.values for dataset in cases.values()])
         panel.set(yscale="log", ylim=(shares.min() / 2, 1.3), xlabel="length of the device [µm]")
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
     letter_lines(lines, names)
     _explain(columns[0, 0], datasets)
-    figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=5 if len(names) > 1 else 3)
+    figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=4 if len(names) > 1 else 3)
     refer_to_warnings(figure, warnings, "safe_lengths")
     return figure
+
+
+def _at_length(dataset):
+    """P(stuck) at the length that a device states, for the legend."""
+    if "length_of_device" not in dataset:
+        return ""
+    held = dataset.isel(shape=-1)
+    stuck = float(held.stuck_at_length.sel(end="estimate"))
+    return f": {100 * stuck:.3g} % at {TO_UM * float(held.length_of_device):g} µm"
+
+
+def _own_length(panel, dataset):
+    """Line at the length that a device states."""
+    if "length_of_device" in dataset:
+        panel.axvline(TO_UM * float(dataset.length_of_device), color="0.4", linestyle=":", linewidth=0.8)
 
 
 def _marks(numbers: Mapping[tuple, Iterable[int]], *subject) -> str:
@@ -107,10 +123,16 @@ def _shares(panel: Axes, dataset, colour):
 
 
 def _explain(panel, datasets):
-    """Add the used line styles and markers to the legend of a panel."""
+    """Add the used line styles and markers to the legend of a panel. Equal lines share an entry."""
+    legends: dict[str, list[str]] = {}
     for shape, state in END_STATES.items():
         if any(shape in dataset["shape"].values for dataset in datasets.values()):
-            panel.plot([], [], state.lines[0], color="0.3", label=state.legend)
+            legends.setdefault(state.lines[0], []).append(state.legend)
+    for line, held in legends.items():
+        label = " / ".join([held[0], *(legend.removeprefix("held by ") for legend in held[1:])])
+        panel.plot([], [], line, color="0.3", label=label)
+    if any("length_of_device" in dataset for dataset in datasets.values()):
+        panel.plot([], [], ":", color="0.4", linewidth=0.8, label="length of the device")
     for basis, mark in _BASES.items():
         if any(basis in dataset.basis.values for dataset in datasets.values()):
             panel.plot([], [], mark, color="0.3", label=f"safe length, {basis}")

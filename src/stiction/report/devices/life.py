@@ -146,8 +146,8 @@ def _dimpled(answers):
     pulls, holds = answers[PULLED], answers[DIMPLES]
     often = max((one for one in answers.values() if one.name.startswith(f"{ON_DIMPLES}_")), key=lambda one: one.high)
     said = (
-        f"Its dimples together are pulled off by {_low(pulls)} µN and held by {_low(holds)} µN on average: "
-        f"{_low(often)} to {_high(often)} % of the beams stick on them in the worst of its air."
+        f"Its row of dimples is pulled off by {_low(pulls)} µN and held by {_low(holds)} µN on average: "
+        f"{_low(often)} to {_high(often)} % of the beams stick on it in the worst of their air."
     )
     if answers[BESIDE].low > 0:
         return [f"{said} Beside them, {_low(answers[BESIDE])} % of the gap is left."]

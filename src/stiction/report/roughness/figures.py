@@ -16,18 +16,16 @@ from stiction.report.style import (
     SINGLE,
     figure_stage,
     handles,
+    humidity_colours,
     letter,
     panels,
     plain_log,
-    shades,
     styled,
 )
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import FORCE
 from stiction.stages.roughness.curves import KURTOSIS, curves_of
 
-#: Lightest colour of a curve.
-_LIGHTEST = 0.25
 #: What meets a requirement with confidence, and what is expected to.
 _VALUES = ("safe", "estimate")
 
@@ -42,18 +40,17 @@ def roughness(dataset: xr.Dataset) -> Figure:
     curve = next(as_given)
     shapes = list(map(str, curve["shape"].values))
     figure, axes = panels(1, len(shapes), (min(DOUBLE, 1.3 * SINGLE * len(shapes)), 3.0))
+    own, along = ("restoring force", "force needed [µN]") if shapes == [FORCE] else ("required length", "length [µm]")
     for panel, shape in zip(axes[0], shapes, strict=True):
-        for humidity, shade in zip(curve.humidity.values, shades(curve.sizes["humidity"], _LIGHTEST), strict=True):
-            _curve(panel, curve.sel(humidity=humidity, shape=shape), shade)
-            _crossings(panel, curve, (float(humidity), shape), shade)
-        panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label="required")
+        for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
+            _curve(panel, curve.sel(humidity=humidity, shape=shape), colour)
+            _crossings(panel, curve, (humidity, shape), colour)
+        panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label=own)
         panel.axvline(in_unit(curve, float(curve.given)), color="0.6", linestyle=":", label="as given")
         panel.set_yscale("log")
         plain_log(panel.yaxis)
         _axis(panel.xaxis, panel.set_xscale, curve)
-    axes[0, 0].set_ylabel(
-        f"{'restoring force [µN]' if shapes == [FORCE] else 'length [µm]'}, p = {float(curve.share):g}"
-    )
+    axes[0, 0].set_ylabel(f"{along}, p = {float(curve.share):g}")
     letter(axes, [END_STATES[shape].by for shape in shapes])
     figure.legend(*handles(*axes[0]), loc="outside lower center", ncols=2 * len(shapes))
     return figure
@@ -100,7 +97,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
     size = min(DOUBLE, 1.3 * SINGLE * len(shapes)), 2.8 * len(humidities)
     figure, axes = panels(len(humidities), len(shapes), size)
     more_is_better = data.required.attrs["units"] == "m"
-    margin = "length / required" if more_is_better else "restoring force / required"
+    margin = "length / required length" if more_is_better else "restoring force / force needed"
     x, y = in_unit(data, data.roughness.values), in_unit(data, data.other.values, "other_key")
     for row, humidity in zip(axes, humidities, strict=True):
         for panel, shape in zip(row, shapes, strict=True):

@@ -359,10 +359,13 @@ def dimple_answers(of: OfBeam, dimples: Mapping[float, xr.Dataset]) -> list[Answ
     """Answers about a beam on its dimples, from the forces of rows of them by humidity; none without any."""
     if not dimples:
         return []
-    number, bent = of.dimples.number, _bent_to_dimples(of)
+    bent = _bent_to_dimples(of)
     means = {humidity: tuple(map(float, mean_with_error(one.pull_off.values))) for humidity, one in dimples.items()}
     worst = max(means, key=means.get)
-    what, form = f"mean force on its {number} dimples together {in_air(worst)}", "sum of largest attractions x area"
+    what, form = (
+        f"mean force on its row of dimples {in_air(worst)}",
+        f"sum of {of.dimples.number} largest attractions x area",
+    )
     mean, error = means[worst]
     held = Answer(DIMPLES, HOLD, what, mean, mean, error, "N", form, "stage dimples")
     force = np.array([bent[-1].low])
@@ -370,7 +373,7 @@ def dimple_answers(of: OfBeam, dimples: Mapping[float, xr.Dataset]) -> list[Answ
         Answer(
             f"{ON_DIMPLES}_{humidity:g}",
             STICK,
-            f"probability of sticking on its {number} dimples {in_air(humidity)}",
+            f"probability of sticking on its row of dimples {in_air(humidity)}",
             *(float(end[0]) for end in stuck_patches(one.pull_off.values, force)[1:]),
             *(np.nan, "1", "fraction of random rows, 95 %", "stage dimples"),
         )
@@ -393,7 +396,7 @@ def _bent_to_dimples(of):
     what, form = "part of the gap that is left beside its dimples", "bent by the force on the row alone"
     source = "stiction.life.dimples"
     beside = Answer(BESIDE, TOUCH, what, max(rest, 0.0), max(rest, 0.0), rest_error, "1", form, source)
-    what, form = f"force with which it pulls at its {of.dimples.number} dimples together", "k (h - h_d)"
+    what, form = "force with which it pulls at its row of dimples", "k (h - h_d)"
     return [beside, Answer(PULLED, FREE, what, force, force, error, "N", form, source)]
 
 
@@ -514,7 +517,7 @@ def _tilted(tilted):
             float(safe.sel(part="safe").max()),
             float(safe.sel(part="error")[low]),
         )
-        what, form = f"restoring force that frees all but {one_in(min(bounded))} {by}", "quantile of the force, 95 %"
+        what, form = f"restoring force that frees all but {one_in(min(bounded))}, {by}", "quantile of the force, 95 %"
         answers.append(Answer("restoring_force_tilted", FREE, what, *numbers, "N", form, _OF_TILT))
     return answers
 
