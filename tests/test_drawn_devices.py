@@ -20,4 +20,6 @@ def test_what_the_model_does_not_hold_for_is_refused_in_one_sentence_before_the_
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("number", ANSWERED)
 def test_drawn_surfaces_end_in_an_answer(number):
-    assert outcome(drawn(number)).startswith("answer <p><strong>")
+    found = outcome(drawn(number))
+    assert found.startswith("answer ")
+    assert len(found) > len("answer ")
