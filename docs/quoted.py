@@ -424,15 +424,15 @@ def budget(table):
 def drawn_lengths(safe, budget):
     """Lengths of C1, a beam of pair b, with its tip [µm], for 1 in 1000 stuck beams.
 
-    ``saturated_C1``: in saturated air; ``least_C1``: the least over its humidities; ``drawn_C1``: that less twice
-    ``largest_total_C1``, the largest total of the budgets of the tip [%].
+    ``saturated_C1``: in saturated air; ``least_C1``: the least over its humidities; ``drawn_C1``: its logarithm less
+    twice ``largest_total_C1``, the largest total of the budgets of the tip [%].
     """
     beam = cantilever(in_si(Cantilevers, sections(Plan(paper()), "b")), "b")
     saturated = TO_UM * arc_length(flooded_energy(paper()["water"]["temperature_K"]), beam)
     totals = budget[(budget.device == "C1") & (budget.held_by == "tip") & (budget["name"] == "total")].effect_percent
     of_tip = safe[(safe.device == "C1") & (safe.held_by == "beam or tip") & (safe.share == 1e-3)]
     least = float(of_tip.safe_length_um.min())
-    texts = {"saturated_C1": saturated, "least_C1": least, "drawn_C1": (1 - 2 * totals.max() / 100) * least}
+    texts = {"saturated_C1": saturated, "least_C1": least, "drawn_C1": np.exp(-2 * totals.max() / 100) * least}
     return {name: f"{length:.0f}" for name, length in texts.items()} | {"largest_total_C1": f"{totals.max():.3g}"}
 
 

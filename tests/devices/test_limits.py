@@ -13,6 +13,9 @@ UM, NM = 1e-6, 1e-9
 WORDS = tuple(one.words for one in PROPERTIES.values())
 #: Arguments that trigger a warning, a number that its sentence must contain, and arguments that do not trigger it.
 CASES = [
+    (limits.long_strips, (1.5 * UM, 1.2 * UM), "1.5 µm.*1.2 µm.*stop too early.*safe side", (1.2 * UM, 1.2 * UM)),
+    (limits.long_strips, (1.5 * UM, 1.2 * UM, True), "1.2 µm.*middle of this bridge", (1.2 * UM, 1.2 * UM, True)),
+    (limits.long_strips, (2.5 * UM, 1.2 * UM), "nothing is simulated.*safe side", (0.5 * UM, 1.2 * UM)),
     (limits.arcs_of_elements, (0.42, 1.5 * UM), "42 %.*1.5 µm.*under `devices`", (0.0, 1.5 * UM)),
     (limits.cut_off_mean, (0.58, 1400 * UM, 1500 * UM), "58 %.*1400 µm.*1500 µm", (1.0, 700 * UM, 1500 * UM)),
     (limits.plastic_contact, (0.58, 1.04e8), "58 %.*2 %.* with 104 MPa", (0.02, 1.04e8)),
@@ -80,6 +83,7 @@ def test_every_limit_is_tested():
         value for name, value in vars(limits).items() if callable(value) and value.__module__ == limits.__name__
     }
     assert functions == {case[0] for case in CASES} | {
+        limits.forbids,
         limits.given,
         limits.beam_warnings,
         limits.least_gap,

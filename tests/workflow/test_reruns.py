@@ -364,7 +364,7 @@ SPOTS = [
     ("contact/forcelaw", "forces fit humidity sensitivity variant", "contact_chunk contact sensitivity_contact"),
     (
         "devices/chart",
-        "safe_lengths chart",
+        "chart",
         "heights spectrum contact_chunk contact variant_contact forces chaos beams fit humidity table_3",
     ),
     (

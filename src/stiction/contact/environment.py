@@ -24,7 +24,7 @@ import numpy as np
 
 from stiction.contact import forcelaw, gaps, vanderwaals
 from stiction.contact.correction import Correction
-from stiction.contact.meniscus import film, flooded_energy
+from stiction.contact.meniscus import film
 from stiction.contact.solids import Solid, attraction_between, interfaces
 from stiction.contact.voltage import Capacitor
 from stiction.models import SIDES
@@ -101,13 +101,6 @@ class Water:
         """
         height, tension = film(humidity, self.temperature, self.contact_angles)
         return height + self.adsorbed if height else height, tension
-
-    def flooded_energy(self, humidity: float) -> float:
-        """Adhesion energy of flats in contact under the water of a humidity [J m⁻²].
-
-        It is that of `stiction.contact.meniscus.flooded_energy`, and the work of the adsorbed films.
-        """
-        return flooded_energy(self.temperature, self.contact_angles) + self.film(humidity)[1] * self.adsorbed
 
     def at(self, humidity: float) -> "Water":
         """Water at a humidity. Without condensation, the summits attract each other through air."""

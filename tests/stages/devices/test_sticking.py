@@ -1,11 +1,14 @@
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from ground import C1, R1, WATER, wanted
 from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.beam.energy import apparent_adhesion_energy
-from stiction.contact.environment import Water
+from stiction.constants import HAMAKER_CONSTANT
+from stiction.contact.environment import Gaps, Water, force_curves
+from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.devices import risk
 from stiction.devices.arcs import arc_length
 from stiction.devices.bridges import least_length
@@ -27,9 +30,9 @@ def test_a_bridge_is_held_by_its_middle_and_has_no_tip():
     assert_array_equal(found[MIDDLE], [2e-4, 2.1e-4])
 
 
-def test_lengths_in_saturated_air_are_those_of_flooded_flats_by_shape():
-    energy = 0.072 * (1 + np.cos(1.0))
-    alone, tip = sticking.flooded_lengths(C1, Water(300.0, (1.0, 0.0)), 0.67)
+def test_lengths_of_flats_are_those_of_their_water_and_their_solids_by_shape():
+    energy = 0.072 * (1 + np.cos(1.0)) + DugdaleAttraction(1e-19).work_of_adhesion
+    alone, tip = sticking.flooded_lengths(replace(C1, hamaker_constant=1e-19), Water(300.0, (1.0, 0.0)), 0.67)
     assert_allclose(apparent_adhesion_energy(alone, C1.beam), energy, rtol=1e-9)
     assert_allclose(tip, arc_length(energy, C1.beam), rtol=1e-9)
 
@@ -38,11 +41,19 @@ def test_adsorbed_films_shorten_the_lengths_of_flooded_flats_by_their_work():
     wet = Water(300.0, adsorbed=0.5e-9)
     for humidity in (0.44, 0.9):
         energy = 2 * 0.072 + wet.film(humidity)[1] * 0.5e-9
-        alone, tip = sticking.flooded_lengths(C1, wet, humidity)
+        alone, tip = sticking.flooded_lengths(replace(C1, hamaker_constant=0.0), wet, humidity)
         assert_allclose(apparent_adhesion_energy(alone, C1.beam), energy, rtol=1e-9)
         assert_allclose(tip, arc_length(energy, C1.beam), rtol=1e-9)
         flat = replace(R1, hamaker_constant=0.0)
         assert sticking.flooded_lengths(flat, wet, humidity) < sticking.flooded_lengths(flat, WATER, humidity)
+
+
+@pytest.mark.parametrize("humidity", [0.0, 0.44, 0.92])
+def test_flat_patches_stick_no_harder_than_flats_in_contact(humidity):
+    air, bearing = Water(300.0, gaps=Gaps(HAMAKER_CONSTANT, "water", 100e-9)).at(humidity), np.array([[1.0, 0.0]])
+    most = force_curves(np.zeros((1, 2)), bearing, (0.0, -2e-11), 5e-11, humidity, air).flat
+    alone, _ = sticking.flooded_lengths(C1, air, humidity)
+    assert apparent_adhesion_energy(alone, C1.beam) >= (1 - 1e-9) * most[0]
 
 
 def test_the_bound_of_a_bridge_is_that_of_flooded_flats_in_contact_at_its_humidity():

@@ -237,7 +237,7 @@ def test_a_bridge_that_stretches_is_said_and_has_half_its_length_as_crack():
 
 
 BEYOND = {"device": {"kind": "cantilever", "pair": "c", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}}
-BEYOND["device"] |= {"young_modulus_GPa": 164, "strip_um": 1.5}
+BEYOND["device"] |= {"young_modulus_GPa": 164, "strip_um": 1.5, "hamaker_constant_zJ": 97.5}
 BEYOND |= {"materials": []}
 
 

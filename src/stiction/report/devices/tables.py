@@ -33,7 +33,7 @@ _FEW = {
     Basis.FLAT: "flat, the length that sticks on flat surfaces, as too few of the simulated devices stick for a line",
 }
 _BOUND = (
-    "Bound: for a cantilever, the sticking length of flat surfaces in saturated air, with water in all gaps. For a "
+    "Bound: for a cantilever, the sticking length of flat surfaces in contact, with water in all gaps. For a "
     "bridge: no surface, however smooth, can hold a bridge shorter than this at this humidity. For a tip the bound "
     "holds only on average. A single rough tip can stick harder than flat, flooded surfaces, so a fitted length may "
     "fall below it."
@@ -49,9 +49,9 @@ _CHART = (
     "law between them, with its largest error at beams outside its fit."
 )
 _CHART_BOUND = (
-    "Bound: for a cantilever, the sticking length of flat surfaces with water in all gaps. For a bridge: no surface, "
-    "however smooth, can hold a bridge shorter than this at this humidity. A single rough tip can hold a shorter beam "
-    "than flooded flats."
+    "Bound: for a cantilever, the sticking length of flats in contact, with water in all gaps. For a bridge: no "
+    "surface, however smooth, can hold a bridge shorter than this at this humidity. A single rough tip can hold a "
+    "shorter beam than flooded flats."
 )
 _DRY_CHART_BOUND = (
     "Bound: for a cantilever, the sticking length of flats in contact, as no water condenses. For a bridge: no "

@@ -58,7 +58,7 @@ class DesignedBeam:
     young_modulus: float  #: E [Pa]
     strip: float  #: length of a strip along the beam [m]
     residual_stress: float = 0.0  #: σ_R [Pa]
-    hamaker_constant: float = 0.0  #: of the two solids, for the bound of a bridge [J]; 0 without van der Waals forces
+    hamaker_constant: float = 0.0  #: of the two solids, for the bound of flats [J]; 0 without van der Waals forces
 
     @property
     def opening(self) -> "Opening":
@@ -244,6 +244,5 @@ def section_of_beam(plan: Any, name: str, contact: str | None = None) -> dict[st
     """Kind, pair and dimensions of a beam, length of its strips, and its solids in the air of a contact."""
     section = plan.config["devices"][name]
     modulus = chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.materials.beam_modulus(section["pair"])
-    constant = plan.air.hamaker_constant(contact or section["pair"])
-    solids = {} if plan.devices.kind(name).has_tip else {"hamaker_constant_zJ": constant}
+    solids = {"hamaker_constant_zJ": plan.air.hamaker_constant(contact or section["pair"])}
     return select(DesignedBeam, section | modulus | solids, strip_um=plan.devices.strip(name))

@@ -71,21 +71,15 @@ def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> tuple
 
 
 def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list[float]:
-    """Lengths that stick on flooded flats, one for each end state [m].
+    """Lengths that stick on flats in contact, with water in all gaps where it condenses, one for each end state [m].
 
-    A cantilever has the length that sticks in saturated air or, where no water condenses, that of flats in contact.
-    Adsorbed films add their work at the humidity, and a voltage its work between flats.
-    Only that of a beam is a bound: roughness that follows the slope of a tip lets it hold harder than a flat one. The
-    worst air of a bridge is not the wettest: it has the length below which its middle comes free of flats in contact at
-    this humidity, a bound for any surfaces.
+    Water, solids, adsorbed films and a voltage all do their work, see `stiction.contact.environment.flooded_law`. No
+    surfaces hold a shorter cantilever along its underside, or a shorter bridge by its middle. The length of a tip is no
+    bound: roughness that follows its slope lets it hold harder than a flat one.
     """
+    energy, largest = flooded_law(humidity, water.at(humidity), device.hamaker_constant)
     if not device.opening.has_tip:
-        law = flooded_law(humidity, water, device.hamaker_constant)
-        return [bridges.least_length(*law, device.beam)]
-    wet = water.film(humidity)[0]
-    energy = water.flooded_energy(humidity) if wet else float(water.gaps.through("dry").work(0.0))
-    if water.capacitor:
-        energy += water.capacitor.work(0.0)
+        return [bridges.least_length(energy, largest, device.beam)]
     return [float(arrest_length(energy, device.beam)), arcs.arc_length(energy, device.beam)]
 
 
