@@ -95,10 +95,10 @@ def copied(folder, target, stages=()):
 
 
 def datasets(folder):
-    """Content of every result file by name, without logs, provenance and temporary files."""
+    """Content of every result file by name, without logs, temporary files, and the record and index of the last run."""
     results = Path(folder) / "results"
     kinds = ("nc", "csv", "md", "html", "pdf", "png")
-    found = sorted(path for kind in kinds for path in results.rglob(f"*.{kind}"))
+    found = sorted(path for kind in kinds for path in results.rglob(f"*.{kind}") if path != results / "index.html")
     return {str(path.relative_to(results)): path.read_bytes() for path in found}
 
 
