@@ -134,11 +134,12 @@ def test_a_failed_check_has_a_status_of_its_own(smoke, tmp_path):
 def test_the_end_of_a_whole_run_names_verdict_warnings_and_what_to_open(smoke, tmp_path):
     status, printed = stiction(copied(smoke, tmp_path / "run"), "run", SMOKE)
     assert status == 0
-    nothing, verdict, warnings, first = printed
+    nothing, verdict, warnings, first, index = printed
     assert nothing == "Nothing to do: all results are up to date."
     assert verdict.startswith("All ")
     assert "in results/warnings.md" in warnings
     assert first == "Open first: results/figures/overview.png and results/tables/table_3.md."
+    assert index == "All results: results/index.html; stiction show opens it."
 
 
 @pytest.mark.slow

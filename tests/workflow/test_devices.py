@@ -63,7 +63,7 @@ def test_every_device_has_a_page_and_every_table_and_figure_is_there(run):
     assert {path.stem for path in (results / "devices").glob("*.html")} == {"C1", "R1", "S1"}
     tables = {"safe_lengths", "chart", "stoppers", "budget", "life"}
     assert {path.stem for path in (results / "tables").glob("*.html")} == tables
-    figures = {"risk", "chart", "stoppers", *(f"budget_{device}" for device in ("C1", "R1", "S1"))}
+    figures = {"risk", "chart", "stoppers", "life", *(f"budget_{device}" for device in ("C1", "R1", "S1"))}
     assert {path.stem for path in (results / "figures").glob("*.png")} == figures
 
 
