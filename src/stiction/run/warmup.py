@@ -16,7 +16,7 @@ from stiction.beam.middle import shortest_held
 from stiction.beam.release import release
 from stiction.beam.tension import end_stiffness
 from stiction.chaos import model as chaos
-from stiction.contact import forcelaw
+from stiction.contact import forcelaw, separation
 from stiction.contact.asperity import asperity, reduced_modulus
 from stiction.contact.pair import SurfacePair
 from stiction.contact.tilted import Tilt, TiltedPair
@@ -43,6 +43,7 @@ def contact_kernels() -> None:
     stored = [values[None].astype(np.float32) for values in (solid, bearing)]
     distance, curve = forcelaw.humid_curves(*stored, starts, 1e-10, (1e-9, 1e6))
     forcelaw.parametrise(distance, curve, 1)
+    separation.keep_volume(np.linspace(1.0, -1.0, distance.size), distance, stored[1][0], starts[1], (1e-9, 1e6))
     tip = TiltedPair(surface, surface, 1e-10, asperity=model, tilt=Tilt((0.01, 0.1), 1e-8))
     starts = tip.distances.solid[0], tip.distances.bearing[0]
     stored = [values[None].astype(np.float32) for values in tip.contact(tip.draw(rng, rng))]
