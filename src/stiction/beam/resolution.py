@@ -27,7 +27,7 @@ def resolved(beam: Beam, points: int, laws: np.ndarray) -> Beam:
 
     Every element contains a whole number of the ``points`` along the beam, each with a force law; a sample of these has
     rows [f_max, d_max, a_left, a_right] (n, 4), SI. Where strips are longer than `longest` allows, but not by more
-    than the factor `LONGER`, each is an element.
+    than the factor `stiction.beam.foundation.LONGER`, each is an element.
 
     Raises
     ------

@@ -13,7 +13,7 @@ all attraction. The beam has no slope at the clamp and at the crack. A crack is 
 for any fraction of the devices, because all of them gain the same. The zone of the field is :math:`\sqrt{D / 3 h}` of
 the length, 2 to 4 %. Cracks in the field are longer than the law by up to half of this, so that the law is safe.
 
-Γ_V of rough surfaces is the gain of the mean energy of their samples, a number of `stiction.stages.devices.at_voltage`.
+Γ_V of rough surfaces is the gain of the mean energy of their samples, a number of stage ``at_voltage``.
 Flats in contact need most, the closed form
 
 .. math:: \Gamma_V = \frac{\epsilon_0 V^2}{2} \left( \frac{1}{D} - \frac{1}{D + h} \right) .
