@@ -424,8 +424,8 @@ def budget(table):
 def drawn_lengths(safe, budget):
     """Lengths of C1, a beam of pair b, with its tip [µm], for 1 in 1000 stuck beams.
 
-    ``saturated_C1``: held on flats by water alone; ``least_C1``: the least over its humidities; ``drawn_C1``: its logarithm less
-    twice ``largest_total_C1``, the largest total of the budgets of the tip [%].
+    ``saturated_C1``: held on flats by water alone; ``least_C1``: the least over its humidities; ``drawn_C1``: its
+    logarithm less twice ``largest_total_C1``, the largest total of the budgets of the tip [%].
     """
     beam = cantilever(in_si(Cantilevers, sections(Plan(paper()), "b")), "b")
     saturated = TO_UM * arc_length(flooded_energy(paper()["water"]["temperature_K"]), beam)
