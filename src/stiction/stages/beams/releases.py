@@ -52,8 +52,12 @@ def without_scatter(settings: OnStrips, samples: int) -> Settings:
 
 def released(model: ChaosModel, case: Case, settings: Settings, threads: int = 1, shapes: int = 0) -> dict:
     """Release beams of a case on force laws drawn from a chaos model. Arrays of `stiction.beam.montecarlo.columns`."""
-    address = partial(stream, settings.seed, "beams", case)
-    return released_on(partial(draw_laws, model), case, settings, address, threads, shapes)
+    return released_on(partial(draw_laws, model), case, settings, _streams(settings, case), threads, shapes)
+
+
+def _streams(settings, case):
+    """Streams of the beams of a case by number, and of their mesh."""
+    return partial(stream, settings.seed, "beams", case)
 
 
 def released_on(
@@ -84,7 +88,7 @@ def _resolved(beam, strips, laws, case):
 
 def longest_strip(model: ChaosModel, case: Case, settings: OnStrips) -> float:
     """Longest strip for the cracks of a case, on the laws of the mesh of `released` [m]."""
-    laws = draw_laws(model, _LAWS, stream(settings.seed, "beams", case, "mesh"))
+    laws = draw_laws(model, _LAWS, _streams(settings, case)("mesh"))
     return longest(cantilever(settings, case.pair), laws)[0]
 
 
