@@ -387,9 +387,11 @@ def _bent_to_dimples(of):
     at, height = of.dimples.at, of.dimples.height
 
     def left(beam):
+        """Part of the gap left at the deepest point beside the row [-]."""
         return 1 - row(beam, of.clamps, at).deepest * (beam.gap - height) / beam.gap
 
     def pull(beam):
+        """Force of the beam at its row, bent to the dimples' height [N]."""
         return row(beam, of.clamps, at).stiffness * (beam.gap - height)
 
     (rest, rest_error), (force, error) = of.number(left, of.length), of.number(pull, of.length)
