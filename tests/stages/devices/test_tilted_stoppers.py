@@ -22,7 +22,9 @@ from stiction.report.devices import life as report
 from stiction.run import storage
 from stiction.stages.contact import contact, curves
 from stiction.stages.contact.pairs import Settings
-from stiction.stages.devices import life, stoppers
+from stiction.stages.devices import stoppers
+from stiction.stages.life.answers import layout
+from stiction.stages.life.table import stopper_answers
 
 SECTION = {"kind": "stopper", "pair": "b", "contact_um": [1.5, 6], "restoring_force_uN": 18, "humidities": [0.67, 0.88]}
 DEGREES = [0, 0.0005, 0.02, 0.1, 0.5]
@@ -136,7 +138,7 @@ def tilted_dataset(factors=(1.0, 0.3), degrees=(0.05, 0.1)):
 
 def test_life_has_a_band_between_the_tilts():
     tilted, plain = tilted_dataset(), stopper_dataset()
-    found = {one.name: one for one in life.stopper_answers(plain, STOPPER, tilted=tilted)}
+    found = {one.name: one for one in stopper_answers(plain, STOPPER, tilted=tilted)}
     force = plain.pull_off.mean("sample").max()
     assert_allclose((found["force_tilted"].low, found["force_tilted"].high), (0.3 * force, force), rtol=1e-12)
     assert "tilted by 0.05 to 0.1°" in found["force_tilted"].what
@@ -149,12 +151,12 @@ def test_life_has_a_band_between_the_tilts():
     assert_allclose(needed.high, found["restoring_force"].high, rtol=1e-12)
     assert_allclose((found["wedge"].low, found["wedge"].high), (3e-4, 5e-4), rtol=1e-12)
     assert set(found) - {name for name in found if "tilted" in name or name == "wedge"} == {
-        one.name for one in life.stopper_answers(plain, STOPPER)
+        one.name for one in stopper_answers(plain, STOPPER)
     }
 
 
 def test_table_and_sentence_state_the_tilt(tmp_path):
-    dataset = life.layout(life.stopper_answers(stopper_dataset(), STOPPER, tilted=tilted_dataset()), STOPPER)
+    dataset = layout(stopper_answers(stopper_dataset(), STOPPER, tilted=tilted_dataset()), STOPPER)
     storage.save(dataset, tmp_path / "S1.nc", "life", {}, [])
     frame = report.table({"S1": storage.load(tmp_path / "S1.nc", "life")}).frame.set_index("answer")
     assert frame.loc["wedge", "unit"] == "°"
@@ -162,5 +164,5 @@ def test_table_and_sentence_state_the_tilt(tmp_path):
     (said,) = [sentence for sentence in report.sentences(dataset) if "tilt" in sentence]
     assert said.startswith("Its mean pull-off force tilted by 0.05 to 0.1°, at RH 0.44, is ")
     assert said.endswith("Beyond a tilt of 0.0172 to 0.0286°, a longer side of its area hardly holds more.")
-    one = life.layout(life.stopper_answers(stopper_dataset(), STOPPER, tilted=tilted_dataset((0.3,), (0.1,))), STOPPER)
+    one = layout(stopper_answers(stopper_dataset(), STOPPER, tilted=tilted_dataset((0.3,), (0.1,))), STOPPER)
     assert any("tilted by 0.1°, at RH 0.44, is " in sentence for sentence in report.sentences(one))

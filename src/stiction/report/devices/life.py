@@ -23,7 +23,7 @@ from stiction.report.style import (
     styled,
 )
 from stiction.report.table import Table, table_stage
-from stiction.stages.devices.life import (
+from stiction.stages.life.answers import (
     AFTER,
     AT_VOLTAGE,
     BESIDE,
