@@ -114,7 +114,7 @@ def test_stoppers_of_one_area_share_the_contact_and_no_tilt_needs_none():
     found = plan(S1={"tilt_deg": [0, 0.1]}, S2={"tilt_deg": [0.05]}, S3={"tilt_deg": [0]}, S4={})
     name = "devices/contact/tilted/b_1500x6000"
     tilt = job_settings(found, name)["tilt"]
-    assert_allclose(tilt["slopes"], np.tan(np.radians([0.05, 0.1])), rtol=1e-12)
+    assert_allclose(tilt["slopes"], np.tan(np.radians([0.025, 0.05, 0.075, 0.1])), rtol=1e-12)
     film, rise = 1e9 * Water(300.0).film(0.88)[0], tilt["slopes"][-1] * 1500
     assert tilt["reach_nm"] > film + rise
     graph = Graph(found)
@@ -153,6 +153,33 @@ def test_life_has_a_band_between_the_tilts():
     assert set(found) - {name for name in found if "tilted" in name or name == "wedge"} == {
         one.name for one in stopper_answers(plain, STOPPER)
     }
+
+
+def test_a_range_has_the_least_and_the_most_of_its_tilts_not_those_at_its_ends():
+    tilted = tilted_dataset((1.0, 0.2, 1.4, 0.9, 0.5), (0.0, 0.025, 0.05, 0.075, 0.1))
+    found = {one.name: one for one in stopper_answers(stopper_dataset(), STOPPER, tilted=tilted)}
+    assert_allclose(found["force_tilted"].low / found["force_tilted"].high, 0.2 / 1.4, rtol=1e-12)
+    assert_allclose(found["restoring_force_tilted"].high, 1.4 * found["restoring_force"].high, rtol=1e-12)
+    assert "tilted by 0 to 0.1°" in found["force_tilted"].what
+    assert found["force_tilted"].form.startswith("least and most of 5 tilts; ")
+    for humidity in (0.44, 0.67):
+        stuck, band = tilted.stuck.sel(humidity=humidity), found[f"stuck_tilted_{humidity:g}"]
+        assert (band.low, band.high) == (stuck.sel(bound="low")[1], stuck.sel(bound="high")[2])
+
+
+def test_the_tilts_of_a_range_leave_little_between_them():
+    """On rough patches, a finer range exceeds the band of the tilts of the plan by its standard error at most."""
+    slopes, tilts = plan(S1={"tilt_deg": [0, 0.1]}).devices.slopes("S1"), np.linspace(0, 0.1, 9)
+    assert_allclose(np.degrees(np.arctan(slopes)), np.linspace(0, 0.1, 5), rtol=1e-12)
+    settings = job_settings(plan(S1={"tilt_deg": [0, 0.1]}), "devices/contact/tilted/b_1500x6000")
+    fine = settings | {"tilt": settings["tilt"] | {"slopes": [*map(float, np.tan(np.radians(tilts[1:])))]}}
+    contacts = contact.compute(small.surfaces(), "b", "NG", in_si(Settings, fine))
+    shared = in_si(stoppers.Settings, job_settings(plan(S1={}), "devices/stoppers/S1"))
+    every = stoppers.Tilted(**vars(shared), slopes=tuple(np.tan(np.radians(tilts))))
+    found = stoppers.compute_tilted({"contact": small.contact_of_pair(), "tilted": contacts}, every)
+    chosen, error = found["mean"][::2], found.mean_error.max("tilt")
+    assert np.all(found["mean"] <= chosen.max("tilt") + error)
+    assert np.all(found["mean"] >= chosen.min("tilt") - error)
 
 
 def test_table_and_sentence_state_the_tilt(tmp_path):

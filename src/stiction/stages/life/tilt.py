@@ -13,11 +13,10 @@ _SOURCE = "stage tilted_stoppers"
 
 def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
     """Fraction of stoppers stuck at their tilts, the force on them, and the tilt at the transition to a wedge."""
-    ends = dict.fromkeys(f"{from_si(float(tilt), 'deg'):.3g}" for tilt in tilted.tilt)
-    by, form = (
-        f"tilted by {' to '.join(ends)}°",
-        "random patches; w e / s on smooth surfaces beyond the tilt of a wedge",
-    )
+    tilts = [f"{from_si(float(tilt), 'deg'):.3g}" for tilt in tilted.tilt.values]
+    by = f"tilted by {' to '.join(dict.fromkeys((tilts[0], tilts[-1])))}°"
+    each = f"least and most of {len(tilts)} tilts; " if len(tilts) > 1 else ""
+    form = f"{each}random patches; w e / s on smooth surfaces beyond the tilt of a wedge"
     answers = [
         Answer(
             f"stuck_tilted_{float(humidity):g}",
@@ -25,7 +24,7 @@ def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
             f"probability of sticking {by}, {in_air(float(humidity))}",
             float(tilted.stuck.sel(humidity=humidity, bound="low").min()),
             float(tilted.stuck.sel(humidity=humidity, bound="high").max()),
-            *(np.nan, "1", "fraction of random patches, 95 %", _SOURCE),
+            *(np.nan, "1", f"{each}fraction of random patches, 95 %", _SOURCE),
         )
         for humidity in tilted.humidity.values
     ]
@@ -45,6 +44,7 @@ def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
             float(safe.sel(part="safe").max()),
             float(safe.sel(part="error")[low]),
         )
-        what, form = f"restoring force that frees all but {one_in(min(bounded))}, {by}", "quantile of the force, 95 %"
+        what = f"restoring force that frees all but {one_in(min(bounded))}, {by}"
+        form = f"{each}quantile of the force, 95 %"
         answers.append(Answer("restoring_force_tilted", FREE, what, *numbers, "N", form, _SOURCE))
     return answers
