@@ -308,6 +308,7 @@ def test_a_stopper_at_a_voltage_is_held_by_more_on_flats_than_on_rough_patches()
     flat, dataset = answers(of)["at_voltage"].high, stopper_dataset()
     gained = 0.3 * flat * (1 + 0.1 * np.random.default_rng(4).standard_normal(dataset.sizes["sample"]))
     biased = dataset.assign(pull_off=dataset.pull_off + gained, stuck=0 * dataset.stuck + 0.6)
+    biased = biased.assign(freeing_potential=0 * dataset.pull_off)
     found = answers(of, biased=biased)
     assert_allclose(found["at_voltage"].low, gained.mean(), rtol=1e-12)
     assert found["at_voltage"].high == flat

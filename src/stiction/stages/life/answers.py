@@ -12,7 +12,7 @@ from stiction.stages.life.inputs import Stated
 QUESTIONS = TOUCH, STICK, HOLD, FREE = "touch", "stick", "hold", "free"
 #: Names of answers that sentences are about.
 VOLTAGE, SHOCK, COLLAPSE, RELEASED, AFTER = "voltage", "shock", "collapse", "released", "after"
-AT_VOLTAGE, FIELD = "at_voltage", "field"
+AT_VOLTAGE, FIELD, FREEING = "at_voltage", "field", "freeing_voltage"
 FAST, RESTORING = "fast", "restoring_force"
 TILTED, WEDGE = "force_tilted", "wedge"
 ON_DIMPLES, BESIDE, DIMPLES, PULLED = "stuck_dimples", "beside_dimples", "dimples", "dimples_force"

@@ -7,10 +7,11 @@ import xarray as xr
 
 from stiction.config.cases import in_air
 from stiction.config.units import from_si
+from stiction.devices.risk import Basis, one_in, sampled_bound
 from stiction.estimates import mean_with_error
-from stiction.life import holding
+from stiction.life import freeing, holding
 from stiction.stages.devices.safe_lengths import chosen_share
-from stiction.stages.life.answers import AT_VOLTAGE, FIELD, HOLD, Answer
+from stiction.stages.life.answers import AT_VOLTAGE, FIELD, FREE, FREEING, HOLD, Answer
 from stiction.stages.life.inputs import OfBeam, OfStopper
 from stiction.stages.life.lengths import least_safe
 
@@ -71,7 +72,28 @@ def stopper_at_voltage(stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | 
         sticking = [Answer("stuck_at_voltage", HOLD, what, *numbers, "1", "as without voltage", _SOURCE)]
     what, form = f"force that {of.potential:g} V add", "mean of rough patches (at least); ε₀ V² A / (2 D²) (at most)"
     added = Answer(AT_VOLTAGE, HOLD, what, min(low, flat), flat, error, "N", form, _SOURCE)
-    return [added, *sticking, _field(of)]
+    return [added, *sticking, _field(of), *_freed(stopper, of, biased)]
+
+
+def _freed(stopper, of, biased):
+    """Voltage below which the spring frees all but a small fraction: of flats, and of rough patches if there are any.
+
+    An offset adds to the voltage, so that the voltage is lower by as much.
+    """
+    bounded = [float(share) for share in stopper.share[stopper.basis == Basis.SAMPLED]]
+    if not bounded:
+        return []
+    share, area = min(bounded), of.contact[0] * of.contact[1]
+    at = stopper.safe_force.sel(share=share)
+    held, error = map(float, at.isel(humidity=int(at.sel(part="safe").argmax("humidity"))).sel(part=["safe", "error"]))
+    low, high = freeing.freeing_potential_of_flats(of.restoring_force - held, of.capacitor, area), np.nan
+    if biased is not None:
+        high = min(sampled_bound(row, share)[0] for row in biased.freeing_potential.values)
+    spread = error / (2 * low * area * of.capacitor.per_volt.largest_pressure) if low else np.nan
+    numbers = *(max(potential - abs(of.offset), 0.0) for potential in (low, high)), spread
+    what = f"voltage below which its spring frees all but {one_in(share)}"
+    form = "V² = (F - F_hold) 2 D² / (ε₀ A), flats (at least); V² = min (p - f) / g of rough patches (at most)"
+    return [Answer(FREEING, FREE, what, *numbers, "V", form, _SOURCE)]
 
 
 def _field(of):
