@@ -16,6 +16,7 @@ from stiction.contact.meniscus import flooded_energy
 from stiction.devices.arcs import arc_length
 from stiction.devices.limits import FILMS
 from stiction.plan.plan import Plan
+from stiction.report.beams import prediction
 from stiction.report.checks import MESH_OFF_OF_PAPER, RESOLVED
 from stiction.report.devices.life import significant
 from stiction.report.format import MISSING, TO_MJ, TO_UM, number, with_error
@@ -31,6 +32,7 @@ NEARLY_GAUSSIAN = ((-0.1, 3.05), (0.05, 3.02), (-0.3, 3.5), (-0.5, 4.0))
 def numbers(tables):
     """All numbers, from a dict of the name of each table to its frame."""
     texts = crack_lengths(tables["table_3"]) | deviations(tables["table_3"]) | energies(tables["table_3"])
+    texts |= intervals(tables["table_3"])
     texts |= surfaces(tables["table_1"]) | identification(tables["table_2"]) | fits(tables["fit_quality"])
     texts |= (
         variants(tables["variants"])
@@ -212,6 +214,30 @@ def deviations(table_3):
         off = rows.deviation_percent
         texts[f"published_{pair}"] = f"{off.min():+.0f} to {off.max():+.0f}"
         texts[f"measured_rms_{pair}"] = f"{np.sqrt(np.mean(rows.experiment_deviation_percent**2)):.1f}"
+    return texts
+
+
+def intervals(table_3):
+    """``contained_68``: measured lengths in their intervals, ``width_68``: median half-width [%], ``…_a`` of a pair.
+
+    ``naive_68``: the largest root mean square deviation of a pair, for all; ``naive_contained_68``: lengths in it. For
+    95 %, these have twice the width. ``measured_lengths``: number of all.
+    """
+    rows = table_3[table_3.model == "NG"]
+    off = np.log(rows.experiment_um / rows.crack_length_um).abs()
+    naive = rows.experiment_deviation_percent.pow(2).groupby(rows.pair).mean().max() ** 0.5 / 100
+    texts = {"measured_lengths": str(len(rows))}
+    for sizes, coverage in enumerate(prediction.COVERAGES, 1):
+        name = f"{100 * coverage:.0f}"
+        low, high = (rows[end] for end in prediction.ENDS[coverage])
+        widths = 100 * np.log(high / low) / 2
+        texts[f"contained_{name}"] = str(prediction.contained(table_3, coverage)[0])
+        texts |= {
+            f"naive_{name}": f"{100 * sizes * naive:.0f}",
+            f"naive_contained_{name}": str((off < sizes * naive).sum()),
+        }
+        texts |= {f"width_{name}": f"{widths.median():.0f}"}
+        texts |= {f"width_{name}_{pair}": f"{of.median():.0f}" for pair, of in widths.groupby(rows.pair)}
     return texts
 
 

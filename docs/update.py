@@ -49,6 +49,7 @@ TABLES = ("table_1", "table_2", "table_3", "fit_quality", "sensitivity", "varian
 #: Pictures that pages show, by their width there [pixels].
 PICTURES = {
     "overview": 1400,
+    "intervals": 1100,
     "figure_05": 700,
     "figure_07": 900,
     "figure_10": 1100,
