@@ -2,7 +2,7 @@
 
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
    and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``,
-   ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction``, ``make print`` and ``stiction devices
+   ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction``, ``make print``, ``stiction devices
    examples/NAME.yaml --directory runs/NAME`` with the names roughness and test_beams in folders of ``runs`` beside it.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
 3. The drawings are drawn, and the pages of ``docs`` and ``config/README.md`` are generated from ``docs/templates``,

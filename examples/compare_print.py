@@ -1,6 +1,6 @@
-"""Table III of the base case and under the reading of ``print.yaml``, beside print: ``python compare_print.py BASE PRINT``.
+"""Table III of the base case and under the reading of ``print.yaml``, beside print.
 
-BASE and PRINT are folders with ``results``. Writes ``print.csv``, all cases, and ``print.md``, deviations by pair, to
+Call: ``python compare_print.py BASE PRINT``. Both are folders with ``results``. Writes ``print.csv``, all cases, and ``print.md``, deviations by pair, to
 PRINT.
 """
 
@@ -54,7 +54,7 @@ def by_pair(cases):
             }
         rows.append(row)
     caption = (
-        "Table III of the base case and under the reading nearest to print (no attraction of the solids, grid of 5 nm): "
+        "Table III of the base case and under the reading nearest to print (no attraction of solids, grid of 5 nm): "
         "root mean square and mean over the humidities of the deviation of the mean crack length from the published "
         "one, geometric mean of the ratio of its standard deviation to the published one, and rms deviation from the "
         "measured lengths."
