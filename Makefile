@@ -12,6 +12,8 @@
 #   make sealed     devices in dry nitrogen, bare and coated (3 minutes on two cores), in runs/sealed/results/
 #   make attraction     Table III with attraction across gaps (3 minutes on two cores), in runs/attraction/results/
 #   make asperities     Table III with other readings of an asperity, after make paper (6 minutes on two cores)
+#   make print      the paper under the reading nearest to its printed Table III, beside the base case, after make paper
+#                   (8 minutes on two cores), in runs/print/
 #   make pressing       how much more a pair sticks after its surfaces were pressed (2 minutes on two cores)
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
@@ -47,7 +49,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-beams measured-beams devices model-error asperities pressing sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-beams measured-beams devices model-error asperities pressing print sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -85,6 +87,11 @@ model-error: $(VENV)/ready
 
 asperities pressing: $(VENV)/ready
 	$(STICTION) $(if $(CONFIG),run $(CONFIG),paper) -- $@ $(ARGS)
+
+# All tables and figures under other readings of the paper, then Table III of both.
+print: $(VENV)/ready
+	$(STICTION) run examples/print.yaml --directory runs/print -- tables figures $(ARGS)
+	$(BIN)/python examples/compare_print.py . runs/print
 
 sealed: $(VENV)/ready
 	$(STICTION) devices examples/sealed.yaml --directory runs/sealed -- $(ARGS)

@@ -31,6 +31,7 @@ ORDER = [
         "stages.laws",
         "stages.beams",
         "stages.devices",
+        "stages.life",
         "stages.roughness",
         "stages.test_beams",
     ),

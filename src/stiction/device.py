@@ -158,7 +158,7 @@ class Device:
     def life(self) -> xr.Dataset:
         """Life of the device: causes of contact, adhesion then, and ways to free it.
 
-        Dataset of `stiction.stages.devices.life`, one answer for every name along its dimension.
+        Dataset of `stiction.stages.life.table`, one answer for every name along its dimension.
         """
         return self.results[f"devices/life/{self.name}"]
 

@@ -163,7 +163,7 @@ LAYOUTS |= {
     "stages/devices/cracks": {"cracks", "safe_lengths"},
     "stages/devices/safe_lengths": {"safe_lengths"},
 }
-LAYOUTS |= {"stages/devices/life": {"life"}, "stages/devices/separation": {"separation"}}
+LAYOUTS |= {"stages/life/answers": {"life"}, "stages/life/separation": {"separation"}}
 
 
 def behind(rules):

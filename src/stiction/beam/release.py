@@ -68,13 +68,6 @@ def touching(laws: np.ndarray) -> float:
     return max(np.mean(d_max - np.log(2) / a_left), np.max(d_max - PRESSED / a_left))
 
 
-def _release_from(beam, laws, crack):
-    """Equilibrium of a beam after it first adheres to the ground beyond a crack of this length [m]."""
-    held = int(np.searchsorted(beam.nodes, crack, side="right")) - 1
-    start = s_shape(beam, beam.gap - touching(laws), beam.nodes[held])
-    return equilibrate(beam, laws, start, held=held)
-
-
 def release(beam: Beam, laws: np.ndarray, start_crack: float) -> Equilibrium:
     """Release a beam from a short crack. The crack opens up to the first place of arrest (Sec. III-C).
 
@@ -97,7 +90,9 @@ def release(beam: Beam, laws: np.ndarray, start_crack: float) -> Equilibrium:
     # DEPARTS: no load presses the beam down. Beyond the first crack it adheres to the ground, in equilibrium, as a load
     # would leave it; then the crack creeps, so that it cannot pass an arrest.
     while not start_crack < 2 * beam.element_length:
-        end = _release_from(beam, laws, start_crack)
+        held = int(np.searchsorted(beam.nodes, start_crack, side="right")) - 1
+        start = s_shape(beam, beam.gap - touching(laws), beam.nodes[held])
+        end = equilibrate(beam, laws, start, held=held)
         if crack_length(beam, laws, end.deflection) > OPENS * start_crack:
             return end
         start_crack /= 2

@@ -258,20 +258,24 @@ def _figures(arguments):
     return _run(arguments, "figures")
 
 
+def _results(find, folder, purpose="", note=""):
+    """Find something in a folder of results, and refuse a folder without results or with damaged ones."""
+    try:
+        found = find(folder)
+    except ValueError as damaged:
+        raise launch.RefusedError(str(damaged)) from None
+    if not found:
+        run = "run stiction paper or stiction run FILE first"
+        raise launch.RefusedError(f"there are no results{purpose} in {folder}: {run}{note}")
+    return found
+
+
 def _report(arguments):
     """Write the report of finished results."""
     from stiction.command import front_page  # imports the libraries for numbers
 
     results = Path(arguments.directory) / "results"
-    try:
-        finished = front_page.is_finished(results)
-    except ValueError as damaged:
-        raise launch.RefusedError(str(damaged)) from None
-    if not finished:
-        raise launch.RefusedError(
-            f"there are no results for a report in {results}: run stiction paper or stiction run FILE first "
-            "(stiction devices is not enough)"
-        )
+    _results(front_page.is_finished, results, " for a report", " (stiction devices is not enough)")
     page = Path(arguments.directory) / front_page.FRONT
     page.parent.mkdir(exist_ok=True)
     page.write_text(front_page.front_page(results), encoding="utf-8")
@@ -290,12 +294,7 @@ def _show(arguments):
     from stiction.command import index  # imports the libraries for numbers
 
     results = Path(arguments.directory) / "results"
-    try:
-        page = index.write_for_last_run(results)
-    except ValueError as damaged:
-        raise launch.RefusedError(str(damaged)) from None
-    if page is None:
-        raise launch.RefusedError(f"there are no results in {results}: run stiction paper or stiction run FILE first")
+    page = _results(index.write_for_last_run, results)
     say(str(page))
     if sys.platform != "linux" or os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"):
         webbrowser.open(page.resolve().as_uri())

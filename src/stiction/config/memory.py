@@ -1,6 +1,6 @@
 """Memory of fields and tips drawn by a job, and its limits."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from stiction.config.kinds import kind_of
 from stiction.config.units import NM_PER_UM, from_si
@@ -31,14 +31,21 @@ def field_memory(length_um: float, width_um: float, spacing_nm: float) -> float:
     return _BASE + from_si(_PER_POINT * points, "MB")
 
 
-def patch_of(device: dict, sampling: dict) -> tuple[float, float]:
-    """Sides of the patch of contact of a device [µm], from its section."""
-    return kind_of(device).sides(device, sampling["strip_length_um"])
+def fields_of(
+    device: dict, sampling: dict, others_nm: Sequence[float] = ()
+) -> Iterator[tuple[str, tuple[float, float], float]]:
+    """Yield the fields that a device draws: the key behind each, its sides [µm], and the distance of its points [nm].
 
-
-def spacings_of(device: dict, spacing_nm: float, others_nm: Sequence[float]) -> tuple[float, ...]:
-    """Distances of points of the patch of a device [nm]. With an uncertainty, those of variants are included."""
-    return (spacing_nm, *others_nm) if "uncertainty" in device else (spacing_nm,)
+    With an uncertainty, the patch is drawn at the distances of variants as well.
+    """
+    spacing, margin = sampling["spacing_nm"], sampling["margin_um"]
+    length, width = kind_of(device).sides(device, sampling["strip_length_um"])
+    key = "contact_um" if "contact_um" in device else "width_um"
+    for at in (spacing, *(others_nm if "uncertainty" in device else ())):
+        yield key, (length + margin, width + margin), at
+    if "dimples" in device:
+        length, width = device["dimples"]["contact_um"]
+        yield "dimples.contact_um", (length + margin, width + margin), spacing
 
 
 def tip_memory(slopes: int) -> float:

@@ -182,21 +182,16 @@ def uncertain_water_of_devices_is_a_liquid(config):
 
 @relation
 def devices_fit_into_memory(config):
-    """Require the fields around a patch of surface to fit into the memory of a job."""
-    sampling, others = config["sampling"], "studies.variants.spacing_nm"
-    for key in ("contact_um", "width_um"):
-        for name, _ in config.entries("devices", key):
-            device, margin = config["devices"][name], sampling["margin_um"]
-            if not set(kind_of(device).keys) <= set(device):
-                continue
-            sides = [side + margin for side in memory.patch_of(device, sampling)]
-            spacings = memory.spacings_of(device, sampling["spacing_nm"], config[others])
-            if refusal := next(filter(None, (field_too_large(*sides, at) for at in spacings)), None):
-                yield f"devices.{name}.{key}", refusal, others
-    for name, sides in config.entries("devices", "dimples.contact_um"):
-        fields = (side + sampling["margin_um"] for side in sides)
-        if refusal := field_too_large(*fields, sampling["spacing_nm"]):
-            yield f"devices.{name}.dimples.contact_um", refusal
+    """Require the fields around all patches of surface to fit into the memory of a job."""
+    others = "studies.variants.spacing_nm"
+    for name, device in config["devices"].items():
+        if set(kind_of(device).keys) <= set(device):
+            refused = {}
+            for key, sides, spacing in memory.fields_of(device, config["sampling"], config[others]):
+                if refusal := field_too_large(*sides, spacing):
+                    refused.setdefault(key, refusal)
+            for key, refusal in refused.items():
+                yield f"devices.{name}.{key}", refusal, *([] if "dimples" in key else [others])
 
 
 @relation

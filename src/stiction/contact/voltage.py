@@ -50,6 +50,11 @@ class Capacitor:
         return abs(self.voltage) + abs(self.offset)
 
     @property
+    def per_volt(self) -> "Capacitor":
+        """The same at 1 V. Its pressures and works are those per V²."""
+        return Capacitor(self.dielectric, 1.0)
+
+    @property
     def field(self) -> float:
         """Field in the dielectric between surfaces in contact, V / t [V m⁻¹]."""
         return self.potential / self.dielectric.thickness

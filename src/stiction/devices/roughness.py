@@ -5,7 +5,6 @@ Lengths and forces are known at a few roughnesses. The margin is :math:`\ln (l /
 that is monotone where they are. It may cross zero several times: a stopper may hold most at a roughness inside a range.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,7 +76,7 @@ def sufficient(axis: np.ndarray, margin: np.ndarray) -> list[tuple[float, float]
         monotone, known = PchipInterpolator(axis[points], margin[points]), axis[points]
         ends = np.array([known[0], *_zeros(monotone), known[-1]])
         enough = monotone((ends[:-1] + ends[1:]) / 2) >= 0
-        ranges += _joined(ends, enough)
+        ranges += [(float(low), float(high)) for low, high, holds in zip(ends, ends[1:], enough, strict=False) if holds]
     return ranges
 
 
@@ -101,8 +100,3 @@ def _zeros(curve: PchipInterpolator) -> list[float]:
     ends = np.array([curve.x[0], *inside, curve.x[-1]])
     signs = np.sign(curve((ends[:-1] + ends[1:]) / 2))
     return [float(place) for place, before, after in zip(inside, signs, signs[1:], strict=False) if before != after]
-
-
-def _joined(ends: Sequence[float], enough: Sequence[bool]) -> list[tuple[float, float]]:
-    """Ranges between neighbouring ends (n + 1) under a condition (n)."""
-    return [(float(low), float(high)) for low, high, holds in zip(ends, ends[1:], enough, strict=False) if holds]

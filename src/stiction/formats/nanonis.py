@@ -23,7 +23,8 @@ def channels(content: bytes) -> list[Channel]:
         If its data are not those that its tags describe.
     """
     end = content.index(_END)
-    tags, data = _tags(content[:end].decode("latin-1")), content[content.index(_BEFORE_DATA, end) + 2 :]
+    parts = re.split(r"^:([^:\n]+):\r?$", content[:end].decode("latin-1"), flags=re.MULTILINE)
+    tags, data = dict(zip(parts[1::2], parts[2::2], strict=True)), content[content.index(_BEFORE_DATA, end) + 2 :]
     if tags["SCANIT_TYPE"].split() != ["FLOAT", "MSBFIRST"]:
         raise ValueError(f"its numbers are {' '.join(tags['SCANIT_TYPE'].split())}, not FLOAT MSBFIRST")
     points, sides = tuple(map(int, tags["SCAN_PIXELS"].split())), tuple(map(float, tags["SCAN_RANGE"].split()))
@@ -34,12 +35,6 @@ def channels(content: bytes) -> list[Channel]:
         Channel(f"{name} ({direction})", unit, points, sides, lambda k=k: _oriented(values[k], upwards))
         for k, (name, unit, direction) in enumerate(found)
     )
-
-
-def _tags(text):
-    """Text below each tag."""
-    parts = re.split(r"^:([^:\n]+):\r?$", text, flags=re.MULTILINE)
-    return dict(zip(parts[1::2], parts[2::2], strict=True))
 
 
 def _images(table) -> Iterator[tuple[str, str, str]]:

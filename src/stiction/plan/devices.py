@@ -28,6 +28,9 @@ from stiction.plan.stage import chosen
 OF_TIPS = 2
 #: Gaps across which solids attract a tilted stopper at most [nm]. Retarded attraction has 0.05 % of its work at 5 nm.
 FAR = 100.0
+#: Tilts of a range at which a stopper is computed, its ends among them. ASSUME: none between them holds much more or
+#: less. The force on smooth surfaces falls with the tilt, so that the ends bound it.
+TILTS = 5
 #: Quantities of a surface by numbers, in the order of budgets.
 ALL_QUANTITIES = MOMENT_QUANTITIES + SPECTRUM_QUANTITIES
 
@@ -138,8 +141,10 @@ class DevicePlan:
     # Tilted stoppers
 
     def slopes(self, device: str) -> list[float]:
-        """Slopes of a stopper at its tilts, increasing [-], none without a tilt."""
-        return [math.tan(to_si(tilt, "deg")) for tilt in self.sections[device].get("tilt_deg", ())]
+        """Slopes of a stopper at its tilt or at `TILTS` tilts of its range, increasing [-], none without a tilt."""
+        stated = self.sections[device].get("tilt_deg", ())
+        tilts = map(float, np.linspace(*stated, TILTS)) if len(stated) == 2 else stated
+        return [math.tan(to_si(tilt, "deg")) for tilt in tilts]
 
     def inclination(self, area: Patch) -> dict:
         """Slopes and reach of the contact of tilted stoppers with this area.

@@ -1,6 +1,6 @@
 """Memory to request for jobs: enough for their largest field, and twice as much after each failure."""
 
-from stiction.config.memory import FIELD_UM, USUAL, field_memory, patch_of, spacings_of
+from stiction.config.memory import FIELD_UM, USUAL, field_memory, fields_of
 from stiction.config.units import NM_PER_UM
 from stiction.plan.devices import DevicePlan
 
@@ -32,8 +32,5 @@ def _largest_field_memory(config):
     tips = [devices.tips(name) for name in devices.with_tips]
     drawn += [((tip.length / NM_PER_UM + margin, tip.width / NM_PER_UM + margin), spacing) for tip in tips]
     for device in devices.sections.values():
-        length, width = patch_of(device, sampling)
-        drawn += [((length + margin, width + margin), at) for at in spacings_of(device, spacing, others)]
-        if "dimples" in device:
-            drawn.append((tuple(side + margin for side in device["dimples"]["contact_um"]), spacing))
+        drawn += [(sides, at) for _, sides, at in fields_of(device, sampling, others)]
     return max(field_memory(*side, at) for side, at in drawn)

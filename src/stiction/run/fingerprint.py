@@ -125,7 +125,7 @@ def canonical(node: object) -> str:
     kind, fields = type(node), vars(node)
     if not fields:  # a third of all nodes, such as ``Load()``
         return f"{kind.__name__}()"
-    if kind in _DOCUMENTED and _has_docstring(node):
+    if kind in _DOCUMENTED and ast.get_docstring(node, clean=False) is not None:
         fields = fields | {"body": node.body[1:]}
     elif kind is ast.JoinedStr:
         fields = {"values": _joined(node.values)}
@@ -141,11 +141,6 @@ def canonical(node: object) -> str:
 def _meaningful(kind):
     """Sorted names of the fields of a kind of node with an effect on the code."""
     return sorted({*kind._fields} - _WITHOUT_MEANING)
-
-
-def _has_docstring(node):
-    """Whether a definition begins with a docstring."""
-    return ast.get_docstring(node, clean=False) is not None
 
 
 def _joined(values):

@@ -41,7 +41,7 @@ def foreign(
 def _difference(path, settings, expected, remember):
     """Difference between a dataset and this run's, empty without any."""
     try:
-        label = _label(path, remember)
+        label = labels.Label(*remember([_state(path), labels.Label._fields], lambda: labels.read(path)))
     except (DataError, OSError):
         return "cannot be read"
     if label.name != path.stem:
@@ -52,11 +52,6 @@ def _difference(path, settings, expected, remember):
         if differing := _first(stored, expected(file) or {}):
             return f"depends on {file} with {differing}"
     return ""
-
-
-def _label(path, remember):
-    """Label of a dataset. It is read again if the file may have changed."""
-    return labels.Label(*remember([_state(path), labels.Label._fields], lambda: labels.read(path)))
 
 
 def _state(path):

@@ -20,8 +20,11 @@ from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.devices import life as report
 from stiction.stages.contact import curves
-from stiction.stages.devices import life, stoppers
-from stiction.stages.devices.life import Dimples, Errors, OfBeam
+from stiction.stages.devices import stoppers
+from stiction.stages.life.answers import layout
+from stiction.stages.life.dimples import dimple_answers
+from stiction.stages.life.inputs import Dimples, Errors, OfBeam
+from stiction.stages.life.table import beam_answers
 
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 3, "width_um": 30, "humidities": [0, 0.67]}
 ROW = {"number": 3, "at_um": 80, "height_um": 1, "contact_um": [2, 1]}
@@ -41,7 +44,7 @@ def lengths():
 
 
 def answers(lengths, of, dimples):
-    return {one.name: one for one in [*life.beam_answers(lengths, {}, of), *life.dimple_answers(of, dimples)]}
+    return {one.name: one for one in [*beam_answers(lengths, {}, of), *dimple_answers(of, dimples)]}
 
 
 @pytest.mark.parametrize("number", [1, 3, 7])
@@ -91,7 +94,7 @@ def test_errors_of_the_force_follow_thickness_and_gap(lengths):
 def test_sentences_say_how_many_stick_and_whether_the_beam_touches_beside_its_dimples(lengths):
     for height, said in ((1e-6, "But it touches beside them"), (19e-6, "% of the gap is left")):
         of = replace(OF, length=200e-6, dimples=Dimples(3, 80e-6, height))
-        dataset = life.layout(list(answers(lengths, of, {0.67: forces(1e-5)}).values()), of, 200e-6)
+        dataset = layout(list(answers(lengths, of, {0.67: forces(1e-5)}).values()), of, 200e-6)
         (sentence,) = [one for one in report.sentences(dataset) if "dimples" in one]
         assert said in sentence
         assert "of the beams stick on it" in sentence

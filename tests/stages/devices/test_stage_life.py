@@ -22,8 +22,10 @@ from stiction.plan.plan import Plan
 from stiction.report.devices import life as report
 from stiction.report.devices.pages import Page, Section, with_life
 from stiction.run import storage
-from stiction.stages.devices import life
-from stiction.stages.devices.life import Electrode, Errors, Liquid, OfBeam, OfStopper
+from stiction.stages.life.answers import QUESTIONS, answers_of, layout
+from stiction.stages.life.inputs import Electrode, Errors, Liquid, OfBeam, OfStopper
+from stiction.stages.life.lengths import length_of
+from stiction.stages.life.table import beam_answers, stopper_answers
 
 LIQUIDS = {"water": Liquid(0.072), "mine": Liquid(0.03, np.pi / 3)}
 OF = OfBeam(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=Errors())
@@ -52,8 +54,8 @@ def lengths():
 def answers(of, lengths=None, after=None, biased=None):
     """Answers about a beam, or a stopper, by name."""
     if lengths is None:
-        return {one.name: one for one in life.stopper_answers(stopper_dataset(), of, biased)}
-    return {one.name: one for one in life.beam_answers(lengths, after or {}, of, biased)}
+        return {one.name: one for one in stopper_answers(stopper_dataset(), of, biased)}
+    return {one.name: one for one in beam_answers(lengths, after or {}, of, biased)}
 
 
 def at_voltage(lengths, factor, energy):
@@ -64,7 +66,7 @@ def at_voltage(lengths, factor, energy):
 
 def test_a_beam_is_asked_at_its_least_safe_length_unless_it_states_one(lengths):
     least = min(float(one.safe_length.isel(share=1).min()) for one in lengths.values())
-    assert_allclose(life.length_of(lengths, OF), least, rtol=1e-12)
+    assert_allclose(length_of(lengths, OF), least, rtol=1e-12)
     found = answers(OF, lengths)
     beam = replace(OF.beam(1.0), length=least)
     assert_allclose(found["voltage"].low, touch.pull_in_voltage(beam, 1), rtol=1e-12)
@@ -87,7 +89,7 @@ def test_liquids_act_through_their_tension_and_angle(lengths):
 
 
 def test_a_beam_held_by_the_energy_that_is_stated_pulls_with_the_stated_force(lengths):
-    found, length = answers(OF, lengths), life.length_of(lengths, OF)
+    found, length = answers(OF, lengths), length_of(lengths, OF)
     beam = replace(OF.beam(1.0), length=length)
     assert_allclose(found["energy"].low, 4 * found["tip"].low, rtol=1e-12)
     # The force at the tip times its slope is the adhesion energy of the tip times the width.
@@ -121,7 +123,7 @@ def test_many_touchdowns_are_between_other_summits_each_time_and_the_same_ones(l
         h: one.isel(share=[1]).assign(safe_length=0.9 * one.isel(share=[1]).safe_length) for h, one in lengths.items()
     }
     found = answers(replace(OF, touchdowns=50), lengths, rare)
-    least = life.length_of(lengths, OF)
+    least = length_of(lengths, OF)
     assert_allclose((found["after"].low, found["after"].high), (0.9 * least, least), rtol=1e-12)
     assert_allclose((found["stuck_after"].low, found["stuck_after"].high), (1e-3, freeing.stuck_after(1e-3, 50)))
     assert "after" not in answers(OF, lengths)
@@ -137,10 +139,10 @@ def test_a_safe_length_without_an_error_has_none_and_says_its_basis(lengths):
 
 def test_answers_come_in_the_order_of_the_questions(lengths):
     for found in (answers(OF, lengths), answers(STOPPER)):
-        asked = [life.QUESTIONS.index(one.question) for one in found.values()]
+        asked = [QUESTIONS.index(one.question) for one in found.values()]
         assert asked == sorted(asked)
         assert len(set(found)) == len(found)
-    assert {one.question for one in answers(OF, lengths).values()} == set(life.QUESTIONS)
+    assert {one.question for one in answers(OF, lengths).values()} == set(QUESTIONS)
 
 
 # Stoppers
@@ -168,7 +170,7 @@ def fast_forces(*factors):
 
 def test_fast_separation_bounds_what_frees_a_stopper_from_above():
     slow = answers(STOPPER)
-    fast = {one.name: one for one in life.stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 2.5))}
+    fast = {one.name: one for one in stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 2.5))}
     for name in ("restoring_force", "stiffness"):
         assert slow[name].low == slow[name].high == fast[name].low
         assert_allclose(fast[name].high, 1.5 * fast[name].low, rtol=1e-12)
@@ -177,22 +179,20 @@ def test_fast_separation_bounds_what_frees_a_stopper_from_above():
     assert fast["freeing"].low == slow["freeing"].low
     assert set(slow) == set(fast)
     # The second humidity holds half of the force of the first one, slowly.
-    second = {
-        one.name: one for one in life.stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.0, 3.0))
-    }
+    second = {one.name: one for one in stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.0, 3.0))}
     assert_allclose(second["restoring_force"].high, 1.5 * slow["restoring_force"].low, rtol=1e-12)
 
 
 def test_patches_that_no_summits_stop_leave_fast_separation_without_a_bound():
     flat = fast_forces(1.0, 1.0)
     flat.pull_off[0, -30:] = np.inf
-    found = {one.name: one for one in life.stopper_answers(stopper_dataset(), STOPPER, separation=flat)}
+    found = {one.name: one for one in stopper_answers(stopper_dataset(), STOPPER, separation=flat)}
     for name in ("restoring_force", "stiffness", "freeing"):
         assert np.isnan(found[name].high)
         assert found[name].low == answers(STOPPER)[name].low
     flat.pull_off[0] = 1.2 * flat.pull_off[1]
     flat.pull_off[0, -1] = np.inf  # one of 400 is less than the fraction of which the bound is
-    assert np.isfinite(life.stopper_answers(stopper_dataset(), STOPPER, separation=flat)[-1].high)
+    assert np.isfinite(stopper_answers(stopper_dataset(), STOPPER, separation=flat)[-1].high)
 
 
 def factors(values, errors=0.01):
@@ -203,7 +203,7 @@ def factors(values, errors=0.01):
 
 def fast(lengths, values, errors=0.01):
     """Safe length of fast separation, and those of slow separation at all humidities in all end states [m]."""
-    found = {one.name: one for one in life.beam_answers(lengths, {}, OF, separation=factors(np.array(values), errors))}
+    found = {one.name: one for one in beam_answers(lengths, {}, OF, separation=factors(np.array(values), errors))}
     return found["fast"], np.array([one.safe_length.sel(share=1e-3).values for one in lengths.values()])
 
 
@@ -231,14 +231,14 @@ def test_strips_that_no_summits_stop_leave_a_beam_without_a_bound(lengths):
 
 
 def test_sentences_say_what_fast_separation_needs_if_it_is_more(lengths):
-    beam = life.layout(life.beam_answers(lengths, {}, OF, separation=factors(np.array([[0.5, 0.5], [0.8, 0.9]]))), OF)
+    beam = layout(beam_answers(lengths, {}, OF, separation=factors(np.array([[0.5, 0.5], [0.8, 0.9]]))), OF)
     (said,) = [one for one in report.sentences(beam) if "faster than water" in one]
     assert "safe length can fall from" in said
-    stopper = life.layout(life.stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 1.0)), STOPPER)
+    stopper = layout(stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 1.0)), STOPPER)
     (said,) = [one for one in report.sentences(stopper) if "faster than water" in one]
     assert "it can need a restoring force of" in said
     for none in (fast_forces(1.0, 1.0), None):
-        same = life.layout(life.stopper_answers(stopper_dataset(), STOPPER, separation=none), STOPPER)
+        same = layout(stopper_answers(stopper_dataset(), STOPPER, separation=none), STOPPER)
         assert not any("faster than water" in one for one in report.sentences(same))
 
 
@@ -248,7 +248,7 @@ def test_the_force_for_many_touchdowns_is_that_of_a_smaller_fraction_if_there_ar
     assert "after" not in answers(STOPPER)
     many = stopper_dataset()
     many = many.isel(sample=np.arange(1600) % 400)
-    found = {one.name: one for one in life.stopper_answers(many, STOPPER)}["after"]
+    found = {one.name: one for one in stopper_answers(many, STOPPER)}["after"]
     forces = [
         max(safe_force(row, p)[0] for row in many.pull_off.values) for p in (0.01, freeing.probability_for(0.01, 4))
     ]
@@ -265,7 +265,7 @@ def test_what_is_not_stated_has_no_answer():
 
 def test_a_voltage_shortens_the_safe_length_of_a_beam_as_its_energy_says(lengths):
     of = replace(OF, voltage=-5.0, offset=0.3, dielectric=Dielectric(100e-9, 4.0))
-    found, least = answers(of, lengths), life.length_of(lengths, OF)
+    found, least = answers(of, lengths), length_of(lengths, OF)
     assert of.potential == 5.3
     added = holding.energy_of_voltage(of.capacitor, C1.gap)
     assert_allclose(found["voltage_energy"].high, added, rtol=1e-12)
@@ -281,7 +281,7 @@ def test_a_voltage_shortens_the_safe_length_of_a_beam_as_its_energy_says(lengths
 
 def test_a_beam_at_a_voltage_is_between_flats_and_the_gaps_of_its_rough_surfaces(lengths):
     of = replace(OF, voltage=5.0, dielectric=Dielectric(100e-9, 4.0))
-    flat, least = answers(of, lengths)["at_voltage"].low, life.length_of(lengths, OF)
+    flat, least = answers(of, lengths)["at_voltage"].low, length_of(lengths, OF)
     between, gained = (1 + flat / least) / 2, 0.2 * of.capacitor.work(0.0)
     found = answers(of, lengths, biased=at_voltage(lengths, between, gained))
     assert_allclose((found["at_voltage"].low, found["at_voltage"].high), (flat, between * least), rtol=1e-12)
@@ -299,7 +299,7 @@ def test_a_bridge_at_a_voltage_has_the_safe_length_on_its_rough_surfaces_alone()
     without = {0.67: safe_without_tips()}
     found = answers(of, without, biased=at_voltage(without, 0.9, 1e-4))["at_voltage"]
     assert np.isnan(found.low)
-    assert_allclose(found.high, 0.9 * life.length_of(without, of), rtol=1e-12)
+    assert_allclose(found.high, 0.9 * length_of(without, of), rtol=1e-12)
     assert found.error > 0
 
 
@@ -308,19 +308,20 @@ def test_a_stopper_at_a_voltage_is_held_by_more_on_flats_than_on_rough_patches()
     flat, dataset = answers(of)["at_voltage"].high, stopper_dataset()
     gained = 0.3 * flat * (1 + 0.1 * np.random.default_rng(4).standard_normal(dataset.sizes["sample"]))
     biased = dataset.assign(pull_off=dataset.pull_off + gained, stuck=0 * dataset.stuck + 0.6)
+    biased = biased.assign(freeing_potential=0 * dataset.pull_off)
     found = answers(of, biased=biased)
     assert_allclose(found["at_voltage"].low, gained.mean(), rtol=1e-12)
     assert found["at_voltage"].high == flat
     assert_allclose(found["at_voltage"].error, gained.std(ddof=1) / len(gained) ** 0.5, rtol=1e-9)
     assert_allclose((found["stuck_at_voltage"].low, found["stuck_at_voltage"].high), 0.6, rtol=1e-12)
-    said = report.sentences(life.layout(life.stopper_answers(dataset, of, biased), of))
+    said = report.sentences(layout(stopper_answers(dataset, of, biased), of))
     assert any(sentence.endswith(f" to {report.significant(1e6 * flat)} µN.") for sentence in said)
 
 
 def test_without_voltage_nothing_is_said_of_it_and_a_vanishing_one_changes_nothing(lengths):
     assert not {"at_voltage", "field", "voltage_energy"} & set(answers(OF, lengths))
     little = answers(replace(OF, voltage=1e-6, dielectric=Dielectric(100e-9, 4.0)), lengths)["at_voltage"]
-    assert_allclose(little.low, life.length_of(lengths, OF), rtol=1e-9)
+    assert_allclose(little.low, length_of(lengths, OF), rtol=1e-9)
 
 
 def test_a_bridge_states_the_energy_of_the_voltage_alone():
@@ -339,7 +340,7 @@ def test_a_voltage_holds_a_stopper_with_the_pressure_of_flats_on_its_area():
 @pytest.mark.parametrize(("voltage", "breaks", "pulls"), [(5.0, False, False), (120.0, True, False), (4e4, True, True)])
 def test_sentences_warn_of_breakdown_and_of_a_voltage_that_pulls_in(lengths, voltage, breaks, pulls):
     of = replace(OF, voltage=voltage, dielectric=Dielectric(100e-9, 4.0))
-    said = report.sentences(life.layout(life.beam_answers(lengths, {}, of), of, life.length_of(lengths, of)))
+    said = report.sentences(layout(beam_answers(lengths, {}, of), of, length_of(lengths, of)))
     assert any("break down" in sentence for sentence in said) == breaks
     assert any("pulls it in" in sentence for sentence in said) == pulls
     assert any(f"While {report.significant(voltage)} V are on" in sentence for sentence in said)
@@ -370,22 +371,22 @@ def test_settings_come_from_the_device_its_material_and_the_liquids():
 def found(lengths):
     many = replace(OF, touchdowns=50)
     return {
-        "C1": life.layout(life.beam_answers(lengths, lengths, many), many, life.length_of(lengths, OF)),
-        "S1": life.layout(life.stopper_answers(stopper_dataset(), STOPPER), STOPPER),
+        "C1": layout(beam_answers(lengths, lengths, many), many, length_of(lengths, OF)),
+        "S1": layout(stopper_answers(stopper_dataset(), STOPPER), STOPPER),
     }
 
 
 def test_the_dataset_is_stored_and_read_with_all_answers(found, tmp_path):
     for name, dataset in found.items():
         storage.save(dataset, tmp_path / f"{name}.nc", "life", {}, [])
-        again = life.answers_of(storage.load(tmp_path / f"{name}.nc", "life"))
-        for one, other in zip(again, life.answers_of(dataset), strict=True):
+        again = answers_of(storage.load(tmp_path / f"{name}.nc", "life"))
+        for one, other in zip(again, answers_of(dataset), strict=True):
             np.testing.assert_equal(one, other)
 
 
 def test_the_table_has_every_answer_in_its_unit(found):
     frame = report.table(found).frame.set_index(["device", "answer"])
-    beam = {one.name: one for one in life.answers_of(found["C1"])}
+    beam = {one.name: one for one in answers_of(found["C1"])}
     assert len(frame) == sum(one.sizes["answer"] for one in found.values())
     assert_allclose(frame.loc[("C1", "shock"), "at_most"], beam["shock"].high / 9.80665, rtol=1e-12)
     assert_allclose(frame.loc[("C1", "collapse_water"), "at_least"], 1e6 * beam["collapse_water"].low, rtol=1e-12)
@@ -401,9 +402,9 @@ def test_sentences_say_below_which_voltage_and_shock_nothing_touches_and_what_dr
     assert "collapses when it is dried from water" in second
     assert "(water)" in third
     assert last.startswith("For 50 touchdowns its safe length is ")
-    short = life.layout(life.beam_answers(lengths, {}, replace(OF, length=60e-6)), OF, 60e-6)
+    short = layout(beam_answers(lengths, {}, replace(OF, length=60e-6)), OF, 60e-6)
     assert report.sentences(short)[1] == "At 60 µm it stands when it is dried from water and mine."
-    between = life.layout(life.beam_answers(lengths, {}, replace(OF, length=230e-6)), OF, 230e-6)
+    between = layout(beam_answers(lengths, {}, replace(OF, length=230e-6)), OF, 230e-6)
     assert (
         "may collapse when it is dried from water, and stands when it is dried from mine"
         in report.sentences(between)[1]
@@ -415,7 +416,7 @@ def test_sentences_say_below_which_voltage_and_shock_nothing_touches_and_what_dr
 def test_the_figure_has_a_bar_for_every_length_and_covers_nothing(found):
     figure = report.figure(found)
     for panel, dataset, unit in zip(figure.axes, found.values(), "mN", strict=True):
-        shown = [one for one in life.answers_of(dataset) if one.unit == unit and np.isfinite(one.high)]
+        shown = [one for one in answers_of(dataset) if one.unit == unit and np.isfinite(one.high)]
         assert len(panel.texts) >= len(shown)
         assert len(panel.lines) == 2 * len(shown) + (unit == "m")
     assert not covering(figure)

@@ -18,7 +18,7 @@ from stiction.plan.plan import Plan
 from stiction.run import storage
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import curves
-from stiction.stages.devices import separation
+from stiction.stages.life import separation
 
 WATER = Water(300.0)
 ACROSS = replace(WATER, gaps=Gaps({"water": 9.75e-20, "dry": 18.65e-20}, "water", 100e-9))

@@ -22,7 +22,9 @@ from stiction.report.devices import life as report
 from stiction.run import storage
 from stiction.stages.contact import contact, curves
 from stiction.stages.contact.pairs import Settings
-from stiction.stages.devices import life, stoppers
+from stiction.stages.devices import stoppers
+from stiction.stages.life.answers import layout
+from stiction.stages.life.table import stopper_answers
 
 SECTION = {"kind": "stopper", "pair": "b", "contact_um": [1.5, 6], "restoring_force_uN": 18, "humidities": [0.67, 0.88]}
 DEGREES = [0, 0.0005, 0.02, 0.1, 0.5]
@@ -112,7 +114,7 @@ def test_stoppers_of_one_area_share_the_contact_and_no_tilt_needs_none():
     found = plan(S1={"tilt_deg": [0, 0.1]}, S2={"tilt_deg": [0.05]}, S3={"tilt_deg": [0]}, S4={})
     name = "devices/contact/tilted/b_1500x6000"
     tilt = job_settings(found, name)["tilt"]
-    assert_allclose(tilt["slopes"], np.tan(np.radians([0.05, 0.1])), rtol=1e-12)
+    assert_allclose(tilt["slopes"], np.tan(np.radians([0.025, 0.05, 0.075, 0.1])), rtol=1e-12)
     film, rise = 1e9 * Water(300.0).film(0.88)[0], tilt["slopes"][-1] * 1500
     assert tilt["reach_nm"] > film + rise
     graph = Graph(found)
@@ -136,7 +138,7 @@ def tilted_dataset(factors=(1.0, 0.3), degrees=(0.05, 0.1)):
 
 def test_life_has_a_band_between_the_tilts():
     tilted, plain = tilted_dataset(), stopper_dataset()
-    found = {one.name: one for one in life.stopper_answers(plain, STOPPER, tilted=tilted)}
+    found = {one.name: one for one in stopper_answers(plain, STOPPER, tilted=tilted)}
     force = plain.pull_off.mean("sample").max()
     assert_allclose((found["force_tilted"].low, found["force_tilted"].high), (0.3 * force, force), rtol=1e-12)
     assert "tilted by 0.05 to 0.1°" in found["force_tilted"].what
@@ -149,12 +151,39 @@ def test_life_has_a_band_between_the_tilts():
     assert_allclose(needed.high, found["restoring_force"].high, rtol=1e-12)
     assert_allclose((found["wedge"].low, found["wedge"].high), (3e-4, 5e-4), rtol=1e-12)
     assert set(found) - {name for name in found if "tilted" in name or name == "wedge"} == {
-        one.name for one in life.stopper_answers(plain, STOPPER)
+        one.name for one in stopper_answers(plain, STOPPER)
     }
 
 
+def test_a_range_has_the_least_and_the_most_of_its_tilts_not_those_at_its_ends():
+    tilted = tilted_dataset((1.0, 0.2, 1.4, 0.9, 0.5), (0.0, 0.025, 0.05, 0.075, 0.1))
+    found = {one.name: one for one in stopper_answers(stopper_dataset(), STOPPER, tilted=tilted)}
+    assert_allclose(found["force_tilted"].low / found["force_tilted"].high, 0.2 / 1.4, rtol=1e-12)
+    assert_allclose(found["restoring_force_tilted"].high, 1.4 * found["restoring_force"].high, rtol=1e-12)
+    assert "tilted by 0 to 0.1°" in found["force_tilted"].what
+    assert found["force_tilted"].form.startswith("least and most of 5 tilts; ")
+    for humidity in (0.44, 0.67):
+        stuck, band = tilted.stuck.sel(humidity=humidity), found[f"stuck_tilted_{humidity:g}"]
+        assert (band.low, band.high) == (stuck.sel(bound="low")[1], stuck.sel(bound="high")[2])
+
+
+def test_the_tilts_of_a_range_leave_little_between_them():
+    """On rough patches, a finer range exceeds the band of the tilts of the plan by its standard error at most."""
+    slopes, tilts = plan(S1={"tilt_deg": [0, 0.1]}).devices.slopes("S1"), np.linspace(0, 0.1, 9)
+    assert_allclose(np.degrees(np.arctan(slopes)), np.linspace(0, 0.1, 5), rtol=1e-12)
+    settings = job_settings(plan(S1={"tilt_deg": [0, 0.1]}), "devices/contact/tilted/b_1500x6000")
+    fine = settings | {"tilt": settings["tilt"] | {"slopes": [*map(float, np.tan(np.radians(tilts[1:])))]}}
+    contacts = contact.compute(small.surfaces(), "b", "NG", in_si(Settings, fine))
+    shared = in_si(stoppers.Settings, job_settings(plan(S1={}), "devices/stoppers/S1"))
+    every = stoppers.Tilted(**vars(shared), slopes=tuple(np.tan(np.radians(tilts))))
+    found = stoppers.compute_tilted({"contact": small.contact_of_pair(), "tilted": contacts}, every)
+    chosen, error = found["mean"][::2], found.mean_error.max("tilt")
+    assert np.all(found["mean"] <= chosen.max("tilt") + error)
+    assert np.all(found["mean"] >= chosen.min("tilt") - error)
+
+
 def test_table_and_sentence_state_the_tilt(tmp_path):
-    dataset = life.layout(life.stopper_answers(stopper_dataset(), STOPPER, tilted=tilted_dataset()), STOPPER)
+    dataset = layout(stopper_answers(stopper_dataset(), STOPPER, tilted=tilted_dataset()), STOPPER)
     storage.save(dataset, tmp_path / "S1.nc", "life", {}, [])
     frame = report.table({"S1": storage.load(tmp_path / "S1.nc", "life")}).frame.set_index("answer")
     assert frame.loc["wedge", "unit"] == "°"
@@ -162,5 +191,5 @@ def test_table_and_sentence_state_the_tilt(tmp_path):
     (said,) = [sentence for sentence in report.sentences(dataset) if "tilt" in sentence]
     assert said.startswith("Its mean pull-off force tilted by 0.05 to 0.1°, at RH 0.44, is ")
     assert said.endswith("Beyond a tilt of 0.0172 to 0.0286°, a longer side of its area hardly holds more.")
-    one = life.layout(life.stopper_answers(stopper_dataset(), STOPPER, tilted=tilted_dataset((0.3,), (0.1,))), STOPPER)
+    one = layout(stopper_answers(stopper_dataset(), STOPPER, tilted=tilted_dataset((0.3,), (0.1,))), STOPPER)
     assert any("tilted by 0.1°, at RH 0.44, is " in sentence for sentence in report.sentences(one))

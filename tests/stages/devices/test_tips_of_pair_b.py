@@ -15,8 +15,8 @@ from stiction.devices import arcs, risk
 from stiction.plan.devices import DevicePlan
 from stiction.plan.plan import Plan
 from stiction.stages.contact import contact, curves
-from stiction.stages.devices import separation
 from stiction.stages.devices.opening import DesignedBeam
+from stiction.stages.life import separation
 from stiction.streams import stream
 
 WATER = Water(300.0)

@@ -110,7 +110,8 @@ def _areas(config):
     try:
         yield float((sampling["strip_length_um"] + sampling["margin_um"]) * (width + sampling["margin_um"]))
         for device in _section(config, "devices").values():
-            yield float(math.prod(side + sampling["margin_um"] for side in memory.patch_of(device, sampling)))
+            for _, sides, _ in memory.fields_of(device, sampling):
+                yield float(math.prod(sides))
     except (KeyError, TypeError, ValueError, OverflowError):
         return  # other relations report what is missing or out of range
 

@@ -23,7 +23,7 @@ from stiction.report.style import (
     styled,
 )
 from stiction.report.table import Table, table_stage
-from stiction.stages.devices.life import (
+from stiction.stages.life.answers import (
     AFTER,
     AT_VOLTAGE,
     BESIDE,
@@ -31,6 +31,7 @@ from stiction.stages.devices.life import (
     DIMPLES,
     FAST,
     FIELD,
+    FREEING,
     ON_DIMPLES,
     PULLED,
     QUESTIONS,
@@ -172,9 +173,20 @@ def _biased(answers, potential):
     what, unit = ("its safe length is", "µm") if is_length else ("they hold it with a further", "µN")
     ends = list(dict.fromkeys(end for end, value in ((_low(one), one.low), (_high(one), one.high)) if value == value))
     said = [f"{on} {what} {' to '.join(ends)} {unit}."]
+    if FREEING in answers:
+        said.append(_released(answers[FREEING]))
     if field.high > BREAKDOWN:
         said.append(f"The field in its dielectric, {_high(field)} V/nm, is above 1 V/nm, where thin oxides break down.")
     return said
+
+
+def _released(one):
+    """Voltage below which the spring of a stopper frees it."""
+    fraction = one.what.rpartition("frees ")[2]
+    if not max(one.low, one.high) > 0:
+        return f"Its spring does not free {fraction} without voltage, either."
+    ends = " to ".join(dict.fromkeys(text for text in (_low(one), _high(one)) if text != MISSING))
+    return f"Below {ends} V, its spring frees {fraction}."
 
 
 def _drying(answers, at, length):

@@ -46,16 +46,6 @@ def _beam(x: np.ndarray, underside: np.ndarray, look: str = "solid") -> str:
     return area(below + above, look)
 
 
-def _s_shape(y: float) -> tuple[np.ndarray, np.ndarray]:
-    """Underside of a cantilever stuck behind an open crack."""
-    return np.append(_CLAMP + _ALONG * (_CRACK - _CLAMP), _END), np.append(y - _GAP * _S_SHAPE, y)
-
-
-def _arc(y: float) -> tuple[np.ndarray, np.ndarray]:
-    """Underside of a cantilever stuck at its tip alone."""
-    return _CLAMP + _ALONG * (_END - _CLAMP), y - _GAP * _ARC
-
-
 def _sizes(y: float, words: Mapping[str, str]) -> list[str]:
     """Gap and thickness of a beam with a clamp on the left of the drawing."""
     top = y - _GAP - _THICK
@@ -72,7 +62,7 @@ def stuck_along(y: float, words: Mapping[str, str] = _NONE) -> list[str]:
     return [
         _ground(y),
         _clamp(y, _CLAMP, 1),
-        _beam(*_s_shape(y)),
+        _beam(*(np.append(_CLAMP + _ALONG * (_CRACK - _CLAMP), _END), np.append(y - _GAP * _S_SHAPE, y))),
         *_sizes(y, words),
         *measure((_CLAMP, y + 40), (_CRACK, y + 40), "open crack"),
         *measure((_CRACK, y + 40), (_END, y + 40), "in contact"),
@@ -85,7 +75,7 @@ def stuck_at_tip(y: float) -> list[str]:
     return [
         _ground(y),
         _clamp(y, _CLAMP, 1),
-        _beam(*_arc(y)),
+        _beam(*(_CLAMP + _ALONG * (_END - _CLAMP), y - _GAP * _ARC)),
         arrow((_END - 2, y - 76), (_END - 2, y - _THICK - 6)),
         text((_END, y - 84), "only the tip touches", "quiet", "end"),
     ]

@@ -1,5 +1,6 @@
 """Force curves at a humidity from the dataset of stage contact. Shared by several stages, not a stage itself."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -8,7 +9,9 @@ import xarray as xr
 from stiction.config.units import from_si
 from stiction.contact import environment, forcelaw, gaps
 from stiction.contact.environment import ForceCurves, Water
+from stiction.contact.forcelaw import extremum, resists
 from stiction.contact.separation import keep_volume
+from stiction.life.freeing import freeing_potential
 from stiction.stages.contact.contact import tables
 
 
@@ -94,6 +97,33 @@ def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     sampled = force_curves(contact, humidity, water)
     forces = forcelaw.pull_offs(*sampled[:3], sampled.flat)
     return forces * water.correction.at(humidity)[1] if water.correction else forces
+
+
+def freeing_potentials(contact: xr.Dataset, humidity: float, water: Water, pull: float) -> np.ndarray:
+    """Potentials below which a pull [Pa] frees each sample at a relative humidity, zero if it never does (m,) [V].
+
+    The water has a capacitor. Its own voltage does not count.
+    """
+    unit, (_, bearing, starts, step) = water.capacitor.per_volt, tables(contact)
+    without = replace(water, capacitor=replace(unit, voltage=0.0))
+    distance, curve, samples, *_, flat = force_curves(contact, humidity, without)
+    pressure, _ = gaps.gap_pressures(bearing, starts[1], distance, step, unit.work)
+    needed = pull / water.correction.at(humidity)[1] if water.correction else pull
+    found = np.empty(samples)
+    for k in range(samples):
+        force, more = np.array(curve(k)), pressure[k].astype(float)
+
+        def excess(squared, force=force, more=more):
+            """Largest attraction at a squared potential less the needed pull [Pa]."""
+            at = force + squared * more
+            largest = extremum(distance, at)[1] if resists(at) else flat[1] + squared * unit.largest_pressure
+            return largest - needed
+
+        # Between points of the grid, the attraction is larger: a little less than this frees the sample.
+        attracting = more < 0
+        highest = ((needed + force[attracting]) / -more[attracting]).min()
+        found[k] = freeing_potential(excess, (1 + 1e-9) * highest) if highest > 0 else 0.0
+    return found
 
 
 def fast_pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:

@@ -17,7 +17,7 @@ from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.contact.corrections import corrected
-from stiction.stages.contact.curves import energies, pull_offs, share_flat, tilted_forces
+from stiction.stages.contact.curves import energies, freeing_potentials, pull_offs, share_flat, tilted_forces
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices.contact_names import contact_of, corrections_of, dimples_of, tilted_of
 from stiction.stages.devices.opening import at_voltage
@@ -62,6 +62,18 @@ def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = No
     along = np.array([at[float(h)] for h in axis])
     flat = max(share_flat(one, h, settings.water.at(h)) for h, one in contacts.items())
     return layout(settings, chosen, axis, along).assign(share_flat=((), flat, {"units": "1"}))
+
+
+def compute_at_voltage(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = None) -> xr.Dataset:
+    """Forces of `compute` at a voltage, and the potentials below which the spring frees each patch."""
+    area, found = settings.contact[0] * settings.contact[1], []
+    for humidity in settings.humidities:
+        one, water = dry if humidity == 0 and dry is not None else contact, settings.water.at(humidity)
+        with on_patch(*settings.contact):
+            found.append(freeing_potentials(one, humidity, water, settings.restoring_force / area))
+    volts = {"units": "V", "long_name": "difference of potential below which the spring frees a patch"}
+    potentials = (("humidity", "sample"), np.array(found), volts)
+    return compute(contact, settings, dry).assign(freeing_potential=potentials)
 
 
 @dataclass(frozen=True)
@@ -322,6 +334,7 @@ STAGES = (
         name="stoppers_at_voltage",
         files={"dataset": "devices/at_voltage/{device}"},
         settings=lambda plan, at: at_voltage(plan, at.device, _settings(plan, at)),
+        compute=lambda data, settings: compute_at_voltage(data["contact"], corrected(settings, data), data.get("dry")),
         message="Pull-off force of stopper {device} at its voltage.",
     ),
 )

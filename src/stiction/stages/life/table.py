@@ -1,0 +1,152 @@
+"""Stage life: causes of the contact of a device, its adhesion then, and ways to free it.
+
+Every answer is a number between two bounds, which are equal where the model leaves nothing open. Voltage and shock of a
+beam are those of its length: the stated one, or its least safe length.
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stiction.config.cases import case_id, in_air
+from stiction.config.kinds import restoring_force
+from stiction.config.materials import material_of
+from stiction.config.units import from_si, in_si
+from stiction.constants import DENSITY, LIQUIDS
+from stiction.contact.voltage import BREAKDOWN, Capacitor
+from stiction.devices.risk import one_in
+from stiction.plan.stage import Stage, select
+from stiction.stages.devices.opening import section_of_beam
+from stiction.stages.devices.safe_lengths import chosen_share
+from stiction.stages.life.answers import HOLD, STICK, Answer, in_order, layout
+from stiction.stages.life.dimples import dimple_answers
+from stiction.stages.life.fast import separated_fast
+from stiction.stages.life.freeing import beam_held, stopper_freed
+from stiction.stages.life.inputs import OfBeam, OfStopper
+from stiction.stages.life.lengths import least_safe, length_of
+from stiction.stages.life.separation import separation_inputs
+from stiction.stages.life.tilt import tilted_answers
+from stiction.stages.life.touch import beam_touched, dried, stopper_moved
+from stiction.stages.life.touchdowns import beam_after_touchdowns, stopper_after_touchdowns
+from stiction.stages.life.voltage import beam_at_voltage, stopper_at_voltage
+
+
+def beam_answers(
+    lengths: Mapping[float, xr.Dataset],
+    after: Mapping[float, xr.Dataset],
+    of: OfBeam,
+    biased: Mapping[float, xr.Dataset] | None = None,
+    separation: xr.Dataset | None = None,
+) -> list[Answer]:
+    """Answers about a beam from its safe lengths by humidity: for one touchdown, after all, and at its voltage.
+
+    The dataset of its fast separation is needed where water condenses.
+    """
+    share = chosen_share(next(iter(lengths.values())))
+    safe = {humidity: least_safe(dataset, share) for humidity, dataset in lengths.items()}
+    length = length_of(lengths, of)
+    answers = [
+        Answer(
+            f"safe_length_{humidity:g}",
+            STICK,
+            f"safe length {in_air(humidity)}: at most {one_in(share)} sticks after one touchdown",
+            *(value, value, error),
+            *("m", f"bound of random beams, 95 %, {basis}", "stage safe_lengths"),
+        )
+        for humidity, (value, error, basis) in safe.items()
+    ]
+    answers += beam_touched(of, length) + beam_held(of, length) if 0 < length < np.inf else []
+    answers += [answer for name, liquid in of.liquids.items() for answer in dried(of, name, liquid.adhesion)]
+    answers += beam_after_touchdowns(of, share, min(safe.values()), after) if after else []
+    answers += separated_fast(lengths, separation) if separation is not None else []
+    return in_order(answers + beam_at_voltage(of, min(safe.values()), biased))
+
+
+def stopper_answers(
+    stopper: xr.Dataset,
+    of: OfStopper,
+    biased: xr.Dataset | None = None,
+    tilted: xr.Dataset | None = None,
+    separation: xr.Dataset | None = None,
+) -> list[Answer]:
+    """Answers about a stopper from the datasets of its pull-off forces: as it is, at its voltage, tilted, and fast."""
+    worst = int(stopper.mean_along.argmax("axis"))
+    mean, error = (float(stopper[name][worst]) for name in ("mean_along", "mean_along_error"))
+    where = in_air(round(float(stopper.worst_humidity), 2))
+    answers = [
+        Answer(
+            f"stuck_{float(humidity):g}",
+            STICK,
+            f"probability of sticking {in_air(float(humidity))}",
+            *map(float, stopper.stuck.sel(humidity=humidity, bound=["low", "high"])),
+            *(np.nan, "1", "fraction of random patches, 95 %", "stage stoppers"),
+        )
+        for humidity in stopper.humidity.values
+    ]
+    what = f"mean pull-off force {where}, the worst air"
+    answers.append(Answer("force", HOLD, what, mean, mean, error, "N", "largest attraction x area", "stage stoppers"))
+    answers += stopper_moved(of) + stopper_freed(stopper, of, separation) + stopper_after_touchdowns(stopper, of)
+    answers += [] if tilted is None else tilted_answers(tilted)
+    return in_order(answers + (stopper_at_voltage(stopper, of, biased) if of.capacitor else []))
+
+
+def compute(data: Mapping[str, Any], settings: dict[str, Any]) -> xr.Dataset:
+    """Answers about a device, from its safe lengths by humidity or from the forces of a stopper."""
+    if "stopper" in data:
+        of = in_si(OfStopper, settings["stopper"])
+        own = (data.get(name) for name in ("biased", "tilted", "separation"))
+        return layout(stopper_answers(data["stopper"], of, *own), of)
+    of, lengths = in_si(OfBeam, settings["beam"]), data["lengths"]
+    answers = beam_answers(lengths, data.get("after", {}), of, data.get("biased"), data.get("separation"))
+    answers += dimple_answers(of, data.get("dimples", {}))
+    return layout(in_order(answers), of, length_of(lengths, of))
+
+
+def _inputs(plan, at):
+    """Safe lengths at all humidities of a beam, for all touchdowns and at its voltage as well, or forces of a stopper.
+
+    Beyond the breakdown of the dielectric, no voltage is there that could hold, and flats alone bound what it does.
+    """
+    section, capacitor = plan.config["devices"][at.device], plan.devices.capacitor(at.device)
+    fast = separation_inputs(plan, at.device)
+    is_biased = bool(capacitor) and in_si(Capacitor, capacitor).field <= BREAKDOWN
+    if not plan.devices.kind(at.device).is_beam:
+        biased = {"biased": f"devices/at_voltage/{at.device}"} if is_biased else {}
+        tilted = {"tilted": f"devices/tilted/{at.device}"} if "tilt_deg" in section else {}
+        return {"stopper": f"devices/stoppers/{at.device}"} | biased | tilted | fast
+    cases = {humidity: case_id(at.device, humidity) for humidity in section["humidities"]}
+    more, biased = cases if "touchdowns" in section else {}, cases if is_biased else {}
+    dimpled = cases if "dimples" in section else {}
+    return fast | {
+        "lengths": {humidity: f"devices/safe_lengths/{case}" for humidity, case in cases.items()},
+        "after": {humidity: f"devices/touchdowns/{case}" for humidity, case in more.items()},
+        "biased": {humidity: f"devices/at_voltage/{case}" for humidity, case in biased.items()},
+        "dimples": {humidity: f"devices/dimples/{case}" for humidity, case in dimpled.items()},
+    }
+
+
+def _settings(plan, at):
+    """Settings of a device, the liquids and its density, or of a stopper."""
+    section = plan.config["devices"][at.device]
+    if not plan.devices.kind(at.device).is_beam:
+        return {"stopper": select(OfStopper, section, restoring_force_uN=restoring_force(section))}
+    material = material_of(plan.config, plan.config["pairs"][section["pair"]]["beam"])
+    density = material.get("density_kg_per_m3", DENSITY)
+    known = {name: {"surface_tension_mN_per_m": from_si(tension, "mN_per_m")} for name, tension in LIQUIDS.items()}
+    own = {"uncertainty": {}} | section | {"device": section_of_beam(plan, at.device)}
+    own |= {"density_kg_per_m3": density, "liquids": known | plan.config.get("liquids", {})}
+    return {"beam": select(OfBeam, own)}
+
+
+STAGES = (
+    Stage.writing(
+        "life",
+        "devices/life/{device}",
+        inputs=_inputs,
+        settings=_settings,
+        compute=compute,
+        message="Life of device {device}.",
+    ),
+)
