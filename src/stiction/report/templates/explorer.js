@@ -283,24 +283,27 @@ function hover({svg, caption}, [x0, x1], describe, here) {
   return () => show(here());
 }
 
+/** Range of a chart around the known levels, the bound and the present size. */
+function rangeOf(levels, bound) {
+  const sizes = [state[grid.size.key], bound, ...levels.map(Math.exp)].filter(Number.isFinite);
+  return [0.95 * Math.min(...sizes), 1.05 * Math.max(...sizes)];
+}
+
 function stuckChart(parent) {
-  const {size} = grid, ends = size.values, unit = size.unit;
-  const chart = axesOf(parent, `P(stuck) against ${size.label}`, ends, [0, 100], [`${size.label} [${unit}]`, "P(stuck) [%]"]);
-  const area = make(chart.svg, "path", {class: "band"}), curve = make(chart.svg, "path", {class: "curve"});
-  const safe = make(chart.svg, "line", {class: "safe", y1: TOP, y2: HEIGHT - BOTTOM}), dot = make(chart.svg, "circle", {r: 6, class: "here"});
-  const describe = value => `At ${text(value)} ${unit}: ${stuckText(stuckAt(value, levelsOf(state)))}. Dashed: ${data.words.bound} for ${oneIn(state.share)}.`;
-  const caption = hover(chart, ends, describe, () => state[size.key]);
+  const {size} = grid, unit = size.unit, place = make(parent, "div");
   return () => {
-    const levels = levelsOf(state), points = spread(...ends).map(value => [value, stuckAt(value, levels)]).filter(([, one]) => !one.beyond && Number.isFinite(one.share));
+    const levels = levelsOf(state), bound = safeSize(state), ends = rangeOf(levels[0], bound);
+    place.replaceChildren();
+    const chart = axesOf(place, `P(stuck) against ${size.label}`, ends, [0, 100], [`${size.label} [${unit}]`, "P(stuck) [%]"]);
+    const points = spread(...ends).map(value => [value, stuckAt(value, levels)]).filter(([, one]) => !one.beyond && Number.isFinite(one.share));
     const along = name => points.map(([value, one]) => [chart.x(value), chart.y(100 * one[name])]);
-    curve.setAttribute("d", path(along("share")));
-    area.setAttribute("d", path([...along("low"), ...along("high").reverse()]));
-    const bound = safeSize(state), place = Number.isFinite(bound) ? chart.x(clamp(bound, ...ends)) : -WIDTH, here = stuckAt(state[size.key], levels);
-    safe.setAttribute("x1", place);
-    safe.setAttribute("x2", place);
-    dot.setAttribute("cx", chart.x(state[size.key]));
-    dot.setAttribute("cy", chart.y(Number.isNaN(here.share) ? 0 : 100 * here.share));
-    caption();
+    make(chart.svg, "path", {class: "band", d: path([...along("low"), ...along("high").reverse()])});
+    make(chart.svg, "path", {class: "curve", d: path(along("share"))});
+    if (Number.isFinite(bound)) make(chart.svg, "line", {class: "safe", x1: chart.x(bound), x2: chart.x(bound), y1: TOP, y2: HEIGHT - BOTTOM});
+    const here = stuckAt(state[size.key], levels).share;
+    if (Number.isFinite(here)) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[size.key]), cy: chart.y(100 * here)});
+    const dashed = Number.isFinite(bound) ? ` Dashed: ${data.words.bound} for ${oneIn(state.share)}.` : "";
+    hover(chart, ends, value => `At ${text(value)} ${unit}: ${stuckText(stuckAt(value, levels))}.${dashed}`, () => state[size.key])();
   };
 }
 
