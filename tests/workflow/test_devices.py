@@ -173,7 +173,7 @@ def page_of(run, device):
 def grid_of(run, device):
     """Grid on the page of a device, read by Python."""
     page = page_of(run, device).read_text(encoding="utf-8")
-    content = json.loads(re.search(r'id="explorer-data">(.*?)</script>', page)[1])["grid"]
+    content = json.loads(re.search(r'id="explorer-data">(.*?)</script>', page)[1])["views"][0]["grid"]
     axes = [
         Axis(**one | {"values": tuple(one["values"])}) for one in (*content["axes"], content["share"], content["size"])
     ]
@@ -301,6 +301,33 @@ def test_the_study_of_a_page_is_one_that_a_run_takes(run, browser, tmp_path, dev
     assert section["humidities"] == [state["humidity"]]
     assert all(section[key] == pytest.approx(state[key]) for key in section.keys() & state.keys())
     assert config["contact"]["samples"] == SMALL["contact"]["samples"]
+
+
+@in_a_browser
+def test_a_page_with_two_views_keeps_the_chosen_one_in_its_address(run, browser, tmp_path):
+    def doubled(found):
+        content = json.loads(found[2])
+        content["views"].append(content["views"][0] | {"title": "again"})
+        return f"{found[1]}{json.dumps(content)}{found[3]}"
+
+    text = page_of(run, "S1").read_text(encoding="utf-8")
+    text, count = re.subn(r'(id="explorer-data">)(.*?)(</script>)', doubled, text)
+    (tmp_path / "page.html").write_text(text, encoding="utf-8")
+    browser.open(tmp_path / "page.html")
+    assert count == 1
+    assert browser.run("return [...document.querySelector('#views').options].map(one => one.text)") == [
+        "humidity",
+        "again",
+    ]
+    (menu,) = browser.find("#views")
+    browser.send("POST", f"/element/{menu}/value", text="again")
+    assert "view=1" in browser.run("return location.hash")
+    shown, address = answers(browser), browser.run("return location.href")
+    browser.send("POST", "/url", url="about:blank")
+    browser.send("POST", "/url", url=address)
+    assert browser.run("return document.querySelector('#views').value") == "1"
+    assert answers(browser) == shown
+    assert browser.errors() == []
 
 
 @in_a_browser

@@ -50,7 +50,7 @@ READ_BY = {
     "stoppers_at_voltage": "life",
     "dimples": "life",
     "tilted_contact": "tilted_stoppers",
-    "tilted_stoppers": "life",
+    "tilted_stoppers": "life device_page",
     "life": "table_life figure_life device_page",
     "chart": "table_chart figure_chart device_warnings device_page",
     "tip_slope_contact": "tip_budget",

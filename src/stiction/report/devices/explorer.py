@@ -1,7 +1,7 @@
 """Grid of the computed states of a device, and its uncertainty by the measurements, for its page."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -9,8 +9,9 @@ import xarray as xr
 from scipy.special import ndtr
 
 from stiction.config.kinds import kind_of
+from stiction.config.units import from_si
 from stiction.devices.budget import ranked
-from stiction.devices.risk import SCORES
+from stiction.devices.risk import SCORES, quantiles
 from stiction.report.devices import sentences
 from stiction.report.devices.grid import Axis, Grid
 from stiction.report.format import UM, UN
@@ -21,21 +22,19 @@ _ROOM = 0.05
 
 
 @dataclass(frozen=True)
-class Explorer:
-    """Everything that the controls of a page know."""
+class View:
+    """Grid that the controls of a page move on."""
 
-    name: str  #: of the device
-    section: Mapping[str, Any]  #: of the configuration, without its surfaces in words
+    title: str
     grid: Grid
     margins: Sequence[tuple[float, float, str]]  #: humidity, relative uncertainty [-], input to measure better
     words: Mapping[str, str]  #: that differ between beams and stoppers
 
-    @property
-    def content(self) -> dict:
-        """Content for a page."""
-        section = {key: value for key, value in self.section.items() if key in kind_of(self.section).known}
-        own = {"name": self.name, "section": section, "words": dict(self.words), "grid": self.grid.json}
-        return own | {"margins": [list(row) for row in self.margins]}
+
+def content(name: str, section: Mapping[str, Any], views: Sequence[View]) -> dict:
+    """Content of the controls of the page of a device."""
+    own = {key: value for key, value in section.items() if key in kind_of(section).known}
+    return {"name": name, "section": own, "views": [asdict(view) | {"grid": view.grid.json} for view in views]}
 
 
 def of_beam(
@@ -44,8 +43,8 @@ def of_beam(
     safe_lengths: Mapping[float, xr.Dataset],
     charts: Mapping[float, xr.Dataset],
     budgets: Mapping[tuple, xr.Dataset],
-) -> Explorer:
-    """Explorer of a cantilever or bridge. Parameters as of `stiction.report.devices.pages.beam_page`."""
+) -> View:
+    """View of a cantilever or bridge. Parameters as of `stiction.report.devices.pages.beam_page`."""
     humid = {humidity: chart for humidity, chart in sorted(charts.items()) if humidity > 0}
     joined = _charted(humid) if humid else _alone(section, safe_lengths)
     worst = _worst(safe_lengths)
@@ -69,7 +68,7 @@ def of_beam(
         "build": "no more than",
         "bound": "safe",
     }
-    return Explorer(name, section, grid, _margins(sentences.shortest_budgets(safe_lengths, budgets)), words)
+    return View("sizes and air", grid, _margins(sentences.shortest_budgets(safe_lengths, budgets)), words)
 
 
 def _worst(safe_lengths):
@@ -113,23 +112,42 @@ def _quantiles(lengths, stuck, samples):
     return np.where(inside, np.interp(shares, stuck, lengths), np.nan)
 
 
-def of_stopper(
-    name: str, section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]
-) -> Explorer:
-    """Explorer of a stopper: its section, dataset of stage stoppers and budgets."""
+def of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> View:
+    """View of a stopper: its section, dataset of stage stoppers and budgets."""
     along = stopper.isel(axis=stopper.axis.values > 0) if stopper.axis.values[-1] > 0 else stopper
-    bounded = np.isfinite(along.safe_force_along.values).all(axis=0)
-    known = along.isel(share=bounded if bounded.any() else [int(along.share.argmax())]).sortby("share")
+    axis = _humidity(along.axis.values, float(stopper.worst_humidity), "design.worst_humidities", True)
+    view = _of_forces((axis,), along.safe_force_along, along.scored_along.values, section, stopper)
+    return replace(view, margins=_margins(budgets))
+
+
+def of_tilted(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopper: xr.Dataset) -> View:
+    """View of a stopper over its tilts: its section, datasets of stages tilted_stoppers and stoppers."""
+    tilted, key = tilted.sortby("humidity"), f"devices.{name}"
+    tilts = tuple(float(f"{from_si(float(tilt), 'deg'):.6g}") for tilt in tilted.tilt)
+    reason = f"it is computed at {', '.join(f'{tilt:g}' for tilt in tilts)}° alone; {key}.tilt_deg changes this"
+    tilt = Axis("tilt_deg", "tilt", "°", "linear", tilts, tilts[0], False, reason, "tilt_deg")
+    stuck = tilted.stuck.sel(bound="estimate").max("tilt")
+    worst = float(tilted.humidity[int(np.argmax(stuck.values))])
+    humidity = _humidity(tilted.humidity.values, worst, f"{key}.humidities", False)
+    scored = np.apply_along_axis(quantiles, -1, tilted.pull_off.transpose("tilt", "humidity", "sample").values)
+    safe = tilted.safe_force.sel(part="safe").transpose("tilt", "humidity", "share")
+    return replace(_of_forces((tilt, humidity), safe, scored, section, stopper), title="tilt")
+
+
+def _of_forces(axes, safe, scored, section, stopper):
+    """View of safe forces (axes, shares) and quantiles of forces (axes, scores) [N]."""
+    bounded = np.isfinite(safe.values).all(axis=tuple(range(len(axes))))
+    known = safe.isel(share=bounded if bounded.any() else [int(np.argmax(safe.share.values))]).sortby("share")
     key, label, unit, per = "restoring_force_uN", "restoring force", "µN", UN
     if key not in section:
         key, label, unit, per = "stiffness_N_per_m", "stiffness of the spring", "N/m", section["gap_um"] * UM
-    safe, quantiles = known.safe_force_along.values / per, known.scored_along.values / per
-    axis = _humidity(known.axis.values, float(stopper.worst_humidity), "design.worst_humidities", True)
-    size = _size(key, label, unit, (safe, quantiles), float(stopper.restoring_force) / per)
-    share = _share(known.share.values, sentences.bounded_share(stopper) or float(known.share[-1]))
-    grid = Grid((axis,), share, size, safe, quantiles, stopper.sizes["sample"], falls=True)
+    numbers = known.values / per, scored / per
+    size = _size(key, label, unit, numbers, float(stopper.restoring_force) / per)
+    least = sentences.bounded_share(stopper)
+    share = _share(known.share.values, least if least in known.share.values else float(known.share[-1]))
+    grid = Grid(axes, share, size, *numbers, stopper.sizes["sample"], falls=True)
     words = {"what": label, "safe": f"Sufficient {label}", "stick": f"Stoppers with this {label} that stick"}
-    return Explorer(name, section, grid, _margins(budgets), words | {"build": "at least", "bound": "sufficient"})
+    return View("humidity", grid, (), words | {"build": "at least", "bound": "sufficient"})
 
 
 def _humidity(values, worst, key, between):

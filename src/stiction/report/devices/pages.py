@@ -296,7 +296,8 @@ def _inputs(plan, at):
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
     own |= {"style": File(STYLE), "templates": [File(_GLOSSARY), *html.files(TEMPLATE)]}
     if not devices.kind(at.device).is_beam:
-        return own | {"stopper": f"devices/stoppers/{at.device}"}
+        tilted = {"tilted": f"devices/tilted/{at.device}"} if "tilt_deg" in section else {}
+        return own | {"stopper": f"devices/stoppers/{at.device}"} | tilted
     charts = devices.chart_cases(at.device) if at.device in devices.charted else []
     return own | {
         "safe_lengths": {key[1]: name for key, name in by_case("devices/safe_lengths", cases).items()},
@@ -324,15 +325,22 @@ def _page(data, at, settings):
     warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
     more = {name: data.get(name) for name in ("test_beams", "errors", "roughness")}
     if "stopper" in data:
-        controls = explorer.of_stopper(at.device, settings, data["stopper"], budgets)
+        views = [explorer.of_stopper(settings, data["stopper"], budgets)]
+        if "tilted" in data:
+            views.append(explorer.of_tilted(at.device, settings, data["tilted"], data["stopper"]))
         page = stopper_page(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
-        controls = explorer.of_beam(at.device, settings, lengths, charts, budgets)
+        views = [explorer.of_beam(at.device, settings, lengths, charts, budgets)]
         page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
     drawing = device_drawing(_with_force(settings)).svg
     page = with_life(page, at.device, data["life"])
-    return replace(page, not_modelled=settings["not_modelled"], drawing=drawing, explorer=controls.content)
+    return replace(
+        page,
+        not_modelled=settings["not_modelled"],
+        drawing=drawing,
+        explorer=explorer.content(at.device, settings, views),
+    )
 
 
 def with_life(page: Page, name: str, answers: xr.Dataset) -> Page:
