@@ -324,9 +324,10 @@ def test_devices_that_did_not_stick_may_do_so_beyond_the_simulated_length():
 
 
 def test_quantiles_are_those_of_the_distribution_as_far_as_the_samples_and_their_reach_show():
-    rng = np.random.default_rng(11)
-    found = risk.quantiles(np.exp(0.1 * rng.normal(size=100_000)))
-    assert_allclose(np.log(found) / 0.1, risk.SCORES, atol=0.05)
+    rng, samples, shares = np.random.default_rng(11), 100_000, ndtr(risk.SCORES)
+    found = risk.quantiles(np.exp(0.1 * rng.normal(size=samples)))
+    errors = np.sqrt(shares * (1 - shares) / samples) * np.sqrt(2 * np.pi) * np.exp(risk.SCORES**2 / 2)
+    assert np.all(abs(np.log(found) / 0.1 - risk.SCORES) < 4 * errors)
     few = risk.quantiles(rng.random(20))
     assert np.isfinite(few).sum() == np.sum(abs(risk.SCORES) < 1.96)
     cut = risk.quantiles(rng.random(10_000), reach=0.5)

@@ -68,7 +68,7 @@ def test_beyond_the_simulated_devices_a_fraction_is_a_bound(falls):
     for length, beyond in ((10.0, -sign), (1000.0, sign)):
         found = grid.stuck(STATE | {"length": length})
         assert found.beyond == beyond
-        assert found.share == pytest.approx(ndtr(3 * beyond))
+        assert found.share == pytest.approx(ndtr(SCORES[-1] * beyond))
     assert np.isnan(replace(grid, quantiles=np.full_like(grid.quantiles, np.nan)).stuck(STATE).share)
     assert np.isnan(grid.estimate(STATE | {"share": 1e-4})).all()
 

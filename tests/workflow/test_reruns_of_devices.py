@@ -121,7 +121,7 @@ MATRIX = [
     ("edge of tips", "design: {tip_edge: square}", "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact", OF_STOPPERS,
      "cracks|S1|contact/b|budget/C1_rh070.nc"),
     ("shares", "design: {shares: [0.02]}", "safe_lengths chart tip_budget", OF_STOPPERS, "cracks|S1|contact|budget/C1_rh070.nc"),
-    ("points of charts", "design: {chart_points: 3}", "chart", OF_STOPPERS, "rh060|rh080|cracks|safe|S1|R1|contact"),
+    ("points of charts", "design: {chart_points: 4}", "chart", OF_STOPPERS, "rh060|rh080|cracks|safe|S1|R1|contact"),
     ("humidities of a chart", "devices: {C1: {chart: {humidities: [0.6, 0.9]}}}",
      "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact chart", OF_STOPPERS,
      "cracks|S1|R1|contact/b|contact/slopes"),

@@ -108,8 +108,8 @@ def stuck_share(
     return stuck / n, 1 - upper_bound(n - stuck, n, two_sided), upper_bound(most, n, two_sided)
 
 
-#: Normal scores of the stored quantiles of sticking lengths and of forces.
-SCORES = np.linspace(-3, 3, 25)
+#: Normal scores of the stored quantiles of sticking lengths and of forces, beyond those of one in a thousand.
+SCORES = np.linspace(-3.25, 3.25, 27)
 
 
 def quantiles(values: np.ndarray, reach: float = np.inf) -> np.ndarray:

@@ -361,7 +361,7 @@ function opened(number) {
   function study() {
     const section = {...data.section}, shares = data.study.design?.shares ?? grid.share.values;
     for (const axis of controls) {
-      const {setting, key} = axis, moved = state[key] !== axis.start || key === "length_um" || key === "humidity";
+      const {setting, key} = axis, moved = state[key] !== axis.start || ["length_um", "humidity", "tilt_deg"].includes(key);
       if (!setting || setting === "shares" || !moved) continue;
       section[setting] = ["humidities", "tilt_deg"].includes(setting) ? [state[key]] : state[key];
     }
