@@ -32,7 +32,7 @@ COUNTS = [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]
 ISLANDS = {"variants": {"asperity": ["island"]}}
 #: Voltage, dimples and tilt, which the devices of the examples do not have.
 BIASED = {"voltage_V": 5, "dielectric": {"thickness_nm": 100, "permittivity": 3.9}}
-DIMPLED = {"length_um": 250, "dimples": {"number": 2, "at_um": 200, "height_um": 1, "contact_um": [2, 2]}}
+DIMPLED = {"length_um": 250, "dimples": {"number": 2, "at_um": [200], "height_um": 1, "contact_um": [2, 2]}}
 MORE = {"devices": {"C1": BIASED | DIMPLED, "S1": BIASED | {"tilt_deg": [0, 0.1]}}, "studies": ISLANDS}
 PLAN = Plan(load(*SECTIONS, {"test_beams": {"paperB": {"stuck": COUNTS}}} | MORE))
 GRAPH, SCHEMA = Graph(PLAN), schema()
