@@ -1,7 +1,7 @@
 """Table III of the base case and under the reading of ``print.yaml``, beside print.
 
-``python compare_print.py BASE PRINT``, both of them folders with ``results``, writes to PRINT: ``print.csv``, all cases,
-and ``print.md``, deviations by pair.
+``python compare_print.py BASE PRINT``, both of them folders with ``results``, writes to PRINT: ``print.csv``, all
+cases, and ``print.md``, deviations by pair.
 """
 
 import sys
