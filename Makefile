@@ -14,6 +14,8 @@
 #   make asperities     Table III with other readings of an asperity, after make paper (6 minutes on two cores)
 #   make print      the paper under the reading nearest to its printed Table III, beside the base case, after make paper
 #                   (8 minutes on two cores), in runs/print/
+#   make supplement     baseline, sizes and shares beside the paper's statements, after make paper (1 minute), in
+#                   runs/supplement/ and runs/experiments/
 #   make pressing       how much more a pair sticks after its surfaces were pressed (2 minutes on two cores)
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
@@ -49,7 +51,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-beams measured-beams devices model-error asperities pressing print sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -92,6 +94,10 @@ asperities pressing: $(VENV)/ready
 print: $(VENV)/ready
 	$(STICTION) run examples/print.yaml --directory runs/print -- tables figures $(ARGS)
 	$(BIN)/python examples/compare_print.py . runs/print
+
+supplement: $(VENV)/ready
+	$(BIN)/python examples/supplement.py .
+	$(BIN)/python examples/other_experiments.py .
 
 sealed: $(VENV)/ready
 	$(STICTION) devices examples/sealed.yaml --directory runs/sealed -- $(ARGS)
