@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 import xarray as xr
-from ground import safe_with_tips, safe_without_tips
+from ground import exactly, safe_with_tips, safe_without_tips
 from legends import covering
 
 from stiction.report.devices import figures as figures_devices
@@ -128,8 +128,7 @@ def test_entries_of_a_legend_look_different(found):
 
 
 def test_the_risk_can_be_read_at_the_length_of_the_device(found):
-    sticking = {shape: np.linspace(200e-6, 400e-6, 100) for shape in (S_SHAPE, EITHER)}
-    own = safe_lengths.at_length(sticking, [sticking, sticking], np.inf, 300e-6)
+    own = safe_lengths.at_length(exactly(np.linspace(200e-6, 400e-6, 100)), 300e-6)
     figure = figures_devices.risk({("C1", 0.44): found["C1", 0.44].assign(own)}, WARNINGS)
     (panel,) = figure.axes
     share = 100 * float(own["stuck_at_length"][1][-1, 0])

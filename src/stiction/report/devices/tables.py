@@ -20,8 +20,8 @@ from stiction.stages.devices.device_warnings import curves, not_modelled
 from stiction.stages.devices.end_states import END_STATES
 
 _SAFE_LENGTHS = (
-    "Safe length: the largest length with at most a fraction p of the devices stuck, with a confidence of 95 % given "
-    "the drawn surfaces. A cantilever sticks along its beam (S-shape) or at its tip alone (arc), a bridge at its "
+    "Safe length: the largest length with at most a fraction p of the devices stuck, with a confidence of 95 %. "
+    "A cantilever sticks along its beam (S-shape) or at its tip alone (arc), a bridge at its "
     "middle. Estimate: length with a fraction p stuck, with standard errors due to the number of beams and to the "
     "number of sampled surfaces. Every beam has its own tip, and the scatter of the tips is part of the first error. "
     "Basis: sampled, by order statistics; fitted, by a line through the shortest 5 %; extrapolated, by this line "
@@ -45,7 +45,7 @@ _DRY_BOUND = (
 )
 _CHART = (
     "Safe length of beams of the thicknesses and gaps of a chart against relative humidity: the largest length with at "
-    "most a fraction p stuck, with a confidence of 95 % given the drawn surfaces. From: finite elements, or a power "
+    "most a fraction p stuck, with a confidence of 95 %. From: finite elements, or a power "
     "law between them, with its largest error at beams outside its fit."
 )
 _CHART_BOUND = (

@@ -55,9 +55,9 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
     def by_elements(thickness, gap):
         """Safe lengths of beams of one size (shapes, shares) [m]."""
         device = _resized(settings, thickness, gap)
-        lengths, reach = sticking.released(device, met, settings)
-        known = sticking.known(device, settings.water, settings.humidity, reach)
-        safe = sticking.by_shape(lengths, settings, known)
+        beams = sticking.released(device, met, settings)
+        known = sticking.known(device, settings.water, settings.humidity, beams.reach)
+        safe = sticking.by_shape(beams, settings, known)
         return np.array([[one.length for one in of_shape] for of_shape in safe.values()])
 
     chart = filled(settings.thicknesses, settings.gaps, by_elements)
