@@ -8,6 +8,7 @@ import xarray as xr
 from ground import exactly, safe_with_tips, safe_without_tips
 from legends import covering
 
+from stiction.devices.chart import error_between
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
 from stiction.report.style import save
@@ -192,6 +193,24 @@ def test_the_chart_shows_the_middle_share_of_every_thickness_gap_and_shape():
         curve = next(line for line in panels[20, shape].lines if len(line.get_xdata()) == 3)
         np.testing.assert_allclose(curve.get_xdata(), [0.4, 0.5, 0.6])
         np.testing.assert_allclose(curve.get_ydata(), np.array([2, 1, 0.5]) * length)
+
+
+NINE = {("C1", round(rh, 2)): charted(round(rh, 2), 2 - rh**2) for rh in np.linspace(0.4, 0.8, 9)}
+
+
+def test_a_chart_at_enough_humidities_has_a_cubic_between_its_dots_with_its_error():
+    panel = figures_devices.chart(NINE, {}).axes[0]
+    axis, lengths = np.array([rh for _, rh in NINE]), 100 * np.array([2 - rh**2 for _, rh in NINE])
+    stated = f"± {100 * error_between(axis, lengths):.2g} %"
+    dots = [line for line in panel.lines if line.get_marker() == "."]
+    assert [len(line.get_xdata()) for line in dots[:2]] == [9, 9]
+    assert sum(len(line.get_xdata()) == 200 for line in panel.lines) == 4  # lengths and bounds of two thicknesses
+    assert any(stated in text.get_text() for text in panel.get_legend().get_texts())
+    assert stated.removeprefix("± ") in tables_devices.chart(NINE, {case: [] for case in CURVES}).caption
+    few = figures_devices.chart(CHARTS, STEEP)
+    assert not any("cubic" in text.get_text() for text in few.axes[0].get_legend().get_texts())
+    assert "cubic" not in tables_devices.chart(CHARTS, STEEP).caption
+    assert covering(few) == covering(figures_devices.chart(NINE, {})) == []
 
 
 def test_the_axis_of_a_chart_is_that_of_its_own_lengths():
