@@ -158,7 +158,6 @@ class Stage:
     temporary: bool = False  #: whether the files are deleted once they have been read
     cluster: bool = False  #: whether a job is worth a job of its own on a cluster
     minutes: int = USUAL_MINUTES  #: longest run time of such a job
-    repeats: int = 1  #: how often a job releases the beams of its settings
     memory: Callable[[Any], float] | None = None  #: of a job that needs more than its fields, by the plan [MB]
     priority: int = 0  #: jobs of a higher priority start first
 
