@@ -32,9 +32,10 @@ ORDER = [
         "stages.beams",
         "stages.devices",
         "stages.roughness",
+        "stages.process",
         "stages.test_beams",
     ),
-    *("pilot", "report", "described_surface", "study", "device", "command"),
+    *("pilot", "report", "described_surface", "study", "device", "process", "command"),
 ]
 
 
