@@ -4,6 +4,7 @@
 #   make smoke      the same with small samples (half a minute), in runs/smoke/results/   (takes CONFIG=... too)
 #   make run CONFIG=mine.yaml    your own surfaces, pairs and beams; the file changes single keys of config.yaml
 #   make example    crack lengths from drawn scans, compared with the true values (1 to 2 minutes), in runs/example/
+#   make example-process   the best etch time from drawn scans (3 to 5 minutes), in runs/example-process/
 #   make example-beams   a device with and without drawn test beams, beside the truth, in runs/example-beams/
 #   make measured-beams   what the beams that the paper measured say as test beams (4 minutes), in runs/measured-beams/
 #   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes),
@@ -51,7 +52,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -70,6 +71,12 @@ example: $(VENV)/ready
 	cp examples/scans/mine.yaml runs/example/
 	$(STICTION) run runs/example/mine.yaml --directory runs/example -- measured $(ARGS)
 	$(BIN)/python examples/scans/compare.py runs/example
+
+# Draws scans after four etch times by a known law, and computes which etch time suffices for two stoppers.
+example-process: $(VENV)/ready
+	$(BIN)/python examples/process/draw.py runs/example-process
+	cp examples/process/mine.yaml runs/example-process/
+	$(STICTION) devices runs/example-process/mine.yaml --directory runs/example-process -- $(ARGS)
 
 # Draws test beams and the true lengths of a device, and compares what the test beams say about the device.
 example-beams: $(VENV)/ready

@@ -35,6 +35,8 @@ FOLDERS = ("stages", "report")
 WILDCARDS = {
     "surface": "[A-Za-z][A-Za-z0-9_-]*",
     "device": "[A-Za-z][A-Za-z0-9]*",
+    "process": "[A-Za-z][A-Za-z0-9]*",
+    "variable": "[A-Za-z][A-Za-z0-9_]*",
     "pair": PAIR_IN_AIR,
     "model": "|".join(BEAM_MODELS),
     "case": CASE,

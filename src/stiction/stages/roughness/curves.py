@@ -281,7 +281,7 @@ def _rows(dimension, rows, *names):
 # Stages
 
 
-def _settings(plan, at):
+def settings_of(plan: Any, at: Any) -> dict[str, Any]:
     """Requirement of a device, and settings of its length or force, without the contact."""
     section = plan.config["devices"][at.device]
     air = plan.air_of_devices
@@ -305,7 +305,7 @@ STAGES = (
         "devices/roughness/points/{device}_{number}",
         # ASSUME: a correction to full elastic contact is that of the given surfaces at every roughness.
         inputs=lambda plan, at: contacts_of(plan, at.device, int(at.number)) | corrections_of(plan, at.device),
-        settings=_settings,
+        settings=settings_of,
         compute=lambda data, settings: compute(
             data["contact"], data.get("tips", {}), corrected(point_settings(settings), data)
         ),
