@@ -4,6 +4,7 @@
 #   make smoke      the same with small samples (half a minute), in runs/smoke/results/   (takes CONFIG=... too)
 #   make run CONFIG=mine.yaml    your own surfaces, pairs and beams; the file changes single keys of config.yaml
 #   make example    crack lengths from drawn scans, compared with the true values (1 to 2 minutes), in runs/example/
+#   make example-process   the best etch time from drawn scans (3 to 5 minutes), in runs/example-process/
 #   make example-beams   a device with and without drawn test beams, beside the truth, in runs/example-beams/
 #   make measured-beams   what the beams that the paper measured say as test beams (4 minutes), in runs/measured-beams/
 #   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes),
@@ -14,6 +15,8 @@
 #   make asperities     Table III with other readings of an asperity, after make paper (6 minutes on two cores)
 #   make print      the paper under the reading nearest to its printed Table III, beside the base case, after make paper
 #                   (8 minutes on two cores), in runs/print/
+#   make supplement     baseline, sizes and shares beside the paper's statements, after make paper (1 minute), in
+#                   runs/supplement/ and runs/experiments/
 #   make pressing       how much more a pair sticks after its surfaces were pressed (2 minutes on two cores)
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
@@ -49,7 +52,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-beams measured-beams devices model-error asperities pressing print sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -68,6 +71,12 @@ example: $(VENV)/ready
 	cp examples/scans/mine.yaml runs/example/
 	$(STICTION) run runs/example/mine.yaml --directory runs/example -- measured $(ARGS)
 	$(BIN)/python examples/scans/compare.py runs/example
+
+# Draws scans after four etch times by a known law, and computes which etch time suffices for two stoppers.
+example-process: $(VENV)/ready
+	$(BIN)/python examples/process/draw.py runs/example-process
+	cp examples/process/mine.yaml runs/example-process/
+	$(STICTION) devices runs/example-process/mine.yaml --directory runs/example-process -- $(ARGS)
 
 # Draws test beams and the true lengths of a device, and compares what the test beams say about the device.
 example-beams: $(VENV)/ready
@@ -92,6 +101,10 @@ asperities pressing: $(VENV)/ready
 print: $(VENV)/ready
 	$(STICTION) run examples/print.yaml --directory runs/print -- tables figures $(ARGS)
 	$(BIN)/python examples/compare_print.py . runs/print
+
+supplement: $(VENV)/ready
+	$(BIN)/python examples/supplement.py .
+	$(BIN)/python examples/other_experiments.py .
 
 sealed: $(VENV)/ready
 	$(STICTION) devices examples/sealed.yaml --directory runs/sealed -- $(ARGS)

@@ -32,6 +32,7 @@ NEARLY_GAUSSIAN = ((-0.1, 3.05), (0.05, 3.02), (-0.3, 3.5), (-0.5, 4.0))
 def numbers(tables):
     """All numbers, from a dict of the name of each table to its frame."""
     texts = crack_lengths(tables["table_3"]) | deviations(tables["table_3"]) | energies(tables["table_3"])
+    texts |= supplement(tables) | flat_tips(tables["flat_tips"])
     texts |= intervals(tables["table_3"]) | printed(tables["print"], tables["print_studies"])
     texts |= surfaces(tables["table_1"]) | identification(tables["table_2"]) | fits(tables["fit_quality"])
     texts |= (
@@ -239,6 +240,74 @@ def intervals(table_3):
         texts |= {f"width_{name}": f"{widths.median():.0f}"}
         texts |= {f"width_{name}_{pair}": f"{of.median():.0f}" for pair, of in widths.groupby(rows.pair)}
     return texts
+
+
+def supplement(tables):
+    """Numbers of ``make supplement``.
+
+    ``greenwood_a``: energy of model NG over that of Greenwood and Williamson's at the lowest humidity, ``…_wet_a`` at
+    the highest; ``index_a``: plasticity index; ``size_a``: cv √area of the smallest patch over that of the largest;
+    ``neighbours_B1``: correlation of neighbouring strips [%]; ``equal_b``: Γ/2γ at which both sources scatter Γ equally
+    [%]; ``least_gamma_a``, ``most_gamma_a``: Γ/2γ over the humidities [%].
+    """
+    texts = {}
+    for pair, rows in tables["supplement_greenwood_williamson"].groupby("pair"):
+        ratio = (rows["ē, NG [mJ/m²]"] / rows["ē, GW [mJ/m²]"]).values
+        texts |= {f"greenwood_{pair}": _rounded(ratio[0]), f"greenwood_wet_{pair}": _rounded(ratio[-1])}
+        texts[f"index_{pair}"] = f"{rows['plasticity index'].iloc[0]:.2f}"
+    for pair, rows in tables["supplement_sizes"].groupby("pair"):
+        scaled = rows["cv √area [µm]"].values
+        texts[f"size_{pair}"] = f"{scaled[-1] / scaled[0]:.2f}"
+    for row in tables["supplement_surfaces"].to_dict("records"):
+        texts[f"neighbours_{row['surface']}"] = f"{100 * row['neighbouring strips']:.1f}"
+    shares = tables["supplement_shares"]
+    texts |= {f"equal_{pair}": f"{share:.1f}" for pair, share in equal_shares(shares).items()}
+    for pair, rows in shares.groupby("pair"):
+        ends = rows["Γ/2γ [%]"]
+        texts |= {f"least_gamma_{pair}": f"{ends.min():.2g}", f"most_gamma_{pair}": f"{ends.max():.2g}"}
+    return texts
+
+
+def equal_shares(shares):
+    """Γ/2γ at which surfaces and dimensions scatter Γ equally, by pair [%]: between the humidities around it.
+
+    Examples
+    --------
+    >>> rows = pd.DataFrame({"pair": "b", "Γ/2γ [%]": [1, 4], "surfaces [%]": [20, 5], "dimensions [%]": 10})
+    >>> equal_shares(rows)
+    {'b': 2.0}
+    """
+    found = {}
+    for pair, rows in shares.groupby("pair"):
+        ratio = np.log(rows["surfaces [%]"] / rows["dimensions [%]"]).values
+        places = np.log(rows["Γ/2γ [%]"].values)
+        below = np.flatnonzero(ratio < 0)
+        if len(below) and below[0] > 0:
+            around = [below[0], below[0] - 1]
+            found[pair] = round(float(np.exp(np.interp(0.0, ratio[around], places[around]))), 6)
+    return found
+
+
+def flat_tips(table):
+    """``flat_a``: largest pull-off force of a flat tip [µN], ``flat_at_a``: its humidity.
+
+    ``flat_ratio_a``: force between smooth wafers over it at RH 0.46.
+    """
+    forces = table.set_index("pair")
+    smooth = forces.loc["smooth", "RH 0.46 [µN]"]
+    texts = {}
+    for row in table.to_dict("records"):
+        pair = row["pair"]
+        texts |= {f"flat_{pair}": f"{row['largest [µN]']:.2g}", f"flat_at_{pair}": f"{row['at RH']:g}"}
+        texts[f"flat_ratio_{pair}"] = _rounded(smooth / row["RH 0.46 [µN]"])
+    return texts
+
+
+def _rounded(ratio):
+    """Ratio as text, a large one as a power of ten."""
+    if ratio < 1000:
+        return f"{ratio:.2g}" if ratio < 100 else f"{ratio:.0f}"
+    return "10" + str(round(np.log10(ratio))).translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹"))
 
 
 def printed(table, studies):

@@ -101,6 +101,12 @@ SEALED_TABLES = ("safe_lengths", "stoppers")
 ATTRACTION, OF_ATTRACTION = "attraction", "results/tables/variants.csv"
 #: Comparison of ``make print``, and its scalars of studies.
 PRINT, PRINT_STUDIES = "print", "print_studies"
+#: Tables of ``make supplement`` by their place in ``runs``, and its picture.
+SUPPLEMENT = {
+    **{f"supplement_{name}": f"supplement/{name}" for name in ("greenwood_williamson", "sizes", "surfaces", "shares")},
+    "flat_tips": "experiments/flat_tips",
+}
+SUPPLEMENT_PICTURE = "supplement"
 #: Table of ``make tails``, in Markdown alone.
 TAILS = "tails"
 #: Largest picture [bytes].
@@ -123,6 +129,7 @@ def main(results):
         (runs / "sealed", partial(unfinished_devices, "sealed", "stoppers"), collect_sealed),
         (runs / "attraction", unfinished_attraction, collect_attraction),
         (runs / "print", unfinished_print, collect_print),
+        (runs, unfinished_supplement, collect_supplement),
     ):
         if reason := why(folder):
             print(f"{reason}: the docs keep their present numbers")  # noqa: T201
@@ -200,6 +207,12 @@ def unfinished_print(folder):
     if up_to_date(folder.resolve(), "tables", "figures", "--configfile", *configs):
         return ""
     return f"{folder} is not up to date with examples/print.yaml and the code, see make print ARGS=-n"
+
+
+def unfinished_supplement(runs):
+    """Why folders do not hold the tables of ``make supplement``; empty if they do, of whatever code."""
+    missing = [place for place in SUPPLEMENT.values() if not (runs / f"{place}.csv").exists()]
+    return f"{runs} does not hold {' and '.join(missing)} of make supplement" if missing else ""
 
 
 def up_to_date(folder, *arguments):
@@ -286,6 +299,14 @@ def collect_print(folder):
     texts = scalars(folder / "results" / "studies")
     frame = pd.DataFrame(texts.items(), columns=["name", "text"])
     frame.to_csv(DOCS / "tables" / f"{PRINT_STUDIES}.csv", index=False, lineterminator="\n")
+
+
+def collect_supplement(runs):
+    """Copy tables and picture of the supplement."""
+    for name, place in SUPPLEMENT.items():
+        for kind in ("csv", "md"):
+            shutil.copyfile(runs / f"{place}.{kind}", DOCS / "tables" / f"{name}.{kind}")
+    shrink(runs / "supplement" / "supplement.png", DOCS / "pictures" / f"{SUPPLEMENT_PICTURE}.png", 1100)
 
 
 def collect_roughness(folder):
@@ -405,6 +426,7 @@ def quoted_numbers():
             MEASURED_BEAMS,
             PRINT,
             PRINT_STUDIES,
+            *SUPPLEMENT,
             ROUGHNESS,
             TEST_BEAMS,
             *(f"sealed_{name}" for name in SEALED_TABLES),

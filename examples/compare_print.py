@@ -1,7 +1,7 @@
 """Table III of the base case and under the reading of ``print.yaml``, beside print.
 
-Call: ``python compare_print.py BASE PRINT``. Both are folders with ``results``. Writes ``print.csv``, all cases, and ``print.md``, deviations by pair, to
-PRINT.
+``python compare_print.py BASE PRINT``, both of them folders with ``results``, writes to PRINT: ``print.csv``, all
+cases, and ``print.md``, deviations by pair.
 """
 
 import sys

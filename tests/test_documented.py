@@ -37,7 +37,7 @@ DIELECTRIC = {"voltage_V": 1, "dielectric": {"thickness_nm": 100, "permittivity"
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
 SPRING = {"stiffness_N_per_m": 2, "gap_um": 1.5, "electrode": {"area_um2": 1e4, "gap_um": 3}}
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "humidities": [0.67]}
-ROW = {"length_um": 150, "dimples": {"number": 2, "at_um": 120, "height_um": 1, "contact_um": [2, 2]}}
+ROW = {"length_um": 150, "dimples": {"number": 2, "at_um": [60, 120], "height_um": 1, "contact_um": [2, 2]}}
 LIFE = {"devices": {"C": BEAM | DIELECTRIC, "D": BEAM | ROW, "S": STOPPER | SPRING}}
 #: Snippets such as `level: plane`, `attraction.reach: all` and `run: {pairs: []}`; those with other values in words.
 SNIPPETS = sorted(

@@ -35,7 +35,7 @@ GOLD = {"young_modulus_GPa": 79, "poisson_ratio": 0.42, "hardness_GPa": 1.2, "co
 GOLD |= {"hamaker_constant_zJ": {"water": 250, "dry": 400}, "density_kg_per_m3": 19300}
 UNCERTAIN = {"thickness_um": 0.05, "gap_um": 0.2, "young_modulus_GPa": 4, "humidity": 0.01, "scan_um": 10}
 UNCERTAIN |= {"temperature_K": 1, "contact_angle_deg": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20}
-DIMPLES = {"number": 4, "at_um": 200, "height_um": 1, "contact_um": [2, 2]}
+DIMPLES = {"number": 4, "at_um": [200], "height_um": 1, "contact_um": [2, 2]}
 UNCERTAIN |= {"adsorbed_nm": 0.1}
 DEVICES = {
     "C1": C1 | {"chart": CHART, "dimples": DIMPLES, "strip_um": 1.2, "length_um": 300, "uncertainty": UNCERTAIN},
@@ -212,6 +212,14 @@ def test_a_wrong_device_is_refused_by_name(keys, key, message):
         ({"length_um": 300, "gap_um": 1}, "dimples.height_um", "must be below gap_um of the beam"),
         ({"length_um": 300, "dimples": DIMPLES | {"number": 101}}, "dimples.number", "must be at most 1 / 50 of"),
         ({"length_um": 300, "dimples": DIMPLES | {"number": 0}}, "dimples.number", "at least 1"),
+        (
+            {"length_um": 300, "dimples": DIMPLES | {"number": 51, "at_um": [9, 200]}},
+            "dimples.number",
+            "at most 1 / 100",
+        ),
+        ({"length_um": 300, "dimples": DIMPLES | {"at_um": [200, 200]}}, "dimples.at_um", "in increasing order"),
+        ({"length_um": 300, "dimples": DIMPLES | {"at_um": 200}}, "dimples.at_um", "[200]"),
+        ({"length_um": 300, "dimples": DIMPLES | {"at_um": [20, 300]}}, "dimples.at_um", "must be below length_um"),
         ({"length_um": 300, "dimples": DIMPLES | {"contact_um": [200, 200]}}, "dimples.contact_um", "memory"),
     ],
 )

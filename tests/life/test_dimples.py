@@ -1,6 +1,7 @@
 """Rows of dimples: closed forms, finite elements, tension as a string, and the deflection beside them."""
 
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -8,58 +9,90 @@ from loaded_beams import Elements
 from numpy.testing import assert_allclose
 
 from stiction.beam.cantilever import Beam
-from stiction.life.dimples import row
+from stiction.life.dimples import holds, least_pull, states
 
 BEAM = Beam(200e-6, 30e-6, 2e-6, 164e9, 3e-6, 1)
 STRESSES = (0.0, 1e3, 1e6, 50e6, 1e9)
 
 
-def by_elements(beam, clamps, node):
-    """Stiffness at a node and the largest deflection over that there, by finite elements."""
+def row(beam, clamps, at):
+    """Pull on one row at a distance, and the largest deflection over that there."""
+    (state,) = states(beam, clamps, [at])
+    return state.pull[0], state.deepest
+
+
+def by_elements(beam, clamps, nodes):
+    """Pull on rows at nodes and the largest deflection over that there, by finite elements."""
     model = Elements(beam, clamps, number=64)
     bending, slopes = model.stiffness()
-    free, matrix = model.free, bending + beam.tension * slopes
-    u, load = np.zeros(len(matrix)), np.zeros(len(matrix))
-    load[2 * node] = 1.0
-    u[free] = np.linalg.solve(matrix[np.ix_(free, free)], load[free])
-    return 1 / u[2 * node], u[::2].max() / u[2 * node]
+    matrix, held = bending + beam.tension * slopes, 2 * np.array(nodes)
+    free, u = np.setdiff1d(model.free, held), np.zeros(len(bending))
+    u[held] = 1.0
+    u[free] = -np.linalg.solve(matrix[np.ix_(free, free)], (matrix @ u)[free])
+    return (matrix @ u)[held], u[::2]
 
 
 def test_a_cantilever_has_the_stiffness_of_its_part_and_goes_on_straight():
     for at in (40e-6, 100e-6, 190e-6):
-        found = row(BEAM, 1, at)
-        assert_allclose(found.stiffness, 3 * BEAM.bending_stiffness / at**3, rtol=1e-12)
-        assert_allclose(found.deepest, 1 + 1.5 * (BEAM.length - at) / at, rtol=1e-12)
+        stiffness, deepest = row(BEAM, 1, at)
+        assert_allclose(stiffness, 3 * BEAM.bending_stiffness / at**3, rtol=1e-12)
+        assert_allclose(deepest, 1 + 1.5 * (BEAM.length - at) / at, rtol=1e-12)
 
 
 @pytest.mark.parametrize("stress", STRESSES)
-@pytest.mark.parametrize("node", [8, 20, 32, 50])
-def test_bridges_bend_as_by_finite_elements(stress, node):
-    beam = replace(BEAM, tension=stress * BEAM.width * BEAM.thickness)
-    found, expected = row(beam, 2, node / 64 * BEAM.length), by_elements(beam, 2, node)
-    assert_allclose((found.stiffness, found.deepest), expected, rtol=2e-3)
-    assert found.deepest > 1 - 1e-12
-
-
-def test_a_cantilever_bends_as_by_finite_elements():
-    found = row(BEAM, 1, BEAM.length * 24 / 64)
-    assert_allclose((found.stiffness, found.deepest), by_elements(BEAM, 1, 24), rtol=1e-6)
+@pytest.mark.parametrize("nodes", [[8], [20], [50], [16, 40], [20, 32, 44], [10, 20, 50, 60]])
+@pytest.mark.parametrize("clamps", [1, 2])
+def test_beams_on_rows_bend_as_by_finite_elements(stress, nodes, clamps):
+    beam = replace(BEAM, tension=stress * BEAM.width * BEAM.thickness * (clamps == 2))
+    at, above = [node / 64 * BEAM.length for node in nodes], set()
+    for number in range(1, len(nodes) + 1):
+        for rows in combinations(range(len(nodes)), number):
+            pull, u = by_elements(beam, clamps, [nodes[row] for row in rows])
+            if u[nodes].max() < 1 + 1e-6:
+                above.add(rows)
+                (found,) = [state for state in states(beam, clamps, at) if state.rows == rows]
+                assert_allclose(found.pull, pull, rtol=2e-3, atol=1e-3 * abs(pull).max())
+                assert_allclose(found.deepest, u.max(), rtol=2e-3)
+    assert above == {state.rows for state in states(beam, clamps, at)}
 
 
 def test_a_bridge_has_its_closed_form_and_both_sides_are_alike():
     length, at = BEAM.length, 60e-6
-    found = row(BEAM, 2, at)
     expected = 3 * BEAM.bending_stiffness * length**3 / (at * (length - at)) ** 3
-    assert_allclose(found.stiffness, expected, rtol=1e-12)
+    assert_allclose(row(BEAM, 2, at)[0], expected, rtol=1e-12)
     tense = replace(BEAM, tension=50e6 * BEAM.width * BEAM.thickness)
     for beam in (BEAM, tense):
-        one, other = row(beam, 2, at), row(beam, 2, length - at)
-        assert_allclose((one.stiffness, one.deepest), (other.stiffness, other.deepest), rtol=1e-9)
-    assert_allclose(row(BEAM, 2, length / 2).deepest, 1, rtol=1e-12)
+        assert_allclose(row(beam, 2, at), row(beam, 2, length - at), rtol=1e-9)
+    assert_allclose(row(BEAM, 2, length / 2)[1], 1, rtol=1e-12)
 
 
 def test_under_much_tension_a_bridge_is_a_string_that_is_deepest_at_its_row():
     at, tension = 60e-6, 1e12 * BEAM.width * BEAM.thickness
-    found = row(replace(BEAM, tension=tension), 2, at)
-    assert_allclose(found.stiffness, tension * (1 / at + 1 / (BEAM.length - at)), rtol=0.03)
-    assert_allclose(found.deepest, 1, rtol=1e-2)
+    stiffness, deepest = row(replace(BEAM, tension=tension), 2, at)
+    assert_allclose(stiffness, tension * (1 / at + 1 / (BEAM.length - at)), rtol=0.03)
+    assert_allclose(deepest, 1, rtol=1e-2)
+
+
+def test_a_row_far_from_the_others_and_two_next_to_each_other_hold_as_one():
+    close = states(BEAM, 1, [150e-6, 150.001e-6])
+    assert_allclose(least_pull(close), row(BEAM, 1, 150.001e-6)[0], rtol=1e-4)
+    # A row close to a clamp never comes down as far as one beyond it, which alone holds the beam with least force.
+    far = states(BEAM, 1, [1e-6, 150e-6])
+    assert_allclose(least_pull(far), row(BEAM, 1, 150e-6)[0], rtol=1e-9)
+
+
+def test_a_beam_sticks_where_one_state_holds_at_every_row_and_pressed_rows_need_no_force():
+    found = states(BEAM, 1, [80e-6, 160e-6])
+    assert [state.rows for state in found] == [(1,), (0, 1)]
+    both, alone = found[1].pull, found[0].pull[0]
+    assert both[1] < 0 < alone < both[0]
+    held = np.array([[0.0, 1.01 * alone], [0.0, 0.99 * alone], [1.01 * both[0], 0.0], [0.99 * both[0], 0.0]])
+    assert list(holds(found, 1.0, held)) == [True, False, True, False]
+    assert list(holds(found, 2.0, held)) == [False] * 4
+
+
+def test_more_rows_leave_more_of_the_gap_between_them():
+    deepest = [
+        min(state.deepest for state in states(BEAM, 1, np.linspace(0, 180e-6, number + 1)[1:])) for number in (1, 2, 4)
+    ]
+    assert np.all(np.diff(deepest) < 0)

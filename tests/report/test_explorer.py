@@ -46,10 +46,9 @@ def settings_of(device, humidity):
 
 
 def resized(settings, ground, thickness, gap):
-    """Device of another size [µm], its sticking lengths and their reach [m]."""
+    """Device of another size [µm], and its beams."""
     beam = replace(settings.device, thickness=thickness * UM, gap=gap * UM)
-    lengths, reach = sticking.released(beam, ground, settings)
-    return beam, lengths, reach
+    return beam, sticking.released(beam, ground, settings)
 
 
 def is_close(found, expected, error):
@@ -63,9 +62,9 @@ def test_random_states_are_those_of_devices_that_were_not_computed_for_the_grid(
         humidity = round(rng.uniform(*SIZES["humidities"]), 3)
         settings, ground = settings_of(device, humidity)
         for thickness, gap in zip(rng.uniform(2, 4, OF_AIR), rng.uniform(10, 20, OF_AIR), strict=True):
-            beam, lengths, reach = resized(settings, ground, thickness, gap)
-            known = sticking.known(beam, settings.water, humidity, reach)
-            *_, sticks = lengths.values()
+            beam, released = resized(settings, ground, thickness, gap)
+            known = sticking.known(beam, settings.water, humidity, released.reach)
+            *_, sticks = released.lengths.values()
             for share, rank in zip(rng.uniform(0.01, 0.05, OF_SIZE), rng.uniform(0.03, 0.97, OF_SIZE), strict=True):
                 length = np.quantile(sticks, rank, method="lower")
                 at = {"humidity": humidity, "thickness_um": thickness, "gap_um": gap}
@@ -73,7 +72,7 @@ def test_random_states_are_those_of_devices_that_were_not_computed_for_the_grid(
                 stuck, of_all = grid.stuck(state), np.mean(sticks < length)
                 far += abs(stuck.share - grid.stuck(state | {"humidity": SIZES["humidities"][0]}).share) > 0.05
                 assert is_close(stuck.share, of_all, np.sqrt(of_all * (1 - of_all) / BEAMS)), state
-                *_, (safe,) = sticking.by_shape(lengths, replace(settings, shares=(share,)), known).values()
+                *_, (safe,) = sticking.by_shape(released, replace(settings, shares=(share,)), known).values()
                 assert is_close(grid.safe_size(state) * UM, safe.length, 0.0 if np.isnan(safe.error) else safe.error), (
                     state
                 )

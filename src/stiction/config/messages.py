@@ -137,11 +137,12 @@ def number_of_items(entry: Mapping) -> str:
 
     Examples
     --------
-    >>> number_of_items({"minItems": 2, "maxItems": 2}), number_of_items({"minItems": 1, "maxItems": 2})
-    ('2', '1 or 2')
+    >>> [number_of_items({"minItems": least, "maxItems": most}) for least, most in ((2, 2), (1, 2), (1, 8))]
+    ['2', '1 or 2', '1 to 8']
     """
     most = entry["maxItems"]
-    return " or ".join(map(str, range(entry.get("minItems", most), most + 1)))
+    least = entry.get("minItems", most)
+    return {0: f"{most}", 1: f"{least} or {most}"}.get(most - least, f"{least} to {most}")
 
 
 def described(entry: Mapping) -> str:

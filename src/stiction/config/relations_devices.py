@@ -122,23 +122,25 @@ def electrodes_pull_on_a_spring_across_a_gap(config):
             yield f"{key}.gap_um", message, f"devices.{name}.gap_um"
 
 
-#: Fewest independent rows of dimples whose forces are sums of sampled patches.
+#: Fewest independent beams on dimples whose forces are sums of sampled patches.
 SUMS = 50
 
 
 @relation
 def dimples_are_under_their_beam(config):
-    """Require a row of dimples on the length of its beam, lower than its gap, and patches enough for sums of them."""
+    """Require rows of dimples on the length of their beam, lower than its gap, and patches enough for their sums."""
     for name, dimples in config.entries("devices", "dimples"):
         device, key = config["devices"][name], f"devices.{name}.dimples"
         if "length_um" not in device:
             yield key, "must come with length_um, the length of the beam"
-        elif dimples["at_um"] >= device["length_um"]:
+        elif max(dimples["at_um"]) >= device["length_um"]:
             yield f"{key}.at_um", "must be below length_um of the beam", f"devices.{name}.length_um"
         if "gap_um" in device and dimples["height_um"] >= device["gap_um"]:
             yield f"{key}.height_um", "must be below gap_um of the beam", f"devices.{name}.gap_um"
-        if dimples["number"] * SUMS > config["contact.samples"]:
-            yield f"{key}.number", f"must be at most 1 / {SUMS} of contact.samples", "contact.samples"
+        rows = len(dimples["at_um"])
+        if dimples["number"] * rows * SUMS > config["contact.samples"]:
+            most = f"must be at most 1 / {rows * SUMS} of contact.samples"
+            yield f"{key}.number", most, "contact.samples", f"{key}.at_um"
 
 
 @relation
@@ -156,7 +158,8 @@ def axes_increase(config):
     axes = "chart.gaps_um", "chart.thicknesses_um", "chart.humidities", *(f"roughness.{key}" for key in ROUGHNESSES)
     charts = [f"devices.{name}.{axis}" for axis in axes for name, _ in config.entries("devices", axis)]
     tilts = [f"devices.{name}.tilt_deg" for name, _ in config.entries("devices", "tilt_deg")]
-    for key, values in config.known(*charts, *tilts, "design.worst_humidities"):
+    rows = [f"devices.{name}.dimples.at_um" for name, _ in config.entries("devices", "dimples.at_um")]
+    for key, values in config.known(*charts, *tilts, *rows, "design.worst_humidities"):
         if any(low >= high for low, high in zip(values, values[1:], strict=False)):
             yield key, "must be in increasing order, each value once"
 
@@ -321,11 +324,15 @@ def _scanned(config, name):
 
 @relation
 def requirements_and_roughnesses_come_together(config):
-    """Require a requirement and a roughness together. They are compared along a quantity of a surface."""
-    for stated, other in (("requirement", "roughness"), ("roughness", "requirement")):
+    """Require a requirement with a roughness or a process. Both are compared along surfaces."""
+    for stated, others in (
+        ("requirement", ("roughness", "process")),
+        ("roughness", ("requirement",)),
+        ("process", ("requirement",)),
+    ):
         for name, _ in config.entries("devices", stated):
-            if other not in config.names(f"devices.{name}"):
-                yield f"devices.{name}.{stated}", f"must come with {other}"
+            if not set(others) & set(config.names(f"devices.{name}")):
+                yield f"devices.{name}.{stated}", f"must come with {' or '.join(others)}"
 
 
 @relation

@@ -15,7 +15,7 @@ from stiction.config.files import load
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.devices.stoppers import stuck_patches
-from stiction.life.dimples import row
+from stiction.life.dimples import states
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.devices import life as report
@@ -27,15 +27,15 @@ from stiction.stages.life.inputs import Dimples, Errors, OfBeam
 from stiction.stages.life.table import beam_answers
 
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 3, "width_um": 30, "humidities": [0, 0.67]}
-ROW = {"number": 3, "at_um": 80, "height_um": 1, "contact_um": [2, 1]}
+ROW = {"number": 3, "at_um": [80], "height_um": 1, "contact_um": [2, 1]}
 OF_WATER = Water(300.0)
-AT = Dimples(3, 80e-6, 1e-6)
+AT = Dimples(3, (80e-6,), 1e-6)
 
 
-def forces(mean, spread=0.2, number=400, seed=3):
+def forces(mean, spread=0.2, number=400, seed=3, rows=1):
     """Dataset of stage dimples with lognormal forces."""
     found = mean * np.exp(spread * np.random.default_rng(seed).standard_normal(number))
-    return xr.Dataset({"pull_off": ("row", found, {"units": "N"})})
+    return xr.Dataset({"pull_off": (("beam", "row"), found.reshape(-1, rows), {"units": "N"})})
 
 
 @pytest.fixture(scope="module")
@@ -47,15 +47,16 @@ def answers(lengths, of, dimples):
     return {one.name: one for one in [*beam_answers(lengths, {}, of), *dimple_answers(of, dimples)]}
 
 
-@pytest.mark.parametrize("number", [1, 3, 7])
-def test_the_force_of_a_row_is_the_sum_of_other_patches(number):
-    settings = stoppers.Dimples(OF_WATER, 0.67, (1.5e-6, 6e-6), number)
+@pytest.mark.parametrize(("number", "rows"), [(1, 1), (3, 1), (7, 1), (2, 3)])
+def test_the_force_of_a_row_is_the_sum_of_other_patches(number, rows):
+    settings = stoppers.Dimples(OF_WATER, 0.67, (1.5e-6, 6e-6), number, (80e-6,) * rows)
     held = stoppers.compute_dimples(small.contact_of_pair(), settings).pull_off.values
     single = 1.5e-6 * 6e-6 * curves.pull_offs(small.contact_of_pair(), 0.67, OF_WATER)
-    assert len(held) == len(single) // number
-    assert_allclose(held.sum(), single[: len(held) * number].sum(), rtol=1e-12)
+    assert held.shape == (len(single) // (number * rows), rows)
+    assert_allclose(held[0, -1], single[(rows - 1) * number : rows * number].sum(), rtol=1e-12)
+    assert_allclose(held.sum(), single[: held.size * number].sum(), rtol=1e-12)
     if number == 1:
-        assert_array_equal(held, single)
+        assert_array_equal(held[:, 0], single)
 
 
 def test_a_row_holds_although_each_of_its_dimples_is_too_weak(lengths):
@@ -71,11 +72,11 @@ def test_life_compares_the_row_with_the_force_of_the_beam_there(lengths, kind):
     of = replace(OF, length=200e-6, dimples=AT, device=OF.device if kind == "cantilever" else R1, liquids={})
     found_lengths = lengths if kind == "cantilever" else {0.67: safe_without_tips()}
     given = {0.0: forces(5e-6), 0.67: forces(2e-5, seed=4)}
-    found, bent = answers(found_lengths, of, given), row(of.beam(200e-6), of.clamps, AT.at)
-    force = bent.stiffness * (of.device.gap - AT.height)
+    found, (bent,) = answers(found_lengths, of, given), states(of.beam(200e-6), of.clamps, AT.at)
+    force = bent.pull[0] * (of.device.gap - AT.height)
     assert_allclose(found["dimples_force"].low, force, rtol=1e-12)
     for humidity, dataset in given.items():
-        _, low, high = stuck_patches(dataset.pull_off.values, np.array([force]))
+        _, low, high = stuck_patches(dataset.pull_off.values[:, 0], np.array([force]))
         one = found[f"stuck_dimples_{humidity:g}"]
         assert (one.low, one.high) == (low[0], high[0])
     assert_allclose(found["dimples"].low, given[0.67].pull_off.mean(), rtol=1e-12)
@@ -93,12 +94,27 @@ def test_errors_of_the_force_follow_thickness_and_gap(lengths):
 
 def test_sentences_say_how_many_stick_and_whether_the_beam_touches_beside_its_dimples(lengths):
     for height, said in ((1e-6, "But it touches beside them"), (19e-6, "% of the gap is left")):
-        of = replace(OF, length=200e-6, dimples=Dimples(3, 80e-6, height))
+        of = replace(OF, length=200e-6, dimples=Dimples(3, (80e-6,), height))
         dataset = layout(list(answers(lengths, of, {0.67: forces(1e-5)}).values()), of, 200e-6)
         (sentence,) = [one for one in report.sentences(dataset) if "dimples" in one]
         assert said in sentence
         assert "of the beams stick on it" in sentence
     assert not any("dimples" in one for one in answers(lengths, OF, {}))
+
+
+def test_life_asks_all_states_of_several_rows(lengths):
+    of = replace(OF, length=200e-6, dimples=Dimples(3, (60e-6, 120e-6, 190e-6), 19e-6))
+    on_rows, way = states(of.beam(200e-6), 1, of.dimples.at), of.device.gap - of.dimples.height
+    needed = way * min(state.pull.max() for state in on_rows)
+    held = forces(needed, number=1200, rows=3)
+    found = answers(lengths, of, {0.67: held})
+    assert_allclose(found["dimples_force"].low, needed, rtol=1e-12)
+    stuck = np.mean([any(np.all(one[[*s.rows]] > way * s.pull) for s in on_rows) for one in held.pull_off.values])
+    assert found["stuck_dimples_0.67"].low < stuck < found["stuck_dimples_0.67"].high
+    assert found["beside_dimples"].low < found["beside_dimples"].high < 1
+    dataset = layout(list(found.values()), of, 200e-6)
+    (sentence,) = [one for one in report.sentences(dataset) if "dimples" in one]
+    assert "pull at one of its 3 rows of dimples, each held by" in sentence
 
 
 def test_a_beam_with_dimples_has_a_job_for_them_at_each_humidity():
@@ -112,4 +128,4 @@ def test_a_beam_with_dimples_has_a_job_for_them_at_each_humidity():
     for case, pair in (("C1_rh067", "b"), ("C1_dry", "b_dry")):
         assert graph.job(f"devices/dimples/{case}").inputs["contact"] == f"devices/contact/{pair}_2000x1000"
     of = in_si(OfBeam, job_settings(plan, "devices/life/C1")["beam"])
-    assert_allclose((of.dimples.number, of.dimples.at, of.dimples.height), (3, 80e-6, 1e-6), rtol=1e-12)
+    assert_allclose((of.dimples.number, *of.dimples.at, of.dimples.height), (3, 80e-6, 1e-6), rtol=1e-12)

@@ -146,10 +146,12 @@ def _dimpled(answers):
         return []
     pulls, holds = answers[PULLED], answers[DIMPLES]
     often = max((one for one in answers.values() if one.name.startswith(f"{ON_DIMPLES}_")), key=lambda one: one.high)
-    said = (
-        f"Its row of dimples is pulled off by {_low(pulls)} µN and held by {_low(holds)} µN on average: "
-        f"{_low(often)} to {_high(often)} % of the beams stick on it in the worst of their air."
-    )
+    rows, fraction = pulls.what.rpartition(" at its ")[2], f"{_low(often)} to {_high(often)} % of the beams stick"
+    said = f"Its {rows} is pulled off by {_low(pulls)} µN and held by {_low(holds)} µN on average: {fraction} on it"
+    if rows != "row of dimples":
+        said = f"At least {_low(pulls)} µN pull at one of its {rows}, each held by {_low(holds)} µN on average: "
+        said += f"{fraction} on them"
+    said += " in the worst of their air."
     if answers[BESIDE].low > 0:
         return [f"{said} Beside them, {_low(answers[BESIDE])} % of the gap is left."]
     return [f"{said} But it touches beside them, where they do not protect it."]

@@ -134,22 +134,24 @@ def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) ->
 
 @dataclass(frozen=True)
 class Dimples:
-    """Everything that the forces of a row of dimples depend on apart from the contact of one."""
+    """Everything that the forces of rows of dimples depend on apart from the contact of one."""
 
     water: Water
     humidity: float  #: [-]
     contact: tuple[float, float]  #: sides of the area of a dimple [m]
-    number: int  #: of dimples
+    number: int  #: of dimples in each row
+    at: tuple[float, ...]  #: distances of the rows from a clamp [m], of which only the number counts here
 
 
 def compute_dimples(contact: xr.Dataset, settings: Dimples) -> xr.Dataset:
-    """Pull-off forces of rows of dimples, each row the sum of other patches."""
+    """Pull-off forces of the rows of dimples of beams, each row the sum of other patches."""
     with on_patch(*settings.contact):
         single = pull_offs(contact, settings.humidity, settings.water)
     forces = pull_off_force(single, settings.contact[0] * settings.contact[1])
-    rows = len(forces) // settings.number
-    held = forces[: rows * settings.number].reshape(rows, settings.number).sum(axis=1)
-    return xr.Dataset({"pull_off": ("row", held, {"units": "N"})})
+    shape = -1, len(settings.at), settings.number
+    drawn = len(forces) // (shape[1] * shape[2]) * shape[1] * shape[2]
+    held = forces[:drawn].reshape(shape).sum(axis=2)
+    return xr.Dataset({"pull_off": (("beam", "row"), held, {"units": "N"})})
 
 
 def axis_of(settings: Settings) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Beam on its row of dimples: force, probability of sticking, and gap beside the row."""
+"""Beam on its rows of dimples: force, probability of sticking, and gap beside the rows."""
 
 from collections.abc import Mapping
 
@@ -8,53 +8,64 @@ import xarray as xr
 from stiction.config.cases import in_air
 from stiction.devices.stoppers import stuck_patches
 from stiction.estimates import mean_with_error
-from stiction.life.dimples import row
+from stiction.life.dimples import holds, least_pull, states
 from stiction.stages.life.answers import BESIDE, DIMPLES, FREE, HOLD, ON_DIMPLES, PULLED, STICK, TOUCH, Answer
 from stiction.stages.life.inputs import OfBeam
+
+_SOURCE = "stiction.life.dimples"
 
 
 def dimple_answers(of: OfBeam, dimples: Mapping[float, xr.Dataset]) -> list[Answer]:
     """Answers about a beam on its dimples, from the forces of rows of them by humidity; none without any."""
     if not dimples:
         return []
-    bent = _bent_to_dimples(of)
-    means = {humidity: tuple(map(float, mean_with_error(one.pull_off.values))) for humidity, one in dimples.items()}
+    rows, way = rows_of(of), of.device.gap - of.dimples.height
+    forces = {humidity: one.pull_off.values for humidity, one in dimples.items()}
+    means = {humidity: tuple(map(float, mean_with_error(held.ravel()))) for humidity, held in forces.items()}
     worst = max(means, key=means.get)
-    what, form = (
-        f"mean force on its row of dimples {in_air(worst)}",
-        f"sum of {of.dimples.number} largest attractions x area",
-    )
     mean, error = means[worst]
-    held = Answer(DIMPLES, HOLD, what, mean, mean, error, "N", form, "stage dimples")
-    force = np.array([bent[-1].low])
-    sticking = [
-        Answer(
-            f"{ON_DIMPLES}_{humidity:g}",
-            STICK,
-            f"probability of sticking on its row of dimples {in_air(humidity)}",
-            *(float(end[0]) for end in stuck_patches(one.pull_off.values, force)[1:]),
-            *(np.nan, "1", "fraction of random rows, 95 %", "stage dimples"),
+    form = f"sum of {of.dimples.number} largest attractions x area"
+    what = f"mean force on {'each of ' if len(of.dimples.at) > 1 else ''}its {rows} {in_air(worst)}"
+    on_rows, sticking = states(of.beam(of.length), of.clamps, of.dimples.at), []
+    for humidity, held in forces.items():
+        stuck = holds(on_rows, way, held).astype(float)
+        sticking.append(
+            Answer(
+                f"{ON_DIMPLES}_{humidity:g}",
+                STICK,
+                f"probability of sticking on its {rows} {in_air(humidity)}",
+                *(float(end[0]) for end in stuck_patches(stuck, np.array([0.5]))[1:]),
+                *(np.nan, "1", "fraction of random rows, 95 %", "stage dimples"),
+            )
         )
-        for humidity, one in dimples.items()
-    ]
-    return [*bent, held, *sticking]
+    return [*_bent(of), Answer(DIMPLES, HOLD, what, mean, mean, error, "N", form, "stage dimples"), *sticking]
 
 
-def _bent_to_dimples(of):
-    """Gap that is left beside the dimples of a beam while they touch, and the force with which it pulls there."""
+def rows_of(of: OfBeam) -> str:
+    """Rows of dimples of a beam in words."""
+    return "row of dimples" if len(of.dimples.at) == 1 else f"{len(of.dimples.at)} rows of dimples"
+
+
+def _bent(of):
+    """Gap that is left beside the dimples of a beam while they touch, and the force with which it pulls at them."""
     at, height = of.dimples.at, of.dimples.height
 
-    def left(beam):
-        """Part of the gap left at the deepest point beside the row [-]."""
-        return 1 - row(beam, of.clamps, at).deepest * (beam.gap - height) / beam.gap
+    def left(beam, most):
+        """Part of the gap left at the deepest point beside the rows, for the state in which it is ``most`` [-]."""
+        deepest = most(state.deepest for state in states(beam, of.clamps, at))
+        return max(1 - deepest * (beam.gap - height) / beam.gap, 0.0)
 
     def pull(beam):
-        """Force of the beam at its row, bent to the dimples' height [N]."""
-        return row(beam, of.clamps, at).stiffness * (beam.gap - height)
+        """Force of the beam at a row, bent to the dimples' height [N]."""
+        return least_pull(states(beam, of.clamps, at)) * (beam.gap - height)
 
-    (rest, rest_error), (force, error) = of.number(left, of.length), of.number(pull, of.length)
-    what, form = "part of the gap that is left beside its dimples", "bent by the force on the row alone"
-    source = "stiction.life.dimples"
-    beside = Answer(BESIDE, TOUCH, what, max(rest, 0.0), max(rest, 0.0), rest_error, "1", form, source)
-    what, form = "force with which it pulls at its row of dimples", "k (h - h_d)"
-    return [beside, Answer(PULLED, FREE, what, force, force, error, "N", form, source)]
+    rest, rest_error = of.number(lambda beam: left(beam, max), of.length)
+    force, error = of.number(pull, of.length)
+    what, form = "part of the gap that is left beside its dimples", "bent by the forces on its rows alone"
+    if len(at) > 1:
+        form += "; on the rows that leave least (at least) and most (at most)"
+    beside = Answer(BESIDE, TOUCH, what, rest, left(of.beam(of.length), min), rest_error, "1", form, _SOURCE)
+    what, form = f"force with which it pulls at its {rows_of(of)}", "k (h - h_d)"
+    if len(at) > 1:
+        form += "; largest on a row, at rest on those rows where this is least"
+    return [beside, Answer(PULLED, FREE, what, force, force, error, "N", form, _SOURCE)]

@@ -56,10 +56,10 @@ class Stated:
 
 @dataclass(frozen=True)
 class Dimples:
-    """A row of dimples across a beam."""
+    """Rows of dimples across a beam."""
 
-    number: int
-    at: float  #: distance from a clamp [m]
+    number: int  #: in each row
+    at: tuple[float, ...]  #: increasing distances from a clamp [m]
     height: float  #: [m]
 
 
