@@ -4,6 +4,7 @@
 #   make smoke      the same with small samples (half a minute), in runs/smoke/results/   (takes CONFIG=... too)
 #   make run CONFIG=mine.yaml    your own surfaces, pairs and beams; the file changes single keys of config.yaml
 #   make example    crack lengths from drawn scans, compared with the true values (1 to 2 minutes), in runs/example/
+#   make example-process   the best etch time from drawn scans (3 to 5 minutes), in runs/example-process/
 #   make example-beams   a device with and without drawn test beams, beside the truth, in runs/example-beams/
 #   make measured-beams   what the beams that the paper measured say as test beams (4 minutes), in runs/measured-beams/
 #   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes),
@@ -12,6 +13,10 @@
 #   make sealed     devices in dry nitrogen, bare and coated (3 minutes on two cores), in runs/sealed/results/
 #   make attraction     Table III with attraction across gaps (3 minutes on two cores), in runs/attraction/results/
 #   make asperities     Table III with other readings of an asperity, after make paper (6 minutes on two cores)
+#   make print      the paper under the reading nearest to its printed Table III, beside the base case, after make paper
+#                   (8 minutes on two cores), in runs/print/
+#   make supplement     baseline, sizes and shares beside the paper's statements, after make paper (1 minute), in
+#                   runs/supplement/ and runs/experiments/
 #   make pressing       how much more a pair sticks after its surfaces were pressed (2 minutes on two cores)
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
@@ -47,7 +52,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-beams measured-beams devices model-error asperities pressing sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -67,6 +72,12 @@ example: $(VENV)/ready
 	$(STICTION) run runs/example/mine.yaml --directory runs/example -- measured $(ARGS)
 	$(BIN)/python examples/scans/compare.py runs/example
 
+# Draws scans after four etch times by a known law, and computes which etch time suffices for two stoppers.
+example-process: $(VENV)/ready
+	$(BIN)/python examples/process/draw.py runs/example-process
+	cp examples/process/mine.yaml runs/example-process/
+	$(STICTION) devices runs/example-process/mine.yaml --directory runs/example-process -- $(ARGS)
+
 # Draws test beams and the true lengths of a device, and compares what the test beams say about the device.
 example-beams: $(VENV)/ready
 	$(BIN)/python examples/drawn_beams/draw.py runs/example-beams
@@ -85,6 +96,15 @@ model-error: $(VENV)/ready
 
 asperities pressing: $(VENV)/ready
 	$(STICTION) $(if $(CONFIG),run $(CONFIG),paper) -- $@ $(ARGS)
+
+# All tables and figures under other readings of the paper, then Table III of both.
+print: $(VENV)/ready
+	$(STICTION) run examples/print.yaml --directory runs/print -- tables figures $(ARGS)
+	$(BIN)/python examples/compare_print.py . runs/print
+
+supplement: $(VENV)/ready
+	$(BIN)/python examples/supplement.py .
+	$(BIN)/python examples/other_experiments.py .
 
 sealed: $(VENV)/ready
 	$(STICTION) devices examples/sealed.yaml --directory runs/sealed -- $(ARGS)

@@ -16,6 +16,7 @@ from stiction.contact.meniscus import flooded_energy
 from stiction.devices.arcs import arc_length
 from stiction.devices.limits import FILMS
 from stiction.plan.plan import Plan
+from stiction.report.beams import prediction
 from stiction.report.checks import MESH_OFF_OF_PAPER, RESOLVED
 from stiction.report.devices.life import significant
 from stiction.report.format import MISSING, TO_MJ, TO_UM, number, with_error
@@ -31,6 +32,8 @@ NEARLY_GAUSSIAN = ((-0.1, 3.05), (0.05, 3.02), (-0.3, 3.5), (-0.5, 4.0))
 def numbers(tables):
     """All numbers, from a dict of the name of each table to its frame."""
     texts = crack_lengths(tables["table_3"]) | deviations(tables["table_3"]) | energies(tables["table_3"])
+    texts |= supplement(tables) | flat_tips(tables["flat_tips"])
+    texts |= intervals(tables["table_3"]) | printed(tables["print"], tables["print_studies"])
     texts |= surfaces(tables["table_1"]) | identification(tables["table_2"]) | fits(tables["fit_quality"])
     texts |= (
         variants(tables["variants"])
@@ -45,7 +48,7 @@ def numbers(tables):
     texts |= readings(tables["asperities"]) | pressing(tables["pressing"])
     texts |= sealed(tables["sealed_safe_lengths"], tables["sealed_stoppers"])
     texts |= measured_beams(tables["measured_beams"]) | said(tables["test_beams"]) | skewed(tables["roughness"])
-    texts |= tails(tables["tails"]) | studies(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
+    texts |= tails(tables["tails"]) | texts_of(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
     return texts | scans(tables["example_scans"]) | timings(tables["timings"]) | constants() | nearly_gaussian()
 
 
@@ -215,6 +218,121 @@ def deviations(table_3):
     return texts
 
 
+def intervals(table_3):
+    """``contained_68``: measured lengths in their intervals, ``width_68``: median half-width [%], ``…_a`` of a pair.
+
+    ``naive_68``: the largest root mean square deviation of a pair, for all; ``naive_contained_68``: lengths in it. For
+    95 %, these have twice the width. ``measured_lengths``: number of all.
+    """
+    rows = table_3[table_3.model == "NG"]
+    off = np.log(rows.experiment_um / rows.crack_length_um).abs()
+    naive = rows.experiment_deviation_percent.pow(2).groupby(rows.pair).mean().max() ** 0.5 / 100
+    texts = {"measured_lengths": str(len(rows))}
+    for sizes, coverage in enumerate(prediction.COVERAGES, 1):
+        name = f"{100 * coverage:.0f}"
+        low, high = (rows[end] for end in prediction.ENDS[coverage])
+        widths = 100 * np.log(high / low) / 2
+        texts[f"contained_{name}"] = str(prediction.contained(table_3, coverage)[0])
+        texts |= {
+            f"naive_{name}": f"{100 * sizes * naive:.0f}",
+            f"naive_contained_{name}": str((off < sizes * naive).sum()),
+        }
+        texts |= {f"width_{name}": f"{widths.median():.0f}"}
+        texts |= {f"width_{name}_{pair}": f"{of.median():.0f}" for pair, of in widths.groupby(rows.pair)}
+    return texts
+
+
+def supplement(tables):
+    """Numbers of ``make supplement``.
+
+    ``greenwood_a``: energy of model NG over that of Greenwood and Williamson's at the lowest humidity, ``…_wet_a`` at
+    the highest; ``index_a``: plasticity index; ``size_a``: cv √area of the smallest patch over that of the largest;
+    ``neighbours_B1``: correlation of neighbouring strips [%]; ``equal_b``: Γ/2γ at which both sources scatter Γ equally
+    [%]; ``least_gamma_a``, ``most_gamma_a``: Γ/2γ over the humidities [%].
+    """
+    texts = {}
+    for pair, rows in tables["supplement_greenwood_williamson"].groupby("pair"):
+        ratio = (rows["ē, NG [mJ/m²]"] / rows["ē, GW [mJ/m²]"]).values
+        texts |= {f"greenwood_{pair}": _rounded(ratio[0]), f"greenwood_wet_{pair}": _rounded(ratio[-1])}
+        texts[f"index_{pair}"] = f"{rows['plasticity index'].iloc[0]:.2f}"
+    for pair, rows in tables["supplement_sizes"].groupby("pair"):
+        scaled = rows["cv √area [µm]"].values
+        texts[f"size_{pair}"] = f"{scaled[-1] / scaled[0]:.2f}"
+    for row in tables["supplement_surfaces"].to_dict("records"):
+        texts[f"neighbours_{row['surface']}"] = f"{100 * row['neighbouring strips']:.1f}"
+    shares = tables["supplement_shares"]
+    texts |= {f"equal_{pair}": f"{share:.1f}" for pair, share in equal_shares(shares).items()}
+    for pair, rows in shares.groupby("pair"):
+        ends = rows["Γ/2γ [%]"]
+        texts |= {f"least_gamma_{pair}": f"{ends.min():.2g}", f"most_gamma_{pair}": f"{ends.max():.2g}"}
+    return texts
+
+
+def equal_shares(shares):
+    """Γ/2γ at which surfaces and dimensions scatter Γ equally, by pair [%]: between the humidities around it.
+
+    Examples
+    --------
+    >>> rows = pd.DataFrame({"pair": "b", "Γ/2γ [%]": [1, 4], "surfaces [%]": [20, 5], "dimensions [%]": 10})
+    >>> equal_shares(rows)
+    {'b': 2.0}
+    """
+    found = {}
+    for pair, rows in shares.groupby("pair"):
+        ratio = np.log(rows["surfaces [%]"] / rows["dimensions [%]"]).values
+        places = np.log(rows["Γ/2γ [%]"].values)
+        below = np.flatnonzero(ratio < 0)
+        if len(below) and below[0] > 0:
+            around = [below[0], below[0] - 1]
+            found[pair] = round(float(np.exp(np.interp(0.0, ratio[around], places[around]))), 6)
+    return found
+
+
+def flat_tips(table):
+    """``flat_a``: largest pull-off force of a flat tip [µN], ``flat_at_a``: its humidity.
+
+    ``flat_ratio_a``: force between smooth wafers over it at RH 0.46.
+    """
+    forces = table.set_index("pair")
+    smooth = forces.loc["smooth", "RH 0.46 [µN]"]
+    texts = {}
+    for row in table.to_dict("records"):
+        pair = row["pair"]
+        texts |= {f"flat_{pair}": f"{row['largest [µN]']:.2g}", f"flat_at_{pair}": f"{row['at RH']:g}"}
+        texts[f"flat_ratio_{pair}"] = _rounded(smooth / row["RH 0.46 [µN]"])
+    return texts
+
+
+def _rounded(ratio):
+    """Ratio as text, a large one as a power of ten."""
+    if ratio < 1000:
+        return f"{ratio:.2g}" if ratio < 100 else f"{ratio:.0f}"
+    return "10" + str(round(np.log10(ratio))).translate(str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹"))
+
+
+def printed(table, studies):
+    """``base_rms_a``, ``print_rms_a``: deviations of model NG from print under both readings [%]; ``…_GEO_a`` of GEO.
+
+    ``…_mean_…``: their mean; ``…_measured_…``: rms deviation from the measured lengths; ``…_scatter_…``: geometric mean
+    of the standard deviation over the printed one; ``print_std_b_044``: standard deviation of NG [µm], ``base_std_…``
+    and ``printed_std_…`` beside it. ``print_mesh_excess`` and others: scalars of the studies under the reading.
+    """
+    texts = {f"print_{name}": text for name, text in texts_of(studies).items()}
+    for (model, pair), rows in table.groupby(["model", "pair"]):
+        end = f"_{pair}" if model == "NG" else f"_{model}_{pair}"
+        for name in ("base", "print"):
+            off, measured = (rows[f"{name}_{which}_percent"] for which in ("deviation", "measured_deviation"))
+            texts[f"{name}_rms{end}"] = f"{np.sqrt(np.mean(off**2)):.1f}"
+            texts[f"{name}_mean{end}"] = f"{off.mean():+.1f}"
+            texts[f"{name}_measured{end}"] = f"{np.sqrt(np.mean(measured**2)):.1f}"
+            texts[f"{name}_scatter{end}"] = f"{np.exp(np.log(rows[f'{name}_scatter_ratio']).mean()):.2f}"
+    for row in table[table.model == "NG"].itertuples():
+        stds = row.base_crack_length_std_um, row.print_crack_length_std_um, row.published_std_um
+        names = ("base", "print", "printed")
+        texts |= {f"{name}_std_{_case(row)}": f"{std:.2g}" for name, std in zip(names, stds, strict=True)}
+    return texts
+
+
 def energies(table_3):
     """``e_b_044_NG``: mean ē [mJ/m²], ``cv_…``: its scatter [%], ``gain_b_044``: NG over G; samples without a law."""
     texts = {}
@@ -280,8 +398,17 @@ def removed(table):
 
 
 def slopes(sensitivity):
-    """``slope_skewness_044``: sensitivity of the mean ē ± standard error; ``published_slope_…``."""
+    """``slope_skewness_044``: sensitivity of the mean ē ± standard error; ``published_slope_…``.
+
+    ``less_skewness_044``, ``more_skewness_044``: one-sided differences; ``lowered_skewness_044``: by how much more of
+    the moment, one step, lowers ē [%].
+    """
     texts = {}
+    for row in sensitivity[sensitivity.statistic.str.startswith("mean, ")].itertuples():
+        step = float(row.statistic.removeprefix("mean, ").removesuffix(" %"))
+        name = f"{row.moment}_{_digits(row.relative_humidity)}"
+        texts[f"{'more' if step > 0 else 'less'}_{name}"] = with_error(row.slope, row.slope_se)
+        texts |= {f"lowered_{name}": f"{-step * row.slope:.0f}", "sensitivity_step": f"{step:g}"} if step > 0 else {}
     for row in sensitivity[sensitivity.statistic == "mean"].itertuples():
         name = f"{row.moment}_{_digits(row.relative_humidity)}"
         texts[f"slope_{name}"] = with_error(row.slope, row.slope_se)
@@ -319,7 +446,7 @@ def _value(text):
     return float(text.split(" ± ")[0])
 
 
-def studies(table):
+def texts_of(table):
     """Scalars of the studies by name, as written by `update.scalars`."""
     return {row.name: row.text for row in table.itertuples(index=False)}
 

@@ -2,7 +2,7 @@
 
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
    and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``,
-   ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction`` and ``stiction devices
+   ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction``, ``make print``, ``stiction devices
    examples/NAME.yaml --directory runs/NAME`` with the names roughness and test_beams in folders of ``runs`` beside it.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
 3. The drawings are drawn, and the pages of ``docs`` and ``config/README.md`` are generated from ``docs/templates``,
@@ -49,6 +49,7 @@ TABLES = ("table_1", "table_2", "table_3", "fit_quality", "sensitivity", "varian
 #: Pictures that pages show, by their width there [pixels].
 PICTURES = {
     "overview": 1400,
+    "intervals": 1100,
     "figure_05": 700,
     "figure_07": 900,
     "figure_10": 1100,
@@ -98,6 +99,14 @@ OWN_STUDIES = {
 SEALED_TABLES = ("safe_lengths", "stoppers")
 #: Table of ``make attraction``, and its target.
 ATTRACTION, OF_ATTRACTION = "attraction", "results/tables/variants.csv"
+#: Comparison of ``make print``, and its scalars of studies.
+PRINT, PRINT_STUDIES = "print", "print_studies"
+#: Tables of ``make supplement`` by their place in ``runs``, and its picture.
+SUPPLEMENT = {
+    **{f"supplement_{name}": f"supplement/{name}" for name in ("greenwood_williamson", "sizes", "surfaces", "shares")},
+    "flat_tips": "experiments/flat_tips",
+}
+SUPPLEMENT_PICTURE = "supplement"
 #: Table of ``make tails``, in Markdown alone.
 TAILS = "tails"
 #: Largest picture [bytes].
@@ -119,6 +128,8 @@ def main(results):
         (runs / "test_beams", partial(unfinished_devices, "test_beams", TEST_BEAMS), collect_test_beams),
         (runs / "sealed", partial(unfinished_devices, "sealed", "stoppers"), collect_sealed),
         (runs / "attraction", unfinished_attraction, collect_attraction),
+        (runs / "print", unfinished_print, collect_print),
+        (runs, unfinished_supplement, collect_supplement),
     ):
         if reason := why(folder):
             print(f"{reason}: the docs keep their present numbers")  # noqa: T201
@@ -186,6 +197,22 @@ def unfinished_attraction(folder):
     if up_to_date(folder.resolve(), OF_ATTRACTION, "--configfile", *configs):
         return ""
     return f"{folder} is not up to date with examples/attraction.yaml and the code, see make attraction ARGS=-n"
+
+
+def unfinished_print(folder):
+    """Why a folder does not hold a finished comparison with print by this code; empty if it does."""
+    if not (folder / f"{PRINT}.csv").exists():
+        return f"{folder} holds no finished run"
+    configs = ROOT / "config.yaml", ROOT / "examples" / "print.yaml"
+    if up_to_date(folder.resolve(), "tables", "figures", "--configfile", *configs):
+        return ""
+    return f"{folder} is not up to date with examples/print.yaml and the code, see make print ARGS=-n"
+
+
+def unfinished_supplement(runs):
+    """Why folders do not hold the tables of ``make supplement``; empty if they do, of whatever code."""
+    missing = [place for place in SUPPLEMENT.values() if not (runs / f"{place}.csv").exists()]
+    return f"{runs} does not hold {' and '.join(missing)} of make supplement" if missing else ""
 
 
 def up_to_date(folder, *arguments):
@@ -263,6 +290,23 @@ def collect_attraction(folder):
     csv = DOCS / "tables" / f"{ATTRACTION}.csv"
     shutil.copyfile(folder / OF_ATTRACTION, csv)
     csv.with_suffix(".md").write_text(quoted.across_gaps(quoted.frame(csv)) + "\n", encoding="utf-8")
+
+
+def collect_print(folder):
+    """Copy the comparison of both readings with print, and the scalars of the studies under the other reading."""
+    for kind in ("csv", "md"):
+        shutil.copyfile(folder / f"{PRINT}.{kind}", DOCS / "tables" / f"{PRINT}.{kind}")
+    texts = scalars(folder / "results" / "studies")
+    frame = pd.DataFrame(texts.items(), columns=["name", "text"])
+    frame.to_csv(DOCS / "tables" / f"{PRINT_STUDIES}.csv", index=False, lineterminator="\n")
+
+
+def collect_supplement(runs):
+    """Copy tables and picture of the supplement."""
+    for name, place in SUPPLEMENT.items():
+        for kind in ("csv", "md"):
+            shutil.copyfile(runs / f"{place}.{kind}", DOCS / "tables" / f"{name}.{kind}")
+    shrink(runs / "supplement" / "supplement.png", DOCS / "pictures" / f"{SUPPLEMENT_PICTURE}.png", 1100)
 
 
 def collect_roughness(folder):
@@ -380,6 +424,9 @@ def quoted_numbers():
             *OWN_STUDIES,
             ATTRACTION,
             MEASURED_BEAMS,
+            PRINT,
+            PRINT_STUDIES,
+            *SUPPLEMENT,
             ROUGHNESS,
             TEST_BEAMS,
             *(f"sealed_{name}" for name in SEALED_TABLES),

@@ -33,9 +33,10 @@ ORDER = [
         "stages.devices",
         "stages.life",
         "stages.roughness",
+        "stages.process",
         "stages.test_beams",
     ),
-    *("pilot", "report", "described_surface", "study", "device", "command"),
+    *("pilot", "report", "described_surface", "study", "device", "process", "command"),
 ]
 
 

@@ -5,11 +5,15 @@ Writes ``wafer.csv``, the single test beams that ``mine.yaml`` reads, and ``trut
 
 import csv
 import sys
+from functools import partial
 from pathlib import Path
+
+import numpy as np
 
 import stiction
 from stiction.config.reading import read
 from stiction.config.test_beams import COLUMNS
+from stiction.estimates import mean_with_error
 from stiction.report.format import UM
 from stiction.stages.devices import cracks as stage_cracks
 from stiction.stages.devices.opening import EITHER
@@ -49,7 +53,7 @@ def true(humidity):
 def measured(wafer):
     """Rows of beams with crack lengths."""
     for humidity in MEASURED:
-        cracks = stage_cracks.lengths(wafer.cracks(true(humidity)))[0]
+        cracks = stage_cracks.lengths(wafer.cracks(true(humidity)))
         yield from ([humidity, LENGTH, f"{crack / UM:.1f}", ""] for crack in cracks[:NUMBER])
 
 
@@ -65,9 +69,15 @@ def counted(wafer):
 def lengths(device, humidities):
     """Rows with the true mean crack lengths of the device and the standard errors of their computation."""
     for humidity in humidities:
-        computed = stage_cracks.lengths(device.cracks(true(humidity)))
-        groups = computed[1].mean(axis=1)
-        yield [humidity, computed[0].mean() / UM, groups.std(ddof=1) / len(groups) ** 0.5 / UM]
+        computed = device.cracks(true(humidity))
+        mean, own = mean_with_error(stage_cracks.lengths(computed))
+        surfaces = stage_cracks.surfaces_of(computed).error(partial(_mean_length, computed))
+        yield [humidity, mean / UM, np.hypot(own, surfaces) / UM]
+
+
+def _mean_length(computed, move):
+    """Mean length as on other samples of the surfaces [m]."""
+    return move(stage_cracks.lengths(computed)).mean()
 
 
 def write(path, columns, rows):

@@ -5,6 +5,7 @@ from stiction.config.files import load as load
 from stiction.config.cases import case_id as case_id
 from stiction.study import PairStudy as PairStudy
 from stiction.device import Device as Device
+from stiction.process import Process as Process
 from stiction.progress import show_progress as show_progress
 
 # surfaces

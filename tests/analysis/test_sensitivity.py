@@ -73,6 +73,28 @@ def test_standard_errors_are_the_scatter_of_repeated_studies_and_common_random_n
     assert found[True] < 0.01 * found[False]
 
 
+def test_differences_to_either_side_enclose_the_slope_of_a_falling_convex_curve():
+    at = sensitivity.shifted(-2.0, 0.1)
+    curve = lambda x: np.exp(-3.0 * (x + 2.0))  # noqa: E731
+    samples = np.linspace(0.5, 1.5, 40)
+    differences, errors = sensitivity.one_sided([curve(x) * samples for x in at], curve(-2.0) * samples, at)
+    # At x = -2, the normalised slope is 2 · (-3): a tenth more changes the curve by exp(-0.6) - 1.
+    assert_allclose(differences, [(np.exp(0.6) - 1) / -0.1, (np.exp(-0.6) - 1) / 0.1])
+    assert differences[0] < -6 < differences[1]
+    assert (errors < 1e-9).all()
+
+
+def test_errors_of_differences_are_the_scatter_of_repeated_studies():
+    at, found = (0.9, 1.1), []
+    for k in range(60):
+        noises = np.exp(0.4 * stream(2, k).standard_normal((3, 400)))
+        found.append(
+            sensitivity.one_sided([x**-5 * noise for x, noise in zip(at, noises, strict=False)], noises[2], at)
+        )
+    differences, errors = np.array(found).swapaxes(0, 1)
+    assert_allclose(differences.std(axis=0, ddof=1), errors.mean(axis=0), rtol=ALLOWED / np.sqrt(118))
+
+
 def energies(moments, seeds):
     """Adhesion energies (m,) of a pair whose beam surface has other moments; one seed per sample."""
     rms, skewness, kurtosis = moments

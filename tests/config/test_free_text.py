@@ -10,6 +10,7 @@ from hostile import HOSTILE
 #: Keys whose text a user chooses. Where it is shown, it is looked at by the tests that import `hostile`: those of the
 #: front page, tables, pages and figures, and tests/workflow/test_hostile_text.py for a whole report.
 FREE = {f"surfaces.NAME.scans.{key}" for key in ("files.0", "channel", "left_out.0")} | {"test_beams.NAME.file"}
+FREE |= {"process.NAME.settings.0.scans.0"}
 #: A configuration that has all other keys with names of its own parts.
 FULL = """
 materials: {Oxide: {}}
@@ -21,7 +22,12 @@ test_beams:
 devices:
   C: {kind: cantilever, pair: b, humidities: [0.67], thickness_um: 2.5, gap_um: 2, width_um: 30, test_beams: [A],
       uncertainty: {thickness_um: 0.1}, requirement: {share: 0.01, length_um: 300},
-      roughness: {surface: B2, rms_nm: [3, 5]}}
+      roughness: {surface: B2, rms_nm: [3, 5]}, process: etch}
+process:
+  etch: {variable: etch_time_s, surface: B2, settings: [{value: 30, rms_nm: 3, uncertainty: {rms_nm: 0.1}},
+    {value: 60, rms_nm: 4, uncertainty: {rms_nm: 0.1}}]}
+  polish: {variable: etch_time_s, surface: Sub1, settings: [{value: 30, rms_nm: 0.2, uncertainty: {rms_nm: 0.01}},
+    {value: 60, rms_nm: 0.3, uncertainty: {rms_nm: 0.01}}], together_with: etch}
 """
 
 

@@ -73,3 +73,44 @@ def test_a_power_law_between_beams_on_rough_ground_predicts_those_that_were_left
     law, error = chart.checked_power_law(*dimensions.T, np.array(lengths), middle)
     assert 0 < error < chart.ALLOWED
     assert_allclose([law.thickness_power, law.gap_power], [0.75, 0.5], atol=0.06)
+
+
+# Between humidities
+
+AXIS = np.linspace(0.44, 0.95, 9)
+FINE = np.linspace(0.44, 0.95, 400)
+CURVES = {
+    "saturated": lambda rh: 7e-4 * (1 - rh) ** 0.25,
+    "bent": lambda rh: 1e-3 - 6e-4 * (rh - 0.7) ** 2,
+    "wave": lambda rh: 6e-4 * np.exp(0.1 * np.sin(6 * rh)),
+}
+
+
+@pytest.mark.parametrize("curve", CURVES.values(), ids=CURVES)
+def test_the_stated_error_between_humidities_is_at_least_the_true_one_and_below_that_of_lines(curve):
+    true, lengths = curve(FINE), curve(AXIS)
+    error = np.max(np.abs(chart.between(AXIS, lengths, FINE) / true - 1))
+    stated = chart.error_between(AXIS, lengths)
+    assert error < stated < 0.03
+    assert np.max(np.abs(np.interp(FINE, AXIS, lengths) / true - 1)) > error  # control
+
+
+def test_between_humidities_lengths_stay_between_those_of_their_neighbours_and_pass_through_them():
+    lengths = 6e-4 * np.array([1.0, 1.0, 0.9, 0.3, 0.3, 0.35, 0.2, 0.1, 0.1])
+    assert_allclose(chart.between(AXIS, lengths, AXIS), lengths, rtol=1e-12)
+    found, cell = chart.between(AXIS, lengths, FINE), np.clip(np.searchsorted(AXIS, FINE) - 1, 0, 7)
+    ends = np.sort([lengths[cell], lengths[cell + 1]], axis=0)
+    assert np.all((found >= ends[0] * (1 - 1e-9)) & (found <= ends[1] * (1 + 1e-9)))
+
+
+def test_a_jump_between_humidities_is_stated_and_few_humidities_have_no_error():
+    lengths = np.where(AXIS < 0.7, 6e-4, 3e-4)
+    assert chart.error_between(AXIS, lengths) > 0.3
+    assert np.isnan(chart.error_between(AXIS[:4], lengths[:4]))
+    assert np.isnan(chart.error_between(AXIS, np.append(lengths[:8], np.inf)))
+
+
+@pytest.mark.parametrize("number", [5, 6, 9, 10])
+def test_both_ends_are_kept_by_the_check_whatever_the_number_of_humidities(number):
+    axis = np.linspace(0.4, 0.9, number)
+    assert chart.error_between(axis, np.exp(axis)) < 1e-3

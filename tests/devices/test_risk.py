@@ -176,33 +176,6 @@ def test_a_beam_sticks_in_the_shape_that_sticks_at_the_shorter_length():
     assert_array_equal(sticking, [700e-6, tips[1]])
 
 
-# Sampled surfaces
-
-
-def test_the_error_from_groups_is_the_scatter_of_repeated_studies():
-    # The mean of 200 numbers, in 10 groups.
-    rng, values, errors = np.random.default_rng(8), [], []
-    for _ in range(400):
-        sample = rng.exponential(size=(10, 20))
-        errors.append(risk.error_of_surfaces(sample.mean(axis=1)))
-        values.append(sample.mean())
-    assert_allclose(np.sqrt(np.mean(np.square(errors))), np.std(values), rtol=4 / np.sqrt(2 * 400) + 0.02)
-    same = np.column_stack([np.full(10, 0.1), np.linspace(1, 2, 10)])
-    assert_array_equal(np.isnan(risk.error_of_surfaces(same)), [True, False])
-
-
-def test_the_error_from_groups_is_that_of_their_mean():
-    values = np.array([1.0, 2.0, 4.0])
-    expected = np.sqrt(np.sum((values - values.mean()) ** 2) / (3 * 2))
-    assert_allclose(risk.error_of_surfaces(values), expected)
-    assert_allclose(risk.error_of_surfaces([1.0, 2.0]), 0.5)
-
-
-def test_the_scatter_of_one_group_is_refused():
-    with pytest.raises(ValueError, match="two groups of samples, got 1"):
-        risk.error_of_surfaces([1.0])
-
-
 # The end of the distribution of beams
 
 

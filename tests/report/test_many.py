@@ -136,7 +136,7 @@ def figure_13(moments, count):
     at, known = humidities(count), ("rms", "skewness", "kurtosis")[:moments]
     slopes = {m: (np.full((2, len(at)), k + 1.0), np.full((2, len(at)), 0.1)) for k, m in enumerate(known)}
     energies = RNG.random((2, len(at), 5))
-    found = {("b", m): study_sensitivity.layout(energies, (0.95, 1.05), slopes[m], at) for m in known}
+    found = {("b", m): study_sensitivity.layout(energies, (0.95, 1.05), slopes[m], slopes[m], at) for m in known}
     return figures_studies.sensitivities(found, {("b", m, at[-1]): -float(k) for k, m in enumerate(known)})
 
 

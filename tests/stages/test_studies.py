@@ -54,16 +54,21 @@ def shifted():
 
 def test_sensitivity_is_that_of_the_energies_at_both_values(shifted):
     settings = small.settings_of(sensitivity, job_settings(small.PLAN, "studies/sensitivity/b_rms"))
-    found = sensitivity.compute(shifted, settings)
+    plain = small.settings_of(moments, job_settings(small.PLAN, "studies/sensitivity/contact/b_rms_less"))
+    unchanged = stage_contact.compute(small.surfaces(), "b", "NG", plain, range(3))
+    found = sensitivity.compute(shifted, unchanged, settings)
     assert list(found.humidity) == [0.44, 0.55, 0.67, 0.80, 0.88, 0.92]
     assert list(found.moment) == [moments.moment(contact) for contact in shifted]
     for k, h in enumerate(found.humidity.values):
         energies = [curves.energies(contact, h, WATER) for contact in shifted]
         assert_array_equal(found.adhesion_energy[:, k], energies)
-    # The slope of the mean as Fig. 13 defines it, to the first order of the step.
+    # The slope of the mean as Fig. 13 defines it, but for the square of the step times the slope.
     less, more = found.adhesion_energy.mean("sample")
-    plain = (more - less) / (0.5 * (more + less)) / 0.1
-    assert_allclose(found.slope.sel(statistic="mean"), plain, rtol=0.02, atol=0.02)
+    assert_allclose(found.slope.sel(statistic="mean"), np.log(more / less) / np.log(1.1 / 0.9), rtol=1e-6)
+    # Differences to either side are those of the samples in common with the unchanged contact.
+    energies = found.adhesion_energy[:, :, :3].mean("sample")
+    here = np.mean([curves.energies(unchanged, h, WATER) for h in found.humidity.values], axis=1)
+    assert_allclose(found.difference, [(energies[0] / here - 1) / -0.1, (energies[1] / here - 1) / 0.1], rtol=1e-9)
 
 
 # Slopes with common random numbers

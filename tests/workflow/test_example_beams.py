@@ -22,12 +22,12 @@ AXIS = np.linspace(200e-6, 700e-6, 200)
 def cracks(humidity):
     """Cracks of beams that are shorter in wetter air."""
     found = 1e-3 * (1.6 - humidity) * np.random.default_rng(0).lognormal(0, 0.05, 40)
-    groups = np.stack([found, 1.01 * found])
     return xr.Dataset(
         {
             "crack_length": ("device", found),
-            "crack_length_of_group": (("group", "device"), groups),
             "foundation_length": 4e-6,
+            "uniform_length": found.mean(),
+            "surfaces_covariance": (("of", "with"), np.diag([1e-4, 0.0])),
         }
     )
 

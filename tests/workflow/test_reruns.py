@@ -67,7 +67,7 @@ READ_BY = {
     " device_contact tip_contact",
     "character": "table_1 checks",
     "contact_chunk": "contact",
-    "contact": "forces fit humidity variant cracks chart",
+    "contact": "forces fit humidity variant cracks chart sensitivity",
     "forces": "fit chaos table_3 sample_sizes orders mesh resampling checks",
     "sensitivity_contact": "sensitivity",
     "variant_summits": "variant_contact",

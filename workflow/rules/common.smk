@@ -8,6 +8,7 @@ from functools import cache
 from snakemake.logging import logger
 
 from stiction.config import files, merging, messages, scans, test_beams
+from stiction.config.surfaces import process
 from stiction.plan import cost, memory
 from stiction.plan.planner import Planner
 from stiction.plan.stage import WILDCARDS
@@ -56,7 +57,7 @@ def rules_of_the_configuration():
     folder = PACKAGE / "config"
     modules = [
         code(folder / f"{name}.py")
-        for name in ("validation", "surfaces/grid", "keys", "meetings", "relations", "relations_devices", "messages")
+        for name in ("validation", "surfaces/grid", "surfaces/process_relations", "keys", "meetings", "relations", "relations_devices", "messages")
     ]
     return [*modules, (folder / "schema.yaml").read_text(encoding="utf-8")]
 
@@ -67,8 +68,9 @@ def read_configuration():
     contents = {file: files.read(file) for file in snakemake_patches.files_of_configuration(workflow)}
     for file in contents:  # files of scans and of test beams are relative to the first match
         config.update(scans.resolve_scan_paths(config, contents[file], file.parent))
+        config.update(process.resolve_scan_paths(config, contents[file], file.parent))
         config.update(test_beams.with_files(config, contents[file], file.parent))
-    config.update(merging.expanded(config))
+    config.update(process.with_surfaces(merging.expanded(config)))
     scanned = scans.has_scans(config)
     preliminary, following = (
         validated() if scanned else remember(["valid", config, rules_of_the_configuration()], validated)

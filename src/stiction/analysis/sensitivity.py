@@ -41,6 +41,25 @@ def normalised_slope(values: Sequence[np.ndarray], at: Sequence[float]) -> np.nd
     return np.sign(at[0]) * np.log(values[1] / values[0]) / np.log(at[1] / at[0])
 
 
+def one_sided(energies: np.ndarray, base: np.ndarray, at: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Normalised differences of the mean energy to less and to more of a moment, with jackknife errors, (2, ...) [-].
+
+    Energies (2, n, ...) are those of n samples at two values of a moment and ``base`` (n, ...) in their middle [J m⁻²];
+    sample k has the same random numbers in all. A difference is (|x|/y) Δy/Δx, straight in y. Of a curved dependence,
+    such as an exponential one, both differ from the slope of `normalised_slope`.
+    """
+    middle = np.mean(at)
+    steps = (np.asarray(at) - middle) / abs(middle)
+    samples = np.stack([*energies, base], axis=1).astype(float)
+
+    def differences(means):
+        """Both differences from the mean energies [-]."""
+        *changed, here = means.reshape(samples.shape[1:])
+        return np.array([(there / here - 1) / step for there, step in zip(changed, steps, strict=True)])
+
+    return jackknife(differences, samples.reshape(len(samples), -1))
+
+
 def energy_sensitivity(energies: np.ndarray, at: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
     """Normalised sensitivity of mean and standard deviation of the adhesion energy, with jackknife standard errors.
 

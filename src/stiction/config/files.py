@@ -10,7 +10,7 @@ from stiction.config.cases import in_numbers
 from stiction.config.merging import expanded, merged
 from stiction.config.reading import PAPER, paper, read
 from stiction.config.scans import complete, resolve_scan_paths
-from stiction.config.surfaces import described
+from stiction.config.surfaces import described, process
 
 
 def load(*overlays: str | Path | Mapping) -> dict:
@@ -44,7 +44,7 @@ def load(*overlays: str | Path | Mapping) -> dict:
 def joined(*overlays: str | Path | Mapping) -> dict:
     """Configuration of the paper, changed by overlays as in `load`, as it is: neither checked nor in normal form."""
     changes = (_in_memory(one) if isinstance(one, Mapping) else located(one) for one in overlays)
-    return expanded(functools.reduce(merged, changes, read(PAPER)))
+    return process.with_surfaces(expanded(functools.reduce(merged, changes, read(PAPER))))
 
 
 def _in_memory(overlay):
@@ -75,7 +75,8 @@ def located(path: str | Path) -> dict:
     """
     content = read(path)
     folder = Path(path).parent
-    return test_beams.with_files(resolve_scan_paths(content, content, folder), content, folder)
+    located = process.resolve_scan_paths(resolve_scan_paths(content, content, folder), content, folder)
+    return test_beams.with_files(located, content, folder)
 
 
 def normalised(config: dict) -> dict:

@@ -11,7 +11,17 @@ from itertools import chain
 from typing import NamedTuple
 
 #: Keys that every device may have.
-COMMON = ("kind", "pair", "humidities", "uncertainty", "test_beams", "requirement", "roughness", "touchdowns")
+COMMON = (
+    "kind",
+    "pair",
+    "humidities",
+    "uncertainty",
+    "test_beams",
+    "requirement",
+    "roughness",
+    "process",
+    "touchdowns",
+)
 COMMON += ("voltage_V", "offset_V", "dielectric")
 #: Keys that depend on the kind, what they are called and their unit.
 KEYS = {

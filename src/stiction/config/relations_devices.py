@@ -324,11 +324,15 @@ def _scanned(config, name):
 
 @relation
 def requirements_and_roughnesses_come_together(config):
-    """Require a requirement and a roughness together. They are compared along a quantity of a surface."""
-    for stated, other in (("requirement", "roughness"), ("roughness", "requirement")):
+    """Require a requirement with a roughness or a process. Both are compared along surfaces."""
+    for stated, others in (
+        ("requirement", ("roughness", "process")),
+        ("roughness", ("requirement",)),
+        ("process", ("requirement",)),
+    ):
         for name, _ in config.entries("devices", stated):
-            if other not in config.names(f"devices.{name}"):
-                yield f"devices.{name}.{stated}", f"must come with {other}"
+            if not set(others) & set(config.names(f"devices.{name}")):
+                yield f"devices.{name}.{stated}", f"must come with {' or '.join(others)}"
 
 
 @relation

@@ -9,14 +9,14 @@ from stiction.config.keys import Keys, Relations
 from stiction.config.messages import ConfigError, schema_problems
 from stiction.config.reading import paper
 from stiction.config.relations import schema
-from stiction.config.surfaces import described, grid
+from stiction.config.surfaces import described, grid, process, process_relations
 
 #: Relations between the keys of devices, and of arrays of test beams in their place.
 _OF_DEVICES = Relations([*meetings.relation, *relations_devices.relation])
 #: All relations between keys.
-RELATIONS = Relations([*relations.relation, *_OF_DEVICES])
+RELATIONS = Relations([*relations.relation, *_OF_DEVICES, *process_relations.relation])
 #: Sections that a configuration need not have.
-_OPTIONAL = {"materials": {}, "devices": {}, "test_beams": {}}
+_OPTIONAL = {"materials": {}, "devices": {}, "test_beams": {}, "process": {}}
 
 
 def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
@@ -57,7 +57,8 @@ def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
         on_grid = grid.completed(surfaces, estimates, wrong)
         problems += _broken(scans.with_preliminary_estimates(on_grid, estimates), wrong, files, origins)
     if problems:
-        raise ConfigError(*dict.fromkeys(test_beams.in_files(str(problem), stated) for problem in problems))
+        said = process.in_settings(problems, config if isinstance(config, dict) else {})
+        raise ConfigError(*dict.fromkeys(test_beams.in_files(problem, stated) for problem in said))
     return estimates
 
 

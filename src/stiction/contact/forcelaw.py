@@ -495,6 +495,13 @@ def energy(law: np.ndarray) -> float | np.ndarray:
     return f_max * (1.5 / a_right + 0.5 / a_left)
 
 
+def mean_law(laws: np.ndarray) -> np.ndarray:
+    """Law (4,) of the mean energy, largest attraction and its distance of laws (n, 4), of their mean asymmetry."""
+    law = np.mean(laws, axis=0)
+    law[2:] *= energy(law) / np.mean(energy(laws))
+    return law
+
+
 def fit_errors(
     distance: np.ndarray,
     curve: Callable[[int], np.ndarray],

@@ -91,6 +91,12 @@ def held_length(zone: Beam, laws: np.ndarray) -> float:
     return shortest_held(zone, along, _longest(zone, laws))
 
 
+def held_on_mean(zone: Beam, laws: np.ndarray) -> float:
+    """Length `held_length` on strips that all have the mean of force laws (n, 4), or the longest tried one [m]."""
+    uniform = np.tile(forcelaw.mean_law(laws), (zone.elements, 1))
+    return min(shortest_held(zone, uniform, _longest(zone, uniform)), _longest(zone, uniform))
+
+
 def _longest(zone, laws):
     """Length of arrest of both cracks of a bridge on its mean law, the start of its search [m]."""
     return 2 * float(arrest_length(forcelaw.energy(laws).mean(), zone))

@@ -8,11 +8,14 @@ and used only as far as beams that were left out confirm it.
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 
 from stiction.rounding import is_at_most
 
 #: Largest relative error of a power law that is used.
 ALLOWED = 0.01
+#: Fewest humidities of which every second one can check a cubic between the others.
+FEWEST_HUMIDITIES = 5
 
 
 @dataclass(frozen=True)
@@ -81,3 +84,25 @@ def checked_power_law(
     if error > ALLOWED:
         raise ValueError(f"a power law errs by {error:.1%} between the computed beams, more than {ALLOWED:.0%}")
     return law, error
+
+
+def between(humidities: np.ndarray, lengths: np.ndarray, at: np.ndarray) -> np.ndarray:
+    """Lengths between computed ones (n,) at increasing humidities (n,) [-], a monotone cubic of the logarithm [m].
+
+    It never leaves the range of two neighbours (Fritsch and Carlson), so that a computed minimum is the least length.
+    """
+    return np.exp(PchipInterpolator(humidities, np.log(lengths))(at))
+
+
+def error_between(humidities: np.ndarray, lengths: np.ndarray) -> float:
+    """Largest relative error of `between` at humidities that were left out, NaN for fewer than five of them [-].
+
+    Every second one is left out, apart from the ends. The cubic through all of them has half the distances, so that
+    this is more than its own error. It contains the error of simulation of the lengths (n,) [m].
+    """
+    if len(humidities) < FEWEST_HUMIDITIES or not np.isfinite(lengths).all():
+        return np.nan
+    left_out = np.arange(1, len(humidities) - 1, 2)
+    kept = np.delete(np.arange(len(humidities)), left_out)
+    found = between(humidities[kept], lengths[kept], humidities[left_out])
+    return float(np.max(np.abs(found / lengths[left_out] - 1)))

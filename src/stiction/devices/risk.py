@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
-from scipy.special import betainc, betaincinv
+from scipy.special import betainc, betaincinv, ndtri
 
 from stiction.devices.tail import FEWEST, TAIL, fit_tail, scaled_errors
 
@@ -36,13 +36,14 @@ class Basis(StrEnum):
 
 @dataclass(frozen=True)
 class SafeLength:
-    """Largest length with a one-sided upper bound of P(stuck) of at most ``share``, given the sampled surfaces."""
+    """Largest length with a one-sided upper bound of P(stuck) of at most ``share``."""
 
     share: float  #: p [-]
     length: float  #: the safe length: one-sided 95 % lower bound of ``estimate`` [m]
     estimate: float  #: length with P(stuck) = p [m]; infinite where it is beyond all known lengths
     error: float  #: standard error of the estimate due to the number of beams [m]; NaN where that is infinite
     basis: Basis
+    surfaces_error: float = np.nan  #: the same due to the number of sampled surfaces [m]; NaN where they do not matter
 
 
 @dataclass(frozen=True)
@@ -212,27 +213,18 @@ def _fitted(sticking, share, rng, known):
     return SafeLength(share, bound, estimate, float(estimate * fitted.slope * errors.std()), basis)
 
 
-def error_of_surfaces(of_group: np.ndarray) -> float | np.ndarray:
-    """Standard error due to the finite number of sampled surfaces, from the scatter between groups of them.
+def on_sampled_surfaces(safe: SafeLength, of_length: float, of_estimate: float, known: Known) -> SafeLength:
+    """Safe length with the standard errors of itself and of its estimate due to the number of sampled surfaces [m].
 
-    The lengths (groups, ...) are each computed from one group of the samples alone. The error contains that due to the
-    number of devices, divided by the square root of the number of groups. A jackknife would enlarge this part: leaving
-    out a few samples changes the ground slightly, and a crack may then stop at quite another place. The error is NaN
-    where the groups do not differ: tips, one for each beam, are the same in all groups, and their scatter is among the
-    errors due to the number of devices. It is NaN as well where a group has no finite length.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two groups.
+    The distance of the bound from the estimate, given the surfaces, and 1.64 errors are margins of independent errors
+    on a logarithmic scale: their squares are added. The error of the estimate is NaN where it does not depend on the
+    surfaces: tips, one for each beam, are the same whatever the strips, and their scatter is among the errors due to
+    the number of devices.
     """
-    values = np.asarray(of_group, float)
-    groups = len(values)
-    if groups < 2:
-        raise ValueError(f"a scatter needs two groups of samples, got {groups}")
-    values = np.where(np.isfinite(values), values, np.nan)
-    differ = np.ptp(values, axis=0) > 0
-    return np.where(differ, values.std(axis=0, ddof=1) / np.sqrt(groups), np.nan)[()]
+    own = max(np.log(safe.estimate / safe.length), 0.0) if np.isfinite(safe.estimate) else 0.0
+    both = np.hypot(own, ndtri(CONFIDENCE) * of_length / safe.length)
+    length = max(float(safe.length * np.exp(own - both)), known.safe)
+    return replace(safe, length=length, surfaces_error=float(of_estimate) if of_estimate > 0 else np.nan)
 
 
 def one_in(share: float) -> str:

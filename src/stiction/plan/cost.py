@@ -25,11 +25,10 @@ _DRAWN = {"sampling", "contact", "beam"}
 _FULL = {"strips", "humidities"}
 
 
-def job_cost(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets: int = 1, repeats: int = 1) -> float:
+def job_cost(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets: int = 1) -> float:
     """CPU time of a job [s], from its settings in the units of the configuration.
 
-    A job that writes several ``datasets`` computes as many contacts, a chunk of them its part of the samples. Beams are
-    released ``repeats`` times.
+    A job that writes several ``datasets`` computes as many contacts, a chunk of them its part of the samples.
 
     Examples
     --------
@@ -42,7 +41,7 @@ def job_cost(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets
     contacts = sum(map(_contact_time, sections)) * datasets / parts
     full = (section for section in sections if section.keys() >= _FULL)
     strips = sum(section["strips"] * len(section["humidities"]) for section in full)
-    return PER_JOB + contacts + PER_STRIP * strips + PER_BEAM * repeats * sum(map(_beams, sections))
+    return PER_JOB + contacts + PER_STRIP * strips + PER_BEAM * sum(map(_beams, sections))
 
 
 def minutes(seconds: float, longest: int) -> int:

@@ -215,9 +215,9 @@ class DevicePlan:
 
     def _rms_of_both(self, pair):
         """Standard deviation of the sum of the heights of both surfaces of a pair [nm]."""
-        return math.hypot(*(self._rms(self.config["pairs"][pair][side]) for side in SIDES))
+        return math.hypot(*(self.rms(self.config["pairs"][pair][side]) for side in SIDES))
 
-    def _rms(self, surface):
+    def rms(self, surface: str) -> float:
         """Standard deviation of the heights of a surface, preliminary if it is described by scans [nm]."""
         entry = self.config["surfaces"][surface]
         return (self._preliminary[surface] if is_measured(entry) else entry)["rms_nm"]
@@ -243,6 +243,11 @@ class DevicePlan:
     def mapped(self) -> list[str]:
         """Devices of `roughened` computed along two quantities."""
         return [name for name in self.roughened if len(ROUGHNESSES.keys() & self.sections[name]["roughness"]) > 1]
+
+    @cached_property
+    def processed(self) -> list[str]:
+        """Devices computed over a process."""
+        return [name for name, device in self.sections.items() if "process" in device]
 
     @cached_property
     def budgeted(self) -> list[str]:

@@ -70,7 +70,7 @@ class Job:
         if "chunks" in self.inputs:
             return cost.PER_JOB
         datasets = len(self.names) if self.stage.each else 1
-        return cost.job_cost(self.settings, vars(self.at), datasets, self.stage.repeats)
+        return cost.job_cost(self.settings, vars(self.at), datasets)
 
     def compute(self, data: Mapping[str, Any]) -> Any:
         """Result for the data of the inputs."""

@@ -35,6 +35,8 @@ FOLDERS = ("stages", "report")
 WILDCARDS = {
     "surface": "[A-Za-z][A-Za-z0-9_-]*",
     "device": "[A-Za-z][A-Za-z0-9]*",
+    "process": "[A-Za-z][A-Za-z0-9]*",
+    "variable": "[A-Za-z][A-Za-z0-9_]*",
     "pair": PAIR_IN_AIR,
     "model": "|".join(BEAM_MODELS),
     "case": CASE,
@@ -158,7 +160,6 @@ class Stage:
     temporary: bool = False  #: whether the files are deleted once they have been read
     cluster: bool = False  #: whether a job is worth a job of its own on a cluster
     minutes: int = USUAL_MINUTES  #: longest run time of such a job
-    repeats: int = 1  #: how often a job releases the beams of its settings
     memory: Callable[[Any], float] | None = None  #: of a job that needs more than its fields, by the plan [MB]
     priority: int = 0  #: jobs of a higher priority start first
 

@@ -8,12 +8,15 @@ from scipy.stats import norm
 from vectors import sampled_vectors
 
 from stiction.beam.cantilever import Beam
+from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation
 from stiction.contact import forcelaw
 from stiction.contact.environment import Water
+from stiction.devices.sampling import SampledSurfaces
 from stiction.stages.contact import curves
 from stiction.stages.devices import cracks, safe_lengths
 from stiction.stages.devices.opening import DesignedBeam
+from stiction.stages.devices.sticking import Released
 from stiction.streams import stream
 
 UM = 1e-6
@@ -39,26 +42,35 @@ def contact():
     return xr.Dataset({"bearing_area": (("sample", "height"), area), "step": 0.05e-9}, coords={"height": height})
 
 
-def computed(wanted, vectors, groups=2):
-    """Dataset of stage cracks on given vectors, with fewer groups."""
-    limit = 1.2 * vectors[:, 1].max()
+def computed(wanted, vectors, limit=None):
+    """Dataset of stage cracks on given vectors."""
+    limit = limit or 1.2 * vectors[:, 1].max()
     drawn = {"vectors": lambda *_: (vectors, limit), "share_flat": lambda *_: 0.0}
-    with patch.multiple(curves, **drawn), patch.object(cracks, "GROUPS", groups):
+    with patch.multiple(curves, **drawn):
         return cracks.compute(contact(), wanted)
 
 
 VECTORS = sampled_vectors(400, 0.24)
 
 
-def lognormal_cracks(device=C1, number=400, groups=4, spread=0.025, seed=1):
+#: Errors of mean and scatter of the samples.
+SURFACES = SampledSurfaces(750 * UM, np.array([[4e-6, -3e-6], [-3e-6, 4e-4]]))
+
+
+def exactly(lengths, tips=np.inf):
+    """Released cantilevers that stick at lengths (n,), or by their tips from others, with no error of the surfaces."""
+    exact = SampledSurfaces(1e-3, np.zeros((2, 2)))
+    return Released(C1, lengths, np.inf, 0.0, exact, np.broadcast_to(tips, lengths.shape))
+
+
+def lognormal_cracks(device=C1, number=400, spread=0.025, seed=1, surfaces=SURFACES):
     """Dataset of stage cracks with lognormal lengths around 700 µm."""
     rng = np.random.default_rng(seed)
-    found = 700 * UM * np.exp(spread * rng.standard_normal((groups + 1, number)))
+    found = 700 * UM * np.exp(spread * rng.standard_normal(number))
     laws = forcelaw.coefficients(VECTORS[:50], 1.2 * VECTORS[:, 1].max())
     beam = Beam(1500 * UM, 30 * UM, 2.6 * UM, 164e9, 20 * UM, 200)
-    return cracks.layout(device.opening, found[0], list(found[1:]), beam, laws, RMS).assign(
-        reach=np.inf, share_flat=0.0, longest_strip=device.strip
-    )
+    beams = Released(device, found, np.inf, foundation_length(beam, laws), surfaces, None)
+    return cracks.layout(beams, beam, laws, RMS).assign(share_flat=0.0, longest_strip=device.strip)
 
 
 def wanted(device=C1, shares=(1e-2, 1e-3)):

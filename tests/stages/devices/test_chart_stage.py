@@ -14,9 +14,11 @@ from stiction.beam.energy import apparent_adhesion_energy, arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
 from stiction.constants import WATER_SURFACE_ENERGY
+from stiction.contact import forcelaw
 from stiction.contact.meniscus import meniscus_height
 from stiction.devices import arcs
 from stiction.devices.chart import ALLOWED
+from stiction.devices.sampling import sampled_surfaces
 from stiction.stages.contact import curves
 from stiction.stages.devices import chart, opening, sticking
 
@@ -122,23 +124,28 @@ def computed(device, thicknesses, gaps, tips=None, shares=(1e-2,)):
         return chart.compute(contact(), None if tips is None else xr.Dataset(), wanted), wanted
 
 
-def alone(device, number, tips=None):
-    """Sticking lengths of a device by shape, as in the stages cracks and safe_lengths."""
+def alone(device, wanted, tips=None):
+    """Safe lengths of a device by shape and share, as in the stages cracks and safe_lengths."""
     model = opening.fitted(VECTORS, 1.2 * VECTORS[:, 1].max(), Truncation(3, 0.001))
     address = opening.addresses(settings())
     laws = draw_laws(model, opening.LAWS, address("mesh"))
     ground = device.opening.resolved(device, laws)
     held = None if tips is None else arcs.arc_length(tips, device.beam)
-    lengths = opening.arrests(device, ground, partial(draw_laws, model), number, address)
-    return sticking.sticking_lengths(lengths, foundation_length(ground[0], laws), device, held)
+    lengths = opening.arrests(device, ground, partial(draw_laws, model), wanted.beams, address)
+    sampled = forcelaw.coefficients(VECTORS, 1.2 * VECTORS[:, 1].max())
+    opens, on_mean = device.opening, partial(device.opening.length_on_mean, beam=device.beam)
+    surfaces = sampled_surfaces(sampled, opens.contribution, on_mean, opens.uniform(ground[0], sampled))
+    beams = sticking.Released(device, lengths, np.inf, foundation_length(ground[0], laws), surfaces, held)
+    found = sticking.by_shape(beams, wanted, sticking.known(device, WATER, 0.67, np.inf))
+    return [[one.length for one in row] for row in found.values()]
 
 
 @pytest.mark.slow
 def test_a_chart_has_the_safe_lengths_of_its_device_and_longer_ones_for_thicker_beams():
     found, wanted = computed(R1, (1.6 * UM, 2 * UM), (2 * UM,))
-    (expected,) = sticking.safe_lengths(alone(R1, 200)[opening.MIDDLE], wanted)
+    ((expected,),) = alone(R1, wanted)
     thin, thick = found.safe_length.values[:, 0, 0, 0]
-    assert thick == expected.length
+    assert thick == expected
     assert thin < thick
     assert list(found["shape"]) == [opening.MIDDLE]
     assert found.by_elements.values.tolist() == [[1], [1]]
@@ -149,8 +156,7 @@ def test_a_chart_has_the_safe_lengths_of_its_device_and_longer_ones_for_thicker_
 def test_tips_of_a_chart_hold_as_those_of_the_device():
     tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(200))
     found, wanted = computed(C1, (2 * UM, C1.thickness), (C1.gap,), tips, (1e-2, 1e-3))
-    expected = [sticking.safe_lengths(values, wanted) for values in alone(C1, 200, tips).values()]
-    assert_allclose(found.safe_length[1, 0], [[one.length for one in row] for row in expected], rtol=1e-12)
+    assert_allclose(found.safe_length[1, 0], alone(C1, wanted, tips), rtol=1e-12)
 
 
 def test_limits_of_saturated_air_are_those_of_flooded_flats_by_shape():

@@ -5,9 +5,10 @@ from itertools import product
 import numpy as np
 import pytest
 import xarray as xr
-from ground import safe_with_tips, safe_without_tips
+from ground import exactly, safe_with_tips, safe_without_tips
 from legends import covering
 
+from stiction.devices.chart import error_between
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
 from stiction.report.style import save
@@ -128,8 +129,7 @@ def test_entries_of_a_legend_look_different(found):
 
 
 def test_the_risk_can_be_read_at_the_length_of_the_device(found):
-    sticking = {shape: np.linspace(200e-6, 400e-6, 100) for shape in (S_SHAPE, EITHER)}
-    own = safe_lengths.at_length(sticking, [sticking, sticking], np.inf, 300e-6)
+    own = safe_lengths.at_length(exactly(np.linspace(200e-6, 400e-6, 100)), 300e-6)
     figure = figures_devices.risk({("C1", 0.44): found["C1", 0.44].assign(own)}, WARNINGS)
     (panel,) = figure.axes
     share = 100 * float(own["stuck_at_length"][1][-1, 0])
@@ -193,6 +193,24 @@ def test_the_chart_shows_the_middle_share_of_every_thickness_gap_and_shape():
         curve = next(line for line in panels[20, shape].lines if len(line.get_xdata()) == 3)
         np.testing.assert_allclose(curve.get_xdata(), [0.4, 0.5, 0.6])
         np.testing.assert_allclose(curve.get_ydata(), np.array([2, 1, 0.5]) * length)
+
+
+NINE = {("C1", round(rh, 2)): charted(round(rh, 2), 2 - rh**2) for rh in np.linspace(0.4, 0.8, 9)}
+
+
+def test_a_chart_at_enough_humidities_has_a_cubic_between_its_dots_with_its_error():
+    panel = figures_devices.chart(NINE, {}).axes[0]
+    axis, lengths = np.array([rh for _, rh in NINE]), 100 * np.array([2 - rh**2 for _, rh in NINE])
+    stated = f"± {100 * error_between(axis, lengths):.2g} %"
+    dots = [line for line in panel.lines if line.get_marker() == "."]
+    assert [len(line.get_xdata()) for line in dots[:2]] == [9, 9]
+    assert sum(len(line.get_xdata()) == 200 for line in panel.lines) == 4  # lengths and bounds of two thicknesses
+    assert any(stated in text.get_text() for text in panel.get_legend().get_texts())
+    assert stated.removeprefix("± ") in tables_devices.chart(NINE, {case: [] for case in CURVES}).caption
+    few = figures_devices.chart(CHARTS, STEEP)
+    assert not any("cubic" in text.get_text() for text in few.axes[0].get_legend().get_texts())
+    assert "cubic" not in tables_devices.chart(CHARTS, STEEP).caption
+    assert covering(few) == covering(figures_devices.chart(NINE, {})) == []
 
 
 def test_the_axis_of_a_chart_is_that_of_its_own_lengths():

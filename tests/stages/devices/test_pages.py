@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from ground import exactly
 from hostile import HOSTILE, Reading
 from matplotlib.figure import Figure
 from test_device_outputs import charted
@@ -45,10 +46,7 @@ def safe(kind="cantilever", longest=600e-6, reach=np.inf):
         shapes[EITHER] = 0.7 * shapes[S_SHAPE]
     known = sticking.known(device, settings.water, 0.67, reach)
     bounds = {shape: sticking.safe_lengths(values, settings, known[shape]) for shape, values in shapes.items()}
-    errors = {shape: np.full(3, 1e-6) for shape in shapes}
-    return safe_lengths.layout(shapes, bounds, known, errors, settings).assign(
-        rms=3e-9, share_flat=0.0, longest_strip=1e-3
-    )
+    return safe_lengths.layout(shapes, bounds, known, settings).assign(rms=3e-9, share_flat=0.0, longest_strip=1e-3)
 
 
 @pytest.fixture(scope="module")
@@ -137,7 +135,7 @@ def test_the_page_of_a_beam_says_which_lengths_come_free():
     sentence = sentences.safe_sentence(0.67, found)
     lengths = [1e6 * float(found.safe_length.sel(shape=shape, share=1e-3)) for shape in found["shape"].values]
     assert f"up to {lengths[1]:.0f} µm come free" in sentence
-    assert "at most 1 in 1000 (95 % confidence, given the drawn surfaces)" in sentence
+    assert "at most 1 in 1000 (95 % confidence)" in sentence
     assert sentence.endswith(f"this is true of up to {lengths[0]:.0f} µm.")
     assert "tip" not in sentences.safe_sentence(0.67, safe("bridge"))
 
@@ -318,8 +316,7 @@ def test_text_is_shown_as_it_is():
 def of_length(length, **more):
     """Safe lengths as of `safe`, of devices of a length [m]."""
     lengths = np.linspace(2 / 3, 1, 400) * 600e-6
-    sticking = {S_SHAPE: lengths, EITHER: 0.7 * lengths}
-    return safe(**more).assign(safe_lengths.at_length(sticking, [sticking, sticking], np.inf, length))
+    return safe(**more).assign(safe_lengths.at_length(exactly(lengths, 0.7 * lengths), length))
 
 
 def test_the_first_sentence_states_the_share_at_the_length_of_the_device():

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ground import C1, R1, lognormal_cracks, safe_with_tips, safe_without_tips, wanted
+from ground import C1, R1, SURFACES, lognormal_cracks, safe_with_tips, safe_without_tips, wanted
 from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.beam.energy import apparent_adhesion_energy
@@ -24,8 +24,8 @@ def cantilever():
 
 
 def test_shares_are_those_of_the_sticking_lengths(cantilever):
-    found, _, foundation = cracks.lengths(lognormal_cracks())
-    alone = found + 2 * foundation
+    dataset = lognormal_cracks()
+    alone = cracks.lengths(dataset) + 2 * float(dataset.foundation_length)
     either = np.minimum(alone, arcs.arc_length(energies(2e-3), C1.beam))
     for shape, lengths in ((S_SHAPE, alone), (EITHER, either)):
         one = cantilever.sel(shape=shape)
@@ -38,23 +38,45 @@ def test_shares_are_those_of_the_sticking_lengths(cantilever):
 
 
 def test_safe_lengths_are_those_of_the_sticking_lengths_with_their_basis_and_error(cantilever):
-    found, _, foundation = cracks.lengths(lognormal_cracks())
+    dataset = lognormal_cracks()
+    lengths = cracks.lengths(dataset) + 2 * float(dataset.foundation_length)
     for share in (1e-2, 1e-3):
-        expected = risk.safe_length(found + 2 * foundation, share, stream(2021, "safe length"))
+        expected = risk.safe_length(lengths, share, stream(2021, "safe length"))
         one = cantilever.sel(shape=S_SHAPE, share=share)
-        stated = one.safe_length, one.estimate, one.beams_error
-        assert_allclose(list(map(float, stated)), [expected.length, expected.estimate, expected.error], rtol=1e-12)
+        stated = one.estimate, one.beams_error
+        assert_allclose(list(map(float, stated)), [expected.estimate, expected.error], rtol=1e-12)
+        assert one.safe_length < expected.length
         assert str(one.basis.values) == expected.basis
 
 
-def test_the_error_of_the_surfaces_is_the_scatter_between_groups(cantilever):
-    _, of_group, foundation = cracks.lengths(lognormal_cracks())
+def on_other_samples(lengths):
+    """Lengths one standard error of each principal direction off, both ways, by hand."""
+    variances, directions = np.linalg.eigh(SURFACES.covariance)
+    for step in (np.sqrt(variances) * directions).T:
+        yield [lengths * np.exp(s * step[0] - np.log(SURFACES.length / lengths) * s * step[1]) for s in (1, -1)]
+
+
+def test_the_error_of_the_surfaces_is_that_of_the_estimate_from_lengths_on_other_samples(cantilever):
+    dataset = lognormal_cracks()
+    found, hold = cracks.lengths(dataset), 2 * float(dataset.foundation_length)
     for k, share in enumerate((1e-2, 1e-3)):
-        rng = [stream(2021, "safe length") for _ in of_group]
-        estimates = [
-            risk.safe_length(one + 2 * foundation, share, r).estimate for one, r in zip(of_group, rng, strict=True)
+        ends = [
+            [risk.safe_length(end + hold, share, stream(2021, "safe length")).estimate for end in both]
+            for both in on_other_samples(found)
         ]
-        assert_allclose(cantilever.surfaces_error[0, k], risk.error_of_surfaces(estimates), rtol=1e-9)
+        expected = np.hypot(*(np.subtract(*both) / 2 for both in ends))
+        assert_allclose(cantilever.surfaces_error[0, k], expected, rtol=1e-9)
+
+
+def test_bounds_allow_for_the_error_of_the_surfaces_and_are_those_of_the_beams_without_it(cantilever):
+    exact = replace(SURFACES, covariance=np.zeros((2, 2)))
+    alone = safe_with_tips(energies(2e-3), surfaces=exact).sel(shape=S_SHAPE)
+    assert np.all(np.isnan(alone.surfaces_error))
+    both = cantilever.sel(shape=S_SHAPE)
+    assert_array_equal(both.estimate, alone.estimate)
+    own, whole = (np.log(one.estimate / one.safe_length) for one in (alone, both))
+    surfaces = np.sqrt(whole**2 - own**2) / 1.645  # from the error of the bound, close to that of the estimate
+    assert_allclose(surfaces, both.surfaces_error / both.estimate, rtol=0.15)
 
 
 def test_tips_that_hardly_adhere_hold_no_beam_and_strong_ones_hold_all():
@@ -69,7 +91,7 @@ def test_tips_that_hardly_adhere_hold_no_beam_and_strong_ones_hold_all():
 def test_a_bridge_sticks_if_it_is_longer_than_the_shortest_that_its_middle_holds():
     found = safe_without_tips()
     assert list(found["shape"]) == [MIDDLE]
-    lengths, *_ = cracks.lengths(lognormal_cracks(R1))
+    lengths = cracks.lengths(lognormal_cracks(R1))
     assert_array_equal(found.stuck[0], risk.stuck_share(found.length.values, lengths)[0])
 
 
@@ -136,8 +158,8 @@ def test_devices_longer_than_those_simulated_may_all_stick():
     assert inside[2] < 0.5
 
 
-def test_the_error_of_a_share_is_the_scatter_between_groups():
-    _, of_group, _ = cracks.lengths(lognormal_cracks(R1))
-    shares = [np.mean(one < 700e-6) for one in of_group]
+def test_the_error_of_a_share_is_that_of_the_share_of_lengths_on_other_samples():
+    lengths = cracks.lengths(lognormal_cracks(R1))
+    ends = [[np.mean(end < 700e-6) for end in both] for both in on_other_samples(lengths)]
     found = of_length(R1, 700e-6)
-    assert_allclose(found.stuck_surfaces_error, np.std(shares, ddof=1) / np.sqrt(len(shares)), rtol=1e-9)
+    assert_allclose(found.stuck_surfaces_error, np.hypot(*(np.subtract(*both) / 2 for both in ends)), rtol=1e-9)

@@ -14,6 +14,7 @@ from typing import Any
 
 from stiction.config import memory, scans
 from stiction.config.messages import faulty
+from stiction.config.surfaces import process
 from stiction.config.units import NM_PER_UM, from_si, in_si
 from stiction.models import SIDES
 from stiction.rounding import is_at_most
@@ -65,6 +66,7 @@ def used(config: Mapping[str, Any]) -> Iterator[str]:
     for pair in pairs:
         sides = (_section(config, "pairs", pair).get(side) for side in SIDES)
         yield from (name for name in sides if isinstance(name, str))
+    yield from process.all_names(config)
 
 
 def _waves(config, name, estimates):

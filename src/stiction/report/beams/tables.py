@@ -14,6 +14,7 @@ from stiction.estimates import mean_on_shared_samples, mean_with_error
 from stiction.models import surface_model
 from stiction.plan.names import Outcome, by_case, by_name, by_outcome
 from stiction.report import published
+from stiction.report.beams import prediction
 from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, signed, with_error
 from stiction.report.model_error import column as beside
 from stiction.report.published import value
@@ -50,6 +51,8 @@ def table_3(
         rows = [row | _by_scans(row, by_scans) for row in rows]
     if errors:
         rows = [row | _by_model(row, errors) for row in rows]
+    rows = prediction.with_intervals(rows)
+    predicted = pd.DataFrame(rows) if prediction.ENDS[prediction.COVERAGES[0]][0] in rows[0] else None
     caption = (
         "Table III: crack length of the S-shaped beams, mean ± standard deviation over the beams; se: standard error of"
         " the mean, over beams and samples; deviations from the published and from the measured length. Published "
@@ -63,10 +66,13 @@ def table_3(
         caption += " Scans: standard error of the mean due to the finite scans of measured surfaces."
     if errors:
         caption += f" {beside.caption(errors)}"
+    if predicted is not None:
+        caption += f" {prediction.caption(predicted)}"
     if warnings:
         caption = with_list(f"{caption} Warnings:", warnings)
     columns = {title: of for title, of in _TABLE_3.items() if by_scans or "scans" not in title}
-    return Table.of(rows, caption, columns | (beside.COLUMN if errors else {}))
+    columns |= (beside.COLUMN if errors else {}) | (prediction.COLUMNS if predicted is not None else {})
+    return Table.of(rows, caption, columns)
 
 
 def _row_3(key, beams, forces, published):

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from stiction.config.cases import air
+from stiction.devices.chart import FEWEST_HUMIDITIES, between
 from stiction.plan.names import by_case
 from stiction.report.format import TO_UM
 from stiction.report.style import (
@@ -29,13 +30,15 @@ from stiction.report.style import (
 )
 from stiction.stages.beams.pair_warnings import numbered, with_numbers
 from stiction.stages.devices import device_warnings
-from stiction.stages.devices.chart import charts
+from stiction.stages.devices.chart import axes, charts, largest_error_between
 from stiction.stages.devices.end_states import END_STATES
 
 #: Marker of each basis of a safe length.
 _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x", "longest": ">", "flat": "|"}
 #: Height of a line of panels, and of an entry of the legends below them [in].
 _PANEL, _ENTRY = 3.3, 0.12
+#: Points of a curve between computed humidities.
+_POINTS = 200
 #: Lightest colour of a curve.
 _LIGHTEST = 0.25
 #: Space above the longest curve of a chart, in units of the range of its lengths.
@@ -149,17 +152,13 @@ def chart(
     there may be none.
     """
     _, numbers = numbered(warnings)
-    devices = {}
-    for (name, humidity), dataset in sorted(datasets.items()):
-        devices.setdefault(name, []).append(dataset.expand_dims(relative_humidity=[humidity]))
-    joint = {"data_vars": "minimal", "coords": "minimal", "compat": "equals", "join": "exact"}
-    axes = {name: xr.concat(parts, "relative_humidity", **joint) for name, parts in devices.items()}
-    placed = {name: places(whole.relative_humidity.values.tolist()) for name, whole in axes.items()}
-    subjects = [(name, *at) for name, whole in axes.items() for at in product(whole.gap.values, _shapes_of(whole))]
-    most = max(whole.sizes["thickness"] for whole in axes.values()) + 1
+    wholes = axes(datasets)
+    placed = {name: places(whole.relative_humidity.values.tolist()) for name, whole in wholes.items()}
+    subjects = [(name, *at) for name, whole in wholes.items() for at in product(whole.gap.values, _shapes_of(whole))]
+    most = max(whole.sizes["thickness"] for whole in wholes.values()) + 2
     figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
-        whole = axes[name].sel(gap=gap, shape=shape)
+        whole = wholes[name].sel(gap=gap, shape=shape)
         marks = [_listed(numbers.get((name, thickness, gap, shape), ())) for thickness in whole.thickness.values]
         legend_below(panel, _thicknesses(panel, whole, shape, marks, placed[name]))
         low, high = panel.dataLim.intervaly
@@ -193,18 +192,30 @@ def _thicknesses(panel, whole, shape, marks, placed):
     for thickness, shade, mark in zip(whole.thickness.values, shades(len(marks), _LIGHTEST), marks, strict=True):
         for part, styles in _parts(whole.sel(thickness=thickness, share=share), (line, dotted)):
             at = [placed[humidity] for humidity in part.relative_humidity.values]
-            between, lengths = part.by_elements.values == 0, TO_UM * part.safe_length
-            panel.plot(at, lengths, styles[0], color=shade)
-            panel.plot(np.array(at)[between], lengths[between], "o", color=shade, fillstyle="none")
-            panel.plot(at, TO_UM * part.flooded_length, styles[1], color=shade, linewidth=0.8)
+            by_law, lengths = part.by_elements.values == 0, TO_UM * part.safe_length
+            panel.plot(*_curve(at, lengths.values), styles[0], color=shade)
+            panel.plot(np.array(at)[by_law], lengths[by_law], "o", color=shade, fillstyle="none")
+            panel.plot(np.array(at)[~by_law], lengths[~by_law], ".", color=shade)
+            panel.plot(*_curve(at, TO_UM * part.flooded_length.values), styles[1], color=shade, linewidth=0.8)
         label = f"thickness {TO_UM * thickness:g} µm{mark}"
         named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
     panel.plot([], [], line, color="0.3", label=f"{state.legend}, p = {share:g}")
     panel.plot([], [], dotted, color="0.3", label=f"{state.legend}, flat surfaces")
+    if np.isfinite(error := largest_error_between(whole.sel(share=share))):
+        label = f"cubic between, ± {100 * error:.2g} %"
+        named.append(Line2D([], [], color="0.3", marker=".", linestyle="-", label=label))
     if not whole.by_elements.all():
         label = f"by a power law, ± {100 * float(whole.power_law_error.max()):.2g} %"
         named.append(Line2D([], [], color="0.3", marker="o", fillstyle="none", linestyle="", label=label))
     return named
+
+
+def _curve(at, lengths):
+    """Curve through computed lengths (n,) along an axis: the cubic between enough of them, otherwise lines."""
+    if len(at) < FEWEST_HUMIDITIES or not np.isfinite(lengths).all():
+        return at, lengths
+    fine = np.linspace(at[0], at[-1], _POINTS)
+    return fine, between(np.array(at), lengths, fine)
 
 
 def _parts(whole, lines):

@@ -25,6 +25,7 @@ from stiction.report.drawings.devices import device_drawing
 from stiction.report.format import MISSING, humidity_text
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
+from stiction.report.process import section as process_section
 from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import STYLE
@@ -207,17 +208,17 @@ def _asked(section):
     """Requirement of a device and its range of roughness, by name, or nothing without a requirement."""
     if "requirement" not in section:
         return {}
-    required, over = section["requirement"], section["roughness"]
+    required, over = section["requirement"], section.get("roughness", {})
     length = f"{required['length_um']:g} µm long, " if "length_um" in required else ""
+    met = {"requirement": f"{length}at most {one_in(required['share'])} sticks"}
+    if not over:
+        return met
     ranges = (
         f"{quantity.words} from {over[key][0]:g} to {over[key][1]:g}{quantity.unit}"
         for key, quantity in ROUGHNESSES.items()
         if key in over
     )
-    return {
-        "requirement": f"{length}at most {one_in(required['share'])} sticks",
-        f"roughness of {over['surface']} asked for": ", ".join(ranges),
-    }
+    return met | {f"roughness of {over['surface']} asked for": ", ".join(ranges)}
 
 
 def _sure(name, budgets, errors):
@@ -284,6 +285,7 @@ def _inputs(plan, at):
     own |= {"life": f"devices/life/{at.device}"} | model_errors.error_inputs(plan, at.device)
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
+    own |= process_section.inputs(plan, at.device)
     own |= {"style": File(STYLE), "templates": [File(_GLOSSARY), *html.files(TEMPLATE)]}
     if not devices.kind(at.device).is_beam:
         return own | {"stopper": f"devices/stoppers/{at.device}"}
@@ -318,6 +320,7 @@ def _page(data, at, settings):
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
         page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
+    page = process_section.with_process(page, at.device, data)
     drawing = device_drawing(_with_force(settings)).svg
     return replace(with_life(page, at.device, data["life"]), not_modelled=settings["not_modelled"], drawing=drawing)
 

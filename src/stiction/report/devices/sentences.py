@@ -37,7 +37,7 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     few = one_in(_chosen(_any(safe_lengths)))
     sentence = (
         f"Build it no longer than {length / UM:.0f} µm: then at most {few} sticks "
-        f"{airs(safe_lengths)} (95 % confidence, given the drawn surfaces)."
+        f"{airs(safe_lengths)} (95 % confidence)."
     )
     if not np.isfinite(totals).all():
         sentence += " What the measurements leave uncertain is not known, because too few of the simulated beams stick."
@@ -121,7 +121,7 @@ def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
     air, but = _at(humidity), f"at most {one_in(share)}"
     sentence = (
         f"{air}, devices of up to {shortest:.0f} µm come free after they were pressed down, except for {but} (95 % "
-        "confidence, given the drawn surfaces)."
+        "confidence)."
     )
     if longest == shortest:
         return sentence

@@ -15,13 +15,13 @@ from stiction.report.model_error import sentences as model_errors
 from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
 from stiction.stages.beams.pair_warnings import numbered, with_numbers
 from stiction.stages.devices import device_warnings
-from stiction.stages.devices.chart import charts
+from stiction.stages.devices.chart import axes, charts, largest_error_between
 from stiction.stages.devices.device_warnings import curves, not_modelled
 from stiction.stages.devices.end_states import END_STATES
 
 _SAFE_LENGTHS = (
-    "Safe length: the largest length with at most a fraction p of the devices stuck, with a confidence of 95 % given "
-    "the drawn surfaces. A cantilever sticks along its beam (S-shape) or at its tip alone (arc), a bridge at its "
+    "Safe length: the largest length with at most a fraction p of the devices stuck, with a confidence of 95 %. "
+    "A cantilever sticks along its beam (S-shape) or at its tip alone (arc), a bridge at its "
     "middle. Estimate: length with a fraction p stuck, with standard errors due to the number of beams and to the "
     "number of sampled surfaces. Every beam has its own tip, and the scatter of the tips is part of the first error. "
     "Basis: sampled, by order statistics; fitted, by a line through the shortest 5 %; extrapolated, by this line "
@@ -45,7 +45,7 @@ _DRY_BOUND = (
 )
 _CHART = (
     "Safe length of beams of the thicknesses and gaps of a chart against relative humidity: the largest length with at "
-    "most a fraction p stuck, with a confidence of 95 % given the drawn surfaces. From: finite elements, or a power "
+    "most a fraction p stuck, with a confidence of 95 %. From: finite elements, or a power "
     "law between them, with its largest error at beams outside its fit."
 )
 _CHART_BOUND = (
@@ -206,8 +206,16 @@ def chart(
             rows += [beam | {"share": share, "safe_length_um": length} | last for share, length in lengths.items()]
             cells.append(_beam_as_text(beam, lengths) | marks)
     bounds = about_bounds(datasets, _CHART_BOUND, _DRY_CHART_BOUND, _WHERE_DRY)
-    text = " ".join([_CHART, bounds, _CHART_WARNINGS])
+    text = " ".join([_CHART, *_between(datasets), bounds, _CHART_WARNINGS])
     return Table(pd.DataFrame(rows), _caption(text, warnings, not_modelled), pd.DataFrame(cells))
+
+
+def _between(datasets):
+    """Error of the cubic between the humidities of all charts, nothing with too few of them."""
+    error = max(map(largest_error_between, axes(datasets).values()), key=np.nan_to_num)
+    if np.isnan(error):
+        return []
+    return [f"Between these humidities, a monotone cubic through the logarithms errs by at most {100 * error:.2g} %."]
 
 
 def _beam(point):

@@ -158,7 +158,8 @@ def _where(dataset, curve, rows):
     ranges = [_range(dataset, float(row.range_low), float(row.range_high)) for row in rows]
     if not ranges:
         return f"no {name} of {whole} suffices: nowhere there is it certain that at most {share} sticks"
-    sure = "95 % confidence, given the drawn surfaces"
+    of_beam = curve.required.attrs["units"] == "m"  # bounds of beams allow for the number of drawn surfaces
+    sure = "95 % confidence" if of_beam else "95 % confidence, given the drawn surfaces"
     if ranges == [whole]:
         return f"at most {share} sticks at any {name} of {whole} ({sure})"
     return f"at most {share} sticks where the {name} is {' or '.join(ranges)} ({sure}; computed for {whole})"
@@ -247,10 +248,10 @@ def roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
     of_maps = any("other" in row for row in rows)
     caption = (
         "Safe length of a beam, or safe restoring force of a stopper, against the roughness of a surface: with a "
-        "confidence of 95 % given the drawn surfaces, at most a fraction p sticks. Estimate: a fraction p sticks, ± "
-        "standard error due to the numbers of devices and of drawn surfaces. P(stuck): at the required length or "
-        f"force, with its 95 % band. {form(*datasets.values())} Devices: number of simulated devices at every "
-        "roughness."
+        "confidence of 95 % (of a stopper: given the drawn surfaces), at most a fraction p sticks. Estimate: a "
+        "fraction p sticks, ± standard error due to the numbers of devices and of drawn surfaces. P(stuck): at the "
+        f"required length or force, with its 95 % band. {form(*datasets.values())} Devices: number of simulated "
+        "devices at every roughness."
     )
     shown = {"and": of_maps, KURTOSIS: any(KURTOSIS in row for row in rows)}
     columns = {name: column for name, column in _COLUMNS.items() if shown.get(name, True)}

@@ -90,6 +90,8 @@ def _slopes_of_pair(axes, datasets, published):
             panel.errorbar(chosen.humidity, chosen.slope, chosen.standard_error, **style)
         panel.axhline(0, **_ZERO)
         panel.set(xlabel="relative humidity [–]", ylabel="normalised sensitivity [–]")
+    for k, dataset in enumerate(datasets.values()):
+        axes[0].fill_between(dataset.humidity, *dataset.difference.values, color=f"C{k}", alpha=0.15, linewidth=0)
     for (moment, humidity), slope in published.items():
         k = list(datasets).index(moment)
         axes[0].plot(humidity, slope, marker(k), color=f"C{k}", markerfacecolor="none")

@@ -49,7 +49,9 @@ def sensitivity(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.Da
     frame = pd.DataFrame([row for at, dataset in datasets.items() for row in _slopes(dataset, *at, published)])
     caption = (
         "Fig. 13: normalised sensitivity (|x|/y) dy/dx of mean and standard deviation y of the meso-scale adhesion "
-        "energy to a moment x of the beam's surface, ± standard error (published value)."
+        "energy to a moment x of the beam's surface, ± standard error (published value): central differences of the "
+        "logarithms, and one-sided differences (|x|/y) Δy/Δx of the mean to less and to more of the moment, which are "
+        "the relative change of y over that of x."
     )
     known = ["" if np.isnan(slope) else f" ({slope:+g})" for slope in frame.published]
     values = [with_error(row.slope, row.slope_se, "+") for row in frame.itertuples()]
@@ -62,13 +64,18 @@ def sensitivity(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.Da
 
 
 def _slopes(dataset, pair, moment, published):
-    """Slopes of mean and standard deviation at every humidity."""
-    for statistic in dataset.statistic.values:
-        chosen = dataset.sel(statistic=statistic)
-        points = zip(dataset.humidity.values, chosen.slope.values, chosen.standard_error.values, strict=True)
-        for humidity, slope, error in points:
+    """Slopes of mean and standard deviation at every humidity, and differences of the mean to either side."""
+    less, more = dataset.moment.values
+    step = 100 * (more - less) / abs(more + less)
+    estimates = {name: dataset.sel(statistic=name)[["slope", "standard_error"]] for name in dataset.statistic.values}
+    for side, sign in zip(dataset.side.values, "-+", strict=True):
+        estimates[f"mean, {sign}{step:.3g} %"] = dataset.sel(side=side)[["difference", "difference_error"]]
+    for statistic, chosen in estimates.items():
+        for humidity, slope, error in zip(
+            dataset.humidity.values, *(chosen[name].values for name in chosen), strict=True
+        ):
             case = {"pair": pair, "relative_humidity": humidity}
-            known = value(published, "slope", moment=moment, **case) if statistic == "mean" else np.nan
+            known = value(published, "slope", moment=moment, **case) if statistic.startswith("mean") else np.nan
             row = case | {"statistic": statistic, "moment": moment, "slope": slope, "slope_se": error}
             yield row | {"published": known}
 

@@ -4,7 +4,7 @@ Beams are computed by finite elements. Between the smallest and the largest thic
 predicts beams in the middle, to which it was not fitted, within 1 %.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
@@ -14,7 +14,7 @@ import xarray as xr
 
 from stiction.chaos.model import Truncation
 from stiction.contact.environment import Water
-from stiction.devices.chart import checked_power_law
+from stiction.devices.chart import checked_power_law, error_between
 from stiction.plan.names import by_case
 from stiction.plan.stage import Stage, chosen, select
 from stiction.stages.contact.contact import surface_rms
@@ -55,9 +55,9 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
     def by_elements(thickness, gap):
         """Safe lengths of beams of one size (shapes, shares) [m]."""
         device = _resized(settings, thickness, gap)
-        lengths, reach = sticking.released(device, met, settings)
-        known = sticking.known(device, settings.water, settings.humidity, reach)
-        safe = sticking.by_shape(lengths, settings, known)
+        beams = sticking.released(device, met, settings)
+        known = sticking.known(device, settings.water, settings.humidity, beams.reach)
+        safe = sticking.by_shape(beams, settings, known)
         return np.array([[one.length for one in of_shape] for of_shape in safe.values()])
 
     chart = filled(settings.thicknesses, settings.gaps, by_elements)
@@ -153,6 +153,26 @@ def _settings(plan, at):
     section = plan.config["devices"][at.case.device]
     sizes = {"gaps_um": [section["gap_um"]]} | chosen(section["chart"], ("thicknesses_um", "gaps_um"))
     return select(Settings, settings_of_beam(plan, at.case) | sizes)
+
+
+def axes(datasets: Mapping[tuple[str, float], xr.Dataset]) -> dict[str, xr.Dataset]:
+    """Chart of each device along ``relative_humidity``, from its datasets by device and humidity."""
+    devices = {}
+    for (name, humidity), dataset in sorted(datasets.items()):
+        devices.setdefault(name, []).append(dataset.expand_dims(relative_humidity=[humidity]))
+    joint = {"data_vars": "minimal", "coords": "minimal", "compat": "equals", "join": "exact"}
+    return {name: xr.concat(parts, "relative_humidity", **joint) for name, parts in devices.items()}
+
+
+def largest_error_between(whole: xr.Dataset) -> float:
+    """Largest error of the cubic between the humidities of a chart, NaN with too few of them [-].
+
+    The dataset has all humidities along ``relative_humidity``; dry air is apart.
+    """
+    humid = whole.safe_length.isel(relative_humidity=whole.relative_humidity.values > 0)
+    curves = humid.transpose(..., "relative_humidity").values.reshape(-1, humid.sizes["relative_humidity"])
+    errors = [error_between(humid.relative_humidity.values, lengths) for lengths in curves]
+    return max(filter(np.isfinite, errors), default=np.nan)
 
 
 def charts(plan: Any) -> dict[str, dict]:

@@ -1,44 +1,28 @@
 """Stage cracks: arrest of the cracks of long beams of a device at a humidity, and the error of few surfaces.
 
 Of a bridge, the stage finds the shortest length that its middle holds instead.
-A simulation of long beams gives P(stuck) at every length (`stiction.devices.risk`). For the error due to the number of
-sampled surfaces, force laws are fitted to each of some groups of the samples alone, and the beams are released again
-with the same random numbers.
+A simulation of long beams gives P(stuck) at every length (`stiction.devices.risk`). The error due to the number of
+sampled surfaces follows from the samples (`stiction.devices.sampling`).
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.beam.foundation import foundation_length
-from stiction.chaos.model import Truncation, draw_laws
+from stiction.chaos.model import Truncation
 from stiction.contact import forcelaw
 from stiction.contact.environment import Water
+from stiction.devices.sampling import SampledSurfaces
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import surface_rms
 from stiction.stages.contact.corrections import corrected
-from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices.contact_names import contact_of, corrections_of
-from stiction.stages.devices.opening import (
-    BEAMS,
-    LAWS,
-    DesignedBeam,
-    Opening,
-    addresses,
-    arrests,
-    fitted,
-    ground_of,
-    reach,
-    settings_of_beam,
-)
-
-#: Most groups of the samples of contact, and the least number of samples in each, but always two groups.
-GROUPS, PER_GROUP = 10, 50
+from stiction.stages.devices.opening import BEAMS, DesignedBeam, ground_of, settings_of_beam
+from stiction.stages.devices.sticking import Released, ground, released
 
 
 @dataclass(frozen=True)
@@ -54,63 +38,66 @@ class Settings:
 
 
 def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Fit the force laws and release long beams, with all samples and with each group of them alone."""
-    with on_patch(settings.device.strip, settings.device.width):
-        vectors, limit = curves.vectors(contact, settings.humidity, settings.water)
-    model = fitted(vectors, limit, settings.chaos)
-    address = addresses(settings)
-    laws = draw_laws(model, LAWS, address("mesh"))
-    device, ground = settings.device, ground_of(settings.device, laws)
-    groups = max(2, min(GROUPS, len(vectors) // PER_GROUP))
-    models = [model, *(fitted(vectors[k::groups], limit, settings.chaos) for k in range(groups))]
-    released = [arrests(device, ground, partial(draw_laws, of), settings.beams, address) for of in models]
-    tried = reach(device, ground, partial(draw_laws, model), released[0], address)
-    dataset = layout(device.opening, released[0], released[1:], ground[0], laws, surface_rms(contact))
+    """Fit the force laws and release long beams."""
+    device, met = settings.device, ground(contact, None, settings.humidity, settings)
+    dataset = layout(released(device, met, settings), ground_of(device, met.laws)[0], met.laws, surface_rms(contact))
     return dataset.assign(
-        longest_strip=((), device.opening.longest_strip(device, laws), {"units": "m"}),
-        reach=((), tried, {"units": "m", "long_name": "longest simulated length, if not all devices stick"}),
+        longest_strip=((), device.opening.longest_strip(device, met.laws), {"units": "m"}),
         share_flat=((), curves.share_flat(contact, settings.humidity, settings.water), {"units": "1"}),
     )
 
 
-def layout(
-    opening: Opening, arrested: np.ndarray, of_group: list[np.ndarray], beam: Beam, laws: np.ndarray, rms: float
-) -> xr.Dataset:
+def layout(beams: Released, part: Beam, laws: np.ndarray, rms: float) -> xr.Dataset:
     """Dataset of the lengths of arrest of the cracks of a device at a humidity.
 
-    Lengths with all samples of contact (n,), as from `stiction.stages.devices.opening.arrests`, and with each group of
-    them alone [m]; the part of the device that finite elements resolve; a sample (k, 4) of the force laws [SI]; rms of
-    the sum of both surfaces [m].
+    Released beams, the part of the device that finite elements resolve, a sample (k, 4) of its force laws [SI], and rms
+    of the sum of both surfaces [m].
     """
-    name, note = opening.length, {"units": "m", "long_name": opening.words}
+    opening, metres = beams.device.opening, {"units": "m"}
     lengths = {
-        "foundation_length": foundation_length(beam, laws),
-        "beam_length": beam.length,
-        "element_length": beam.element_length,
+        "foundation_length": beams.foundation,
+        "beam_length": part.length,
+        "element_length": part.element_length,
         "rms": rms,
     }
     return xr.Dataset(
         {
-            name: ("device", arrested, note),
-            f"{name}_of_group": (("group", "device"), np.array(of_group), note),
+            opening.length: ("device", beams.arrested, metres | {"long_name": opening.words}),
+            "uniform_length": ((), beams.surfaces.length, metres | {"long_name": "length on ground without scatter"}),
+            "surfaces_covariance": (("of", "with"), beams.surfaces.covariance, {"units": "1"}),
+            "reach": ((), beams.reach, metres | {"long_name": "longest simulated length, if not all devices stick"}),
             "mean_energy": ((), float(forcelaw.energy(laws).mean()), {"units": "J m-2"}),
         }
-        | {name: ((), value, {"units": "m"}) for name, value in lengths.items()}
+        | {name: ((), value, metres) for name, value in lengths.items()},
+        coords={"of": ["mean", "scatter"], "with": ["mean", "scatter"]},
     )
 
 
-def lengths(cracks: xr.Dataset) -> tuple[np.ndarray, np.ndarray, float]:
-    """Crack or held lengths with all samples (n,), with each group alone (g, n), and the foundation length [m]."""
-    name = next(opening.length for opening in BEAMS.values() if opening.length in cracks)
-    return cracks[name].values, cracks[f"{name}_of_group"].values, float(cracks.foundation_length)
+def lengths(cracks: xr.Dataset) -> np.ndarray:
+    """Crack or held lengths (n,) [m]."""
+    return cracks[_name(cracks)].values
+
+
+def surfaces_of(cracks: xr.Dataset) -> SampledSurfaces:
+    """Errors of lengths due to the number of sampled surfaces."""
+    return SampledSurfaces(float(cracks.uniform_length), cracks.surfaces_covariance.values)
+
+
+def beams_of(cracks: xr.Dataset, device: DesignedBeam, held: np.ndarray | None) -> Released:
+    """Released beams of a dataset, with the longest arcs that come free of tips (n,) [m], ``None`` without tips."""
+    foundation, reach = float(cracks.foundation_length), float(cracks.reach)
+    return Released(device, lengths(cracks), reach, foundation, surfaces_of(cracks), held)
 
 
 def with_lengths(cracks: xr.Dataset, changed: Callable[[np.ndarray], np.ndarray]) -> xr.Dataset:
     """Dataset with other lengths, a function of those of any shape [m]."""
-    name = next(opening.length for opening in BEAMS.values() if opening.length in cracks)
-    return cracks.assign(
-        {key: cracks[key].copy(data=changed(cracks[key].values)) for key in (name, f"{name}_of_group")}
-    )
+    names = _name(cracks), "uniform_length"
+    return cracks.assign({name: cracks[name].copy(data=changed(cracks[name].values)) for name in names})
+
+
+def _name(cracks):
+    """Name of the length at which beams are arrested."""
+    return next(opening.length for opening in BEAMS.values() if opening.length in cracks)
 
 
 STAGES = (
@@ -123,7 +110,6 @@ STAGES = (
         compute=lambda data, settings: compute(data["contact"], corrected(settings, data)),
         message="Release long beams of {case}.",
         cluster=True,
-        repeats=1 + GROUPS,
         minutes=120,
     ),
 )

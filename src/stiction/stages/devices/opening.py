@@ -25,7 +25,14 @@ from stiction.config.cases import Case
 from stiction.contact import forcelaw
 from stiction.devices import bridges
 from stiction.devices.arcs import arc_length
-from stiction.devices.bridges import half_of_bridge, held_lengths, longest_strip, longest_tried, middle_zone
+from stiction.devices.bridges import (
+    half_of_bridge,
+    held_lengths,
+    held_on_mean,
+    longest_strip,
+    longest_tried,
+    middle_zone,
+)
 from stiction.life import holding
 from stiction.plan.stage import chosen, select
 from stiction.streams import stream
@@ -177,6 +184,7 @@ class Opening:
     #: What the samples of force laws (..., m, 4) contribute to the length (..., m, ...), and the length on their mean.
     contribution: Callable[[np.ndarray], np.ndarray]
     length_on_mean: Callable[[np.ndarray, Beam], float]
+    uniform: Callable[[Beam, np.ndarray], float]  #: length on the mean of force laws (m, 4) at every strip [m]
     bound: Callable[[np.ndarray, Beam], float]  #: length below which nothing of at most a contribution holds it
     #: Lengths (n,) at a voltage from those without it, and from the mean e and f_max (2,) without and with it.
     at_voltage: Callable[[np.ndarray, np.ndarray, np.ndarray, Beam], np.ndarray]
@@ -203,6 +211,7 @@ BEAMS = {
         tried=lambda beam, *_: beam.length,
         contribution=forcelaw.energy,
         length_on_mean=lambda sample, beam: arrest_length(sample.mean(), beam),
+        uniform=lambda part, laws: float(arrest_length(forcelaw.energy(laws).mean(), part)),
         bound=arc_length,
         at_voltage=lambda lengths, without, at, beam: holding.length_at_voltage(
             lengths, beam, float(at[0] - without[0]), holding.S_SHAPE
@@ -220,6 +229,7 @@ BEAMS = {
         tried=longest_tried,
         contribution=_energies_and_pull_offs,
         length_on_mean=lambda sample, beam: bridges.least_length(*sample.mean(axis=0), beam),
+        uniform=held_on_mean,
         bound=lambda strongest, beam: bridges.least_length(*strongest, beam),
         at_voltage=lambda lengths, without, at, beam: (
             lengths * (bridges.least_length(*at, beam) / bridges.least_length(*without, beam))

@@ -18,7 +18,7 @@ from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices import cracks as stage_cracks
 from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
 from stiction.stages.devices.opening import DesignedBeam, at_voltage, settings_of_beam
-from stiction.stages.devices.sticking import by_shape, known, safe_lengths, sticking_lengths
+from stiction.stages.devices.sticking import Released, by_shape, known
 
 #: Points along the axis of the lengths.
 _POINTS = 300
@@ -38,24 +38,15 @@ class Settings:
 
 def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
     """P(stuck) and safe lengths. Each beam has one of the tips, and a bridge has none."""
-    lengths, of_group, foundation = stage_cracks.lengths(cracks)
     device, held = settings.device, None
     if tips is not None:
         held = arcs.longest_free(*curves.tip_forces(tips, settings.humidity, settings.water), device.beam)
-    sticking = sticking_lengths(lengths, foundation, device, held)
-    groups = [sticking_lengths(one, foundation, device, held) for one in of_group]
-    without_samples = known(device, settings.water, settings.humidity, float(cracks.reach))
-    safe = by_shape(sticking, settings, without_samples)
-    estimates = {
-        shape: [[one.estimate for one in safe_lengths(group[shape], settings)] for group in groups] for shape in safe
-    }
-    errors = {shape: risk.error_of_surfaces(lengths) for shape, lengths in estimates.items()}
-    dataset = layout(sticking, safe, without_samples, errors, settings).assign(
+    beams = stage_cracks.beams_of(cracks, device, held)
+    without_samples = known(device, settings.water, settings.humidity, beams.reach)
+    dataset = layout(beams.lengths, by_shape(beams, settings, without_samples), without_samples, settings).assign(
         cracks[["rms", "share_flat", "longest_strip"]]
     )
-    if settings.length is None:
-        return dataset
-    return dataset.assign(at_length(sticking, groups, float(cracks.reach), settings.length))
+    return dataset if settings.length is None else dataset.assign(at_length(beams, settings.length))
 
 
 def compute_at_voltage(
@@ -76,21 +67,22 @@ def compute_at_voltage(
     return compute(moved, tips, settings).assign(energies)
 
 
-def at_length(
-    sticking: Mapping[str, np.ndarray], groups: Sequence[Mapping[str, np.ndarray]], reach: float, length: float
-) -> dict[str, tuple]:
-    """Variables of P(stuck) at one length, by shape, with its band and the error by the number of sampled surfaces.
+def at_length(beams: Released, length: float) -> dict[str, tuple]:
+    """Variables of P(stuck) at one length [m], by shape, with its band and the error by the number of sampled surfaces.
 
-    Sticking lengths (n,) [m] from all surfaces and from each of some groups of them alone; their reach and the length
-    [m]. Beyond the reach, the upper end of the band counts devices that did not stick there as stuck.
+    Beyond the reach, the upper end of the band counts devices that did not stick there as stuck.
     """
-    shares = {shape: risk.stuck_share(np.array([length]), values, reach) for shape, values in sticking.items()}
-    of_group = [[np.mean(group[shape] < length) for shape in sticking] for group in groups]
-    none = {"units": "1"}
+    shares = [risk.stuck_share(np.array([length]), values, beams.reach) for values in beams.lengths.values()]
+
+    def stuck(move):
+        """Fractions of devices stuck by shape (shapes,) [-]."""
+        return np.array([np.mean(values < length) for values in beams.moved(move).lengths.values()])
+
+    error, none = beams.surfaces.error(stuck), {"units": "1"}
     return {
         "length_of_device": ((), length, {"units": "m"}),
-        "stuck_at_length": (("shape", "end"), np.array(list(shares.values()))[..., 0], none),
-        "stuck_surfaces_error": ("shape", risk.error_of_surfaces(of_group), none),
+        "stuck_at_length": (("shape", "end"), np.array(shares)[..., 0], none),
+        "stuck_surfaces_error": ("shape", np.where(error > 0, error, np.nan), none),
         "end": ["estimate", "low", "high"],
     }
 
@@ -99,13 +91,11 @@ def layout(
     sticking: Mapping[str, np.ndarray],
     safe: Mapping[str, Sequence[SafeLength]],
     without_samples: Mapping[str, Known],
-    surfaces: Mapping[str, np.ndarray],
     settings: Settings,
 ) -> xr.Dataset:
     """Dataset of P(stuck) and of the safe lengths, by shape.
 
-    Sticking lengths (n,) [m], safe lengths for every share, what is known without samples, and standard errors due to
-    the finite number of sampled surfaces (shares,) [m].
+    Sticking lengths (n,) [m], safe lengths for every share, and what is known without samples.
     """
     reach = min(one.reach for one in without_samples.values())
     axis = _axis(sticking, reach)
@@ -116,7 +106,10 @@ def layout(
         "safe_length": ([[one.length for one in rows] for rows in safe.values()], "one-sided 95 % bound of estimate"),
         "estimate": ([[one.estimate for one in rows] for rows in safe.values()], "length with P(stuck) = share"),
         "beams_error": ([[one.error for one in rows] for rows in safe.values()], "standard error, number of beams"),
-        "surfaces_error": (list(surfaces.values()), "standard error, number of sampled surfaces"),
+        "surfaces_error": (
+            [[one.surfaces_error for one in rows] for rows in safe.values()],
+            "standard error, number of sampled surfaces",
+        ),
     }
     film, flat = settings.water.film(settings.humidity)[0], [one.flat for one in without_samples.values()]
     most, number = [risk.most_stuck(values, reach) for values in sticking.values()], len(next(iter(sticking.values())))

@@ -1,7 +1,7 @@
 """Sticking lengths of a device at a humidity and its safe lengths, for safe lengths, charts and curves of roughness."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Protocol
 
@@ -11,9 +11,11 @@ import xarray as xr
 from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws
+from stiction.contact import forcelaw
 from stiction.contact.environment import Water, flooded_law
 from stiction.devices import arcs, bridges, risk
 from stiction.devices.risk import NOTHING, Basis, Known, SafeLength
+from stiction.devices.sampling import Move, SampledSurfaces, sampled_surfaces
 from stiction.stages.contact import curves
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices import opening
@@ -46,28 +48,57 @@ class Ground:
 
     model: ChaosModel  #: of the force laws of strips
     laws: np.ndarray  #: sample of these (k, 4) [SI]
+    sampled: np.ndarray  #: force laws of the strips themselves (m, 4) [SI]
     tips: tuple[np.ndarray, np.ndarray] | None  #: slopes [-] and forces [N/m] of tips; none for a bridge
+
+
+@dataclass(frozen=True)
+class Released:
+    """Beams of a device, released on its ground."""
+
+    device: DesignedBeam
+    arrested: np.ndarray  #: as from `stiction.stages.devices.opening.arrests` (n,) [m]
+    reach: float  #: longest simulated length, if not all devices stick [m]
+    foundation: float  #: foundation length [m]
+    surfaces: SampledSurfaces  #: their errors
+    held: np.ndarray | None  #: longest arcs that come free of their tips (n,) [m]; none without a tip
+
+    @property
+    def lengths(self) -> dict[str, np.ndarray]:
+        """Sticking lengths by shape, (n,) each [m]."""
+        return sticking_lengths(self.arrested, self.foundation, self.device, self.held)
+
+    def moved(self, move: Move) -> "Released":
+        """Beams as on other samples of the same surfaces. ASSUME: their tips are the same, one of each beam."""
+        return replace(self, arrested=move(self.arrested), reach=float(move(self.reach)))
 
 
 def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settings: BeamSettings) -> Ground:
     """Force laws at a relative humidity, from the contact of the strips and of the tips, or ``None`` for a bridge."""
     with on_patch(settings.device.strip, settings.device.width):
-        model = opening.fitted(*curves.vectors(contact, humidity, settings.water), settings.chaos)
+        vectors, limit = curves.vectors(contact, humidity, settings.water)
+    model = opening.fitted(vectors, limit, settings.chaos)
     laws = draw_laws(model, opening.LAWS, opening.addresses(settings)("mesh"))
-    return Ground(model, laws, None if tips is None else curves.tip_forces(tips, humidity, settings.water))
+    sampled = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
+    return Ground(model, laws, sampled, None if tips is None else curves.tip_forces(tips, humidity, settings.water))
 
 
-def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> tuple[dict[str, np.ndarray], float]:
-    """Sticking lengths by shape of a device, or of one of another thickness and gap, on its ground, (n,) each [m].
-
-    With the length up to which they are known [m].
-    """
-    resolved = opening.ground_of(device, met.laws)
+def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> Released:
+    """Released beams of a device, or of one of another thickness and gap, on its ground."""
+    part = opening.ground_of(device, met.laws)
     address, draw = opening.addresses(settings), partial(draw_laws, met.model)
-    cracks = opening.arrests(device, resolved, draw, settings.beams, address)
-    held = None if met.tips is None else arcs.longest_free(*met.tips, device.beam)
-    reach = opening.reach(device, resolved, draw, cracks, address)
-    return sticking_lengths(cracks, foundation_length(device.beam, met.laws), device, held), reach
+    arrested = opening.arrests(device, part, draw, settings.beams, address)
+    on_mean = partial(device.opening.length_on_mean, beam=device.beam)
+    return Released(
+        device,
+        arrested,
+        opening.reach(device, part, draw, arrested, address),
+        foundation_length(device.beam, met.laws),
+        sampled_surfaces(
+            met.sampled, device.opening.contribution, on_mean, device.opening.uniform(part[0], met.sampled)
+        ),
+        None if met.tips is None else arcs.longest_free(*met.tips, device.beam),
+    )
 
 
 def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list[float]:
@@ -107,10 +138,30 @@ def known(device: DesignedBeam, water: Water, humidity: float, reach: float) -> 
     return {shape: Known(reach, flat, safe) for shape, flat in zip(device.opening.shapes, lengths, strict=True)}
 
 
-def by_shape(
-    sticking: Mapping[str, np.ndarray], settings: Settings, known: Mapping[str, Known]
-) -> dict[str, list[SafeLength]]:
-    """Safe length for every share, by shape, from sticking lengths (n,) each [m].
+def by_shape(beams: Released, settings: Settings, known: Mapping[str, Known]) -> dict[str, list[SafeLength]]:
+    """Safe length for every share, by shape. The error of the sampled surfaces is part of the bound."""
+
+    def found(move):
+        """Safe lengths given other samples of the surfaces."""
+        moved = beams.moved(move)
+        ends = {shape: replace(one, reach=moved.reach) for shape, one in known.items()}
+        return _given_surfaces(moved.lengths, settings, ends)
+
+    def numbers(move):
+        """Safe lengths and estimates (shapes, shares, 2) [m]."""
+        return np.array([[(one.length, one.estimate) for one in row] for row in found(move).values()])
+
+    given, errors = found(lambda lengths: lengths), beams.surfaces.error(numbers)
+    return {
+        shape: [
+            risk.on_sampled_surfaces(safe, *error, known[shape]) for safe, error in zip(row, errors_of_row, strict=True)
+        ]
+        for (shape, row), errors_of_row in zip(given.items(), errors, strict=True)
+    }
+
+
+def _given_surfaces(sticking, settings, known):
+    """Safe length for every share, by shape, from sticking lengths (n,) each, given the sampled surfaces [m].
 
     The last shape holds whatever another one holds. What is safe against it is safe against each, which says more than
     flat surfaces do.

@@ -6,14 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from stiction.analysis.sensitivity import energy_sensitivity
+from stiction.analysis.sensitivity import energy_sensitivity, one_sided
 from stiction.contact.environment import Water
 from stiction.models import SHIFTS
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact.changes.moments import moment
+from stiction.stages.contact.contact import first
 from stiction.stages.contact.curves import energies
 
 _STATISTICS = ("mean", "standard deviation")
+#: Directions of one-sided differences.
+_SIDES = list(SHIFTS)
 
 
 @dataclass(frozen=True)
@@ -24,26 +27,39 @@ class Settings:
     humidities: tuple[float, ...]  #: [-]
 
 
-def compute(contacts: Sequence[xr.Dataset], settings: Settings) -> xr.Dataset:
-    """Compare samples drawn with the same random numbers at the two values of the moment."""
+def compute(contacts: Sequence[xr.Dataset], unchanged: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Compare samples drawn with the same random numbers at the two values of the moment and between them.
+
+    The unchanged contact may have more samples or fewer: those in all three make the one-sided differences.
+    """
     at = [moment(contact) for contact in contacts]
-    means = np.array([[energies(contact, h, settings.water) for h in settings.humidities] for contact in contacts])
-    return layout(means, at, energy_sensitivity(means.swapaxes(1, 2), at), settings.humidities)
+    changed = [[energies(contact, h, settings.water) for h in settings.humidities] for contact in contacts]
+    between = first(unchanged, contacts[0].sizes["sample"])
+    base = np.array([energies(between, h, settings.water) for h in settings.humidities]).T
+    means = np.array(changed)
+    of_samples = means.swapaxes(1, 2)
+    sides = one_sided(of_samples[:, : len(base)], base, at)
+    return layout(means, at, energy_sensitivity(of_samples, at), sides, settings.humidities)
 
 
-def layout(energies: np.ndarray, at: Sequence[float], estimate: tuple, humidities: Sequence[float]) -> xr.Dataset:
+def layout(
+    energies: np.ndarray, at: Sequence[float], estimate: tuple, sides: tuple, humidities: Sequence[float]
+) -> xr.Dataset:
     """Adhesion energies at two values of one moment, and sensitivities of their mean and standard deviation.
 
-    Energies e (2, n_rh, m) [J m⁻²] at two values [SI]; normalised slopes and standard errors, (2, n_rh) each [-].
+    Energies e (2, n_rh, m) [J m⁻²] at two values [SI]; normalised slopes and standard errors, (2, n_rh) each [-], and
+    one-sided differences of the mean to less and to more of the moment with their errors, (2, n_rh) each [-].
     """
-    slopes, errors = estimate
+    (slopes, errors), (differences, their_errors) = estimate, sides
     return xr.Dataset(
         {
             "adhesion_energy": (("moment", "humidity", "sample"), energies, {"units": "J m-2"}),
             "slope": (("statistic", "humidity"), slopes, {"units": "1", "long_name": "(|x|/y) dy/dx"}),
             "standard_error": (("statistic", "humidity"), errors, {"units": "1"}),
+            "difference": (("side", "humidity"), differences, {"units": "1", "long_name": "(|x|/y) Δy/Δx"}),
+            "difference_error": (("side", "humidity"), their_errors, {"units": "1"}),
         },
-        coords={"moment": list(at), "humidity": list(humidities), "statistic": list(_STATISTICS)},
+        coords={"moment": list(at), "humidity": list(humidities), "statistic": list(_STATISTICS), "side": _SIDES},
     )
 
 
@@ -52,7 +68,8 @@ STAGES = (
         "sensitivity",
         "studies/sensitivity/{pair}_{moment}",
         inputs=lambda plan, at: {
-            "contacts": [f"studies/sensitivity/contact/{at.pair}_{at.moment}_{shift}" for shift in SHIFTS]
+            "contacts": [f"studies/sensitivity/contact/{at.pair}_{at.moment}_{shift}" for shift in SHIFTS],
+            "unchanged": f"contact/{at.pair}_NG",
         },
         settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
         kind=Settings,

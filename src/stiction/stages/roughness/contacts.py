@@ -124,7 +124,7 @@ def contacts_of(plan: Any, device: str, number: int) -> dict[str, dict[bool, str
     }
 
 
-def _patch_settings(plan, pair, device):
+def patch_settings(plan: Any, pair: str, device: str) -> dict[str, Any]:
     """Settings of the contact of the patch of a device, with as many stoppers as its share of stuck ones needs.
 
     Those of smaller shares than have been verified are extrapolated. The pair is that of the device in its air.
@@ -136,8 +136,8 @@ def _patch_settings(plan, pair, device):
     return GROUND.settings(plan, At(**ground._replace(pair=pair)._asdict()), samples)
 
 
-def _tip_settings(plan, pair, device):
-    """Settings of the tips of a cantilever, see `_patch_settings`."""
+def tip_settings(plan: Any, pair: str, device: str) -> dict[str, Any]:
+    """Settings of the tips of a cantilever, see `patch_settings`."""
     tips = plan.devices.tips(device)._replace(pair=pair)
     return TIPS.settings(plan, At(**tips._asdict()), plan.config["design"]["beams"])
 
@@ -177,8 +177,8 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
 
 
 STAGES = (
-    _stage("roughness_contact", FOLDER, _patch_settings, "the patch"),
-    _stage("roughness_tip_contact", f"{FOLDER}/tips", _tip_settings, "the tips"),
-    _stage("roughness_dry_contact", FOLDER, _patch_settings, "the patch, in dry air,", PairInAir.in_dry_air),
-    _stage("roughness_dry_tip_contact", f"{FOLDER}/tips", _tip_settings, "the tips, in dry air,", PairInAir.in_dry_air),
+    _stage("roughness_contact", FOLDER, patch_settings, "the patch"),
+    _stage("roughness_tip_contact", f"{FOLDER}/tips", tip_settings, "the tips"),
+    _stage("roughness_dry_contact", FOLDER, patch_settings, "the patch, in dry air,", PairInAir.in_dry_air),
+    _stage("roughness_dry_tip_contact", f"{FOLDER}/tips", tip_settings, "the tips, in dry air,", PairInAir.in_dry_air),
 )

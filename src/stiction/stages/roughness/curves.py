@@ -15,7 +15,6 @@ import xarray as xr
 from stiction.chaos.model import Truncation
 from stiction.config.kinds import ROUGHNESSES, restoring_force
 from stiction.config.units import in_si
-from stiction.contact import forcelaw
 from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.limits import long_strips
@@ -24,7 +23,6 @@ from stiction.devices.stoppers import safe_forces, stuck_patches
 from stiction.errors import NotConverged
 from stiction.plan.stage import Stage, select
 from stiction.rounding import is_equal
-from stiction.stages.contact import curves
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.devices import sticking, stoppers
 from stiction.stages.devices.contact_names import corrections_of
@@ -37,8 +35,6 @@ OTHERS = ("other", "other_given")
 KURTOSIS = "kurtosis"
 #: Dimensions of what is found on a curve.
 _TABLES = ("crossing", "range")
-#: Groups of the samples whose scatter gives the error of a length due to their number.
-GROUPS = 20
 
 
 class Response(NamedTuple):
@@ -82,33 +78,19 @@ class OfBeam:
     def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> tuple[list[Response], str]:
         """Safe lengths at a humidity by shape, and a sentence about strips that are too long."""
         met = sticking.ground(contact, tips, humidity, self)
-        lengths, reach = sticking.released(self.device, met, self)
-        known = sticking.known(self.device, self.water, humidity, reach)
-        scatter, safe = self._scatter(contact, humidity), sticking.by_shape(lengths, self, known)
+        beams = sticking.released(self.device, met, self)
+        known = sticking.known(self.device, self.water, humidity, beams.reach)
+        safe = sticking.by_shape(beams, self, known)
         flag = long_strips(
             self.device.strip, self.device.opening.longest_strip(self.device, met.laws), self.device.opening.arms == 2
         )
-        return [
-            self._response(held, *safe[shape], known[shape], scatter) for shape, held in lengths.items()
-        ], flag or ""
+        return [self._response(held, *safe[shape], known[shape]) for shape, held in beams.lengths.items()], flag or ""
 
-    def _response(self, lengths, safe, known, scatter):
-        """Response from stuck lengths (n,) [m], their safe length, other known lengths, and the samples' error."""
+    def _response(self, lengths, safe, known):
+        """Response from stuck lengths (n,) [m], their safe length and other known lengths."""
         shares = risk.stuck_share(np.array([self.length]), lengths, known.reach)
-        error = float(np.hypot(safe.error, scatter * safe.estimate)) if np.isfinite(safe.estimate) else 0.0
-        return Response(safe.length, safe.estimate, error, known.flat, tuple(float(part[0]) for part in shares))
-
-    def _scatter(self, contact, humidity):
-        """Relative standard error of the length on the mean of the samples [-]."""
-        vectors, limit = curves.vectors(contact, humidity, self.water)
-        laws = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
-        parts, groups = self.device.opening.contribution(laws), min(GROUPS, len(laws))
-
-        def length(samples):
-            """Sticking length on the mean of samples [m]."""
-            return self.device.opening.length_on_mean(samples, self.device.beam)
-
-        return risk.error_of_surfaces([length(parts[k::groups]) for k in range(groups)]) / length(parts)
+        error = np.sqrt(np.nansum(np.square([safe.error, safe.surfaces_error])))
+        return Response(safe.length, safe.estimate, float(error), known.flat, tuple(float(part[0]) for part in shares))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -299,7 +281,7 @@ def _rows(dimension, rows, *names):
 # Stages
 
 
-def _settings(plan, at):
+def settings_of(plan: Any, at: Any) -> dict[str, Any]:
     """Requirement of a device, and settings of its length or force, without the contact."""
     section = plan.config["devices"][at.device]
     air = plan.air_of_devices
@@ -323,7 +305,7 @@ STAGES = (
         "devices/roughness/points/{device}_{number}",
         # ASSUME: a correction to full elastic contact is that of the given surfaces at every roughness.
         inputs=lambda plan, at: contacts_of(plan, at.device, int(at.number)) | corrections_of(plan, at.device),
-        settings=_settings,
+        settings=settings_of,
         compute=lambda data, settings: compute(
             data["contact"], data.get("tips", {}), corrected(point_settings(settings), data)
         ),

@@ -1,0 +1,187 @@
+"""Section ``process``: surfaces at several settings of a process, each a surface of the configuration.
+
+``process: {etch: {variable: etch_time_s, surface: Poly, settings: [{value: 30, scans: [...]}, ...]}}`` makes the
+surfaces etch-1, etch-2 and so on: as Poly, apart from what their setting states. Nothing else knows how a surface at a
+setting is described, by scans or by numbers.
+"""
+
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from stiction.config.messages import ConfigError, Problem, dotted
+from stiction.config.surfaces.knowledge import slope
+from stiction.surface import self_affine
+
+#: Units of process variables, by the ends of their names, as tables and figures show them.
+UNITS = {
+    **{unit: unit for unit in ("s", "min", "h", "nm", "K", "Pa", "kPa", "mbar", "V", "A", "mA", "W", "rpm", "sccm")},
+    "um": "µm",
+    "C": "°C",
+    "mTorr": "mTorr",
+    "Torr": "Torr",
+    "nm_per_min": "nm/min",
+    "J_per_cm2": "J/cm²",
+    "percent": "%",
+    "cycles": "cycles",
+}
+_UNIT = re.compile(f"_({'|'.join(sorted(UNITS, key=len, reverse=True))})$")
+#: Numbers that a setting may state, and those among them of the spectrum.
+NUMBERS = ("rms_nm", "skewness", "kurtosis", "corner_rad_per_um", "hurst")
+_OF_SPECTRUM = NUMBERS[3:]
+#: Other descriptions of a surface by numbers.
+_BY_NUMBERS = ("unknown", "uncertainty")
+
+
+def unit_of(variable: str) -> str | None:
+    """Unit of a process variable, ``None`` without one.
+
+    Examples
+    --------
+    >>> unit_of("etch_time_s"), unit_of("rate_nm_per_min"), unit_of("time")
+    ('s', 'nm/min', None)
+    """
+    found = _UNIT.search(variable)
+    return UNITS[found[1]] if found else None
+
+
+def words_of(variable: str) -> str:
+    """Process variable in words, without its unit.
+
+    Examples
+    --------
+    >>> words_of("etch_time_s")
+    'etch time'
+    """
+    return _UNIT.sub("", variable).replace("_", " ")
+
+
+def names(config: Mapping[str, Any], process: str) -> list[str]:
+    """Names of the surfaces at the settings of a process, in the order of the file."""
+    settings = _section(_section(config.get("process")).get(process)).get("settings")
+    return [f"{process}-{number}" for number in range(1, len(settings) + 1)] if isinstance(settings, list) else []
+
+
+def all_names(config: Mapping[str, Any]) -> list[str]:
+    """Names of the surfaces at all settings of all processes of a configuration, valid or not."""
+    return [name for process in _section(_section(config).get("process")) for name in names(config, process)]
+
+
+def of_device(config: Mapping[str, Any], device: str) -> list[str]:
+    """Names of the processes of a device: the one that it states, and one of its other surface at the same time."""
+    section, known = config["devices"][device], config.get("process", {})
+    named = section.get("process")
+    sides = config["pairs"].get(section["pair"], {}).values()
+    others = (name for name in known if known[name].get("together_with") == named and known[name]["surface"] in sides)
+    return [named, *others] if named in known else []
+
+
+def variable_of(config: Mapping[str, Any], device: str) -> str:
+    """Variable of the processes of a device."""
+    return config["process"][config["devices"][device]["process"]]["variable"]
+
+
+def used(config: Mapping[str, Any]) -> list[str]:
+    """Names of the processes of all devices."""
+    return list(dict.fromkeys(name for device in config.get("devices", {}) for name in of_device(config, device)))
+
+
+def with_surfaces(config: dict[str, Any]) -> dict[str, Any]:
+    """Configuration, valid or not, with a surface for each setting of each process.
+
+    Raises
+    ------
+    ConfigError
+        If a surface has the name of one of a process.
+    """
+    surfaces, added = config.get("surfaces"), {}
+    for process, section in _section(config.get("process")).items():
+        settings, base = _section(section).get("settings"), _section(surfaces).get(_section(section).get("surface"))
+        if not (isinstance(process, str) and isinstance(settings, list) and isinstance(base, dict)):
+            continue
+        for number, setting in enumerate(settings, 1):
+            if isinstance(setting, dict):
+                added[f"{process}-{number}"] = _surface(base, setting)
+    for name in added:
+        if surfaces.get(name, added[name]) != added[name]:
+            raise ConfigError(f"surfaces.{name} must have another name: process makes a surface of this name")
+    return config | {"surfaces": surfaces | added} if added else config
+
+
+def in_settings(problems: Iterable[Problem], config: Mapping[str, Any]) -> Iterator[str]:
+    """Yield problems in words, those of the surface of a setting as problems of the setting.
+
+    Where keys of processes are wrong on their own, what follows for these surfaces is left out.
+    """
+    problems, made = list(problems), {}
+    for process in _section(config.get("process")):
+        for number, name in enumerate(names(config, process)):
+            made[name] = dotted(("process", process, "settings", number))
+    is_wrong = any(problem.path[:1] == ("process",) for problem in problems)
+    for problem in problems:
+        if not (is_wrong and problem.path[:1] == ("surfaces",) and problem.path[1:2] and problem.path[1] in made):
+            text = str(problem)
+            for name, place in made.items():
+                surface = dotted(("surfaces", name))
+                text = text.replace(f"{surface}.scans.files", f"{place}.scans").replace(f"{surface}.", f"{place}.")
+                text = text.replace(f"{surface} ", f"{place} ")
+            yield text
+
+
+def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
+    """Configuration, valid or not, with paths of scans of settings relative to the folder of the file naming them."""
+    moved = {}
+    for process, section in _section(named.get("process")).items():
+        settings = _section(section).get("settings")
+        if (
+            isinstance(settings, list)
+            and _section(_section(config.get("process")).get(process)).get("settings") == settings
+        ):
+            moved[process] = config["process"][process] | {"settings": [_moved(one, folder) for one in settings]}
+    return config | {"process": config["process"] | moved} if moved else config
+
+
+def _moved(setting, folder):
+    """Setting with its relative files in a folder."""
+    scans = _section(setting).get("scans")
+    if not (isinstance(scans, list) and all(isinstance(file, str) for file in scans)):
+        return setting
+    return setting | {"scans": [str(Path(folder).absolute() / file) for file in scans]}
+
+
+def _section(value):
+    """Section of a configuration, valid or not, empty if it is none."""
+    return value if isinstance(value, Mapping) else {}
+
+
+def _surface(base, setting):
+    """Section of the surface at a setting, from that of the surface of the process."""
+    stated = {key: value for key, value in setting.items() if key != "value"}
+    if "scans" in stated:
+        options = {key: base[key] for key in ("material", "heights", "psd", "beyond") if key in base}
+        if "scans" not in base:
+            options.pop("psd", None)
+        of_scans = {
+            key: value for key, value in _section(base.get("scans")).items() if key not in ("files", "left_out")
+        }
+        return options | {"scans": of_scans | {"files": stated.pop("scans")}} | stated
+    entry = {key: value for key, value in base.items() if key not in _BY_NUMBERS}
+    if isinstance(psd := base.get("published_psd"), dict) and any(key in stated for key in _OF_SPECTRUM):
+        own = {key: stated.pop(key) for key in _OF_SPECTRUM if key in stated}
+        entry["published_psd"] = _bent(psd, **own)
+    elif "corner_rad_per_um" in stated:
+        entry.pop("correlation_length_nm", None)
+    return entry | stated
+
+
+def _bent(psd, corner_rad_per_um=None, hurst=None):
+    """Section ``published_psd`` with another corner or Hurst exponent, as far as it is valid."""
+    try:
+        corner, cutoff, plateau = psd["corner_rad_per_um"], psd["cutoff_rad_per_um"], psd["plateau_nm4"]
+        falling = self_affine.slope_of(hurst) if hurst is not None else slope(psd)
+        corner = corner_rad_per_um or corner
+        floor = plateau * (cutoff / corner) ** falling
+    except (KeyError, TypeError, ArithmeticError):
+        return psd  # the schema refuses it
+    return psd | {"corner_rad_per_um": corner, "floor_nm4": float(f"{floor:.12g}")}

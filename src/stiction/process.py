@@ -1,0 +1,128 @@
+"""Process in one process: from a configuration to the law of its surface and the recommended settings, without files.
+
+Stages, settings and addresses of random numbers are the same as in the workflow, and so are the results.
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import xarray as xr
+
+from stiction.config.surfaces import process
+from stiction.plan.graph import Results
+from stiction.report.process import tables
+from stiction.stages.process.law import at_value
+from stiction.stages.process.recommended import devices_over
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, repr=False)
+class Process:
+    """Process of a configuration: the law of its surface, and the settings that suffice for its devices.
+
+    Examples
+    --------
+    >>> import stiction
+    >>> numbers = lambda rms: {"rms_nm": rms, "uncertainty": {"rms_nm": 0.05}}
+    >>> settings = [{"value": 30} | numbers(2.1), {"value": 60} | numbers(3.4), {"value": 90} | numbers(5.2)]
+    >>> etch = {"variable": "etch_time_s", "surface": "B2", "settings": settings}
+    >>> stiction.Process.of(stiction.load({"process": {"etch": etch}}), "etch")
+    Process etch: B2 over the etch time, 30 to 90 s, 3 settings
+    """
+
+    name: str
+    results: Results  #: results of all stages by the names of their files
+
+    @classmethod
+    def of(cls, config: dict, name: str) -> "Process":
+        """Process of a configuration, from `stiction.load`.
+
+        Raises
+        ------
+        ValueError
+            If the configuration has no such process.
+        """
+        known = config.get("process", {})
+        if name not in known:
+            raise ValueError(f"there is no process {name}; the configuration has {', '.join(known) or 'none'}")
+        return cls(name, Results.of(config))
+
+    @property
+    def law(self) -> xr.Dataset:
+        """Settings and the law through them. Dataset of `stiction.stages.process.law`."""
+        return self.results[f"process/laws/{self.name}"]
+
+    def at(self, value: float) -> xr.Dataset:
+        """Quantities of the surface at a value of the variable, with their standard errors.
+
+        They are ln of the rms in metres, skewness, kurtosis, ln of the corner in rad/m and slope of the spectrum.
+
+        Raises
+        ------
+        ValueError
+            If the value is beyond the settings.
+        """
+        return at_value(self.law, value)
+
+    @property
+    def devices(self) -> list[str]:
+        """Devices over its variable."""
+        return devices_over(self._plan, self._section["variable"])
+
+    def margins(self, device: str) -> xr.Dataset:
+        """Margins of one of its devices over the variable. Dataset of `stiction.stages.process.curves`.
+
+        The first call computes the device at seven values or more, a minute or two for a stopper of 5 µm.
+        """
+        self._must_have(device)
+        return self.results[f"process/curves/{device}"]
+
+    def settings(self) -> xr.Dataset:
+        """Settings that suffice for each device and for all, the best, and the next to measure.
+
+        Dataset of `stiction.stages.process.recommended`. The first call computes all devices.
+        """
+        if not self.devices:
+            raise ValueError(f"no device has process {self.name}: state it in the key process of a device")
+        return self.results[f"process/settings/{self._section['variable']}"]
+
+    def answers(self, device: str) -> list[str]:
+        """Settings that suffice for one of its devices, or for ``all devices`` if there are several, in sentences."""
+        settings = self.settings()
+        if device not in settings.who.values:
+            self._must_have(device)
+        return tables.answers(settings, device)
+
+    def plot(self, device: str | None = None) -> "Figure":
+        """Figure of the law, or of one of its devices over the variable."""
+        from stiction.report.process import figures
+
+        return (
+            figures.laws(self.law) if device is None else figures.devices(self.margins(device), self.settings(), device)
+        )
+
+    def __repr__(self):
+        section = self._section
+        values = [setting["value"] for setting in section["settings"]]
+        variable = section["variable"]
+        return (
+            f"Process {self.name}: {section['surface']} over the {process.words_of(variable)}, {min(values):g} to "
+            f"{max(values):g} {process.unit_of(variable)}, {len(values)} settings"
+        )
+
+    def _must_have(self, device):
+        """Refuse a device without this process."""
+        if device not in self.devices:
+            raise ValueError(
+                f"device {device} has no process over {self._section['variable']}: {', '.join(self.devices)}"
+            )
+
+    @property
+    def _plan(self):
+        return self.results.graph.plan
+
+    @property
+    def _section(self):
+        return self._plan.config["process"][self.name]

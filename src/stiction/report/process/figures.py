@@ -1,0 +1,141 @@
+"""Figures of processes: devices over a process variable with bands, and the laws of the surfaces."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from stiction.analysis.process_law import QUANTITIES, scaled, unscaled
+from stiction.config.cases import air
+from stiction.config.surfaces import process
+from stiction.report.format import TO_NM, TO_UM
+from stiction.report.style import (
+    DOUBLE,
+    INTERVAL,
+    SINGLE,
+    columns_of_panels,
+    figure_stage,
+    handles,
+    humidity_colours,
+    letter,
+    panels,
+    plain_log,
+    styled,
+)
+from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.devices.opening import FORCE
+from stiction.stages.process.law import law_of
+
+#: Quantities of a surface on an axis: words and function of the unscaled quantity.
+_SHOWN = {
+    "rms": ("rms [nm]", lambda values: TO_NM * np.exp(values)),
+    "skewness": ("skewness", lambda values: values),
+    "kurtosis": ("kurtosis", lambda values: values),
+    "corner": ("corner [rad/µm]", lambda values: np.exp(values) / TO_UM),
+    "slope": ("slope of the spectrum", lambda values: values),
+}
+#: Number of values along a law.
+_POINTS = 101
+
+
+@styled
+def devices(curve: xr.Dataset, recommended: xr.Dataset, who: str) -> Figure:
+    """Estimate of a device over a process variable, with its 95 % band, the required value and the best setting.
+
+    A panel for each end state. Grey: the settings that suffice at all humidities and against all end states.
+    """
+    shapes = list(map(str, curve["shape"].values))
+    figure, axes = panels(1, len(shapes), (min(DOUBLE, 1.3 * SINGLE * len(shapes)), 3.0))
+    own, along = ("restoring force", "force needed [µN]") if shapes == [FORCE] else ("required length", "length [µm]")
+    one, unit = recommended.sel(who=who), process.unit_of(curve.variable)
+    for panel, shape in zip(axes[0], shapes, strict=True):
+        for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
+            _band(panel, curve.sel(humidity=humidity, shape=shape), colour)
+        panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label=own)
+        for low, high in one.sufficient.values[np.isfinite(one.sufficient.values[:, 0])]:
+            panel.axvspan(low, high, color="0.9", zorder=0, label="suffices, 95 % confidence")
+        at = [[float(one.best) - float(one.best_interval[0])], [float(one.best_interval[1]) - float(one.best)]]
+        place = float(one.best), TO_UM * float(curve.required)
+        panel.errorbar(
+            *place, xerr=np.maximum(at, 0), fmt="D", color="black", markersize=4, label="best and 95 % interval"
+        )
+        panel.set_yscale("log")
+        plain_log(panel.yaxis)
+        panel.set_xlabel(f"{process.words_of(curve.variable)} [{unit}]")
+    axes[0, 0].set_ylabel(f"{along}, p = {float(curve.share):g}")
+    letter(axes, [END_STATES[shape].by for shape in shapes])
+    figure.legend(*handles(*axes[0]), loc="outside lower center", ncols=2 * len(shapes))
+    return figure
+
+
+def _band(panel, line, colour):
+    """Estimate at one humidity, with the band of all errors of its margin."""
+    error = np.sqrt(sum(line[f"{name}_error"].values ** 2 for name in ("simulation", "law", "model")))
+    x, estimate = line.value.values, TO_UM * line.estimate.values
+    factor = np.exp(INTERVAL * error)
+    panel.fill_between(x, estimate / factor, estimate * factor, color=colour, alpha=0.2, linewidth=0)
+    panel.plot(x, estimate, ".-", color=colour, label=f"{air(float(line.humidity))}, estimate and 95 % band")
+
+
+@styled
+def laws(dataset: xr.Dataset) -> Figure:
+    """Quantities of a surface over a process variable: settings with their errors, and the law with its 95 % band."""
+    law, names = law_of(dataset), list(map(str, dataset["quantity"].values))
+    figure, axes, columns = columns_of_panels(len(names), 1, lambda count: min(DOUBLE, 2.4 * count), 2.2)
+    values = np.linspace(*law.ends, _POINTS)
+    middle, spread = law.at(values), np.sqrt(np.einsum("nqq->nq", law.covariance_at(values)))
+    measured = dataset.measured.values
+    error = np.sqrt(np.einsum("nqq->nq", dataset.errors.values))
+    curves = [_unscaled(middle + INTERVAL * sign * spread, names) for sign in (0, -1, 1)]
+    points = [_unscaled(measured + INTERVAL * sign * error, names) for sign in (0, -1, 1)]
+    for k, (name, (panel, *_)) in enumerate(zip(names, columns, strict=True)):
+        words, shown = _SHOWN[name]
+        line, low, high = (shown(one[:, k]) for one in curves)
+        at, below, above = (shown(one[:, k]) for one in points)
+        panel.fill_between(values, low, high, color="0.85", linewidth=0, label="95 % band of the law")
+        panel.plot(values, line, color="black", label="law")
+        span = np.abs([np.minimum(below, above) - at, np.maximum(below, above) - at])
+        panel.errorbar(dataset.setting.values, at, yerr=span, fmt="o", markersize=3, label="settings, 95 % interval")
+        panel.set_xlabel(f"{process.words_of(dataset.variable)} [{process.unit_of(dataset.variable)}]")
+        panel.set_ylabel(words)
+    figure.legend(*handles(columns[0][0]), loc="outside lower center", ncols=3)
+    return figure
+
+
+def _unscaled(values, names):
+    """Some quantities back from the scale of the law, (n, q). Others are any."""
+    full = np.tile(scaled(np.array([0.0, 0.0, 3.0, 0.0, -4.0])), (len(values), 1))
+    places = [QUANTITIES.index(name) for name in names]
+    full[:, places] = values
+    return unscaled(full)[:, places]
+
+
+def _jobs(names: Sequence[str], wildcard: str) -> list[dict]:
+    """Wildcards of the jobs of some names."""
+    return [{wildcard: name} for name in names]
+
+
+STAGES = (
+    figure_stage(
+        "process_{device}",
+        "which settings of its process leave {device} free",
+        "Devices",
+        inputs=lambda plan, at: {
+            "curve": f"process/curves/{at.device}",
+            "recommended": f"process/settings/{process.variable_of(plan.config, at.device)}",
+        },
+        compute=lambda data, at: devices(data["curve"], data["recommended"], at.device),
+        jobs=lambda plan: _jobs(plan.devices.processed, "device"),
+        targets=("devices",),
+    ),
+    figure_stage(
+        "process_law_{process}",
+        "surface over the variable of process {process}",
+        "Devices",
+        inputs=lambda plan, at: {"law": f"process/laws/{at.process}"},
+        compute=lambda data: laws(data["law"]),
+        jobs=lambda plan: _jobs(process.used(plan.config), "process"),
+        targets=("devices",),
+    ),
+)

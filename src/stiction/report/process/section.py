@@ -1,0 +1,44 @@
+"""Section of the page of a device on its process."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import xarray as xr
+
+from stiction.config.surfaces import process
+from stiction.report.page import Page, Section
+from stiction.report.process import figures, tables
+from stiction.stages.process.recommended import ALL
+
+
+def inputs(plan: Any, device: str) -> dict[str, Any]:
+    """Names of the datasets of the process of a device, none without one."""
+    named = process.of_device(plan.config, device)
+    if not named:
+        return {}
+    variable = process.variable_of(plan.config, device)
+    return {
+        "process": f"process/curves/{device}",
+        "process_settings": f"process/settings/{variable}",
+        "process_laws": [f"process/laws/{name}" for name in named],
+    }
+
+
+def with_process(page: Page, device: str, data: Mapping[str, Any]) -> Page:
+    """Page with the settings that suffice for its device, or itself without a process."""
+    if "process" not in data:
+        return page
+    curve, settings, laws = (data[name] for name in ("process", "process_settings", "process_laws"))
+    own = _section(device, curve, settings, laws)
+    pictures = [Section(f"Law of {law.surface}", (), None, figures.laws(law)) for law in laws]
+    answer = [*page.answer, tables.briefly(settings, device)]
+    return replace(page, answer=answer, sections=[*page.sections, own, *pictures])
+
+
+def _section(device: str, curve: xr.Dataset, settings: xr.Dataset, laws: Sequence[xr.Dataset]) -> Section:
+    """Answers about one device and about all devices of its process, with table and figure."""
+    together = tables.answers(settings, ALL) if ALL in settings.who.values else []
+    said = [*tables.answers(settings, device), *together, *tables.notes(curve, laws)]
+    cells = tables.table({device: curve}, [], {device: laws}).cells.drop(columns="device")
+    return Section("Which setting of the process?", said, cells, figures.devices(curve, settings, device))

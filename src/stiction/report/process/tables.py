@@ -1,0 +1,204 @@
+"""Table of processes: devices over a process variable, and sentences on the settings that suffice."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+import xarray as xr
+
+from stiction.config.surfaces import process
+from stiction.devices.risk import one_in
+from stiction.plan.names import by_name
+from stiction.report.format import UM, with_error
+from stiction.report.table import DEVICE, Table, table_stage, with_list
+from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.process.recommended import ALL, variables
+
+
+def answers(recommended: xr.Dataset, who: str) -> list[str]:
+    """Settings that suffice for a device or for all, the best one and the next to measure, in sentences."""
+    one, unit = recommended.sel(who=who), unit_of(recommended)
+    if np.isnan(float(one.best)):
+        return [_sufficient(one, who, unit)]
+    said = [_sufficient(one, who, unit)]
+    if places := [_at(*pair, unit) for pair in _pairs(one.crossing, one.crossing_error)]:
+        said.append(f"The estimate meets the requirement exactly at {' and at '.join(places)}.")
+    return said + _best(one, unit) + _next(one, unit)
+
+
+def briefly(recommended: xr.Dataset, who: str) -> str:
+    """Settings that suffice and the best one, in a sentence."""
+    return _sufficient(recommended.sel(who=who), who, unit_of(recommended))
+
+
+def unit_of(dataset: xr.Dataset) -> str:
+    """Unit of the variable of a dataset."""
+    return process.unit_of(dataset.variable)
+
+
+def _sufficient(one, who, unit):
+    """Range of settings that suffices, and the best setting."""
+    words, value = process.words_of(one.variable), one.value.values
+    if np.isnan(float(one.best)):
+        return f"{_subject(who)}which {words} suffices is not known: too few points could be computed."
+    share = "the allowed share of every device" if who == ALL else one_in(float(one.share))
+    best = _at(float(one.best), float(one.best_error), unit)
+    ranges = [f"{low:.3g} to {high:.3g} {unit}" for low, high in _pairs(*one.sufficient.values.T)]
+    if not ranges:
+        return (
+            f"{_subject(who)}no {words} from {value[0]:g} to {value[-1]:g} {unit} is sure to leave at most {share} "
+            f"stuck; the best is {best}."
+        )
+    enough = " or ".join(ranges)
+    return f"{_subject(who)}{words} from {enough} leaves at most {share} stuck (95 % confidence), best {best}."
+
+
+def _subject(who):
+    """Beginning of a sentence on all devices together."""
+    return "All devices together: " if who == ALL else ""
+
+
+def _at(value, error, unit):
+    """Setting with its error, if it has one."""
+    return f"{with_error(value, error)} {unit}" if error > 0 else f"{value:.3g} {unit}"
+
+
+def _pairs(first, second):
+    """Pairs of numbers that are known."""
+    return [pair for pair in zip(map(float, first), map(float, second), strict=True) if np.isfinite(pair[0])]
+
+
+def _best(one, unit):
+    """Interval of the best setting, and what lies at its ends."""
+    low, high = map(float, one.best_interval)
+    first, last = map(float, one.value.values[[0, -1]])
+    said = [f"The best setting lies between {low:.3g} and {high:.3g} {unit} (95 %)."] if low < high else []
+    ends = [f"{end:g} {unit}" for end, near in ((first, low == first), (last, high == last)) if near]
+    if ends:
+        said.append(
+            f"It may lie beyond {' or '.join(ends)}, where nothing was measured: nothing is said about settings there."
+        )
+    return said
+
+
+def _next(one, unit):
+    """Setting to measure next."""
+    if np.isnan(float(one.next)):
+        return []
+    subject = {"best": "the best setting", "range": "the length of the range that suffices"}[
+        str(one.next_subject.values)
+    ]
+    errors = f"from {float(one.next_before):.2g} to {float(one.next_after):.2g} {unit}"
+    return [f"Measure {float(one.next):.3g} {unit} next: this is expected to shrink the error of {subject} {errors}."]
+
+
+def notes(curve: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
+    """Sentences on settings that contradict a law, and on points that are not computed or flagged."""
+    said = [sentence for law in laws for sentence in str(law.flags.item()).splitlines()]
+    for name, begins in {"flagged": "Where", "refused": "Not computed where"}.items():
+        places = {}
+        for humidity in curve.humidity.values:
+            for value in curve.value.values:
+                if sentence := str(curve[name].sel(humidity=humidity, value=value).values):
+                    places.setdefault(sentence.rstrip("."), []).append(f"{value:.3g} {unit_of(curve)}")
+        words = process.words_of(curve.variable)
+        said += [
+            f"{begins} the {words} is {', '.join(dict.fromkeys(at))}: {sentence}." for sentence, at in places.items()
+        ]
+    return said
+
+
+def table(
+    curves: Mapping[str, xr.Dataset], recommended: Sequence[xr.Dataset], laws: Mapping[str, Sequence[xr.Dataset]]
+) -> Table:
+    """Margins of devices over process variables: a row per device, humidity, end state and setting."""
+    said = [
+        sentence if who == ALL else f"{who}: {sentence}"
+        for one in recommended
+        for who in map(str, one.who.values)
+        for sentence in answers(one, who)
+    ]
+    said += dict.fromkeys(sentence for device, curve in curves.items() for sentence in notes(curve, laws[device]))
+    caption = (
+        "Length of a beam, or restoring force of a stopper, with the allowed fraction p stuck, on the surfaces that a "
+        "process makes at values of its variable, and its margin to the required one: the logarithm of their ratio, "
+        "positive where the requirement is met. Errors of the margin are due to the simulation, to the law of the "
+        "surface at and between the measured settings, and to full elastic contact if it is computed."
+    )
+    rows = [row for device, curve in curves.items() for row in _rows(device, curve)]
+    return Table.of(rows, with_list(caption, said), _COLUMNS)
+
+
+def _rows(device, curve):
+    """Numbers of a device."""
+    for humidity in curve.humidity.values:
+        for shape in map(str, curve["shape"].values):
+            for value in curve.value.values:
+                point = curve.sel(humidity=humidity, shape=shape, value=value)
+                parts = {name: float(point[f"{name}_error"]) for name in ("simulation", "law", "model")}
+                stuck, low, high = (100 * point.stuck.values).tolist()
+                yield (
+                    {
+                        "device": device,
+                        "relative_humidity": float(humidity),
+                        "held_by": END_STATES[shape].by,
+                        "variable": curve.variable,
+                        "value": float(value),
+                        "share": float(curve.share),
+                        "unit": "µN" if curve.required.attrs["units"] == "N" else "µm",
+                        "estimate": float(point.estimate) / UM,
+                        "estimate_se": float(point.error) / UM,
+                        "required": float(curve.required) / UM,
+                        "margin": float(point.margin),
+                        "margin_se": float(np.sqrt(sum(part**2 for part in parts.values()))),
+                    }
+                    | {f"{name}_se": part for name, part in parts.items()}
+                    | {
+                        "stuck_percent": stuck,
+                        "stuck_low_percent": low,
+                        "stuck_high_percent": high,
+                    }
+                )
+
+
+def _stuck(stuck, low, high):
+    """P(stuck) with its band."""
+    return "–" if np.isnan(stuck) else f"{stuck:.3g} ({low:.3g} to {high:.3g})"
+
+
+_COLUMNS = DEVICE | {
+    "held by": (str, "held_by"),
+    "variable": (str, "variable"),
+    "value": (".3g", "value"),
+    "p": ("g", "share"),
+    "unit": (str, "unit"),
+    "estimate": (with_error, "estimate", "estimate_se"),
+    "required": ("g", "required"),
+    "margin": (with_error, "margin", "margin_se"),
+    "of simulation": (".2g", "simulation_se"),
+    "of the law": (".2g", "law_se"),
+    "of the model": (".2g", "model_se"),
+    "P(stuck) [%]": (_stuck, "stuck_percent", "stuck_low_percent", "stuck_high_percent"),
+}
+
+
+def _inputs(plan, _at):
+    """Curves, recommended settings and laws of all devices over a process."""
+    devices = plan.devices.processed
+    laws = {name: [f"process/laws/{one}" for one in process.of_device(plan.config, name)] for name in devices}
+    own = {f"laws_{name}": named for name, named in laws.items()}
+    settings = [f"process/settings/{variable}" for variable in variables(plan)]
+    return {"curves": by_name("process/curves", devices), "recommended": settings} | own
+
+
+STAGES = (
+    table_stage(
+        "process",
+        "which settings of a process suffice",
+        inputs=_inputs,
+        compute=lambda data: table(
+            data["curves"], data["recommended"], {name: data[f"laws_{name}"] for name in data["curves"]}
+        ),
+        jobs=lambda plan: [{}] if plan.devices.processed else [],
+        targets=("devices",),
+    ),
+)

@@ -1,0 +1,1 @@
+"""Stages of processes: laws of surfaces, devices over a process variable, and recommended settings."""

@@ -1,0 +1,133 @@
+"""Stage process_curve: margins of a device over a process variable, with the errors of simulation, law and model."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from scipy.stats import norm
+
+from stiction.config.surfaces import process
+from stiction.devices.process import CONFIDENCE, Curve, law_error
+from stiction.devices.roughness import margins
+from stiction.plan.stage import Stage
+from stiction.stages.process.law import law_inputs, law_of
+from stiction.stages.process.points import values_of
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Process behind a curve."""
+
+    variable: str  #: name with its unit
+    processes: tuple[str, ...]  #: one for each of the laws
+    surfaces: tuple[str, ...]  #: that they make
+
+
+def compute(
+    points: Sequence[xr.Dataset], laws: Sequence[xr.Dataset], settings: Settings, model_error: xr.Dataset | None = None
+) -> xr.Dataset:
+    """Join the points, with the margins to the requirement and the parts of their standard errors.
+
+    The error of the model is that of full elastic contact, if it is known.
+    """
+    shared = ["required", "share", "samples"]
+    slopes = _slopes(points)
+    over = [point.drop_vars([*shared, "roughness", "slopes"], errors="ignore").set_coords("value") for point in points]
+    curve = xr.concat(over, "value").assign(points[0][shared]).assign(slopes=slopes)
+    required, more_is_better = float(curve.required), curve.required.attrs["units"] == "m"
+    margin, safe = (margins(curve[name].values, required, more_is_better) for name in ("estimate", "safe"))
+    dims = ("value", "humidity", "shape")
+    # The bound of a safe value is one-sided: the errors of simulation alone leave it as it is.
+    parts = {"simulation": (margin - safe) / norm.ppf(CONFIDENCE), "model": _of_model(curve, model_error)}
+    curve = curve.assign({"margin": (dims, margin)} | {f"{name}_error": (dims, one) for name, one in parts.items()})
+    known = [law_of(one) for one in laws]
+    of_law = np.full(margin.shape, np.nan)
+    for humidity, shape, one in curves_of(curve):
+        at = dict(humidity=humidity, shape=shape)
+        places = np.isin(curve.value.values, one.settings)
+        of_law[places, *_indices(curve, at)] = law_error(one, known)
+    curve = curve.assign(law_error=(dims, of_law))
+    names = [name for name, law in zip(settings.processes, laws, strict=True) for _ in law["quantity"].values]
+    quantities = [str(one) for law in laws for one in law["quantity"].values]
+    labels = {"law_process": ("law_quantity", names), "law_quantity": quantities}
+    return curve.assign_coords(labels).assign_attrs(variable=settings.variable, surface=" and ".join(settings.surfaces))
+
+
+def _indices(curve, at):
+    """Numbers of a humidity and an end state."""
+    return tuple(list(curve[name].values).index(value) for name, value in at.items())
+
+
+def _slopes(points):
+    """Slopes at all points, between those at which they are known. Unknown if they are so everywhere."""
+    values = np.array([float(point.value) for point in points])
+    known = [(float(point.value), point.slopes.values) for point in points if "slopes" in point]
+    places, found = np.array([value for value, _ in known]), np.array([slopes for _, slopes in known])
+    flat = found.reshape(len(places), -1)
+    filled = np.full((len(values), flat.shape[1]), np.nan)
+    for k, column in enumerate(flat.T):
+        finite = np.isfinite(column)
+        if finite.any():
+            filled[:, k] = np.interp(values, places[finite], column[finite])
+    dims = ("value", "humidity", "shape", "law_quantity")
+    return dims, filled.reshape(len(values), *found.shape[1:]), {"long_name": "of the margin by scaled quantities"}
+
+
+def _of_model(curve, model_error):
+    """Standard error of the margins due to the model: full elastic contact changes them, or errs itself if applied."""
+    shape = curve.estimate.shape
+    if model_error is None:
+        return np.zeros(shape)
+    own = model_error.sel(humidity=curve.humidity, shape=curve["shape"]).transpose("humidity", "shape", ...)
+    relative = own.factor_error / own.factor
+    change = 0.0 if bool(model_error.applied) else np.log(own.factor)
+    return np.broadcast_to(np.nan_to_num(np.hypot(change, relative).values), shape)
+
+
+def curves_of(curve: xr.Dataset) -> Iterator[tuple[float, str, Curve]]:
+    """Yield humidity, end state and curve wherever at least two neighbouring margins are known.
+
+    ASSUME: an unknown margin between known ones is on a smooth curve through them. Those at the ends are left out.
+    """
+    for humidity in curve.humidity.values:
+        for shape in curve["shape"].values:
+            one = curve.sel(humidity=humidity, shape=shape)
+            known = np.isfinite(one.margin.values + one.simulation_error.values + one.slopes.values.sum(axis=-1))
+            if known.sum() > 1:
+                one = one.isel(value=known)
+                error = np.hypot(one.simulation_error.values, one.model_error.values)
+                arrays = one.value.values, one.margin.values, one.slopes.values, error
+                yield float(humidity), str(shape), Curve(*arrays)
+
+
+def _inputs(plan, at):
+    """Points of a device and laws of its processes, and the error of the model if it is stated."""
+    numbers = range(len(values_of(plan, at.device)))
+    errors = {"model_error": f"devices/model_error/{at.device}"} if plan.states_model_error else {}
+    return (
+        {"points": [f"process/points/{at.device}_{number}" for number in numbers]}
+        | law_inputs(plan, at.device)
+        | errors
+    )
+
+
+def _settings(plan, at):
+    """Processes of a device."""
+    named = process.of_device(plan.config, at.device)
+    sections = [plan.config["process"][name] for name in named]
+    surfaces = [section["surface"] for section in sections]
+    return {"variable": sections[0]["variable"], "processes": named, "surfaces": surfaces}
+
+
+STAGES = (
+    Stage.writing(
+        "process_curve",
+        "process/curves/{device}",
+        inputs=_inputs,
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, settings: compute(data["points"], data["laws"], settings, data.get("model_error")),
+        message="Device {device} over its process.",
+    ),
+)
