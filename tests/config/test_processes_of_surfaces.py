@@ -176,3 +176,12 @@ def test_a_surface_with_the_name_of_a_setting_is_refused():
     mine = {"surfaces": {"etch-1": {"like": "B2", "rms_nm": 3}}}
     with pytest.raises(stiction.ConfigError, match="surfaces.etch-1 must have another name"):
         stiction.load(RUN, mine, {"process": {"etch": ETCH}})
+
+
+def test_compared_surfaces_have_processes_of_their_own():
+    compared = {"compare": {"surfaces.B2.skewness": [-0.5, -0.7]}}
+    config = stiction.load(RUN, {"process": {"etch": ETCH}}, compared)
+    for end, skewness in (("Skewnessm0p5", -0.5), ("Skewnessm0p7", -0.7)):
+        assert config["devices"][f"Bump{end}"]["process"] == f"etch{end}"
+        assert config["process"][f"etch{end}"]["surface"] == f"B2{end}"
+        assert config["surfaces"][f"etch{end}-1"]["skewness"] == skewness
