@@ -233,11 +233,12 @@ ADVICE = re.compile(r"; (?:YAML reads .* as text, )?write (?:it without a decima
 
 
 def kinds_of_values(parts):
-    """Parts of the schema, one of each kind: advice reads no description, and the examples of lists alone."""
+    """Parts of the schema, one of each kind: advice reads whether it is a fraction, and the examples of lists alone."""
     kinds = {}
     for part in parts:
         silent = {"description"} | ({"examples"} if part["type"] != "array" else set())
-        kinds.setdefault(repr({key: part[key] for key in part if key not in silent}), part)
+        kind = {key: part[key] for key in part if key not in silent}
+        kinds.setdefault(repr((kind, "as a fraction of 1" in part["description"])), part)
     return list(kinds.values())
 
 
