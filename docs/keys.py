@@ -15,7 +15,10 @@ PAPER = read(ROOT / "config.yaml")
 #: Further values to show as examples, in the order in which they are tried.
 EXAMPLES = [
     PAPER,
-    *(read(ROOT / "examples" / f"{name}.yaml") for name in ("devices", "scans/mine", "test_beams", "roughness")),
+    *(
+        read(ROOT / "examples" / f"{name}.yaml")
+        for name in ("devices", "scans/mine", "test_beams", "roughness", "process/mine")
+    ),
 ]
 
 

@@ -48,6 +48,7 @@ def numbers(tables):
     texts |= readings(tables["asperities"]) | pressing(tables["pressing"])
     texts |= sealed(tables["sealed_safe_lengths"], tables["sealed_stoppers"])
     texts |= measured_beams(tables["measured_beams"]) | said(tables["test_beams"]) | skewed(tables["roughness"])
+    texts |= said(tables["process_answers"])
     texts |= tails(tables["tails"]) | texts_of(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
     return texts | scans(tables["example_scans"]) | timings(tables["timings"]) | constants() | nearly_gaussian()
 

@@ -2,8 +2,9 @@
 
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
    and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``,
-   ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction``, ``make print``, ``stiction devices
-   examples/NAME.yaml --directory runs/NAME`` with the names roughness and test_beams in folders of ``runs`` beside it.
+   ``make example-process``, ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction``, ``make
+   print``, ``stiction devices examples/NAME.yaml --directory runs/NAME`` with the names roughness and test_beams in
+   folders of ``runs`` beside it.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
 3. The drawings are drawn, and the pages of ``docs`` and ``config/README.md`` are generated from ``docs/templates``,
    with numbers and tables inserted.
@@ -31,6 +32,7 @@ from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.plan.plan import Plan
 from stiction.report.format import TO_UM, with_error
+from stiction.report.process import tables as tables_process
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run.storage import load
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
@@ -79,6 +81,9 @@ DEVICE_TABLES = ("safe_lengths", "stoppers", "budget", "life")
 DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 1000, "life": 1200}
 #: Table, and pictures by their width [pixels], of ``make devices CONFIG=examples/roughness.yaml``.
 ROUGHNESS = "roughness"
+#: Table, sentences and pictures of ``make example-process``.
+PROCESS, PROCESS_SAID = "process", "process_answers"
+PROCESS_PICTURES = {"process_Bump": 700, "process_law_etch": 1100}
 ROUGHNESS_PICTURES = {"roughness_Bump": 700, "roughness_Lever": 1000, "roughness_map_Skewed": 700}
 #: Sentences, and picture with its width [pixels], of ``make devices CONFIG=examples/test_beams.yaml``.
 TEST_BEAMS = "test_beams"
@@ -125,6 +130,11 @@ def main(results):
         (runs / "measured-beams", unfinished_measured, collect_measured),
         (runs / "devices", partial(unfinished_devices, "devices", "budget"), collect_devices),
         (runs / "roughness", partial(unfinished_devices, "roughness", ROUGHNESS), collect_roughness),
+        (
+            runs / "example-process",
+            partial(unfinished_example, target="devices", result="results/tables/process.md"),
+            collect_process,
+        ),
         (runs / "test_beams", partial(unfinished_devices, "test_beams", TEST_BEAMS), collect_test_beams),
         (runs / "sealed", partial(unfinished_devices, "sealed", "stoppers"), collect_sealed),
         (runs / "attraction", unfinished_attraction, collect_attraction),
@@ -164,9 +174,9 @@ def unfinished_study(name, results):
     return f"{results} is not up to date with config.yaml and the code, see {command} ARGS=-n"
 
 
-def unfinished_example(folder, target="measured"):
+def unfinished_example(folder, target="measured", result="prediction.md"):
     """Why a folder does not hold a finished run of an example with a known truth by this code; empty if it does."""
-    if not (folder / "prediction.md").exists():
+    if not (folder / result).exists():
         return f"{folder} holds no finished run"
     configs = ROOT / "config.yaml", folder.resolve() / "mine.yaml"
     if up_to_date(folder.resolve(), target, "--configfile", *configs):
@@ -317,6 +327,23 @@ def collect_roughness(folder):
         shrink(folder / "results" / "figures" / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
 
 
+def collect_process(folder):
+    """Table, pictures and sentences on each device of a run of the example of a process."""
+    results, tables = folder / "results", DOCS / "tables"
+    for kind in ("csv", "md"):
+        shutil.copyfile(results / "tables" / f"{PROCESS}.{kind}", tables / f"{PROCESS}.{kind}")
+    for name, width in PROCESS_PICTURES.items():
+        shrink(results / "figures" / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
+    (path,) = (results / "process" / "settings").glob("*.nc")
+    settings = load(path, "process_settings")
+    rows = [
+        {"device": who.replace(" ", "_"), "name": number, "text": text}
+        for who in map(str, settings.who.values)
+        for number, text in enumerate(tables_process.answers(settings, who), 1)
+    ]
+    pd.DataFrame(rows).to_csv(tables / f"{PROCESS_SAID}.csv", index=False, lineterminator="\n")
+
+
 def collect_test_beams(folder):
     """Sentences of the pages of a run of the example of test beams, by device and name, and one picture."""
     rows = []
@@ -428,6 +455,7 @@ def quoted_numbers():
             PRINT_STUDIES,
             *SUPPLEMENT,
             ROUGHNESS,
+            PROCESS_SAID,
             TEST_BEAMS,
             *(f"sealed_{name}" for name in SEALED_TABLES),
             *DEVICE_TABLES,

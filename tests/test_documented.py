@@ -44,7 +44,7 @@ SNIPPETS = sorted(
     set(re.findall(r"`([a-z_]+(?:\.[a-z_]+)*: [^`<>…]+)`", re.sub(r"```.*?```", "", TEXT, flags=re.DOTALL)))
 )
 EXAMPLES = ("examples/scans/mine", "examples/devices", "examples/roughness", "examples/drawn_beams/mine")
-EXAMPLES += ("examples/test_beams", "examples/sealed", "examples/life", "workflow/smoke")
+EXAMPLES += ("examples/test_beams", "examples/sealed", "examples/life", "examples/process/mine", "workflow/smoke")
 
 
 def module(path):

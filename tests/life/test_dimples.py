@@ -1,6 +1,6 @@
 """Rows of dimples: closed forms, finite elements, tension as a string, and the deflection beside them."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -9,7 +9,7 @@ from loaded_beams import Elements
 from numpy.testing import assert_allclose
 
 from stiction.beam.cantilever import Beam
-from stiction.life.dimples import holds, least_pull, states
+from stiction.life.dimples import holds, least_load, least_pull, states
 
 BEAM = Beam(200e-6, 30e-6, 2e-6, 164e9, 3e-6, 1)
 STRESSES = (0.0, 1e3, 1e6, 50e6, 1e9)
@@ -96,3 +96,85 @@ def test_more_rows_leave_more_of_the_gap_between_them():
         min(state.deepest for state in states(BEAM, 1, np.linspace(0, 180e-6, number + 1)[1:])) for number in (1, 2, 4)
     ]
     assert np.all(np.diff(deepest) < 0)
+
+
+# Loads
+
+
+@dataclass(frozen=True)
+class OnRows(Elements):
+    """A beam on rows at some nodes, which hold it at a deflection."""
+
+    rows: tuple[int, ...] = ()
+
+    @property
+    def free(self):
+        """Unknowns that neither clamps nor rows hold."""
+        return np.setdiff1d(super().free, 2 * np.array(self.rows))
+
+    def bears(self, way, factor, power):
+        """Whether it stands under a load that grows to ``factor`` / gap ** ``power`` per length."""
+        u = np.zeros(2 * self.number + 2)
+        u[2 * np.array(self.rows)] = way
+
+        def load(share, v):
+            gap = self.beam.gap - v
+            return share * factor / gap**power, share * power * factor / gap ** (power + 1)
+
+        for share in 1 - np.linspace(1, 0, 16) ** 2:
+            u = self.balance(lambda v, share=share: self.forces(v, lambda w: load(share, w)), u)
+            if u is None:
+                return False
+        return True
+
+
+def on_all(beam, clamps, nodes, way, power):
+    """Largest load on a beam that all its rows hold."""
+    found = states(beam, clamps, [node / 64 * beam.length for node in nodes])
+    return least_load([state for state in found if len(state.rows) == len(nodes)], way, beam.gap, power)
+
+
+ON = [(1, (20, 50)), (1, (60,)), (2, (16, 40)), (2, (20, 32, 44)), (2, (32,))]
+
+
+@pytest.mark.parametrize("power", [1, 2])
+@pytest.mark.parametrize(("clamps", "nodes"), ON)
+def test_finite_elements_stand_at_the_largest_load_and_fall_at_less_than_three_times_that(clamps, nodes, power):
+    for stress in (0.0, 50e6 * (clamps == 2)):
+        beam, way = replace(BEAM, tension=stress * BEAM.width * BEAM.thickness), 1e-6
+        elements, load = OnRows(beam, clamps, number=64, rows=nodes), on_all(beam, clamps, nodes, way, power)
+        assert elements.bears(way, load, power)
+        assert not elements.bears(way, 3 * load, power)
+
+
+@pytest.mark.parametrize(("clamps", "nodes"), ON)
+def test_a_little_load_bends_parts_as_by_finite_elements(clamps, nodes):
+    """Without a way of the rows and far from the fold, the limit of a load c / g⁰ is h over the largest deflection."""
+    model = OnRows(BEAM, clamps, number=64, rows=nodes)
+    bending, _ = model.stiffness()
+    down, edges, size, free = np.zeros(65), [0, *nodes, 64], model.size, model.free
+    for low, high in zip(edges, edges[1:], strict=False):
+        force, u = np.zeros(len(bending)), np.zeros(len(bending))
+        for i in range(2 * low, 2 * high, 2):
+            force[i : i + 4] += [size / 2, size**2 / 12, size / 2, -(size**2) / 12]
+        u[free] = np.linalg.solve(bending[np.ix_(free, free)], force[free])
+        down += np.maximum(u[::2], 0)
+    # Nodes are up to 1/128 of the length from the deepest place.
+    assert_allclose(on_all(BEAM, clamps, nodes, 0.0, 0), BEAM.gap / down.max(), rtol=1e-2)
+
+
+def test_a_load_cannot_bring_down_a_beam_that_more_rows_carry_and_any_load_one_that_touches():
+    limits = []
+    for number in (1, 2, 4):
+        found = states(BEAM, 2, np.linspace(0, BEAM.length, number + 2)[1:-1])
+        limits.append(least_load(found, 1e-6, BEAM.gap, 2))
+    assert np.all(np.diff(limits) > 0)
+    for power in (1, 2):
+        (far,) = states(BEAM, 1, [40e-6])
+        assert far.deepest * 1e-6 > BEAM.gap
+        assert least_load([far], 1e-6, BEAM.gap, power) == 0
+    # A load as large as the limit of the outer row alone has brought the inner row down long before.
+    both = states(BEAM, 1, [100e-6, 180e-6])
+    alone, together = ([one for one in both if len(one.rows) == number] for number in (1, 2))
+    assert least_load(both, 0.1e-6, BEAM.gap, 2) == least_load(together, 0.1e-6, BEAM.gap, 2)
+    assert least_load(alone[:0] + together, 0.1e-6, BEAM.gap, 2) > 0

@@ -25,7 +25,8 @@ _VERDICT = "verdict"
 #: Pages and tables of results to open first, the most important one first.
 _PAGES = ("devices/*.html", "figures/overview.png", "figures/surface_sheet_*.png", "figures/*.png")
 _TABLES = tuple(
-    f"tables/{name}.md" for name in ("roughness", "test_beams", "safe_lengths", "stoppers", "table_3", "scans")
+    f"tables/{name}.md"
+    for name in ("process", "roughness", "test_beams", "safe_lengths", "stoppers", "table_3", "scans")
 )
 #: Where everything goes that Snakemake and its jobs print, relative to the folder of the run.
 PRINTED = Path(".snakemake", "printed.log")

@@ -16,9 +16,10 @@ from stiction.config.units import without_unit
 _NAMED = {
     "materials": {},
     "surfaces": {"material": "materials"},
+    "process": {"surface": "surfaces", "together_with": "process"},
     "pairs": {"beam": "surfaces", "substrate": "surfaces"},
     "test_beams": {"pair": "pairs"},
-    "devices": {"pair": "pairs", "test_beams": "test_beams", "surface": "surfaces"},
+    "devices": {"pair": "pairs", "test_beams": "test_beams", "surface": "surfaces", "process": "process"},
 }
 
 

@@ -73,11 +73,10 @@ def recommended(
     """
     low, high = max(curve.settings[0] for curve in curves), min(curve.settings[-1] for curve in curves)
     values = np.linspace(low, high, SETTINGS)
-    drawn = [law.drawn(DRAWS, rng) for law in laws]
-    off = np.concatenate([_off_law(law, one, values) for law, one in zip(laws, drawn, strict=True)], axis=-1)
+    drawn = np.concatenate([law.drawn(DRAWS, rng).reshape(DRAWS, -1) for law in laws], axis=1)
     here = [curve.at(values) for curve in curves]
     margin = np.min([curve.margin for curve in here], axis=0)
-    margins = np.min([_drawn(curve, off, rng) for curve in here], axis=0)
+    margins = np.min([_drawn(curve, laws, drawn, rng) for curve in here], axis=0)
     best = np.array([_best(values, one) for one in margins])
     safe = np.quantile(margins, 1 - CONFIDENCE, axis=0)
     subject = "best" if best.std() else "range"
@@ -118,15 +117,13 @@ def law_error(curve: Curve, laws: Sequence[Law]) -> np.ndarray:
     return np.sqrt(variance)
 
 
-def _off_law(law, drawn, values):
-    """Scaled quantities of drawn laws less those of the law, (draws, n, q)."""
-    return np.einsum("nc,kqc->knq", law.basis(values), drawn)
-
-
-def _drawn(curve, off, rng):
-    """Margins of a curve on drawn laws, (draws, n)."""
-    common = rng.standard_normal((len(off), 1))
-    return curve.margin + np.einsum("knq,nq->kn", off, curve.slopes) + common * curve.error
+def _drawn(curve, laws, drawn, rng):
+    """Margins of a curve on drawn laws, whose coefficients differ by ``drawn`` (draws, all), (draws, n)."""
+    sizes = np.cumsum([len(law.coefficients) for law in laws])[:-1]
+    slopes = zip(laws, np.split(curve.slopes, sizes, axis=1), strict=True)
+    parts = [(of[:, :, None] * law.basis(curve.settings)[:, None]).reshape(len(of), -1) for law, of in slopes]
+    common = rng.standard_normal((len(drawn), 1))
+    return curve.margin + drawn @ np.concatenate(parts, axis=1).T + common * curve.error
 
 
 def _best(values, margin):
@@ -140,8 +137,7 @@ def _next(laws, errors, drawn, wanted):
     The number, one of each draw, is taken as linear in the coefficients of the laws, as far as the draws show.
     """
     before, ends = float(wanted.std()), [law.ends for law in laws]
-    flat = np.concatenate([one.reshape(len(one), -1) for one in drawn], axis=1)
-    slopes, *_ = np.linalg.lstsq(flat, wanted - wanted.mean(), rcond=1e-9)
+    slopes, *_ = np.linalg.lstsq(drawn, wanted - wanted.mean(), rcond=1e-9)
     parts = np.split(slopes, np.cumsum([law.coefficients.size for law in laws])[:-1])
     settings = np.unique(np.concatenate([law.settings for law in laws]))
     candidates = np.sort([*settings, *(settings[1:] + settings[:-1]) / 2])

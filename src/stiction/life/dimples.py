@@ -14,21 +14,31 @@ The beam comes down farther elsewhere: between rows, and a cantilever beyond its
 :math:`1 + 3 (L - x) / 2 x` times as much at its tip. Where that is more than h, it touches beside its dimples, which
 then do not protect it.
 
-ASSUME: the beam does not twist, so that all dimples of a row let go at once. It bends under the forces of its rows
-alone.
+**Loads** that grow as the gap g closes, :math:`c / g^n` per length, of a voltage (n = 2) or of a liquid (n = 1), bring
+it down there. They are at most as large as at the smallest gap. A load on one part can lift the next one. With the
+deflection a by the rows, and b by a uniform load on those parts alone that bring a place down, the beam stands up to
+
+.. math:: c = \max_g g^n \min_x \frac{h - g - a(x)}{b(x)} ,
+
+a bound on the safe side. It is the least of all states but those in which this uniform load has brought another row
+down, which then carries the beam as well.
+
+ASSUME: the beam does not twist, so that all dimples of a row let go at once. Rows that touch do not move under a load,
+and it does not lift them.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
 
 from stiction.beam.cantilever import Beam
-from stiction.beam.tension import end_stiffness
+from stiction.beam.tension import SLACK, end_stiffness
 
-#: Points along a part of a beam at which its deflection is looked for.
-_POINTS = 401
+#: Points along a part of a beam at which its deflection is looked for, and gaps at which a load is.
+_POINTS = 201
 #: Rounding of a deflection of one.
 _ROUNDING = 1e-9
 
@@ -39,7 +49,15 @@ class State:
 
     rows: tuple[int, ...]  #: that touch, numbered along the beam
     pull: np.ndarray  #: force on each of them, negative where the beam presses it down [N m⁻¹]
-    deepest: float  #: largest deflection anywhere over that at the rows [-]
+    bent: np.ndarray  #: deflections along the beam over that at the rows (n,) [-]
+    sag: np.ndarray  #: deflections by a uniform load on parts that bring the place down (n,) [m² N⁻¹]
+    #: The same two at all other rows, and how much a uniform load on parts that lift such a row does (3, rows).
+    others: np.ndarray
+
+    @property
+    def deepest(self) -> float:
+        """Largest deflection anywhere over that at the rows [-]."""
+        return float(self.bent.max())
 
 
 def states(beam: Beam, clamps: int, at: Sequence[float]) -> list[State]:
@@ -54,14 +72,17 @@ def states(beam: Beam, clamps: int, at: Sequence[float]) -> list[State]:
     >>> [one.rows for one in states(beam, clamps=1, at=[100e-6, 150e-6])]
     [(1,), (0, 1)]
     """
-    found = []
+    places, found = [0.0, *at, beam.length], []
+    along = np.concatenate([np.linspace(*span, _POINTS) for span in zip(places, places[1:], strict=False)])
     for number in range(1, len(at) + 1):
         for rows in combinations(range(len(at)), number):
-            pull, bent = _held(beam, clamps, [at[row] for row in rows])
-            others = [at[row] for row in range(len(at)) if row not in rows]
-            if all(bent(np.array(others)) <= 1 + _ROUNDING):
-                points = np.concatenate([np.linspace(*span, _POINTS) for span in _spans(beam, at)])
-                found.append(State(rows, pull, float(bent(points).max())))
+            held = _Held(beam, clamps, tuple(at[row] for row in rows))
+            u = held.turned(1.0)
+            if all(held.bent(u, np.array(at)) <= 1 + _ROUNDING):
+                pull = (held.stiffness @ u)[2 : 2 * number + 2 : 2]
+                free = np.array([at[row] for row in range(len(at)) if row not in rows])
+                others = np.array([held.bent(u, free), *held.sags(free)])
+                found.append(State(rows, pull, held.bent(u, along), held.sags(along)[0], others))
     return found
 
 
@@ -75,62 +96,118 @@ def holds(found: Sequence[State], way: float, held: np.ndarray) -> np.ndarray:
     return np.any([np.all(held[:, state.rows] > way * state.pull, axis=1) for state in found], axis=0)
 
 
-def _spans(beam, at):
-    """Parts of a beam between its ends and rows."""
-    places = [0.0, *at, beam.length]
-    return zip(places, places[1:], strict=False)
+def least_load(found: Sequence[State], way: float, gap: float, power: int) -> float:
+    """Largest load per length, times the ``power`` of the gap, that brings no place down to the substrate [SI].
+
+    The rows are deflected by a way [m]. Zero if the beam touches beside them without a load.
+    """
+    loads = []
+    for state in found:
+        bears = state.sag > _ROUNDING * state.sag.max()
+        clear, sag = gap - way * state.bent[bears], state.sag[bears]
+        gaps = np.linspace(0, max(clear.min(), 0.0), _POINTS)
+        limits = [float(((clear - each) / sag).min() * each**power) for each in gaps]
+        most, least = max(limits), gaps[int(np.argmax(limits))]
+        bent, down, up = state.others
+        if not most or not np.any(way * bent + most / least**power * (down - up) > way):
+            loads.append(most)
+    return min(loads)
 
 
-def _held(beam, clamps, at):
-    """Pull on rows at a deflection of one [N m⁻¹], and the deflection along the beam as a function of the place."""
-    nodes = [0.0, *at, *([beam.length] if clamps == 2 else [])]
-    matrix = np.zeros((2 * len(nodes),) * 2)
-    for i, (start, end) in enumerate(zip(nodes, nodes[1:], strict=False)):
-        matrix[2 * i : 2 * i + 4, 2 * i : 2 * i + 4] += _element(beam, end - start)
-    inner = slice(1, len(at) + 1)
-    u = np.zeros(2 * len(nodes))
-    u[::2][inner] = 1.0
-    turning = np.arange(1, 2 * len(nodes), 2)[inner]
-    u[turning] = -np.linalg.solve(matrix[np.ix_(turning, turning)], (matrix @ u)[turning])
+@dataclass(frozen=True)
+class _Held:
+    """Beam as exact elements between clamps and the rows that hold it. Unknowns are [u, u'] of every node."""
 
-    def bent(places):
-        """Deflection at places along the beam [-]. Beyond the last row, a cantilever is straight."""
-        places = np.asarray(places)
-        i = np.clip(np.searchsorted(nodes, places) - 1, 0, len(nodes) - 2)
-        deflections = u[-2] + u[-1] * (places - nodes[-1])
-        for k in set(i[places <= nodes[-1]].tolist()):
-            inside = (i == k) & (places <= nodes[-1])
-            length = nodes[k + 1] - nodes[k]
-            deflections[inside] = _along(beam, length, u[2 * k : 2 * k + 4], (places[inside] - nodes[k]) / length)
+    beam: Beam
+    clamps: int
+    at: tuple[float, ...]
+
+    @cached_property
+    def nodes(self):
+        """Places of clamps and rows [m]."""
+        return [0.0, *self.at, *([self.beam.length] if self.clamps == 2 else [])]
+
+    @cached_property
+    def sizes(self):
+        """Lengths of the parts between nodes [m]."""
+        return np.diff(self.nodes)
+
+    @cached_property
+    def stiffness(self):
+        """Stiffness of all nodes, a square matrix."""
+        matrix = np.zeros((2 * len(self.nodes),) * 2)
+        for i, size in enumerate(self.sizes):
+            f, c, m, o = self._ends(size)
+            by = np.array([[f, c, -f, c], [c, m, -c, o], [-f, -c, f, -c], [c, o, -c, m]])
+            scale = np.array([1, size, 1, size])
+            part = slice(2 * i, 2 * i + 4)
+            matrix[part, part] += self.beam.bending_stiffness / size**3 * scale[:, None] * by * scale
+        return matrix
+
+    def _ends(self, size):
+        """Stiffness of a part at its end, see `stiction.beam.tension.end_stiffness`."""
+        kl = self.beam.decay * size
+        return end_stiffness(kl) if kl else (12.0, 6.0, 4.0, 2.0)
+
+    def turned(self, deflection, moments=0.0):
+        """Unknowns of all nodes with rows at a deflection, under moments at all nodes."""
+        turning = np.arange(3, 2 * len(self.at) + 3, 2)
+        u, given = np.zeros(len(self.stiffness)), np.broadcast_to(moments, len(self.nodes))
+        u[turning - 1] = deflection
+        rest = given[1 : len(self.at) + 1] - (self.stiffness @ u)[turning]
+        u[turning] = np.linalg.solve(self.stiffness[np.ix_(turning, turning)], rest)
+        return u
+
+    def bent(self, u, along):
+        """Deflection at places along the beam. Beyond its last row, a cantilever is straight."""
+        deflections = u[-2] + u[-1] * (along - self.nodes[-1])
+        for i, (start, size) in enumerate(zip(self.nodes, self.sizes, strict=False)):
+            inside = (along >= start) & (along <= start + size)
+            ends, x = u[2 * i : 2 * i + 4], (along[inside] - start) / size
+            deflections[inside] = _between(self.beam.decay * size, ends * [1, size, 1, size], x)
         return deflections
 
-    return (matrix @ u)[::2][inner], bent
+    def sags(self, along):
+        """Deflections down by 1 N/m on those parts that bring a place down, and up by the others (2, n) [m² N⁻¹]."""
+        by_part = []
+        for i, (start, size) in enumerate(zip(self.nodes, self.sizes, strict=False)):
+            moments, inside = np.zeros(len(self.nodes)), (along >= start) & (along <= start + size)
+            moments[i : i + 2] = np.array([1, -1]) * size**2 / (2 * self._ends(size)[1])
+            by = self.bent(self.turned(0.0, moments), along)
+            scale = size**4 / self.beam.bending_stiffness
+            by[inside] += scale * _bow(self.beam.decay * size, (along[inside] - start) / size)
+            by_part.append(by)
+        if self.clamps == 1 and (rest := self.beam.length - self.nodes[-1]) > 0:
+            moments, beyond = np.zeros(len(self.nodes)), np.maximum(along - self.nodes[-1], 0.0) / rest
+            moments[-1] = rest**2 / 2
+            arm = rest**4 / (24 * self.beam.bending_stiffness) * (beyond**4 - 4 * beyond**3 + 6 * beyond**2)
+            by_part.append(self.bent(self.turned(0.0, moments), along) + arm)
+        return [np.maximum(sign * np.array(by_part), 0.0).sum(axis=0) for sign in (1, -1)]
 
 
-def _element(beam, length):
-    """Stiffness of a part by deflection and slope at both ends (4, 4) [N m⁻¹, N, N m]."""
-    kl = beam.decay * length
-    f, c, m, o = end_stiffness(kl) if kl else (12.0, 6.0, 4.0, 2.0)
-    by = np.array([[f, c, -f, c], [c, m, -c, o], [-f, -c, f, -c], [c, o, -c, m]])
-    scale = np.array([1, length, 1, length])
-    return beam.bending_stiffness / length**3 * scale[:, None] * by * scale
-
-
-def _along(beam, length, ends, x):
-    """Deflection of a part at 0 <= x <= 1 (n,) from deflection and slope [m⁻¹] at both ends (4,)."""
-    kl, (first, turn, last, turn_last) = beam.decay * length, ends
+def _between(kl, ends, x):
+    """Deflection of a part at 0 <= x <= 1 (n,) from deflection and slope at both ends (4,), lengths in its own."""
+    first, turn, last, turn_last = ends
     if kl < 1e-3:
         # The cubic of Hermite, which tension changes by (kL)² / 60 at most.
         cubic = first * (1 - 3 * x**2 + 2 * x**3) + last * (3 * x**2 - 2 * x**3)
-        return cubic + length * (turn * x * (1 - x) ** 2 + turn_last * x**2 * (x - 1))
-    both = np.array([0.0, 1.0])
+        return cubic + turn * x * (1 - x) ** 2 + turn_last * x**2 * (x - 1)
 
     def shapes(x):
         """Solutions of the bent beam without load, (4, n)."""
         return np.array([np.ones_like(x), x, np.exp(-kl * x), np.exp(-kl * (1 - x))])
 
-    decays = np.exp(-kl * both), np.exp(-kl * (1 - both))
-    rates = np.array([np.zeros(2), np.ones(2), -kl * decays[0], kl * decays[1]])
-    values = shapes(both)
+    both = np.array([0.0, 1.0])
+    values, (_, _, fall, rise) = shapes(both), shapes(both)
+    rates = np.array([np.zeros(2), np.ones(2), -kl * fall, kl * rise])
     system = np.array([values[:, 0], rates[:, 0], values[:, 1], rates[:, 1]])
-    return np.linalg.solve(system, [first, turn * length, last, turn_last * length]) @ shapes(x)
+    return np.linalg.solve(system, ends) @ shapes(x)
+
+
+def _bow(kl, x):
+    """Deflection at 0 <= x <= 1 (n,) of a part clamped at both ends under a uniform load, in its length and EI."""
+    if kl < SLACK:
+        return (x * (1 - x)) ** 2 / 24
+    y, top = x - 0.5, -np.expm1(-kl)
+    hyperbolic = (np.exp(kl * (y - 0.5)) + np.exp(-kl * (y + 0.5))) / top  # cosh(kl y) / sinh(kl / 2)
+    return ((hyperbolic - 1 / np.tanh(kl / 2)) / kl + 0.25 - y**2) / (2 * kl**2)

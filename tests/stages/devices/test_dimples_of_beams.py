@@ -13,9 +13,10 @@ from test_stage_life import OF
 
 from stiction.config.files import load
 from stiction.config.units import in_si
+from stiction.constants import VACUUM_PERMITTIVITY
 from stiction.contact.environment import Water
 from stiction.devices.stoppers import stuck_patches
-from stiction.life.dimples import states
+from stiction.life.dimples import least_load, states
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.devices import life as report
@@ -92,8 +93,23 @@ def test_errors_of_the_force_follow_thickness_and_gap(lengths):
     assert_allclose(pulled.error / pulled.low, np.hypot(0.03, 0.02 * way), rtol=1e-3)
 
 
+@pytest.mark.parametrize("kind", ["cantilever", "bridge"])
+def test_life_has_the_voltage_and_the_liquid_that_beams_on_dimples_bear(lengths, kind):
+    dimples = Dimples(3, (100e-6, 190e-6), 0.9 * (OF.device.gap if kind == "cantilever" else R1.gap))
+    of = replace(OF, length=200e-6, dimples=dimples, device=OF.device if kind == "cantilever" else R1, liquids={})
+    found = answers(lengths if kind == "cantilever" else {0.67: safe_without_tips()}, of, {0.67: forces(1e-5, rows=2)})
+    beam, way = of.beam(200e-6), of.device.gap - dimples.height
+    on_rows = states(beam, of.clamps, dimples.at)
+    volts, tension = found["voltage_dimples"], found["tension_dimples"]
+    load = VACUUM_PERMITTIVITY * volts.low**2 * beam.width / 2
+    assert_allclose(load, least_load(on_rows, way, beam.gap, 2), rtol=1e-12)
+    assert_allclose(2 * tension.low * beam.width, least_load(on_rows, way, beam.gap, 1), rtol=1e-12)
+    assert volts.low > 0
+    assert np.isnan(volts.high)
+
+
 def test_sentences_say_how_many_stick_and_whether_the_beam_touches_beside_its_dimples(lengths):
-    for height, said in ((1e-6, "But it touches beside them"), (19e-6, "% of the gap is left")):
+    for height, said in ((1e-6, "But it touches beside them"), (19e-6, "mN/m dries.")):
         of = replace(OF, length=200e-6, dimples=Dimples(3, (80e-6,), height))
         dataset = layout(list(answers(lengths, of, {0.67: forces(1e-5)}).values()), of, 200e-6)
         (sentence,) = [one for one in report.sentences(dataset) if "dimples" in one]

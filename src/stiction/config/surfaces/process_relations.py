@@ -142,6 +142,6 @@ def processes_of_devices_make_their_surfaces(config):
             yield key, "must be a process of section process, where none is described"
         elif refusal := undefined(process, known):
             yield key, refusal
-        elif None not in sides and known[process]["surface"] not in sides:
+        elif None not in sides and known[process]["surface"] in config["surfaces"].keys() - sides:
             message = f"must make a surface of pair {pair}, {' or '.join(sides)}"
             yield key, message, f"process.{process}.surface"

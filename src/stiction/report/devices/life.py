@@ -38,8 +38,10 @@ from stiction.stages.life.answers import (
     RELEASED,
     RESTORING,
     SHOCK,
+    TENSION_BESIDE,
     TILTED,
     VOLTAGE,
+    VOLTAGE_BESIDE,
     WEDGE,
     Answer,
     answers_of,
@@ -153,7 +155,11 @@ def _dimpled(answers):
         said += f"{fraction} on them"
     said += " in the worst of their air."
     if answers[BESIDE].low > 0:
-        return [f"{said} Beside them, {_low(answers[BESIDE])} % of the gap is left."]
+        tension = from_si(answers[TENSION_BESIDE].low, "mN_per_m")
+        return [
+            f"{said} Beside them, {_low(answers[BESIDE])} % of the gap is left: it does not touch there below "
+            f"{_low(answers[VOLTAGE_BESIDE])} V, or while a liquid of up to {significant(tension)} mN/m dries."
+        ]
     return [f"{said} But it touches beside them, where they do not protect it."]
 
 

@@ -6,7 +6,6 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from stiction.analysis.process_law import QUANTITIES, scaled, unscaled
 from stiction.config.cases import air
 from stiction.config.surfaces import process
 from stiction.report.format import TO_NM, TO_UM
@@ -25,7 +24,7 @@ from stiction.report.style import (
 )
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import FORCE
-from stiction.stages.process.law import law_of
+from stiction.stages.process.law import law_of, plain
 
 #: Quantities of a surface on an axis: words and function of the unscaled quantity.
 _SHOWN = {
@@ -82,33 +81,23 @@ def _band(panel, line, colour):
 def laws(dataset: xr.Dataset) -> Figure:
     """Quantities of a surface over a process variable: settings with their errors, and the law with its 95 % band."""
     law, names = law_of(dataset), list(map(str, dataset["quantity"].values))
-    figure, axes, columns = columns_of_panels(len(names), 1, lambda count: min(DOUBLE, 2.4 * count), 2.2)
+    figure, columns, _ = columns_of_panels(len(names), 1, lambda count: min(DOUBLE, 2.4 * count), 2.2)
     values = np.linspace(*law.ends, _POINTS)
-    middle, spread = law.at(values), np.sqrt(np.einsum("nqq->nq", law.covariance_at(values)))
-    measured = dataset.measured.values
-    error = np.sqrt(np.einsum("nqq->nq", dataset.errors.values))
-    curves = [_unscaled(middle + INTERVAL * sign * spread, names) for sign in (0, -1, 1)]
-    points = [_unscaled(measured + INTERVAL * sign * error, names) for sign in (0, -1, 1)]
+    curves = plain(law.at(values), law.covariance_at(values), names)
+    points = plain(dataset.measured.values, dataset.errors.values, names)
     for k, (name, (panel, *_)) in enumerate(zip(names, columns, strict=True)):
         words, shown = _SHOWN[name]
-        line, low, high = (shown(one[:, k]) for one in curves)
-        at, below, above = (shown(one[:, k]) for one in points)
+        low, line, high = (shown(curves[0][:, k] + INTERVAL * sign * curves[1][:, k]) for sign in (-1, 0, 1))
+        below, at, above = (shown(points[0][:, k] + INTERVAL * sign * points[1][:, k]) for sign in (-1, 0, 1))
         panel.fill_between(values, low, high, color="0.85", linewidth=0, label="95 % band of the law")
         panel.plot(values, line, color="black", label="law")
-        span = np.abs([np.minimum(below, above) - at, np.maximum(below, above) - at])
-        panel.errorbar(dataset.setting.values, at, yerr=span, fmt="o", markersize=3, label="settings, 95 % interval")
+        panel.errorbar(
+            dataset.setting.values, at, yerr=[at - below, above - at], fmt="o", markersize=3, label="settings, 95 %"
+        )
         panel.set_xlabel(f"{process.words_of(dataset.variable)} [{process.unit_of(dataset.variable)}]")
         panel.set_ylabel(words)
     figure.legend(*handles(columns[0][0]), loc="outside lower center", ncols=3)
     return figure
-
-
-def _unscaled(values, names):
-    """Some quantities back from the scale of the law, (n, q). Others are any."""
-    full = np.tile(scaled(np.array([0.0, 0.0, 3.0, 0.0, -4.0])), (len(values), 1))
-    places = [QUANTITIES.index(name) for name in names]
-    full[:, places] = values
-    return unscaled(full)[:, places]
 
 
 def _jobs(names: Sequence[str], wildcard: str) -> list[dict]:

@@ -32,7 +32,8 @@ def with_process(page: Page, device: str, data: Mapping[str, Any]) -> Page:
     curve, settings, laws = (data[name] for name in ("process", "process_settings", "process_laws"))
     own = _section(device, curve, settings, laws)
     pictures = [Section(f"Law of {law.surface}", (), None, figures.laws(law)) for law in laws]
-    answer = [*page.answer, tables.briefly(settings, device)]
+    verdict, *reasons = page.answer
+    answer = [verdict, tables.briefly(settings, device), *reasons]
     return replace(page, answer=answer, sections=[*page.sections, own, *pictures])
 
 

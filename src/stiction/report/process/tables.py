@@ -39,22 +39,21 @@ def _sufficient(one, who, unit):
     """Range of settings that suffices, and the best setting."""
     words, value = process.words_of(one.variable), one.value.values
     if np.isnan(float(one.best)):
-        return f"{_subject(who)}which {words} suffices is not known: too few points could be computed."
+        return f"{_subject(who, 'Settings')} of the {words} that suffice are not known: too few could be computed."
     share = "the allowed share of every device" if who == ALL else one_in(float(one.share))
     best = _at(float(one.best), float(one.best_error), unit)
     ranges = [f"{low:.3g} to {high:.3g} {unit}" for low, high in _pairs(*one.sufficient.values.T)]
     if not ranges:
-        return (
-            f"{_subject(who)}no {words} from {value[0]:g} to {value[-1]:g} {unit} is sure to leave at most {share} "
-            f"stuck; the best is {best}."
-        )
+        settings = f"{_subject(who, 'No setting')} of the {words} from {value[0]:g} to {value[-1]:g} {unit}"
+        return f"{settings} is sure to leave at most {share} stuck; the best is {best}."
     enough = " or ".join(ranges)
-    return f"{_subject(who)}{words} from {enough} leaves at most {share} stuck (95 % confidence), best {best}."
+    settings = f"{_subject(who, 'Settings')} of the {words} from {enough}"
+    return f"{settings} leave at most {share} stuck (95 % confidence), best {best}."
 
 
-def _subject(who):
-    """Beginning of a sentence on all devices together."""
-    return "All devices together: " if who == ALL else ""
+def _subject(who, begins):
+    """Beginning of a sentence, on all devices together or on one."""
+    return f"All devices together: {begins[:1].lower()}{begins[1:]}" if who == ALL else begins
 
 
 def _at(value, error, unit):

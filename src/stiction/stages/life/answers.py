@@ -16,6 +16,7 @@ AT_VOLTAGE, FIELD, FREEING = "at_voltage", "field", "freeing_voltage"
 FAST, RESTORING = "fast", "restoring_force"
 TILTED, WEDGE = "force_tilted", "wedge"
 ON_DIMPLES, BESIDE, DIMPLES, PULLED = "stuck_dimples", "beside_dimples", "dimples", "dimples_force"
+VOLTAGE_BESIDE, TENSION_BESIDE = "voltage_dimples", "tension_dimples"
 
 
 class Answer(NamedTuple):

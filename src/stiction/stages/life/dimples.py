@@ -6,10 +6,23 @@ import numpy as np
 import xarray as xr
 
 from stiction.config.cases import in_air
+from stiction.constants import VACUUM_PERMITTIVITY
 from stiction.devices.stoppers import stuck_patches
 from stiction.estimates import mean_with_error
-from stiction.life.dimples import holds, least_pull, states
-from stiction.stages.life.answers import BESIDE, DIMPLES, FREE, HOLD, ON_DIMPLES, PULLED, STICK, TOUCH, Answer
+from stiction.life.dimples import holds, least_load, least_pull, states
+from stiction.stages.life.answers import (
+    BESIDE,
+    DIMPLES,
+    FREE,
+    HOLD,
+    ON_DIMPLES,
+    PULLED,
+    STICK,
+    TENSION_BESIDE,
+    TOUCH,
+    VOLTAGE_BESIDE,
+    Answer,
+)
 from stiction.stages.life.inputs import OfBeam
 
 _SOURCE = "stiction.life.dimples"
@@ -38,12 +51,41 @@ def dimple_answers(of: OfBeam, dimples: Mapping[float, xr.Dataset]) -> list[Answ
                 *(np.nan, "1", "fraction of random rows, 95 %", "stage dimples"),
             )
         )
-    return [*_bent(of), Answer(DIMPLES, HOLD, what, mean, mean, error, "N", form, "stage dimples"), *sticking]
+    return [
+        *_bent(of),
+        *_brought_down(of),
+        Answer(DIMPLES, HOLD, what, mean, mean, error, "N", form, "stage dimples"),
+        *sticking,
+    ]
 
 
 def rows_of(of: OfBeam) -> str:
     """Rows of dimples of a beam in words."""
     return "row of dimples" if len(of.dimples.at) == 1 else f"{len(of.dimples.at)} rows of dimples"
+
+
+def _brought_down(of):
+    """Voltage and liquid below which a beam on its dimples does not touch beside them."""
+
+    def limit(beam, power):
+        """Largest load per length, times a power of the gap, that a beam on its dimples bears."""
+        return least_load(states(beam, of.clamps, of.dimples.at), beam.gap - of.dimples.height, beam.gap, power)
+
+    def voltage(beam):
+        """Voltage that a beam bears [V]."""
+        return float(np.sqrt(2 * limit(beam, 2) / (VACUUM_PERMITTIVITY * beam.width)))
+
+    def adhesion(beam):
+        """Adhesion tension γ cos θ that a beam bears [N m⁻¹]."""
+        return limit(beam, 1) / (2 * beam.width)
+
+    form = "loads as at the smallest gap, on the parts that bring it down; on all its rows or some of them"
+    volts, error = of.number(voltage, of.length)
+    what = "voltage below which it does not touch beside its dimples"
+    answers = [Answer(VOLTAGE_BESIDE, TOUCH, what, volts, np.nan, error, "V", form, _SOURCE)]
+    tension, error = of.number(adhesion, of.length)
+    what = "γ cos θ up to which no liquid brings it down beside its dimples"
+    return [*answers, Answer(TENSION_BESIDE, TOUCH, what, tension, np.nan, error, "N m-1", form, _SOURCE)]
 
 
 def _bent(of):

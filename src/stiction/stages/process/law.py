@@ -132,12 +132,22 @@ def at_value(dataset: xr.Dataset, value: float) -> xr.Dataset:
     They are ln rms, skewness, kurtosis, ln corner and slope. Raises ValueError beyond the settings.
     """
     law, names = law_of(dataset), list(map(str, dataset["quantity"].values))
-    places, full = [QUANTITIES.index(name) for name in names], np.zeros(len(QUANTITIES))
-    full[places] = law.at(value)[0]
-    plain = unscaled(full)
-    slopes = jacobian(plain)[np.ix_(places, places)]
-    errors = np.sqrt(np.diag(slopes @ law.covariance_at(value)[0] @ slopes.T))
-    return xr.Dataset({"estimate": ("quantity", plain[places]), "error": ("quantity", errors)}, {"quantity": names})
+    (values,), (errors,) = plain(law.at(value), law.covariance_at(value), names)
+    return xr.Dataset({"estimate": ("quantity", values), "error": ("quantity", errors)}, {"quantity": names})
+
+
+def plain(values: np.ndarray, covariances: np.ndarray, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Quantities back from the scale of the law (n, q), and their standard errors (n, q).
+
+    The scaled ones of these names are (n, q), their covariance is (n, q, q).
+    """
+    places = [QUANTITIES.index(name) for name in names]
+    full = np.zeros((len(values), len(QUANTITIES)))
+    full[:, places] = values
+    found = unscaled(full)
+    slopes = jacobian(found)[:, places][:, :, places]
+    variances = np.einsum("nqr,nrs,nqs->nq", slopes, covariances, slopes)
+    return found[:, places], np.sqrt(variances)
 
 
 def on_law(given: Description, dataset: xr.Dataset, value: float) -> Description:

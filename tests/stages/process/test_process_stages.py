@@ -1,0 +1,192 @@
+"""Processes through all stages: today's roughness at a setting, brute force at the best one, pages and Python."""
+
+import pickle
+
+import numpy as np
+import pytest
+import xarray as xr
+from legends import covering
+
+import stiction
+from stiction.plan.graph import Results
+from stiction.report.devices import pages
+from stiction.report.process import tables
+from stiction.report.style import png
+from stiction.stages.process import curves, law, points, recommended
+from stiction.stages.surfaces.descriptions import description
+
+SAMPLES, SHARE = 200, 0.05
+BUMP = {"kind": "stopper", "pair": "b", "contact_um": [1, 1], "restoring_force_uN": 8, "humidities": [0.6]}
+BARE = dict(BUMP)
+BUMP |= {"requirement": {"share": SHARE}}
+SECTIONS = {
+    "contact": {"samples": SAMPLES},
+    "design": {"worst_humidities": [0.45, 0.6]},
+    "studies": {"slopes": {"samples": 180}},
+    "run": {"pairs": [], "studies": []},
+}
+
+
+def setting(value, **numbers):
+    """Setting by numbers, with errors of 2 %."""
+    return {"value": value} | numbers | {"uncertainty": {key: abs(0.02 * one) for key, one in numbers.items()}}
+
+
+#: Rougher with time, with pits at the end.
+ETCH = {
+    "variable": "etch_time_s",
+    "surface": "B2",
+    "settings": [
+        setting(30, rms_nm=2.0, skewness=-0.3, kurtosis=3.1),
+        setting(60, rms_nm=3.4, skewness=-0.4, kurtosis=3.2),
+        setting(90, rms_nm=4.6, skewness=-0.7, kurtosis=3.6),
+        setting(120, rms_nm=5.0, skewness=-1.2, kurtosis=4.7),
+    ],
+}
+RMS = {"variable": "etch_time_s", "surface": "B2", "settings": [setting(30, rms_nm=2.0), setting(90, rms_nm=8.0)]}
+
+
+def config(process, *more, **devices):
+    """Configuration with one process."""
+    return stiction.load(SECTIONS, {"process": {"etch": process}, "devices": devices}, *more)
+
+
+@pytest.fixture(scope="module")
+def etched():
+    other = BUMP | {"contact_um": [0.8, 0.8], "restoring_force_uN": 7}
+    return stiction.Process.of(config(ETCH, Bump=BUMP | {"process": "etch"}, Small=other | {"process": "etch"}), "etch")
+
+
+def test_a_setting_alone_is_todays_roughness_at_its_value_bit_for_bit():
+    device = BUMP | {"process": "etch", "roughness": {"surface": "B2", "rms_nm": [2, 8]}}
+    results = Results.of(config(RMS, Bump=device))
+    for number, rough in ((0, 0), (6, 6)):
+        ours, today = results[f"process/points/Bump_{number}"], results[f"devices/roughness/points/Bump_{rough}"]
+        for name in ("safe", "estimate", "error", "stuck"):
+            np.testing.assert_array_equal(ours[name], today[name])
+    between = results["process/points/Bump_3"]
+    np.testing.assert_array_equal(
+        between.estimate, results["devices/roughness/points/Bump_3"].estimate
+    )  # ln rms linear
+
+
+def test_a_setting_by_numbers_is_the_surface_with_these_numbers():
+    corner = {"corner_rad_per_um": 15, "hurst": 0.9}
+    first, last = (setting(value, **numbers, **corner) for value, numbers in ((30, _numbers(0)), (90, _numbers(2))))
+    results = Results.of(config(ETCH | {"settings": [first, last]}, Bump=BUMP | {"process": "etch"}))
+    given = description(results["heights/B2"], results["spectrum/B2"])
+    made = law.on_law(given, results["process/laws/etch"], 30.0)
+    assert (made.rms, made.skewness, made.kurtosis) == (2.0 * 1e-9, -0.3, 3.1)
+    np.testing.assert_allclose((made.spectrum.corner, made.spectrum.slope), (15e6, -3.8), rtol=1e-8)
+    assert made.spectrum.cutoff == given.spectrum.cutoff
+    drawn = results["heights/etch-1"]  # the surface of the setting itself
+    assert (float(drawn.rms), float(drawn.skewness), float(drawn.kurtosis)) == (2.0 * 1e-9, -0.3, 3.1)
+
+
+def _numbers(number):
+    """Stated numbers of a setting."""
+    return {key: ETCH["settings"][number][key] for key in ("rms_nm", "skewness", "kurtosis")}
+
+
+@pytest.mark.slow
+def test_the_margin_at_the_best_setting_is_that_of_other_samples_on_its_surface(etched):
+    settings = etched.settings().sel(who="Bump")
+    best = float(settings.best)
+    quantities = etched.at(best).estimate.values
+    numbers = dict(zip(("rms_nm", "skewness", "kurtosis"), [1e9 * np.exp(quantities[0]), *quantities[1:]], strict=True))
+    brute = stiction.load(
+        SECTIONS, {"surfaces": {"B2": numbers}, "devices": {"Bump": BARE}, "seed": 7}, {"contact": {"samples": 1000}}
+    )
+    forces = stiction.Device("Bump", Results.of(brute)).forces().pull_off.values[0]
+    promised = float(np.interp(best, settings["value"], settings.margin))
+    found = -np.log(np.quantile(forces, 1 - SHARE) / 8e-6)
+    error = np.interp(best, *(etched.margins("Bump")[name].values.ravel() for name in ("value", "simulation_error")))
+    assert abs(found - promised) < 3 * error
+    assert abs(found - promised + 10 * error) > 3 * error  # control
+
+
+def test_the_band_has_all_errors_and_shrinks_with_those_of_the_settings(etched):
+    curve = etched.margins("Bump")
+    assert np.all(curve.law_error > 0)
+    assert np.all(curve.simulation_error > 0)
+    assert np.all(curve.model_error == 0)
+    exact = [one | {"uncertainty": {key: 1e-6 for key in one["uncertainty"]}} for one in ETCH["settings"]]
+    narrow = stiction.Process.of(config(ETCH | {"settings": exact}, Bump=BUMP | {"process": "etch"}), "etch")
+    known = law.law_of(narrow.law)
+    assert np.all(np.einsum("nqq->nq", known.covariance_at(known.settings)) < 1e-3)
+
+
+def test_what_serves_all_devices_serves_each_and_has_the_smallest_margin(etched):
+    found = etched.settings()
+    assert list(found.who.values) == ["Bump", "Small", recommended.ALL]
+    each = found.margin.sel(who=["Bump", "Small"]).min("who")
+    np.testing.assert_allclose(found.margin.sel(who=recommended.ALL), each, atol=1e-12)
+
+
+def test_answers_name_the_settings_the_best_and_the_next(etched):
+    first, *more = etched.answers("Bump")
+    assert first.startswith(("Settings of the etch time from ", "No setting of the etch time from 30 to 120 s"))
+    assert any(one.startswith("Measure ") and " s next" in one for one in more)
+    (together, *_) = etched.answers(recommended.ALL)
+    assert together.startswith("All devices together: ")
+    with pytest.raises(ValueError, match="device Other has no process over etch_time_s: Bump, Small"):
+        etched.answers("Other")
+
+
+def test_tables_figures_and_pages_show_them(etched):
+    curve, settings = etched.margins("Bump"), etched.settings()
+    table = tables.table({"Bump": curve}, [settings], {"Bump": [etched.law]})
+    assert list(table.frame.value) == list(curve.value)
+    assert "Bump: " + etched.answers("Bump")[0] in table.caption
+    for figure in (etched.plot(), etched.plot("Bump")):
+        assert covering(figure) == []
+        assert png(figure)[:4] == b"\x89PNG"
+    page = etched.results.graph.job("devices/Bump.html")
+    assert {"process", "process_settings", "process_laws"} <= page.inputs.keys()
+    assert pages._asked(page.settings) == {"requirement": "at most 1 in 20 sticks"}
+
+
+def test_a_process_shows_itself_pickles_and_says_what_there_is(etched):
+    assert repr(etched) == "Process etch: B2 over the etch time, 30 to 120 s, 4 settings"
+    again = pickle.loads(pickle.dumps(etched))
+    xr.testing.assert_identical(again.law, etched.law)
+    assert etched.devices == ["Bump", "Small"]
+    with pytest.raises(ValueError, match="there is no process anneal; the configuration has etch"):
+        stiction.Process.of(etched.results.graph.plan.config, "anneal")
+    with pytest.raises(ValueError, match="known from 30 to 120, got 121"):
+        etched.at(121)
+    with pytest.raises(ValueError, match="no device has process etch"):
+        stiction.Process.of(config(RMS, Bump=BARE), "etch").settings()
+
+
+def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_without_any():
+    settings = points.OfStopper(
+        seed=1, water=None, humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
+    )
+    none = points.curves.Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)
+    said = {"flagged": ("humidity", [""]), "refused": ("humidity", ["too smooth"])}
+    refused = points.curves.layout([[none]], 30.0, 200, settings).assign(said)
+    slopes = {"slopes": (("humidity", "shape", "law_quantity"), np.full((1, 1, 1), np.nan))}
+    known = Results.of(config(RMS, Bump=BUMP | {"process": "etch"}))["process/laws/etch"]
+    at = [refused.assign(value=float(value)).assign(slopes) for value in (30, 60, 90)]
+    curve = curves.compute(at, [known], curves.Settings("etch_time_s", ("etch",), ("B2",)))
+    found = recommended.compute({"Bump": curve}, {"etch": known}, "etch_time_s", 1)
+    assert tables.answers(found, "Bump") == [
+        "Settings of the etch time that suffice are not known: too few could be computed."
+    ]
+    assert "Not computed where the etch time is 30 s, 60 s, 90 s: too smooth." in tables.notes(curve, [known])
+
+
+@pytest.mark.slow
+def test_both_surfaces_of_a_pair_change_together():
+    polish = {"variable": "etch_time_s", "surface": "Sub1", "together_with": "etch"}
+    polish |= {"settings": [setting(30, rms_nm=0.2), setting(90, rms_nm=3.0)]}
+    both = stiction.load(
+        SECTIONS, {"process": {"etch": RMS, "polish": polish}, "devices": {"Bump": BUMP | {"process": "etch"}}}
+    )
+    alone = Results.of(config(RMS, Bump=BUMP | {"process": "etch"}))
+    together = stiction.Process.of(both, "etch").margins("Bump")
+    assert list(together.law_process.values) == ["etch", "polish"]
+    assert together.surface == "B2 and Sub1"
+    rougher = float(alone["process/points/Bump_6"].estimate[0, 0]), float(together.estimate[-1, 0, 0])
+    assert rougher[1] < 0.9 * rougher[0]
