@@ -159,6 +159,27 @@ def test_a_process_shows_itself_pickles_and_says_what_there_is(etched):
         stiction.Process.of(config(RMS, Bump=BARE), "etch").settings()
 
 
+@pytest.mark.parametrize(("applied", "expected"), [(False, np.hypot(np.log(0.8), 0.05)), (True, 0.05)])
+def test_the_error_of_the_model_is_its_change_or_if_applied_the_error_of_that(etched, applied, expected):
+    model = xr.Dataset(
+        {
+            "factor": (("shape", "humidity"), [[0.8]]),
+            "factor_error": (("shape", "humidity"), [[0.04]]),
+            "applied": ((), applied),
+        },
+        {"shape": ["force"], "humidity": [0.6]},
+    )
+    at = [etched.results[f"process/points/Bump_{number}"] for number in range(7)]
+    settings = curves.Settings("etch_time_s", ("etch",), ("B2",))
+    with_model, without = (curves.compute(at, [etched.law], settings, error) for error in (model, None))
+    np.testing.assert_allclose(with_model.model_error, expected)
+    assert np.all(without.model_error == 0)
+    wide, narrow = (
+        recommended.compute({"Bump": one}, {"etch": etched.law}, "etch_time_s", 1) for one in (with_model, without)
+    )
+    assert np.all(wide.safe < narrow.safe)
+
+
 def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_without_any():
     settings = points.OfStopper(
         seed=1, water=None, humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
