@@ -14,7 +14,7 @@
 #   make attraction     Table III with attraction across gaps (3 minutes on two cores), in runs/attraction/results/
 #   make asperities     Table III with other readings of an asperity, after make paper (6 minutes on two cores)
 #   make print      the paper under the reading nearest to its printed Table III, beside the base case, after make paper
-#                   (8 minutes on two cores), in runs/print/
+#                   (12 minutes on two cores), in runs/print/ and runs/print-finer/
 #   make supplement     baseline, sizes and shares beside the paper's statements, after make paper (1 minute), in
 #                   runs/supplement/ and runs/experiments/
 #   make pressing       how much more a pair sticks after its surfaces were pressed (2 minutes on two cores)
@@ -101,6 +101,8 @@ asperities pressing: $(VENV)/ready
 print: $(VENV)/ready
 	$(STICTION) run examples/print.yaml --directory runs/print -- tables figures $(ARGS)
 	$(BIN)/python examples/compare_print.py . runs/print
+	$(STICTION) run examples/print.yaml examples/print_finer.yaml --directory runs/print-finer -- \
+	  results/tables/variants.csv $(ARGS)
 
 supplement: $(VENV)/ready
 	$(BIN)/python examples/supplement.py .

@@ -32,7 +32,7 @@ NEARLY_GAUSSIAN = ((-0.1, 3.05), (0.05, 3.02), (-0.3, 3.5), (-0.5, 4.0))
 def numbers(tables):
     """All numbers, from a dict of the name of each table to its frame."""
     texts = crack_lengths(tables["table_3"]) | deviations(tables["table_3"]) | energies(tables["table_3"])
-    texts |= supplement(tables) | flat_tips(tables["flat_tips"])
+    texts |= supplement(tables) | flat_tips(tables["flat_tips"]) | finer(tables["print_finer"])
     texts |= intervals(tables["table_3"]) | printed(tables["print"], tables["print_studies"])
     texts |= surfaces(tables["table_1"]) | identification(tables["table_2"]) | fits(tables["fit_quality"])
     texts |= (
@@ -241,6 +241,19 @@ def intervals(table_3):
         texts |= {f"width_{name}": f"{widths.median():.0f}"}
         texts |= {f"width_{name}_{pair}": f"{of.median():.0f}" for pair, of in widths.groupby(rows.pair)}
     return texts
+
+
+def finer(table):
+    """``finer_least``, ``finer_most``: change of the lengths of pair c on a grid of 2.5 nm, as printed [%].
+
+    ``finer_rms``: their rms deviation from print [%], and ``finer_base``, on 5 nm of the same samples.
+    """
+    groups = dict(list(table.groupby("variant")))
+    (name,) = groups.keys() - {"base"}
+    shift = groups[name].shift_percent
+    rms = {key: np.sqrt(np.mean(group.published_deviation_percent**2)) for key, group in groups.items()}
+    texts = {"least": shift.min(), "most": shift.max(), "rms": rms[name], "base": rms["base"]}
+    return {f"finer_{key}": f"{value:.1f}" for key, value in texts.items()}
 
 
 def supplement(tables):

@@ -106,6 +106,8 @@ SEALED_TABLES = ("safe_lengths", "stoppers")
 ATTRACTION, OF_ATTRACTION = "attraction", "results/tables/variants.csv"
 #: Comparison of ``make print``, and its scalars of studies.
 PRINT, PRINT_STUDIES = "print", "print_studies"
+#: Table of ``make print`` on a finer grid, and its place in ``runs``.
+PRINT_FINER, OF_PRINT_FINER = "print_finer", "print-finer/results/tables/variants"
 #: Tables of ``make supplement`` by their place in ``runs``, and its picture.
 SUPPLEMENT = {
     **{f"supplement_{name}": f"supplement/{name}" for name in ("greenwood_williamson", "sizes", "surfaces", "shares")},
@@ -139,6 +141,7 @@ def main(results):
         (runs / "sealed", partial(unfinished_devices, "sealed", "stoppers"), collect_sealed),
         (runs / "attraction", unfinished_attraction, collect_attraction),
         (runs / "print", unfinished_print, collect_print),
+        (runs, unfinished_finer, collect_finer),
         (runs, unfinished_supplement, collect_supplement),
     ):
         if reason := why(folder):
@@ -217,6 +220,11 @@ def unfinished_print(folder):
     if up_to_date(folder.resolve(), "tables", "figures", "--configfile", *configs):
         return ""
     return f"{folder} is not up to date with examples/print.yaml and the code, see make print ARGS=-n"
+
+
+def unfinished_finer(runs):
+    """Why a folder does not hold the reading of print on a finer grid; empty if it does, of whatever code."""
+    return "" if (runs / f"{OF_PRINT_FINER}.csv").exists() else f"{runs} does not hold {OF_PRINT_FINER}"
 
 
 def unfinished_supplement(runs):
@@ -309,6 +317,12 @@ def collect_print(folder):
     texts = scalars(folder / "results" / "studies")
     frame = pd.DataFrame(texts.items(), columns=["name", "text"])
     frame.to_csv(DOCS / "tables" / f"{PRINT_STUDIES}.csv", index=False, lineterminator="\n")
+
+
+def collect_finer(runs):
+    """Copy the table of the reading of print on a finer grid."""
+    for kind in ("csv", "md"):
+        shutil.copyfile(runs / f"{OF_PRINT_FINER}.{kind}", DOCS / "tables" / f"{PRINT_FINER}.{kind}")
 
 
 def collect_supplement(runs):
@@ -453,6 +467,7 @@ def quoted_numbers():
             MEASURED_BEAMS,
             PRINT,
             PRINT_STUDIES,
+            PRINT_FINER,
             *SUPPLEMENT,
             ROUGHNESS,
             PROCESS_SAID,

@@ -122,6 +122,25 @@ def test_table_and_picture_of_the_drawn_test_beams_are_copied(tmp_path, monkeypa
     assert made == {"drawn_beams.csv", "drawn_beams.md", "drawn_beams.png"}
 
 
+def test_tables_and_picture_of_the_supplement_are_copied(tmp_path, monkeypatch):
+    runs = tmp_path / "runs"
+    assert "supplement/sizes" in update.unfinished_supplement(runs)
+    monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
+    for part in ("tables", "pictures"):
+        (tmp_path / "docs" / part).mkdir(parents=True)
+    for place in update.SUPPLEMENT.values():
+        (runs / place).parent.mkdir(parents=True, exist_ok=True)
+        for kind in ("csv", "md"):
+            (runs / f"{place}.{kind}").write_text(place)
+    Image.new("RGB", (20, 10)).save(runs / "supplement" / "supplement.png")
+    assert not update.unfinished_supplement(runs)
+    update.collect_supplement(runs)
+    made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
+    tables = {f"{name}.{kind}" for name in update.SUPPLEMENT for kind in ("csv", "md")}
+    assert made == tables | {"supplement.png"}
+    assert made <= {path.name for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir()}
+
+
 def test_sentences_of_the_pages_with_test_beams_and_one_picture_are_copied(tmp_path, monkeypatch):
     folder, picture = tmp_path / "run", f"{update.TEST_BEAMS_PICTURE[0]}.png"
     assert "no finished run" in update.unfinished_devices("test_beams", update.TEST_BEAMS, folder)

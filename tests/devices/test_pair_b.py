@@ -15,7 +15,6 @@ from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.stoppers import worst_humidity
 from stiction.stages.contact import contact, curves
-from stiction.stages.devices import cracks
 from stiction.stages.laws import forces
 from stiction.streams import stream
 
@@ -59,8 +58,7 @@ def test_a_few_thousand_beams_of_pair_b_find_the_lengths_of_110_000():
 
 
 @pytest.mark.slow
-def test_the_stages_of_a_device_find_the_lengths_of_110_000(monkeypatch):
-    monkeypatch.setattr(cracks, "GROUPS", 2)
+def test_the_stages_of_a_device_find_the_lengths_of_110_000():
     beam = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
     config = stiction.load({"devices": {"C1": beam}, "design": {"beams": 2900, "shares": [1e-3, 1e-4]}} | TOUCHING)
     found = stiction.Device.of(config, "C1").safe_lengths(0.67).sel(shape="S-shape")

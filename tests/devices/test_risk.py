@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from beams import PAPER, scattered_laws
 from numpy.testing import assert_allclose, assert_array_equal
-from scipy.special import ndtri
+from scipy.special import ndtr, ndtri
 from scipy.stats import binom
 
 from stiction.beam.foundation import foundation_length
@@ -294,3 +294,23 @@ def test_devices_that_did_not_stick_may_do_so_beyond_the_simulated_length():
     assert_array_equal(share, [1 / 3, 1 / 3])
     assert low[0] == low[1]
     assert high[0] < high[1] == 1
+
+
+def test_quantiles_are_those_of_the_distribution_as_far_as_the_samples_and_their_reach_show():
+    rng, samples, shares = np.random.default_rng(11), 100_000, ndtr(risk.SCORES)
+    found = risk.quantiles(np.exp(0.1 * rng.normal(size=samples)))
+    errors = np.sqrt(shares * (1 - shares) / samples) * np.sqrt(2 * np.pi) * np.exp(risk.SCORES**2 / 2)
+    assert np.all(abs(np.log(found) / 0.1 - risk.SCORES) < 4 * errors)
+    few = risk.quantiles(rng.random(20))
+    assert np.isfinite(few).sum() == np.sum(abs(risk.SCORES) < 1.96)
+    cut = risk.quantiles(rng.random(10_000), reach=0.5)
+    assert np.isnan(cut[risk.SCORES > 0.05]).all()
+    assert_allclose(cut[risk.SCORES < -0.05], ndtr(risk.SCORES[risk.SCORES < -0.05]), atol=0.02)
+
+
+@pytest.mark.parametrize("fraction", [0.1, 0.5, 0.9])
+def test_as_many_samples_are_below_a_quantile_as_it_says(fraction):
+    values = np.random.default_rng(2).normal(size=400)
+    score = risk.SCORES[np.argmin(abs(ndtr(risk.SCORES) - fraction))]
+    quantile = risk.quantiles(values)[risk.SCORES.searchsorted(score)]
+    assert np.mean(values < quantile) == pytest.approx(ndtr(score), abs=1 / 400)

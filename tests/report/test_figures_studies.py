@@ -175,7 +175,7 @@ def test_figure_16_shows_the_onset_of_the_hardest_pair():
 def test_figure_17_shows_the_law_of_a_part_of_all_samples_and_the_tolerance():
     tolerance = 1e-6
     figure = figures_studies.sample_convergence(sizes(), {("a", 0.5): [0.1, 0.01, 1e-3, 1e-4]}, tolerance)
-    _, errors, distances = figure.axes
+    _, errors, distances, _ = figure.axes
     assert errors.get_ylim()[0] <= tolerance / 2
     law, own = (line.get_xydata().T for line in distances.get_lines() if line.get_linestyle() in ("--", ":"))
     assert_allclose(law[1], KOLMOGOROV_MEAN * np.sqrt(1 / law[0] - 1 / 20))
@@ -380,3 +380,23 @@ def test_the_figure_of_one_pair_shows_it_alone_whatever_else_is_compared():
     assert {pair for pair, _ in Plan(load(compare)).sensitivities} == {"b"}
     dry = {"pairs": {"b": {"humidities": [0, 0.5]}}, "run": {"pairs": ["b"]}}
     assert {pair for pair, _ in Plan(load(dry)).sensitivities} == {"b"}
+
+
+def test_the_colours_of_figure_17_are_those_of_humidities_and_its_lines_those_of_pairs():
+    errors = {(pair, rh): [0.1, 0.01, 1e-3, 1e-4] for pair in "ab" for rh in (0.5, 0.9)}
+    panel = figures_studies.sample_convergence(sizes(), errors, 1e-6).axes[1]
+    lines = dict(zip(errors, panel.lines, strict=False))
+    for (pair, rh), line in lines.items():
+        assert line.get_color() == lines["b" if pair == "a" else "a", rh].get_color()
+        assert line.get_color() != lines[pair, 0.9 if rh == 0.5 else 0.5].get_color()
+        assert line.get_marker() == lines[pair, 0.9 if rh == 0.5 else 0.5].get_marker()
+
+
+def test_figure_18_shows_the_cumulative_probabilities_beside_the_spikes_of_the_first_marginal():
+    found = orders(3, 12)
+    (inset,) = figures_studies.order_convergence(found).axes[0].child_axes
+    width = float(found.position[1] - found.position[0])
+    of_eta = found.sel(eta=found.eta[0])
+    for line, order in zip(inset.lines, (2, 4, 8, 12), strict=False):
+        more = width * np.cumsum(of_eta.density.sel(order=order).values - of_eta.input_density.values)
+        assert_allclose(line.get_ydata(), 100 * more)

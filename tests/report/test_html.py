@@ -14,7 +14,7 @@ from stiction.report.table import Table
 #: Templates, each with what fills it.
 FILLED = {
     "table.html": lambda: Table(pd.DataFrame(), HOSTILE, pd.DataFrame({HOSTILE: [HOSTILE]})).html,
-    "page.html": lambda: Page(HOSTILE, {HOSTILE: HOSTILE}, [HOSTILE]).html,
+    "page.html": lambda: Page(HOSTILE, {HOSTILE: HOSTILE}, [HOSTILE], more=[HOSTILE], explorer={HOSTILE: HOSTILE}).html,
     "front.html": lambda: html.rendered(
         "front.html", **dict.fromkeys(["subjects", "checks", "changes"], HOSTILE),
         **dict.fromkeys(["answers", "opened", "warnings", "provenance"], [HOSTILE]),
@@ -35,7 +35,8 @@ def test_a_template_reads_no_other_files_than_those_it_is_said_to_consist_of(tem
 @pytest.mark.parametrize("template", FILLED)
 def test_whatever_fills_a_template_is_text(template):
     shown = Reading(FILLED[template]())
-    assert {*shown.code} <= {"meta"}
+    assert {*shown.code} <= {"meta", "script"}
+    assert not [script for script in shown.text.get("script", []) if script.startswith("alert")]
     assert sum(text == HOSTILE for texts in shown.text.values() for text in texts) >= 3
 
 

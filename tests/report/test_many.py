@@ -353,12 +353,12 @@ def test_choices_of_one_key_stay_together_unless_they_are_more_than_the_colours(
 def test_every_pair_surface_and_number_of_samples_has_its_curve_or_panel(case):
     name, count, _ = case
     axes = drawn(case).axes
-    panels_of = {"12": 3 * count, "15": 4 * count, "16": count + 1, "17": 3, "19": 3, "variants": 2 * count}
+    panels_of = {"12": 3 * count, "15": 4 * count, "16": count + 1, "17": 3 + 1, "19": 3, "variants": 2 * count}
     assert len(axes) == panels_of[name]
     if name == "17":
         assert len(axes[0].lines) == max(2, count)
-        assert len(axes[1].lines) == 2 * count + 1
-        looks = [(line.get_color(), line.get_linestyle(), line.get_marker()) for line in axes[1].lines[:-1:2]]
+        assert len(axes[1].lines) == 3 * count + 1
+        looks = [(line.get_color(), line.get_linestyle(), line.get_marker()) for line in axes[1].lines[: 2 * count : 2]]
         assert len(set(looks)) == count
     if name == "19":
         assert len(axes[2].lines) == count

@@ -5,6 +5,8 @@ import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
 
+from stiction.config.files import load
+from stiction.plan.plan import Plan
 from stiction.report import published
 from stiction.report.beams import prediction
 from stiction.report.style import save
@@ -103,3 +105,17 @@ def test_scattered_measurements_make_wide_intervals():
     low, high = (ends(with_intervals(given.assign(experiment_um=one))).T for one in (
         given.crack_length_um * scatter**0.1, given.crack_length_um * scatter))  # fmt: skip
     assert (np.log(high[1] / high[0]) > 5 * np.log(low[1] / low[0])).all()
+
+
+@pytest.mark.parametrize(
+    ("changed", "jobs"),
+    [
+        ({}, 1),
+        ({"run": {"pairs": ["a", "b"]}}, 0),
+        ({"pairs": {"a": {"humidities": [0.45, 0.9]}, "b": {"humidities": [0.44]}}}, 0),
+    ],
+    ids=["paper", "two pairs", "few humidities"],
+)
+def test_intervals_are_drawn_where_enough_pairs_have_measured_lengths(changed, jobs):
+    plan = Plan(load(changed))
+    assert len(prediction.STAGES[0].jobs(plan)) == jobs

@@ -1,8 +1,11 @@
 """The example of devices, with small samples: it runs, and the library gives the same numbers without files."""
 
+import csv
 import json
+import math
 import re
 
+import numpy as np
 import pytest
 import xarray as xr
 import yaml
@@ -11,7 +14,9 @@ from conftest import ROOT, snakemake
 from test_report import STYLE, faults
 
 import stiction
+from stiction.command import main
 from stiction.config.merging import merged
+from stiction.report.devices.grid import Axis, Grid
 
 pytestmark = pytest.mark.slow
 
@@ -26,7 +31,7 @@ SMALL = {
         "variants": {"van_der_waals": ["none"], "psd": [], "every": [], "spacing_nm": [], "poisson_ratio": []},
     },
     "devices": {
-        "C1": {"humidities": [0.67], "chart": {"thicknesses_um": [2.6]}},
+        "C1": {"humidities": [0.67], "chart": {"thicknesses_um": [2, 2.6], "humidities": [0.67, 0.95]}},
         "S1": {"humidities": [0.67, 0.9]},
     },
 }
@@ -120,6 +125,244 @@ def test_a_browser_shows_the_answer_and_the_figures_of_a_page(run, device):
             browser.resize(width)
             assert browser.run("return document.documentElement.scrollWidth") <= width
         assert browser.errors() == []
+
+
+# Controls
+
+#: Numbers of a text of the page.
+NUMBER = re.compile(r"\d[\d.]*")
+#: Elements that a reader sees but cannot read or tell apart: text on its ground, controls and pictures without a name.
+CONTRASTS = """
+const light = colour => {
+  const [r, g, b] = colour.match(/[\\d.]+/g).slice(0, 3).map(part => part / 255)
+    .map(part => part <= 0.03928 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4);
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+};
+const ground = part => {
+  for (let one = part; one; one = one.parentElement) {
+    const colour = getComputedStyle(one).backgroundColor;
+    if (!/, 0\\)$/.test(colour)) return colour;
+  }
+  return "rgb(255, 255, 255)";
+};
+const texts = [...document.querySelectorAll("body *")].filter(part => part.checkVisibility() &&
+  !part.closest("svg, :disabled") && [...part.childNodes].some(node => node.nodeType === 3 && node.data.trim()));
+return Math.min(...texts.map(part => {
+  const [low, high] = [light(getComputedStyle(part).color), light(ground(part))].sort((a, b) => a - b);
+  return (high + 0.05) / (low + 0.05);
+}));
+"""
+UNNAMED = """
+const named = part => part.getAttribute("aria-label") || part.labels?.length || part.textContent.trim() || part.alt;
+return [...document.querySelectorAll("input, button, textarea, img, svg[role], a")].filter(part => !named(part))
+  .map(part => part.outerHTML.slice(0, 80));
+"""
+LEVELS = "return [...document.querySelectorAll('h1, h2, h3, h4')].map(head => Number(head.tagName[1]))"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with Browser() as browser:
+        yield browser
+
+
+def page_of(run, device):
+    return run / "results" / "devices" / f"{device}.html"
+
+
+def grid_of(run, device):
+    """Grid on the page of a device, read by Python."""
+    page = page_of(run, device).read_text(encoding="utf-8")
+    content = json.loads(re.search(r'id="explorer-data">(.*?)</script>', page)[1])["views"][0]["grid"]
+    axes = [
+        Axis(**one | {"values": tuple(one["values"])}) for one in (*content["axes"], content["share"], content["size"])
+    ]
+    arrays = (np.array(content[name], float) for name in ("safe", "quantiles"))
+    return Grid(tuple(axes[:-2]), axes[-2], axes[-1], *arrays, content["samples"], content["falls"])
+
+
+def random_state(grid, rng):
+    """State within a grid, with few digits."""
+    axes = (*grid.axes, grid.share, grid.size)
+    state = {one.key: float(f"{rng.uniform(one.values[0], one.values[-1]):.4g}") for one in axes if one.between}
+    return {one.key: float(rng.choice(one.values)) for one in axes} | state
+
+
+def answers(browser):
+    """Texts of the answers to the present values."""
+    found = browser.run(
+        "return [...document.querySelectorAll('[data-answer]')].map(p => [p.dataset.answer, p.textContent])"
+    )
+    return dict(found)
+
+
+def numbers(text):
+    """Numbers behind the colon of an answer."""
+    return [float(number) for number in NUMBER.findall(text.rpartition(": ")[2])]
+
+
+def answered(text, expected, error):
+    """Whether an answer has the expected numbers within a relative error, or says that they are not known."""
+    if math.isfinite(expected[0]):
+        return numbers(text) == pytest.approx(expected, rel=error)
+    return "not known" in text
+
+
+@in_a_browser
+@pytest.mark.parametrize("device", ["C1", "R1", "S1"])
+def test_a_page_answers_any_state_as_python_does(run, browser, device):
+    grid, rng = grid_of(run, device), np.random.default_rng(3)
+    browser.open(page_of(run, device))
+    for state in (random_state(grid, rng) for _ in range(50)):
+        address = "&".join(f"{key}={value}" for key, value in state.items())
+        browser.run("location.hash = arguments[0]; dispatchEvent(new HashChangeEvent('hashchange'))", address)
+        shown = answers(browser)
+        stuck, (size, error) = grid.stuck(state), grid.estimate(state)
+        assert answered(shown["safe"], [grid.safe_size(state)], 1e-3)
+        expected = [stuck.share] if stuck.beyond else [stuck.share, stuck.low, stuck.high]
+        assert numbers(shown["stuck"]) == pytest.approx([100 * part for part in expected], rel=1e-2)
+        assert ("than" in shown["stuck"]) == bool(stuck.beyond)
+        assert answered(shown["estimate"], [size, error], 0.06)
+
+
+@in_a_browser
+def test_the_numbers_of_a_page_are_those_of_its_tables(run, browser):
+    with (run / "results" / "tables" / "chart.csv").open(encoding="utf-8") as file:
+        rows = [row for row in csv.DictReader(file) if row["held_by"] == "beam or tip" and float(row["share"]) == 0.01]
+    assert rows
+    for row in rows:
+        browser.open(page_of(run, "C1"))
+        state = {"thickness_um": row["thickness_um"], "gap_um": row["gap_um"], "humidity": row["relative_humidity"]}
+        browser.run("location.hash = arguments[0]", "&".join(f"{key}={value}" for key, value in state.items()))
+        wanted = pytest.approx([float(row["safe_length_um"])], rel=1e-3)
+        assert browser.wait(lambda wanted=wanted: numbers(answers(browser)["safe"]) == wanted, 5)
+
+
+@in_a_browser
+def test_keys_move_a_control_at_once_and_the_address_keeps_it(run, browser):
+    browser.open(page_of(run, "C1"))
+    before = answers(browser)["safe"]
+    (thickness,) = browser.find("#control-thickness_um")
+    end, left = "\ue010", "\ue012"
+    browser.send("POST", f"/element/{thickness}/value", text=left * 3)
+    (moved,) = browser.run("return [document.querySelector('#control-thickness_um').ariaValueText]")
+    assert moved not in ("2 µm", "2.6 µm")
+    assert answers(browser)["safe"] != before
+    shown, address = answers(browser), browser.run("return location.href")
+    browser.send("POST", f"/element/{thickness}/value", text=end)
+    assert answers(browser)["safe"] == before
+    browser.send("POST", "/url", url="about:blank")
+    browser.send("POST", "/url", url=address)
+    assert answers(browser) == shown
+    times = browser.run(
+        """const range = document.querySelector("#control-length_um"), found = [];
+        for (let k = 0; k < 20; k++) {
+          const start = performance.now();
+          range.value = 20 * k;
+          range.dispatchEvent(new Event("input"));
+          document.body.getBoundingClientRect();
+          found.push(performance.now() - start);
+        }
+        return found"""
+    )
+    assert np.median(times) < 100
+    assert browser.errors() == []
+
+
+@in_a_browser
+def test_values_that_were_not_computed_are_not_answered_and_the_page_says_why(run, browser):
+    browser.open(page_of(run, "C1"))
+    grid = grid_of(run, "C1")
+    (number,) = browser.find("#control-humidity + input")
+    control, a, none, enter = "\ue009", "a", "\ue000", "\ue007"
+    browser.send("POST", f"/element/{number}/value", text=f"{control}{a}{none}0.99{enter}")
+    assert browser.run("return document.querySelector('#control-humidity').ariaValueText") == "0.95"
+    said = "return document.querySelector('#control-humidity').closest('.control').querySelector('.note').textContent"
+    assert browser.run(said) == f"0.99 is not shown: {grid.axes[0].reason}."
+    assert "computed from 0.67 to 0.95" in grid.axes[0].reason
+    assert browser.run("return document.querySelector('#control-gap_um').disabled")
+    assert browser.run(said.replace("humidity", "gap_um")) == f"Fixed: {grid.axes[2].reason}."
+
+
+@in_a_browser
+@pytest.mark.parametrize("device", ["C1", "R1", "S1"])
+def test_the_study_of_a_page_is_one_that_a_run_takes(run, browser, tmp_path, device, capsys):
+    browser.open(page_of(run, device))
+    state = random_state(grid_of(run, device), np.random.default_rng(1))
+    browser.run("location.hash = arguments[0]", "&".join(f"{key}={value}" for key, value in state.items()))
+    browser.wait(lambda: str(state["share"]) in browser.run("return location.hash"), 2)
+    (button,) = browser.find("#explorer button:first-of-type")
+    browser.click(button)
+    text = browser.run("return document.querySelector('#explorer textarea').value")
+    (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
+    assert main.main(["check", str(tmp_path / "mine.yaml")]) == main.Status.DONE, capsys.readouterr()
+    config = stiction.load(tmp_path / "mine.yaml")
+    (section,) = config["devices"].values()
+    assert section["humidities"] == [state["humidity"]]
+    assert all(section[key] == pytest.approx(state[key]) for key in section.keys() & state.keys())
+    assert config["contact"]["samples"] == SMALL["contact"]["samples"]
+
+
+@in_a_browser
+def test_a_page_with_two_views_keeps_the_chosen_one_in_its_address(run, browser, tmp_path):
+    def doubled(found):
+        content = json.loads(found[2])
+        content["views"].append(content["views"][0] | {"title": "again"})
+        return f"{found[1]}{json.dumps(content)}{found[3]}"
+
+    text = page_of(run, "S1").read_text(encoding="utf-8")
+    text, count = re.subn(r'(id="explorer-data">)(.*?)(</script>)', doubled, text)
+    (tmp_path / "page.html").write_text(text, encoding="utf-8")
+    browser.open(tmp_path / "page.html")
+    assert count == 1
+    assert browser.run("return [...document.querySelector('#views').options].map(one => one.text)") == [
+        "humidity",
+        "again",
+    ]
+    (menu,) = browser.find("#views")
+    browser.send("POST", f"/element/{menu}/value", text="again")
+    assert "view=1" in browser.run("return location.hash")
+    shown, address = answers(browser), browser.run("return location.href")
+    browser.send("POST", "/url", url="about:blank")
+    browser.send("POST", "/url", url=address)
+    assert browser.run("return document.querySelector('#views').value") == "1"
+    assert answers(browser) == shown
+    assert browser.errors() == []
+
+
+@in_a_browser
+def test_a_reader_without_scripts_has_the_whole_answer_and_no_empty_controls(run, browser, tmp_path):
+    text = page_of(run, "C1").read_text(encoding="utf-8")
+    (tmp_path / "page.html").write_text(
+        text.replace("script-src 'sha256-", "script-src 'sha256-AAAA"), encoding="utf-8"
+    )
+    browser.open(tmp_path / "page.html")
+    assert "Content Security Policy" in "".join(browser.errors()), "no other script runs"
+    assert not browser.run("return document.querySelector('#explore').checkVisibility()")
+    assert "Safe up to" in browser.run("return document.querySelector('.answer').innerText")
+
+
+@in_a_browser
+@pytest.mark.parametrize("device", ["C1", "R1", "S1"])
+def test_a_page_is_one_small_file_that_everyone_can_use(run, browser, device):
+    path = page_of(run, device)
+    assert path.stat().st_size < 1_000_000
+    browser.open(path)
+    for width in (1440, 768, 390):
+        browser.resize(width)
+        assert browser.run("return document.documentElement.scrollWidth") <= width
+        assert browser.run("return document.querySelector('#explorer').getBoundingClientRect().width") > 0.85 * width
+    assert (
+        browser.run("return performance.getEntriesByType('resource').filter(one => !one.name.startsWith('data:'))")
+        == []
+    )
+    assert browser.run(UNNAMED) == []
+    assert browser.run(CONTRASTS) >= 4.5
+    assert browser.run("return document.documentElement.lang") == "en"
+    levels = browser.run(LEVELS)
+    assert levels[0] == 1
+    assert max(np.diff(levels)) <= 1
+    assert browser.errors() == []
 
 
 @in_a_browser

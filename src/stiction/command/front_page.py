@@ -13,6 +13,7 @@ from typing import Any
 import yaml
 
 from stiction.config.cases import air
+from stiction.config.merging import differing
 from stiction.config.reading import paper
 from stiction.report.format import with_error
 from stiction.report.html import rendered
@@ -147,19 +148,3 @@ def provenance(run: Mapping[str, Any], number: int) -> Iterator[str]:
     for name, surface in run["config"]["surfaces"].items():
         if "scans" in surface:
             yield f"Scans of {name}: {', '.join(Path(file).name for file in surface['scans']['files'])}"
-
-
-def differing(config: Mapping[str, Any], base: Mapping[str, Any]) -> dict[str, Any]:
-    """Keys of nested sections with other values than in another configuration.
-
-    Examples
-    --------
-    >>> differing({"seed": 1, "beam": {"width": 3, "samples": 2}}, {"seed": 1, "beam": {"width": 30, "samples": 2}})
-    {'beam': {'width': 3}}
-    """
-    pairs = ((key, value, base.get(key)) for key, value in config.items())
-    return {
-        key: differing(value, other) if isinstance(value, Mapping) and isinstance(other, Mapping) else value
-        for key, value, other in pairs
-        if value != other
-    }

@@ -15,6 +15,7 @@ import yaml
 from stiction.command import front_page
 from stiction.config.kinds import kind_of
 from stiction.config.materials import material_of
+from stiction.config.merging import differing
 from stiction.config.reading import paper
 from stiction.models import SIDES
 from stiction.plan.planner import Planner
@@ -71,7 +72,7 @@ def index(results: Path, rules: Iterable[Mapping[str, Any]]) -> str:
     """Page with the results of the last run of a folder."""
     runs = recorded(results / "provenance.json")
     last, config, found = runs[-1], runs[-1]["config"], list(items(results, rules))
-    changes = front_page.differing(config, paper())
+    changes = differing(config, paper())
     return rendered(
         "index.html",
         title=front_page.subjects(config) or f"surfaces {', '.join(_used(config))}",

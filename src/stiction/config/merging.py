@@ -192,3 +192,19 @@ def _with_copies(config, copied, end):
         if of_copies := {name + end: stated[name] for name in copied["pairs"] if name in stated}:
             config = merged(config, _nested(of_copies, *place))
     return config
+
+
+def differing(config: Mapping[str, Any], base: Mapping[str, Any]) -> dict[str, Any]:
+    """Keys of nested sections with other values than in another configuration.
+
+    Examples
+    --------
+    >>> differing({"seed": 1, "beam": {"width": 3, "samples": 2}}, {"seed": 1, "beam": {"width": 30, "samples": 2}})
+    {'beam': {'width': 3}}
+    """
+    pairs = ((key, value, base.get(key)) for key, value in config.items())
+    return {
+        key: differing(value, other) if isinstance(value, Mapping) and isinstance(other, Mapping) else value
+        for key, value, other in pairs
+        if value != other
+    }

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 
 import numpy as np
-from scipy.special import betainc, betaincinv, ndtri
+from scipy.special import betainc, betaincinv, ndtr, ndtri
 
 from stiction.devices.tail import FEWEST, TAIL, fit_tail, scaled_errors
 
@@ -107,6 +107,22 @@ def stuck_share(
     two_sided = (1 + CONFIDENCE) / 2
     most = np.where(np.asarray(lengths) > reach, n, stuck)
     return stuck / n, 1 - upper_bound(n - stuck, n, two_sided), upper_bound(most, n, two_sided)
+
+
+#: Normal scores of the stored quantiles of sticking lengths and of forces, beyond those of one in a thousand.
+SCORES = np.linspace(-3.25, 3.25, 27)
+
+
+def quantiles(values: np.ndarray, reach: float = np.inf) -> np.ndarray:
+    """Quantiles of samples (n,) at `SCORES`, by Hazen's positions, in the unit of the samples.
+
+    NaN beyond the smallest and the largest sample, and beyond the ``reach`` of the samples.
+    """
+    n, levels = len(values), ndtr(SCORES)
+    with np.errstate(invalid="ignore"):
+        found = np.quantile(np.where(values <= reach, values, np.inf), levels, method="hazen")
+    inside = (n * levels >= 0.5) & (n * (1 - levels) >= 0.5)
+    return np.where(inside & np.isfinite(found), found, np.nan)
 
 
 def most_stuck(sticking: np.ndarray, reach: float) -> float:

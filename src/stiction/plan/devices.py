@@ -105,10 +105,11 @@ class DevicePlan:
         return [case_id(device, humidity) for humidity in [*dry, *self.axis(device)]]
 
     def axis(self, device: str) -> list[float]:
-        """Humidities along the axis of the chart of a device, with at most four decimals."""
-        ends = self.sections[device]["chart"]["humidities"]
+        """Humidities along the axis of the chart of a device, with at most four decimals, and its own between them."""
+        low, high = ends = self.sections[device]["chart"]["humidities"]
         axis = np.linspace(*ends, self.config["design"]["chart_points"])
-        return sorted({round(float(humidity), 4) for humidity in axis})
+        own = {humidity for humidity in self.sections[device]["humidities"] if low < humidity < high}
+        return sorted({round(float(humidity), 4) for humidity in axis} | own)
 
     @property
     def pressed_pairs(self) -> list[str]:

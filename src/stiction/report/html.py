@@ -3,6 +3,8 @@
 A stage that writes HTML has the `files` of its template among its inputs: a change of them makes its pages again.
 """
 
+import base64
+import hashlib
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -20,6 +22,14 @@ _ENVIRONMENT = Environment(
 def rendered(template: str, **values: Any) -> str:
     """Fill a template with values."""
     return _ENVIRONMENT.get_template(template).render(values)
+
+
+@cache
+def hash_of(script: str) -> str:
+    """Hash of an included script, as a content security policy states it."""
+    source, _, _ = _ENVIRONMENT.loader.get_source(_ENVIRONMENT, script)
+    digest = hashlib.sha256(source.removesuffix("\n").encode()).digest()
+    return f"sha256-{base64.b64encode(digest).decode()}"
 
 
 @cache

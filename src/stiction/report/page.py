@@ -3,6 +3,7 @@
 import base64
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import pandas as pd
 from matplotlib.figure import Figure
@@ -11,7 +12,7 @@ from stiction.report import html
 from stiction.report.format import MISSING
 from stiction.report.style import png
 
-TEMPLATE = "page.html"
+TEMPLATE, SCRIPT = "page.html", "explorer.js"
 #: Pixels of a page for one inch of a figure, and most rows of a table that is not folded.
 _PIXELS, _ROWS = 120, 30
 
@@ -70,7 +71,7 @@ class Page:
 
     title: str
     facts: Mapping[str, str]  #: dimensions and conditions, by name
-    answer: Sequence[str]  #: sentences at the top, the first of which is the verdict
+    answer: Sequence[str]  #: all of it in sentences, for a file beside the page; the first is the verdict
     sections: Sequence[Section] = ()
     warnings: Sequence[str] = ()  #: where the model ends for this device
     words: Mapping[str, str] = field(default_factory=dict)  #: terms and what they mean
@@ -78,6 +79,19 @@ class Page:
     not_modelled: str = ""  #: what is not in the model
     drawing: str = ""  #: of the device, as SVG
     summary: Summary | None = None  #: its first screen
+    more: Sequence[str] = ()  #: sentences of the answer that are not on the first screen
+    explorer: Mapping[str, Any] | None = None  #: for its controls, numbers and texts alone
+
+    @property
+    def script_hash(self) -> str:
+        """Hash of the only script that a browser may run on the page."""
+        return html.hash_of(SCRIPT)
+
+    @property
+    def lines(self) -> list[str]:
+        """Answer for a file of text: the first screen in a line, and all sentences."""
+        first = [f"{self.summary.sign}: {self.summary.answer}"] if self.summary else []
+        return [*first, *self.answer]
 
     @property
     def html(self) -> str:

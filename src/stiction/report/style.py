@@ -243,6 +243,11 @@ def letter_lines(lines: Sequence[np.ndarray], names: Sequence[str]) -> None:
     letter(np.concatenate([line.ravel() for line in lines]), titles)
 
 
+def on_own_axes(text: str, line: np.ndarray) -> str:
+    """Label of a quantity on the first of a line of panels, each of which has an axis of its own."""
+    return f"{text}, axes differ" if line.shape[-1] > 1 else text
+
+
 def handles(*panels: Axes) -> tuple[list, list[str]]:
     """Handles and labels of the curves of some panels, each label once."""
     by_label = {}

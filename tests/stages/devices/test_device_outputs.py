@@ -239,7 +239,7 @@ def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found
     cases = {(f"C{k}", rh): found["C1", 0.44] for k in range(20) for rh in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)}
     warned = {(*case, shape): [f"{case} is too wet."] for case in cases for shape in (S_SHAPE, EITHER)}
     figure = figures_devices.risk(cases, warned)
-    assert figure._supxlabel.get_text() == "(1) to (120): warnings, written out in results/tables/safe_lengths.md"
+    assert figure._supxlabel.get_text() == "(1) to (120): beyond a limit of the model"
     assert named(figure.axes[0])[1] == "RH 0.5 (2)"
     assert "(2) ('C0', 0.5) is too wet." in tables_devices.safe_lengths(cases, warned).caption
     assert figure.get_figheight() <= 24
@@ -282,7 +282,7 @@ def test_the_chart_has_numbers_of_warnings_beside_the_thickness():
     assert named(panels[20, S_SHAPE])[:2] == ["thickness 2 µm (1)", "thickness 3 µm"]
     assert named(panels[20, EITHER])[:2] == ["thickness 2 µm (1) (2)", "thickness 3 µm"]
     assert named(panels[10, EITHER])[:2] == ["thickness 2 µm", "thickness 3 µm"]
-    assert figure._supxlabel.get_text() == "(1) to (2): warnings, written out in results/tables/chart.md"
+    assert figure._supxlabel.get_text() == "(1) to (2): beyond a limit of the model"
 
 
 @pytest.mark.slow

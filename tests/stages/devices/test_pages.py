@@ -69,7 +69,10 @@ def test_long_descriptions_of_surfaces_are_wrapped_and_numbers_of_tables_are_not
 
 
 def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
-    assert "0.67, 0 % of the stoppers (0 to 0.918 %) hold more than the restoring force of 18.99 µN" in stopper
+    assert "<td>0.67</td><td>0 (0 to 0.918)</td>" in stopper
+    (said,) = [sentences.stuck_sentence(0.67, 0, 0, 0.00918, 18.99e-6)]
+    assert "0.67, 0 % of the stoppers (0 to 0.918 %) hold more than the restoring force of 18.99 µN" in said
+    assert said not in stopper, "the first screen has it"
     assert "holds most at a relative humidity of 0.70; drier and wetter air, from 0.4 to 0.9" in stopper
     assert "In no air of this range do more than 0 % (0 to 0.918 %) stick." in stopper
     found = STOPPERS["S1"].sel(share=1e-2)
@@ -302,14 +305,15 @@ def test_text_is_shown_as_it_is():
     sections, words = [Section(HOSTILE, [HOSTILE], cells, figure)], {HOSTILE: HOSTILE}
     summary = Summary("good", HOSTILE, HOSTILE, [HOSTILE], words, cells)
     page = Page(HOSTILE, {HOSTILE: HOSTILE}, [HOSTILE] * 2, sections, [HOSTILE], words, [HOSTILE], summary=summary)
+    page = replace(page, more=[HOSTILE] * 2)
     shown = Reading(page.html)
     assert [code for code in shown.code if code != "meta"] == []
-    for tag, number in {"title": 1, "h1": 1, "strong": 1, "th": 2, "td": 4, "dt": 2, "dd": 2}.items():
+    for tag, number in {"title": 1, "h1": 1, "th": 2, "td": 4, "dt": 2, "dd": 2}.items():
         assert shown.text[tag] == [HOSTILE] * number
     said = [text.replace("\N{NO-BREAK SPACE}", " ") for text in shown.text["p"]]
     assert [text for text in said if text == HOSTILE] == [HOSTILE] * 9
     assert len(shown.text["p"]) == 11, "with the link to warnings and what is not in the model"
-    assert shown.text["h2"] == ["The answer in words", HOSTILE, "Limits of this prediction", "Terms"]
+    assert shown.text["h2"] == ["More in words", HOSTILE, "Limits of this prediction", "Terms"]
     assert shown.alt == [HOSTILE]
 
 
@@ -401,3 +405,14 @@ def test_a_page_says_in_its_second_sentence_that_an_assumption_decides():
     beam = pages.beam_page("C1", CANTILEVER | {"assumed": ["rms of B2"]}, lengths, {}, budgets, none)
     assert beam.answer[1].startswith("What decides is assumed")
     assert not pages.beam_page("C1", CANTILEVER, lengths, {}, budgets, none).answer[1].startswith("What decides")
+
+
+def test_the_page_does_not_say_again_what_its_first_screen_says():
+    lengths = {0.67: of_length(350e-6)}
+    silent = {("C1", 0.67, shape): [] for shape in (S_SHAPE, EITHER)}
+    page = pages.beam_page("C1", CANTILEVER | {"length_um": 350}, lengths, {}, {}, silent)
+    screen, *said = page.lines
+    assert screen == f"{page.summary.sign}: {page.summary.answer}"
+    assert said == page.answer
+    assert not {sentence for sentence in said if sentence.startswith(("Of devices of", "Build it no"))} & {*page.more}
+    assert page.summary.answer not in page.more

@@ -235,7 +235,7 @@ def test_every_panel_has_the_name_of_its_stopper_in_a_figure_that_is_not_too_tal
     expected = {name: 1e6 * float(dataset.mean_along.max()) for name, dataset in datasets.items()}
     assert tops == pytest.approx(expected)
     assert figure.get_figheight() <= 24
-    assert figure._supxlabel.get_text() == "Warnings are written out in results/tables/stoppers.md"
+    assert figure._supxlabel.get_text() == "Some results are beyond limits of the model."
 
 
 def test_a_shorter_label_leaves_room_for_more_columns():
@@ -262,7 +262,7 @@ def test_every_legend_of_stoppers_explains_its_own_panel_and_humidities_have_one
 def test_a_stopper_shows_the_share_of_patches_over_the_restoring_force():
     figure = figures_budget.stoppers(STOPPERS, WARNINGS)
     line = figure.axes[0].lines[0]
-    assert figure._supxlabel.get_text() == "Warnings are written out in results/tables/stoppers.md"
+    assert figure._supxlabel.get_text() == "Some results are beyond limits of the model."
     force, share = line.get_data()
     assert_allclose(share, 1 - np.arange(1, 401) / 400, atol=1e-12)
     assert_allclose(force, 0.05 * np.arange(1, 401), rtol=1e-12)
@@ -292,3 +292,10 @@ def test_an_assumed_input_is_named_where_it_decides_and_nowhere_else():
     assert said.endswith("beams stick (S-shape) would be 1.6 instead of 5.2 %.")
     assert tables_budget.decided(datasets, ["thickness"]) == tables_budget.decided(datasets, []) == []
     assert tables_budget.decided([], ["skewness of B2"]) == []
+
+
+def test_a_budget_without_other_choices_of_the_model_has_no_empty_panel():
+    whole = figures_budget.budget(BEAMS)
+    alone = figures_budget.budget({key: one.isel(choice=[]) for key, one in BEAMS.items()})
+    assert len(alone.axes) == len(whole.axes) / 2
+    assert all(panel.patches for panel in (*whole.axes, *alone.axes))

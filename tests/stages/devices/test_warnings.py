@@ -275,7 +275,7 @@ def test_settings_of_jobs_are_those_of_the_warnings():
     plan = Plan(load({"devices": {"C1": c1 | {"chart": {"thicknesses_um": [2, 3], "humidities": [0.5, 0.9]}}}}))
     job = Graph(plan).job("devices/warnings/C1.json")
     assert job.settings == {"beam": BEYOND}
-    assert len(job.inputs["charts"]) == plan.config["design"]["chart_points"]
+    assert len(job.inputs["charts"]) == plan.config["design"]["chart_points"] + 1, "with its own humidity"
     assert job.inputs["plasticity"] == {"c": "studies/plasticity/c"}
 
 

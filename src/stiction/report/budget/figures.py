@@ -26,6 +26,7 @@ from stiction.report.style import (
     legend_below,
     letter,
     letter_lines,
+    on_own_axes,
     panels,
     places,
     styled,
@@ -53,11 +54,11 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         _force_over_humidity(column[1], dataset)
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
-        line[1, 0].set_ylabel("pull-off force [µN]")
+        line[1, 0].set_ylabel(on_own_axes("pull-off force [µN]", line))
     letter_lines(lines, list(datasets))
     if sentences := [f"{name}: {sentence}" for name, of_device in warnings.items() for sentence in of_device]:
         figure.set_label("\n".join(["Warnings:", *sentences]))
-        figure.supxlabel("Warnings are written out in results/tables/stoppers.md", fontsize=6, ha="left", x=0.01)
+        figure.supxlabel("Some results are beyond limits of the model.", fontsize=6, ha="left", x=0.01)
     return figure
 
 
@@ -125,14 +126,21 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
     bars = [(_measurements(cases), _choices(cases)) for cases in parts.values()]
     heights = [_ROW * max(map(len, of_row)) + _AROUND for of_row in bars]
     size = DOUBLE, sum(heights) + _LEGEND
-    figure, axes = panels(len(bars), 2, size, height_ratios=heights, width_ratios=(3, 2))
-    for line, of_row, cases in zip(axes, bars, parts.values(), strict=True):
-        for panel, rows in zip(line, of_row, strict=True):
-            _tornado(panel, rows, [colours[humidity] for humidity in cases])
+    count = 2 if any(choices for _, choices in bars) else 1
+    figure, axes = panels(len(bars), count, size, height_ratios=heights, width_ratios=(3, 2)[:count])
+    titles = {}
+    for line, of_row, (text, cases) in zip(axes, bars, parts.items(), strict=True):
+        for panel, rows, title in zip(line, of_row[:count], (text, "choices of the model")[:count], strict=True):
+            if rows:
+                titles[panel] = title
+                _tornado(panel, rows, [colours[humidity] for humidity in cases])
+            else:
+                panel.remove()
         scatter = ", ".join(f"{100 * float(dataset.scatter):.2g}" for dataset in cases.values())
         line[0].set_xlabel(f"standard uncertainty [%]; {SCATTER}: {scatter} %")
-        line[1].set_xlabel("change [%]")
-    letter(axes, [title for text in parts for title in (text, "choices of the model")])
+        if count > 1:
+            line[1].set_xlabel("change [%]")
+    letter(list(titles), list(titles.values()))
     marks = [Patch(color=colour, label=air(humidity)) for humidity, colour in colours.items()]
     figure.legend(handles=marks, loc="outside lower center", ncols=8)
     return figure

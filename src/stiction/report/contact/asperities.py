@@ -23,6 +23,7 @@ from stiction.report.style import (
     handles,
     humidity_axis,
     letter_lines,
+    on_own_axes,
     styled,
 )
 from stiction.report.table import PAIR, Table, table_stage
@@ -185,7 +186,7 @@ def figure(*data) -> Figure:
         humidity_axis(column[0])
     for line in lines:
         for panel, medium in zip(line[:, 0], media, strict=True):
-            panel.set_ylabel(f"change of $l_s$ [%], vdW: {medium}")
+            panel.set_ylabel(on_own_axes(f"change of $l_s$ [%], vdW: {medium}", line))
     figure.legend(*handles(*columns.flat), loc="outside lower center", ncols=4)
     letter_lines(lines, [f"pair {pair}" for pair in pairs])
     return figure

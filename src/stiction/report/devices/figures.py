@@ -24,6 +24,7 @@ from stiction.report.style import (
     humidity_colours,
     legend_below,
     letter_lines,
+    on_own_axes,
     places,
     shades,
     styled,
@@ -45,14 +46,12 @@ _LIGHTEST = 0.25
 _ROOM = 0.05
 
 
-def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[str]], table: str) -> None:
-    """Name the table of the warnings below a figure, their numbers in its caption, and add them to its own."""
+def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[str]]) -> None:
+    """Explain the numbers of the warnings below a figure, and add their texts to its caption."""
     if sentences := with_numbers(warnings):
         numbers = "(1)" if len(sentences) == 1 else f"(1) to ({len(sentences)})"
         figure.set_label("\n".join(["Warnings:", *sentences]))
-        figure.supxlabel(
-            f"{numbers}: warnings, written out in results/tables/{table}.md", fontsize=6, ha="left", x=0.01
-        )
+        figure.supxlabel(f"{numbers}: beyond a limit of the model", fontsize=6, ha="left", x=0.01)
 
 
 @styled
@@ -83,7 +82,7 @@ def risk(datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tup
     letter_lines(lines, names)
     _explain(columns[0, 0], datasets)
     figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=4 if len(names) > 1 else 3)
-    refer_to_warnings(figure, warnings, "safe_lengths")
+    refer_to_warnings(figure, warnings)
     return figure
 
 
@@ -165,12 +164,12 @@ def chart(
         panel.set(xlabel="relative humidity [–]", ylim=(0.95 * low, high + _ROOM * (high - low)))
         humidity_axis(panel, placed[name])
     for line in lines:
-        line[0, 0].set_ylabel("safe length [µm]")
+        line[0, 0].set_ylabel(on_own_axes("safe length [µm]", line))
     letter_lines(
         lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].legend}" for name, gap, shape in subjects]
     )
     figure.legend(*handles(*columns[:, 0]), loc="outside upper center", ncols=2)
-    refer_to_warnings(figure, warnings, "chart")
+    refer_to_warnings(figure, warnings)
     return figure
 
 

@@ -25,6 +25,22 @@ def sentences(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, 
     return [_sentence(humidity, one, _total(humidity, budgets)) for humidity, one in worst_first]
 
 
+def measured(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> list[str]:
+    """Effect of the measurements on P(stuck) at the length of a device, in each of its airs where it is known."""
+    said = []
+    for humidity, one in safe_lengths.items():
+        total = _total(humidity, budgets)
+        if "length_of_device" in one and total:
+            held = one.isel(shape=-1)
+            low, high = _shifted(held, float(held.length_of_device), total)
+            said.append(
+                f"With the measurements one standard uncertainty off, {100 * total:.2g} % of the length, "
+                f"{100 * low:.3g} to {100 * high:.3g} % of devices of {float(held.length_of_device) / UM:g} µm stick "
+                f"{airs([humidity])}."
+            )
+    return said
+
+
 def _total(humidity, budgets):
     """Relative uncertainty of the length at a humidity due to the measurements, 0 without any [-]."""
     totals = [budget_of(budget).total for key, budget in budgets.items() if key[0] == humidity]
@@ -49,9 +65,14 @@ def _measured(held: xr.Dataset, length: float, total: float) -> str:
     """Uncertainty of P(stuck) left by the measurements: stuck lengths change by a relative amount ``total``."""
     if total == 0:
         return ""
-    at: Sequence[float] = length / np.array([1 + total, max(1 - total, 0.01)])
-    low, high = np.interp(at, held.length.values, held.stuck.values, left=0.0)
+    low, high = _shifted(held, length, total)
     return (
         f" With the measurements one standard uncertainty off, {100 * total:.2g} % of the length, it is "
         f"{100 * low:.3g} to {100 * high:.3g} %."
     )
+
+
+def _shifted(held, length, total):
+    """P(stuck) at a length [m] if stuck lengths are longer or shorter by a relative amount."""
+    at: Sequence[float] = length / np.array([1 + total, max(1 - total, 0.01)])
+    return np.interp(at, held.length.values, held.stuck.values, left=0.0)

@@ -12,14 +12,16 @@ import yaml
 from stiction.config.cases import DRY, case_id
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of, restoring_force
 from stiction.config.materials import material_of
+from stiction.config.merging import differing
+from stiction.config.reading import paper
 from stiction.devices.risk import one_in
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
 from stiction.report import html
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
+from stiction.report.devices import explorer, first_screen, life, own_length, sentences
 from stiction.report.devices import figures as figures_devices
-from stiction.report.devices import first_screen, life, own_length, sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.drawings.devices import device_drawing
 from stiction.report.format import MISSING, humidity_text
@@ -108,13 +110,13 @@ def beam_page(
     sections += _sure(name, budgets, errors)
     of_shortest = sentences.shortest_budgets(safe_lengths, budgets)
     decided = tables_budget.decided(of_shortest.values(), section.get("assumed", ()))
-    answer = [*own_length.sentences(safe_lengths, of_shortest), *sentences.few_sentences(safe_lengths)]
-    answer += [sentences.build_sentence(safe_lengths, budgets), *decided, *_rough_enough(roughness)]
-    if test_beams is not None:
-        sections.append(_test_beam_section(name, test_beams))
-        answer.append(tables_test_beams.built(test_beams))
-    answer += [sentences.safe_sentence(humidity, dataset) for humidity, dataset in safe_lengths.items()]
-    answer += model_errors.sentences(name, errors)
+    few, more = sentences.few_sentences(safe_lengths), _rough_enough(roughness)
+    answer = [*own_length.sentences(safe_lengths, of_shortest), *few]
+    answer += [sentences.build_sentence(safe_lengths, budgets), *decided, *more]
+    sections += _test_beam_sections(name, test_beams)
+    built, of_model = _built(test_beams), model_errors.sentences(name, errors)
+    answer += [*built, *(sentences.safe_sentence(*case) for case in safe_lengths.items()), *of_model]
+    more = [*own_length.measured(safe_lengths, of_shortest), *few, *more, *built, *of_model[1:]]
     sections += _how_rough(name, roughness)
     listed = pair_warnings.with_numbers(warnings)
     listed += [] if test_beams is None else tables_test_beams.warnings(test_beams)
@@ -132,7 +134,7 @@ def beam_page(
     summary = _with_model_error(
         first_screen.beam_screen(section, safe_lengths, budgets, listed, test_beams), name, errors
     )
-    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary)
+    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary, more=more)
 
 
 def stopper_page(
@@ -150,17 +152,18 @@ def stopper_page(
     sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: stopper}, {}))]
     sections += [*_sure(name, budgets, errors), *_how_rough(name, roughness)]
     decided = tables_budget.decided(budgets.values(), section.get("assumed", ()))
-    answer, listed = [sentences.verdict(stopper), *decided, *_rough_enough(roughness)], list(warnings)
-    if test_beams is not None:
-        sections.append(_test_beam_section(name, test_beams))
-        answer.append(tables_test_beams.built(test_beams))
-        listed += tables_test_beams.warnings(test_beams)
+    rough, built, of_model = _rough_enough(roughness), _built(test_beams), model_errors.sentences(name, errors)
+    answer = [sentences.verdict(stopper), *decided, *rough, *built]
+    sections += _test_beam_sections(name, test_beams)
+    listed = [*warnings, *([] if test_beams is None else tables_test_beams.warnings(test_beams))]
     answer += [sentences.stuck_sentence(*row, force=float(stopper.restoring_force)) for row in shares_stuck(stopper)]
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
-    answer += [*sentences.safe_force_sentences(stopper), *worst, *model_errors.sentences(name, errors)]
+    forces = sentences.safe_force_sentences(stopper)
+    answer += [*forces, *worst, *of_model]
+    more = [*forces, *worst, *rough, *built, *of_model[1:]]
     words = _terms()["stoppers"] | (_terms()["worst_humidity"] if worst else {}) | _words_of_budgets(budgets)
     summary = _with_model_error(first_screen.stopper_screen(section, stopper, budgets, listed), name, errors)
-    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary)
+    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary, more=more)
 
 
 def _with_model_error(summary, name, errors):
@@ -235,8 +238,15 @@ def _sure(name, budgets, errors):
     return [Section("Uncertainty, and what should be measured better", said, cells, drawn, _MISSING_EFFECTS)]
 
 
-def _test_beam_section(name, update):
-    """Section on the evidence of the test beams of a device."""
+def _built(update):
+    """Sentence on the test beams of a device, if it has some."""
+    return [] if update is None else [tables_test_beams.built(update)]
+
+
+def _test_beam_sections(name, update):
+    """Section on the evidence of the test beams of a device, if it has some."""
+    if update is None:
+        return []
     said = [
         tables_test_beams.explained(update),
         *tables_test_beams.combinations(update),
@@ -244,7 +254,7 @@ def _test_beam_section(name, update):
     ]
     said += [tables_test_beams.again(update), *tables_test_beams.stuck(update)]
     cells = tables_test_beams.test_beams({name: update}).cells.drop(columns="device")
-    return Section("What the test beams say", said, cells, figures_test_beams.test_beams(update))
+    return [Section("What the test beams say", said, cells, figures_test_beams.test_beams(update))]
 
 
 def _rough_enough(roughness):
@@ -288,7 +298,8 @@ def _inputs(plan, at):
     own |= process_section.inputs(plan, at.device)
     own |= {"style": File(STYLE), "templates": [File(_GLOSSARY), *html.files(TEMPLATE)]}
     if not devices.kind(at.device).is_beam:
-        return own | {"stopper": f"devices/stoppers/{at.device}"}
+        tilted = {"tilted": f"devices/tilted/{at.device}"} if "tilt_deg" in section else {}
+        return own | {"stopper": f"devices/stoppers/{at.device}"} | tilted
     charts = devices.chart_cases(at.device) if at.device in devices.charted else []
     return own | {
         "safe_lengths": {key[1]: name for key, name in by_case("devices/safe_lengths", cases).items()},
@@ -316,13 +327,23 @@ def _page(data, at, settings):
     warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
     more = {name: data.get(name) for name in ("test_beams", "errors", "roughness")}
     if "stopper" in data:
+        views = [explorer.of_stopper(settings, data["stopper"], budgets)]
+        if "tilted" in data:
+            views.append(explorer.of_tilted(at.device, settings, data["tilted"], data["stopper"]))
         page = stopper_page(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
+        views = [explorer.of_beam(at.device, settings, lengths, charts, budgets)]
         page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
     page = process_section.with_process(page, at.device, data)
     drawing = device_drawing(_with_force(settings)).svg
-    return replace(with_life(page, at.device, data["life"]), not_modelled=settings["not_modelled"], drawing=drawing)
+    page = with_life(page, at.device, data["life"])
+    return replace(
+        page,
+        not_modelled=settings["not_modelled"],
+        drawing=drawing,
+        explorer=explorer.content(at.device, settings, views),
+    )
 
 
 def with_life(page: Page, name: str, answers: xr.Dataset) -> Page:
@@ -330,17 +351,20 @@ def with_life(page: Page, name: str, answers: xr.Dataset) -> Page:
     (verdict, *reasons), (first, *others) = page.answer, page.sections
     cells = life.table({name: answers}).cells.drop(columns="device")
     section = Section("From the first contact to the last", (life.CAPTION,), cells, life.figure({name: answers}))
-    return replace(page, answer=[verdict, *life.sentences(answers), *reasons], sections=[first, section, *others])
+    said, sections = life.sentences(answers), [first, section, *others]
+    return replace(page, answer=[verdict, *said, *reasons], more=[*said, *page.more], sections=sections)
 
 
 def _save(page, paths):
-    """Write a page with the date and the code of the last run, and its answer, a sentence a line.
+    """Write a page with the date, code and study of the last run, and its answer, a sentence a line.
 
-    Its record is no input of the page, so that a run with nothing else to do keeps page and date.
+    Their record is no input of the page, so that a run with nothing else to do keeps page and date.
     """
     record = Path(paths["html"]).parents[1] / "provenance.json"
-    save_text(replace(page, made=provenance.last_run(record)).html, paths["html"])
-    save_text("".join(f"{sentence}\n" for sentence in page.answer), paths["answer"])
+    study = differing(provenance.recorded(record)[-1]["config"], paper())
+    explorer = page.explorer and page.explorer | {"study": {key: study[key] for key in study if key != "devices"}}
+    save_text(replace(page, made=provenance.last_run(record), explorer=explorer).html, paths["html"])
+    save_text("".join(f"{sentence}\n" for sentence in page.lines), paths["answer"])
 
 
 STAGES = (

@@ -34,7 +34,7 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     """
     least, total, length = length_to_build(safe_lengths, budgets)
     totals = [budget_of(budget).total for budget in shortest_budgets(safe_lengths, budgets).values()]
-    few = one_in(_chosen(_any(safe_lengths)))
+    few = one_in(chosen(_any(safe_lengths)))
     sentence = (
         f"Build it no longer than {length / UM:.0f} µm: then at most {few} sticks "
         f"{airs(safe_lengths)} (95 % confidence)."
@@ -57,12 +57,17 @@ def _any(safe_lengths):
     return next(iter(safe_lengths.values()))
 
 
+def safe_lengths_of(dataset: xr.Dataset) -> xr.DataArray:
+    """Safe lengths for the chosen share, by shape [m]."""
+    return dataset.safe_length.sel(share=chosen(dataset))
+
+
 def _safe(dataset):
     """Safe length for the chosen share, however the device is held [m]."""
-    return dataset.safe_length.sel(share=_chosen(dataset)).min()
+    return safe_lengths_of(dataset).min()
 
 
-def _chosen(dataset):
+def chosen(dataset: xr.Dataset) -> float:
     """Fraction of stuck devices for lengths in sentences: the middle one [-]."""
     return float(dataset.share[dataset.sizes["share"] // 2])
 
@@ -115,7 +120,7 @@ def _verdict_of_few(stopper):
 
 def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
     """Safe lengths of a device at one humidity in words, for the middle fraction."""
-    share = _chosen(dataset)
+    share = chosen(dataset)
     lengths = dataset.safe_length.sel(share=share) / UM
     shortest, longest = float(lengths.min()), float(lengths.max())
     air, but = _at(humidity), f"at most {one_in(share)}"
@@ -135,12 +140,12 @@ def few_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
 
 def _few_stick(dataset):
     """Whether the safe length of the chosen fraction is as long as the simulated devices, or as on flat surfaces."""
-    return dataset.basis.sel(share=_chosen(dataset)).values[-1] in (Basis.LONGEST, Basis.FLAT)
+    return dataset.basis.sel(share=chosen(dataset)).values[-1] in (Basis.LONGEST, Basis.FLAT)
 
 
 def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
     """Largest fraction of stuck devices at one humidity, in words, if so few stick that no smaller one is known."""
-    held, number, share = dataset.isel(shape=-1), int(dataset.beams), _chosen(dataset)
+    held, number, share = dataset.isel(shape=-1), int(dataset.beams), chosen(dataset)
     shortest, most, reach = float(held.shortest), float(held.most_stuck), float(held.reach)
     none = f"shorter than {shortest / UM:.0f} µm " if np.isfinite(shortest) else ""
     sentence = (

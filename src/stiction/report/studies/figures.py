@@ -1,12 +1,13 @@
 """Figures of the studies for the main result: 13, 16 to 19 and the model comparison."""
 
 from collections.abc import Mapping
-from itertools import groupby
+from itertools import groupby, product
 
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.colors import LogNorm
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from stiction.analysis import convergence
@@ -34,6 +35,7 @@ from stiction.report.style import (
     letter,
     letter_lines,
     marker,
+    on_own_axes,
     panels,
     plain_log,
     shades,
@@ -168,7 +170,8 @@ def sample_convergence(
     """
     figure, (axes,) = panels(1, 3, (DOUBLE, 2.4), width_ratios=(1.3, 1, 1))
     _densities(axes[0], sizes)
-    _dimension_errors(axes[1], dimension_errors)
+    shown = _dimension_errors(axes[1], dimension_errors)
+    figure.colorbar(shown, ax=axes[1], label="relative humidity [–]", pad=0.02)
     axes[1].axhline(tolerance, **_BOUND, label="tolerance")
     low, high = axes[1].get_ylim()
     axes[1].set_ylim(min(low, tolerance / 2), 3 * high)  # room for the legend
@@ -206,17 +209,18 @@ def _distances(panel, sizes):
 
 
 def _dimension_errors(panel, dimension_errors):
-    """Err^DR of every case, one style per pair."""
-    pairs = list(dict.fromkeys(pair for pair, _ in dimension_errors))
-    seen = set()
-    for (pair, _), errors in dimension_errors.items():
+    """Err^DR of every case, one style for each pair and one colour for each humidity; returns the colours."""
+    pairs, humidities = (list(dict.fromkeys(parts)) for parts in zip(*dimension_errors, strict=True))
+    colours = ScalarMappable(Normalize(min(humidities), max(humidities)), "viridis_r")
+    for (pair, humidity), errors in dimension_errors.items():
         k = pairs.index(pair)
-        style = {"color": f"C{k}", "marker": marker(k), "linestyle": dashes(k)}
-        style |= {"label": f"pair {pair}"} if pair not in seen else {}
+        style = {"color": colours.to_rgba(humidity), "marker": marker(k), "linestyle": dashes(k), "markersize": 4}
         panel.plot(range(1, len(errors)), errors[:-1], **style)
-        seen.add(pair)
+    for k, pair in enumerate(pairs):
+        panel.plot([], [], color="0.3", marker=marker(k), linestyle=dashes(k), markersize=4, label=f"pair {pair}")
     panel.set(xlabel="number of coordinates $N_g$", ylabel=r"Err$^\mathrm{DR}$ [–]", yscale="log")
     panel.set_xticks(range(1, len(errors)))
+    return colours
 
 
 # Figure 18
@@ -241,10 +245,24 @@ def order_convergence(orders: xr.Dataset) -> Figure:
             panel.step(orders.position, of_eta.density.sel(order=order), where="mid", **style)
         panel.set(xlabel=rf"$\eta_{eta}$ [–]", ylabel="density [–]", ylim=(0, None))
         panel.margins(x=0)
-    used[0].legend()
+    _cumulative(used[0], orders.sel(eta=etas[0]), shown)
+    used[0].legend(loc="upper right")
     _order_distances(used[-1], orders)
     letter(used, [*(rf"marginal of $\eta_{eta}$" for eta in etas), "distance from the kernel density"])
     return figure
+
+
+def _cumulative(panel, of_eta, shown):
+    """Inset of the differences of cumulative probabilities, which converge although the density has spikes."""
+    inset, position = panel.inset_axes([0.13, 0.47, 0.2, 0.4]), of_eta.position.values
+    width = position[1] - position[0]
+    for k, (order, shade) in enumerate(zip(shown, shades(len(shown)), strict=True)):
+        more = np.cumsum(of_eta.density.sel(order=order).values - of_eta.input_density.values)
+        inset.plot(position, 100 * width * more, color=shade, linestyle=dashes(len(shown) - 1 - k), linewidth=0.8)
+    inset.set_xlim(position[0], position[-1])
+    inset.axhline(0, **_ZERO)
+    inset.set_title("cumulative, less samples [%]", fontsize=6, pad=2)
+    inset.tick_params(labelsize=6, pad=2)
 
 
 def _order_distances(panel, orders):
@@ -277,7 +295,7 @@ def mesh_convergence(mesh: xr.Dataset, correlation: xr.Dataset) -> Figure:
     axes[2].axhspan(-0.01, 0.01, color="0.85", zorder=0)
     axes[2].set(xlabel=r"distance $\tau$ [µm]", ylabel=r"$r_Z / m_2$ [–]", xlim=(0, TO_UM * float(correlation.lag[-1])))
     legends(figure, {axes[2]: {}})
-    letter(axes, ["law of the ground", "energy under every mesh", "autocorrelation"])
+    letter(axes, ["force law of a strip", "convergence of the mesh", "autocorrelation"])
     return figure
 
 
@@ -286,7 +304,9 @@ def _ground(panel, mesh):
     law, distance = mesh.law.values, mesh.distance.values
     near = (distance > law[1] - 1.2 / law[2]) & (distance < law[1] + 6 / law[3])
     panel.plot(TO_NM * distance[near], TO_MPA * mesh.force.values[near], color="0.6", linewidth=3, label="contact")
-    panel.plot(TO_NM * distance[near], TO_MPA * forcelaw.pressure(law, distance[near]), "k--", label="Eq. (12)")
+    panel.plot(
+        TO_NM * distance[near], TO_MPA * forcelaw.pressure(law, distance[near]), "k--", label="force law, Eq. (12)"
+    )
     panel.axhline(0, **_ZERO)
     panel.set(xlabel=r"distance $\bar d$ [nm]", ylabel=r"force per area $\bar f$ [MPa]")
     panel.legend()
@@ -309,7 +329,7 @@ def _meshes(panel, mesh):
     # Set limits: if the beam does not stick under this law, ē is the only curve.
     panel.set_xlim(TO_UM * mesh.element_length.values.min() / 1.2, 1.2 * TO_UM * mesh.element_length.values.max())
     plain_log(panel.xaxis)
-    panel.legend(loc="upper left", title=r"$l^\mathrm{meso}$ [µm]", ncols=2, columnspacing=1, handlelength=1.8)
+    panel.legend(loc="upper left", title=r"strips $l^\mathrm{meso}$ [µm]", ncols=2, columnspacing=1, handlelength=1.8)
 
 
 def _small_differences(panel, excess, lengths):
@@ -350,8 +370,8 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
         for column, pair in zip(columns, pairs, strict=True):
             chosen = {name: datasets[pair, name] for name in ("base", *group)}
             _column_of_variants(column, chosen, rows(published, pair=pair))
-        for panel, deviation in ((line[k, 0], _DEVIATIONS[k]) for line in lines for k in range(count)):
-            panel.set_ylabel(f"{deviation} [%]")
+        for line, k in product(lines, range(count)):
+            line[k, 0].set_ylabel(on_own_axes(f"{_DEVIATIONS[k]} [%]", line))
         part.legend(*handles(*columns.flat), loc="outside lower center", ncols=5 if len(pairs) > 1 else 3)
     lines = [line for _, _, lines in blocks for line in lines]
     letter_lines(lines, [f"pair {pair}" for pair in pairs] * len(groups))
@@ -378,9 +398,10 @@ def _column_of_variants(column, datasets, table):
             _deviation(column[1], datasets[name], table, style)
     if len(table):
         _experiment(column[1], table)
-    elif len(column) > 1:
-        column[1].text(0.5, 0.6, "not published", transform=column[1].transAxes, ha="center", color="0.5")
-        column[1].set_yticks([])
+    elif len(column) > 1:  # what is not published needs no panel
+        column[1].remove()
+        column = column[:1]
+        column[0].tick_params(labelbottom=True)
     column[-1].set_xlabel("relative humidity [–]")
     for panel in column:
         panel.axhline(0, **_ZERO)

@@ -14,6 +14,7 @@ import xarray as xr
 
 from stiction.chaos.model import Truncation
 from stiction.contact.environment import Water
+from stiction.devices import risk
 from stiction.devices.chart import checked_power_law, error_between
 from stiction.plan.names import by_case
 from stiction.plan.stage import Stage, chosen, select
@@ -48,17 +49,22 @@ class Filled:
     error: float  #: largest error of the power laws at the sizes in the middle [-]; 0 if none is used
 
 
+#: Power law and error of a quantile that is not known.
+_UNKNOWN = (lambda thickness, _gap: np.full(len(thickness), np.nan)), 0.0
+
+
 def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
-    """Safe lengths of all thicknesses and gaps. Inputs as in the stages cracks and safe_lengths."""
+    """Safe lengths and quantiles of all thicknesses and gaps. Inputs as in the stages cracks and safe_lengths."""
     met = sticking.ground(contact, tips, settings.humidity, settings)
 
     def by_elements(thickness, gap):
-        """Safe lengths of beams of one size (shapes, shares) [m]."""
+        """Safe lengths of beams of one size and their quantiles (shapes, shares and scores) [m]."""
         device = _resized(settings, thickness, gap)
         beams = sticking.released(device, met, settings)
         known = sticking.known(device, settings.water, settings.humidity, beams.reach)
         safe = sticking.by_shape(beams, settings, known)
-        return np.array([[one.length for one in of_shape] for of_shape in safe.values()])
+        of_shares = [[one.length for one in of_shape] for of_shape in safe.values()]
+        return np.hstack([of_shares, [risk.quantiles(values, beams.reach) for values in beams.lengths.values()]])
 
     chart = filled(settings.thicknesses, settings.gaps, by_elements)
     longest = [settings.device.opening.longest_strip(device, met.laws) for device in _designed(settings)]
@@ -108,29 +114,38 @@ def corners_and_tests(thicknesses: int, gaps: int) -> tuple[np.ndarray, np.ndarr
 
 
 def _power_laws(sizes, computed, test):
-    """Power law of each shape and share with its error. None if no size is left or one of them errs too much."""
+    """Power law of each shape and share with its error. None if no size is left or one of them errs too much.
+
+    A quantile that is not known at all sizes is not known between them.
+    """
     known = list(computed)
     if len(known) == len(sizes):
         return []
     columns = np.reshape([computed[k] for k in known], (len(known), -1)).T
     try:
-        return [checked_power_law(*sizes[known].T, column, test[known]) for column in columns]
+        return [
+            checked_power_law(*sizes[known].T, column, test[known]) if np.isfinite(column).all() else _UNKNOWN
+            for column in columns
+        ]
     except ValueError:
         return []
 
 
 def layout(filled: Filled, rms: float, longest_strips: Sequence[float], settings: Settings) -> xr.Dataset:
-    """Dataset of safe lengths (sizes, shapes, shares) [m] over thickness and gap at one humidity.
+    """Dataset of safe lengths and quantiles (sizes, shapes, shares and scores) [m] over thickness and gap.
 
     The rms is that of the sum of both surfaces [m], and the longest strips (sizes,) resolve the cracks [m].
     """
     grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
-    shapes = list(settings.device.opening.shapes)
+    shapes, shares = list(settings.device.opening.shapes), len(settings.shares)
+    lengths = filled.lengths.reshape(*grid, len(shapes), -1)
     limits = [sticking.flooded_lengths(device, settings.water, settings.humidity) for device in _designed(settings)]
     metres, none = {"units": "m"}, {"units": "1"}
     return xr.Dataset(
         {
-            "safe_length": ((*size, "shape", "share"), filled.lengths.reshape(*grid, len(shapes), -1), metres),
+            "safe_length": ((*size, "shape", "share"), lengths[..., :shares], metres),
+            "quantile": ((*size, "shape", "score"), lengths[..., shares:], metres),
+            "beams": ((), settings.beams, {"long_name": "number of simulated devices of each size"}),
             "flooded_length": ((*size, "shape"), np.reshape(limits, (*grid, -1)), metres),
             "longest_strip": (size, np.reshape(longest_strips, grid), metres),
             "by_elements": (size, filled.by_elements.reshape(grid).astype(np.int8), none),
@@ -144,6 +159,7 @@ def layout(filled: Filled, rms: float, longest_strips: Sequence[float], settings
             "gap": ("gap", list(settings.gaps), metres),
             "shape": shapes,
             "share": list(settings.shares),
+            "score": risk.SCORES,
         },
     )
 
@@ -170,6 +186,8 @@ def largest_error_between(whole: xr.Dataset) -> float:
     The dataset has all humidities along ``relative_humidity``; dry air is apart.
     """
     humid = whole.safe_length.isel(relative_humidity=whole.relative_humidity.values > 0)
+    if not humid.size:
+        return np.nan
     curves = humid.transpose(..., "relative_humidity").values.reshape(-1, humid.sizes["relative_humidity"])
     errors = [error_between(humid.relative_humidity.values, lengths) for lengths in curves]
     return max(filter(np.isfinite, errors), default=np.nan)

@@ -11,6 +11,7 @@ from stiction.config.cases import case_id
 from stiction.config.kinds import restoring_force
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import is_wetted
+from stiction.devices.risk import SCORES, quantiles
 from stiction.devices.stoppers import pull_off_force, safe_forces, stuck_patches, worst_humidity
 from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage, select
@@ -191,6 +192,7 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
             "mean_along_error": ("axis", error, newton),
             "quantile_along": (("probability", "axis"), np.quantile(along, PROBABILITIES, axis=1), newton),
             "stuck_along": (("bound", "axis"), stuck, none),
+            "scored_along": (("axis", "score"), [quantiles(row) for row in along], newton),
             "safe_force_along": (("axis", "share"), safe_along[0], newton),
             "worst_humidity": ((), worst, none),
             "worst_humidity_error": ((), worst_error, none),
@@ -200,6 +202,7 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
             "axis": axis,
             "share": list(SHARES),
             "probability": PROBABILITIES,
+            "score": SCORES,
             "bound": ["estimate", "low", "high"],
             "part": ["safe", "estimate", "error"],
         },

@@ -1,0 +1,201 @@
+"""Grid of the computed states of a device, and its uncertainty by the measurements, for its page."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.special import ndtr
+
+from stiction.config.kinds import kind_of
+from stiction.config.units import from_si
+from stiction.devices.budget import ranked
+from stiction.devices.risk import SCORES, quantiles
+from stiction.report.devices import sentences
+from stiction.report.devices.grid import Axis, Grid
+from stiction.report.format import UM, UN
+from stiction.stages.devices.budget import budget_of, groups_of
+
+#: Part of a size beyond the smallest and largest computed ones that a control reaches.
+_ROOM = 0.05
+
+
+@dataclass(frozen=True)
+class View:
+    """Grid that the controls of a page move on."""
+
+    title: str
+    grid: Grid
+    margins: Sequence[tuple[float, float, str]]  #: humidity, relative uncertainty [-], input to measure better
+    words: Mapping[str, str]  #: that differ between beams and stoppers
+
+
+def content(name: str, section: Mapping[str, Any], views: Sequence[View]) -> dict:
+    """Content of the controls of the page of a device."""
+    own = {key: value for key, value in section.items() if key in kind_of(section).known}
+    return {"name": name, "section": own, "views": [asdict(view) | {"grid": view.grid.json} for view in views]}
+
+
+def of_beam(
+    name: str,
+    section: Mapping[str, Any],
+    safe_lengths: Mapping[float, xr.Dataset],
+    charts: Mapping[float, xr.Dataset],
+    budgets: Mapping[tuple, xr.Dataset],
+) -> View:
+    """View of a cantilever or bridge. Parameters as of `stiction.report.devices.pages.beam_page`."""
+    humid = {humidity: chart for humidity, chart in sorted(charts.items()) if humidity > 0}
+    joined = _charted(humid) if humid else _alone(section, safe_lengths)
+    worst = _worst(safe_lengths)
+    chart = f"devices.{name}.chart"
+    axes = (
+        _humidity(
+            joined.humidity.values, worst, f"{chart}.humidities" if humid else f"devices.{name}.humidities", humid
+        ),
+        _of_size("thickness_um", "thickness", joined.thickness.values / UM, section, f"{chart}.thicknesses_um"),
+        _of_size("gap_um", "gap", joined.gap.values / UM, section, f"{chart}.gaps_um"),
+    )
+    safe, quantiles = joined.safe_length.values / UM, joined["quantile"].values / UM
+    start = section.get("length_um", float(sentences.safe_lengths_of(safe_lengths[worst]).min()) / UM)
+    size = _size("length_um", "length", "µm", (safe, quantiles), start)
+    share = _share(joined.share.values, sentences.chosen(safe_lengths[worst]))
+    grid = Grid(axes, share, size, safe, quantiles, int(joined.beams), falls=False)
+    words = {
+        "what": "length",
+        "safe": "Safe length",
+        "stick": "Devices of this length that stick",
+        "build": "no more than",
+        "bound": "safe",
+    }
+    return View("sizes and air", grid, _margins(sentences.shortest_budgets(safe_lengths, budgets)), words)
+
+
+def _worst(safe_lengths):
+    """Humidity of the shortest safe length or, of a device with a length, of the largest fraction stuck."""
+
+    def rank(humidity):
+        """Small at the worst humidity."""
+        dataset = safe_lengths[humidity]
+        if "length_of_device" in dataset:
+            return -float(dataset.isel(shape=-1).stuck_at_length.sel(end="high"))
+        return float(sentences.safe_lengths_of(dataset).min())
+
+    return min(safe_lengths, key=rank)
+
+
+def _charted(charts):
+    """Charts of all humid airs, for whatever holds the devices, over humidity, thickness, gap and share."""
+    parts = [chart.isel(shape=-1).assign_coords(humidity=humidity) for humidity, chart in charts.items()]
+    names = ["safe_length", "quantile"]
+    joined = xr.concat([part[names] for part in parts], "humidity", coords="minimal", compat="override", join="exact")
+    return joined.sortby("share").assign(beams=parts[0].beams).transpose("humidity", "thickness", "gap", ...)
+
+
+def _alone(section, safe_lengths):
+    """Safe lengths of the device itself, as a chart of one thickness and gap."""
+    parts = []
+    for humidity, dataset in sorted(safe_lengths.items()):
+        held = dataset.isel(shape=-1)
+        found = ("score", _quantiles(held.length.values, held.stuck.values, int(dataset.beams)))
+        parts.append(held[["safe_length"]].drop_vars("shape").assign(quantile=found).assign_coords(humidity=humidity))
+    sizes = {"thickness": [section["thickness_um"] * UM], "gap": [section["gap_um"] * UM]}
+    joined = xr.concat(parts, "humidity", coords="minimal", compat="override", join="exact").expand_dims(sizes)
+    joined = joined.sortby("share").assign(beams=next(iter(safe_lengths.values())).beams)
+    return joined.transpose("humidity", "thickness", "gap", ...)
+
+
+def _quantiles(lengths, stuck, samples):
+    """Lengths at `SCORES` on a curve of P(stuck), NaN beyond the first and last device on it [m]."""
+    shares = ndtr(SCORES)
+    inside = (shares * samples >= 0.5) & ((1 - shares) * samples >= 0.5) & (shares <= stuck[-1])
+    return np.where(inside, np.interp(shares, stuck, lengths), np.nan)
+
+
+def of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> View:
+    """View of a stopper: its section, dataset of stage stoppers and budgets."""
+    along = stopper.isel(axis=stopper.axis.values > 0) if stopper.axis.values[-1] > 0 else stopper
+    axis = _humidity(along.axis.values, float(stopper.worst_humidity), "design.worst_humidities", True)
+    view = _of_forces((axis,), along.safe_force_along, along.scored_along.values, section, stopper)
+    return replace(view, margins=_margins(budgets))
+
+
+def of_tilted(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopper: xr.Dataset) -> View:
+    """View of a stopper over its tilts: its section, datasets of stages tilted_stoppers and stoppers."""
+    tilted, key = tilted.sortby("humidity"), f"devices.{name}"
+    tilts = tuple(float(f"{from_si(float(tilt), 'deg'):.6g}") for tilt in tilted.tilt)
+    reason = f"it is computed at {', '.join(f'{tilt:g}' for tilt in tilts)}° alone; {key}.tilt_deg changes this"
+    tilt = Axis("tilt_deg", "tilt", "°", "linear", tilts, tilts[0], False, reason, "tilt_deg")
+    stuck = tilted.stuck.sel(bound="estimate").max("tilt")
+    worst = float(tilted.humidity[int(np.argmax(stuck.values))])
+    humidity = _humidity(tilted.humidity.values, worst, f"{key}.humidities", False)
+    scored = np.apply_along_axis(quantiles, -1, tilted.pull_off.transpose("tilt", "humidity", "sample").values)
+    safe = tilted.safe_force.sel(part="safe").transpose("tilt", "humidity", "share")
+    return replace(_of_forces((tilt, humidity), safe, scored, section, stopper), title="tilt")
+
+
+def _of_forces(axes, safe, scored, section, stopper):
+    """View of safe forces (axes, shares) and quantiles of forces (axes, scores) [N]."""
+    bounded = np.isfinite(safe.values).all(axis=tuple(range(len(axes))))
+    known = safe.isel(share=bounded if bounded.any() else [int(np.argmax(safe.share.values))]).sortby("share")
+    key, label, unit, per = "restoring_force_uN", "restoring force", "µN", UN
+    if key not in section:
+        key, label, unit, per = "stiffness_N_per_m", "stiffness of the spring", "N/m", section["gap_um"] * UM
+    numbers = known.values / per, scored / per
+    size = _size(key, label, unit, numbers, float(stopper.restoring_force) / per)
+    least = sentences.bounded_share(stopper)
+    share = _share(known.share.values, least if least in known.share.values else float(known.share[-1]))
+    grid = Grid(axes, share, size, *numbers, stopper.sizes["sample"], falls=True)
+    words = {"what": label, "safe": f"Sufficient {label}", "stick": f"Stoppers with this {label} that stick"}
+    return View("humidity", grid, (), words | {"build": "at least", "bound": "sufficient"})
+
+
+def _humidity(values, worst, key, between):
+    """Axis of relative humidities."""
+    values = tuple(map(float, values))
+    text = f"computed from {values[0]:g} to {values[-1]:g}" if between else f"computed at {_listed(values)} alone"
+    start = min(max(worst, values[0]), values[-1]) if between else worst
+    reason = f"it is {text}; {key} changes this"
+    return Axis("humidity", "relative humidity", "", "linear", values, start, bool(between), reason, "humidities")
+
+
+def _of_size(key, label, values, section, stated):
+    """Axis of thicknesses or gaps [µm]."""
+    values = tuple(float(f"{value:.9g}") for value in values)
+    several = len(values) > 1
+    text = f"computed from {values[0]:g} to {values[-1]:g} µm" if several else f"computed for {values[0]:g} µm alone"
+    start = min(max(float(section[key]), values[0]), values[-1])
+    return Axis(key, label, "µm", "log", values, start, several, f"it is {text}; {stated} changes this", key)
+
+
+def _share(values, start):
+    """Axis of the fractions that may stick."""
+    values = tuple(map(float, values))
+    reason = f"safe values are computed for p from {values[0]:g} to {values[-1]:g}; design.shares changes this"
+    return Axis(
+        "share", "fraction p that may stick", "", "score", values, float(start), len(values) > 1, reason, "shares"
+    )
+
+
+def _size(key, label, unit, computed, start):
+    """Axis of lengths or forces, around all computed ones and the first of a page."""
+    numbers = np.concatenate([np.ravel(part) for part in computed])
+    numbers = np.append(numbers[np.isfinite(numbers)], start)
+    low, high = (float(f"{value:.3g}") for value in (numbers.min() * (1 - _ROOM), numbers.max() * (1 + _ROOM)))
+    reason = f"the simulated devices end between {low:g} and {high:g} {unit}"
+    return Axis(key, label, unit, "linear", (low, high), float(f"{start:.3g}"), True, reason, key)
+
+
+def _listed(values):
+    """Humidities in words."""
+    return ", ".join(f"{value:g}" if value else "0 (dry air)" for value in values)
+
+
+def _margins(budgets):
+    """Humidity, relative uncertainty of the size, and the best input to measure, where known."""
+    rows = []
+    for (humidity, *_), dataset in sorted(budgets.items()):
+        budget = budget_of(dataset)
+        if np.isfinite(budget.total) and budget.total > 0:
+            rows.append((float(humidity), budget.total, ranked(budget, groups_of(dataset))[0][0]))
+    return rows

@@ -1,0 +1,423 @@
+// Controls and charts of the page of a device, over the grid of its computed states.
+//
+// Plain JavaScript and SVG: no dependency to embed, update or trust, and a few kilobytes on every page. The formulas are
+// those of report/devices/grid.py, which a test compares with them. Every text enters the page as text, never as HTML.
+(() => {
+"use strict";
+const content = JSON.parse(document.getElementById("explorer-data").textContent);
+const root = document.getElementById("explorer"), menu = document.getElementById("views");
+const address = () => new URLSearchParams(location.hash.slice(1));
+
+/** Controls, answers and charts of a view; returns a function that reads the state from the address. */
+function opened(number) {
+  const data = {...content, ...content.views[number]};
+  const grid = data.grid;
+  root.replaceChildren();
+  const controls = [...grid.axes, grid.size, grid.share];
+  const MISSING = "\u2013", Z95 = 1.959963984540054, DIGITS = 4, STEPS = 400, POINTS = 120;
+
+  // Formulas
+
+  /** Normal probability, by the series of Marsaglia (2004). */
+  function probability(x) {
+    if (Math.abs(x) > 8) return x > 0 ? 1 : 0;
+    if (x < -3) { // a continued fraction has no cancellation in the lower tail
+      let rest = -x;
+      for (let k = 60; k > 0; k--) rest = -x + k / rest;
+      return Math.exp(-x * x / 2) / Math.sqrt(2 * Math.PI) / rest;
+    }
+    let sum = x, term = x;
+    for (let k = 3; Math.abs(term) > 1e-18; k += 2) sum += term *= x * x / k;
+    return 0.5 + sum * Math.exp(-x * x / 2) / Math.sqrt(2 * Math.PI);
+  }
+
+  /** Normal score of a probability, by bisection. */
+  function score(p) {
+    let [low, high] = [-8, 8];
+    for (let k = 0; k < 70; k++) {
+      const middle = (low + high) / 2;
+      if (probability(middle) < p) low = middle; else high = middle;
+    }
+    return (low + high) / 2;
+  }
+
+  const PLACES = {linear: value => value, log: Math.log, score};
+  const VALUES = {linear: place => place, log: Math.exp, score: probability};
+
+  /** Slope of a monotone cubic at its k-th place. */
+  function slope(k, widths, secants) {
+    const last = widths.length;
+    if (last === 1) return secants[0];
+    if (k === 0 || k === last) {
+      const [i, j] = k === 0 ? [0, 1] : [last - 1, last - 2];
+      const [w0, w1, d0, d1] = [widths[i], widths[j], secants[i], secants[j]];
+      const found = ((2 * w0 + w1) * d0 - w0 * d1) / (w0 + w1);
+      if (d0 * d1 < 0 && Math.abs(found) > Math.abs(3 * d0)) return 3 * d0;
+      return found * d0 <= 0 ? 0 : found;
+    }
+    const [d0, d1] = [secants[k - 1], secants[k]];
+    if (d0 * d1 <= 0) return 0;
+    const [w0, w1] = [widths[k] * 2 + widths[k - 1], widths[k] + 2 * widths[k - 1]];
+    return (w0 + w1) / (w0 / d0 + w1 / d1);
+  }
+
+  /** Monotone cubic through numbers at increasing places. */
+  function monotone(places, values, at) {
+    if (places.length === 1) return values[0];
+    const widths = places.slice(1).map((place, k) => place - places[k]);
+    const secants = widths.map((width, k) => (values[k + 1] - values[k]) / width);
+    let k = 0;
+    while (k < widths.length - 1 && places[k + 1] <= at) k++;
+    const [left, right] = [k, k + 1].map(j => slope(j, widths, secants) * widths[k]);
+    const t = (at - places[k]) / widths[k], s = 1 - t;
+    const ends = values[k] * (1 + 2 * t) * s * s + values[k + 1] * t * t * (3 - 2 * t);
+    return ends + left * t * s * s - right * t * t * s;
+  }
+
+  const placesOf = axis => axis.values.map(PLACES[axis.scale]);
+  const known = new Map(controls.map(axis => [axis.key, placesOf(axis)]));
+
+  /** Logarithms of nested numbers at a state, over their last dimension. */
+  function at(values, state, axes = grid.axes) {
+    if (!axes.length) return values.map(value => value === null ? NaN : Math.log(value));
+    const [axis, ...others] = axes;
+    if (!axis.between) return at(values[axis.values.indexOf(state[axis.key])], state, others);
+    const parts = values.map(part => at(part, state, others)), place = PLACES[axis.scale](state[axis.key]);
+    return parts[0].map((_, k) => monotone(known.get(axis.key), parts.map(part => part[k]), place));
+  }
+
+  function safeSize(state) {
+    return Math.exp(monotone(known.get("share"), at(grid.safe, state), score(state.share)));
+  }
+
+  function levelsOf(state) {
+    const found = at(grid.quantiles, state);
+    const keep = found.map(Number.isFinite);
+    return [found, grid.scores].map(part => part.filter((_, k) => keep[k]));
+  }
+
+  function line(x, y, value) {
+    if (value <= x[0]) return y[0];
+    for (let k = 1; k < x.length; k++)
+      if (value < x[k]) return y[k - 1] + (y[k] - y[k - 1]) * (value - x[k - 1]) / (x[k] - x[k - 1]);
+    return y[y.length - 1];
+  }
+
+  function band(share) {
+    const part = Z95 * Z95 / grid.samples;
+    const half = Z95 * Math.sqrt(share * (1 - share) / grid.samples + part / (4 * grid.samples));
+    return [-1, 1].map(sign => (share + part / 2 + sign * half) / (1 + part));
+  }
+
+  function stuckAt(size, [levels, scores]) {
+    if (!levels.length) return {share: NaN, low: NaN, high: NaN, beyond: 0};
+    const place = Math.log(size), sign = grid.falls ? -1 : 1;
+    const share = probability(sign * line(levels, scores, place));
+    const [low, high] = band(share);
+    return {share, low, high, beyond: sign * ((place > levels[levels.length - 1]) - (place < levels[0])) || 0};
+  }
+
+  function estimate(state) {
+    const [levels, scores] = levelsOf(state), z = score(state.share) * (grid.falls ? -1 : 1);
+    if (levels.length < 2 || z < scores[0] || z > scores[scores.length - 1]) return [NaN, NaN];
+    let k = 0;
+    while (k < scores.length - 2 && scores[k + 1] <= z) k++;
+    const rise = (levels[k + 1] - levels[k]) / (scores[k + 1] - scores[k]), p = state.share;
+    const size = Math.exp(levels[k] + rise * (z - scores[k]));
+    return [size, size * rise * Math.sqrt(p * (1 - p) / grid.samples) / (Math.exp(-z * z / 2) / Math.sqrt(2 * Math.PI))];
+  }
+
+  /** The larger uncertainty of the two computed humidities around one; nothing outside of them. */
+  function margin(humidity) {
+    const rows = data.margins, below = rows.filter(row => row[0] <= humidity), above = rows.filter(row => row[0] >= humidity);
+    if (!below.length || !above.length) return null;
+    const nearest = [...below.filter(row => row[0] === below[below.length - 1][0]), ...above.filter(row => row[0] === above[0][0])];
+    return nearest.reduce((most, row) => row[1] > most[1] ? row : most);
+  }
+
+  // Texts
+
+  function text(value, digits = 3) {
+    if (!Number.isFinite(value)) return MISSING;
+    const rounded = Number(value.toPrecision(digits)), size = Math.abs(rounded);
+    return size >= 1e-4 && size < 1e6 || !size ? String(rounded) : value.toExponential(digits - 1);
+  }
+  const percent = share => text(100 * share);
+  const oneIn = share => `1 in ${text(1 / share)}`;
+
+  function stuckText({share, low, high, beyond}) {
+    if (Number.isNaN(share)) return MISSING;
+    if (beyond) return `${beyond < 0 ? "less" : "more"} than ${percent(share)} %`;
+    return `${percent(share)} % (${percent(low)} to ${percent(high)} %)`;
+  }
+
+  const estimateText = (size, error) => Number.isFinite(size)
+    ? `${text(size, DIGITS)} ± ${text(error, 2)} ${grid.size.unit}`
+    : `not known from ${grid.samples} devices`;
+
+  const valueText = (axis, value) => axis.key === "humidity" && value === 0 ? "dry air" : `${text(value, DIGITS)}${axis.unit && ` ${axis.unit}`}`;
+
+  // State
+
+  const clamp = (value, low, high) => Math.min(Math.max(value, low), high);
+
+  /** Nearest value of an axis with an answer. */
+  function nearest(axis, value) {
+    if (axis.between) return clamp(Number(value.toPrecision(DIGITS)), axis.values[0], axis.values[axis.values.length - 1]);
+    return axis.values.reduce((best, one) => Math.abs(one - value) < Math.abs(best - value) ? one : best);
+  }
+
+  function fromAddress() {
+    const asked = address(), found = {}, refused = {};
+    for (const axis of controls) {
+      const value = parseFloat(asked.get(axis.key) ?? "");
+      found[axis.key] = Number.isFinite(value) ? nearest(axis, value) : axis.start;
+      refused[axis.key] = Number.isFinite(value) && found[axis.key] !== Number(value.toPrecision(DIGITS)) ? value : null;
+    }
+    return [found, refused];
+  }
+
+  function toAddress() {
+    const words = [`view=${number}`, ...controls.map(axis => `${axis.key}=${text(state[axis.key], DIGITS)}`)];
+    try { history.replaceState(null, "", `#${words.join("&")}`); } catch { /* a frame of a report has no address */ }
+  }
+
+  // Page
+
+  function make(parent, name, attributes = {}, content) {
+    const svg = ["svg", "path", "line", "circle", "text", "g"].includes(name);
+    const made = svg ? document.createElementNS("http://www.w3.org/2000/svg", name) : document.createElement(name);
+    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+    if (content !== undefined) made.textContent = content;
+    parent.append(made);
+    return made;
+  }
+
+  const rows = new Map();
+
+  function control(parent, axis) {
+    const row = make(parent, "div", {class: "control"}), id = `control-${axis.key}`, last = axis.values.length - 1;
+    make(row, "label", {for: id}, axis.label);
+    const range = make(row, "input", {type: "range", id, min: 0, max: axis.between ? STEPS : last, step: 1});
+    const number = make(row, "input", {type: "number", step: "any", "aria-label": `${axis.label} as a number`});
+    make(row, "span", {class: "unit"}, axis.unit);
+    const note = make(row, "p", {class: "note", role: "status"});
+    range.disabled = number.disabled = axis.values.length === 1;
+    if (range.disabled) note.textContent = `Fixed: ${axis.reason}.`;
+    const [low, high] = [known.get(axis.key)[0], known.get(axis.key)[last]];
+    range.addEventListener("input", () => {
+      const step = Number(range.value), place = low + (high - low) * step / STEPS;
+      const value = step === STEPS ? axis.values[last] : step ? VALUES[axis.scale](place) : axis.values[0];
+      change(axis, axis.between ? value : axis.values[step]);
+    });
+    number.addEventListener("change", () => change(axis, parseFloat(number.value)));
+    rows.set(axis.key, {range, number, note, low, high});
+  }
+
+  function change(axis, value) {
+    const found = nearest(axis, Number.isFinite(value) ? value : state[axis.key]);
+    const refused = Number.isFinite(value) && axis.values.length > 1 && found !== nearest({between: true, values: [value, value]}, value);
+    state[axis.key] = found;
+    refresh({[axis.key]: refused && found !== Number(value.toPrecision(DIGITS)) ? value : null});
+  }
+
+  function refresh(refused) {
+    for (const axis of controls) {
+      const {range, number, note, low, high} = rows.get(axis.key), value = state[axis.key];
+      range.value = axis.between ? STEPS * (PLACES[axis.scale](value) - low) / ((high - low) || 1) : axis.values.indexOf(value);
+      range.setAttribute("aria-valuetext", valueText(axis, value));
+      number.value = text(value, DIGITS);
+      if (!range.disabled) note.textContent = refused[axis.key] == null ? "" : `${text(refused[axis.key], DIGITS)} is not shown: ${axis.reason}.`;
+    }
+    answer();
+    for (const draw of charts) draw();
+    toAddress();
+  }
+
+  let shown;
+
+  function answer() {
+    const unit = grid.size.unit, words = data.words, levels = levelsOf(state);
+    const safe = safeSize(state), [guess, error] = estimate(state), less = margin(state.humidity);
+    const build = less && safe * Math.exp((grid.falls ? 2 : -2) * less[1]);
+    const texts = {
+      stuck: `${words.stick}: ${stuckText(stuckAt(state[grid.size.key], levels))}`,
+      safe: `${words.safe} for ${oneIn(state.share)}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : `not known from ${grid.samples} devices`}`,
+      estimate: `Estimate: ${estimateText(guess, error)}`,
+      budget: less && Number.isFinite(build)
+        ? `Measurements leave ${text(100 * less[1], 2)} %, most of it ${less[2]}: build ${words.build} ${text(build, DIGITS)} ${unit}`
+        : `Margin for the measurements: not computed ${data.margins.length ? "at this humidity" : "without stated uncertainties"}`,
+    };
+    for (const [name, content] of Object.entries(texts)) shown[name].textContent = content;
+  }
+
+  // Charts
+
+  const [WIDTH, HEIGHT, LEFT, BOTTOM, TOP, RIGHT] = [520, 320, 58, 46, 12, 12];
+
+  function ticks(low, high) {
+    const rough = (high - low) / 6, power = 10 ** Math.floor(Math.log10(rough));
+    const step = [1, 2, 2.5, 5, 10].map(k => k * power).find(one => one >= rough), found = [];
+    for (let k = Math.ceil(low / step - 1e-9); k * step <= high * (1 + 1e-9); k++) found.push(k * step);
+    return found;
+  }
+
+  function axesOf(parent, title, [x0, x1], [y0, y1], labels) {
+    const figure = make(parent, "figure"), svg = make(figure, "svg", {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": title});
+    const x = value => LEFT + (WIDTH - LEFT - RIGHT) * (value - x0) / (x1 - x0);
+    const y = value => HEIGHT - BOTTOM - (HEIGHT - BOTTOM - TOP) * (value - y0) / (y1 - y0);
+    for (const tick of ticks(x0, x1)) make(svg, "text", {x: x(tick), y: HEIGHT - BOTTOM + 18, "text-anchor": "middle"}, text(tick));
+    for (const tick of ticks(y0, y1)) {
+      make(svg, "line", {x1: LEFT, x2: WIDTH - RIGHT, y1: y(tick), y2: y(tick), class: "rule"});
+      make(svg, "text", {x: LEFT - 8, y: y(tick) + 5, "text-anchor": "end"}, text(tick));
+    }
+    make(svg, "text", {x: (LEFT + WIDTH - RIGHT) / 2, y: HEIGHT - 6, "text-anchor": "middle"}, labels[0]);
+    make(svg, "text", {transform: `translate(14 ${(TOP + HEIGHT - BOTTOM) / 2}) rotate(-90)`, "text-anchor": "middle"}, labels[1]);
+    return {svg, x, y, caption: make(figure, "figcaption", {class: "hover"})};
+  }
+
+  const path = points => points.map(([x, y], k) => `${k ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
+  const spread = (low, high) => Array.from({length: POINTS + 1}, (_, k) => low + (high - low) * k / POINTS);
+
+  /** Show the value under the pointer, or that of the state. */
+  function hover({svg, caption}, [x0, x1], describe, here) {
+    const show = value => { caption.textContent = describe(value); };
+    svg.addEventListener("pointermove", event => {
+      const box = svg.getBoundingClientRect(), place = (event.clientX - box.left) / box.width * WIDTH;
+      show(clamp(x0 + (x1 - x0) * (place - LEFT) / (WIDTH - LEFT - RIGHT), x0, x1));
+    });
+    svg.addEventListener("pointerleave", () => show(here()));
+    return () => show(here());
+  }
+
+  /** Range of a chart around the known levels, the bound and the present size. */
+  function rangeOf(levels, bound) {
+    const sizes = [state[grid.size.key], bound, ...levels.map(Math.exp)].filter(Number.isFinite);
+    return [0.95 * Math.min(...sizes), 1.05 * Math.max(...sizes)];
+  }
+
+  function stuckChart(parent) {
+    const {size} = grid, unit = size.unit, place = make(parent, "div");
+    return () => {
+      const levels = levelsOf(state), bound = safeSize(state), ends = rangeOf(levels[0], bound);
+      place.replaceChildren();
+      const chart = axesOf(place, `P(stuck) against ${size.label}`, ends, [0, 100], [`${size.label} [${unit}]`, "P(stuck) [%]"]);
+      const points = spread(...ends).map(value => [value, stuckAt(value, levels)]).filter(([, one]) => !one.beyond && Number.isFinite(one.share));
+      const along = name => points.map(([value, one]) => [chart.x(value), chart.y(100 * one[name])]);
+      make(chart.svg, "path", {class: "band", d: path([...along("low"), ...along("high").reverse()])});
+      make(chart.svg, "path", {class: "curve", d: path(along("share"))});
+      if (Number.isFinite(bound)) make(chart.svg, "line", {class: "safe", x1: chart.x(bound), x2: chart.x(bound), y1: TOP, y2: HEIGHT - BOTTOM});
+      const here = stuckAt(state[size.key], levels).share;
+      if (Number.isFinite(here)) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[size.key]), cy: chart.y(100 * here)});
+      const dashed = Number.isFinite(bound) ? ` Dashed: ${data.words.bound} for ${oneIn(state.share)}.` : "";
+      hover(chart, ends, value => `At ${text(value)} ${unit}: ${stuckText(stuckAt(value, levels))}.${dashed}`, () => state[size.key])();
+    };
+  }
+
+  const allSafe = grid.safe.flat(Infinity).filter(value => value !== null);
+
+  function safeChart(parent, axis) {
+    const ends = [axis.values[0], axis.values[axis.values.length - 1]], unit = grid.size.unit;
+    const top = 1.05 * Math.max(...allSafe);
+    const chart = axesOf(parent, `${data.words.safe} against ${axis.label}`, ends, [0, top], [`${axis.label}${axis.unit && ` [${axis.unit}]`}`, `${data.words.safe} [${unit}]`]);
+    const curve = make(chart.svg, "path", {class: "curve"}), marks = axis.values.map(() => make(chart.svg, "circle", {r: 3, class: "mark"}));
+    const dot = make(chart.svg, "circle", {r: 6, class: "here"});
+    const safe = value => safeSize({...state, [axis.key]: value});
+    const describe = value => {
+      const [guess, error] = estimate({...state, [axis.key]: value});
+      return `At ${valueText(axis, value)}: ${data.words.bound} ${text(safe(value), DIGITS)} ${unit}, estimate ${estimateText(guess, error)}. Small dots: computed.`;
+    };
+    const caption = hover(chart, ends, value => describe(nearest(axis, value)), () => state[axis.key]);
+    return () => {
+      if (axis.between) curve.setAttribute("d", path(spread(...ends).map(value => [chart.x(value), chart.y(safe(value))])));
+      axis.values.forEach((value, k) => {
+        marks[k].setAttribute("cx", chart.x(value));
+        marks[k].setAttribute("cy", chart.y(safe(value)));
+      });
+      dot.setAttribute("cx", chart.x(state[axis.key]));
+      dot.setAttribute("cy", chart.y(safe(state[axis.key])));
+      caption();
+    };
+  }
+
+  // Study
+
+  /** YAML of nested mappings; everything else as JSON, which YAML contains. */
+  function yaml(value, indent = "") {
+    return Object.entries(value).map(([key, part]) => {
+      const isMapping = part !== null && typeof part === "object" && !Array.isArray(part) && Object.keys(part).length;
+      return `${indent}${JSON.stringify(key)}:${isMapping ? `\n${yaml(part, `${indent}  `)}` : ` ${leaf(part)}\n`}`;
+    }).join("");
+  }
+
+  /** Numbers such as 1e-7 need a point in YAML. */
+  function leaf(value) {
+    if (Array.isArray(value)) return `[${value.map(leaf).join(", ")}]`;
+    if (typeof value === "number") return String(value).replace(/^(-?\d+)e/, "$1.0e");
+    if (value !== null && typeof value === "object") return `{${Object.entries(value).map(([key, part]) => `${JSON.stringify(key)}: ${leaf(part)}`).join(", ")}}`;
+    return JSON.stringify(value);
+  }
+
+  function study() {
+    const section = {...data.section}, shares = data.study.design?.shares ?? grid.share.values;
+    for (const axis of controls) {
+      const {setting, key} = axis, moved = state[key] !== axis.start || ["length_um", "humidity", "tilt_deg"].includes(key);
+      if (!setting || setting === "shares" || !moved) continue;
+      section[setting] = ["humidities", "tilt_deg"].includes(setting) ? [state[key]] : state[key];
+    }
+    const all = [...new Set([...shares, state.share])].sort((a, b) => b - a);
+    const design = grid.falls ? {} : {design: {...data.study.design, shares: all}};
+    return yaml({...data.study, ...design, devices: {[data.name]: section}});
+  }
+
+  function copied(place, status) {
+    place.hidden = false;
+    place.value = study();
+    place.select();
+    try { document.execCommand("copy"); } catch { /* the text is selected */ }
+    navigator.clipboard?.writeText(place.value).catch(() => {});
+    status.textContent = "Copied. Save it as mine.yaml and run: stiction run mine.yaml";
+  }
+
+  // Start
+
+  const panel = make(root, "div", {class: "controls"});
+  for (const axis of controls) control(panel, axis);
+  const answers = make(panel, "div", {class: "answers", "aria-live": "polite"});
+  shown = Object.fromEntries(["stuck", "safe", "estimate", "budget"].map(name => [name, make(answers, "p", {"data-answer": name})]));
+  const buttons = make(panel, "p"), copy = make(buttons, "button", {type: "button"}, "Copy as YAML");
+  const reset = make(buttons, "button", {type: "button"}, "Back to this device");
+  const status = make(panel, "p", {class: "note", role: "status"});
+  const place = make(panel, "textarea", {readonly: "", rows: 8, "aria-label": "study as YAML", hidden: ""});
+  copy.addEventListener("click", () => copied(place, status));
+  const figures = make(root, "div", {class: "charts"}), moving = grid.axes.filter(axis => axis.values.length > 1 && allSafe.length);
+  const charts = [stuckChart(figures), ...moving.slice(0, 1).map(axis => safeChart(figures, axis))];
+  let state, refused;
+  const start = () => { [state, refused] = fromAddress(); refresh(refused); };
+  reset.addEventListener("click", () => { state = Object.fromEntries(controls.map(axis => [axis.key, axis.start])); refresh({}); });
+  return start;
+}
+
+// Views
+
+let current, start;
+
+function view(number) {
+  if (number !== current) start = opened(current = number);
+  menu.value = String(number);
+  start();
+}
+
+function follow() {
+  const asked = Number(address().get("view"));
+  view(asked in content.views ? asked : 0);
+}
+
+content.views.forEach(({title}, number) => { menu.append(new Option(title, number)); });
+menu.closest("p").hidden = content.views.length === 1;
+menu.addEventListener("change", () => view(Number(menu.value)));
+addEventListener("hashchange", () => { if (location.hash.includes("=")) follow(); });
+addEventListener("beforeprint", () => document.querySelectorAll("details").forEach(part => { part.open = true; }));
+document.getElementById("explore").hidden = false;
+follow();
+})();
