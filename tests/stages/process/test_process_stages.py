@@ -70,6 +70,21 @@ def test_a_setting_alone_is_todays_roughness_at_its_value_bit_for_bit():
     )  # ln rms linear
 
 
+@pytest.mark.slow
+def test_a_cantilever_at_a_setting_is_that_of_todays_roughness_with_its_tip():
+    beam = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 10, "width_um": 4, "humidities": [0.88]}
+    beam |= {"requirement": {"share": SHARE, "length_um": 300}, "process": "etch"}
+    beam |= {"roughness": {"surface": "B2", "rms_nm": [2, 8]}}
+    small = {"contact": {"samples": 100}, "chaos": {"order": 1}, "design": {"beams": 200, "shares": [SHARE]}}
+    results = Results.of(config(RMS, small, Lever=beam))
+    job = results.graph.job("process/points/Lever_0")
+    settings = job.stage.converted(job.settings | {"samples": 0})  # without slopes
+    ours = job.stage.result(results.inputs(job), job.at, settings)
+    today = results["devices/roughness/points/Lever_0"]
+    for name in ("safe", "estimate", "error", "bound", "stuck"):
+        np.testing.assert_array_equal(ours[name], today[name])
+
+
 def test_a_setting_by_numbers_is_the_surface_with_these_numbers():
     corner = {"corner_rad_per_um": 15, "hurst": 0.9}
     first, last = (setting(value, **numbers, **corner) for value, numbers in ((30, _numbers(0)), (90, _numbers(2))))

@@ -13,8 +13,6 @@ import xarray as xr
 
 from stiction.analysis.process_law import QUANTITIES, grid, jacobian
 from stiction.analysis.shifts import Description, bracketed
-from stiction.config.merging import merged
-from stiction.config.scans import is_measured
 from stiction.config.surfaces import process
 from stiction.devices.roughness import LARGEST, margins
 from stiction.devices.tail import FEWEST, TAIL
@@ -167,7 +165,7 @@ def _settings(plan, at):
     own = curves.settings_of(plan, at)
     settings = {"pair": section["pair"], "value": values[number]}
     settings["beam" if plan.devices.kind(at.device).is_beam else "stopper"] = own
-    rough = _at_roughest(plan, at.device)
+    rough = _as_rough(plan, at.device, values[number])
     for humidity in section["humidities"]:
         air = plan.air_of_devices.contact(section["pair"], humidity)
         tips = {"tips": tip_settings(rough, air, at.device)} if plan.devices.kind(at.device).has_tip else {}
@@ -177,13 +175,18 @@ def _settings(plan, at):
     )
 
 
-def _at_roughest(plan, device):
-    """Plan with the largest rms of a setting, by which the tips of beams are as long at all values."""
+def _as_rough(plan, device, value):
+    """Plan with the rms of the surfaces at a value of the variable, on which the length of tips depends.
+
+    It is preliminary: on straight lines through the logarithms at the settings.
+    """
     for name in process.of_device(plan.config, device):
-        surface = plan.config["process"][name]["surface"]
-        if not is_measured(plan.config["surfaces"][surface]):
-            rms = max(plan.devices.rms(one) for one in in_order(plan, name))
-            plan = replace(plan, config=merged(plan.config, {"surfaces": {surface: {"rms_nm": rms}}}))
+        section, surfaces = plan.config["process"][name], plan.config["surfaces"]
+        values = sorted(setting["value"] for setting in section["settings"])
+        known = np.log([plan.devices.rms(one) for one in in_order(plan, name)])
+        entry = {key: kept for key, kept in surfaces[section["surface"]].items() if key != "scans"}
+        entry["rms_nm"] = float(np.exp(np.interp(value, values, known)).round(9))
+        plan = replace(plan, config=plan.config | {"surfaces": surfaces | {section["surface"]: entry}})
     return plan
 
 
