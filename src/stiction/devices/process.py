@@ -51,6 +51,7 @@ class Recommendation:
     error: float  #: standard error of the best setting
     interval: tuple[float, float]  #: its 95 % interval
     next: float  #: setting whose measurement shrinks an error most, NaN if none does
+    again: bool  #: whether all surfaces are measured there already
     subject: str  #: what errs less then: the ``best`` setting, or else the length of the ``range`` that suffices
     before: float  #: standard error of the subject
     after: float  #: expected standard error after that measurement
@@ -93,6 +94,7 @@ def recommended(
         error=float(best.std()),
         interval=tuple(map(float, np.quantile(best, INTERVAL))),
         next=following,
+        again=all(following in law.settings for law in laws),
         subject=subject,
         before=float(wanted.std()),
         after=after,
@@ -104,7 +106,7 @@ def unknown(values: np.ndarray) -> Recommendation:
     nothing, none = np.full(len(values), np.nan), float("nan")
     numbers = {"best": none, "error": none, "interval": (none, none), "next": none, "before": none, "after": none}
     arrays = {"settings": values, "margin": nothing, "band": np.array([nothing, nothing]), "safe": nothing}
-    return Recommendation(**arrays, **numbers, sufficient=[], crossings=[], subject="best")
+    return Recommendation(**arrays, **numbers, sufficient=[], crossings=[], again=False, subject="best")
 
 
 def law_error(curve: Curve, laws: Sequence[Law]) -> np.ndarray:

@@ -1,5 +1,6 @@
 """Processes through all stages: today's roughness at a setting, brute force at the best one, pages and Python."""
 
+import dataclasses
 import pickle
 
 import numpy as np
@@ -8,6 +9,7 @@ import xarray as xr
 from legends import covering
 
 import stiction
+from stiction.devices.process import unknown
 from stiction.plan.graph import Results
 from stiction.report.devices import pages
 from stiction.report.process import tables
@@ -141,7 +143,7 @@ def test_what_serves_all_devices_serves_each_and_has_the_smallest_margin(etched)
 def test_answers_name_the_settings_the_best_and_the_next(etched):
     first, *more = etched.answers("Bump")
     assert first.startswith(("Settings of the etch time from ", "No setting of the etch time from 30 to 120 s"))
-    assert any(one.startswith("Measure ") and " s next" in one for one in more)
+    assert any(one.startswith("Measure ") and (" s next: " in one or " s again: " in one) for one in more)
     (together, *_) = etched.answers(recommended.ALL)
     assert together.startswith("All devices together: ")
     with pytest.raises(ValueError, match="device Other has no process over etch_time_s: Bump, Small"):
@@ -211,6 +213,34 @@ def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_wit
         "Settings of the etch time that suffice are not known: too few could be computed."
     ]
     assert "Not computed where the etch time is 30 s, 60 s, 90 s: too smooth." in tables.notes(curve, [known])
+
+
+#: Best setting, end that it is in every draw, and the other end.
+ENDS = [(120.0, "above", 30.0), (30.0, "below", 120.0)]
+
+
+def _known(best, sufficient, following=np.nan, again=False):
+    """Recommendation with a best setting that is certain."""
+    values = np.linspace(30, 120, 7)
+    found = dataclasses.replace(unknown(values), best=best, error=0.0, interval=(best, best), sufficient=sufficient)
+    found = dataclasses.replace(found, next=following, again=again, before=2.0, after=1.0, subject="range")
+    layout = recommended.layout(found).assign(share=SHARE).expand_dims(who=["Bump"])
+    return layout.assign_attrs(variable="etch_time_s")
+
+
+@pytest.mark.parametrize(("best", "side", "other"), ENDS)
+def test_where_no_setting_suffices_and_an_end_is_the_best_settings_beyond_it_are_advised(best, side, other):
+    beyond = f"The best setting is the end of the measured range: measure settings {side} {best:g} s."
+    assert tables.answers(_known(best, []), "Bump")[1:] == [beyond]
+    enough = tables.answers(_known(best, [tuple(sorted((best, best + (other - best) / 9)))]), "Bump")
+    inside = tables.answers(_known(75.0, []), "Bump")
+    assert beyond not in enough + inside
+
+
+@pytest.mark.parametrize(("again", "when"), [(True, "again"), (False, "next")])
+def test_a_setting_that_is_measured_already_is_advised_again(again, when):
+    *_, last = tables.answers(_known(75.0, [(60.0, 90.0)], 60.0, again), "Bump")
+    assert last.startswith(f"Measure 60 s {when}: ")
 
 
 @pytest.mark.slow

@@ -70,6 +70,9 @@ def _best(one, unit):
     """Interval of the best setting, and what lies at its ends."""
     low, high = map(float, one.best_interval)
     first, last = map(float, one.value.values[[0, -1]])
+    if low == high and low in (first, last) and not _pairs(*one.sufficient.values.T):
+        side = "below" if low == first else "above"
+        return [f"The best setting is the end of the measured range: measure settings {side} {low:g} {unit}."]
     said = [f"The best setting lies between {low:.3g} and {high:.3g} {unit} (95 %)."] if low < high else []
     ends = [f"{end:g} {unit}" for end, near in ((first, low == first), (last, high == last)) if near]
     if ends:
@@ -87,7 +90,8 @@ def _next(one, unit):
         str(one.next_subject.values)
     ]
     errors = f"from {float(one.next_before):.2g} to {float(one.next_after):.2g} {unit}"
-    return [f"Measure {float(one.next):.3g} {unit} next: this is expected to shrink the error of {subject} {errors}."]
+    when = "again" if bool(one.next_again) else "next"
+    return [f"Measure {float(one.next):.3g} {unit} {when}: this is expected to shrink the error of {subject} {errors}."]
 
 
 def notes(curve: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:

@@ -79,6 +79,7 @@ def layout(found: Recommendation) -> xr.Dataset:
             "best_error": ((), found.error),
             "best_interval": ("end", list(found.interval)),
             "next": ((), found.next),
+            "next_again": ((), found.again),
             "next_subject": ((), found.subject),
             "next_before": ((), found.before),
             "next_after": ((), found.after),
