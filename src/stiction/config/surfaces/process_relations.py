@@ -8,14 +8,21 @@ from pathlib import Path
 from stiction.config.keys import Keys, Relations
 from stiction.config.meetings import surfaces_of
 from stiction.config.messages import duplicates
-from stiction.config.relations import references_are_defined, undefined
+from stiction.config.relations import undefined
 from stiction.config.scans import digest
 from stiction.config.surfaces.process import NUMBERS, UNITS, all_names, unit_of
 
 #: Relations between the keys of processes.
 relation = Relations()
 
-relation(lambda config: references_are_defined(config, "process", "surface", "surfaces"))
+
+@relation
+def surfaces_of_processes_are_defined(config):
+    """Require a surface that exists and is none at a setting."""
+    made = all_names(config.config)
+    defined = [name for name in config.names("surfaces") if name not in made]
+    for name, surface in config.entries("process", "surface"):
+        yield f"process.{name}.surface", undefined(surface, defined)
 
 
 @relation
