@@ -2,6 +2,7 @@
 
 import dataclasses
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -219,9 +220,9 @@ def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_wit
 ENDS = [(120.0, "above", 30.0), (30.0, "below", 120.0)]
 
 
-def _known(best, sufficient, following=np.nan, again=False):
+def _known(best, sufficient, following=np.nan, again=False, ends=(30, 120)):
     """Recommendation with a best setting that is certain."""
-    values = np.linspace(30, 120, 7)
+    values = np.linspace(*ends, 7)
     found = dataclasses.replace(unknown(values), best=best, error=0.0, interval=(best, best), sufficient=sufficient)
     found = dataclasses.replace(found, next=following, again=again, before=2.0, after=1.0, subject="range")
     layout = recommended.layout(found).assign(share=SHARE).expand_dims(who=["Bump"])
@@ -241,6 +242,16 @@ def test_where_no_setting_suffices_and_an_end_is_the_best_settings_beyond_it_are
 def test_a_setting_that_is_measured_already_is_advised_again(again, when):
     *_, last = tables.answers(_known(75.0, [(60.0, 90.0)], 60.0, again), "Bump")
     assert last.startswith(f"Measure 60 s {when}: ")
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.03, 0.12), (30.0, 120.0), (1000.0, 1050.0), (120_000.0, 300_000.0)])
+def test_settings_are_shown_as_closely_as_their_range_is_wide(low, high):
+    exact = [low + part * (high - low) for part in (0.3147, 0.6853, 0.5219, 0.8141)]
+    said = " ".join(tables.answers(_known(exact[2], [tuple(exact[:2])], exact[3], ends=(low, high)), "Bump"))
+    found = re.search(r"from (\S+) to (\S+) s leave .*, best (\S+) s.*Measure (\S+) s", said).groups()
+    np.testing.assert_allclose(list(map(float, found)), exact, rtol=0, atol=0.005 * (high - low))
+    assert all(len(one.replace(".", "").lstrip("0")) <= 6 for one in found)
+    assert "e" not in "".join(found)
 
 
 @pytest.mark.slow

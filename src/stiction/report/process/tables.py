@@ -1,5 +1,6 @@
 """Table of processes: devices over a process variable, and sentences on the settings that suffice."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -20,7 +21,7 @@ def answers(recommended: xr.Dataset, who: str) -> list[str]:
     if np.isnan(float(one.best)):
         return [_sufficient(one, who, unit)]
     said = [_sufficient(one, who, unit)]
-    if places := [_at(*pair, unit) for pair in _pairs(one.crossing, one.crossing_error)]:
+    if places := [_at(one, *pair) for pair in _pairs(one.crossing, one.crossing_error)]:
         said.append(f"The estimate meets the requirement exactly at {' and at '.join(places)}.")
     return said + _best(one, unit) + _next(one, unit)
 
@@ -41,8 +42,8 @@ def _sufficient(one, who, unit):
     if np.isnan(float(one.best)):
         return f"{_subject(who, 'Settings')} of the {words} that suffice are not known: too few could be computed."
     share = "the allowed share of every device" if who == ALL else one_in(float(one.share))
-    best = _at(float(one.best), float(one.best_error), unit)
-    ranges = [f"{low:.3g} to {high:.3g} {unit}" for low, high in _pairs(*one.sufficient.values.T)]
+    best = _at(one, float(one.best), float(one.best_error))
+    ranges = [f"{_shown(one, low)} to {_shown(one, high)} {unit}" for low, high in _pairs(*one.sufficient.values.T)]
     if not ranges:
         settings = f"{_subject(who, 'No setting')} of the {words} from {value[0]:g} to {value[-1]:g} {unit}"
         return f"{settings} is sure to leave at most {share} stuck; the best is {best}."
@@ -56,9 +57,15 @@ def _subject(who, begins):
     return f"All devices together: {begins[:1].lower()}{begins[1:]}" if who == ALL else begins
 
 
-def _at(value, error, unit):
+def _at(one, value, error):
     """Setting with its error, if it has one."""
-    return f"{with_error(value, error)} {unit}" if error > 0 else f"{value:.3g} {unit}"
+    return f"{with_error(value, error) if error > 0 else _shown(one, value)} {unit_of(one)}"
+
+
+def _shown(dataset, value):
+    """Setting to a hundredth of the range of all, or finer by less than a digit."""
+    decimals = max(0, -math.floor(math.log10(np.ptp(dataset.value.values) / 100)))
+    return f"{round(float(value), decimals):.10g}"
 
 
 def _pairs(first, second):
@@ -73,7 +80,11 @@ def _best(one, unit):
     if low == high and low in (first, last) and not _pairs(*one.sufficient.values.T):
         side = "below" if low == first else "above"
         return [f"The best setting is the end of the measured range: measure settings {side} {low:g} {unit}."]
-    said = [f"The best setting lies between {low:.3g} and {high:.3g} {unit} (95 %)."] if low < high else []
+    said = (
+        [f"The best setting lies between {_shown(one, low)} and {_shown(one, high)} {unit} (95 %)."]
+        if low < high
+        else []
+    )
     ends = [f"{end:g} {unit}" for end, near in ((first, low == first), (last, high == last)) if near]
     if ends:
         said.append(
@@ -91,7 +102,9 @@ def _next(one, unit):
     ]
     errors = f"from {float(one.next_before):.2g} to {float(one.next_after):.2g} {unit}"
     when = "again" if bool(one.next_again) else "next"
-    return [f"Measure {float(one.next):.3g} {unit} {when}: this is expected to shrink the error of {subject} {errors}."]
+    return [
+        f"Measure {_shown(one, one.next)} {unit} {when}: this is expected to shrink the error of {subject} {errors}."
+    ]
 
 
 def notes(curve: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
@@ -102,7 +115,7 @@ def notes(curve: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
         for humidity in curve.humidity.values:
             for value in curve.value.values:
                 if sentence := str(curve[name].sel(humidity=humidity, value=value).values):
-                    places.setdefault(sentence.rstrip("."), []).append(f"{value:.3g} {unit_of(curve)}")
+                    places.setdefault(sentence.rstrip("."), []).append(f"{_shown(curve, value)} {unit_of(curve)}")
         words = process.words_of(curve.variable)
         said += [
             f"{begins} the {words} is {', '.join(dict.fromkeys(at))}: {sentence}." for sentence, at in places.items()
@@ -171,7 +184,7 @@ def _stuck(stuck, low, high):
 _COLUMNS = DEVICE | {
     "held by": (str, "held_by"),
     "variable": (str, "variable"),
-    "value": (".3g", "value"),
+    "value": (".6g", "value"),
     "p": ("g", "share"),
     "unit": (str, "unit"),
     "estimate": (with_error, "estimate", "estimate_se"),
