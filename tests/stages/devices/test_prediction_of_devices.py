@@ -7,6 +7,7 @@ from unittest.mock import patch
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 import yaml
 from ground import C1, lognormal_cracks, safe_with_tips, safe_without_tips, wanted
 from numpy.testing import assert_allclose
@@ -28,6 +29,8 @@ from stiction.streams import stream
 EXAMPLES = Path(__file__).parents[3] / "examples"
 LENGTHS = pd.read_csv(prediction.PAPER_LENGTHS)
 KNOWN, MIDDLE = prediction.learnt(LENGTHS, prediction.TOUCHING)
+#: Contact of strips whose energies are given.
+STRIPS = xr.Dataset(coords={"sample": range(3)})
 PLACES = [-0.8, -0.3, 0.0, 0.2, 0.9]
 
 
@@ -99,17 +102,24 @@ def energies(slope):
 @pytest.mark.parametrize("slope", [2.0, 8.0, -3.0])
 def test_the_place_is_the_logarithm_of_the_length_by_that_in_the_middle_of_the_paper(cantilever, slope):
     with patch.object(curves, "energies", energies(slope)):
-        found = prediction.with_intervals(cantilever, {"contact": None, "paper": prediction.PAPER_LENGTHS}, wanted())
+        found = prediction.with_intervals(cantilever, {"contact": STRIPS, "paper": prediction.PAPER_LENGTHS}, wanted())
     here, middle = (arrest_length(2e-3 * np.exp(slope * at), C1.beam) for at in (wanted().humidity, MIDDLE))
     expected = at_place(cantilever, float(np.log(here / middle)))
     assert_allclose(found.prediction_high, expected.prediction_high, rtol=1e-6)
+
+
+@pytest.mark.parametrize("energy", [0.0, np.nan])
+def test_surfaces_that_do_not_adhere_have_no_interval(cantilever, energy):
+    with patch.object(curves, "energies", lambda *_: np.full(3, energy, np.float32)):
+        found = prediction.with_intervals(cantilever, {"contact": STRIPS, "paper": prediction.PAPER_LENGTHS}, wanted())
+    assert np.isnan(found.prediction_high).all()
 
 
 def test_lengths_are_compared_with_those_of_the_same_reach_of_attraction(cantilever):
     known = prediction.learnt(LENGTHS, prediction.ACROSS_GAPS)[0]
     across = replace(wanted(), water=ACROSS)
     with patch.object(curves, "energies", energies(0.0)):
-        found = prediction.with_intervals(cantilever, {"contact": None, "paper": prediction.PAPER_LENGTHS}, across)
+        found = prediction.with_intervals(cantilever, {"contact": STRIPS, "paper": prediction.PAPER_LENGTHS}, across)
     assert_allclose(widths(found), widths(at_place(cantilever, 0.0, known)))
     assert np.all(np.abs(widths(found) / widths(at_place(cantilever, 0.0)) - 1) > 0.1)
 
@@ -170,7 +180,7 @@ def test_test_beams_of_a_device_replace_the_lengths_of_the_paper():
 
 def test_the_stage_writes_the_intervals_of_its_inputs(cantilever):
     stage = safe_lengths.STAGES[0]
-    data = {"cracks": None, "contact": None, "paper": prediction.PAPER_LENGTHS}
+    data = {"cracks": None, "contact": STRIPS, "paper": prediction.PAPER_LENGTHS}
     with patch.object(safe_lengths, "compute", lambda *_: cantilever), patch.object(curves, "energies", energies(2.0)):
         assert np.isfinite(widths(stage.compute(data, wanted()))).all()
 

@@ -26,6 +26,7 @@ from stiction.analysis.prediction import Discrepancy
 from stiction.config.cases import Case
 from stiction.plan.stage import File
 from stiction.stages.contact import curves
+from stiction.stages.contact.contact import first
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices.contact_names import contact_of
 from stiction.stages.devices.opening import S_SHAPE
@@ -36,6 +37,8 @@ PAPER_LENGTHS = Path(__file__).with_name("paper_lengths.csv")
 COVERAGE = 0.95
 #: Columns with lengths computed with attraction of touching summits alone, and across gaps, and the measured ones.
 TOUCHING, ACROSS_GAPS, MEASURED = "touching_um", "across_gaps_um", "measured_um"
+#: Samples of the contact that are enough for a place: a standard error of 5 % of both energies moves it by 0.02.
+_SAMPLES = 500
 #: Power of the adhesion energy in the length at which a crack stops, Eq. (13).
 _OF_ENERGY = -1 / 4
 
@@ -54,12 +57,14 @@ def with_intervals(dataset: xr.Dataset, data: Mapping[str, Any], settings: Any) 
         return dataset
     reach = ACROSS_GAPS if settings.water.gaps else TOUCHING
     discrepancy, middle = learnt(pd.read_csv(data["paper"]), reach)
-    with on_patch(settings.device.strip, settings.device.width):
-        at, in_the_middle = (
-            curves.energies(data["contact"], humidity, settings.water).mean(dtype=float)
+    contact = first(data["contact"], _SAMPLES)
+    with on_patch(settings.device.strip, settings.device.width), np.errstate(divide="ignore", invalid="ignore"):
+        energies = [
+            curves.energies(contact, humidity, settings.water).mean(dtype=float)
             for humidity in (settings.humidity, middle)
-        )
-    return dataset.assign(intervals(dataset, discrepancy, _OF_ENERGY * float(np.log(at / in_the_middle))))
+        ]
+        place = _OF_ENERGY * float(np.log(np.divide(*energies)))
+    return dataset.assign(intervals(dataset, discrepancy, place))
 
 
 def learnt(lengths: pd.DataFrame, computed: str) -> tuple[Discrepancy, float]:
@@ -74,10 +79,10 @@ def learnt(lengths: pd.DataFrame, computed: str) -> tuple[Discrepancy, float]:
 def intervals(dataset: xr.Dataset, discrepancy: Discrepancy, place: float) -> dict[str, tuple]:
     """Variables with the ends of the intervals of the estimates held by the beam, NaN for tips, by shape and share [m].
 
-    The ``place`` of all lengths is u [-].
+    The ``place`` of all lengths is u [-], not finite if surfaces do not adhere: then there are none.
     """
     errors = np.hypot(dataset.beams_error, dataset.surfaces_error.fillna(0.0)) / dataset.estimate
-    is_known = np.isfinite(dataset.estimate) & np.isfinite(errors) & (dataset["shape"] == S_SHAPE)
+    is_known = np.isfinite(dataset.estimate) & np.isfinite(errors) & np.isfinite(place) & (dataset["shape"] == S_SHAPE)
     known, widths = is_known.values, np.full(dataset.estimate.shape, np.nan)
     widths[known] = discrepancy.half_widths(np.full(known.sum(), place), errors.values[known], COVERAGE)
     about = "of the 95 % prediction interval, with the form of the model as an error"
