@@ -5,7 +5,8 @@
    ``make example-process``, ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction``, ``make
    print``, ``stiction devices examples/NAME.yaml --directory runs/NAME`` with the names roughness and test_beams in
    folders of ``runs`` beside it.
-2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture.
+2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture. The package
+   receives the lengths from which runs of devices learn how far the model errs.
 3. The drawings are drawn, and the pages of ``docs`` and ``config/README.md`` are generated from ``docs/templates``,
    with numbers and tables inserted.
 
@@ -36,6 +37,7 @@ from stiction.report.process import tables as tables_process
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run.storage import load
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
+from stiction.stages.devices import prediction
 from stiction.stages.laws.forces import vectors
 
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "tests")]
@@ -442,9 +444,12 @@ def shrink(picture, smaller, width):
 
 
 def pages():
-    """Path to text of every file that is written from ``docs/tables`` and ``docs/templates``."""
+    """Path to text of every file that is written from ``docs/tables`` and ``docs/templates``, one in the package."""
     numbers = quoted_numbers()
-    texts = {DOCS / "results.json": json.dumps(record(numbers), indent=1, ensure_ascii=False, sort_keys=True) + "\n"}
+    texts = {
+        DOCS / "results.json": json.dumps(record(numbers), indent=1, ensure_ascii=False, sort_keys=True) + "\n",
+        prediction.PAPER_LENGTHS: measured_lengths(),
+    }
     for template in sorted((DOCS / "templates").glob("*.md")):
         body = filled(template.read_text(encoding="utf-8"), numbers)
         texts[page_of(template)] = NOTE.format(name=template.name) + "\n\n" + body
@@ -454,6 +459,25 @@ def pages():
 def page_of(template):
     """File that is written from a template."""
     return ROOT / "config" / "README.md" if template.name == "config.md" else DOCS / template.name
+
+
+def measured_lengths():
+    """Measured lengths, and those computed without and with attraction across gaps, for the package.
+
+    They are rounded to 0.1 µm, so that a run with the same lengths reruns no devices.
+    """
+    case, computed = ["pair", "relative_humidity"], "crack_length_um"
+    table, gaps = (quoted.frame(DOCS / "tables" / f"{name}.csv") for name in ("table_3", ATTRACTION))
+    touching = table[(table.model == "NG") & table.experiment_um.notna()].set_index(case)
+    across = gaps[gaps.variant == "reach_all"].set_index(case)[computed]
+    lengths = pd.DataFrame(
+        {
+            prediction.TOUCHING: touching[computed],
+            prediction.ACROSS_GAPS: across.reindex(touching.index),
+            prediction.MEASURED: touching.experiment_um,
+        }
+    )
+    return lengths.round(1).to_csv(lineterminator="\n")
 
 
 def quoted_numbers():

@@ -45,6 +45,13 @@ def test_safe_lengths_are_shorter_than_their_estimates(device):
     assert np.all(found.safe_length.sel(shape="S-shape or arc") <= found.safe_length.sel(shape="S-shape"))
 
 
+def test_lengths_held_by_the_beam_have_intervals_with_the_form_of_the_model_as_an_error(device):
+    found = device.safe_lengths(0.88)
+    held, tips = found.sel(shape="S-shape"), found.sel(shape="S-shape or arc")
+    assert np.all((held.prediction_low < held.estimate) & (held.estimate < held.prediction_high))
+    assert np.isnan(tips.prediction_low).all()
+
+
 def test_results_are_computed_once(device):
     assert device.cracks(0.88) is device.cracks(0.88)
     assert device.safe_lengths(0.88) is device.safe_lengths(0.88)

@@ -21,6 +21,7 @@ from stiction.config.relations import schema
 from stiction.plan.graph import stages
 from stiction.report.checks import RESOLVED
 from stiction.run import storage
+from stiction.stages.devices import prediction
 from stiction.surface.feasible import nearest_feasible
 
 ROOT = Path(__file__).parents[1]
@@ -57,6 +58,7 @@ def written():
 WRITTEN = [
     *(DOCS / "pictures" / f"{name}.svg" for name in ("beam", "stopper_and_bridge", "method")),
     DOCS / "results.json",
+    prediction.PAPER_LENGTHS,
     *(update.page_of(path) for path in sorted((DOCS / "templates").glob("*.md"))),
 ]
 

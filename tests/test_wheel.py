@@ -68,6 +68,7 @@ def site(tmp_path_factory):
 
 def test_the_wheel_holds_all_files_that_the_package_reads(site):
     names = ["config/schema.yaml", "config/paper.yaml", "command/study.yaml", "report/stiction.mplstyle", "py.typed"]
+    names += ["stages/devices/paper_lengths.csv"]
     package = ROOT / "src" / "stiction"
     report = [path for kind in ("templates/*", "**/*.yaml") for path in (package / "report").glob(kind)]
     assert len(report) > 5

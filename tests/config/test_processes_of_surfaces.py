@@ -5,7 +5,8 @@ import pytest
 from written_scans import write
 
 import stiction
-from stiction.config.surfaces import process
+from stiction.config.keys import Keys
+from stiction.config.surfaces import process, process_relations
 
 STATED = {"rms_nm": 3.0, "uncertainty": {"rms_nm": 0.1}}
 SETTINGS = [{"value": value} | STATED for value in (30, 60, 90)]
@@ -27,6 +28,13 @@ def problems(*overlays, **changed):
 def with_setting(number, **changed):
     """Settings, one of them changed."""
     return [one | changed if k == number else one for k, one in enumerate(SETTINGS)]
+
+
+def test_a_process_without_unit_is_refused_by_its_relations_alone():
+    config = stiction.load(RUN, {"process": {"etch": ETCH}})
+    config["process"]["etch"]["variable"] = "etch_time"
+    (found,) = process_relations.relation.problems(Keys(config, []))
+    assert "must end in its unit" in str(found)
 
 
 def test_a_good_process_is_accepted():

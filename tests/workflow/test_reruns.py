@@ -68,7 +68,7 @@ READ_BY = {
     " device_contact tip_contact",
     "character": "table_1 checks",
     "contact_chunk": "contact",
-    "contact": "forces fit humidity variant cracks chart sensitivity",
+    "contact": "forces fit humidity variant cracks safe_lengths chart sensitivity",
     "forces": "fit chaos table_3 sample_sizes orders mesh resampling checks",
     "sensitivity_contact": "sensitivity",
     "variant_summits": "variant_contact",
@@ -77,7 +77,7 @@ READ_BY = {
     "beams": "table_3 checks model_limits",
     "plasticity": "model_limits device_warnings",
     "device_warnings": "table_safe_lengths table_chart device_limits",
-    "device_contact": "cracks",
+    "device_contact": "cracks safe_lengths",
     "tip_contact": "safe_lengths chart",
     "cracks": "safe_lengths",
     "safe_lengths": "table_safe_lengths device_warnings",
@@ -134,7 +134,7 @@ MATRIX = [
     ("water", "water: {temperature_K: 310}", "full_contact pressed readings forces humidity sensitivity variant cracks safe_lengths chart", (), "results/contact"),
     ("adsorbed water", "water: {adsorbed_nm: 0.1}", "full_contact pressed readings forces humidity sensitivity variant cracks safe_lengths chart", (), "results/contact"),
     ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (),
-     "studies/(sens|plas|variants/(contact|summits))|psd_identified|tips"),
+     "studies/(sensitivity/contact|plas|variants/(contact|summits))|psd_identified|tips"),
     ("distance step", "contact: {distance_step_nm: 0.1}",
      "contact_chunk sensitivity_contact plasticity full_contact pressed variant_summits readings device_contact tip_contact", (), "spectrum"),
     ("chaos order", "chaos: {order: 6}", "chaos variant cracks chart", (), "forces"),
@@ -150,7 +150,7 @@ MATRIX = [
     ("chunks", "contact: {chunks: 7}", "", (), ""),
     ("points along the humidity", "figures: {humidity_points: 5}", "humidity", (), ""),
     ("study: iteration", "studies: {iteration: {fields: 4}}", "iteration", (), ""),
-    ("studies", "studies: {sensitivity: {step: 0.1}, plasticity: {strips: 50}, sample_shares: [0.1, 0.2], "
+    ("studies", "studies: {sensitivity: {step: 0.05}, plasticity: {strips: 50}, sample_shares: [0.1, 0.2], "
      "orders: {draws: 1000}, mesh: {strips_um: [7.5]}}",
      "sensitivity_contact plasticity sample_sizes orders mesh", (), "variants"),
     ("study: full contact", "studies: {full_contact: {samples: 5}}", "full_contact", (), ""),
@@ -400,7 +400,7 @@ SPOTS = [
     ),
     ("study", "", " ".join(RULES)),
     ("stages/devices/opening", "cracks chart", "heights spectrum contact_chunk tip_contact beams"),
-    ("stages/devices/sticking", "safe_lengths chart", "heights spectrum contact_chunk tip_contact beams cracks"),
+    ("stages/devices/sticking", "cracks safe_lengths chart", "heights spectrum contact_chunk tip_contact beams"),
     # The page of warnings has those about test beams, whose inputs may come from scans.
     (
         "scans/estimate",

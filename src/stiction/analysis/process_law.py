@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial.legendre import legvander
 from scipy.optimize import brentq
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 
@@ -270,7 +270,7 @@ def fit_probability(law: Law, values: np.ndarray, errors: np.ndarray, quantity: 
     """Probability of a worse agreement of the settings (n,) with their law, by their errors (n,) alone [-]."""
     residuals = (values - law.at(law.settings)[:, quantity]) / errors
     freedom = len(values) - 1 - law.degrees[quantity]
-    return float(chi2.sf(np.sum(residuals**2), freedom)) if freedom else float("nan")
+    return float(chdtrc(freedom, np.sum(residuals**2))) if freedom else float("nan")
 
 
 def grid(settings: Sequence[float], intervals: int = 6) -> np.ndarray:

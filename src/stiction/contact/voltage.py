@@ -8,13 +8,20 @@ infinity needs the work
 
 `stiction.contact.gaps.gap_pressures` averages it over the bearing area, as the van der Waals attraction.
 
+A voltage V adds :math:`V^2 g(d)` to the attraction f(d) of a patch at the distance d. A spring that pulls with p per
+area frees the patch if it is stronger at every distance, :math:`p > f(d) + V^2 g(d)`, hence below the voltage with
+:math:`V^2 = \min_d (p - f) / g`. Flats in contact, :math:`g = \epsilon_0 / 2 D^2`,
+need the least voltage to stay.
+
 ASSUME: no current, no drift of charge, and no water in the gap, whose permittivity would add to the attraction. Where
 solids touch, the gap stays zero while they deform, so that the voltage does no work there.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import brentq
 
 from stiction.constants import VACUUM_PERMITTIVITY
 
@@ -74,3 +81,21 @@ class Capacitor:
         0.396
         """
         return VACUUM_PERMITTIVITY * self.potential**2 / (2 * (gap + self.dielectric.distance))
+
+
+def freeing_potential(excess: Callable[[float], float], highest: float) -> float:
+    """Potential below which a spring frees a patch, zero if it does not without a potential [V].
+
+    Parameters
+    ----------
+    excess : callable
+        Largest attraction at a squared potential [V²] less the pull of the spring [Pa], increasing.
+    highest : float
+        Squared potential at which the attraction is at least as large as the pull [V²].
+
+    Examples
+    --------
+    >>> round(freeing_potential(lambda squared: 2 * squared - 18, 100.0), 6)
+    3.0
+    """
+    return float(np.sqrt(brentq(excess, 0.0, highest))) if excess(0.0) < 0 < excess(highest) else 0.0

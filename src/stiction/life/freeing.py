@@ -7,15 +7,10 @@ faster than water evaporates: menisci keep their volume, `stiction.contact.separ
 A device touches n times. If it meets other summits each time, it sticks with :math:`1 - (1 - P)^n`. If it meets the
 same ones, it sticks the first time or never, with P. How much touchdowns have in common is unknown: both are bounds.
 
-A voltage V adds :math:`V^2 g(d)` to the attraction f(d) of a patch at the distance d. A spring that pulls with p per
-area frees the patch if it is stronger at every distance, :math:`p > f(d) + V^2 g(d)`, hence below the voltage with
-:math:`V^2 = \min_d (p - f) / g`. Flats in contact, :math:`g = \epsilon_0 / 2 D^2`, need the least voltage to stay.
+Flats in contact need the least voltage to stay, see `stiction.contact.voltage`.
 """
 
-from collections.abc import Callable
-
 import numpy as np
-from scipy.optimize import brentq
 
 from stiction.beam.cantilever import Beam
 from stiction.contact.voltage import Capacitor
@@ -38,24 +33,6 @@ def freeing_acceleration(hold: float, restoring_force: float, mass: float) -> fl
     (10000, 0.0)
     """
     return max(hold - restoring_force, 0.0) / mass
-
-
-def freeing_potential(excess: Callable[[float], float], highest: float) -> float:
-    """Potential below which a spring frees a patch, zero if it does not without a potential [V].
-
-    Parameters
-    ----------
-    excess : callable
-        Largest attraction at a squared potential [V²] less the pull of the spring [Pa], increasing.
-    highest : float
-        Squared potential at which the attraction is at least as large as the pull [V²].
-
-    Examples
-    --------
-    >>> round(freeing_potential(lambda squared: 2 * squared - 18, 100.0), 6)
-    3.0
-    """
-    return float(np.sqrt(brentq(excess, 0.0, highest))) if excess(0.0) < 0 < excess(highest) else 0.0
 
 
 def freeing_potential_of_flats(spare: float, capacitor: Capacitor, area: float) -> float:

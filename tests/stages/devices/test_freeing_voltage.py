@@ -13,8 +13,8 @@ from test_tables_budget import stopper_dataset
 
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.environment import Gaps
-from stiction.contact.voltage import Capacitor, Dielectric
-from stiction.life.freeing import freeing_potential, freeing_potential_of_flats
+from stiction.contact.voltage import Capacitor, Dielectric, freeing_potential
+from stiction.life.freeing import freeing_potential_of_flats
 from stiction.report.devices import life as report
 from stiction.stages.contact import curves
 from stiction.stages.devices import stoppers

@@ -13,7 +13,7 @@ import stiction
 from stiction.devices.process import unknown
 from stiction.plan.graph import Results
 from stiction.report.devices import pages
-from stiction.report.process import tables
+from stiction.report.process import section, tables
 from stiction.report.style import png
 from stiction.stages.process import curves, law, points, recommended
 from stiction.stages.surfaces.descriptions import description
@@ -160,7 +160,7 @@ def test_tables_figures_and_pages_show_them(etched):
         assert covering(figure) == []
         assert png(figure)[:4] == b"\x89PNG"
     page = etched.results.graph.job("devices/Bump.html")
-    assert {"process", "process_settings", "process_laws"} <= page.inputs.keys()
+    assert section.inputs(etched.results.graph.plan, "Bump").items() <= page.inputs.items()
     assert pages._asked(page.settings) == {"requirement": "at most 1 in 20 sticks"}
 
 

@@ -50,8 +50,8 @@ _OF_MAPS = (
 )
 #: Why a table of safe lengths and one of a budget have cells without a number.
 _MISSING_LENGTHS = (
-    "all drawn surfaces have the same tips, whose scatter is part of the error due to the number of beams; or too few "
-    "beams stick for an estimate"
+    "all drawn surfaces have the same tips, whose scatter is part of the error due to the number of beams, and the "
+    "paper measured no tips; or too few beams stick for an estimate"
 )
 _MISSING_EFFECTS = "this input does not act here, or too few of the simulated devices stick to show what it changes"
 #: Terms that pages explain.
@@ -115,8 +115,9 @@ def beam_page(
     answer += [sentences.build_sentence(safe_lengths, budgets), *decided, *more]
     sections += _test_beam_sections(name, test_beams)
     built, of_model = _built(test_beams), model_errors.sentences(name, errors)
-    answer += [*built, *(sentences.safe_sentence(*case) for case in safe_lengths.items()), *of_model]
-    more = [*own_length.measured(safe_lengths, of_shortest), *few, *more, *built, *of_model[1:]]
+    predicted = sentences.prediction_sentences(safe_lengths)
+    answer += [*built, *(sentences.safe_sentence(*case) for case in safe_lengths.items()), *of_model, *predicted]
+    more = [*own_length.measured(safe_lengths, of_shortest), *few, *more, *built, *of_model[1:], *predicted]
     sections += _how_rough(name, roughness)
     listed = pair_warnings.with_numbers(warnings)
     listed += [] if test_beams is None else tables_test_beams.warnings(test_beams)

@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 
 from stiction.devices.risk import Basis, one_in, samples_for
-from stiction.report.format import UM, UN, airs
+from stiction.report.format import UM, UN, airs, with_error
 from stiction.stages.devices.budget import budget_of
-from stiction.stages.devices.opening import EITHER
+from stiction.stages.devices.opening import EITHER, S_SHAPE
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
 
 
@@ -131,6 +131,28 @@ def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
     if longest == shortest:
         return sentence
     return f"{sentence} If the tip cannot hold them, this is true of up to {longest:.0f} µm."
+
+
+def prediction_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
+    """Prediction interval of the shortest length held by the beam, for the middle fraction, or nothing without one."""
+    held = {
+        humidity: one.sel(shape=S_SHAPE, share=chosen(one))
+        for humidity, one in safe_lengths.items()
+        if "prediction_low" in one
+    }
+    known = {humidity: one for humidity, one in held.items() if np.isfinite(one.prediction_low)}
+    if not known:
+        return []
+    humidity, one = min(known.items(), key=lambda case: float(case[1].estimate))
+    low, high = (f"{float(end) / UM:.0f}" for end in (one.prediction_low, one.prediction_high))
+    error = np.hypot(one.beams_error, one.surfaces_error.fillna(0))
+    estimate = with_error(float(one.estimate) / UM, float(error) / UM)
+    return [
+        f"{_at(humidity)}, {one_in(float(one.share))} sticks along its beam at a length of {estimate} µm (standard "
+        "error of the simulation). If this model errs on your pair as it does on the paper's, this length lies between "
+        f"{low} and {high} µm (95 %). No safe length is changed by it. The paper measured no tips, bridges or stoppers "
+        "and nothing in dry air."
+    ]
 
 
 def few_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:

@@ -87,6 +87,20 @@ def _percent(stuck, low, high, error):
     return f"{100 * stuck:.3g} ({100 * low:.3g} to {100 * high:.3g}{surfaces})"
 
 
+def _interval(low, high):
+    """Interval as text, – without one [µm]."""
+    return MISSING if np.isnan(low) else f"{low:.0f} to {high:.0f}"
+
+
+#: Column with the interval of a length with the form of the model as an error.
+_PREDICTION = {"95 %, form of the model [µm]": (_interval, "prediction_low_um", "prediction_high_um")}
+#: Meaning of this column.
+_PREDICTED = (
+    "95 %, form of the model: prediction interval of the estimate of a cantilever held by its beam, if this model errs "
+    "on its pair as it does on the paper's, whose measured lengths show how far, with the standard errors. It is "
+    "beside the safe length and does not change it. Tips, bridges and dry air, which the paper did not measure, and "
+    "devices with test beams have none."
+)
 _COLUMNS_AT_LENGTH = {
     "length [µm]": (lambda length: number(length, "g"), "length_um"),
     "P(stuck) [%]": (_percent, "share_stuck", "share_stuck_low", "share_stuck_high", "share_stuck_se_surfaces"),
@@ -122,6 +136,8 @@ def safe_lengths(
         about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY),
     ]
     text, columns = " ".join(said), _HELD | own | _LENGTHS
+    if "prediction_low_um" in frame:
+        text, columns = f"{text} {_PREDICTED}", columns | _PREDICTION
     if errors:
         text, columns = f"{text} {column.caption(errors)}", columns | column.COLUMN
     return Table(frame, _caption(text, warnings, not_modelled), as_text(frame, columns).assign(warnings=marks))
@@ -153,7 +169,8 @@ def _caption(text, warnings, not_modelled):
 
 
 def _safe_length(point):
-    """One safe length with its errors."""
+    """One safe length with its errors, and its prediction interval where the dataset has some."""
+    ends = [name for name in ("prediction_low", "prediction_high") if name in point]
     return {
         "share": float(point.share),
         "safe_length_um": float(point.safe_length) / UM,
@@ -162,6 +179,7 @@ def _safe_length(point):
         "estimate_se_surfaces_um": float(point.surfaces_error) / UM,
         "basis": str(point.basis.values),
         "bound_um": _bound(point),
+        **{f"{name}_um": float(point[name]) / UM for name in ends},
     }
 
 

@@ -11,7 +11,7 @@ from stiction.contact import environment, forcelaw, gaps
 from stiction.contact.environment import ForceCurves, Water
 from stiction.contact.forcelaw import extremum, resists
 from stiction.contact.separation import keep_volume
-from stiction.life.freeing import freeing_potential
+from stiction.contact.voltage import freeing_potential
 from stiction.stages.contact.contact import tables
 
 

@@ -16,6 +16,7 @@ from stiction.stages.contact import curves
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices import cracks as stage_cracks
+from stiction.stages.devices import prediction
 from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
 from stiction.stages.devices.opening import DesignedBeam, at_voltage, settings_of_beam
 from stiction.stages.devices.sticking import Released, by_shape, known
@@ -171,7 +172,13 @@ _SAFE_LENGTHS = Stage.writing(
     message="Safe lengths of {case}.",
 )
 STAGES = (
-    _SAFE_LENGTHS,
+    replace(
+        _SAFE_LENGTHS,
+        inputs=lambda plan, at: _SAFE_LENGTHS.inputs(plan, at) | prediction.inputs(plan, at.case),
+        compute=lambda data, settings: prediction.with_intervals(
+            compute(data["cracks"], data.get("tips"), settings), data, settings
+        ),
+    ),
     replace(
         _SAFE_LENGTHS,
         name="touchdowns",

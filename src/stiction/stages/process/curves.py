@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from stiction.config.surfaces import process
 from stiction.devices.process import CONFIDENCE, Curve, law_error
@@ -39,7 +39,7 @@ def compute(
     margin, safe = (margins(curve[name].values, required, more_is_better) for name in ("estimate", "safe"))
     dims = ("value", "humidity", "shape")
     # The bound of a safe value is one-sided: the errors of simulation alone leave it as it is.
-    parts = {"simulation": (margin - safe) / norm.ppf(CONFIDENCE), "model": _of_model(curve, model_error)}
+    parts = {"simulation": (margin - safe) / ndtri(CONFIDENCE), "model": _of_model(curve, model_error)}
     curve = curve.assign({"margin": (dims, margin)} | {f"{name}_error": (dims, one) for name, one in parts.items()})
     known = [law_of(one) for one in laws]
     of_law = np.full(margin.shape, np.nan)
