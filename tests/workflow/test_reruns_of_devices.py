@@ -221,3 +221,17 @@ def test_a_new_variable_in_a_dataset_reruns_its_rule_and_its_readers(tree, modul
     path.write_text(code.replace("    return xr.Dataset(", "    more = 1\n    return xr.Dataset("))
     # Tables and figures of stoppers and budgets share modules that know both datasets.
     assert COMPUTING & set(tree.rerun().values()) == behind(rules) & COMPUTING
+
+
+def test_a_second_process_of_a_device_runs_its_map_and_no_other_device(tree):
+    second = SETTINGS.replace("rms_nm: 2", "rms_nm: 0.2").replace("rms_nm: 6", "rms_nm: 0.6")
+    process = f"process: {{deposition: {{variable: deposition_time_min, surface: Sub1, settings: {second}}}}}"
+    rerun = tree.rerun(overlay=f"devices: {{E1: {{second_process: deposition}}}}\n{process}")
+    maps = {f"{kind}_process_map" for kind in ("table", "figure")} | {"process_map", "process_pairs"}
+    assert {rule for rule in rerun.values() if "process" in rule} == maps | {
+        "process_law",
+        "process_point",
+        "figure_process_law",
+    }
+    assert not [name for name in rerun if re.search("C1|R1|S1|laws/etch|law_etch|contact|devices/stoppers", name)]
+    assert {f"results/process/points/E1_{number}.nc" for number in range(35)} <= rerun.keys()

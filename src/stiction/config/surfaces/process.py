@@ -75,12 +75,22 @@ def has_scans(config: Mapping[str, Any]) -> bool:
 
 
 def of_device(config: Mapping[str, Any], device: str) -> list[str]:
-    """Names of the processes of a device: the one that it states, and one of its other surface at the same time."""
+    """Names of the processes of a device: the one that it states, and one of its other surface.
+
+    The latter is the second one that it states, or one at the same time.
+    """
     section, known = config["devices"][device], config.get("process", {})
     named = section.get("process")
+    if is_mapped(config, device):
+        return [named, section["second_process"]]
     sides = config["pairs"].get(section["pair"], {}).values()
     others = (name for name in known if known[name].get("together_with") == named and known[name]["surface"] in sides)
     return [named, *others] if named in known else []
+
+
+def is_mapped(config: Mapping[str, Any], device: str) -> bool:
+    """Whether a device is computed over the variables of two processes."""
+    return "second_process" in config["devices"][device]
 
 
 def variable_of(config: Mapping[str, Any], device: str) -> str:

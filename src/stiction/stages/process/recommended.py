@@ -90,10 +90,10 @@ def layout(found: Recommendation) -> xr.Dataset:
 
 def devices_over(plan: Any, variable: str) -> list[str]:
     """Devices over the processes with a variable."""
-    known, sections = plan.config.get("process", {}), plan.devices.sections
+    known = plan.config.get("process", {})
     return [
         name
-        for name, section in sections.items()
+        for name in plan.devices.processed
         if any(known[one]["variable"] == variable for one in process.of_device(plan.config, name))
     ]
 
