@@ -92,18 +92,6 @@ class Grid:
         share = float(ndtr(sign * np.interp(at, levels, scores)))
         return Stuck(share, *band(share, self.samples), beyond)
 
-    def estimate(self, state: Mapping[str, float]) -> tuple[float, float]:
-        """Size with the state's share stuck and its standard error, NaN beyond the levels."""
-        levels, scores = self._levels(state)
-        score = float(ndtri(state["share"])) * (-1 if self.falls else 1)
-        if len(levels) < 2 or not scores[0] <= score <= scores[-1]:
-            return np.nan, np.nan
-        k = min(int(np.searchsorted(scores, score, "right")) - 1, len(scores) - 2)
-        slope = (levels[k + 1] - levels[k]) / (scores[k + 1] - scores[k])
-        size = float(np.exp(levels[k] + slope * (score - scores[k])))
-        share, density = state["share"], np.exp(-(score**2) / 2) / np.sqrt(2 * np.pi)
-        return size, float(size * slope * np.sqrt(share * (1 - share) / self.samples) / density)
-
     def _levels(self, state):
         """Logarithms of the known quantiles at a state, and their normal scores."""
         levels = self._at(self.quantiles, state)

@@ -117,16 +117,6 @@ function opened(number) {
     return {share, low, high, beyond: sign * ((place > levels[levels.length - 1]) - (place < levels[0])) || 0};
   }
 
-  function estimate(state) {
-    const [levels, scores] = levelsOf(state), z = score(state.share) * (grid.falls ? -1 : 1);
-    if (levels.length < 2 || z < scores[0] || z > scores[scores.length - 1]) return [NaN, NaN];
-    let k = 0;
-    while (k < scores.length - 2 && scores[k + 1] <= z) k++;
-    const rise = (levels[k + 1] - levels[k]) / (scores[k + 1] - scores[k]), p = state.share;
-    const size = Math.exp(levels[k] + rise * (z - scores[k]));
-    return [size, size * rise * Math.sqrt(p * (1 - p) / grid.samples) / (Math.exp(-z * z / 2) / Math.sqrt(2 * Math.PI))];
-  }
-
   /** The larger uncertainty of the two computed humidities around one; nothing outside of them. */
   function margin(humidity) {
     const rows = data.margins, below = rows.filter(row => row[0] <= humidity), above = rows.filter(row => row[0] >= humidity);
@@ -150,10 +140,6 @@ function opened(number) {
     if (beyond) return `${beyond < 0 ? "less" : "more"} than ${percent(share)} %`;
     return `${percent(share)} % (${percent(low)} to ${percent(high)} %)`;
   }
-
-  const estimateText = (size, error) => Number.isFinite(size)
-    ? `${text(size, DIGITS)} ± ${text(error, 2)} ${grid.size.unit}`
-    : `not known from ${grid.samples} devices`;
 
   const valueText = (axis, value) => axis.key === "humidity" && value === 0 ? "dry air" : `${text(value, DIGITS)}${axis.unit && ` ${axis.unit}`}`;
 
@@ -238,12 +224,11 @@ function opened(number) {
 
   function answer() {
     const unit = grid.size.unit, words = data.words, levels = levelsOf(state);
-    const safe = safeSize(state), [guess, error] = estimate(state), less = margin(state.humidity);
+    const safe = safeSize(state), less = margin(state.humidity);
     const build = less && safe * Math.exp((grid.falls ? 2 : -2) * less[1]);
     const texts = {
       stuck: `${words.stick}: ${stuckText(stuckAt(state[grid.size.key], levels))}`,
       safe: `${words.safe} for ${oneIn(state.share)}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : `not known from ${grid.samples} devices`}`,
-      estimate: `Estimate: ${estimateText(guess, error)}`,
       budget: less && Number.isFinite(build)
         ? `Measurements leave ${text(100 * less[1], 2)} %, most of it ${less[2]}: build ${words.build} ${text(build, DIGITS)} ${unit}`
         : `Margin for the measurements: not computed ${data.margins.length ? "at this humidity" : "without stated uncertainties"}`,
@@ -323,10 +308,7 @@ function opened(number) {
     const curve = make(chart.svg, "path", {class: "curve"}), marks = axis.values.map(() => make(chart.svg, "circle", {r: 3, class: "mark"}));
     const dot = make(chart.svg, "circle", {r: 6, class: "here"});
     const safe = value => safeSize({...state, [axis.key]: value});
-    const describe = value => {
-      const [guess, error] = estimate({...state, [axis.key]: value});
-      return `At ${valueText(axis, value)}: ${data.words.bound} ${text(safe(value), DIGITS)} ${unit}, estimate ${estimateText(guess, error)}. Small dots: computed.`;
-    };
+    const describe = value => `At ${valueText(axis, value)}: ${data.words.bound} ${text(safe(value), DIGITS)} ${unit}. Small dots: computed.`;
     const caption = hover(chart, ends, value => describe(nearest(axis, value)), () => state[axis.key]);
     return () => {
       if (axis.between) curve.setAttribute("d", path(spread(...ends).map(value => [chart.x(value), chart.y(safe(value))])));
@@ -384,7 +366,7 @@ function opened(number) {
   const panel = make(root, "div", {class: "controls"});
   for (const axis of controls) control(panel, axis);
   const answers = make(panel, "div", {class: "answers", "aria-live": "polite"});
-  shown = Object.fromEntries(["stuck", "safe", "estimate", "budget"].map(name => [name, make(answers, "p", {"data-answer": name})]));
+  shown = Object.fromEntries(["stuck", "safe", "budget"].map(name => [name, make(answers, "p", {"data-answer": name})]));
   const buttons = make(panel, "p"), copy = make(buttons, "button", {type: "button"}, "Copy as YAML");
   const reset = make(buttons, "button", {type: "button"}, "Back to this device");
   const status = make(panel, "p", {class: "note", role: "status"});
