@@ -123,7 +123,14 @@ def process_map(found: xr.Dataset, pairs: xr.Dataset) -> Figure:
     )
     reach = np.abs(interval - best[:, None])[..., None]
     panel.errorbar(
-        *best, xerr=reach[0], yerr=reach[1], fmt="D", color="black", markersize=4, label="best, 95 % intervals"
+        *best,
+        xerr=reach[0],
+        yerr=reach[1],
+        fmt="D",
+        color="black",
+        markersize=4,
+        label="best, 95 % intervals",
+        clip_on=False,
     )
     for scale, variable in ((panel.set_xlabel, "variable"), (panel.set_ylabel, "second_variable")):
         name = found.attrs[variable]
