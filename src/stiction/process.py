@@ -10,7 +10,7 @@ import xarray as xr
 
 from stiction.config.surfaces import process
 from stiction.plan.graph import Results
-from stiction.report.process import tables
+from stiction.report.process import maps, tables
 from stiction.stages.process.law import at_value
 from stiction.stages.process.recommended import devices_over
 
@@ -68,15 +68,18 @@ class Process:
 
     @property
     def devices(self) -> list[str]:
-        """Devices over its variable."""
-        return devices_over(self._plan, self._section["variable"])
+        """Devices over its variable, alone or with that of another process."""
+        return devices_over(self._plan, self._section["variable"]) + self._mapped
 
     def margins(self, device: str) -> xr.Dataset:
         """Margins of one of its devices over the variable. Dataset of `stiction.stages.process.curves`.
 
-        The first call computes the device at seven values or more, a minute or two for a stopper of 5 µm.
+        The first call computes the device at seven values or more, a minute or two for a stopper of 5 µm. Over two
+        processes it is a dataset of `stiction.stages.process.maps`, and takes five to seven times as long.
         """
         self._must_have(device)
+        if device in self._mapped:
+            return self.results[f"process/maps/{device}"]
         return self.results[f"process/curves/{device}"]
 
     def settings(self) -> xr.Dataset:
@@ -84,12 +87,24 @@ class Process:
 
         Dataset of `stiction.stages.process.recommended`. The first call computes all devices.
         """
-        if not self.devices:
-            raise ValueError(f"no device has process {self.name}: state it in the key process of a device")
+        if not devices_over(self._plan, self._section["variable"]):
+            alone = " alone" if self._mapped else ""
+            raise ValueError(f"no device has process {self.name}{alone}: state it in the key process of a device")
         return self.results[f"process/settings/{self._section['variable']}"]
+
+    def pairs(self, device: str) -> xr.Dataset:
+        """Pairs of settings of two processes that suffice for a device with ``second_process``, and the best pair.
+
+        Dataset of `stiction.stages.process.maps`.
+        """
+        if device not in self._mapped:
+            raise ValueError(f"device {device} has no second_process beside {self.name}")
+        return self.results[f"process/pairs/{device}"]
 
     def answers(self, device: str) -> list[str]:
         """Settings that suffice for one of its devices, or for ``all devices`` if there are several, in sentences."""
+        if device in self._mapped:
+            return maps.answers(self.pairs(device))
         settings = self.settings()
         if device not in settings.who.values:
             self._must_have(device)
@@ -99,6 +114,8 @@ class Process:
         """Figure of the law, or of one of its devices over the variable."""
         from stiction.report.process import figures
 
+        if device in self._mapped:
+            return figures.process_map(self.margins(device), self.pairs(device))
         return (
             figures.laws(self.law) if device is None else figures.devices(self.margins(device), self.settings(), device)
         )
@@ -118,6 +135,12 @@ class Process:
             raise ValueError(
                 f"device {device} has no process over {self._section['variable']}: {', '.join(self.devices)}"
             )
+
+    @property
+    def _mapped(self):
+        """Devices over this process and another one."""
+        named = {one: process.of_device(self._plan.config, one) for one in self._plan.devices.processed_twice}
+        return [one for one, processes in named.items() if self.name in processes]
 
     @property
     def _plan(self):

@@ -49,6 +49,43 @@ def test_bad_files_are_left_out_with_their_reasons(folder, tmp_path):
     assert text.endswith("open it in Gwyddion and save it as .gwy")
 
 
+def process_of(folder, *settings, surface="B2"):
+    """File of a configuration with scans at some settings of a process."""
+    path = folder / "process.yaml"
+    settings = [{"value": 30 * number, "scans": files} for number, files in enumerate(settings, 1)]
+    path.write_text(
+        yaml.safe_dump({"process": {"etch": {"variable": "etch_s", "surface": surface, "settings": settings}}})
+    )
+    return str(path)
+
+
+def test_scans_of_settings_are_those_of_surfaces_read_as_the_surface_of_the_process_is(folder, tmp_path):
+    path = process_of(folder, ["B2-0.gwy", "empty.gwy"], ["text.gwy"], ["B2-1.gwy"], surface="Etched")
+    base = study(folder, Etched={"files": ["B2-0.gwy"], "level": "quadratic"})
+    found = scans_alone.alone([base, path], tmp_path)
+    assert list(found.overlay["surfaces"]) == ["Etched", "etch-1", "etch-3"]
+    assert list(found.refused) == ["etch-2"]
+    first = found.overlay["surfaces"]["etch-1"]["scans"]
+    assert ([Path(file).name for file in first["files"]], first["level"]) == (["B2-0.gwy"], "quadratic")
+    assert first["left_out"] == ["empty.gwy is not used: it is empty"]
+    assert Plan(files.load(found.overlay)).scans.surfaces == ["Etched", "etch-1", "etch-3"]
+
+
+@pytest.mark.parametrize(
+    ("settings", "surface", "said"),
+    [
+        (["B2-0.gwy"], "B2", r"process.etch.settings\[0\].scans is 'B2-0.gwy', must be a list"),
+        ([["B2-0.gwy"]], "B7", "process.etch.surface is 'B7', must be one of B1, B2, Sub1, Sub2"),
+        ([["B2-0.gwy"]], "etch-1", "process.etch.surface is 'etch-1', must be one of B1, B2, Sub1, Sub2"),
+        ([["B2-0.gwy"]], ["B2"], r"process.etch.surface is \['B2'\], must be text"),
+    ],
+)
+def test_wrong_processes_are_told_before_any_file_is_read(folder, tmp_path, settings, surface, said):
+    with pytest.raises(ConfigError, match=said) as refusal:
+        scans_alone.alone([process_of(folder, *settings, surface=surface)], tmp_path)
+    assert "surfaces.etch" not in str(refusal.value)
+
+
 def test_a_surface_without_a_good_file_does_not_keep_others(folder, tmp_path):
     surfaces = {
         "Etched": ["B2-0.gwy"],
@@ -122,14 +159,23 @@ def test_moments_without_a_density_leave_the_measured_one_whether_or_not_anythin
     assert files.load(*overlays)["surfaces"]["Etched"]["heights"] == "measured"
 
 
+@pytest.mark.parametrize("has_scans", [True, False])
+def test_the_command_asks_for_scans_of_a_surface_or_of_a_setting(folder, tmp_path, monkeypatch, capsys, has_scans):
+    monkeypatch.setattr("stiction.command.main._run", lambda *_: 0)
+    path = process_of(folder, *([["B2-1.gwy"]] if has_scans else []))
+    assert main(["scans", path, "--directory", str(tmp_path)]) == (0 if has_scans else 2)
+    assert ("add surfaces.NAME.scans, or scans to the settings of process.NAME" in capsys.readouterr().err) != has_scans
+
+
 @pytest.mark.slow
 def test_the_command_draws_what_can_be_drawn(folder, tmp_path, capsys):
     path = study(folder, Etched=["B2-0.gwy", "empty.gwy"], Bad=["text.gwy"])
-    assert main(["scans", path, "--directory", str(tmp_path), "--cores", "1"]) == 0
+    more = process_of(folder, ["B2-1.gwy"])  # whose scans are the only ones of this file
+    assert main(["scans", more, path, "--directory", str(tmp_path), "--cores", "1"]) == 0
     printed = capsys.readouterr().out
     assert "Bad cannot be estimated: text.gwy is not used: it cannot be read" in printed
     names = {file.name for file in (tmp_path / "results" / "figures").glob("*.png")}
-    assert names == {"surface_sheet_Etched.png", "surface_sheet_Bad.png"}
+    assert names == {f"surface_sheet_{name}.png" for name in ("Etched", "Bad", "etch-1")}
     assert "empty.gwy is not used: it is empty" in (tmp_path / "results" / "tables" / "scans.md").read_text()
 
 

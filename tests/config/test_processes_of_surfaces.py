@@ -82,6 +82,8 @@ BAD = {
         "what the first setting states, rms_nm; it has rms_nm, hurst",
     ),
     "unknown surface": ({"surface": "B7"}, "process.etch.surface is 'B7'", "must be one of B1, B2"),
+    "surface of a setting": ({"surface": "etch-1"}, "process.etch.surface is 'etch-1'", "must be one of B1, B2"),
+    "several surfaces": ({"surface": ["B2"]}, "process.etch.surface is ['B2']", "must be text"),
     "surface of no pair": ({"surface": "B1"}, "devices.Bump.process is 'etch'", "a surface of pair b, B2 or Sub1"),
     "wrong unit": ({"settings": with_setting(1, rms_nm=3e-9)}, "process.etch.settings[1].rms_nm is 3e-09", "0.001"),
     "no such heights": (
@@ -97,7 +99,7 @@ def test_a_bad_process_is_refused_in_one_sentence(changed, begin, part):
     first, *more = problems(**changed)
     assert first.startswith(begin)
     assert part in first
-    assert "etch-" not in first
+    assert "etch-" not in first.replace("is 'etch-1'", "")
     assert more == [] or "kurtosis" in first
 
 
@@ -127,6 +129,44 @@ def test_processes_at_the_same_time_have_one_variable_and_two_surfaces(polish, p
     found = problems(both)
     assert len(found) == bool(part)
     assert all(one.startswith("process.polish.together_with is ") and part in one for one in found)
+
+
+SMOOTH = [one | {"rms_nm": 0.3, "uncertainty": {"rms_nm": 0.01}} for one in SETTINGS]
+DEPOSITION = {"variable": "deposition_time_min", "surface": "Sub1", "settings": SMOOTH}
+
+
+@pytest.mark.parametrize(
+    ("changed", "second", "part"),
+    [
+        ({}, "deposition", ""),
+        ({}, "etch", "must be one of deposition"),
+        ({}, "depositon", "must be one of deposition; did you mean deposition?"),
+        ({"surface": "B2"}, "deposition", "the other surface of pair b, beside B2 (given process.deposition.surface"),
+        ({"surface": "B1"}, "deposition", "the other surface of pair b, beside B2 (given process.deposition.surface"),
+        (
+            {"variable": "etch_time_s"},
+            "deposition",
+            "with the same one, state together_with: etch in process.deposition",
+        ),
+    ],
+)
+def test_a_second_process_has_another_variable_and_makes_the_other_surface(changed, second, part):
+    found = problems({"process": {"deposition": DEPOSITION | changed}, "devices": {"Bump": {"second_process": second}}})
+    assert len(found) == bool(part)
+    assert all(one.startswith(f"devices.Bump.second_process is '{second}'") and part in one for one in found)
+
+
+def test_a_second_process_is_beside_a_first_one_and_no_other_at_the_same_time():
+    together = ETCH | {"surface": "Sub1", "settings": SMOOTH, "together_with": "etch"}
+    twice = {"process": {"deposition": DEPOSITION, "polish": together}}
+    (found,) = problems(twice, {"devices": {"Bump": {"second_process": "deposition"}}})
+    assert "must be left out, where process polish makes the other surface together with etch" in found
+    alone = {name: value for name, value in BUMP.items() if name not in ("process", "requirement")}
+    with pytest.raises(stiction.ConfigError, match="second_process is 'deposition', must come with process"):
+        stiction.load(
+            RUN | {"devices": {"Bump": alone | {"second_process": "deposition"}}},
+            {"process": {"deposition": DEPOSITION}},
+        )
 
 
 @pytest.fixture(scope="module")

@@ -111,6 +111,7 @@ def test_the_setting_to_measure_next_shrinks_the_error_as_said():
     rng = np.random.default_rng(11)
     found, law = drawn(0.0, rng)
     assert found.subject == "best"
+    assert found.again == (found.next in SETTINGS)
     assert law.settings[0] <= found.next <= law.settings[-1]
     assert 0.3 * found.before < found.after < found.before
     before, after = (
@@ -126,3 +127,4 @@ def test_where_the_best_setting_is_an_end_the_length_of_the_range_is_what_the_ne
     assert found.best == 90
     assert found.subject == "range"
     assert found.after < found.before
+    assert (found.next, found.again) == (60, False)  # between the settings

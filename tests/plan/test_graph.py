@@ -37,7 +37,9 @@ DIMPLED = {"length_um": 250, "dimples": {"number": 2, "at_um": [200], "height_um
 ETCHED = [{"value": value, "rms_nm": value / 20, "uncertainty": {"rms_nm": 0.1}} for value in (30, 60, 90)]
 ETCH = {"variable": "etch_time_s", "surface": "B2", "settings": ETCHED}
 MORE = {"devices": {"C1": BIASED | DIMPLED, "S1": BIASED | {"tilt_deg": [0, 0.1]}, "Lever": {"process": "etch"}}}
-MORE |= {"studies": ISLANDS, "process": {"etch": ETCH}}
+MORE["devices"]["Bump"] = {"process": "etch", "second_process": "deposition"}
+DEPOSITION = ETCH | {"variable": "deposition_time_min", "surface": "Sub1"}
+MORE |= {"studies": ISLANDS, "process": {"etch": ETCH, "deposition": DEPOSITION}}
 PLAN = Plan(load(*SECTIONS, {"test_beams": {"paperB": {"stuck": COUNTS}}} | MORE))
 GRAPH, SCHEMA = Graph(PLAN), schema()
 #: Stages of surfaces described by scans; `tests/workflow/test_from_scans.py` runs them.
@@ -74,7 +76,7 @@ def reached():
         f"devices/{stage}/{name}" for stage in ("model_error", "left_out_gaps") for name in PLAN.devices.sections
     ]
     wanted += [f"studies/model_error/{pair}" for pair in PLAN.pairs]
-    wanted += ["process/settings/etch_time_s"]
+    wanted += ["process/settings/etch_time_s", "process/pairs/Bump"]
     return behind(GRAPH, wanted)
 
 

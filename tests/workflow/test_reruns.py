@@ -20,6 +20,7 @@ from planner import Planner
 from stiction.config.files import normalised, paper
 from stiction.config.merging import merged
 from stiction.config.scans import resolve_scan_paths
+from stiction.config.surfaces import process
 from stiction.plan.graph import Graph, stages, structured
 from stiction.plan.plan import Plan
 from stiction.plan.stage import File
@@ -209,7 +210,8 @@ class Tree:
         self.small = scratch / "small.yaml"
         self.small.write_text(config)
         named = yaml.safe_load(config)
-        self.graph = Graph(Plan(normalised(resolve_scan_paths(merged(paper(), named), named, scratch))))
+        whole = process.with_surfaces(resolve_scan_paths(merged(paper(), named), named, scratch))
+        self.graph = Graph(Plan(normalised(whole)))
         self.overlay = scratch / "overlay.yaml"
         self.planner = Planner(folder, scratch)
         with contextlib.chdir(folder):

@@ -8,7 +8,9 @@ from test_reruns import Tree
 
 pytestmark = pytest.mark.slow
 
-#: A beam on the strips of its pair with a chart, a bridge, and a stopper on a patch of its own.
+#: Settings of a process.
+SETTINGS = "[{value: 30, rms_nm: 2, uncertainty: {rms_nm: 0.1}}, {value: 90, rms_nm: 6, uncertainty: {rms_nm: 0.1}}]"
+#: A beam on the strips of its pair with a chart, a bridge, a stopper on a patch of its own, and one over a process.
 SMALL = """
 run: {pairs: [b]}
 pairs: {b: {humidities: [0.8]}}
@@ -21,13 +23,16 @@ devices:
   R1: {kind: bridge, pair: b, thickness_um: 2, gap_um: 2, width_um: 20, residual_stress_MPa: 50, humidities: [0.7]}
   S1: {kind: stopper, pair: b, contact_um: [3, 3], restoring_force_uN: 20, humidities: [0.7],
        uncertainty: {humidity: 0.01, young_modulus_GPa: 5}}
-"""
+  E1: {kind: stopper, pair: b, contact_um: [3, 3], restoring_force_uN: 20, humidities: [0.7],
+       requirement: {share: 0.05}, process: etch}
+process: {etch: {variable: etch_time_s, surface: B2, settings: SETTINGS}}
+""".replace("SETTINGS", SETTINGS)
 #: Rules of this test, and the rules that read their outputs, listed by hand.
 READ_BY = {
     "heights": "identification spectrum contact_chunk device_contact tip_contact slope_contact solid_contact plasticity"
-    " tip_solid_contact budget tip_slope_contact tip_choice_contact tip_budget",
+    " tip_solid_contact budget tip_slope_contact tip_choice_contact tip_budget process_point",
     "spectrum": "contact_chunk device_contact tip_contact slope_contact solid_contact plasticity budget tip_slope_contact"
-    " tip_solid_contact tip_choice_contact tip_budget",
+    " tip_solid_contact tip_choice_contact tip_budget process_point",
     "identification": "device_choice_summits",
     "contact_chunk": "contact",
     "contact": "cracks safe_lengths chart budget separation",
@@ -58,6 +63,11 @@ READ_BY = {
     "stoppers": "table_stoppers figure_stoppers device_page life device_warnings",
     "budget": "table_budget figure_budget device_page",
     "tip_budget": "table_budget figure_budget device_page",
+    "process_law": "process_point process_curve process_settings table_process figure_process figure_process_law"
+    " device_page",
+    "process_point": "process_curve",
+    "process_curve": "process_settings table_process figure_process device_page",
+    "process_settings": "table_process figure_process device_page",
 }
 RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
 COMPUTING = set(READ_BY)
@@ -100,7 +110,7 @@ MATRIX = [
      "C1|R1|contact|S1_rh070"),
     ("area of a stopper", "devices: {S1: {contact_um: [3, 2]}}", "device_contact solid_contact device_choice_summits",
      OF_BEAMS, "C1|R1|1500x"),
-    ("samples of slopes", "studies: {slopes: {samples: 200}}", "slope_contact solid_contact device_choice_summits", (),
+    ("samples of slopes", "studies: {slopes: {samples: 200}}", "slope_contact solid_contact device_choice_summits process_point", (),
      "stoppers|chart|cracks|tip"),
     ("beams of slopes", "design: {budget_beams: 100}", "budget", (), "S1|contact|chart|cracks|tip"),
     ("beams, each with a tip", "design: {beams: 900}", "cracks tip_contact tip_slope_contact tip_solid_contact tip_choice_contact chart", OF_STOPPERS,
@@ -108,15 +118,15 @@ MATRIX = [
     ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", "stoppers device_warnings", OF_BEAMS, "C1|R1|budget|contact"),
     ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
      "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
-    ("water", "water: {temperature_K: 310}", "cracks safe_lengths chart stoppers budget tip_budget separation", (), "contact"),
-    ("adsorbed water", "water: {adsorbed_nm: 0.1}", "cracks safe_lengths chart stoppers budget tip_budget separation", (), "contact"),
+    ("water", "water: {temperature_K: 310}", "cracks safe_lengths chart stoppers budget tip_budget separation process_point", (), "contact"),
+    ("adsorbed water", "water: {adsorbed_nm: 0.1}", "cracks safe_lengths chart stoppers budget tip_budget separation process_point", (), "contact"),
     ("uncertainty of the adsorbed water", "devices: {C1: {uncertainty: {adsorbed_nm: 0.1}}}", "budget tip_budget", (),
      "R1|S1|contact|chart"),
-    ("attraction across gaps", "attraction: {wavelength_nm: 90}", "cracks safe_lengths chart stoppers budget tip_budget separation", (),
+    ("attraction across gaps", "attraction: {wavelength_nm: 90}", "cracks safe_lengths chart stoppers budget tip_budget separation process_point", (),
      "contact"),
-    ("skewness of a surface", "surfaces: {B2: {skewness: -0.7}}", "heights device_choice_summits", (), "Sub1.nc"),
+    ("skewness of a surface", "surfaces: {B2: {skewness: -0.7}}", "heights device_choice_summits process_law", (), "Sub1.nc"),
     ("skewness of another surface", "surfaces: {B1: {skewness: -0.7}}", "", (), ""),
-    ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (), "slopes|modulus|choices|tip"),
+    ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact process_point", (), "slopes|modulus|choices|tip"),
     ("chunks", "contact: {chunks: 2}", "", (), ""),
     ("edge of tips", "design: {tip_edge: square}", "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact", OF_STOPPERS,
      "cracks|S1|contact/b|budget/C1_rh070.nc"),
@@ -135,7 +145,13 @@ MATRIX = [
     ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "separation cracks safe_lengths", OF_STOPPERS | OF_CHARTS, "contact|C1|S1|chart"),
     ("Hamaker constant of a body", BODY + "{hamaker_constant_zJ: {water: 20, dry: 200}}}",
      "contact_chunk device_contact tip_contact slope_contact solid_contact device_choice_contact plasticity"
-     " tip_slope_contact tip_solid_contact tip_choice_contact", (), "heights|spectrum|summits"),
+     " tip_slope_contact tip_solid_contact tip_choice_contact process_point", (), "heights|spectrum|summits"),
+    ("number at a setting of a process", f"process: {{etch: {{settings: {SETTINGS.replace('rms_nm: 6', 'rms_nm: 7')}}}}}",
+     "process_law", (), "C1|R1|S1|contact|stoppers|heights"),
+    ("setting of a process", f"process: {{etch: {{settings: {SETTINGS.replace('90', '80')}}}}}",
+     "process_law process_point", (), "C1|R1|S1|contact|stoppers|heights"),
+    ("requirement of a device over a process", "devices: {E1: {restoring_force_uN: 30}}", "stoppers process_point",
+     {"table_safe_lengths", "figure_risk", "table_chart", "figure_chart"}, "C1|R1|S1|contact|laws"),
     ("hardness of a body", BODY + "{hardness_GPa: 9}}", "plasticity", (), "contact|cracks|stoppers/|budget"),
 ]  # fmt: skip
 # One row of each kind is fast; these are slow tests.
@@ -150,12 +166,13 @@ FURTHER = {
 FURTHER |= {"humidities of a chart", "width of a beam", "strips of a beam", "stress in a bridge", "hardness of a body"}
 FURTHER |= {"tension of a liquid", "number of touchdowns", "voltage of a beam", "voltage of a stopper"}
 FURTHER |= {"tilt of a stopper", "dimples of a bridge", "adsorbed water", "uncertainty of the adsorbed water"}
+FURTHER |= {"number at a setting of a process", "setting of a process", "requirement of a device over a process"}
 FURTHER |= {"Hamaker constant of a body", "uncertainty of a property of the solids"}
 FURTHER |= {"another property of the solids of a cantilever becomes uncertain"}
 ROWS = [pytest.param(*row, id=name, marks=[pytest.mark.slow] * (name in FURTHER)) for name, *row in MATRIX]
 #: Modules, and the rules whose datasets a new variable changes.
 LAYOUTS = {
-    "stages/devices/stoppers": {"stoppers"},
+    "stages/devices/stoppers": {"stoppers", "process_point"},
     "stages/devices/budget": {"budget", "tip_budget"},
     "stages/devices/chart": {"chart"},
 }
@@ -163,6 +180,7 @@ LAYOUTS |= {
     "stages/devices/cracks": {"cracks", "safe_lengths"},
     "stages/devices/safe_lengths": {"safe_lengths"},
 }
+LAYOUTS |= {"stages/process/law": {"process_law"}, "stages/process/recommended": {"process_settings"}}
 LAYOUTS |= {"stages/life/answers": {"life"}, "stages/life/separation": {"separation"}}
 
 
@@ -203,3 +221,17 @@ def test_a_new_variable_in_a_dataset_reruns_its_rule_and_its_readers(tree, modul
     path.write_text(code.replace("    return xr.Dataset(", "    more = 1\n    return xr.Dataset("))
     # Tables and figures of stoppers and budgets share modules that know both datasets.
     assert COMPUTING & set(tree.rerun().values()) == behind(rules) & COMPUTING
+
+
+def test_a_second_process_of_a_device_runs_its_map_and_no_other_device(tree):
+    second = SETTINGS.replace("rms_nm: 2", "rms_nm: 0.2").replace("rms_nm: 6", "rms_nm: 0.6")
+    process = f"process: {{deposition: {{variable: deposition_time_min, surface: Sub1, settings: {second}}}}}"
+    rerun = tree.rerun(overlay=f"devices: {{E1: {{second_process: deposition}}}}\n{process}")
+    maps = {f"{kind}_process_map" for kind in ("table", "figure")} | {"process_map", "process_pairs"}
+    assert {rule for rule in rerun.values() if "process" in rule} == maps | {
+        "process_law",
+        "process_point",
+        "figure_process_law",
+    }
+    assert not [name for name in rerun if re.search("C1|R1|S1|laws/etch|law_etch|contact|devices/stoppers", name)]
+    assert {f"results/process/points/E1_{number}.nc" for number in range(35)} <= rerun.keys()

@@ -26,7 +26,7 @@ _VERDICT = "verdict"
 _PAGES = ("devices/*.html", "figures/overview.png", "figures/surface_sheet_*.png", "figures/*.png")
 _TABLES = tuple(
     f"tables/{name}.md"
-    for name in ("process", "roughness", "test_beams", "safe_lengths", "stoppers", "table_3", "scans")
+    for name in ("process", "process_map", "roughness", "test_beams", "safe_lengths", "stoppers", "table_3", "scans")
 )
 #: Where everything goes that Snakemake and its jobs print, relative to the folder of the run.
 PRINTED = Path(".snakemake", "printed.log")

@@ -233,9 +233,12 @@ def _devices(arguments):
 def _scans(arguments):
     """Evaluate scans without the pairs of their surfaces."""
     from stiction.config import scans  # takes longer than all other imports
+    from stiction.config.surfaces import process
 
-    if not any(map(scans.has_scans, reading.contents(arguments.files, arguments.more))):
-        raise launch.RefusedError(f"{' '.join(arguments.files)} describes no surface by scans: add surfaces.NAME.scans")
+    contents = reading.contents(arguments.files, arguments.more)
+    if not any(scans.has_scans(content) or process.has_scans(content) for content in contents):
+        add = "add surfaces.NAME.scans, or scans to the settings of process.NAME"
+        raise launch.RefusedError(f"{' '.join(arguments.files)} describes no surface by scans: {add}")
     if any(word.startswith("--configfile") for word in arguments.more):
         return _run(arguments, "scans")  # files that Snakemake reads
     from stiction.command import scans_alone

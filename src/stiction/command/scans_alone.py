@@ -8,8 +8,11 @@ from typing import Any
 import yaml
 
 from stiction.config import files, scans
+from stiction.config.keys import Keys, Relations
 from stiction.config.messages import ConfigError, schema_problems
 from stiction.config.relations import schema
+from stiction.config.surfaces import process
+from stiction.config.surfaces.process_relations import surfaces_of_processes_are_defined
 from stiction.run.atomic import save_text
 
 #: Configuration of the surfaces, and folder of their preliminary numbers, below the folder of a run.
@@ -32,18 +35,20 @@ class Alone:
 
 
 def alone(overlays: Iterable[str], directory: Path) -> Alone:
-    """Surfaces described by scans in files of a configuration, each with its usable files.
+    """Surfaces described by scans in files of a configuration, those of settings included, each with its usable files.
 
     Raises
     ------
     ConfigError
-        If a key of these surfaces is wrong on its own.
+        If a key of these surfaces or of a process is wrong on its own, or a process has no surface.
     """
     config = files.joined(*overlays)
     measured = {name: _entry(entry) for name, entry in config["surfaces"].items() if scans.is_measured(entry)}
     overlay = {"surfaces": measured, "scans": config["scans"], "seed": config["seed"], "run": {"pairs": []}}
-    if faults := schema_problems(files.joined(overlay), schema()):
-        raise ConfigError(*map(str, faults))
+    processes = {"process": config["process"]} if "process" in config else {}
+    faults = schema_problems(files.joined(overlay) | processes, schema())
+    if faults := faults or list(Relations([surfaces_of_processes_are_defined]).problems(Keys(config, []))):
+        raise ConfigError(*process.in_settings(faults, config))
     used, refused = {}, {}
     for name, entry in measured.items():
         usable, reasons = scans.usable(entry, config["scans"], directory / _KEPT)

@@ -20,6 +20,7 @@ COMMON = (
     "requirement",
     "roughness",
     "process",
+    "second_process",
     "touchdowns",
 )
 COMMON += ("voltage_V", "offset_V", "dielectric")

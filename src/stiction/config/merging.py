@@ -19,7 +19,13 @@ _NAMED = {
     "process": {"surface": "surfaces", "together_with": "process"},
     "pairs": {"beam": "surfaces", "substrate": "surfaces"},
     "test_beams": {"pair": "pairs"},
-    "devices": {"pair": "pairs", "test_beams": "test_beams", "surface": "surfaces", "process": "process"},
+    "devices": {
+        "pair": "pairs",
+        "test_beams": "test_beams",
+        "surface": "surfaces",
+        "process": "process",
+        "second_process": "process",
+    },
 }
 
 

@@ -329,6 +329,7 @@ def requirements_and_roughnesses_come_together(config):
         ("requirement", ("roughness", "process")),
         ("roughness", ("requirement",)),
         ("process", ("requirement",)),
+        ("second_process", ("process",)),
     ):
         for name, _ in config.entries("devices", stated):
             if not set(others) & set(config.names(f"devices.{name}")):

@@ -7,7 +7,7 @@ simulation and of the model, each common to all settings of a curve: every draw 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import Akima1DInterpolator
@@ -17,6 +17,8 @@ from stiction.devices.roughness import LARGEST, Crossing, crossings, sufficient
 
 #: Number of drawn laws, and of settings at which their margins are compared.
 DRAWS, SETTINGS = 1000, 301
+#: Number of settings of each of two processes at which pairs are compared.
+PAIRS = 61
 #: Ends of the 95 % interval of the best setting, and confidence of the settings that suffice.
 INTERVAL, CONFIDENCE = (0.025, 0.975), 0.95
 
@@ -29,12 +31,36 @@ class Curve:
     margin: np.ndarray  #: (p,) [-]
     slopes: np.ndarray  #: (p, q) by the scaled quantities of all laws, one law after the other
     error: np.ndarray  #: (p,) standard error of the margin on the law: of the simulation and of the model
+    second: float | None = None  #: setting of a second process, whose law is the second one
 
     def at(self, values: np.ndarray) -> "Curve":
         """Curve at other settings within its own."""
         margin = np.clip(Akima1DInterpolator(self.settings, self.margin)(values), -LARGEST, LARGEST)
-        slopes = np.transpose([np.interp(values, self.settings, column) for column in self.slopes.T])
-        return Curve(values, margin, slopes, np.interp(values, self.settings, self.error))
+        return Curve(
+            values, margin, _between(self.settings, self.slopes, values), np.interp(values, self.settings, self.error)
+        )
+
+    def places(self, number: int) -> np.ndarray:
+        """Settings of the process of a law, (p,)."""
+        return np.full(len(self.settings), self.second) if number and self.second is not None else self.settings
+
+
+@dataclass(frozen=True)
+class Map:
+    """Margins as of `Curve`, over the settings of two processes on their laws."""
+
+    settings: np.ndarray  #: (p,) of the first process, increasing
+    seconds: np.ndarray  #: (r,) of the second process, increasing
+    margin: np.ndarray  #: (r, p) [-]
+    slopes: np.ndarray  #: (r, p, q)
+    error: np.ndarray  #: (r, p)
+
+    def at(self, values: np.ndarray, seconds: np.ndarray) -> list[Curve]:
+        """Curves along the first process at settings of the second one."""
+        margin = Akima1DInterpolator(self.seconds, self.margin)(seconds)
+        slopes, error = (_between(self.seconds, one, seconds) for one in (self.slopes, self.error))
+        rows = zip(margin, slopes, error, seconds, strict=True)
+        return [replace(Curve(self.settings, *row).at(values), second=float(second)) for *row, second in rows]
 
 
 @dataclass(frozen=True)
@@ -51,6 +77,7 @@ class Recommendation:
     error: float  #: standard error of the best setting
     interval: tuple[float, float]  #: its 95 % interval
     next: float  #: setting whose measurement shrinks an error most, NaN if none does
+    again: bool  #: whether all surfaces are measured there already
     subject: str  #: what errs less then: the ``best`` setting, or else the length of the ``range`` that suffices
     before: float  #: standard error of the subject
     after: float  #: expected standard error after that measurement
@@ -76,7 +103,7 @@ def recommended(
     drawn = np.concatenate([law.drawn(DRAWS, rng).reshape(DRAWS, -1) for law in laws], axis=1)
     here = [curve.at(values) for curve in curves]
     margin = np.min([curve.margin for curve in here], axis=0)
-    margins = np.min([_drawn(curve, laws, drawn, rng) for curve in here], axis=0)
+    margins = np.min([_drawn(curve, laws, drawn, rng.standard_normal((DRAWS, 1))) for curve in here], axis=0)
     best = np.array([_best(values, one) for one in margins])
     safe = np.quantile(margins, 1 - CONFIDENCE, axis=0)
     subject = "best" if best.std() else "range"
@@ -93,10 +120,61 @@ def recommended(
         error=float(best.std()),
         interval=tuple(map(float, np.quantile(best, INTERVAL))),
         next=following,
+        again=all(following in law.settings for law in laws),
         subject=subject,
         before=float(wanted.std()),
         after=after,
     )
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Pairs of settings of two processes for one device."""
+
+    settings: np.ndarray  #: (n,) of the first process
+    seconds: np.ndarray  #: (m,) of the second process
+    margin: np.ndarray  #: (m, n) smallest margin at all humidities and against all end states [-]
+    safe: np.ndarray  #: (m, n) margin with 95 % confidence
+    best: np.ndarray  #: (2,) pair of the largest margin
+    error: np.ndarray  #: (2,) its standard errors
+    interval: np.ndarray  #: (2, 2) ends of the 95 % interval of each of its settings
+
+
+def recommended_pairs(maps: Sequence[Map], laws: Sequence[Law], rng: np.random.Generator) -> Pairs:
+    """Pairs of settings that suffice for a device, and the best one.
+
+    Parameters
+    ----------
+    maps : sequence of Map
+        At all humidities and against all end states.
+    laws : sequence of Law
+        Of both processes.
+    rng : numpy.random.Generator
+    """
+    values, steps = (np.linspace(*law.ends, PAIRS) for law in laws)
+    seconds = np.union1d(steps, laws[1].settings)
+    drawn = np.concatenate([law.drawn(DRAWS, rng).reshape(DRAWS, -1) for law in laws], axis=1)
+    margin, margins = np.inf, np.inf
+    for one in maps:
+        rows, common = one.at(values, seconds), rng.standard_normal((DRAWS, 1))
+        margin = np.minimum(margin, [row.margin for row in rows])
+        margins = np.minimum(margins, np.stack([_drawn(row, laws, drawn, common) for row in rows], axis=1))
+    best = np.array([_best_pair(values, seconds, one) for one in margins])
+    return Pairs(
+        settings=values,
+        seconds=seconds,
+        margin=margin,
+        safe=np.quantile(margins, 1 - CONFIDENCE, axis=0),
+        best=_best_pair(values, seconds, margin),
+        error=best.std(axis=0),
+        interval=np.quantile(best, INTERVAL, axis=0).T,
+    )
+
+
+def _best_pair(values, seconds, margin):
+    """Pair of settings of the largest margin, the middle of several."""
+    rows, columns = np.nonzero(margin >= margin.max() - 1e-12)
+    return np.array([values[columns].mean(), seconds[rows].mean()])
 
 
 def unknown(values: np.ndarray) -> Recommendation:
@@ -104,25 +182,33 @@ def unknown(values: np.ndarray) -> Recommendation:
     nothing, none = np.full(len(values), np.nan), float("nan")
     numbers = {"best": none, "error": none, "interval": (none, none), "next": none, "before": none, "after": none}
     arrays = {"settings": values, "margin": nothing, "band": np.array([nothing, nothing]), "safe": nothing}
-    return Recommendation(**arrays, **numbers, sufficient=[], crossings=[], subject="best")
+    return Recommendation(**arrays, **numbers, sufficient=[], crossings=[], again=False, subject="best")
 
 
 def law_error(curve: Curve, laws: Sequence[Law]) -> np.ndarray:
     """Standard error of the margins of a curve due to the laws, (p,) [-]."""
     variance, first = np.zeros(len(curve.settings)), 0
-    for law in laws:
+    for number, law in enumerate(laws):
         slopes = curve.slopes[:, first : first + len(law.coefficients)]
-        variance += np.einsum("pq,pqr,pr->p", slopes, law.covariance_at(curve.settings), slopes)
+        variance += np.einsum("pq,pqr,pr->p", slopes, law.covariance_at(curve.places(number)), slopes)
         first += len(law.coefficients)
     return np.sqrt(variance)
 
 
-def _drawn(curve, laws, drawn, rng):
-    """Margins of a curve on drawn laws, whose coefficients differ by ``drawn`` (draws, all), (draws, n)."""
+def _between(places, values, others):
+    """Values (p, ...) at places (p,), linearly between them at others (n,), (n, ...)."""
+    flat = np.reshape(values, (len(places), -1))
+    return np.transpose([np.interp(others, places, column) for column in flat.T]).reshape(-1, *values.shape[1:])
+
+
+def _drawn(curve, laws, drawn, common):
+    """Margins of a curve on drawn laws, whose coefficients differ by ``drawn`` (draws, all), (draws, n).
+
+    Errors ``common`` (draws, 1) are those of simulation and model [standard errors].
+    """
     sizes = np.cumsum([len(law.coefficients) for law in laws])[:-1]
-    slopes = zip(laws, np.split(curve.slopes, sizes, axis=1), strict=True)
-    parts = [(of[:, :, None] * law.basis(curve.settings)[:, None]).reshape(len(of), -1) for law, of in slopes]
-    common = rng.standard_normal((len(drawn), 1))
+    slopes = enumerate(zip(laws, np.split(curve.slopes, sizes, axis=1), strict=True))
+    parts = [(of[:, :, None] * law.basis(curve.places(k))[:, None]).reshape(len(of), -1) for k, (law, of) in slopes]
     return curve.margin + drawn @ np.concatenate(parts, axis=1).T + common * curve.error
 
 

@@ -247,7 +247,17 @@ class DevicePlan:
 
     @cached_property
     def processed(self) -> list[str]:
-        """Devices computed over a process."""
+        """Devices computed over the variable of a process."""
+        return [name for name in self._over_processes if name not in self.processed_twice]
+
+    @cached_property
+    def processed_twice(self) -> list[str]:
+        """Devices computed over the variables of two processes."""
+        return [name for name in self._over_processes if "second_process" in self.sections[name]]
+
+    @property
+    def _over_processes(self):
+        """Devices with a process."""
         return [name for name, device in self.sections.items() if "process" in device]
 
     @cached_property

@@ -1,6 +1,8 @@
 """Processes through all stages: today's roughness at a setting, brute force at the best one, pages and Python."""
 
+import dataclasses
 import pickle
+import re
 
 import numpy as np
 import pytest
@@ -8,6 +10,7 @@ import xarray as xr
 from legends import covering
 
 import stiction
+from stiction.devices.process import unknown
 from stiction.plan.graph import Results
 from stiction.report.devices import pages
 from stiction.report.process import section, tables
@@ -141,7 +144,7 @@ def test_what_serves_all_devices_serves_each_and_has_the_smallest_margin(etched)
 def test_answers_name_the_settings_the_best_and_the_next(etched):
     first, *more = etched.answers("Bump")
     assert first.startswith(("Settings of the etch time from ", "No setting of the etch time from 30 to 120 s"))
-    assert any(one.startswith("Measure ") and " s next" in one for one in more)
+    assert any(one.startswith("Measure ") and (" s next: " in one or " s again: " in one) for one in more)
     (together, *_) = etched.answers(recommended.ALL)
     assert together.startswith("All devices together: ")
     with pytest.raises(ValueError, match="device Other has no process over etch_time_s: Bump, Small"):
@@ -211,6 +214,44 @@ def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_wit
         "Settings of the etch time that suffice are not known: too few could be computed."
     ]
     assert "Not computed where the etch time is 30 s, 60 s, 90 s: too smooth." in tables.notes(curve, [known])
+
+
+#: Best setting, end that it is in every draw, and the other end.
+ENDS = [(120.0, "above", 30.0), (30.0, "below", 120.0)]
+
+
+def _known(best, sufficient, following=np.nan, again=False, ends=(30, 120)):
+    """Recommendation with a best setting that is certain."""
+    values = np.linspace(*ends, 7)
+    found = dataclasses.replace(unknown(values), best=best, error=0.0, interval=(best, best), sufficient=sufficient)
+    found = dataclasses.replace(found, next=following, again=again, before=2.0, after=1.0, subject="range")
+    layout = recommended.layout(found).assign(share=SHARE).expand_dims(who=["Bump"])
+    return layout.assign_attrs(variable="etch_time_s")
+
+
+@pytest.mark.parametrize(("best", "side", "other"), ENDS)
+def test_where_no_setting_suffices_and_an_end_is_the_best_settings_beyond_it_are_advised(best, side, other):
+    beyond = f"The best setting is the end of the measured range: measure settings {side} {best:g} s."
+    assert tables.answers(_known(best, []), "Bump")[1:] == [beyond]
+    enough = tables.answers(_known(best, [tuple(sorted((best, best + (other - best) / 9)))]), "Bump")
+    inside = tables.answers(_known(75.0, []), "Bump")
+    assert beyond not in enough + inside
+
+
+@pytest.mark.parametrize(("again", "when"), [(True, "again"), (False, "next")])
+def test_a_setting_that_is_measured_already_is_advised_again(again, when):
+    *_, last = tables.answers(_known(75.0, [(60.0, 90.0)], 60.0, again), "Bump")
+    assert last.startswith(f"Measure 60 s {when}: ")
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.03, 0.12), (30.0, 120.0), (1000.0, 1050.0), (120_000.0, 300_000.0)])
+def test_settings_are_shown_as_closely_as_their_range_is_wide(low, high):
+    exact = [low + part * (high - low) for part in (0.3147, 0.6853, 0.5219, 0.8141)]
+    said = " ".join(tables.answers(_known(exact[2], [tuple(exact[:2])], exact[3], ends=(low, high)), "Bump"))
+    found = re.search(r"from (\S+) to (\S+) s leave .*, best (\S+) s.*Measure (\S+) s", said).groups()
+    np.testing.assert_allclose(list(map(float, found)), exact, rtol=0, atol=0.005 * (high - low))
+    assert all(len(one.replace(".", "").lstrip("0")) <= 6 for one in found)
+    assert "e" not in "".join(found)
 
 
 @pytest.mark.slow

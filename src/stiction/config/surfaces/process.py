@@ -59,8 +59,8 @@ def words_of(variable: str) -> str:
 
 def names(config: Mapping[str, Any], process: str) -> list[str]:
     """Names of the surfaces at the settings of a process, in the order of the file."""
-    settings = _section(_section(config.get("process")).get(process)).get("settings")
-    return [f"{process}-{number}" for number in range(1, len(settings) + 1)] if isinstance(settings, list) else []
+    settings = _settings(_section(config.get("process")).get(process))
+    return [f"{process}-{number}" for number in range(1, len(settings) + 1)]
 
 
 def all_names(config: Mapping[str, Any]) -> list[str]:
@@ -68,13 +68,29 @@ def all_names(config: Mapping[str, Any]) -> list[str]:
     return [name for process in _section(_section(config).get("process")) for name in names(config, process)]
 
 
+def has_scans(config: Mapping[str, Any]) -> bool:
+    """Whether a configuration, valid or not, describes a setting by scans."""
+    sections = _section(config.get("process")).values()
+    return any("scans" in _section(setting) for section in sections for setting in _settings(section))
+
+
 def of_device(config: Mapping[str, Any], device: str) -> list[str]:
-    """Names of the processes of a device: the one that it states, and one of its other surface at the same time."""
+    """Names of the processes of a device: the one that it states, and one of its other surface.
+
+    The latter is the second one that it states, or one at the same time.
+    """
     section, known = config["devices"][device], config.get("process", {})
     named = section.get("process")
+    if is_mapped(config, device):
+        return [named, section["second_process"]]
     sides = config["pairs"].get(section["pair"], {}).values()
     others = (name for name in known if known[name].get("together_with") == named and known[name]["surface"] in sides)
     return [named, *others] if named in known else []
+
+
+def is_mapped(config: Mapping[str, Any], device: str) -> bool:
+    """Whether a device is computed over the variables of two processes."""
+    return "second_process" in config["devices"][device]
 
 
 def variable_of(config: Mapping[str, Any], device: str) -> str:
@@ -97,12 +113,12 @@ def with_surfaces(config: dict[str, Any]) -> dict[str, Any]:
     """
     surfaces, added = config.get("surfaces"), {}
     for process, section in _section(config.get("process")).items():
-        settings, base = _section(section).get("settings"), _section(surfaces).get(_section(section).get("surface"))
-        if not (isinstance(process, str) and isinstance(settings, list) and isinstance(base, dict)):
+        base = [one for name, one in _section(surfaces).items() if name == _section(section).get("surface")]
+        if not (isinstance(process, str) and base and isinstance(base[0], dict)):
             continue
-        for number, setting in enumerate(settings, 1):
+        for number, setting in enumerate(_settings(section), 1):
             if isinstance(setting, dict):
-                added[f"{process}-{number}"] = _surface(base, setting)
+                added[f"{process}-{number}"] = _surface(base[0], setting)
     for name in added:
         if surfaces.get(name, added[name]) != added[name]:
             raise ConfigError(f"surfaces.{name} must have another name: process makes a surface of this name")
@@ -148,6 +164,12 @@ def _moved(setting, folder):
     if not (isinstance(scans, list) and all(isinstance(file, str) for file in scans)):
         return setting
     return setting | {"scans": [str(Path(folder).absolute() / file) for file in scans]}
+
+
+def _settings(section):
+    """Settings of a process, valid or not, none if they are no list."""
+    settings = _section(section).get("settings")
+    return settings if isinstance(settings, list) else []
 
 
 def _section(value):

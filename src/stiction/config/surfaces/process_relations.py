@@ -8,14 +8,21 @@ from pathlib import Path
 from stiction.config.keys import Keys, Relations
 from stiction.config.meetings import surfaces_of
 from stiction.config.messages import duplicates
-from stiction.config.relations import references_are_defined, undefined
+from stiction.config.relations import undefined
 from stiction.config.scans import digest
 from stiction.config.surfaces.process import NUMBERS, UNITS, all_names, unit_of
 
 #: Relations between the keys of processes.
 relation = Relations()
 
-relation(lambda config: references_are_defined(config, "process", "surface", "surfaces"))
+
+@relation
+def surfaces_of_processes_are_defined(config):
+    """Require a surface that exists and is none at a setting."""
+    made = all_names(config.config)
+    defined = [name for name in config.names("surfaces") if name not in made]
+    for name, surface in config.entries("process", "surface"):
+        yield f"process.{name}.surface", undefined(surface, defined)
 
 
 @relation
@@ -145,3 +152,24 @@ def processes_of_devices_make_their_surfaces(config):
         elif None not in sides and known[process]["surface"] in config["surfaces"].keys() - sides:
             message = f"must make a surface of pair {pair}, {' or '.join(sides)}"
             yield key, message, f"process.{process}.surface"
+
+
+@relation
+def second_processes_make_the_other_surface(config):
+    """Require a second process with another variable, of the other surface of the pair, which no other makes."""
+    known = config["process"]
+    for name, first, second, pair in config.entries("devices", "process", "second_process", "pair"):
+        key, sides = f"devices.{name}.second_process", dict.fromkeys(surfaces_of(pair, config))
+        if first not in known or None in sides:
+            continue
+        made = known[first]["surface"]
+        beside = [one for one in known if known[one].get("together_with") == first and known[one]["surface"] in sides]
+        if refusal := undefined(second, [one for one in known if one != first]):
+            yield key, refusal
+        elif known[second]["surface"] not in sides or known[second]["surface"] == made:
+            yield key, f"must make the other surface of pair {pair}, beside {made}", f"process.{second}.surface"
+        elif known[second]["variable"] == known[first]["variable"]:
+            message = f"must have another variable; with the same one, state together_with: {first} in process.{second}"
+            yield key, message, f"process.{second}.variable"
+        elif beside:
+            yield key, f"must be left out, where process {beside[0]} makes the other surface together with {first}"

@@ -1,9 +1,10 @@
-"""Figures of processes: devices over a process variable with bands, and the laws of the surfaces."""
+"""Figures of processes: devices over one process with bands or over two as maps, and the laws of the surfaces."""
 
 from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
+from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
 from stiction.config.cases import air
@@ -100,6 +101,37 @@ def laws(dataset: xr.Dataset) -> Figure:
     return figure
 
 
+@styled
+def process_map(found: xr.Dataset, pairs: xr.Dataset) -> Figure:
+    """Smallest margin of a device over two processes, with its lines of zero margin and the best pair."""
+    figure, ((panel,),) = panels(1, 1, (1.5 * SINGLE, 3.4))
+    x, y, best, interval = pairs["value"].values, pairs.second.values, pairs.best.values, pairs.best_interval.values
+    levels = np.ma.masked_invalid(pairs.margin.values / np.log(10))
+    if levels.count():
+        colours = panel.contourf(x, y, levels, 12, cmap="RdBu", norm=CenteredNorm())
+        figure.colorbar(colours, ax=panel, label="lg (smallest margin)")
+    for name, line, words in (
+        ("margin", "-", "estimate meets the requirement"),
+        ("safe", "--", "with 95 % confidence"),
+    ):
+        values = pairs[name].values
+        if np.nanmin(values, initial=np.inf) < 0 < np.nanmax(values, initial=-np.inf):
+            panel.contour(x, y, values, [0], colors="black", linestyles=line)
+            panel.plot([], [], line, color="black", label=words)
+    panel.plot(
+        *map(np.ravel, np.meshgrid(found["value"], found.second)), ".", color="0.3", markersize=2, label="computed"
+    )
+    reach = np.abs(interval - best[:, None])[..., None]
+    panel.errorbar(
+        *best, xerr=reach[0], yerr=reach[1], fmt="D", color="black", markersize=4, label="best, 95 % intervals"
+    )
+    for scale, variable in ((panel.set_xlabel, "variable"), (panel.set_ylabel, "second_variable")):
+        name = found.attrs[variable]
+        scale(f"{process.words_of(name)} [{process.unit_of(name)}]")
+    figure.legend(*handles(panel), loc="outside lower center", ncols=2)
+    return figure
+
+
 def _jobs(names: Sequence[str], wildcard: str) -> list[dict]:
     """Wildcards of the jobs of some names."""
     return [{wildcard: name} for name in names]
@@ -125,6 +157,15 @@ STAGES = (
         inputs=lambda plan, at: {"law": f"process/laws/{at.process}"},
         compute=lambda data: laws(data["law"]),
         jobs=lambda plan: _jobs(process.used(plan.config), "process"),
+        targets=("devices",),
+    ),
+    figure_stage(
+        "process_map_{device}",
+        "which pairs of settings of two processes leave {device} free",
+        "Devices",
+        inputs=lambda plan, at: {"map": f"process/maps/{at.device}", "pairs": f"process/pairs/{at.device}"},
+        compute=lambda data: process_map(data["map"], data["pairs"]),
+        jobs=lambda plan: [{"device": name} for name in plan.devices.processed_twice],
         targets=("devices",),
     ),
 )

@@ -8,7 +8,7 @@ import xarray as xr
 
 from stiction.config.surfaces import process
 from stiction.report.page import Page, Section
-from stiction.report.process import figures, tables
+from stiction.report.process import figures, maps, tables
 from stiction.stages.process.recommended import ALL
 
 
@@ -17,6 +17,9 @@ def inputs(plan: Any, device: str) -> dict[str, Any]:
     named = process.of_device(plan.config, device)
     if not named:
         return {}
+    if process.is_mapped(plan.config, device):
+        own = {"process_map": f"process/maps/{device}", "process_pairs": f"process/pairs/{device}"}
+        return own | {"process_laws": [f"process/laws/{name}" for name in named]}
     variable = process.variable_of(plan.config, device)
     return {
         "process": f"process/curves/{device}",
@@ -27,14 +30,27 @@ def inputs(plan: Any, device: str) -> dict[str, Any]:
 
 def with_process(page: Page, device: str, data: Mapping[str, Any]) -> Page:
     """Page with the settings that suffice for its device, or itself without a process."""
-    if "process" not in data:
+    if "process_laws" not in data:
         return page
-    curve, settings, laws = (data[name] for name in ("process", "process_settings", "process_laws"))
-    own = _section(device, curve, settings, laws)
+    laws, (verdict, *reasons) = data["process_laws"], page.answer
+    if "process_map" in data:
+        own, answer = (
+            _of_map(device, data["process_map"], data["process_pairs"], laws),
+            maps.briefly(data["process_pairs"]),
+        )
+    else:
+        own = _section(device, data["process"], data["process_settings"], laws)
+        answer = tables.briefly(data["process_settings"], device)
     pictures = [Section(f"Law of {law.surface}", (), None, figures.laws(law)) for law in laws]
-    verdict, *reasons = page.answer
-    answer = [verdict, tables.briefly(settings, device), *reasons]
+    answer = [verdict, answer, *reasons]
     return replace(page, answer=answer, sections=[*page.sections, own, *pictures])
+
+
+def _of_map(device, found, pairs, laws):
+    """Answers about a device over two processes, with table and figure."""
+    cells = maps.table({device: found}, {}, {device: laws}).cells.drop(columns="device")
+    said = [*maps.answers(pairs), *maps.notes(found, laws)]
+    return Section("Which settings of the two processes?", said, cells, figures.process_map(found, pairs))
 
 
 def _section(device: str, curve: xr.Dataset, settings: xr.Dataset, laws: Sequence[xr.Dataset]) -> Section:

@@ -1,6 +1,7 @@
 """Table of processes: devices over a process variable, and sentences on the settings that suffice."""
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -20,9 +21,9 @@ def answers(recommended: xr.Dataset, who: str) -> list[str]:
     if np.isnan(float(one.best)):
         return [_sufficient(one, who, unit)]
     said = [_sufficient(one, who, unit)]
-    if places := [_at(*pair, unit) for pair in _pairs(one.crossing, one.crossing_error)]:
+    if places := [at(one, *pair) for pair in _pairs(one.crossing, one.crossing_error)]:
         said.append(f"The estimate meets the requirement exactly at {' and at '.join(places)}.")
-    return said + _best(one, unit) + _next(one, unit)
+    return said + best(one) + _next(one, unit)
 
 
 def briefly(recommended: xr.Dataset, who: str) -> str:
@@ -41,14 +42,14 @@ def _sufficient(one, who, unit):
     if np.isnan(float(one.best)):
         return f"{_subject(who, 'Settings')} of the {words} that suffice are not known: too few could be computed."
     share = "the allowed share of every device" if who == ALL else one_in(float(one.share))
-    best = _at(float(one.best), float(one.best_error), unit)
-    ranges = [f"{low:.3g} to {high:.3g} {unit}" for low, high in _pairs(*one.sufficient.values.T)]
+    most = at(one, float(one.best), float(one.best_error))
+    ranges = [f"{shown(one, low)} to {shown(one, high)} {unit}" for low, high in _pairs(*one.sufficient.values.T)]
     if not ranges:
         settings = f"{_subject(who, 'No setting')} of the {words} from {value[0]:g} to {value[-1]:g} {unit}"
-        return f"{settings} is sure to leave at most {share} stuck; the best is {best}."
+        return f"{settings} is sure to leave at most {share} stuck; the best is {most}."
     enough = " or ".join(ranges)
     settings = f"{_subject(who, 'Settings')} of the {words} from {enough}"
-    return f"{settings} leave at most {share} stuck (95 % confidence), best {best}."
+    return f"{settings} leave at most {share} stuck (95 % confidence), best {most}."
 
 
 def _subject(who, begins):
@@ -56,9 +57,15 @@ def _subject(who, begins):
     return f"All devices together: {begins[:1].lower()}{begins[1:]}" if who == ALL else begins
 
 
-def _at(value, error, unit):
+def at(one: xr.Dataset, value: float, error: float) -> str:
     """Setting with its error, if it has one."""
-    return f"{with_error(value, error)} {unit}" if error > 0 else f"{value:.3g} {unit}"
+    return f"{with_error(value, error) if error > 0 else shown(one, value)} {unit_of(one)}"
+
+
+def shown(dataset: xr.Dataset, value: float) -> str:
+    """Setting to a hundredth of the range of all, or finer by less than a digit."""
+    decimals = max(0, -math.floor(math.log10(np.ptp(dataset.value.values) / 100)))
+    return f"{round(float(value), decimals):.10g}"
 
 
 def _pairs(first, second):
@@ -66,11 +73,16 @@ def _pairs(first, second):
     return [pair for pair in zip(map(float, first), map(float, second), strict=True) if np.isfinite(pair[0])]
 
 
-def _best(one, unit):
+def best(one: xr.Dataset) -> list[str]:
     """Interval of the best setting, and what lies at its ends."""
-    low, high = map(float, one.best_interval)
+    unit, (low, high) = unit_of(one), map(float, one.best_interval)
     first, last = map(float, one.value.values[[0, -1]])
-    said = [f"The best setting lies between {low:.3g} and {high:.3g} {unit} (95 %)."] if low < high else []
+    if low == high and low in (first, last) and not _pairs(*one.sufficient.values.T):
+        side = "below" if low == first else "above"
+        return [f"The best setting is the end of the measured range: measure settings {side} {low:g} {unit}."]
+    said = (
+        [f"The best setting lies between {shown(one, low)} and {shown(one, high)} {unit} (95 %)."] if low < high else []
+    )
     ends = [f"{end:g} {unit}" for end, near in ((first, low == first), (last, high == last)) if near]
     if ends:
         said.append(
@@ -87,7 +99,10 @@ def _next(one, unit):
         str(one.next_subject.values)
     ]
     errors = f"from {float(one.next_before):.2g} to {float(one.next_after):.2g} {unit}"
-    return [f"Measure {float(one.next):.3g} {unit} next: this is expected to shrink the error of {subject} {errors}."]
+    when = "again" if bool(one.next_again) else "next"
+    return [
+        f"Measure {shown(one, one.next)} {unit} {when}: this is expected to shrink the error of {subject} {errors}."
+    ]
 
 
 def notes(curve: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
@@ -98,7 +113,7 @@ def notes(curve: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
         for humidity in curve.humidity.values:
             for value in curve.value.values:
                 if sentence := str(curve[name].sel(humidity=humidity, value=value).values):
-                    places.setdefault(sentence.rstrip("."), []).append(f"{value:.3g} {unit_of(curve)}")
+                    places.setdefault(sentence.rstrip("."), []).append(f"{shown(curve, value)} {unit_of(curve)}")
         words = process.words_of(curve.variable)
         said += [
             f"{begins} the {words} is {', '.join(dict.fromkeys(at))}: {sentence}." for sentence, at in places.items()
@@ -117,17 +132,21 @@ def table(
         for sentence in answers(one, who)
     ]
     said += dict.fromkeys(sentence for device, curve in curves.items() for sentence in notes(curve, laws[device]))
-    caption = (
-        "Length of a beam, or restoring force of a stopper, with the allowed fraction p stuck, on the surfaces that a "
-        "process makes at values of its variable, and its margin to the required one: the logarithm of their ratio, "
-        "positive where the requirement is met. Errors of the margin are due to the simulation, to the law of the "
-        "surface at and between the measured settings, and to full elastic contact if it is computed."
+    of_all = [row for device, curve in curves.items() for row in rows(device, curve)]
+    return Table.of(of_all, with_list(caption("a process makes at values of its variable"), said), COLUMNS)
+
+
+def caption(made: str) -> str:
+    """Caption of a table, with what makes the surfaces."""
+    return (
+        "Length of a beam, or restoring force of a stopper, with the allowed fraction p stuck, on the surfaces that "
+        f"{made}, and its margin to the required one: the logarithm of their ratio, positive where the requirement is "
+        "met. Errors of the margin are due to the simulation, to the law of the surface at and between the measured "
+        "settings, and to full elastic contact if it is computed."
     )
-    rows = [row for device, curve in curves.items() for row in _rows(device, curve)]
-    return Table.of(rows, with_list(caption, said), _COLUMNS)
 
 
-def _rows(device, curve):
+def rows(device: str, curve: xr.Dataset) -> Iterator[dict]:
     """Numbers of a device."""
     for humidity in curve.humidity.values:
         for shape in map(str, curve["shape"].values):
@@ -164,10 +183,10 @@ def _stuck(stuck, low, high):
     return "–" if np.isnan(stuck) else f"{stuck:.3g} ({low:.3g} to {high:.3g})"
 
 
-_COLUMNS = DEVICE | {
+COLUMNS = DEVICE | {
     "held by": (str, "held_by"),
     "variable": (str, "variable"),
-    "value": (".3g", "value"),
+    "value": (".6g", "value"),
     "p": ("g", "share"),
     "unit": (str, "unit"),
     "estimate": (with_error, "estimate", "estimate_se"),

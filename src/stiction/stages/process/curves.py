@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,7 +13,7 @@ from stiction.devices.process import CONFIDENCE, Curve, law_error
 from stiction.devices.roughness import margins
 from stiction.plan.stage import Stage
 from stiction.stages.process.law import law_inputs, law_of
-from stiction.stages.process.points import values_of
+from stiction.stages.process.points import points_of
 
 
 @dataclass(frozen=True)
@@ -31,27 +32,35 @@ def compute(
 
     The error of the model is that of full elastic contact, if it is known.
     """
-    shared = ["required", "share", "samples"]
-    slopes = _slopes(points)
-    over = [point.drop_vars([*shared, "roughness", "slopes"], errors="ignore").set_coords("value") for point in points]
-    curve = xr.concat(over, "value").assign(points[0][shared]).assign(slopes=slopes)
-    required, more_is_better = float(curve.required), curve.required.attrs["units"] == "m"
-    margin, safe = (margins(curve[name].values, required, more_is_better) for name in ("estimate", "safe"))
-    dims = ("value", "humidity", "shape")
-    # The bound of a safe value is one-sided: the errors of simulation alone leave it as it is.
-    parts = {"simulation": (margin - safe) / ndtri(CONFIDENCE), "model": _of_model(curve, model_error)}
-    curve = curve.assign({"margin": (dims, margin)} | {f"{name}_error": (dims, one) for name, one in parts.items()})
-    known = [law_of(one) for one in laws]
-    of_law = np.full(margin.shape, np.nan)
+    curve = joined(points, "value", model_error).assign(slopes=_slopes(points))
+    known, dims = [law_of(one) for one in laws], ("value", "humidity", "shape")
+    of_law = np.full(curve.margin.shape, np.nan)
     for humidity, shape, one in curves_of(curve):
         at = dict(humidity=humidity, shape=shape)
         places = np.isin(curve.value.values, one.settings)
         of_law[places, *_indices(curve, at)] = law_error(one, known)
-    curve = curve.assign(law_error=(dims, of_law))
+    curve = curve.assign(law_error=(dims, of_law)).assign_coords(labels_of(laws, settings))
+    return curve.assign_attrs(variable=settings.variable, surface=" and ".join(settings.surfaces))
+
+
+def joined(points: Sequence[xr.Dataset], along: str, model_error: xr.Dataset | None) -> xr.Dataset:
+    """Points along a dimension, without slopes, with their margins and the errors of simulation and model."""
+    shared = ["required", "share", "samples"]
+    over = [point.drop_vars([*shared, "roughness", "slopes"], errors="ignore").set_coords("value") for point in points]
+    curve = xr.concat(over, along).assign(points[0][shared])
+    required, more_is_better = float(curve.required), curve.required.attrs["units"] == "m"
+    margin, safe = (margins(curve[name].values, required, more_is_better) for name in ("estimate", "safe"))
+    dims = (along, "humidity", "shape")
+    # The bound of a safe value is one-sided: the errors of simulation alone leave it as it is.
+    parts = {"simulation": (margin - safe) / ndtri(CONFIDENCE), "model": _of_model(curve, model_error)}
+    return curve.assign({"margin": (dims, margin)} | {f"{name}_error": (dims, one) for name, one in parts.items()})
+
+
+def labels_of(laws: Sequence[xr.Dataset], settings: Settings) -> dict[str, Any]:
+    """Process and quantity of each slope."""
     names = [name for name, law in zip(settings.processes, laws, strict=True) for _ in law["quantity"].values]
     quantities = [str(one) for law in laws for one in law["quantity"].values]
-    labels = {"law_process": ("law_quantity", names), "law_quantity": quantities}
-    return curve.assign_coords(labels).assign_attrs(variable=settings.variable, surface=" and ".join(settings.surfaces))
+    return {"law_process": ("law_quantity", names), "law_quantity": quantities}
 
 
 def _indices(curve, at):
@@ -101,18 +110,17 @@ def curves_of(curve: xr.Dataset) -> Iterator[tuple[float, str, Curve]]:
                 yield float(humidity), str(shape), Curve(*arrays)
 
 
-def _inputs(plan, at):
+def inputs(plan: Any, at: Any) -> dict[str, Any]:
     """Points of a device and laws of its processes, and the error of the model if it is stated."""
-    numbers = range(len(values_of(plan, at.device)))
     errors = {"model_error": f"devices/model_error/{at.device}"} if plan.states_model_error else {}
     return (
-        {"points": [f"process/points/{at.device}_{number}" for number in numbers]}
+        {"points": [f"process/points/{at.device}_{number}" for number in points_of(plan, at.device)]}
         | law_inputs(plan, at.device)
         | errors
     )
 
 
-def _settings(plan, at):
+def settings_of(plan: Any, at: Any) -> dict[str, Any]:
     """Processes of a device."""
     named = process.of_device(plan.config, at.device)
     sections = [plan.config["process"][name] for name in named]
@@ -124,8 +132,8 @@ STAGES = (
     Stage.writing(
         "process_curve",
         "process/curves/{device}",
-        inputs=_inputs,
-        settings=_settings,
+        inputs=inputs,
+        settings=settings_of,
         kind=Settings,
         compute=lambda data, settings: compute(data["points"], data["laws"], settings, data.get("model_error")),
         message="Device {device} over its process.",

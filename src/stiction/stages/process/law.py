@@ -44,7 +44,7 @@ class Settings:
     variable: str  #: name with its unit
     surface: str
     values: tuple[float, ...]  #: of the variable, increasing [its unit]
-    quantities: tuple[str, ...]  #: of `QUANTITIES`, that follow the variable
+    quantities: tuple[str, ...]  #: that follow the variable, of those in `stiction.analysis.process_law`
     #: At each setting, ln rms, skewness, kurtosis, ln corner and slope in SI units, and the covariance of their errors.
     #: None with scans.
     stated: tuple[dict, ...] = ()

@@ -4,6 +4,7 @@ The device is computed as along a roughness (`stiction.stages.roughness.curves`)
 values. At some values, its slopes by the quantities of the law are computed as well.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -30,8 +31,8 @@ from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 #: Fewest patches of which a safe force can be fitted.
 FEWEST_OF_FIT = round(FEWEST / TAIL)
-#: Values of the variable with slopes: both ends and the middle. ASSUME: slopes are linear between them.
-PLACES = 3
+#: Fewest intervals between values of the variable of a second process.
+SECOND = 4
 
 Surfaces = Sequence[tuple[xr.Dataset, xr.Dataset]]
 
@@ -50,6 +51,7 @@ class Settings:
 
     pair: str  #: part of the addresses of random numbers
     value: float  #: of the variable [its unit]
+    second: float | None = None  #: of that of a second process [its unit]
     beam: OfBeam | None = None  #: of a beam
     stopper: OfStopper | None = None  #: of a stopper
     humid: Contacts | None = None  #: contacts in humid air
@@ -74,15 +76,19 @@ def compute(surfaces: Surfaces, laws: Sequence[xr.Dataset], settings: Settings) 
     """
     names = next(iter(settings.airs.values())).contact.surfaces
     made = {}
-    for law in laws:
+    second = settings.value if settings.second is None else settings.second
+    for law, value in zip(laws, (settings.value, second), strict=False):
         surface = str(law.surface)
-        made[surface] = on_law(description(*surfaces[names.index(surface)]), law, settings.value)
+        made[surface] = on_law(description(*surfaces[names.index(surface)]), law, value)
     (point,) = _points(surfaces, [made], settings)
     points = point.assign(value=settings.value)
+    if settings.second is not None:
+        points = points.assign(second=second)
     if not settings.samples:
         return points
     few = _with_samples(settings)
     slopes = [_slopes(surfaces, made, law, few) for law in laws]
+    # ASSUME: slopes are linear between these values: both ends and the middle.
     return points.assign(slopes=(("humidity", "shape", "law_quantity"), np.concatenate(slopes, axis=-1)))
 
 
@@ -158,29 +164,50 @@ def values_of(plan: Any, device: str) -> list[float]:
     return grid(sorted(inside | {low, high})).tolist()
 
 
+def axes_of(plan: Any, device: str) -> list[list[float]]:
+    """Values of the variable, and of that of a second process."""
+    if not process.is_mapped(plan.config, device):
+        return [values_of(plan, device)]
+    first, second = (
+        sorted(setting["value"] for setting in plan.config["process"][name]["settings"])
+        for name in process.of_device(plan.config, device)
+    )
+    return [grid(first).tolist(), grid(second, SECOND).tolist()]
+
+
+def points_of(plan: Any, device: str) -> range:
+    """Numbers of the points of a device, at one value of a second process after the other."""
+    return range(math.prod(map(len, axes_of(plan, device))))
+
+
 def _settings(plan, at):
     """Settings of a point of a device."""
-    section, values = plan.config["devices"][at.device], values_of(plan, at.device)
-    number, middle = int(at.number), (len(values) - 1) // 2
+    section, axes = plan.config["devices"][at.device], axes_of(plan, at.device)
+    row, column = divmod(int(at.number), len(axes[0]))
     own = curves.settings_of(plan, at)
-    settings = {"pair": section["pair"], "value": values[number]}
+    values = [axis[number] for axis, number in zip(axes, (column, row), strict=False)]
+    settings = {"pair": section["pair"], "value": values[0]} | dict(zip(["second"], values[1:], strict=False))
     settings["beam" if plan.devices.kind(at.device).is_beam else "stopper"] = own
-    rough = _as_rough(plan, at.device, values[number])
+    rough = _as_rough(plan, at.device, values[0], values[-1])
     for humidity in section["humidities"]:
         air = plan.air_of_devices.contact(section["pair"], humidity)
         tips = {"tips": tip_settings(rough, air, at.device)} if plan.devices.kind(at.device).has_tip else {}
         settings["humid" if humidity > 0 else "dry"] = {"contact": patch_settings(plan, air, at.device)} | tips
-    return settings | (
-        {"samples": plan.config["studies"]["slopes"]["samples"]} if number in (0, middle, len(values) - 1) else {}
-    )
+    at_places = all(number in _places(axis) for axis, number in zip(axes, (column, row), strict=False))
+    return settings | ({"samples": plan.config["studies"]["slopes"]["samples"]} if at_places else {})
 
 
-def _as_rough(plan, device, value):
+def _places(axis):
+    """Numbers of the values with slopes."""
+    return 0, (len(axis) - 1) // 2, len(axis) - 1
+
+
+def _as_rough(plan, device, *at):
     """Plan with the rms of the surfaces at a value of the variable, on which the length of tips depends.
 
     It is preliminary: on straight lines through the logarithms at the settings.
     """
-    for name in process.of_device(plan.config, device):
+    for name, value in zip(process.of_device(plan.config, device), at, strict=False):
         section, surfaces = plan.config["process"][name], plan.config["surfaces"]
         values = sorted(setting["value"] for setting in section["settings"])
         known = np.log([plan.devices.rms(one) for one in in_order(plan, name)])

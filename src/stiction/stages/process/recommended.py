@@ -79,6 +79,7 @@ def layout(found: Recommendation) -> xr.Dataset:
             "best_error": ((), found.error),
             "best_interval": ("end", list(found.interval)),
             "next": ((), found.next),
+            "next_again": ((), found.again),
             "next_subject": ((), found.subject),
             "next_before": ((), found.before),
             "next_after": ((), found.after),
@@ -89,10 +90,10 @@ def layout(found: Recommendation) -> xr.Dataset:
 
 def devices_over(plan: Any, variable: str) -> list[str]:
     """Devices over the processes with a variable."""
-    known, sections = plan.config.get("process", {}), plan.devices.sections
+    known = plan.config.get("process", {})
     return [
         name
-        for name, section in sections.items()
+        for name in plan.devices.processed
         if any(known[one]["variable"] == variable for one in process.of_device(plan.config, name))
     ]
 
