@@ -295,10 +295,10 @@ def shown(figure, label):
 
 @pytest.mark.parametrize("case", rows(OF_HUMIDITIES))
 def test_every_humidity_of_every_curve_is_shown(case):
-    name, _, count = case
+    name, pairs, count = case
     label = {"13": "skewness", "15": "GEO: beams, mean ± std", "overview": "computed here", "variants": "vdW: none"}
     if name == "17":
-        assert len(drawn(case).axes[1].lines) == 2 * count + 1
+        assert len(drawn(case).axes[1].lines) == pairs * (count + 1) + 1
     elif name == "variants":
         assert shown(drawn(case), label[name]) == [count, count, len(published(count))]
     else:
@@ -353,7 +353,7 @@ def test_choices_of_one_key_stay_together_unless_they_are_more_than_the_colours(
 def test_every_pair_surface_and_number_of_samples_has_its_curve_or_panel(case):
     name, count, _ = case
     axes = drawn(case).axes
-    panels_of = {"12": 3 * count, "15": 4 * count, "16": count + 1, "17": 3 + 1, "19": 3, "variants": 2 * count}
+    panels_of = {"12": 3 * count, "15": 4 * count, "16": count + 1, "17": 3 + 1, "19": 3, "variants": count + 1}
     assert len(axes) == panels_of[name]
     if name == "17":
         assert len(axes[0].lines) == max(2, count)

@@ -237,10 +237,11 @@ def letter(axes: Iterable[Axes], names: Sequence[str] | None = None) -> None:
 
 
 def letter_lines(lines: Sequence[np.ndarray], names: Sequence[str]) -> None:
-    """Title the panels of all lines of `columns_of_panels`, each with the name of its column."""
+    """Title the panels of all lines of `columns_of_panels`, each with the name of its column, but for removed ones."""
     names = iter(names)
     titles = [name for line in lines for name in list(islice(names, line.shape[1])) * line.shape[0]]
-    letter(np.concatenate([line.ravel() for line in lines]), titles)
+    titled = zip(np.concatenate([line.ravel() for line in lines]), titles, strict=True)
+    letter(*zip(*((panel, title) for panel, title in titled if panel.figure), strict=True))
 
 
 def on_own_axes(text: str, line: np.ndarray) -> str:
