@@ -74,7 +74,7 @@ class Grid:
     share: Axis  #: fraction p that may stick
     size: Axis  #: its ends bound the control only
     safe: np.ndarray  #: over the axes and the shares, 95 % bounds
-    quantiles: np.ndarray  #: over the axes and `SCORES`; NaN if unknown
+    quantiles: np.ndarray  #: over the axes and the scores of `stiction.devices.risk`; NaN if unknown
     samples: int  #: simulated devices of each state
     falls: bool  #: whether fewer stick at a larger size
 
