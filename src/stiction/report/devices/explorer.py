@@ -114,8 +114,10 @@ def _quantiles(lengths, stuck, samples):
 
 def of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> View:
     """View of a stopper: its section, dataset of stage stoppers and budgets."""
-    along = stopper.isel(axis=stopper.axis.values > 0) if stopper.axis.values[-1] > 0 else stopper
-    axis = _humidity(along.axis.values, float(stopper.worst_humidity), "design.worst_humidities", True)
+    is_humid = stopper.axis.values[-1] > 0
+    along = stopper.isel(axis=stopper.axis.values > 0) if is_humid else stopper
+    key = "design.worst_humidities" if is_humid else "humidities of the device"
+    axis = _humidity(along.axis.values, float(stopper.worst_humidity), key, True)
     view = _of_forces((axis,), along.safe_force_along, along.scored_along.values, section, stopper)
     return replace(view, margins=_margins(budgets))
 
@@ -153,7 +155,8 @@ def _of_forces(axes, safe, scored, section, stopper):
 def _humidity(values, worst, key, between):
     """Axis of relative humidities."""
     values = tuple(map(float, values))
-    text = f"computed from {values[0]:g} to {values[-1]:g}" if between else f"computed at {_listed(values)} alone"
+    several = between and len(values) > 1
+    text = f"computed from {values[0]:g} to {values[-1]:g}" if several else f"computed at {_listed(values)} alone"
     start = min(max(worst, values[0]), values[-1]) if between else worst
     reason = f"it is {text}; {key} changes this"
     return Axis("humidity", "relative humidity", "", "linear", values, start, bool(between), reason, "humidities")
