@@ -39,6 +39,18 @@ SPRING = {"stiffness_N_per_m": 2, "gap_um": 1.5, "electrode": {"area_um2": 1e4, 
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "humidities": [0.67]}
 ROW = {"length_um": 150, "dimples": {"number": 2, "at_um": [60, 120], "height_um": 1, "contact_um": [2, 2]}}
 LIFE = {"devices": {"C": BEAM | DIELECTRIC, "D": BEAM | ROW, "S": STOPPER | SPRING}}
+#: Processes of both surfaces of pair b, and a stopper over one of them.
+ETCHED = [{"value": at, "rms_nm": 2 + at / 50, "uncertainty": {"rms_nm": 0.1}} for at in (30, 60, 90)]
+POLISHED = [{"value": at, "rms_nm": at / 500, "uncertainty": {"rms_nm": 0.01}} for at in (60, 90)]
+PROCESSES = {
+    "surfaces": {"Poly": {"like": "B2", "rms_nm": 3}},
+    "process": {
+        "etch": {"variable": "etch_time_s", "surface": "B2", "settings": ETCHED},
+        "polish": {"variable": "etch_time_s", "surface": "Sub1", "settings": POLISHED},
+        "deposition": {"variable": "deposition_time_s", "surface": "Sub1", "settings": POLISHED},
+    },
+    "devices": {"P": STOPPER | {"restoring_force_uN": 20, "requirement": {"share": 0.01}, "process": "etch"}},
+}
 #: Snippets such as `level: plane`, `attraction.reach: all` and `run: {pairs: []}`; those with other values in words.
 SNIPPETS = sorted(
     set(re.findall(r"`([a-z_]+(?:\.[a-z_]+)*: [^`<>…]+)`", re.sub(r"```.*?```", "", TEXT, flags=re.DOTALL)))
@@ -66,6 +78,7 @@ def folder(tmp_path_factory):
     path = tmp_path_factory.mktemp("documented")
     draw = module(ROOT / "examples" / "scans" / "draw.py")
     draw.main(path, [replace(scans, side=5e-6, pixel=20e-9) for scans in draw.SCANS])
+    module(ROOT / "examples" / "process" / "draw.py").main(path)
     for name in ("arrayA.csv", "wafer.csv"):
         (path / name).write_text(TEMPLATE, encoding="utf-8")
     return path
@@ -87,9 +100,8 @@ def bases() -> dict[str, dict]:
     """Studies that a key may be added to, by name."""
     found = {Path(name).parent.name + Path(name).name: (ROOT / f"{name}.yaml").read_text() for name in EXAMPLES}
     found |= {f"block{number}": block for number, block in enumerate(BLOCKS)}
-    return {"paper": PAIR_B, "oxide": PAIR_B | OXIDE, "life": PAIR_B | LIFE} | {
-        name: yaml.safe_load(text) for name, text in found.items()
-    }
+    own = {"paper": PAIR_B, "oxide": PAIR_B | OXIDE, "life": PAIR_B | LIFE, "processes": PAIR_B | PROCESSES}
+    return own | {name: yaml.safe_load(text) for name, text in found.items()}
 
 
 BASES = bases()
