@@ -286,7 +286,8 @@ def test_tips_that_hold_longer_beams_than_were_simulated_do_not_prolong_a_safe_l
     found = risk.safe_length(tips, 1e-3, stream(0), Known(reach=0.8e-3, flat=1e-4))
     assert (found.length, found.basis) == (1e-4, Basis.FLAT)
     strong = risk.safe_length(tips / 100, 1e-3, stream(0), Known(reach=0.8e-3, flat=1e-4))
-    assert strong == risk.safe_length(tips / 100, 1e-3, stream(0))
+    alone = risk.safe_length(tips / 100, 1e-3, stream(0))
+    assert repr(strong) == repr(alone)  # an unknown error is NaN, which differs from itself
 
 
 def test_devices_that_did_not_stick_may_do_so_beyond_the_simulated_length():
