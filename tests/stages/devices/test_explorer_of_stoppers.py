@@ -28,6 +28,7 @@ def test_a_stopper_has_at_every_humidity_the_forces_or_stiffnesses_of_its_stage(
     grid = explorer.of_stopper(SECTION | stated, stopper, {}).grid
     key = next(iter(stated))
     assert grid.start[key] == pytest.approx(1e-6 / unit)
+    assert grid.start["humidity"] == float(stopper.humidity[1]), "the stated one that holds most"
     for k, humidity in enumerate(AXIS):
         state = grid.start | {"humidity": humidity, "share": 1e-3}
         safe = float(stopper.safe_force_along.sel(share=1e-3)[k]) / unit

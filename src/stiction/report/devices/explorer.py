@@ -117,7 +117,9 @@ def of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping
     is_humid = stopper.axis.values[-1] > 0
     along = stopper.isel(axis=stopper.axis.values > 0) if is_humid else stopper
     key = "design.worst_humidities" if is_humid else "humidities of the device"
-    axis = _humidity(along.axis.values, float(stopper.worst_humidity), key, True)
+    stated = stopper.pull_off.mean("sample")
+    worst = float(stopper.humidity[int(np.argmax(stated.values))])
+    axis = _humidity(along.axis.values, worst, key, True)
     view = _of_forces((axis,), along.safe_force_along, along.scored_along.values, section, stopper)
     return replace(view, margins=_margins(budgets))
 
