@@ -57,7 +57,16 @@ def rules_of_the_configuration():
     folder = PACKAGE / "config"
     modules = [
         code(folder / f"{name}.py")
-        for name in ("validation", "surfaces/grid", "surfaces/process_relations", "keys", "meetings", "relations", "relations_devices", "messages")
+        for name in (
+            "validation",
+            "surfaces/grid",
+            "surfaces/process_relations",
+            "keys",
+            "meetings",
+            "relations",
+            "relations_devices",
+            "messages",
+        )
     ]
     return [*modules, (folder / "schema.yaml").read_text(encoding="utf-8")]
 
