@@ -98,7 +98,7 @@ def page() -> str:
     for name, entry in schema()["properties"].items():
         named = isinstance(entry.get("additionalProperties"), dict)
         rows = [_row(key, 1 + named) for key in keys(entry, (name,))]
-        head = [f"| {name}{'.NAME' * named} | meaning | allowed | default |", "|---|---|---|---|"]
+        head = [f"| {name}{'.NAME' * named} | meaning | allowed; default (example) |", "|---|---|---|"]
         about = entry["description"].partition(" [")[0]
         said = [f"{about[0].upper()}{about[1:]}.", ""] if entry["type"] == "object" else []
         parts.append("\n".join([f"## {name}", "", *said, *head, *rows]))
@@ -117,7 +117,7 @@ def _row(key, above):
     default = "" if "*" in key.path else next((_yaml(value) for value in _values(PAPER, key.path)), "")
     name = ".".join(key.path[above:] or key.path).replace("*", "NAME")
     values = f"{allowed(key.entry)} [{key.unit}]" if key.unit else allowed(key.entry)
-    return f"| `{name}` | {key.meaning} | {values} | {default or f'({_yaml(_first(key.example))})'} |"
+    return f"| `{name}` | {key.meaning} | {values}{f'; {default}' if default else f' ({_yaml(_first(key.example))})'} |"
 
 
 def _first(value):
