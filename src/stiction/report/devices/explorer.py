@@ -13,6 +13,7 @@ from stiction.config.units import from_si
 from stiction.devices.budget import ranked
 from stiction.devices.risk import SCORES, quantiles
 from stiction.report.devices import sentences
+from stiction.report.devices.curves import Curves
 from stiction.report.devices.grid import Axis, Grid
 from stiction.report.format import UM, UN
 from stiction.stages.devices.budget import budget_of, groups_of
@@ -26,7 +27,7 @@ class View:
     """Grid that the controls of a page move on."""
 
     title: str
-    grid: Grid
+    grid: Grid | Curves
     margins: Sequence[tuple[float, float, str]]  #: humidity, relative uncertainty [-], input to measure better
     words: Mapping[str, str]  #: that differ between beams and stoppers
 
@@ -50,7 +51,7 @@ def of_beam(
     worst = _worst(safe_lengths)
     chart = f"devices.{name}.chart"
     axes = (
-        _humidity(
+        humidity_axis(
             joined.humidity.values, worst, f"{chart}.humidities" if humid else f"devices.{name}.humidities", humid
         ),
         _of_size("thickness_um", "thickness", joined.thickness.values / UM, section, f"{chart}.thicknesses_um"),
@@ -119,7 +120,7 @@ def of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping
     key = "design.worst_humidities" if is_humid else "humidities of the device"
     stated = stopper.pull_off.mean("sample")
     worst = float(stopper.humidity[int(np.argmax(stated.values))])
-    axis = _humidity(along.axis.values, worst, key, True)
+    axis = humidity_axis(along.axis.values, worst, key, True)
     view = _of_forces((axis,), along.safe_force_along, along.scored_along.values, section, stopper)
     return replace(view, margins=_margins(budgets))
 
@@ -132,7 +133,7 @@ def of_tilted(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopper
     tilt = Axis("tilt_deg", "tilt", "°", "linear", tilts, tilts[0], False, reason, "tilt_deg")
     stuck = tilted.stuck.sel(bound="estimate").max("tilt")
     worst = float(tilted.humidity[int(np.argmax(stuck.values))])
-    humidity = _humidity(tilted.humidity.values, worst, f"{key}.humidities", False)
+    humidity = humidity_axis(tilted.humidity.values, worst, f"{key}.humidities", False)
     scored = np.apply_along_axis(quantiles, -1, tilted.pull_off.transpose("tilt", "humidity", "sample").values)
     safe = tilted.safe_force.sel(part="safe").transpose("tilt", "humidity", "share")
     return replace(_of_forces((tilt, humidity), safe, scored, section, stopper), title="tilt")
@@ -154,7 +155,7 @@ def _of_forces(axes, safe, scored, section, stopper):
     return View("humidity", grid, (), words | {"build": "at least", "bound": "sufficient"})
 
 
-def _humidity(values, worst, key, between):
+def humidity_axis(values: Sequence[float], worst: float, key: str, between: bool) -> Axis:
     """Axis of relative humidities."""
     values = tuple(map(float, values))
     several = between and len(values) > 1
