@@ -188,6 +188,8 @@ def of_roughness(name: str, section: Mapping[str, Any], found: xr.Dataset) -> Vi
     found = found.sortby("humidity")
     required, curves = _Required(name, section, found), curves_of(found)
     axis = _of_roughness(found, "key", found.roughness.values, float(found.given), name)
+    if found.surface in section.get("measured", ()):
+        axis = replace(axis, setting="")
     others = [
         _of_roughness(found, "other_key", found.other.values, float(found.other_given), name) for _ in curves[1:2]
     ]
@@ -204,8 +206,6 @@ def of_roughness(name: str, section: Mapping[str, Any], found: xr.Dataset) -> Vi
         None,
         required.falls,
     )
-    if found.surface in section.get("measured", ()):
-        axis = replace(axis, setting="")
     copied = "" if axis.setting else f"It has the {name_of(found)} as it is given; this address keeps the value shown"
     return View(name_of(found), grid, (), required.words("at this humidity", copied))
 
