@@ -123,7 +123,7 @@ def of_process(name: str, section: Mapping[str, Any], curve: xr.Dataset, recomme
         best if np.isfinite(best[0]) else None,
         required.falls,
     )
-    return View(axis.label, grid, (), required.words("in all airs of the device", _copied(curve)))
+    return View(axis.label, grid, required.words("in all airs of the device", _copied(curve)))
 
 
 def of_map(name: str, section: Mapping[str, Any], found: xr.Dataset, pairs: xr.Dataset) -> View:
@@ -144,7 +144,7 @@ def of_map(name: str, section: Mapping[str, Any], found: xr.Dataset, pairs: xr.D
         required.falls,
     )
     words = required.words("in all airs of the device", _copied(found))
-    return View(f"{axis.label}, {other.label}", grid, (), words)
+    return View(f"{axis.label}, {other.label}", grid, words)
 
 
 def _over_process(curve, axis):
@@ -207,7 +207,7 @@ def of_roughness(name: str, section: Mapping[str, Any], found: xr.Dataset) -> Vi
         required.falls,
     )
     copied = "" if axis.setting else f"It has the {name_of(found)} as it is given; this address keeps the value shown"
-    return View(name_of(found), grid, (), required.words("at this humidity", copied))
+    return View(name_of(found), grid, required.words("at this humidity", copied))
 
 
 def _over_roughness(curve, axis, falls):

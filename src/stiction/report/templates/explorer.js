@@ -145,13 +145,8 @@ function opened(number) {
     return {share, low, high, beyond: sign * ((place > levels[levels.length - 1]) - (place < levels[0])) || 0};
   }
 
-  /** The larger uncertainty of the two computed humidities around one; nothing outside of them. */
-  function margin(humidity) {
-    const rows = data.margins, below = rows.filter(row => row[0] <= humidity), above = rows.filter(row => row[0] >= humidity);
-    if (!below.length || !above.length) return null;
-    const nearest = [...below.filter(row => row[0] === below[below.length - 1][0]), ...above.filter(row => row[0] === above[0][0])];
-    return nearest.reduce((most, row) => row[1] > most[1] ? row : most);
-  }
+  /** Uncertainty by the measurements at a humidity, nothing outside of those of the device. */
+  const margin = humidity => data.margin && data.margin.low <= humidity && humidity <= data.margin.high ? data.margin : null;
 
   // Texts
 
@@ -271,13 +266,13 @@ function opened(number) {
   function texts() {
     const unit = grid.size.unit, words = data.words, levels = levelsOf(state);
     const safe = safeSize(state), less = margin(state.humidity);
-    const build = less && safe * Math.exp((grid.falls ? 2 : -2) * less[1]);
+    const build = words.build && less && safe * Math.exp(-2 * less.total);
     return {
       stuck: `${words.stick}: ${stuckText(stuckAt(state[grid.size.key], levels))}`,
       safe: `${words.safe} for ${oneIn(state.share)}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : `not known from ${grid.samples} devices`}`,
-      budget: less && Number.isFinite(build)
-        ? `Measurements leave ${text(100 * less[1], 2)} %, most of it ${less[2]}: build ${words.build} ${text(build, DIGITS)} ${unit}`
-        : `Margin for the measurements: not computed ${data.margins.length ? "at this humidity" : "without stated uncertainties"}`,
+      budget: less
+        ? `Measurements leave ${text(100 * less.total, 2)} %, most of it ${less.most}: ${Number.isFinite(build) && words.build ? `build ${words.build} ${text(build, DIGITS)} ${unit}` : "no margin is added for them"}`
+        : `Margin for the measurements: not computed ${data.margin ? "at this humidity" : "without stated uncertainties"}`,
     };
   }
 
