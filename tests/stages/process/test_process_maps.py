@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from legends import covering
-from test_process_stages import BUMP, ETCH, SECTIONS, setting
+from test_process_stages import BARE, BUMP, ETCH, SECTIONS, SHARE, setting
 
 import stiction
 from stiction.analysis.process_law import fit, grid
@@ -91,6 +91,28 @@ def test_a_map_joins_all_its_points_with_slopes_by_both_laws(mapped):
         "Law of B2",
         "Law of Sub1",
     ]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", ["best", (47.0, 8.0)])  # the latter is between the computed ones
+def test_the_margin_at_a_pair_is_that_of_other_samples_on_both_surfaces(mapped, pair):
+    found, pairs = mapped.margins("Bump"), mapped.pairs("Bump")
+    at = pairs.best.values.tolist() if pair == "best" else pair
+    processes = {"B2": mapped, "Sub1": stiction.Process.of(config(), "deposition")}
+    surfaces = {
+        surface: {"rms_nm": 1e9 * float(np.exp(process.at(value).estimate[0]))}
+        for (surface, process), value in zip(processes.items(), at, strict=True)
+    }
+    brute = stiction.load(
+        SECTIONS, {"surfaces": surfaces, "devices": {"Bump": BARE}, "seed": 7}, {"contact": {"samples": 1000}}
+    )
+    forces = stiction.Device("Bump", Results.of(brute)).forces().pull_off.values[0]
+    margin = -np.log(np.quantile(forces, 1 - SHARE) / 8e-6)
+    promised, error = (
+        float(one.interp(value=at[0], second=at[1]).squeeze()) for one in (pairs.margin, found.simulation_error)
+    )
+    assert abs(margin - promised) < 3 * error
+    assert abs(margin - promised + 10 * error) > 3 * error  # control
 
 
 def test_processes_know_their_devices_over_two_of_them():
