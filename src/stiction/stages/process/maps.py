@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import RegularGridInterpolator
 
-from stiction.devices.process import PAIRS, Map, Pairs, law_error, recommended_pairs
+from stiction.devices.process import PAIRS, Map, Pairs, law_error, recommended_pairs, unknown
 from stiction.devices.roughness import sufficient
 from stiction.plan.stage import Stage
 from stiction.stages.process.curves import Settings, inputs, joined, labels_of, settings_of
@@ -60,16 +60,10 @@ def recommended(found: xr.Dataset, laws: Sequence[xr.Dataset], device: str, seed
     """Sufficient pairs of settings for a device, and the best one. They are unknown with their margin."""
     maps, known = [one for _, one in _maps(found)], [law_of(one) for one in laws]
     if len(maps) < found.sizes["humidity"] * found.sizes["shape"]:
-        pairs = _unknown(np.linspace(*known[0].ends, PAIRS), known[1].settings)
+        pairs = unknown(np.linspace(*known[0].ends, PAIRS), known[1].settings)
     else:
         pairs = recommended_pairs(maps, known, stream(seed, "process", "pairs", device))
     return layout(pairs, found, known[1].settings)
-
-
-def _unknown(settings, seconds):
-    """Pairs of which nothing is known."""
-    nothing = np.full((len(seconds), len(settings)), np.nan)
-    return Pairs(settings, seconds, nothing, nothing, *(np.full(shape, np.nan) for shape in (2, 2, (2, 2))))
 
 
 def layout(pairs: Pairs, found: xr.Dataset, settings: np.ndarray) -> xr.Dataset:
