@@ -111,7 +111,7 @@ def test_sentences_say_what_full_contact_leaves_out_and_whether_it_has_been_appl
         for changed in ({}, {"across_gaps": True}, {"applied": True})
     )
     assert "is in neither model" in plain
-    assert "across gaps of this prediction. That" in across
+    assert "Attraction across gaps is in both models." in across
     assert "It is not known at a relative humidity of 0.67." in plain
     assert "has changed the lengths" in applied
     assert "safe side" not in applied

@@ -49,9 +49,9 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     if EITHER in error["shape"]:
         said.append("It is not known for what the tip holds.")
     said += [] if error.applied else [_safe_side(known, -1 if shape == FORCE else 1)]
-    gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
     if error.across_gaps:
-        return [*said, f"It leaves out the attraction across gaps of this prediction. That attraction acts {gaps}"]
+        return [*said, "Attraction across gaps is in both models."]
+    gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
     return [*said, f"Attraction across gaps is in neither model. It acts {gaps}"]
 
 
