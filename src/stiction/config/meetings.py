@@ -1,6 +1,7 @@
 """Relations for all places of contact: pairs in the run, devices, and test beams in their place."""
 
 import math
+import operator
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -125,26 +126,31 @@ def device_meeting(name: str, config: Keys) -> Meeting:
 
 @relation
 def gaps_are_far_above_the_film(config):
-    """Along most of a crack, a beam is far from the water film and the peaks of the substrate."""
+    """Along most of a crack, a beam is far from the water film and the peaks of the substrate.
+
+    A gap is refused once, in the air that needs the largest.
+    """
     for meeting in meetings(config):
+        refused = {}
         for gap, air in meeting.gaps:
             values = dict(config.known(gap, air))
             if len(values) == 2 and meeting.sides:
                 adsorbed = dict(config.known(ADSORBED))
-                refusal = _too_low(np.min(values[gap]), values[air], meeting, adsorbed.get(ADSORBED, 0))
-                yield gap, refusal, air, *meeting.given(TEMPERATURE, *adsorbed)
+                least, refusal = _least_gap(values[air], meeting, adsorbed.get(ADSORBED, 0))
+                found = least, gap, refusal, air, *meeting.given(TEMPERATURE, *adsorbed)
+                if np.min(values[gap]) < least:
+                    refused[gap] = max(refused.get(gap, found), found, key=operator.itemgetter(0))
+        yield from (found[1:] for found in refused.values())
 
 
-def _too_low(gap, humidities, meeting, adsorbed):
-    """Refusal of a gap [µm] not far above the film at the highest humidity, with the adsorbed water [nm]."""
+def _least_gap(humidities, meeting, adsorbed):
+    """Smallest gap [µm] far above the film at the highest humidity, with the adsorbed water [nm], and its message."""
     angles, humid = meeting.wetting(), above_zero(humidities)
     wet = angles and humid
     heights = meniscus_height(humid, meeting.config[TEMPERATURE], angles) + to_si(adsorbed, "nm") if wet else 0.0
     height, rms = float(np.max(heights)), math.hypot(*(to_si(side["rms_nm"], "nm") for side in meeting.sides))
     least = from_si(limits.least_gap(height, rms), "um")
-    if gap >= least:
-        return None
-    return (
+    return least, (
         f"must be at least {least:.4g} µm, {limits.FILMS} times the sum of the height of the water film, "
         f"{from_si(height, 'nm'):.5g} nm, and the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
     )
