@@ -2,7 +2,7 @@
 
 The force laws take the attraction across gaps from the bearing area of the undeformed surfaces. In full elastic contact
 it deforms them, as water and the attraction of touching solids do: by how much does it raise the adhesion energy of a
-strip, in either model of the contact?
+strip, in either model of the contact? The last columns are what contact.model full does to devices.
 """
 
 import argparse
@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.config.cases import air
 from stiction.config.files import load
 from stiction.config.units import in_si
@@ -19,7 +20,7 @@ from stiction.estimates import mean_with_error
 from stiction.plan.graph import Results
 from stiction.plan.plan import Plan
 from stiction.plan.stage import select
-from stiction.report.format import TO_MJ, with_error
+from stiction.report.format import TO_MJ, signed, with_error
 from stiction.stages.contact import full_contact
 from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
@@ -47,21 +48,35 @@ def row(pair, humidity, strips):
     touching = replace(across, water=replace(across.water, gaps=None))
     drawn = [full_contact.strips(both(data), pair, settings) for settings in (touching, across)]
     found = np.array([energies(strip, *one, *other) for (*strip, one), (*_, other) in zip(*drawn, strict=True)])
-    undeformed, deformed = found[:, 1] - found[:, 0], found[:, 3] - found[:, 2]
-    ratio = deformed.mean() / undeformed.mean()
-    error = mean_with_error(deformed - ratio * undeformed)[1] / undeformed.mean()
-    columns = (found[:, 0], undeformed, found[:, 2], deformed)
+    summits, all_summits, full, all_full = found.T
+    parts, whole = ratio(all_full - full, all_summits - summits), ratio(all_full, all_summits)
+    columns = (summits, all_summits - summits, full, all_full - full)
     return [
         pair,
         air(humidity),
         *(with_error(*(TO_MJ * np.array(mean_with_error(one)))) for one in columns),
-        with_error(ratio, error),
+        with_error(*parts),
+        with_error(*whole),
+        signed(*length_change(*whole)),
     ]
 
 
+def ratio(first, second):
+    """Ratio of two means over the same strips, and its standard error [-]."""
+    found = first.mean() / second.mean()
+    return found, mean_with_error(first - found * second)[1] / second.mean()
+
+
+def length_change(energy, error):
+    """Change of crack lengths by a ratio of energies, and its standard error [%]."""
+    factor = energy**CRACK_LENGTH_POWER
+    return 100 * (factor - 1), 100 * abs(CRACK_LENGTH_POWER) * factor * error / energy
+
+
 #: Pair and humidity (0 in dry air).
-CASES = (("a", 0.45), ("c", 0.6))
+CASES = (("a", 0), ("b", 0), ("c", 0), ("a", 0.45), ("b", 0.44), ("c", 0.6))
 HEADER = ("pair", "air", "summits [mJ/m²]", "+ gaps", "full contact [mJ/m²]", "+ gaps", "+ gaps, full / summits")
+HEADER += ("all, full / summits", "lengths [%]")
 
 
 def main():
