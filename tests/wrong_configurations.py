@@ -87,7 +87,7 @@ WRONG_VALUES = [
     # measured surfaces; tests/config/test_measured_surfaces.py has more, with files
     ("scans: {model_scans: 7}", "scans.model_scans", "7", "at least 8"),
     ("scans: {tiles: 1}", "scans.tiles", "1", "at least 2 and at most 8"),
-    ("scans: {undefined_share: 1}", "scans.undefined_share", "1", "at most 0.5: share of undefined points"),
+    ("scans: {undefined_share: 1}", "scans.undefined_share", "1", "at most 0.5: fraction of undefined points"),
     ("surfaces: {B1: {scans: }}", "surfaces.B1.scans", "None", GONE),
 ]  # fmt: skip
 

@@ -238,6 +238,21 @@ def test_the_numbers_of_a_page_are_those_of_its_tables(run, browser):
 
 
 @in_a_browser
+@pytest.mark.parametrize("device", ["C1", "R1", "S1"])
+def test_the_controls_begin_with_the_number_of_the_answer(run, browser, device):
+    browser.open(page_of(run, device))
+    screen, shown = browser.run("return document.querySelector('.answer').innerText"), answers(browser)
+    answer = re.search(r"(?:Safe up to|At least) (\S+)\s", screen)
+    if device == "S1":
+        assert float(answer[1]) == pytest.approx(numbers(shown["safe"])[0], rel=5e-3)
+        assert shown["budget"].endswith("no margin is added for them")
+    elif answer:
+        assert float(answer[1]) == pytest.approx(numbers(shown["budget"])[-1], abs=0.51)
+    else:
+        assert "Do not rely on a number" in screen
+
+
+@in_a_browser
 def test_keys_move_a_control_at_once_and_the_address_keeps_it(run, browser):
     browser.open(page_of(run, "C1"))
     before = answers(browser)["safe"]
