@@ -148,7 +148,7 @@ def without_gaps(changes: Mapping[float, tuple[float, float]], shorter: bool = F
     side = ", which is the unsafe side" if (worst < 0) == shorter else ""
     return (
         f"Attraction of solids across gaps is left out. On these surfaces it would change {what} that holds by "
-        f"{', '.join(by)}{side}. contact.model summits and attraction.reach all include it."
+        f"{', '.join(by)}{side}. attraction.reach all includes it."
     )
 
 
