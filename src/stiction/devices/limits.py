@@ -91,7 +91,7 @@ def missed_accuracy(of_beams: float, of_surfaces: float, asked: float) -> str | 
         return None
     return (
         f"The standard error of this length is {100 * reached:.2g} %, more than the {100 * asked:.2g} % of "
-        f"design.accuracy.length: state more {max(known, key=known.get)} than this run has, or a lower accuracy."
+        f"design.accuracy.length: state more {max(known, key=known.get)} than this run has, or a larger error there."
     )
 
 
