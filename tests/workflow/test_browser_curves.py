@@ -144,6 +144,16 @@ def test_the_ranges_that_suffice_and_the_required_value_are_marked(views, page, 
     assert browser.errors() == []
 
 
+def test_a_checker_of_accessibility_finds_nothing_on_a_curve_but_a_control_without_a_name(views, page, browser):
+    pytest.importorskip("axe_core_python")
+    browser.open(page)
+    for number, view in enumerate(views.values()):
+        go_to(browser, number, view.grid.start)
+        assert browser.violations() == []
+    browser.run("document.querySelector('.control label').remove()")
+    assert [rule for rule, *_ in browser.violations()] == ["label"]
+
+
 @pytest.mark.parametrize("name", ["process", "roughness"])
 def test_the_study_of_a_curve_is_one_that_a_run_takes(views, page, browser, tmp_path, capsys, name):
     browser.open(page)
