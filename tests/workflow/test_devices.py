@@ -238,6 +238,21 @@ def test_the_numbers_of_a_page_are_those_of_its_tables(run, browser):
 
 
 @in_a_browser
+@pytest.mark.parametrize("device", ["C1", "R1", "S1"])
+def test_the_controls_begin_with_the_number_of_the_answer(run, browser, device):
+    browser.open(page_of(run, device))
+    screen, shown = browser.run("return document.querySelector('.answer').innerText"), answers(browser)
+    answer = re.search(r"(?:Safe up to|At least) (\S+)\s", screen)
+    if device == "S1":
+        assert float(answer[1]) == pytest.approx(numbers(shown["safe"])[0], rel=5e-3)
+        assert shown["budget"].endswith("no margin is added for them")
+    elif answer:
+        assert float(answer[1]) == pytest.approx(numbers(shown["budget"])[-1], abs=0.51)
+    else:
+        assert "Do not rely on a number" in screen
+
+
+@in_a_browser
 def test_keys_move_a_control_at_once_and_the_address_keeps_it(run, browser):
     browser.open(page_of(run, "C1"))
     before = answers(browser)["safe"]
@@ -362,6 +377,17 @@ def test_a_page_is_one_small_file_that_everyone_can_use(run, browser, device):
     assert levels[0] == 1
     assert max(np.diff(levels)) <= 1
     assert browser.errors() == []
+
+
+@in_a_browser
+@pytest.mark.parametrize("page", ["devices/C1", "devices/R1", "devices/S1", "index"])
+def test_a_checker_of_accessibility_finds_nothing_on_a_page(run, browser, page):
+    pytest.importorskip("axe_core_python")
+    browser.open(run / "results" / f"{page}.html")
+    browser.run("document.querySelectorAll('details').forEach(part => { part.open = true })")
+    for width in (1440, 390):
+        browser.resize(width)
+        assert browser.violations() == []
 
 
 @in_a_browser

@@ -177,12 +177,21 @@ def _best_pair(values, seconds, margin):
     return np.array([values[columns].mean(), seconds[rows].mean()])
 
 
-def unknown(values: np.ndarray) -> Recommendation:
-    """Recommendation for devices of which too little is known, at settings (n,)."""
-    nothing, none = np.full(len(values), np.nan), float("nan")
-    numbers = {"best": none, "error": none, "interval": (none, none), "next": none, "before": none, "after": none}
-    arrays = {"settings": values, "margin": nothing, "band": np.array([nothing, nothing]), "safe": nothing}
-    return Recommendation(**arrays, **numbers, sufficient=[], crossings=[], again=False, subject="best")
+def unknown(settings: np.ndarray, seconds: np.ndarray | None = None) -> Recommendation | Pairs:
+    """Recommendation for devices of which too little is known, at settings (n,) of one process.
+
+    Over two processes, it is that of the pairs with the settings (m,) of the second one.
+    """
+    none = float("nan")
+    if seconds is not None:
+        nothing = np.full((len(seconds), len(settings)), none)
+        return Pairs(settings, seconds, nothing, nothing, *(np.full(shape, none) for shape in (2, 2, (2, 2))))
+    nothing = np.full(len(settings), none)
+    arrays = {"settings": settings, "margin": nothing, "band": np.array([nothing, nothing]), "safe": nothing}
+    numbers = dict.fromkeys(("best", "error", "next", "before", "after"), none)
+    return Recommendation(
+        **arrays, **numbers, interval=(none, none), sufficient=[], crossings=[], again=False, subject="best"
+    )
 
 
 def law_error(curve: Curve, laws: Sequence[Law]) -> np.ndarray:

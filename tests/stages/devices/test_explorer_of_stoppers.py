@@ -19,7 +19,7 @@ SPRING, STATED = {"stiffness_N_per_m": 2.0, "gap_um": 0.5}, {"restoring_force_uN
 
 @pytest.fixture(scope="module")
 def stopper():
-    chosen = np.stack([FORCES, 2 * FORCES])
+    chosen = (1 + np.array([SETTINGS.humidities]).T) * FORCES
     return stoppers.layout(replace(SETTINGS, restoring_force=1e-6), chosen, AXIS, FACTORS[:, None] * FORCES)
 
 

@@ -5,11 +5,11 @@ import re
 import numpy as np
 import pytest
 from legends import covering
-from test_process_stages import BUMP, ETCH, SECTIONS, setting
+from test_process_stages import BARE, BUMP, ETCH, SECTIONS, SHARE, setting
 
 import stiction
 from stiction.analysis.process_law import fit, grid
-from stiction.devices.process import Curve, Map, law_error, recommended, recommended_pairs
+from stiction.devices.process import Curve, Map, law_error, recommended, recommended_pairs, unknown
 from stiction.plan.graph import Results
 from stiction.report.page import Page
 from stiction.report.process import figures, maps, section
@@ -91,6 +91,28 @@ def test_a_map_joins_all_its_points_with_slopes_by_both_laws(mapped):
         "Law of B2",
         "Law of Sub1",
     ]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pair", ["best", (47.0, 8.0)])  # the latter is between the computed ones
+def test_the_margin_at_a_pair_is_that_of_other_samples_on_both_surfaces(mapped, pair):
+    found, pairs = mapped.margins("Bump"), mapped.pairs("Bump")
+    at = pairs.best.values.tolist() if pair == "best" else pair
+    processes = {"B2": mapped, "Sub1": stiction.Process.of(config(), "deposition")}
+    surfaces = {
+        surface: {"rms_nm": 1e9 * float(np.exp(process.at(value).estimate[0]))}
+        for (surface, process), value in zip(processes.items(), at, strict=True)
+    }
+    brute = stiction.load(
+        SECTIONS, {"surfaces": surfaces, "devices": {"Bump": BARE}, "seed": 7}, {"contact": {"samples": 1000}}
+    )
+    forces = stiction.Device("Bump", Results.of(brute)).forces().pull_off.values[0]
+    margin = -np.log(np.quantile(forces, 1 - SHARE) / 8e-6)
+    promised, error = (
+        float(one.interp(value=at[0], second=at[1]).squeeze()) for one in (pairs.margin, found.simulation_error)
+    )
+    assert abs(margin - promised) < 3 * error
+    assert abs(margin - promised + 10 * error) > 3 * error  # control
 
 
 def test_processes_know_their_devices_over_two_of_them():
@@ -197,15 +219,15 @@ def test_the_best_pair_of_known_processes_is_in_its_intervals():
 # Answers
 
 
-def told(c=0.0, unknown=False):
+def told(c=0.0, known=True):
     """Recommended pairs as a dataset, and their map."""
     found = plane(c=c)
     names = {"variable": "etch_time_s", "second_variable": "deposition_time_min"}
     settings = stage.xr.Dataset({"share": 0.05}, attrs=names)
     pairs = (
-        stage._unknown(np.linspace(30, 90, 5), LAWS[1].settings)
-        if unknown
-        else recommended_pairs([found], LAWS, np.random.default_rng(1))
+        recommended_pairs([found], LAWS, np.random.default_rng(1))
+        if known
+        else unknown(np.linspace(30, 90, 5), LAWS[1].settings)
     )
     coords = {"value": found.settings, "second": found.seconds}
     return stage.layout(pairs, settings, LAWS[1].settings), stage.xr.Dataset(coords=coords, attrs=names)
@@ -235,13 +257,13 @@ def test_without_pairs_that_suffice_the_best_is_named_and_settings_beyond_it():
 
 
 def test_where_a_margin_is_unknown_no_pair_is():
-    (said,) = maps.answers(told(unknown=True)[0])
+    (said,) = maps.answers(told(known=False)[0])
     assert (
         said == "Pairs of the etch time and the deposition time that suffice are not known: not all could be computed."
     )
 
 
-@pytest.mark.parametrize("pairs", [{}, {"c": -4.0}, {"unknown": True}])
+@pytest.mark.parametrize("pairs", [{}, {"c": -4.0}, {"known": False}])
 def test_a_map_is_drawn_whatever_is_known(pairs):
     told_pairs, found = told(**pairs)
     figure = figures.process_map(found, told_pairs)

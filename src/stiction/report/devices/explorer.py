@@ -13,6 +13,7 @@ from stiction.config.units import from_si
 from stiction.devices.budget import ranked
 from stiction.devices.risk import SCORES, quantiles
 from stiction.report.devices import sentences
+from stiction.report.devices.curves import Curves
 from stiction.report.devices.grid import Axis, Grid
 from stiction.report.format import UM, UN
 from stiction.stages.devices.budget import budget_of, groups_of
@@ -22,13 +23,23 @@ _ROOM = 0.05
 
 
 @dataclass(frozen=True)
+class Margin:
+    """Uncertainty of a size by the measurements: the largest one at the humidities of a device, as in its answer."""
+
+    low: float  #: ends of these humidities [-]
+    high: float
+    total: float  #: relative standard uncertainty [-]
+    most: str  #: input to measure better
+
+
+@dataclass(frozen=True)
 class View:
     """Grid that the controls of a page move on."""
 
     title: str
-    grid: Grid
-    margins: Sequence[tuple[float, float, str]]  #: humidity, relative uncertainty [-], input to measure better
+    grid: Grid | Curves
     words: Mapping[str, str]  #: that differ between beams and stoppers
+    margin: Margin | None = None
 
 
 def content(name: str, section: Mapping[str, Any], views: Sequence[View]) -> dict:
@@ -50,7 +61,7 @@ def of_beam(
     worst = _worst(safe_lengths)
     chart = f"devices.{name}.chart"
     axes = (
-        _humidity(
+        humidity_axis(
             joined.humidity.values, worst, f"{chart}.humidities" if humid else f"devices.{name}.humidities", humid
         ),
         _of_size("thickness_um", "thickness", joined.thickness.values / UM, section, f"{chart}.thicknesses_um"),
@@ -68,20 +79,12 @@ def of_beam(
         "build": "no more than",
         "bound": "safe",
     }
-    return View("sizes and air", grid, _margins(sentences.shortest_budgets(safe_lengths, budgets)), words)
+    return View("sizes and air", grid, words, _margin(sentences.shortest_budgets(safe_lengths, budgets)))
 
 
 def _worst(safe_lengths):
-    """Humidity of the shortest safe length or, of a device with a length, of the largest fraction stuck."""
-
-    def rank(humidity):
-        """Small at the worst humidity."""
-        dataset = safe_lengths[humidity]
-        if "length_of_device" in dataset:
-            return -float(dataset.isel(shape=-1).stuck_at_length.sel(end="high"))
-        return float(sentences.safe_lengths_of(dataset).min())
-
-    return min(safe_lengths, key=rank)
+    """Humidity of the shortest safe length, which is that of the answer."""
+    return min(safe_lengths, key=lambda humidity: float(sentences.safe_lengths_of(safe_lengths[humidity]).min()))
 
 
 def _charted(charts):
@@ -115,13 +118,26 @@ def _quantiles(lengths, stuck, samples):
 def of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> View:
     """View of a stopper: its section, dataset of stage stoppers and budgets."""
     is_humid = stopper.axis.values[-1] > 0
-    along = stopper.isel(axis=stopper.axis.values > 0) if is_humid else stopper
+    safe, scored = _along(stopper)
+    shown = safe.axis.values > 0 if is_humid else slice(None)
     key = "design.worst_humidities" if is_humid else "humidities of the device"
-    stated = stopper.pull_off.mean("sample")
+    share = sentences.bounded_share(stopper)
+    stated = stopper.pull_off.mean("sample") if share is None else stopper.safe_force.sel(part="safe", share=share)
     worst = float(stopper.humidity[int(np.argmax(stated.values))])
-    axis = _humidity(along.axis.values, worst, key, True)
-    view = _of_forces((axis,), along.safe_force_along, along.scored_along.values, section, stopper)
-    return replace(view, margins=_margins(budgets))
+    axis = humidity_axis(safe.axis.values[shown], worst, key, True)
+    view = _of_forces((axis,), safe.isel(axis=shown), scored[shown], section, stopper)
+    return replace(view, margin=_margin(budgets))
+
+
+def _along(stopper):
+    """Safe forces along the fine axis of a stopper with its own humidities on it, and quantiles of the forces."""
+    own, fine = stopper.humidity.values, stopper.axis.values
+    kept = np.array([not np.isclose(own, value).any() for value in fine])
+    order = np.argsort(np.append(own, fine[kept]))
+    stated = stopper.safe_force.sel(part="safe", drop=True).rename(humidity="axis")
+    scored = np.array([quantiles(row) for row in stopper.pull_off.values])
+    safe = xr.concat([stated, stopper.safe_force_along.isel(axis=kept)], "axis", coords="minimal", compat="override")
+    return safe.isel(axis=order), np.concatenate([scored, stopper.scored_along.values[kept]])[order]
 
 
 def of_tilted(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopper: xr.Dataset) -> View:
@@ -132,7 +148,7 @@ def of_tilted(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopper
     tilt = Axis("tilt_deg", "tilt", "°", "linear", tilts, tilts[0], False, reason, "tilt_deg")
     stuck = tilted.stuck.sel(bound="estimate").max("tilt")
     worst = float(tilted.humidity[int(np.argmax(stuck.values))])
-    humidity = _humidity(tilted.humidity.values, worst, f"{key}.humidities", False)
+    humidity = humidity_axis(tilted.humidity.values, worst, f"{key}.humidities", False)
     scored = np.apply_along_axis(quantiles, -1, tilted.pull_off.transpose("tilt", "humidity", "sample").values)
     safe = tilted.safe_force.sel(part="safe").transpose("tilt", "humidity", "share")
     return replace(_of_forces((tilt, humidity), safe, scored, section, stopper), title="tilt")
@@ -151,10 +167,10 @@ def _of_forces(axes, safe, scored, section, stopper):
     share = _share(known.share.values, least if least in known.share.values else float(known.share[-1]))
     grid = Grid(axes, share, size, *numbers, stopper.sizes["sample"], falls=True)
     words = {"what": label, "safe": f"Sufficient {label}", "stick": f"Stoppers with this {label} that stick"}
-    return View("humidity", grid, (), words | {"build": "at least", "bound": "sufficient"})
+    return View("humidity", grid, words | {"bound": "sufficient"})
 
 
-def _humidity(values, worst, key, between):
+def humidity_axis(values: Sequence[float], worst: float, key: str, between: bool) -> Axis:
     """Axis of relative humidities."""
     values = tuple(map(float, values))
     several = between and len(values) > 1
@@ -196,11 +212,12 @@ def _listed(values):
     return ", ".join(f"{value:g}" if value else "0 (dry air)" for value in values)
 
 
-def _margins(budgets):
-    """Humidity, relative uncertainty of the size, and the best input to measure, where known."""
-    rows = []
-    for (humidity, *_), dataset in sorted(budgets.items()):
-        budget = budget_of(dataset)
-        if np.isfinite(budget.total) and budget.total > 0:
-            rows.append((float(humidity), budget.total, ranked(budget, groups_of(dataset))[0][0]))
-    return rows
+def _margin(budgets):
+    """Margin of the most uncertain budget, where one is known."""
+    known = [(budget_of(dataset), dataset) for _, dataset in sorted(budgets.items())]
+    known = [(budget, dataset) for budget, dataset in known if np.isfinite(budget.total) and budget.total > 0]
+    if not known:
+        return None
+    budget, dataset = max(known, key=lambda one: one[0].total)
+    humidities = [float(humidity) for humidity, *_ in budgets]
+    return Margin(min(humidities), max(humidities), budget.total, ranked(budget, groups_of(dataset))[0][0])

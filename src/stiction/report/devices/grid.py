@@ -15,7 +15,7 @@ from stiction.devices.risk import SCORES
 #: Significant digits of the numbers in a page.
 _DIGITS = 7
 #: Normal score of a band of 95 %.
-_Z = float(ndtri(0.975))
+Z95 = float(ndtri(0.975))
 #: Coordinate of a value along an axis, by its scale.
 _PLACES = {"linear": lambda value: value, "log": np.log, "score": ndtri}
 
@@ -114,7 +114,7 @@ class Grid:
     @property
     def json(self) -> dict:
         """Content for a page."""
-        numbers = {name: _rounded(getattr(self, name)) for name in ("safe", "quantiles")}
+        numbers = {name: rounded(getattr(self, name)) for name in ("safe", "quantiles")}
         return asdict(self) | numbers | {"scores": SCORES.tolist()}
 
 
@@ -124,8 +124,8 @@ def band(share: float, samples: int) -> tuple[float, float]:
     >>> [round(end, 3) for end in band(0.5, 100)]
     [0.404, 0.596]
     """
-    part = _Z**2 / samples
-    half = _Z * np.sqrt(share * (1 - share) / samples + part / (4 * samples))
+    part = Z95**2 / samples
+    half = Z95 * np.sqrt(share * (1 - share) / samples + part / (4 * samples))
     return tuple(float((share + part / 2 + sign * half) / (1 + part)) for sign in (-1, 1))
 
 
@@ -136,10 +136,15 @@ def monotone(places: Sequence[float], values: np.ndarray, at: float) -> np.ndarr
     widths = np.diff(places)
     secants = np.diff(values, axis=0) / widths.reshape(-1, *[1] * (values.ndim - 1))
     k = int(np.clip(np.searchsorted(places, at, "right") - 1, 0, len(widths) - 1))
-    left, right = (_slope(j, widths, secants) * widths[k] for j in (k, k + 1))
-    t = (at - places[k]) / widths[k]
-    ends = values[k] * (1 + 2 * t) * (1 - t) ** 2 + values[k + 1] * t**2 * (3 - 2 * t)
-    return ends + left * t * (1 - t) ** 2 - right * t**2 * (1 - t)
+    slopes = [_slope(j, widths, secants) for j in (k, k + 1)]
+    return hermite(widths[k], (at - places[k]) / widths[k], values[k : k + 2], slopes)
+
+
+def hermite(width: float, part: float, values: Sequence, slopes: Sequence) -> np.ndarray:
+    """Cubic with values and slopes at both ends of an interval, at a part of its width, from 0 to 1."""
+    t, s = part, 1 - part
+    ends = values[0] * (1 + 2 * t) * s**2 + values[1] * t**2 * (3 - 2 * t)
+    return ends + width * (slopes[0] * t * s**2 - slopes[1] * t**2 * s)
 
 
 def _slope(k, widths, secants):
@@ -160,8 +165,8 @@ def _slope(k, widths, secants):
         return np.where(d0 * d1 <= 0, 0 * d0 * d1, (w0 + w1) / (w0 / d0 + w1 / d1))
 
 
-def _rounded(values):
+def rounded(values: np.ndarray) -> list:
     """Nested lists of numbers with few digits, `None` for NaN."""
     if values.ndim > 1:
-        return [_rounded(part) for part in values]
+        return [rounded(part) for part in values]
     return [float(f"{value:.{_DIGITS}g}") if np.isfinite(value) else None for value in values]

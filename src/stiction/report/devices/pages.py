@@ -14,13 +14,14 @@ from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of, restoring_force
 from stiction.config.materials import material_of
 from stiction.config.merging import differing
 from stiction.config.reading import paper
+from stiction.config.scans import is_measured
 from stiction.devices.risk import one_in
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
 from stiction.report import html
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
-from stiction.report.devices import explorer, first_screen, life, own_length, sentences
+from stiction.report.devices import curve_views, explorer, first_screen, life, own_length, sentences
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
 from stiction.report.drawings.devices import device_drawing
@@ -320,7 +321,9 @@ def _settings(plan, at):
     }
     not_modelled = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
     assumed = plan.devices.assumed(at.device)
-    return section | {"surfaces": surfaces} | not_modelled | ({"assumed": assumed} if assumed else {})
+    measured = [name for name in names.values() if is_measured(plan.config["surfaces"][name])]
+    known = {"assumed": assumed, "measured": measured}
+    return section | {"surfaces": surfaces} | not_modelled | {key: some for key, some in known.items() if some}
 
 
 def _page(data, at, settings):
@@ -336,6 +339,7 @@ def _page(data, at, settings):
         lengths, charts = data["safe_lengths"], data["charts"]
         views = [explorer.of_beam(at.device, settings, lengths, charts, budgets)]
         page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
+    views += curve_views.views(at.device, settings, data)
     page = process_section.with_process(page, at.device, data)
     drawing = device_drawing(_with_force(settings)).svg
     page = with_life(page, at.device, data["life"])

@@ -1,7 +1,7 @@
 // Controls and charts of the page of a device, over the grid of its computed states.
 //
 // Plain JavaScript and SVG: no dependency to embed, update or trust, and a few kilobytes on every page. The formulas are
-// those of report/devices/grid.py, which a test compares with them. Every text enters the page as text, never as HTML.
+// those of report/devices/grid.py and curves.py, which a test compares with them. Every text enters the page as text, never as HTML.
 (() => {
 "use strict";
 const content = JSON.parse(document.getElementById("explorer-data").textContent);
@@ -68,10 +68,13 @@ function opened(number) {
     const secants = widths.map((width, k) => (values[k + 1] - values[k]) / width);
     let k = 0;
     while (k < widths.length - 1 && places[k + 1] <= at) k++;
-    const [left, right] = [k, k + 1].map(j => slope(j, widths, secants) * widths[k]);
-    const t = (at - places[k]) / widths[k], s = 1 - t;
-    const ends = values[k] * (1 + 2 * t) * s * s + values[k + 1] * t * t * (3 - 2 * t);
-    return ends + left * t * s * s - right * t * t * s;
+    return hermite(widths[k], (at - places[k]) / widths[k], values.slice(k, k + 2), [k, k + 1].map(j => slope(j, widths, secants)));
+  }
+
+  /** Cubic with values and slopes at both ends of an interval, at a part of its width. */
+  function hermite(width, t, values, slopes) {
+    const s = 1 - t, ends = values[0] * (1 + 2 * t) * s * s + values[1] * t * t * (3 - 2 * t);
+    return ends + width * (slopes[0] * t * s * s - slopes[1] * t * t * s);
   }
 
   const placesOf = axis => axis.values.map(PLACES[axis.scale]);
@@ -96,6 +99,31 @@ function opened(number) {
     return [found, grid.scores].map(part => part.filter((_, k) => keep[k]));
   }
 
+  // Formulas of curves
+
+  const chosen = (part, state) => grid.axes.slice(1).reduce((found, axis) => found[axis.values.indexOf(state[axis.key])], part);
+
+  /** Value of a line of a state, not a number next to a point that could not be computed. */
+  function onLine(name, state) {
+    const places = known.get(grid.axes[0].key), at = PLACES[grid.axes[0].scale](state[grid.axes[0].key]);
+    const [values, slopes] = chosen(grid.lines[name], state).map(part => part.map(one => one ?? NaN));
+    let k = 0;
+    while (k < places.length - 1 && places[k + 1] <= at) k++;
+    if (places[k] === at) return values[k];
+    const width = places[k + 1] - places[k];
+    return hermite(width, (at - places[k]) / width, values.slice(k, k + 2), slopes.slice(k, k + 2));
+  }
+
+  /** Margin and size of a state, each with the ends of its band. */
+  function sizes(state) {
+    const margin = onLine("margin", state), reach = Z95 * onLine("error", state), sign = grid.falls ? -1 : 1;
+    const parts = [0, -reach, reach];
+    return [parts.map(part => margin + part), parts.map(part => grid.size.start * Math.exp(sign * margin + part))];
+  }
+
+  const stuckOn = state => ({share: onLine("stuck", state), low: onLine("low", state), high: onLine("high", state), beyond: 0});
+  const suffices = state => chosen(grid.ranges, state).some(([low, high]) => low <= state[grid.axes[0].key] && state[grid.axes[0].key] <= high);
+
   function line(x, y, value) {
     if (value <= x[0]) return y[0];
     for (let k = 1; k < x.length; k++)
@@ -117,13 +145,8 @@ function opened(number) {
     return {share, low, high, beyond: sign * ((place > levels[levels.length - 1]) - (place < levels[0])) || 0};
   }
 
-  /** The larger uncertainty of the two computed humidities around one; nothing outside of them. */
-  function margin(humidity) {
-    const rows = data.margins, below = rows.filter(row => row[0] <= humidity), above = rows.filter(row => row[0] >= humidity);
-    if (!below.length || !above.length) return null;
-    const nearest = [...below.filter(row => row[0] === below[below.length - 1][0]), ...above.filter(row => row[0] === above[0][0])];
-    return nearest.reduce((most, row) => row[1] > most[1] ? row : most);
-  }
+  /** Uncertainty by the measurements at a humidity, nothing outside of those of the device. */
+  const margin = humidity => data.margin && data.margin.low <= humidity && humidity <= data.margin.high ? data.margin : null;
 
   // Texts
 
@@ -171,7 +194,7 @@ function opened(number) {
   // Page
 
   function make(parent, name, attributes = {}, content) {
-    const svg = ["svg", "path", "line", "circle", "text", "g"].includes(name);
+    const svg = ["svg", "path", "line", "circle", "rect", "text", "g"].includes(name);
     const made = svg ? document.createElementNS("http://www.w3.org/2000/svg", name) : document.createElement(name);
     for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
     if (content !== undefined) made.textContent = content;
@@ -223,17 +246,34 @@ function opened(number) {
   let shown;
 
   function answer() {
+    for (const [name, content] of Object.entries((grid.lines ? textsOfCurve : texts)())) shown[name].textContent = content;
+  }
+
+  function textsOfCurve() {
+    const {words} = data, [quantity] = grid.axes, [[margin, ...ends], [size, ...band]] = sizes(state);
+    const at = `${quantity.label[0].toUpperCase()}${quantity.label.slice(1)} ${valueText(quantity, state[quantity.key])}`;
+    const between = ([low, high]) => `${text(low, DIGITS)} to ${text(high, DIGITS)}`, beyond = Math.abs(margin) >= grid.largest;
+    const unknown = Number.isFinite(margin) ? "beyond a factor of 1000 of the required one" : "not computed here";
+    const safe = grid.lines.safe ? `; ${text(grid.size.start * Math.exp((grid.falls ? -1 : 1) * onLine("safe", state)), DIGITS)} ${grid.size.unit} with 95 % confidence` : "";
+    return {
+      enough: `${at}: ${suffices(state) ? words.yes : words.no}`,
+      size: `${words.size}: ${beyond || !Number.isFinite(margin) ? unknown : `${text(size, DIGITS)} ${grid.size.unit} (${between(band)} ${grid.size.unit})${safe}`}`,
+      stuck: `${words.stick}: ${stuckText(stuckOn(state))}`,
+      margin: `Margin, ln(${grid.falls ? "restoring force / force needed" : "length / required length"}): ${beyond || !Number.isFinite(margin) ? unknown : `${text(margin, DIGITS)} (${between(ends)})`}`,
+    };
+  }
+
+  function texts() {
     const unit = grid.size.unit, words = data.words, levels = levelsOf(state);
     const safe = safeSize(state), less = margin(state.humidity);
-    const build = less && safe * Math.exp((grid.falls ? 2 : -2) * less[1]);
-    const texts = {
+    const build = words.build && less && safe * Math.exp(-2 * less.total);
+    return {
       stuck: `${words.stick}: ${stuckText(stuckAt(state[grid.size.key], levels))}`,
       safe: `${words.safe} for ${oneIn(state.share)}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : `not known from ${grid.samples} devices`}`,
-      budget: less && Number.isFinite(build)
-        ? `Measurements leave ${text(100 * less[1], 2)} %, most of it ${less[2]}: build ${words.build} ${text(build, DIGITS)} ${unit}`
-        : `Margin for the measurements: not computed ${data.margins.length ? "at this humidity" : "without stated uncertainties"}`,
+      budget: less
+        ? `Measurements leave ${text(100 * less.total, 2)} %, most of it ${less.most}: ${Number.isFinite(build) && words.build ? `build ${words.build} ${text(build, DIGITS)} ${unit}` : "no margin is added for them"}`
+        : `Margin for the measurements: not computed ${data.margin ? "at this humidity" : "without stated uncertainties"}`,
     };
-    for (const [name, content] of Object.entries(texts)) shown[name].textContent = content;
   }
 
   // Charts
@@ -299,12 +339,53 @@ function opened(number) {
     };
   }
 
-  const allSafe = grid.safe.flat(Infinity).filter(value => value !== null);
+  const nameOf = axis => `${axis.label}${axis.unit && ` [${axis.unit}]`}`;
+
+  /** Chart of a curve with its band, what suffices shaded, and the required size with the best value. */
+  function curveChart(parent, title, top, at, describe) {
+    const [axis] = grid.axes, ends = [axis.values[0], axis.values[axis.values.length - 1]], place = make(parent, "div");
+    const along = value => at({...state, [axis.key]: value}), inside = value => clamp(value, 0, top());
+    return (required) => {
+      place.replaceChildren();
+      const chart = axesOf(place, title, ends, [0, top()], [nameOf(axis), title]), bottom = HEIGHT - BOTTOM;
+      for (const [low, high] of chosen(grid.ranges, state)) make(chart.svg, "rect", {class: "enough", x: chart.x(low), width: chart.x(high) - chart.x(low), y: TOP, height: bottom - TOP});
+      const points = spread(...ends).map(value => [value, along(value).map(inside)]).filter(([, found]) => found.every(Number.isFinite));
+      const side = k => points.map(([value, found]) => [chart.x(value), chart.y(found[k])]);
+      make(chart.svg, "path", {class: "band", d: path([...side(1), ...side(2).reverse()])});
+      make(chart.svg, "path", {class: "curve", d: path(side(0))});
+      for (const value of axis.values) if (along(value)[0] <= top()) make(chart.svg, "circle", {r: 3, class: "mark", cx: chart.x(value), cy: chart.y(along(value)[0])});
+      if (required) {
+        make(chart.svg, "line", {class: "safe", x1: LEFT, x2: WIDTH - RIGHT, y1: chart.y(required), y2: chart.y(required)});
+        if (grid.best) make(chart.svg, "line", {class: "best", x1: chart.x(grid.best[1]), x2: chart.x(grid.best[2]), y1: chart.y(required), y2: chart.y(required)});
+        if (grid.best) make(chart.svg, "circle", {r: 5, class: "best", cx: chart.x(grid.best[0]), cy: chart.y(required)});
+      }
+      const here = along(state[axis.key])[0];
+      if (here <= top()) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[axis.key]), cy: chart.y(here)});
+      hover(chart, ends, value => describe(nearest(axis, value)), () => state[axis.key])();
+    };
+  }
+
+  function curveCharts(parent) {
+    const [axis] = grid.axes, {size, best} = grid, at = value => `At ${valueText(axis, value)}`;
+    const required = `${size.label} ${text(size.start)} ${size.unit}`;
+    const largest = () => 1.05 * Math.max(size.start, ...axis.values.map(value => sizes({...state, [axis.key]: value})[1][2]).filter(one => one < 20 * size.start));
+    const known = grid.falls ? "force needed" : "length", shaded = "Shaded: suffices with 95 % confidence.";
+    const found = best ? ` Ring: best, ${text(best[0])} ${axis.unit} (${text(best[1])} to ${text(best[2])} ${axis.unit}).` : "";
+    const sizeChart = curveChart(parent, `${data.words.size} [${size.unit}]`, largest, one => sizes(one)[1], value => {
+      const [one, low, high] = sizes({...state, [axis.key]: value})[1];
+      return `${at(value)}: ${known} ${text(one)} ${size.unit} (${text(low)} to ${text(high)}). Dashed: ${required}. ${shaded}${found}`;
+    });
+    const percents = one => { const {share, low, high} = stuckOn(one); return [share, low, high].map(part => 100 * part); };
+    const stuck = curveChart(parent, "P(stuck) [%]", () => 100, percents, value => `${at(value)}: ${stuckText(stuckOn({...state, [axis.key]: value}))}. ${shaded}`);
+    return [() => sizeChart(size.start), () => stuck()];
+  }
+
+  const allSafe = (grid.safe ?? []).flat(Infinity).filter(value => value !== null);
 
   function safeChart(parent, axis) {
     const ends = [axis.values[0], axis.values[axis.values.length - 1]], unit = grid.size.unit;
     const top = 1.05 * Math.max(...allSafe);
-    const chart = axesOf(parent, `${data.words.safe} against ${axis.label}`, ends, [0, top], [`${axis.label}${axis.unit && ` [${axis.unit}]`}`, `${data.words.safe} [${unit}]`]);
+    const chart = axesOf(parent, `${data.words.safe} against ${axis.label}`, ends, [0, top], [nameOf(axis), `${data.words.safe} [${unit}]`]);
     const curve = make(chart.svg, "path", {class: "curve"}), marks = axis.values.map(() => make(chart.svg, "circle", {r: 3, class: "mark"}));
     const dot = make(chart.svg, "circle", {r: 6, class: "here"});
     const safe = value => safeSize({...state, [axis.key]: value});
@@ -341,15 +422,20 @@ function opened(number) {
   }
 
   function study() {
-    const section = {...data.section}, shares = data.study.design?.shares ?? grid.share.values;
+    const section = {...data.section}, shares = data.study.design?.shares ?? grid.share.values, whole = structuredClone(data.study);
     for (const axis of controls) {
       const {setting, key} = axis, moved = state[key] !== axis.start || ["length_um", "humidity", "tilt_deg"].includes(key);
       if (!setting || setting === "shares" || !moved) continue;
+      if (setting.includes(".")) {
+        const path = setting.split("."), last = path.pop();
+        path.reduce((part, name) => part[name] ??= {}, whole)[last] = state[key];
+        continue;
+      }
       section[setting] = ["humidities", "tilt_deg"].includes(setting) ? [state[key]] : state[key];
     }
     const all = [...new Set([...shares, state.share])].sort((a, b) => b - a);
-    const design = grid.falls ? {} : {design: {...data.study.design, shares: all}};
-    return yaml({...data.study, ...design, devices: {[data.name]: section}});
+    const design = grid.falls || grid.lines ? {} : {design: {...data.study.design, shares: all}};
+    return yaml({...whole, ...design, devices: {[data.name]: section}});
   }
 
   function copied(place, status) {
@@ -358,7 +444,8 @@ function opened(number) {
     place.select();
     try { document.execCommand("copy"); } catch { /* the text is selected */ }
     navigator.clipboard?.writeText(place.value).catch(() => {});
-    status.textContent = "Copied. Save it as mine.yaml and run: stiction run mine.yaml";
+    const note = data.words.copied && ` ${data.words.copied.replace("{value}", state[grid.axes[0].key])}.`;
+    status.textContent = `Copied. Save it as mine.yaml and run: stiction run mine.yaml.${note || ""}`;
   }
 
   // Start
@@ -366,14 +453,14 @@ function opened(number) {
   const panel = make(root, "div", {class: "controls"});
   for (const axis of controls) control(panel, axis);
   const answers = make(panel, "div", {class: "answers", "aria-live": "polite"});
-  shown = Object.fromEntries(["stuck", "safe", "budget"].map(name => [name, make(answers, "p", {"data-answer": name})]));
+  shown = Object.fromEntries((grid.lines ? ["enough", "size", "stuck", "margin"] : ["stuck", "safe", "budget"]).map(name => [name, make(answers, "p", {"data-answer": name})]));
   const buttons = make(panel, "p"), copy = make(buttons, "button", {type: "button"}, "Copy as YAML");
   const reset = make(buttons, "button", {type: "button"}, "Back to this device");
   const status = make(panel, "p", {class: "note", role: "status"});
   const place = make(panel, "textarea", {readonly: "", rows: 8, "aria-label": "study as YAML", hidden: ""});
   copy.addEventListener("click", () => copied(place, status));
   const figures = make(root, "div", {class: "charts"}), moving = grid.axes.filter(axis => axis.values.length > 1 && allSafe.length);
-  const charts = [stuckChart(figures), ...moving.slice(0, 1).map(axis => safeChart(figures, axis))];
+  const charts = grid.lines ? curveCharts(figures) : [stuckChart(figures), ...moving.slice(0, 1).map(axis => safeChart(figures, axis))];
   let state, refused;
   const start = () => { [state, refused] = fromAddress(); refresh(refused); };
   reset.addEventListener("click", () => { state = Object.fromEntries(controls.map(axis => [axis.key, axis.start])); refresh({}); });

@@ -1,4 +1,4 @@
-"""Stages process_map, process_pairs: margins of a device over two processes, and pairs of settings that suffice."""
+"""Stages process_map, process_pairs: margins of a device over two processes, and sufficient pairs of settings."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import RegularGridInterpolator
 
-from stiction.devices.process import PAIRS, Map, Pairs, law_error, recommended_pairs
+from stiction.devices.process import PAIRS, Map, Pairs, law_error, recommended_pairs, unknown
 from stiction.devices.roughness import sufficient
 from stiction.plan.stage import Stage
 from stiction.stages.process.curves import Settings, inputs, joined, labels_of, settings_of
@@ -57,19 +57,13 @@ def _maps(found: xr.Dataset) -> Iterator[tuple[tuple[int, int], Map]]:
 
 
 def recommended(found: xr.Dataset, laws: Sequence[xr.Dataset], device: str, seed: int) -> xr.Dataset:
-    """Pairs of settings that suffice for a device, and the best one. Unknown where a margin is."""
+    """Sufficient pairs of settings for a device, and the best one. They are unknown with their margin."""
     maps, known = [one for _, one in _maps(found)], [law_of(one) for one in laws]
     if len(maps) < found.sizes["humidity"] * found.sizes["shape"]:
-        pairs = _unknown(np.linspace(*known[0].ends, PAIRS), known[1].settings)
+        pairs = unknown(np.linspace(*known[0].ends, PAIRS), known[1].settings)
     else:
         pairs = recommended_pairs(maps, known, stream(seed, "process", "pairs", device))
     return layout(pairs, found, known[1].settings)
-
-
-def _unknown(settings, seconds):
-    """Pairs of which nothing is known."""
-    nothing = np.full((len(seconds), len(settings)), np.nan)
-    return Pairs(settings, seconds, nothing, nothing, *(np.full(shape, np.nan) for shape in (2, 2, (2, 2))))
 
 
 def layout(pairs: Pairs, found: xr.Dataset, settings: np.ndarray) -> xr.Dataset:
@@ -91,7 +85,7 @@ def layout(pairs: Pairs, found: xr.Dataset, settings: np.ndarray) -> xr.Dataset:
 
 
 def of_processes(pairs: xr.Dataset) -> list[xr.Dataset]:
-    """Settings of each process: those that suffice at some setting of the other one, and the best.
+    """Settings of each process: all sufficient ones at some setting of the other process, and the best.
 
     Their variables are as in a dataset of `stiction.stages.process.recommended`.
     """

@@ -1,0 +1,85 @@
+"""Curves of a page: a device against one quantity of its surface, with bands, through its computed points.
+
+A page has them as JSON, and ``templates/explorer.js`` repeats the formulas of this module. Every line is a piecewise
+cubic, stored as its values and slopes at the computed points. Nothing is said beyond the points, or next to one that
+could not be computed.
+"""
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import numpy as np
+
+from stiction.devices.roughness import LARGEST
+from stiction.report.devices.grid import Z95, Axis, hermite, rounded
+
+
+@dataclass(frozen=True)
+class Curves:
+    """Margins of a device to its requirement against one quantity, and fractions stuck at the required size.
+
+    Lines and ranges are those of each choice, such as a humidity. The lines are ``margin``, ``error`` (its standard
+    error), ``stuck``, ``low`` and ``high`` (the fraction stuck and its band), perhaps also ``safe`` (margin with 95 %
+    confidence).
+    """
+
+    axes: tuple[Axis, ...]  #: the quantity, and choices with answers at the computed values alone
+    share: Axis  #: fraction p that may stick, one value
+    size: Axis  #: required length or force, one value
+    lines: Mapping[str, np.ndarray]  #: (choices..., 2, n): values and slopes at the places of the quantity
+    ranges: list  #: ranges of the quantity that suffice, in lists over the choices
+    best: tuple[float, float, float] | None  #: best value and the ends of its 95 % interval
+    falls: bool  #: whether fewer stick at a larger size
+
+    def at(self, state: Mapping[str, float]) -> dict[str, float]:
+        """Value of each line at a state, NaN next to a point that could not be computed."""
+        quantity, place = self.axes[0], self.axes[0].place(state[self.axes[0].key])
+        return {name: _at(quantity.places, *self._chosen(line, state), place) for name, line in self.lines.items()}
+
+    def sizes(self, state: Mapping[str, float]) -> tuple[float, float, float]:
+        """Length or force with the allowed fraction stuck, and the ends of its 95 % band."""
+        found, sign = self.at(state), -1 if self.falls else 1
+        reach = Z95 * found["error"]
+        return tuple(self.size.start * float(np.exp(sign * found["margin"] + part)) for part in (0.0, -reach, reach))
+
+    def suffices(self, state: Mapping[str, float]) -> bool:
+        """Whether the quantity is in a range that suffices."""
+        value = state[self.axes[0].key]
+        return any(low <= value <= high for low, high in self._chosen(self.ranges, state))
+
+    def _chosen(self, part, state):
+        """Part of the lines or ranges for the choices of a state."""
+        for axis in self.axes[1:]:
+            axis.place(state[axis.key])
+            part = part[axis.values.index(state[axis.key])]
+        return part
+
+    @property
+    def start(self) -> dict[str, float]:
+        """State at which a page begins."""
+        return {axis.key: axis.start for axis in (*self.axes, self.share, self.size)}
+
+    @property
+    def json(self) -> dict[str, Any]:
+        """Content for a page."""
+        lines = {name: rounded(line) for name, line in self.lines.items()}
+        return asdict(self) | {"lines": lines, "largest": float(LARGEST)}
+
+
+def line(places: np.ndarray, values: np.ndarray, cubic: type) -> np.ndarray:
+    """Values and slopes (2, n) of a curve of scipy through each run of known values (n,) at increasing places (n,)."""
+    slopes = np.full(len(values), np.nan)
+    for run in np.ma.clump_unmasked(np.ma.masked_invalid(values)):
+        if run.stop - run.start > 1:
+            slopes[run] = cubic(places[run], values[run]).derivative()(places[run])
+    return np.array([values, slopes])
+
+
+def _at(places, values, slopes, place):
+    """Value of a line at a place."""
+    k = int(np.searchsorted(places, place, "right")) - 1
+    if places[k] == place:
+        return float(values[k])
+    width, between = places[k + 1] - places[k], slice(k, k + 2)
+    return float(hermite(width, (place - places[k]) / width, values[between], slopes[between]))
