@@ -153,3 +153,13 @@ def test_surfaces_without_bow_are_flagged_in_one_of_a_hundred():
     for level_of_test in (0.01, 0.05, 0.2, 0.5):
         error = np.sqrt(level_of_test * (1 - level_of_test) / len(likely))
         assert abs(np.mean(likely < level_of_test) - level_of_test) < 3 * error + 0.3 * level_of_test, level_of_test
+
+
+@pytest.mark.parametrize(("size", "flagged"), [(0, False), (3, True), (30, True)])
+def test_a_bow_is_found_even_if_it_hides_the_plateau(size, flagged):
+    scan = published("B2", 10e-6, 1)[0]
+    along = np.linspace(-1, 1, len(scan.heights))[:, None]
+    bent = dataclasses.replace(scan, heights=scan.heights + size * scan.heights.std() * along**2)
+    found = inspect([bent], Settings())
+    assert (found.remainders[-1].likely < 1e-3) == flagged
+    assert (found.fit.errors[1] > 0.5) == (size == 30), "the corner is hidden"

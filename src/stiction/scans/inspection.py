@@ -225,8 +225,11 @@ class Inspection:
 
     @cached_property
     def remainders(self) -> tuple[Remainder, ...]:
-        """Tilts and bows left by levelling in the scans of the largest size, the one with the plateau."""
-        error, maps = np.sqrt(self.fit.covariance[0, 0]), self.largest
+        """Tilts and bows left by levelling in the scans of the largest size, the one with the plateau.
+
+        They are compared with the fitted spectrum. A large bow hides the plateau of the scan that it is on.
+        """
+        error, maps = self.fit.amplitude_error, self.largest
         return remainders(maps.levelled, maps.frame.size, self.settings.levelling, self.spectrum, error)
 
     @property

@@ -108,6 +108,11 @@ class WhittleFit:
         return np.sqrt(np.diag(self.covariance))
 
     @property
+    def amplitude_error(self) -> float:
+        """Standard error of ln plateau at this corner and slope [-]."""
+        return float(np.linalg.inv(self.covariance)[0, 0] ** -0.5)
+
+    @property
     def misfit(self) -> float:
         """χ² per degree of freedom."""
         return self.chi2 / self.freedom
