@@ -37,7 +37,7 @@ class Key(NamedTuple):
     def unit(self) -> str:
         """Unit, from the end of the description; names, choices and paths have none."""
         unit = self.entry["description"].rpartition(" [")[2].rstrip("]")
-        return unit if "[" in self.entry["description"] and unit not in ("name", "choice", "path", "-") else ""
+        return unit if "[" in self.entry["description"] and unit not in ("name", "choice", "path", "text", "-") else ""
 
     @property
     def example(self) -> Any:
@@ -73,19 +73,23 @@ def allowed(entry: dict) -> str:
     Examples
     --------
     >>> allowed({"type": "number", "exclusiveMinimum": 0, "maximum": 5})
-    '> 0, ≤ 5'
+    '>0, ≤5'
+    >>> allowed({"type": "integer", "minimum": 2, "maximum": 5})
+    'integer, 2–5'
     """
     if entry["type"] == "array":
         number = f"{number_of_items(entry)} entries" if "maxItems" in entry else "list"
         return f"{number}: {allowed(entry['items'])}"
     if "enum" in entry:
         return ", ".join(f"`{choice}`" for choice in entry["enum"])
-    if entry["type"] == "string":
-        return "text"
+    if entry["type"] in ("string", "object", "boolean"):
+        return {"string": "text", "object": "sections", "boolean": "`true`, `false`"}[entry["type"]]
     signs = {"exclusiveMinimum": ">", "minimum": "≥", "exclusiveMaximum": "<", "maximum": "≤"}
-    bounds = ", ".join(f"{sign} {entry[bound]}" for bound, sign in signs.items() if bound in entry)
+    bounds = ", ".join(f"{sign}{entry[bound]}" for bound, sign in signs.items() if bound in entry) or "number"
+    if "maximum" in entry and entry.get("minimum", -1) >= 0:
+        bounds = f"{entry['minimum']}–{entry['maximum']}"
     bounds += f", or `{entry['word']}`" if "word" in entry else ""
-    return f"whole number, {bounds}" if entry["type"] == "integer" else bounds
+    return f"integer, {bounds}" if entry["type"] == "integer" else bounds
 
 
 def page() -> str:
@@ -94,10 +98,10 @@ def page() -> str:
     for name, entry in schema()["properties"].items():
         named = isinstance(entry.get("additionalProperties"), dict)
         rows = [_row(key, 1 + named) for key in keys(entry, (name,))]
-        head = ["| key | meaning | allowed | default (or example) |", "|---|---|---|---|"]
+        head = [f"| {name}{'.NAME' * named} | meaning | allowed; default (example) |", "|---|---|---|"]
         about = entry["description"].partition(" [")[0]
-        below = f" Keys below `{name}.NAME`:" if named else f" Keys below `{name}`:" if len(rows) > 1 else ""
-        parts.append("\n".join([f"## {name}", "", f"{about[0].upper()}{about[1:]}.{below}", "", *head, *rows]))
+        said = [f"{about[0].upper()}{about[1:]}.", ""] if entry["type"] == "object" else []
+        parts.append("\n".join([f"## {name}", "", *said, *head, *rows]))
     return "\n\n".join(parts)
 
 
@@ -113,7 +117,12 @@ def _row(key, above):
     default = "" if "*" in key.path else next((_yaml(value) for value in _values(PAPER, key.path)), "")
     name = ".".join(key.path[above:] or key.path).replace("*", "NAME")
     values = f"{allowed(key.entry)} [{key.unit}]" if key.unit else allowed(key.entry)
-    return f"| `{name}` | {key.meaning} | {values} | {default or f'({_yaml(key.example)})'} |"
+    return f"| `{name}` | {key.meaning} | {values}{f'; {default}' if default else f' ({_yaml(_first(key.example))})'} |"
+
+
+def _first(value):
+    """First of several sections; any other value as it is."""
+    return value[:1] if isinstance(value, list) and isinstance(value[0] if value else None, dict) else value
 
 
 def _yaml(value):

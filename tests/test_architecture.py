@@ -36,7 +36,7 @@ ORDER = [
         "stages.process",
         "stages.test_beams",
     ),
-    *("pilot", "report", "described_surface", "study", "device", "process", "command"),
+    *("pilot", "accuracy", "report", "described_surface", "study", "device", "process", "command"),
 ]
 
 

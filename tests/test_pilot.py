@@ -243,7 +243,7 @@ def test_the_samples_are_the_first_ones_of_the_run(model):
     )
     config = configured(B, changes)
     plan = Plan(config)
-    surfaces = functools.partial(pilot._surface, plan)
+    surfaces = functools.partial(pilot.surface, plan)
     samples = pilot.Samples(plan, surfaces, [], lambda _, compute: compute(), Patch("b", 1500, 3000), model, False)
     study = PairStudy.of(config, "b", model)
     solid, bearing, *_ = samples._contact

@@ -87,7 +87,7 @@ WRONG_VALUES = [
     # measured surfaces; tests/config/test_measured_surfaces.py has more, with files
     ("scans: {model_scans: 7}", "scans.model_scans", "7", "at least 8"),
     ("scans: {tiles: 1}", "scans.tiles", "1", "at least 2 and at most 8"),
-    ("scans: {undefined_share: 1}", "scans.undefined_share", "1", "at most 0.5: share of undefined points"),
+    ("scans: {undefined_share: 1}", "scans.undefined_share", "1", "at most 0.5: fraction of undefined points"),
     ("surfaces: {B1: {scans: }}", "surfaces.B1.scans", "None", GONE),
 ]  # fmt: skip
 
@@ -139,8 +139,11 @@ WRONG_RELATIONS = [
     ("van_der_waals: none\npairs: {b: {humidities: [dry, 0.6]}}", "van_der_waals", "'none'",
      "must be water or dry for pair b, in dry air: without attraction"),
     ("van_der_waals: none\n" + IN_DRY_AIR + "}}", "van_der_waals", "'none'", "must be water or dry for pair b, in dry"),
-    ("run: {pairs: [b]}\ncontact: {model: full}\npairs: {b: {humidities: [dry, 0.67]}}", "contact.model", "'full'",
-     "must be summits for pair b, in dry air: without attraction"),
+    ("contact: {model: full}\npairs: {b: {humidities: [0.3, 0.8]}}\n" + IN_DRY_AIR + "}}", "devices.C1.humidities",
+     "['dry', 0.8]", "must be within the humidities of pair b, to which the correction of contact.model full"),
+    ("contact: {model: full}\npairs: {b: {humidities: [dry, 0.5, 0.75]}}\n" + IN_DRY_AIR + "}}",
+     "devices.C1.humidities", "['dry', 0.8]",
+     "must be within the humidities of pair b, to which the correction of contact.model full"),
     (IN_DRY_AIR.replace(", 0.8", "") + "uncertainty: {humidity: 0.01}}}\nattraction: {reach: all}",
      "devices.C1.uncertainty.humidity", "0.01",
      "must be left out, because dry air has no humidity that could be uncertain"),
@@ -253,8 +256,6 @@ WRONG_RELATIONS = [
     (UNCERTAIN + "poisson_ratio: 0.3}}}", "devices.C1.uncertainty.poisson_ratio", "0.3", "its budget needs 0.23 ± 0.3"),
     (UNCERTAIN + "hamaker_constant_zJ: 98}}}", "devices.C1.uncertainty.hamaker_constant_zJ", "98",
      "below the Hamaker constant itself, 97.5 zJ (given van_der_waals = 'water')"),
-    ("attraction: {reach: all}\ncontact: {model: full}", "contact.model", "'full'", "must be summits where attraction"),
-    ("contact: {model: full}\nstudies: {variants: {reach: [all]}}", "contact.model", "'full'", "must be summits where"),
     ("contact: {model: full}\nfigures: {humidity: 0.5}", "figures.humidity", "0.5", "within the humidities of pair c"),
     (f"contact: {{model: full}}\ndevices: {{S1: {STOPPER}}}", "design.worst_humidities", "[0.4, 0.98]",
      "within the humidities of pair b, to which the correction"),

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import xarray as xr
 
+from stiction.accuracy import decided
 from stiction.config.cases import DRY, case_id, in_numbers
 from stiction.config.kinds import KEYS, KINDS, Kind, kind_of
 from stiction.config.units import in_si
@@ -63,7 +64,7 @@ class Device:
         devices = DevicePlan(config).sections
         if name not in devices:
             raise ValueError(f"there is no device {name}; the configuration has {', '.join(devices) or 'none'}")
-        device = cls(name, Results.of(config))
+        device = cls(name, Results.of(decided(config)))
         device.contact, device.tips  # noqa: B018 - computed now, as the docstring says
         return device
 

@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from stiction.beam.resolution import longest
 from stiction.config.cases import case_id, in_air
@@ -94,7 +95,7 @@ def problems(
     plan = Plan(with_preliminary_estimates(config, preliminary), preliminary)
     if beyond_memory := list(_tips_beyond_memory(plan)):
         return beyond_memory
-    of_patch = cache(partial(Samples, plan, cache(partial(_surface, plan)), ["pilot", code], remember))
+    of_patch = cache(partial(Samples, plan, cache(partial(surface, plan)), ["pilot", code], remember))
 
     def samples(use, model, humidity):
         """First samples of the patch of a use, with attraction of its solids through the air of a humidity."""
@@ -270,7 +271,7 @@ def _weak(use, humidities, weak):
     )
 
 
-def _surface(plan, name):
+def surface(plan: Plan, name: str) -> tuple[xr.Dataset, xr.Dataset]:
     """Datasets (heights, spectrum) of a surface described by numbers."""
     entry, rms = plan.config["surfaces"][name], plan.config["surfaces"][name]["rms_nm"]
     if "form" in entry:

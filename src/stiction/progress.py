@@ -2,6 +2,7 @@
 
 import sys
 from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from typing import TypeVar
 
 from tqdm import tqdm
@@ -14,6 +15,17 @@ _CHOSEN = {"shown": True}
 def show_progress(shown: bool = True) -> None:
     """Show progress bars of long computations in this process, as by default, or show none."""
     _CHOSEN["shown"] = shown
+
+
+@contextmanager
+def without_progress() -> Iterator[None]:
+    """Show no progress bars meanwhile."""
+    shown = _CHOSEN["shown"]
+    show_progress(False)
+    try:
+        yield
+    finally:
+        show_progress(shown)
 
 
 def progress(steps: Iterable[T], what: str, total: int | None = None) -> Iterator[T]:

@@ -93,6 +93,14 @@ def test_variants_have_finer_grids_than_that_of_the_surfaces():
     assert problems(config) == ()
 
 
+@pytest.mark.parametrize(("corner", "left"), [(12.0, [5]), (0.1, []), (0.5, [5])])
+def test_variants_whose_fields_do_not_fit_into_memory_with_a_longer_margin_are_left_out(corner, left):
+    lever = {"kind": "cantilever", "pair": "b", "width_um": 30}
+    wide = {"run": {"pairs": []}, "devices": {"C1": lever}, "beam": {"width_um": 30}}
+    config = completed(merged(merged(BASE, b2(corner)), wide), {})
+    assert config["studies"]["variants"]["spacing_nm"] == left
+
+
 def test_a_measured_surface_counts_up_to_the_end_of_its_spectrum():
     mine = {"surfaces": {"Mine": {"scans": {"files": ["a.gwy"]}}}, "run": {"pairs": []}}
     mine |= {"pairs": {"m": {"beam": "Mine", "substrate": "Sub1"}}, "devices": {"C1": {"pair": "m"}}}

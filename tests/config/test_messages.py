@@ -334,6 +334,8 @@ def test_any_configuration_runs_or_is_rejected_in_lines_that_name_a_key(config):
     [
         ("studies: {readings: {samples: 600}}", "studies.readings is called studies.variants since version"),
         ("design: {tip_um: 1}", "design.tip_um is no longer needed, must be left out: "),
+        ("menisci: {keep: volume}", "menisci is no key, must be left out: table life has both bounds, "),
+        ("contact: {menisci: {keep: volume}}", "contact.menisci is no key, must be left out: table life has both "),
     ],
 )
 def test_a_key_of_an_older_version_is_refused_with_what_it_is_called_now(former, now):

@@ -140,7 +140,7 @@ def test_numbers_of_measured_surfaces_are_named_by_their_files():
         "surfaces.B2.scans.files is ['a.spm', 'b.spm'], which gives kurtosis = 1.2, must be above skewness² + 1 = "
         f"1.5776 (given {shown})"
     )
-    (gap, _) = [line for line in lines if line.startswith("pairs.b.gap_um is 0.1, must be at least")]
+    (gap,) = [line for line in lines if line.startswith("pairs.b.gap_um is 0.1, must be at least")]
     assert gap.endswith(f"{shown})")
     assert [
         line for line in lines if line.startswith("sampling.margin_um is 0.1") and line.endswith(f"(given {shown})")
@@ -235,6 +235,25 @@ def test_adsorbed_water_is_part_of_the_film_that_a_gap_must_exceed():
     (line,) = [one for one in lines if one.startswith("pairs.b.gap_um")]
     assert "is 0.35, must be at least 0.3973 µm, 20 times the sum of the height of the water film, 16.463 nm" in line
     assert "water.adsorbed_nm = 4" in line
+
+
+def test_a_gap_is_refused_once_in_the_air_that_needs_the_largest():
+    for narrow, airs in ({"gap_um": 0.1}, "humidities"), ({"gap_um": 0.1, "humidities": [0.3]}, "figures.humidity"):
+        lines = problems(merged(PAPER, {"run": {"pairs": ["b"]}, "pairs": {"b": narrow}}))
+        (line,) = [one for one in lines if one.startswith("pairs.b.gap_um") and "water film" in one]
+        assert f"{airs} = " in line
+
+
+def test_grids_of_variants_need_memory_only_where_variants_run():
+    wide = {"beam": {"width_um": 250}, "sampling": {"strip_length_um": 15}}
+    fine = {"studies": {"variants": {"spacing_nm": [2.5], "every": []}}}
+    refused = {
+        studies: any(
+            line.startswith("studies.variants") for line in problems(merged(PAPER, wide | fine | {"run": run}))
+        )
+        for studies, run in {"some": {"studies": ["variants"]}, "none": {"studies": []}}.items()
+    }
+    assert refused == {"some": True, "none": False}
 
 
 @pytest.mark.parametrize("value", [-0.1, 5.1, "thick", None, [0.5]])

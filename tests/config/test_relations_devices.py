@@ -141,7 +141,7 @@ WRONG = [
     (
         {"requirement": {"share": 0.1}, "roughness": ROUGH},
         "devices.C1.requirement.share",
-        "at least 1e-06 and at most 0.05: share of stuck devices that is allowed",
+        "at least 1e-06 and at most 0.05: allowed fraction of stuck devices",
     ),
     ({"requirement": {"share": 0.001}, "roughness": ROUGH}, "devices.C1.requirement", "must come with length_um"),
     ({"length_um": 0.3}, "devices.C1.length_um", "must be in µm, above the thickness and the gap of the beam (given"),
@@ -171,7 +171,7 @@ WRONG = [
     (
         with_roughness(rms_nm=3),
         "devices.C1.roughness.rms_nm",
-        "ends of the range of the rms [nm]; both ends are wanted",
+        "range of the rms [nm]; both ends are wanted",
     ),
     (with_roughness(skewness=-1), "devices.C1.roughness.skewness", "both ends are wanted, as in [-1, 0]"),
     (

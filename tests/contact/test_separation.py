@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from published import SPACING, SURFACES
 from scipy.integrate import trapezoid
 from scipy.optimize import brentq
 
@@ -11,6 +12,7 @@ from stiction.contact.meniscus import film, flooded_energy
 from stiction.contact.pair import bearing_area
 from stiction.contact.separation import keep_volume
 from stiction.streams import stream
+from stiction.surface.field import StripGrid
 
 NM = 1e-9
 STEP = 0.05 * NM
@@ -122,6 +124,53 @@ def test_fast_separation_needs_more_work_and_dries_the_whole_wetted_area(seed):
     dried = flooded_energy(300.0) * np.mean(heights > rest - HEIGHT)
     least, most = dried, dried + 2 * trapezoid(TENSION * passed, distance[out])
     assert 0.97 * least < trapezoid(water, distance[out]) + left < 1.03 * most
+
+
+class Pixels:
+    """Water between a flat and a map of heights, summed over its pixels, which need no bearing area."""
+
+    def __init__(self, heights):
+        self.heights = np.sort(heights.ravel())
+        self.sums = np.append(0.0, np.cumsum(self.heights))
+
+    def wetted(self, level):
+        """Fraction of the pixels above a level [-]."""
+        return 1 - np.searchsorted(self.heights, level) / self.heights.size
+
+    def volume(self, height, distance):
+        """Water up to a height in all open gaps, per area [m]."""
+        low, high = np.searchsorted(self.heights, [distance - height, distance])
+        return ((high - low) * distance - (self.sums[high] - self.sums[low])) / self.heights.size
+
+    def work(self, rest, layer, energy):
+        """Work of the water of constant volume, and of constant pressure, from rest on to a micrometre [J m⁻²]."""
+        distance = rest + np.append(np.arange(0, 20, 0.02), np.geomspace(20, 1000, 400)) * NM
+        kept, fast = self.volume(layer[0], rest), []
+        for d in distance:
+            height = brentq(lambda h, d=d: self.volume(h, d) - kept, 1e-3 * NM, d - self.heights[0], rtol=1e-12)
+            fast.append(energy / height * self.wetted(d - height))
+        slow = layer[1] * self.wetted(distance - layer[0])
+        return trapezoid(fast, distance) + energy * self.wetted(distance[-1] - height), trapezoid(slow, distance)
+
+
+@pytest.mark.parametrize("humidity", [0.44, 0.67, 0.92])
+def test_the_work_of_constant_volume_is_that_of_the_sum_over_all_pixels_of_drawn_surfaces(humidity):
+    layer, energy, ratios = film(humidity, 300.0), flooded_energy(300.0), []
+    for seed in range(3):
+        heights = SURFACES["B2"].on(StripGrid(2e-6, 2e-6, SPACING, 1e-6)).draw(stream(7, "drawn", seed)).astype(float)
+        below, above = (int(np.ceil(end / STEP)) + 1 for end in (-heights.min(), heights.max()))
+        area, first = bearing_area(heights, STEP, below, above + 1).astype(np.float32), -below * STEP
+        solid = 1e9 * np.exp(-STEP * np.arange(above + 1) / NM)
+        distance, curve = humid_curves(solid[None], area[None], (0.0, first), STEP, layer)
+        slow = curve(0).copy()
+        fast, left = keep_volume(slow, distance, area, first, layer)
+        rest = limit_distance(distance, slow, 0.0)
+        of_volume, of_pressure = Pixels(heights).work(rest, layer, energy)
+        more = trapezoid((slow - fast)[distance >= rest], distance[distance >= rest])
+        ratios.append(((more + left) / (of_volume - of_pressure), more / (of_volume - of_pressure)))
+    whole, ended = np.mean(ratios, axis=0)
+    assert_allclose(whole, 1, rtol=3e-3)
+    assert ended < 0.9, "control: a good part is done beyond the distances of slow separation"
 
 
 def test_surfaces_that_no_summits_stop_come_to_no_rest():

@@ -61,6 +61,8 @@ CASES = [
     (limits.large_rotation, (40 * UM, 500 * UM), "500 µm.*0.12", (20 * UM, 700 * UM)),
     (limits.stubby_beam, (50 * UM, 2.6 * UM), "50 µm.*19.2 times", (52.1 * UM, 2.6 * UM)),
     (limits.wide_beam, (20 * UM, 500 * UM, 2.6 * UM, 700 * UM), "700 µm.*23.5", (20 * UM, 30 * UM, 2.6 * UM, 700 * UM)),
+    (limits.missed_accuracy, (0.03, 0.04, 0.02), "5 %, more than the 2 %.*more contact.samples", (0.01, 0.01, 0.02)),
+    (limits.missed_accuracy, (0.03, float("nan"), 0.02), "is 3 %.*more design.beams", (0.01, float("nan"), 0.02)),
     (limits.stretched_bridge, (2 * UM, 2 * UM), "gap is equal to the thickness of", (0.9 * UM, 2 * UM)),
     (limits.stretched_bridge, (3 * UM, 2 * UM), "gap is 1.5 times the thickness of", (0.9 * UM, 2 * UM)),
 ]

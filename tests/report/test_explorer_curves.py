@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import PchipInterpolator
 
 from stiction.devices.roughness import LARGEST
-from stiction.report.devices import curve_views, explorer
+from stiction.report.devices import curve_views, curves, explorer
 from stiction.report.page import Page
 from stiction.report.process import maps, tables
 from stiction.report.roughness import tables as tables_roughness
@@ -145,3 +145,12 @@ def test_a_study_with_another_rms_states_it_unless_scans_measure_the_surface():
     assert (described.grid.axes[0].setting, described.words["copied"]) == ("surfaces.B2.rms_nm", "")
     assert measured.grid.axes[0].setting == ""
     assert measured.words["copied"] == "It has the rms of B2 as it is given; this address keeps the value shown"
+
+
+def test_a_line_has_the_slopes_of_a_curve_through_each_run_of_known_values():
+    places, values = np.array([0.0, 1.0, 2.5, 3.0, 4.0, 6.0, 7.0, 8.0]), np.array([1, 2, np.nan, 3, 5, 4, np.nan, 1])
+    stored, slopes = curves.line(places, values, PchipInterpolator)
+    assert_allclose(stored, values)
+    for run in slice(0, 2), slice(3, 6):
+        assert_allclose(slopes[run], PchipInterpolator(places[run], values[run]).derivative()(places[run]))
+    assert np.isnan(slopes[[2, 6, 7]]).all()  # the last value stands alone

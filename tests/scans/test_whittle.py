@@ -280,17 +280,44 @@ def test_pixels_that_do_not_resolve_the_power_law_are_known_and_leave_smoother_s
         assert curvature[0] < curvature[1], "of surfaces of the same rms"
 
 
-def test_what_no_ring_shows_has_an_infinite_error_and_all_else_a_finite_one():
-    wavenumber, weight = np.geomspace(1e6, 1e8, 30), np.full(30, 100.0)
+def few_waves(wavelengths, number):
+    """Fit to a drawn scan of 64 x 64 points, in which so many wavelengths of the corner fit, and the truth."""
+    side = wavelengths * 2 * np.pi / B2.corner
+    modes, wavenumber = 0.6 * np.pi * np.arange(1.0, 32), 2 * np.pi / side * np.arange(1.0, 32)
+    truth = dataclasses.replace(B2, cutoff=1e12, floor=B2.plateau * (1e12 / B2.corner) ** B2.slope)
+    density = truth(wavenumber) * stream(1, "few waves", number).gamma(modes) / modes
+    return fit(Rings(wavenumber, density, modes, modes), reach((side, side), (side / 64, side / 64)))
 
-    def errors(corner):
-        covariance = whittle._covariance(wavenumber, weight, np.log(corner), -4.0)
-        return whittle.WhittleFit(1.0, corner, -4.0, covariance, 30.0, 27).errors
 
-    assert np.isfinite(errors(1e7)).all()
-    assert np.isfinite(errors(2e8)).tolist() == [True, False, False]  # beyond the last ring: a plateau alone
-    one_beyond = errors(np.sqrt(wavenumber[-2] * wavenumber[-1]))  # shows a product of corner and slope, neither alone
-    assert np.isfinite(one_beyond).tolist() == [True, False, False]
-    np.testing.assert_allclose(
-        errors(1e7), np.sqrt(np.diag(whittle._covariance(wavenumber, weight, np.log(1e7), -4.0)))
-    )
+@pytest.mark.parametrize(("wavelengths", "shown"), [(0.4, False), (0.7, False), (1, False), (4, True), (30, False)])
+def test_errors_cover_the_truth_of_scans_without_plateau_or_without_power_law(wavelengths, shown):
+    found = [few_waves(wavelengths, number) for number in range(60)]
+    off = np.array([parameters(one) - TRUTH for one in found])
+    assert np.all(np.mean(np.abs(off) < 2 * np.array([one.errors for one in found]), axis=0) >= 0.9)
+    # Control: those of the information alone, along all that it shows, miss a corner that no ring shows.
+    information = [np.sqrt(np.diag(_by_information(one, wavelengths))) for one in found]
+    assert (np.mean(np.abs(off) < 2 * np.array(information), axis=0)[1] >= 0.9) == shown
+
+
+def _by_information(found, wavelengths):
+    """Covariance of a fit by the information of its rings at the best corner."""
+    side = wavelengths * 2 * np.pi / B2.corner
+    wavenumber = 2 * np.pi / side * np.arange(2.0, 17)
+    information = whittle._information(wavenumber, 0.6 * np.pi * np.arange(2.0, 17), np.log(found.corner), found.slope)
+    return max(found.misfit, 1) * whittle.NON_GAUSSIAN**2 * np.linalg.pinv(information, hermitian=True)
+
+
+def test_a_corner_that_no_ring_shows_moves_along_the_power_law_that_they_show():
+    found = few_waves(0.5, 3)
+    variances, axes = np.linalg.eigh(found.covariance)
+    along = axes[:, -1] / axes[1, -1]
+    np.testing.assert_allclose(along, [found.slope, 1, 0], atol=1e-2)
+    assert variances[-1] > 100 * variances[-2]
+
+
+def test_an_error_of_all_that_rings_show_is_that_of_their_information():
+    found = fit(measured(stream(1)), REACH)
+    known = measured(stream(1)).between(REACH.low, REACH.high)
+    information = whittle._information(known.wavenumber, known.weight, np.log(found.corner), found.slope)
+    scale = whittle.NON_GAUSSIAN**2 * max(found.misfit, 1)
+    np.testing.assert_allclose(found.covariance, scale * np.linalg.inv(information), rtol=1e-6, atol=1e-12)

@@ -59,9 +59,10 @@ def faults(browser, report):
         browser.wait(lambda: buttons(browser), 5)
         for k in range(len(buttons(browser))):
             browser.click(buttons(browser)[k])
-            path = browser.run("return app.state.resultPath")
-            if browser.wait(lambda kind=kinds[path]: opened(browser, kind)):
-                hidden.remove(path)
+            path = browser.wait(lambda unseen=hidden: opening(browser, unseen))
+            kind = kinds.get(path)
+            if browser.wait(lambda kind=kind: opened(browser, kind)):
+                hidden.discard(path)
         found += [f"{category} does not show {path}" for path in sorted(hidden)]
     return found + browser.errors()
 
@@ -69,6 +70,12 @@ def faults(browser, report):
 def buttons(browser):
     """The button of each listed result that opens it."""
     return browser.find("#app tbody tr a:first-of-type")
+
+
+def opening(browser, unseen):
+    """Path of the result that opens, if it was not seen before."""
+    path = browser.run("return app.state.resultPath")
+    return path if path in unseen else None
 
 
 def opened(browser, kind):

@@ -100,6 +100,34 @@ except messages.ConfigError as error:
 
 config.clear()
 config.update(complete)
+
+
+def refuse_what_samples_show():
+    """Refuse a configuration whose first samples show that a job would fail."""
+    from stiction import pilot
+
+    shown = DiskCache(".snakemake/pilot.json")
+    problems = pilot.problems(config, preliminary, code(PACKAGE / "pilot.py"), shown)
+    shown.save()
+    if problems:
+        raise WorkflowError("The configuration is invalid:\n" + "\n".join(map(str, problems)))
+
+
+def decide_numbers():
+    """Add the numbers of beams and samples for the accuracy that the configuration asks for, and name them."""
+    from stiction import accuracy
+
+    refuse_what_samples_show()
+    known = DiskCache(".snakemake/accuracy.json")
+    numbers = accuracy.numbers(config, preliminary, code(PACKAGE / "accuracy.py"), known)
+    known.save()
+    if numbers:
+        logger.warning(str(numbers))
+        config.update(numbers.within(config))
+
+
+if "accuracy" in config["design"] and "samples_of_patches" not in config["design"]:
+    decide_numbers()
 remember_jobs = DiskCache(".snakemake/jobs.json")
 planner = Planner(config, preliminary, remember, remember_jobs)
 
@@ -112,17 +140,6 @@ def hand_to_jobs():
     remember_jobs.save()
     save_text(json.dumps({"planned": [config, preliminary]}), PLANNED)
     snakemake_patches.read_in_jobs(workflow, Path(PLANNED).absolute())
-
-
-def refuse_what_samples_show():
-    """Refuse a configuration whose first samples show that a job would fail."""
-    from stiction import pilot
-
-    shown = DiskCache(".snakemake/pilot.json")
-    problems = pilot.problems(config, preliminary, code(PACKAGE / "pilot.py"), shown)
-    shown.save()
-    if problems:
-        raise WorkflowError("The configuration is invalid:\n" + "\n".join(map(str, problems)))
 
 
 # Results of other runs

@@ -74,10 +74,11 @@ def kernel_estimate(samples: np.ndarray, at: np.ndarray) -> np.ndarray:
 
 
 def converged_order(orders: Sequence[int], distances: np.ndarray, samples: int, draws: int) -> int:
-    """Smallest order beyond which a marginal is as close as ``samples`` draws from the target, or 0 without any.
+    """Smallest order with converged marginals, or 0 without any.
 
-    The distances of the marginals of increasing orders from their target are Kolmogorov's (n,) [-]. A marginal is known
-    from draws, whose own distance from it is allowed in addition.
+    From there on, each marginal is as close to its target as ``samples`` draws from it. The distances of the marginals
+    of increasing orders from their target are Kolmogorov's (n,) [-]. A marginal is known from draws, whose own distance
+    from it is allowed in addition.
 
     Examples
     --------

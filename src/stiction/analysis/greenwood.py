@@ -1,4 +1,4 @@
-r"""Adhesion of the model of Greenwood and Williamson with menisci, the baseline that the paper departs from.
+r"""Adhesion of the model of Greenwood and Williamson with menisci, the baseline of the paper.
 
 Summits of one radius R and a density N have normal heights z with the rms of the surfaces. At the distance d between
 the mean planes, each touching summit carries a Hertz force, and each summit within the height h_C of the water has a
@@ -47,5 +47,5 @@ class GreenwoodWilliamson:
         return float(np.trapezoid(np.maximum(-force, 0.0), distance))
 
     def plasticity_index(self, hardness: float) -> float:
-        """Plasticity index E'/H √(rms/R) [-]; contact is elastic below 0.6 and mostly plastic above 1."""
+        """Plasticity index E'/H √(rms/R) [-]. Contact is elastic below 0.6 and mostly plastic above 1."""
         return self.modulus / hardness * np.sqrt(self.rms / self.radius)

@@ -66,7 +66,7 @@ class Discrepancy:
         return np.array([*(np.maximum(one, 0.0) for one in between), rest])
 
     def probability(self, half_widths: np.ndarray, places: np.ndarray, errors: np.ndarray) -> np.ndarray:
-        """Probability that the interval of ln l contains a measured length, (r,) [-].
+        """Probability of a measured length in the interval of ln l, (r,) [-].
 
         Parameters
         ----------
@@ -82,7 +82,7 @@ class Discrepancy:
         return 2 * ndtr(half_widths[:, None] / deviations).mean(axis=1) - 1
 
     def half_widths(self, places: np.ndarray, errors: np.ndarray, coverage: float) -> np.ndarray:
-        """Half-widths of the interval that contains a measured length with a probability, (r,) [-]; see there."""
+        """Half-widths of the interval of ln l with a probability of a measured length, (r,) [-]."""
         low, high = np.zeros(len(places)), np.full(len(places), self._widest(places, errors, coverage))
         for _ in range(_HALVINGS):
             middle = (low + high) / 2

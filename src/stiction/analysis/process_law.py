@@ -86,7 +86,7 @@ class Law:
 
     @property
     def ends(self) -> tuple[float, float]:
-        """Range of the settings, beyond which the law says nothing."""
+        """Range of the settings. The law says nothing beyond it."""
         return float(self.settings[0]), float(self.settings[-1])
 
     def basis(self, values: np.ndarray) -> np.ndarray:
@@ -114,7 +114,7 @@ class Law:
         return (errors @ vectors.T).reshape(number, *self.coefficients.shape)
 
     def with_setting(self, value: float, errors: np.ndarray) -> np.ndarray:
-        """Covariance of the coefficients after one more setting, whose errors have the covariance (q, q)."""
+        """Covariance of the coefficients after one more setting with errors of the covariance (q, q)."""
         (basis,) = self.basis(value)
         known = self.covariance
         column = np.einsum("qcrd,d->qcr", known, basis)
@@ -152,7 +152,7 @@ def fit(settings: np.ndarray, values: np.ndarray, covariances: np.ndarray) -> La
 
 
 def contradictions(law: Law) -> list[tuple[int, int]]:
-    """Settings and quantities (numbers of both) that contradict the law of the others, the worst of each quantity.
+    """Settings and quantities (numbers of both) in contradiction to the law of the others, the worst of each quantity.
 
     With one setting more than coefficients, all are equally far from the law of the others: then the first is named.
     """
@@ -164,7 +164,7 @@ def contradictions(law: Law) -> list[tuple[int, int]]:
 
 
 def is_unique(law: Law, quantity: int) -> bool:
-    """Whether the settings tell which of them contradicts the others in a quantity."""
+    """Whether the settings determine the contradicting one in a quantity."""
     return len(law.settings) - 1 - law.degrees[quantity] > 1
 
 
@@ -274,7 +274,7 @@ def fit_probability(law: Law, values: np.ndarray, errors: np.ndarray, quantity: 
 
 
 def grid(settings: Sequence[float], intervals: int = 6) -> np.ndarray:
-    """Settings and evenly spaced values between neighbours, so that there are at least so many intervals.
+    """Settings and evenly spaced values between neighbours, in at least so many intervals.
 
     Examples
     --------

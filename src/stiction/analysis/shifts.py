@@ -47,7 +47,7 @@ class Description:
 
 
 def bracketed(surface: Description, quantity: str) -> tuple[tuple[Description, Description], float]:
-    """Bracket a surface: two with one quantity lower and higher, and the difference of that quantity.
+    """Bracket a surface: two with one quantity lower and higher, and the difference of the quantity.
 
     ASSUME: where no surface has the increased quantity, both values are lower, and where none has the decreased one,
     both are higher, so that the slope is that of a near surface. This concerns skewness and kurtosis of nearly Gaussian

@@ -84,7 +84,7 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
     RUN.quiet = quiet
     try:
         with _kept_errors(directory) if quiet else contextlib.nullcontext() as terminal:
-            RUN.changed = display = Display(RUN, terminal) if quiet and progress else None
+            RUN.changed = display = Display(RUN, terminal, directory) if quiet and progress else None
             code = _code(cli.main, ["--logger", "stiction", *arguments])
             if display:
                 display.close()

@@ -158,7 +158,7 @@ def _text(content):
 
 def _check(arguments):
     """Check files."""
-    from stiction import pilot  # imports the physics
+    from stiction import accuracy, pilot  # imports the physics
     from stiction.config.files import load
     from stiction.config.scans import preliminary_estimates
     from stiction.run.disk_cache import DiskCache
@@ -167,17 +167,24 @@ def _check(arguments):
     directory = Path(arguments.directory)
     launch.require_folder(directory)
     config, shown = load(*arguments.files), DiskCache(directory / ".snakemake" / "pilot.json")
-    code = fingerprint(pilot.__file__, shown)
-    problems = pilot.problems(config, preliminary_estimates(config)[0], code, shown)
+    preliminary = preliminary_estimates(config)[0]
+    problems = pilot.problems(config, preliminary, fingerprint(pilot.__file__, shown), shown)
     if directory.is_dir():
         shown.save()
     if problems:
         raise ConfigError(*map(str, problems))
+    known = DiskCache(directory / ".snakemake" / "accuracy.json")
+    numbers = accuracy.numbers(config, preliminary, fingerprint(accuracy.__file__, known), known)
+    if directory.is_dir():
+        known.save()
+    config = numbers.within(config) if numbers else config
     pairs, devices = config["run"]["pairs"], config.get("devices", {})
     scanned = [name for name, entry in config["surfaces"].items() if "scans" in entry]
     named = {f"pair{'s' * (len(pairs) > 1)}": pairs, "devices": devices, "scans of": scanned}
     parts = [f"{what} {', '.join(names)}" for what, names in named.items() if names]
     say(f"{' '.join(arguments.files)} can run: {' and '.join(parts) or 'nothing'}.")
+    if numbers:
+        say(str(numbers))
     say(f"It takes {_cost(config)}, less for results that are already there.")
     of_pairs = {name: {pair[side] for side in SIDES} for name, pair in config["pairs"].items()}
     if long := [name for name, device in devices.items() if of_pairs[device["pair"]] & {*scanned}]:

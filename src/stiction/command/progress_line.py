@@ -4,10 +4,13 @@ import shutil
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
 from typing import TextIO
 
 from stiction.command.output_streams import put
 from stiction.command.run_state import Run
+from stiction.run.atomic import DataError
 
 #: Time between two lines of a file, and between two drawings on a terminal [s].
 _APART, _REDRAWN = 30.0, 1.0
@@ -19,9 +22,10 @@ _START = "loading; after an installation, compiling for a minute"
 class Display:
     """Line about a run: drawn again every second on a terminal until `close`. A file gets a line from time to time."""
 
-    def __init__(self, run: Run, stream: TextIO):
-        self._run, self._stream = run, stream
-        self._last, self._closed, self._told = 0.0, threading.Event(), False
+    def __init__(self, run: Run, stream: TextIO, folder: Path = Path()):
+        """Display on a stream of a run in a folder."""
+        self._run, self._stream, self._folder = run, stream, folder.absolute()  # Snakemake changes into it
+        self._last, self._closed, self._told, self._answered = 0.0, threading.Event(), False, False
         self._clock = threading.Thread(target=self._draw, daemon=True) if stream.isatty() else None
         if self._clock:
             self._clock.start()
@@ -33,13 +37,23 @@ class Display:
             self._write(f"{_ABOVE}{line(self._run, time.time())[:width]}")
 
     def __call__(self, now: float) -> None:
-        """Write once the cost of budgets, and to a file a line about the run, unless this was done a moment ago."""
+        """Write once the cost of budgets and the first safe length, and to a file now and then a line about the run."""
         if self._run.planned and not self._told:
             self._told = True
-            self._write("".join(f"{_ABOVE if self._clock else ''}{text}\n" for text in costs(self._run)))
+            self._say(*costs(self._run))
+        if not self._answered and (job := self._run.first.get("safe_lengths")):
+            self._answered = True
+            from stiction.command.first_answer import first_answer  # imports the physics
+
+            with suppress(DataError):  # the job that reads the file says why
+                self._say(first_answer(job.logs[0], self._folder))
         if self._clock is None and self._run.planned and now - self._last >= _APART:
             self._last = now
             self._write(f"{line(self._run, now)}\n")
+
+    def _say(self, *texts):
+        """Write lines that remain."""
+        self._write("".join(f"{_ABOVE if self._clock else ''}{text}\n" for text in texts))
 
     def _write(self, text):
         put(text, self._stream)

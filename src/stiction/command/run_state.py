@@ -62,6 +62,8 @@ class Run:
         Jobs that have started, by their number; in a dry run, all of them.
     seconds : dict
         Durations of the finished jobs, by rule [s].
+    first : dict
+        First finished job, by rule.
     failures : dict
         Jobs that failed, by their number.
     refusal : str
@@ -85,6 +87,7 @@ class Run:
     planned: Counter = field(default_factory=Counter)
     jobs: dict[int, Job] = field(default_factory=dict)
     seconds: dict[str, list[float]] = field(default_factory=dict)
+    first: dict[str, Job] = field(default_factory=dict)
     failures: dict[int, Job] = field(default_factory=dict)
     refusal: str = ""
     fault: str = ""
@@ -147,6 +150,7 @@ class Run:
         """Note the end of a job."""
         self.ended = record.created
         job = self.jobs[record.job_id]
+        self.first.setdefault(job.rule, job)
         self.seconds.setdefault(job.rule, []).append(record.created - job.started)
 
     def _hear_failure(self, record):

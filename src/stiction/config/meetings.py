@@ -1,6 +1,7 @@
 """Relations for all places of contact: pairs in the run, devices, and test beams in their place."""
 
 import math
+import operator
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
@@ -125,26 +126,31 @@ def device_meeting(name: str, config: Keys) -> Meeting:
 
 @relation
 def gaps_are_far_above_the_film(config):
-    """Along most of a crack, a beam is far from the water film and the peaks of the substrate."""
+    """Along most of a crack, a beam is far from the water film and the peaks of the substrate.
+
+    A gap is refused once, in the air that needs the largest.
+    """
     for meeting in meetings(config):
+        refused = {}
         for gap, air in meeting.gaps:
             values = dict(config.known(gap, air))
             if len(values) == 2 and meeting.sides:
                 adsorbed = dict(config.known(ADSORBED))
-                refusal = _too_low(np.min(values[gap]), values[air], meeting, adsorbed.get(ADSORBED, 0))
-                yield gap, refusal, air, *meeting.given(TEMPERATURE, *adsorbed)
+                least, refusal = _least_gap(values[air], meeting, adsorbed.get(ADSORBED, 0))
+                found = least, gap, refusal, air, *meeting.given(TEMPERATURE, *adsorbed)
+                if np.min(values[gap]) < least:
+                    refused[gap] = max(refused.get(gap, found), found, key=operator.itemgetter(0))
+        yield from (found[1:] for found in refused.values())
 
 
-def _too_low(gap, humidities, meeting, adsorbed):
-    """Refusal of a gap [µm] not far above the film at the highest humidity, with the adsorbed water [nm]."""
+def _least_gap(humidities, meeting, adsorbed):
+    """Smallest gap [µm] far above the film at the highest humidity, with the adsorbed water [nm], and its message."""
     angles, humid = meeting.wetting(), above_zero(humidities)
     wet = angles and humid
     heights = meniscus_height(humid, meeting.config[TEMPERATURE], angles) + to_si(adsorbed, "nm") if wet else 0.0
     height, rms = float(np.max(heights)), math.hypot(*(to_si(side["rms_nm"], "nm") for side in meeting.sides))
     least = from_si(limits.least_gap(height, rms), "um")
-    if gap >= least:
-        return None
-    return (
+    return least, (
         f"must be at least {least:.4g} µm, {limits.FILMS} times the sum of the height of the water film, "
         f"{from_si(height, 'nm'):.5g} nm, and the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
     )
@@ -175,7 +181,6 @@ def water_is_a_liquid(config):
 #: Values with which attraction ends where surfaces touch, and those that have it across gaps.
 _TOO_SHORT = {
     "attraction.reach": ("touching", "all"),
-    "contact.model": ("full", "summits"),
     "van_der_waals": ("none", "water or dry"),
 }
 
@@ -205,8 +210,16 @@ def corrections_are_not_extrapolated(config):
         known, uncertain = config[of_pair], dict(config.known(meeting.deviation))
         for key, humidities in config.known(own, *others):
             more = sum(uncertain.values()) if key == own else 0
-            if is_at_most(min(known), np.min(humidities) - more) and is_at_most(np.max(humidities) + more, max(known)):
+            if not meeting.is_wetted or _is_within(humidities, more, known):
                 continue
             words = ", with its uncertainty," if more else ""
             restricted = "to which the correction of contact.model full is restricted"
             yield key, f"must be{words} within the humidities of pair {meeting.pair}, {restricted}", of_pair
+
+
+def _is_within(humidities, more, known):
+    """Whether humidities, with their uncertainty, are within known ones: dry air is one of these or not."""
+    humid, of_pair = above_zero(humidities), above_zero(known)
+    if np.min(humidities) == 0 and min(known) > 0 or humid and not of_pair:
+        return False
+    return not humid or is_at_most(min(of_pair), min(humid) - more) and is_at_most(max(humid) + more, max(of_pair))

@@ -94,7 +94,8 @@ def _explained(error, schema):
     if error.validator == "additionalProperties":
         strange = [(*path, key) for key in value if key not in error.schema["properties"]]
         known = _keys_of_kind(path, value) or list(error.schema["properties"])
-        return [Problem(place, _FORMER.get(place) or _unknown(place[-1], value[place[-1]], known)) for place in strange]
+        answers = ((place, _FORMER.get(place) or _NEVER.get(place[-1])) for place in strange)
+        return [Problem(place, said or _unknown(place[-1], value[place[-1]], known)) for place, said in answers]
     stated = shown(in_words(value, path))
     return [Problem(path, f"is {stated}, must be {_allowed(error.schema)}{_hint(path, value, error.schema)}")]
 
@@ -139,9 +140,11 @@ def number_of_items(entry: Mapping) -> str:
     --------
     >>> [number_of_items({"minItems": least, "maxItems": most}) for least, most in ((2, 2), (1, 2), (1, 8))]
     ['2', '1 or 2', '1 to 8']
+    >>> number_of_items({"maxItems": 8})
+    '0 to 8'
     """
     most = entry["maxItems"]
-    least = entry.get("minItems", most)
+    least = entry.get("minItems", 0)
     return {0: f"{most}", 1: f"{least} or {most}"}.get(most - least, f"{least} to {most}")
 
 
@@ -154,6 +157,13 @@ def described(entry: Mapping) -> str:
 _FORMER = {
     ("studies", "readings"): "is called studies.variants since version 0.2",
     ("design", "tip_um"): "is no longer needed, must be left out: the contact of a tip follows from its slope",
+}
+
+
+#: What to read in place of keys that were never there, by the last part of their path.
+_NEVER = {
+    "menisci": "is no key, must be left out: table life has both bounds, menisci of constant pressure (slow "
+    "separation) and of constant volume (fast separation)"
 }
 
 

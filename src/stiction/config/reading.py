@@ -5,10 +5,11 @@ file. This module imports little, so that the check takes a fraction of a second
 """
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import yaml
 
@@ -58,6 +59,11 @@ def paper() -> dict:
     """Complete configuration of the paper, read once. Not to be changed."""
     config = read(PAPER)
     return config | {"sampling": GRID | config["sampling"]}
+
+
+def is_stated(config: Mapping[str, Any], section: str, key: str) -> bool:
+    """Whether a key has another value than by default."""
+    return config[section][key] != paper()[section][key]
 
 
 def _one_line(reason):

@@ -235,8 +235,12 @@ def pairs_run(config: Keys) -> bool:
 
 def variants_run(config: Keys) -> bool:
     """Whether contacts under variants of the model are computed, by the study of pairs or for a budget of devices."""
-    of_pairs = pairs_run(config) and "variants" in config["run"].get("studies", ["variants"])
-    return of_pairs or bool(config["devices"])
+    return variants_of_pairs_run(config) or bool(config["devices"])
+
+
+def variants_of_pairs_run(config: Keys) -> bool:
+    """Whether the study of variants of pairs runs."""
+    return pairs_run(config) and "variants" in config["run"].get("studies", ["variants"])
 
 
 def spectra_are_identified(config: Keys) -> bool:
@@ -500,15 +504,6 @@ def _without(study, why):
 
 
 @relation
-def full_contact_has_no_attraction_across_gaps(config):
-    """Corrections to full elastic contact are ratios without attraction across gaps."""
-    if config["contact"].get("model") == "full":
-        for key, reach in config.known("attraction.reach", "studies.variants.reach"):
-            if "all" in reach:
-                yield "contact.model", "must be summits where attraction reaches across all gaps", key
-
-
-@relation
 @only_if(pairs_run)
 def beam_is_slender(config):
     """Require a beam longer than its width, thickness and deflection (Euler-Bernoulli)."""
@@ -524,7 +519,7 @@ def strips_fit_into_memory(config):
     """Require the field around a strip to fit into the memory of a job."""
     given = "sampling.strip_length_um", "sampling.margin_um", "beam.width_um"
     length, margin, width = (config[key] for key in given)
-    grids = [key for key, _ in config.items("studies.variants.spacing_nm")]
+    grids = [key for key, _ in config.items("studies.variants.spacing_nm") if variants_of_pairs_run(config)]
     for key, spacing in config.known(*grids, "sampling.spacing_nm"):
         yield key, field_too_large(length + margin, width + margin, spacing), *given
 

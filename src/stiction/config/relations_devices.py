@@ -15,6 +15,7 @@ from stiction.config.kinds import KEYS, KINDS, KNOWN, ROUGHNESSES, kind_of
 from stiction.config.materials import hamaker_constant
 from stiction.config.meetings import TEMPERATURE, above_zero, device_meeting, sides_of, surfaces_of
 from stiction.config.messages import duplicates
+from stiction.config.reading import is_stated
 from stiction.config.relations import (
     cases_have_unique_names,
     correlated,
@@ -44,6 +45,15 @@ _STRIP = "sampling.strip_length_um"
 
 relation(partial(references_are_defined, section="devices", key="pair", to="pairs"))
 relation(partial(cases_have_unique_names, section="devices"))
+
+
+@relation
+def an_accuracy_decides_a_number(config):
+    """Require a number of beams or of samples not stated beside the accuracy from which it follows."""
+    numbers = ("design", "beams"), ("contact", "samples")
+    if config["design.accuracy"] and all(is_stated(config, *key) for key in numbers):
+        message = "must have a number to decide: leave out design.beams, contact.samples or design.accuracy"
+        yield "design.accuracy", message, *map(".".join, numbers)
 
 
 @relation

@@ -82,6 +82,19 @@ def long_strips(strip: float, longest: float, is_bridge: bool = False) -> str | 
     )
 
 
+def missed_accuracy(of_beams: float, of_surfaces: float, asked: float) -> str | None:
+    """Relative errors of a length, by beams and by sampled surfaces, NaN without one, beyond the asked accuracy."""
+    parts = {"design.beams": of_beams, "contact.samples": of_surfaces}
+    known = {key: error for key, error in parts.items() if not math.isnan(error)}
+    reached = math.hypot(*known.values())
+    if reached <= asked:
+        return None
+    return (
+        f"The standard error of this length is {100 * reached:.2g} %, more than the {100 * asked:.2g} % of "
+        f"design.accuracy.length: state more {max(known, key=known.get)} than this run has, or a larger error there."
+    )
+
+
 def cut_off_mean(share: float, mean: float, length: float) -> str | None:
     """Mean crack length of S-shaped beams without the others, with longer cracks."""
     if share == 1:
@@ -148,7 +161,7 @@ def without_gaps(changes: Mapping[float, tuple[float, float]], shorter: bool = F
     side = ", which is the unsafe side" if (worst < 0) == shorter else ""
     return (
         f"Attraction of solids across gaps is left out. On these surfaces it would change {what} that holds by "
-        f"{', '.join(by)}{side}. contact.model summits and attraction.reach all include it."
+        f"{', '.join(by)}{side}. attraction.reach all includes it."
     )
 
 

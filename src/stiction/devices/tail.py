@@ -43,8 +43,8 @@ def _lines(logarithms, scores):
     return logarithms.mean(axis=-1) - slopes * scores.mean(), slopes
 
 
-def fit_tail(lengths: np.ndarray) -> TailFit:
-    """Fit the lowest 5 % of n lengths (n,) [m], or the known, finite ones among them.
+def fit_tail(lengths: np.ndarray, part: float = TAIL) -> TailFit:
+    """Fit the lowest ``part`` of n lengths (n,) [m], by default 5 %, or the known, finite ones among them.
 
     Raises
     ------
@@ -52,11 +52,11 @@ def fit_tail(lengths: np.ndarray) -> TailFit:
         If fewer than ``FEWEST`` lengths are fitted.
     """
     samples, known = len(lengths), int(np.isfinite(lengths).sum())
-    if int(TAIL * samples) < FEWEST:
-        raise ValueError(f"a fit of the lowest {TAIL:.0%} needs {round(FEWEST / TAIL)} lengths, got {samples}")
+    if int(part * samples) < FEWEST:
+        raise ValueError(f"a fit of the lowest {part:.0%} needs {round(FEWEST / part)} lengths, got {samples}")
     if known < FEWEST:
         raise ValueError(f"a fit of the shortest lengths needs {FEWEST} of them, got {known}")
-    fitted = min(int(TAIL * samples), known)
+    fitted = min(int(part * samples), known)
     intercept, slope = _lines(np.log(np.sort(lengths)[:fitted]), normal_scores(samples, fitted))
     return TailFit(float(intercept), float(slope), samples, fitted)
 

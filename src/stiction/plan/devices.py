@@ -134,8 +134,23 @@ class DevicePlan:
         """Voltage of a device and its dielectric, empty without a voltage."""
         return chosen(self.sections[device], ("voltage_V", "offset_V", "dielectric"))
 
+    @property
+    def _samples_of_patches(self):
+        """Numbers of samples for the accuracy of lengths, see `stiction.accuracy`, by the name of the patch."""
+        return self.config["design"].get("samples_of_patches", {})
+
+    def samples(self, ground: Patch) -> int:
+        """Number of samples of a patch, in any air."""
+        name = ground._replace(pair=PairInAir(ground.pair).pair).name
+        return self._samples_of_patches.get(name, self.config["contact"]["samples"])
+
     def has_strips_of_pair(self, device: str) -> bool:
-        """Whether a device sticks on the strips of its pair in the main line, and so shares their contact."""
+        """Whether a device sticks on the strips of its pair in the main line, and so shares their contact.
+
+        Devices whose samples follow from an accuracy have their own.
+        """
+        if self._samples_of_patches:
+            return False
         main = self.config["sampling"]["strip_length_um"], self.config["beam"]["width_um"]
         return self.ground(device) == patch(self.sections[device]["pair"], *main)
 

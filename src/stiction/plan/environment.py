@@ -31,13 +31,12 @@ class Air:
     def reach(self, pair: str) -> str:
         """Range of attraction between the solids of a pair, ``touching`` or ``all``: as stated.
 
-        ASSUME: otherwise across all gaps, which is the safe side. The cases of the paper, in humid air, have its model,
-        and corrections to full elastic contact are ratios of forces without attraction across gaps.
+        ASSUME: otherwise across all gaps, which is the safe side. The cases of the paper, in humid air, have its model.
         """
         if stated := self.config["attraction"].get("reach"):
             return stated
         of_paper = not self.of_devices and self._is_of_paper(PairInAir(pair).pair)
-        return "touching" if of_paper or self.config["contact"].get("model") == "full" else "all"
+        return "touching" if of_paper else "all"
 
     def _is_of_paper(self, pair):
         humidities = *self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]

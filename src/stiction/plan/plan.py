@@ -60,7 +60,7 @@ class Plan:
 
     @cached_property
     def paper(self) -> PaperCase:
-        """What this configuration shares with the paper's."""
+        """Parts of this configuration equal to the paper's."""
         return PaperCase(self)
 
     @cached_property

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import minimize
+from scipy.optimize import minimize, minimize_scalar
 from scipy.special import chdtrc
 
 from stiction.scans.periodogram import Rings
@@ -35,6 +35,9 @@ FEWEST_RINGS = 8
 _MISFIT, UNLIKELY = 2.0, 0.01
 #: Starting points of the search: corners per decade of the range, and exponents of the power law.
 _CORNERS, _SLOPES = 12, -np.geomspace(0.5, 12, 16)
+#: Logarithm of the longest wave of the corner over that of the first ring. ASSUME: a corner or an exponent that no ring
+#: shows is anywhere in the range of the search.
+_LONGER = np.log(4)
 #: Steepest and flattest exponent of the search.
 _BOUNDS = (-40.0, -0.05)
 _POINTS = 2000
@@ -101,14 +104,8 @@ class WhittleFit:
 
     @property
     def errors(self) -> np.ndarray:
-        """Standard errors of (ln plateau, ln corner, slope), infinite where the rings show nothing (3,) [-].
-
-        The covariance is zero along what the rings do not show, as its information is.
-        """
-        variances, axes = np.linalg.eigh(self.covariance)
-        not_shown = axes[:, variances <= _ROUNDING * variances.max()]
-        is_shown = (np.abs(not_shown) < np.sqrt(_ROUNDING)).all(axis=1)
-        return np.where(is_shown, np.sqrt(np.maximum(np.diag(self.covariance), 0.0)), np.inf)
+        """Standard errors of (ln plateau, ln corner, slope), (3,) [-]."""
+        return np.sqrt(np.diag(self.covariance))
 
     @property
     def misfit(self) -> float:
@@ -235,14 +232,18 @@ def fit(rings: Rings, within: Reach) -> WhittleFit:
         return np.log(plateau) + np.average(np.log(relative), weights=weight)  # P / s is 1 on average at its optimum
 
     start = _start(known)
-    bounds = [(np.log(wavenumber[0] / 4), np.log(wavenumber[-1])), _BOUNDS]
+    first, last = np.log(wavenumber[[0, -1]])
+    bounds = [(first - _LONGER, last), _BOUNDS]
     corner, slope = minimize(
         objective, start, method="Nelder-Mead", bounds=bounds, options={"xatol": 1e-5, "fatol": 1e-10}
     ).x
     relative = shape(wavenumber, corner, slope)
     plateau = np.average(density / relative, weights=weight)
     chi2, freedom = float(np.sum(known.modes * (density / (plateau * relative) - 1) ** 2)), len(wavenumber) - 3
-    covariance = max(chi2 / freedom, 1.0) * _covariance(wavenumber, weight, corner, slope)
+    scale = max(chi2 / freedom, 1.0)
+    bend = _shown(objective, (corner, slope), bounds[0], weight.sum() / (scale * NON_GAUSSIAN**2))
+    hidden = [_second_moment(value, *ends) for value, ends in ((corner, bounds[0]), (slope, _SLOPES[[-1, 0]]))]
+    covariance = _covariance(scale, _information(wavenumber, weight, bend, slope), hidden)
     return WhittleFit(float(plateau), float(np.exp(corner)), float(slope), covariance, chi2, freedom)
 
 
@@ -262,12 +263,40 @@ def shape(wavenumber: np.ndarray, log_corner: float, slope: float) -> np.ndarray
     return np.maximum(wavenumber / np.exp(log_corner), 1.0) ** slope
 
 
-def _covariance(wavenumber, weight, log_corner, slope):
-    """Inverse of Fisher's information for (ln plateau, ln corner, slope), (3, 3)."""
+def _shown(objective, best, ends, weight):
+    """Logarithm of the corner that the rings show, or an end of its range if, but for chance, the fit there is as good.
+
+    Without a plateau the rings show a slope alone, without a power law neither.
+    """
+    low, high = ends
+    straight = minimize_scalar(lambda slope: objective((low, slope)), bounds=_BOUNDS, method="bounded").fun
+    corner, least = best[0], objective(best)
+    for end, without in ((low, straight), (high, objective((high, best[1])))):
+        if chdtrc(1, 2 * weight * (without - least)) >= UNLIKELY:
+            corner = end
+    return corner
+
+
+def _information(wavenumber, weight, log_corner, slope):
+    """Fisher's information of the rings on (ln plateau, ln corner, slope), (3, 3)."""
     decay = np.log(wavenumber) - log_corner
     gradient = np.where(decay > 0, [np.ones_like(decay), np.full_like(decay, -slope), decay], 0.0)
     gradient[0] = 1.0
-    return NON_GAUSSIAN**2 * np.linalg.pinv(gradient * weight @ gradient.T, hermitian=True)
+    return gradient * weight @ gradient.T
+
+
+def _covariance(scale, information, hidden):
+    """Scaled inverse of an information (3, 3), and along all that it does not show, variances of corner and slope."""
+    variances, axes = np.linalg.eigh(information)
+    dark = axes[:, variances <= _ROUNDING * variances.max()]
+    prior = np.linalg.inv(dark[1:].T / hidden @ dark[1:])
+    shown = NON_GAUSSIAN**2 * np.linalg.pinv(information, rcond=_ROUNDING, hermitian=True)
+    return scale * shown + dark @ prior @ dark.T
+
+
+def _second_moment(value, low, high):
+    """Second moment about a value of a uniform density between two ends."""
+    return ((high - value) ** 3 - (low - value) ** 3) / (3 * (high - low))
 
 
 def spectrum(

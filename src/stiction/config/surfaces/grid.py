@@ -27,9 +27,9 @@ _SPACING, _MARGIN, _STEP = memory.GRID["spacing_nm"], memory.GRID["margin_um"], 
 def completed(config: dict[str, Any], estimates: Mapping[str, dict], faults: Collection[tuple] = ()) -> dict[str, Any]:
     """Configuration, valid or not, with all keys of section ``sampling``, and heights with a density.
 
-    Variants on grids that are not finer than one that follows the surfaces are left out. The estimates are the
-    preliminary numbers of measured surfaces. Surfaces with one of the faults, keys that are wrong on their own, do not
-    count.
+    Variants on grids that are not finer than one that follows the surfaces, or whose fields do not fit into memory with
+    a margin that does, are left out. The estimates are the preliminary numbers of measured surfaces. Surfaces with one
+    of the faults, keys that are wrong on their own, do not count.
     """
     sampling = config.get("sampling") if isinstance(config, dict) else None
     if not isinstance(sampling, dict):
@@ -42,10 +42,14 @@ def completed(config: dict[str, Any], estimates: Mapping[str, dict], faults: Col
     waves = list(filter(None, waves))
     chosen = {"margin_um": max((_margin(length) for _, length in waves), default=_MARGIN)} | sampling
     config = config | {"sampling": {"spacing_nm": _SPACING} | chosen}
+    if "margin_um" not in sampling and chosen["margin_um"] > _MARGIN:
+        config = _with_variants(config, lambda spacing: _memory(config, spacing) <= memory.LARGEST)
     parts = _parts(config, max((end for end, _ in waves), default=0.0))
     if "spacing_nm" in sampling or parts == 1:
         return config
-    return _on_finer_grid(config, _SPACING / parts)
+    spacing = _SPACING / parts
+    config = config | {"sampling": config["sampling"] | {"spacing_nm": spacing}}
+    return _with_variants(config, lambda other: not is_at_most(spacing, other))
 
 
 def _section(config, *place):
@@ -96,13 +100,17 @@ def _margin(correlation):
 def _parts(config, end):
     """Number of parts of the paper's distance for waves up to a wave number [rad/µm], within the memory."""
     nyquist = math.pi / _SPACING * NM_PER_UM
-    largest = max(_areas(config))
 
     def too_many(parts):
         """Whether the largest field takes half of the memory of a job."""
-        return memory.field_memory(largest, 1, _SPACING / parts) > memory.LARGEST / 2
+        return _memory(config, _SPACING / parts) > memory.LARGEST / 2
 
     return next(n for n in count(1) if is_at_most(end, n * nyquist) or too_many(n + 1))
+
+
+def _memory(config, spacing):
+    """Memory of the largest drawn field with this distance between heights [nm] in MB."""
+    return memory.field_memory(max(_areas(config)), 1, spacing)
 
 
 def _areas(config):
@@ -118,11 +126,11 @@ def _areas(config):
         return  # other relations report what is missing or out of range
 
 
-def _on_finer_grid(config, spacing):
-    """Configuration with another distance between heights [nm], and the variants with finer ones."""
+def _with_variants(config, kept):
+    """Configuration with the variants on grids whose distance between heights [nm] meets a condition."""
     studies, variants = _section(config, "studies"), _section(config, "studies", "variants")
     listed = variants.get("spacing_nm")
-    finer = [other for other in listed if not is_at_most(spacing, other)] if isinstance(listed, list) else listed
-    changed = {"variants": variants | {"spacing_nm": finer}} if "spacing_nm" in variants else {}
-    sampling = config["sampling"] | {"spacing_nm": spacing}
-    return config | {"sampling": sampling, "studies": studies | changed}
+    if not isinstance(listed, list):
+        return config
+    chosen = {"variants": variants | {"spacing_nm": list(filter(kept, listed))}}
+    return config | {"studies": studies | chosen}

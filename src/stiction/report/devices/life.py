@@ -40,6 +40,7 @@ from stiction.stages.life.answers import (
     SHOCK,
     TENSION_BESIDE,
     TILTED,
+    TOUCH,
     VOLTAGE,
     VOLTAGE_BESIDE,
     WEDGE,
@@ -62,11 +63,12 @@ _UNITS = {
 #: What the answers are, for the table and for pages.
 CAPTION = (
     "The life of a device, in the order of a designer's questions: what brings a device into contact (touch), whether "
-    "it then sticks (stick), what holds it (hold), what frees it (free). Every answer is between at least and at most, "
-    "which are equal where the model leaves nothing open. No bound is known where there is –. The column ± has the "
-    "standard uncertainty of the lower bound, due to the stated uncertainties of the device or to sampled surfaces. "
-    "Voltage, shock, energy and force of a beam are those of its length, which is stated or its least safe one. A "
-    "liquid that dries is not humid air: it holds the whole area that it wets."
+    "it then sticks (stick), what holds it (hold), what frees it (free). Every answer is between at least and at "
+    "most, which are equal where the model leaves nothing open. No bound is known where there is –, and none without "
+    "the keys that a row asks for. The column ± has the standard uncertainty of the lower bound, due to the stated "
+    "uncertainties of the device or to sampled surfaces. Voltage, shock, energy and force of a beam are those of its "
+    "length, which is stated or its least safe one. A liquid that dries is not humid air: it holds the whole area "
+    "that it wets."
 )
 _COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#D55E00", "#CC79A7", "#009E73"), strict=True))
 #: Height of a row, and of everything else in a panel [in].
@@ -82,13 +84,13 @@ def table(datasets: Mapping[str, xr.Dataset]) -> Table:
             numbers = {"at_least": answer.low, "at_most": answer.high, "standard_uncertainty": answer.error}
             head = {"device": device, "length_um": TO_UM * float(dataset.length), "question": answer.question}
             scaled = {name: factor * value for name, value in numbers.items()}
-            tail = {"unit": unit, "form": answer.form, "source": answer.source}
+            tail = {"unit": unit, "form": answer.form, "source": answer.source, "needs": answer.needs}
             rows.append(head | {"answer": str(answer.name), "what": answer.what} | scaled | tail)
     columns = {
         "device": (str, "device"),
         "question": (str, "question"),
         "what": (str, "what"),
-        "at least": (significant, "at_least"),
+        "at least": (lambda number, needs: f"state {needs}" if needs else significant(number), "at_least", "needs"),
         "at most": (significant, "at_most"),
         "±": (lambda error: significant(float(f"{error:.2g}")), "standard_uncertainty"),
         "unit": (str, "unit"),
@@ -119,12 +121,20 @@ def significant(value: float) -> str:
 
 def sentences(dataset: xr.Dataset) -> list[str]:
     """Life of a device in words: causes of contact, drying, and many touchdowns."""
-    answers, length = {answer.name: answer for answer in answers_of(dataset)}, float(dataset.length)
+    answers = {answer.name: answer for answer in answers_of(dataset) if not answer.needs}
+    unknown = [answer for answer in answers_of(dataset) if answer.needs]
+    length = float(dataset.length)
     at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
-    said = [*_touching(answers, at), *_pulled_in(answers, potential), *_drying(answers, at, length)]
-    said += [*_dimpled(answers), *_tilted(answers), *_biased(answers, potential), *_fast(answers)]
-    return [*said, *_often(answers, int(dataset.touchdowns))]
+    said = [*_touching(answers, at), *_asking(one for one in unknown if one.question == TOUCH)]
+    said += [*_pulled_in(answers, potential), *_drying(answers, at, length), *_dimpled(answers), *_tilted(answers)]
+    said += [*_biased(answers, potential), *_fast(answers), *_often(answers, int(dataset.touchdowns))]
+    return [*said, *_asking(one for one in unknown if one.question != TOUCH)]
+
+
+def _asking(unknown):
+    """Sentences on numbers that nobody knows without further keys, and on these keys."""
+    return [f"The {one.what} is unknown: state {one.needs}." for one in unknown]
 
 
 def _touching(answers, at):
@@ -293,7 +303,7 @@ def figure(datasets: Mapping[str, xr.Dataset]) -> Figure:
 
 def _rows(dataset):
     """Finite answers of a device in lengths or, for a stopper, forces."""
-    unit = "m" if np.isfinite(float(dataset.length)) else "N"
+    unit = "N" if np.isnan(float(dataset.length)) else "m"
     return [one for one in answers_of(dataset) if one.unit == unit and np.isfinite(one.high)]
 
 

@@ -1,4 +1,4 @@
-"""Table of devices over two processes, and sentences on the pairs of settings that suffice."""
+"""Table of devices over two processes, and sentences on sufficient pairs of settings."""
 
 from collections.abc import Iterator, Mapping, Sequence
 
@@ -18,7 +18,7 @@ from stiction.stages.process.maps import of_processes
 
 
 def answers(pairs: xr.Dataset) -> list[str]:
-    """Pairs of settings that suffice for a device and the best pair, in sentences."""
+    """Sentences on the sufficient pairs of settings for a device, and on the best pair."""
     first, second = of_processes(pairs)
     if np.isnan(pairs.best.values).any():
         return [briefly(pairs)]
@@ -29,7 +29,7 @@ def answers(pairs: xr.Dataset) -> list[str]:
 
 
 def briefly(pairs: xr.Dataset) -> str:
-    """Range of the second process in which some settings of the first one suffice, and the best pair, in a sentence."""
+    """Range of the second process with sufficient settings of the first one, and the best pair, in a sentence."""
     first, second = of_processes(pairs)
     names = f"the {_words(first)} and the {_words(second)}"
     if np.isnan(pairs.best.values).any():
@@ -76,7 +76,7 @@ def _best(view):
 
 
 def notes(found: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
-    """Sentences on settings that contradict a law, and on points that are not computed or flagged."""
+    """Sentences on settings in contradiction to a law, and on points not computed or flagged."""
     said = [sentence for law in laws for sentence in str(law.flags.item()).splitlines()]
     words, unit = process.words_of(found.second_variable), process.unit_of(found.second_variable)
     for value in found.second.values:

@@ -29,7 +29,7 @@ def inputs(plan: Any, device: str) -> dict[str, Any]:
 
 
 def with_process(page: Page, device: str, data: Mapping[str, Any]) -> Page:
-    """Page with the settings that suffice for its device, or itself without a process."""
+    """Page with the sufficient settings for its device, or itself without a process."""
     if "process_laws" not in data:
         return page
     laws, (verdict, *reasons) = data["process_laws"], page.answer

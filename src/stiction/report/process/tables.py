@@ -1,4 +1,4 @@
-"""Table of processes: devices over a process variable, and sentences on the settings that suffice."""
+"""Table of processes: devices over a process variable, and sentences on sufficient settings."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
@@ -16,7 +16,7 @@ from stiction.stages.process.recommended import ALL, variables
 
 
 def answers(recommended: xr.Dataset, who: str) -> list[str]:
-    """Settings that suffice for a device or for all, the best one and the next to measure, in sentences."""
+    """Sentences on the sufficient settings for a device or for all, the best one and the next to measure."""
     one, unit = recommended.sel(who=who), unit_of(recommended)
     if np.isnan(float(one.best)):
         return [_sufficient(one, who, unit)]
@@ -27,7 +27,7 @@ def answers(recommended: xr.Dataset, who: str) -> list[str]:
 
 
 def briefly(recommended: xr.Dataset, who: str) -> str:
-    """Settings that suffice and the best one, in a sentence."""
+    """Sentence on the sufficient settings and the best one."""
     return _sufficient(recommended.sel(who=who), who, unit_of(recommended))
 
 
@@ -74,7 +74,7 @@ def _pairs(first, second):
 
 
 def best(one: xr.Dataset) -> list[str]:
-    """Interval of the best setting, and what lies at its ends."""
+    """Interval of the best setting, and the reasons of its ends."""
     unit, (low, high) = unit_of(one), map(float, one.best_interval)
     first, last = map(float, one.value.values[[0, -1]])
     if low == high and low in (first, last) and not _pairs(*one.sufficient.values.T):
@@ -106,7 +106,7 @@ def _next(one, unit):
 
 
 def notes(curve: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
-    """Sentences on settings that contradict a law, and on points that are not computed or flagged."""
+    """Sentences on settings in contradiction to a law, and on points not computed or flagged."""
     said = [sentence for law in laws for sentence in str(law.flags.item()).splitlines()]
     for name, begins in {"flagged": "Where", "refused": "Not computed where"}.items():
         places = {}
@@ -137,7 +137,7 @@ def table(
 
 
 def caption(made: str) -> str:
-    """Caption of a table, with what makes the surfaces."""
+    """Caption of a table, with the processes of the surfaces."""
     return (
         "Length of a beam, or restoring force of a stopper, with the allowed fraction p stuck, on the surfaces that "
         f"{made}, and its margin to the required one: the logarithm of their ratio, positive where the requirement is "

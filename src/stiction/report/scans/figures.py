@@ -158,11 +158,10 @@ def _spectrum(panel, estimate):
 
 
 def _fit(fit):
-    """Parameters of Eq. (7) with their errors, as far as the scans show them."""
+    """Parameters of Eq. (7) with their errors."""
     corner, (_, corner_error, slope_error) = fit.corner / TO_UM, fit.errors
-    corner_text = f"{with_error(corner, corner * corner_error)} rad/µm" if np.isfinite(corner_error) else "not measured"
-    slope_text = with_error(fit.slope, slope_error) if np.isfinite(slope_error) else "not measured"
-    return f"corner {corner_text}\nslope {slope_text}\n" + rf"$\chi^2$/dof = {fit.chi2 / fit.freedom:.2g}"
+    corner_text, slope_text = with_error(corner, corner * corner_error), with_error(fit.slope, slope_error)
+    return f"corner {corner_text} rad/µm\nslope {slope_text}\n" + rf"$\chi^2$/dof = {fit.chi2 / fit.freedom:.2g}"
 
 
 def _summits(panel, estimate):

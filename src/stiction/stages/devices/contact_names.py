@@ -40,17 +40,18 @@ def tips_of(plan: Any, case: Case) -> dict[str, str]:
     """Contact of the strips at the tips of a cantilever at a humidity, none for a bridge."""
     if not plan.devices.kind(case.device).has_tip:
         return {}
-    return {"tips": file_of(AS_IT_IS, TIPS, **_tips(plan, case)._asdict())}
+    return {"tips": file_of(AS_IT_IS, TIPS, **patch_of_tips(plan, case)._asdict())}
 
 
-def _tips(plan, case):
+def patch_of_tips(plan: Any, case: Case) -> Patch:
     """Patch of the tips of a cantilever, named as by `patch_of`."""
     return plan.devices.tips(case.device)._replace(pair=plan.contact_of_device(case))
 
 
 def corrections_of(plan: Any, device: str) -> dict[str, str]:
     """Corrections of the pair of a device, see `stiction.stages.contact.corrections.correction_inputs`."""
-    return correction_inputs(plan, plan.config["devices"][device]["pair"])
+    pair = plan.config["devices"][device]["pair"]
+    return correction_inputs(plan, pair, water=plan.air_of_devices.water(pair))
 
 
 def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:
@@ -68,7 +69,7 @@ def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:
 
 def contacts_of_tip_budget(plan: Any, case: Case) -> dict[str, Any]:
     """Contact of the tips of a cantilever, with less and more of every uncertain input, and under other choices."""
-    device, tips = case.device, _tips(plan, case)
+    device, tips = case.device, patch_of_tips(plan, case)
     choices = plan.variants.choices_of_solids(tips.pair)
     return {
         "contact": file_of(AS_IT_IS, TIPS, **tips._asdict()),

@@ -1,6 +1,7 @@
 """Results of devices beyond the limits of the model, in sentences of `stiction.devices.limits`."""
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -26,7 +27,15 @@ from stiction.stages.beams.pair_warnings import (
 )
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import ARC, EITHER, FORCE, DesignedBeam, section_of_beam
+from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.surfaces import surface_flags
+
+
+@dataclass(frozen=True)
+class Accuracy:
+    """Accuracy that a configuration asks for, see `stiction.accuracy`."""
+
+    length: float  #: relative standard error [-]
 
 
 @dataclass(frozen=True)
@@ -34,6 +43,7 @@ class OfDevice:
     """Device and its pair."""
 
     device: DesignedBeam
+    accuracy: Accuracy | None = None  #: of its lengths
     materials: StatedProperties = ()  #: of its pair
 
 
@@ -62,9 +72,19 @@ def beam_warnings(
         limits.no_water(float(safe_lengths.film), humidity), limits.flat_patches(float(safe_lengths.share_flat))
     )
     return {
-        shape: without + _length_warnings(float(shortest.sel(shape=shape)), safe_lengths, of, plastic)
+        shape: without
+        + _length_warnings(float(shortest.sel(shape=shape)), safe_lengths, of, plastic)
+        + _accuracy_warnings(safe_lengths.sel(shape=shape), of)
         for shape in map(str, safe_lengths["shape"].values)
     }
+
+
+def _accuracy_warnings(safe_lengths, of):
+    """Warning about the error of the length of one shape at the share that pages speak of."""
+    one = safe_lengths.sel(share=chosen_share(safe_lengths))
+    parts = [float(one[name] / one.estimate) for name in ("beams_error", "surfaces_error")]
+    asked = of.accuracy.length if of.accuracy else math.inf
+    return limits.given(limits.missed_accuracy(*parts, asked))
 
 
 def chart_warnings(

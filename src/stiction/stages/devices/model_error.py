@@ -9,6 +9,7 @@ import xarray as xr
 from stiction.analysis.model_error import factors
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import full_contact
+from stiction.stages.contact.corrections import study_of
 from stiction.stages.devices.opening import EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam, section_of_beam
 
 
@@ -19,7 +20,7 @@ class Settings:
     humidities: tuple[float, ...]  #: [-]
     device: DesignedBeam | None = None  #: none for a stopper
     applied: bool = False  #: whether the predictions are corrected
-    across_gaps: bool = False  #: whether solids attract each other across gaps, which full contact leaves out
+    across_gaps: bool = False  #: whether solids attract each other across gaps, in both models
 
 
 def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.ndarray:
@@ -72,6 +73,12 @@ def layout(
     )
 
 
+def _inputs(plan, at):
+    """Study of the pair of a device, with the attraction across gaps that the device has."""
+    pair = plan.config["devices"][at.device]["pair"]
+    return {"study": study_of("studies/full_contact", pair, plan.air_of_devices.water(pair))}
+
+
 def _settings(plan, at):
     """Humidities of a device, and its dimensions."""
     section = plan.config["devices"][at.device]
@@ -85,7 +92,7 @@ STAGES = (
     Stage.writing(
         "device_model_error",
         "devices/model_error/{device}",
-        inputs=lambda plan, at: {"study": f"studies/full_contact/{plan.config['devices'][at.device]['pair']}"},
+        inputs=_inputs,
         settings=_settings,
         kind=Settings,
         compute=compute,

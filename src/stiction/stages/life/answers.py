@@ -12,11 +12,16 @@ from stiction.stages.life.inputs import Stated
 QUESTIONS = TOUCH, STICK, HOLD, FREE = "touch", "stick", "hold", "free"
 #: Names of answers that sentences are about.
 VOLTAGE, SHOCK, COLLAPSE, RELEASED, AFTER = "voltage", "shock", "collapse", "released", "after"
-AT_VOLTAGE, FIELD, FREEING = "at_voltage", "field", "freeing_voltage"
-FAST, RESTORING = "fast", "restoring_force"
+AT_VOLTAGE, VOLTAGE_ENERGY, FIELD, FREEING = "at_voltage", "voltage_energy", "field", "freeing_voltage"
+FAST, RESTORING, FREED = "fast", "restoring_force", "freeing"
+HELD, PULL = "energy", "force"
 TILTED, WEDGE = "force_tilted", "wedge"
 ON_DIMPLES, BESIDE, DIMPLES, PULLED = "stuck_dimples", "beside_dimples", "dimples", "dimples_force"
 VOLTAGE_BESIDE, TENSION_BESIDE = "voltage_dimples", "tension_dimples"
+
+
+#: Fields of an answer that are texts.
+_TEXTS = ("name", "question", "what", "unit", "form", "source", "needs")
 
 
 class Answer(NamedTuple):
@@ -31,6 +36,7 @@ class Answer(NamedTuple):
     unit: str
     form: str
     source: str
+    needs: str = ""  #: keys that give the number; empty if it is there
 
 
 def in_order(answers: Sequence[Answer]) -> list[Answer]:
@@ -43,7 +49,7 @@ def layout(answers: Sequence[Answer], of: Stated, length: float = np.nan) -> xr.
     columns = dict(zip(Answer._fields, zip(*answers, strict=True), strict=True))
     numbers = {"low": "at least", "high": "at most", "error": "standard uncertainty"}
     return xr.Dataset(
-        {name: ("answer", list(columns[name])) for name in ("question", "what", "unit", "form", "source")}
+        {name: ("answer", list(columns[name])) for name in _TEXTS[1:]}
         | {name: ("answer", list(columns[name]), {"long_name": text}) for name, text in numbers.items()}
         | {"length": ((), length, {"units": "m"}), "touchdowns": ((), of.touchdowns, {"units": "1"})}
         | {"potential": ((), of.potential, {"units": "V"})},
@@ -53,11 +59,10 @@ def layout(answers: Sequence[Answer], of: Stated, length: float = np.nan) -> xr.
 
 def answers_of(dataset: xr.Dataset) -> list[Answer]:
     """Answers about a device from its dataset."""
-    texts = ("name", "question", "what", "unit", "form", "source")
     rows = zip(*(dataset["answer" if name == "name" else name].values for name in Answer._fields), strict=True)
     return [
         Answer(
-            *(str(value) if name in texts else float(value) for name, value in zip(Answer._fields, row, strict=True))
+            *(str(value) if name in _TEXTS else float(value) for name, value in zip(Answer._fields, row, strict=True))
         )
         for row in rows
     ]

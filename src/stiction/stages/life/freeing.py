@@ -8,7 +8,7 @@ from stiction.config.cases import in_air
 from stiction.devices.risk import Basis, one_in
 from stiction.devices.stoppers import safe_force
 from stiction.life import freeing
-from stiction.stages.life.answers import FREE, HOLD, RESTORING, Answer
+from stiction.stages.life.answers import FREE, FREED, HELD, HOLD, PULL, RESTORING, Answer
 from stiction.stages.life.inputs import OfBeam, OfStopper
 
 
@@ -23,13 +23,13 @@ def beam_held(of: OfBeam, length: float) -> list[Answer]:
     }[clamps]
     answers = [
         Answer(
-            "energy",
+            HELD,
             HOLD,
             "adhesion energy that holds it along the beam" if clamps == 1 else "adhesion energy that holds both cracks",
             *(along, along, error, "J m-2", forms[0], "stiction.beam.energy"),
         ),
         Answer(
-            "force",
+            PULL,
             FREE,
             f"force with which it pulls at its {'tip' if clamps == 1 else 'middle'}",
             *(force, force, force_error, "N", forms[1], "stiction.life.freeing"),
@@ -64,5 +64,5 @@ def stopper_freed(stopper: xr.Dataset, of: OfStopper, separation: xr.Dataset | N
         shocks = (freeing.freeing_acceleration(hold, of.restoring_force, of.mass) for hold in (force, most))
         what, form = f"shock that frees {but}", f"a = (F_hold - F) / m; {bound}"
         numbers = *shocks, error / of.mass
-        answers.append(Answer("freeing", FREE, what, *numbers, "m s-2", form, "stiction.life.freeing"))
+        answers.append(Answer(FREED, FREE, what, *numbers, "m s-2", form, "stiction.life.freeing"))
     return answers

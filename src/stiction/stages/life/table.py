@@ -1,6 +1,7 @@
 """Stage life: causes of the contact of a device, its adhesion then, and ways to free it.
 
-Every answer is a number between two bounds, which are equal where the model leaves nothing open. Voltage and shock of a
+Every answer is a number between two bounds, which are equal where the model leaves nothing open, or the keys that give
+the number (`stiction.stages.life.unknown`). Voltage and shock of a
 beam are those of its length: the stated one, or its least safe length.
 """
 
@@ -30,6 +31,7 @@ from stiction.stages.life.separation import separation_inputs
 from stiction.stages.life.tilt import tilted_answers
 from stiction.stages.life.touch import beam_touched, dried, stopper_moved
 from stiction.stages.life.touchdowns import beam_after_touchdowns, stopper_after_touchdowns
+from stiction.stages.life.unknown import beam_unknown, stopper_unknown
 from stiction.stages.life.voltage import beam_at_voltage, stopper_at_voltage
 
 
@@ -61,7 +63,8 @@ def beam_answers(
     answers += [answer for name, liquid in of.liquids.items() for answer in dried(of, name, liquid.adhesion)]
     answers += beam_after_touchdowns(of, share, min(safe.values()), after) if after else []
     answers += separated_fast(lengths, separation) if separation is not None else []
-    return in_order(answers + beam_at_voltage(of, min(safe.values()), biased))
+    answers += beam_at_voltage(of, min(safe.values()), biased)
+    return in_order(answers + beam_unknown(answers))
 
 
 def stopper_answers(
@@ -89,7 +92,8 @@ def stopper_answers(
     answers.append(Answer("force", HOLD, what, mean, mean, error, "N", "largest attraction x area", "stage stoppers"))
     answers += stopper_moved(of) + stopper_freed(stopper, of, separation) + stopper_after_touchdowns(stopper, of)
     answers += [] if tilted is None else tilted_answers(tilted)
-    return in_order(answers + (stopper_at_voltage(stopper, of, biased) if of.capacitor else []))
+    answers += stopper_at_voltage(stopper, of, biased) if of.capacitor else []
+    return in_order(answers + stopper_unknown(answers, of, float(stopper.share.max())))
 
 
 def compute(data: Mapping[str, Any], settings: dict[str, Any]) -> xr.Dataset:

@@ -11,7 +11,7 @@ from stiction.devices.risk import Basis, one_in, sampled_bound
 from stiction.estimates import mean_with_error
 from stiction.life import freeing, holding
 from stiction.stages.devices.safe_lengths import chosen_share
-from stiction.stages.life.answers import AT_VOLTAGE, FIELD, FREE, FREEING, HOLD, Answer
+from stiction.stages.life.answers import AT_VOLTAGE, FIELD, FREE, FREEING, HOLD, VOLTAGE_ENERGY, Answer
 from stiction.stages.life.inputs import OfBeam, OfStopper
 from stiction.stages.life.lengths import least_safe
 
@@ -34,7 +34,7 @@ def beam_at_voltage(
     low, error = max(gained, default=(np.nan, np.nan))
     what = f"adhesion energy that {of.potential:g} V add"
     numbers = min(low, added), added, error
-    answers = [Answer("voltage_energy", HOLD, what, *numbers, "J m-2", form, _SOURCE), _field(of)]
+    answers = [Answer(VOLTAGE_ENERGY, HOLD, what, *numbers, "J m-2", form, _SOURCE), _field(of)]
     numbers = _shorter(of, added, safe, [least_safe(one, chosen_share(one)) for one in (biased or {}).values()])
     if np.isnan(numbers).all():
         return answers

@@ -51,7 +51,7 @@ class Settings:
 
 
 def compute(estimates: Sequence[xr.Dataset], settings: Settings) -> xr.Dataset:
-    """Law through the settings, with sentences on settings that contradict it. There are no estimates of numbers."""
+    """Law through the settings, with sentences on contradictions. There are no estimates of numbers."""
     surfaces = [_measured(one) for one in estimates] or [
         (np.array(one["values"]), np.array(one["covariance"])) for one in settings.stated
     ]
@@ -100,7 +100,7 @@ def layout(law: Law, measured: np.ndarray, errors: np.ndarray, settings: Setting
 
 
 def sentences(law: Law, settings: Settings) -> list[str]:
-    """Sentences on settings that contradict the law of the others, and on a law that nothing checks."""
+    """Sentences on settings in contradiction to the law of the others, and on an unchecked law."""
     unit, said = process.unit_of(settings.variable), []
     if len(law.settings) == 2:
         said.append("Two settings give straight lines, which nothing checks: measure a third one.")

@@ -1,4 +1,4 @@
-"""Stages process_map, process_pairs: margins of a device over two processes, and pairs of settings that suffice."""
+"""Stages process_map, process_pairs: margins of a device over two processes, and sufficient pairs of settings."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any
@@ -57,7 +57,7 @@ def _maps(found: xr.Dataset) -> Iterator[tuple[tuple[int, int], Map]]:
 
 
 def recommended(found: xr.Dataset, laws: Sequence[xr.Dataset], device: str, seed: int) -> xr.Dataset:
-    """Pairs of settings that suffice for a device, and the best one. Unknown where a margin is."""
+    """Sufficient pairs of settings for a device, and the best one. They are unknown with their margin."""
     maps, known = [one for _, one in _maps(found)], [law_of(one) for one in laws]
     if len(maps) < found.sizes["humidity"] * found.sizes["shape"]:
         pairs = unknown(np.linspace(*known[0].ends, PAIRS), known[1].settings)
@@ -85,7 +85,7 @@ def layout(pairs: Pairs, found: xr.Dataset, settings: np.ndarray) -> xr.Dataset:
 
 
 def of_processes(pairs: xr.Dataset) -> list[xr.Dataset]:
-    """Settings of each process: those that suffice at some setting of the other one, and the best.
+    """Settings of each process: all sufficient ones at some setting of the other process, and the best.
 
     Their variables are as in a dataset of `stiction.stages.process.recommended`.
     """

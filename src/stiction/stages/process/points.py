@@ -1,4 +1,4 @@
-"""Stage process_point: a device on the surfaces that a process makes at one value of its variable.
+"""Stage process_point: a device on the surfaces of a process at one value of its variable.
 
 The device is computed as along a roughness (`stiction.stages.roughness.curves`), with the same random numbers at all
 values. At some values, its slopes by the quantities of the law are computed as well.
@@ -155,7 +155,7 @@ def _with_samples(settings):
 
 
 def values_of(plan: Any, device: str) -> list[float]:
-    """Values of the variable at which a device is computed, within the settings of all its processes."""
+    """Computed values of the variable, within the settings of all processes of a device."""
     known = plan.config["process"]
     named = process.of_device(plan.config, device)
     settings = [sorted(setting["value"] for setting in known[name]["settings"]) for name in named]
@@ -165,7 +165,7 @@ def values_of(plan: Any, device: str) -> list[float]:
 
 
 def axes_of(plan: Any, device: str) -> list[list[float]]:
-    """Values of the variable, and of that of a second process."""
+    """Values of the variable, and of the variable of a second process."""
     if not process.is_mapped(plan.config, device):
         return [values_of(plan, device)]
     first, second = (

@@ -1,4 +1,4 @@
-"""Stage process_settings: settings of a process that suffice for its devices, the best one, the next to measure."""
+"""Stage process_settings: sufficient settings of a process for its devices, the best one, the next to measure."""
 
 from collections.abc import Mapping
 from dataclasses import replace

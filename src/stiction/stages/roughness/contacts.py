@@ -130,7 +130,7 @@ def patch_settings(plan: Any, pair: str, device: str) -> dict[str, Any]:
     Those of smaller shares than have been verified are extrapolated. The pair is that of the device in its air.
     """
     ground, share = plan.devices.ground(device), plan.config["devices"][device]["requirement"]["share"]
-    samples = plan.config["contact"]["samples"]
+    samples = plan.devices.samples(ground)
     if not plan.devices.kind(device).is_beam:
         samples = max(samples, samples_for(max(share, VERIFIED)))
     return GROUND.settings(plan, At(**ground._replace(pair=pair)._asdict()), samples)

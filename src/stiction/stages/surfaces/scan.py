@@ -37,7 +37,7 @@ def compute(path: str | Path, settings: Settings) -> xr.Dataset:
 
 
 def layout(file: ScanFile) -> xr.Dataset:
-    """Dataset of the heights of one scan, less their mean, in single precision, NaN where undefined."""
+    """Dataset of the heights of one scan, less their mean, in single precision. Undefined heights are NaN."""
     scan = file.scan
     fast, slow = (np.arange(n) * pixel for n, pixel in zip(scan.heights.shape, scan.frame.pixel, strict=True))
     elevation = np.asarray(scan.heights - np.nanmean(scan.heights), np.float32)

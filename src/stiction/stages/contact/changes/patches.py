@@ -20,10 +20,17 @@ class Place:
     file: str  #: patch in the names of files
     words: str  #: patch in messages, after its pair
     size: Callable[[Any, Any], dict]  #: settings that differ from those of the strips, by the plan and the wildcards
+    #: Number of samples of the unchanged contact, by the plan and the wildcards.
+    samples: Callable[[Any, Any], int] = lambda plan, _at: plan.config["contact"]["samples"]
 
     def settings(self, plan: Any, at: Any, samples: int) -> dict[str, Any]:
         """Settings of the unchanged contact of a patch. For tips, the number of samples is the number of beams."""
         return merged(select(Settings, plan.seen_by(at.pair, samples=samples)), self.size(plan, at))
+
+
+def _samples(plan, at):
+    """Samples of a patch."""
+    return plan.devices.samples(Patch(at.pair, int(at.length), int(at.width)))
 
 
 def _size(_plan, at):
@@ -50,7 +57,7 @@ def _size_of_tilted(plan, at):
 #: Strips along the beam, as in the paper.
 STRIPS = Place("{pair}", "", lambda plan, at: {})
 #: Patch on which a device sticks: strips of another size, or the whole area of a stopper.
-GROUND = Place("{pair}_{length}x{width}", ", {length} x {width} nm,", _size)
+GROUND = Place("{pair}_{length}x{width}", ", {length} x {width} nm,", _size, _samples)
 #: Tilted strips that hold the tips of cantilevers.
 TIPS = Place(GROUND.file, f"{GROUND.words} at the tips of beams,", _size_of_tips)
 #: Area in which a tilted stopper touches.

@@ -17,7 +17,7 @@ from stiction.stages.contact.pairs import Settings
 from stiction.stages.surfaces.rough_surfaces import surface_inputs
 
 #: No change.
-AS_IT_IS = Change(settings=lambda plan, at, place: place.settings(plan, at, plan.config["contact"]["samples"]))
+AS_IT_IS = Change(settings=lambda plan, at, place: place.settings(plan, at, place.samples(plan, at)))
 #: Rule and folder of each contact, by change and kind of patch. Strips as they are follow below.
 TABLE = {
     AS_IT_IS: {

@@ -1,0 +1,219 @@
+"""Numbers of beams and of samples for the accuracy that a configuration asks of the lengths of devices.
+
+They are decided before any job, from the errors of a pilot: of each device at each humidity, on few samples of its
+ground and tips. Its random numbers are its own. The numbers are thus independent of the results, whose estimates and
+bounds are those of stated numbers; the same whatever the cores; and found in the settings of every dataset.
+
+The accuracy is that of the length of the middle share of stuck devices, of which pages speak. As in `stiction.pilot`,
+surfaces with a spectrum to be improved by the run are preliminary.
+"""
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from stiction.config.cases import Case, in_air
+from stiction.config.merging import merged
+from stiction.config.reading import is_stated
+from stiction.config.scans import preliminary_estimates, with_preliminary_estimates
+from stiction.config.units import in_si
+from stiction.devices.numbers import Spread, beams_for, strips_for
+from stiction.devices.tail import fit_tail
+from stiction.pilot import surface
+from stiction.plan.devices import Patch
+from stiction.plan.plan import Plan
+from stiction.plan.stage import At, select
+from stiction.progress import without_progress
+from stiction.stages.contact.changes.patches import GROUND, TIPS, Place
+from stiction.stages.contact.contact import compute
+from stiction.stages.contact.pairs import Settings
+from stiction.stages.devices import cracks
+from stiction.stages.devices.contact_names import patch_of, patch_of_tips
+from stiction.stages.devices.opening import settings_of_beam
+from stiction.stages.devices.sticking import Released, ground, released
+from stiction.streams import stream
+
+#: Samples of a ground, and beams with tips, of the pilot; order of its chaos model, which so many samples carry.
+PILOT, _ORDER = 200, 5
+#: Part of the lengths that is fitted. ASSUME: the lowest quarter has the slope of the lowest 5 %, with half the error.
+#: Those of 1400 beams and tips of pair b differ by 5 to 20 %.
+_PART = 0.25
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """Numbers of beams and of samples for an accuracy, and the errors to be expected of them."""
+
+    accuracy: float  #: relative standard error that is asked for [-]
+    beams: int  #: of every device and humidity; as many tips
+    samples: dict[str, int]  #: of the grounds of beams, by the name of the patch; none if they are stated
+    errors: dict[Case, float]  #: largest of the lengths of each case [-]
+
+    def within(self, config: dict) -> dict:
+        """Configuration with these numbers, as all plans take them."""
+        return merged(config, {"design": {"beams": self.beams, "samples_of_patches": self.samples}})
+
+    def __str__(self):
+        grounds = "".join(f", {number} samples of {name}" for name, number in self.samples.items())
+        words = f"An accuracy of {self.accuracy:.2g} takes {self.beams} beams{grounds}"
+        worst = max(self.errors, key=self.errors.get, default=None)
+        if worst is None or self.errors[worst] <= self.accuracy:
+            return f"{words}."
+        missed = f"{self.errors[worst]:.2g} for {worst.device} {in_air(worst.humidity)}"
+        return f"{words}; it is missed: with these numbers, the error is about {missed}."
+
+
+def decided(config: dict) -> dict:
+    """Complete configuration with the numbers for its accuracy, itself if it asks for none or has them."""
+    if "accuracy" not in config["design"] or "samples_of_patches" in config["design"]:
+        return config
+    found = numbers(config, preliminary_estimates(config)[0])
+    return found.within(config) if found else config
+
+
+def numbers(
+    config: dict,
+    preliminary: Mapping[str, dict],
+    code: object = None,
+    remember: Callable = lambda _, compute: compute(),
+) -> Numbers | None:
+    """Numbers for the accuracy of a configuration, none if it asks for none or has no beams.
+
+    Stated numbers remain. Cases have no part in them if too few of their beams stick for an error.
+
+    Parameters
+    ----------
+    config : dict
+        Complete and valid configuration in normal form.
+    preliminary : dict
+        Preliminary numbers of its measured surfaces, see `stiction.config.scans.preliminary_estimates`.
+    code : object
+        Fingerprint of this module.
+    remember : callable
+        Keeps what the pilot showed, see `stiction.run.disk_cache.DiskCache`.
+    """
+    plan, design = Plan(config, preliminary), config["design"]
+    if "accuracy" not in design or not plan.devices.beams:
+        return None
+    spreads = _spreads(plan, code, remember)
+    share, accuracy = _middle(design["shares"]), design["accuracy"]["length"]
+    stated, beams = config["contact"]["samples"], design["beams"]
+    fewest = stated if is_stated(config, "contact", "samples") else _fewest(config)
+    if spreads and not is_stated(config, "design", "beams"):
+        beams = beams_for([one for some in spreads.values() for one in some], share, accuracy, fewest)
+    samples = {}
+    if not is_stated(config, "contact", "samples"):
+        for name, cases in _by_ground(plan, spreads).items():
+            of_ground = [one for case in cases for one in spreads[case]]
+            samples[name] = strips_for(of_ground, share, accuracy, beams, fewest)
+    strips = {case: samples.get(plan.devices.ground(case.device).name, stated) for case in spreads}
+    errors = {case: max(one.error(beams, strips[case], share) for one in some) for case, some in spreads.items()}
+    return Numbers(accuracy, beams, samples, errors)
+
+
+def _middle(shares):
+    """Share of stuck devices in the sentences of pages."""
+    return shares[len(shares) // 2]
+
+
+def _fewest(config):
+    """Fewest samples that carry the chaos model and have those of the slopes among them."""
+    return max(math.comb(config["chaos"]["order"] + 4, 4), config["studies"]["slopes"]["samples"])
+
+
+def _by_ground(plan, cases):
+    """Cases of every ground, without those that stoppers touch as well."""
+    found, of_stoppers = {}, {plan.devices.ground(name) for name in plan.devices.stoppers}
+    for case in cases:
+        if (own := plan.devices.ground(case.device)) not in of_stoppers:
+            found.setdefault(own.name, []).append(case)
+    return found
+
+
+# Pilot
+
+
+def _spreads(plan, code, remember):
+    """Spread of the lengths of each shape, by case, of all with an error."""
+    pilot = _Pilot.of(plan)
+    found = {
+        case: remember([code, *pilot.determined_by(case)], lambda case=case: pilot.spreads(case))
+        for case in plan.devices.cases
+    }
+    return {case: [Spread(*one) for one in some] for case, some in found.items() if some}
+
+
+@dataclass(frozen=True)
+class _Pilot:
+    """Devices on few samples."""
+
+    plan: Plan
+    surfaces: Callable  #: datasets (heights, spectrum) of a surface by name
+    contacts: dict[tuple, Any] = field(default_factory=dict)  #: those drawn, by kind and patch
+
+    @classmethod
+    def of(cls, plan: Plan) -> "_Pilot":
+        """Pilot of a plan, with its own seed and numbers."""
+        config = with_preliminary_estimates(plan.config, plan.preliminary)
+        seed = int(stream(config["seed"], "accuracy").integers(2**53))
+        order = min(config["chaos"]["order"], _ORDER)
+        own = {"chaos": {"order": order}, "design": {"beams": PILOT}, "contact": {"model": "summits"}}
+        few = Plan(merged(config, own | {"seed": seed}), plan.preliminary)
+        return cls(few, cache(lambda name: surface(few, name)))
+
+    def determined_by(self, case: Case) -> list:
+        """Settings and surfaces on which the spreads of a case depend."""
+        names = self.plan.sides(self.plan.config["devices"][case.device]["pair"])
+        entries = [self.plan.config["surfaces"][name] for name in names]
+        of_contacts = [self._settings(*one) for one in self._places(case)]
+        share = _middle(self.plan.config["design"]["shares"])
+        return [self._of_beam(case), *of_contacts, entries, self.plan.config["character"], share]
+
+    def spreads(self, case: Case) -> list[tuple[float, float]]:
+        """Slope and error of the surfaces of the lengths of each shape, none where too few beams stick."""
+        settings = in_si(cracks.Settings, self._of_beam(case))
+        try:
+            with without_progress():
+                contact, *tips = (self._contact(*one) for one in self._places(case))
+                met = ground(contact, tips[0] if tips else None, case.humidity, settings)
+                beams = released(settings.device, met, settings)
+            return spreads_of(beams, _middle(self.plan.config["design"]["shares"]), len(met.sampled))
+        except (ValueError, ArithmeticError):  # which the jobs of the case state
+            return []
+
+    def _of_beam(self, case):
+        """Settings of the beams of a case."""
+        return select(cracks.Settings, settings_of_beam(self.plan, case))
+
+    def _places(self, case):
+        """Kinds of patch of a case, its ground first, each with the patch."""
+        has_tip = self.plan.devices.kind(case.device).has_tip
+        return [(GROUND, patch_of(self.plan, case))] + [(TIPS, patch_of_tips(self.plan, case))] * has_tip
+
+    def _settings(self, place: Place, patch: Patch):
+        """Settings of the contact of a patch."""
+        return place.settings(self.plan, At(**patch._asdict()), PILOT)
+
+    def _contact(self, place, patch):
+        """Contact of a patch, drawn once for all its humidities."""
+        if (place, patch) not in self.contacts:
+            surfaces = [self.surfaces(name) for name in self.plan.sides(patch.pair)]
+            settings = in_si(Settings, self._settings(place, patch))
+            self.contacts[place, patch] = compute(surfaces, patch.pair, "NG", settings)
+        return self.contacts[place, patch]
+
+
+def spreads_of(beams: Released, share: float, strips: int) -> list[tuple[float, float]]:
+    """Slope and error of the surfaces of each shape, of released beams on a number of strips."""
+
+    def quantiles(move):
+        """Lengths of the share by shape (shapes,) [m]."""
+        return np.array([fit_tail(one, _PART).length(share) for one in beams.moved(move).lengths.values()])
+
+    errors = beams.surfaces.error(quantiles) / quantiles(lambda lengths: lengths) * strips**0.5
+    slopes = [fit_tail(one, _PART).slope for one in beams.lengths.values()]
+    return [(float(slope), float(error)) for slope, error in zip(slopes, errors, strict=True)]

@@ -1,0 +1,79 @@
+r"""Numbers of beams and of sampled strips for a relative standard error of a length, from a pilot.
+
+The squared error of a length has two independent parts, of n beams and of N strips,
+
+.. math:: \epsilon^2 = (s \, c(n))^2 + r^2 / N ,
+
+with the slope s of the logarithm of the length over the normal score, the error c(n) of a quantile of normal numbers,
+and r by the delta method (`stiction.devices.sampling`). Each part may have a half, or what the other one leaves of it.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from scipy.special import ndtri
+from scipy.stats import norm
+
+from stiction.devices.risk import samples_for
+from stiction.devices.tail import scaled_errors
+from stiction.streams import stream
+
+#: Most beams and most strips.
+MOST_BEAMS, MOST_STRIPS = 20_000, 10_000
+#: Numbers are multiples of these. 200 beams are the fewest with a fit of the shortest lengths.
+_BEAMS, _STRIPS = 200, 100
+#: Number of beams for which the error of a fit is simulated. Times the root of the number, it is nearly constant.
+_SIMULATED = 1000
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Spread of a length in a pilot."""
+
+    slope: float  #: of the logarithm of the length over the normal score, at its lower end [-]
+    surfaces: float  #: relative error of the length on one strip; of many, it falls with the root of their number [-]
+
+    def error(self, beams: int, strips: int, share: float) -> float:
+        """Relative standard error of the length of P(stuck) = share [-]."""
+        return float(np.hypot(self.slope * quantile_errors(np.array([beams]), share)[0], self.surfaces / strips**0.5))
+
+
+def quantile_errors(numbers: np.ndarray, share: float) -> np.ndarray:
+    """Standard error of a quantile of normal numbers, for several numbers of them (n,) [-].
+
+    As in `stiction.devices.risk.safe_length`: an order statistic if there are enough, otherwise a fit of the lowest.
+    """
+    sampled = np.sqrt(share * (1 - share)) / norm.pdf(ndtri(share))
+    return np.where(numbers >= samples_for(share), sampled, _of_one_fitted(share)) / numbers**0.5
+
+
+@cache
+def _of_one_fitted(share):
+    """Error of a fit, times the root of the number of beams [-]."""
+    return scaled_errors(_SIMULATED, share, stream(0, "numbers"))[0].std() * _SIMULATED**0.5
+
+
+def beams_for(spreads: Sequence[Spread], share: float, accuracy: float, strips: int) -> int:
+    """Smallest number of beams for an accuracy of all lengths, with at least this number of strips.
+
+    Without such a number, that with the smallest error: up to `MOST_BEAMS`, or below the step to order statistics,
+    which have a larger error than a fit.
+    """
+    numbers = np.arange(_BEAMS, MOST_BEAMS + 1, _BEAMS)
+    errors = quantile_errors(numbers, share)
+    enough = np.all([one.slope * errors <= _left(accuracy, one.surfaces / strips**0.5) for one in spreads], axis=0)
+    return int(numbers[np.argmax(enough) if enough.any() else np.argmin(errors)])
+
+
+def strips_for(spreads: Sequence[Spread], share: float, accuracy: float, beams: int, fewest: int) -> int:
+    """Smallest number of strips for an accuracy of all lengths with a number of beams, up to `MOST_STRIPS`."""
+    error = quantile_errors(np.array([beams]), share)[0]
+    needed = max((one.surfaces / _left(accuracy, one.slope * error)) ** 2 for one in spreads)
+    return min(max(int(np.ceil(needed / _STRIPS)), -(-fewest // _STRIPS)) * _STRIPS, MOST_STRIPS)
+
+
+def _left(accuracy, other):
+    """Error that the other part leaves of an accuracy, at least half of its square [-]."""
+    return max(accuracy**2 / 2, accuracy**2 - other**2) ** 0.5

@@ -1,0 +1,171 @@
+"""Numbers of beams and of samples follow from the asked accuracy before any job, by a pilot of their own."""
+
+import functools
+
+import numpy as np
+import pytest
+import yaml
+from configurations import PAPER
+from configurations import problems as invalid
+
+import stiction
+from stiction import accuracy
+from stiction.config.cases import case_id
+from stiction.config.files import normalised
+from stiction.config.merging import merged
+from stiction.devices.numbers import MOST_BEAMS, Spread
+from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
+from stiction.run.disk_cache import DiskCache
+
+C1 = "kind: cantilever, pair: b, thickness_um: 2.6, gap_um: 10, width_um: 4, humidities: [0.88]"
+R1 = "kind: bridge, pair: b, thickness_um: 2, gap_um: 2, width_um: 4, residual_stress_MPa: 50, humidities: [0.88]"
+S1 = "kind: stopper, pair: b, contact_um: [3, 3], restoring_force_uN: 1, humidities: [0.5]"
+SMALL = f"chaos: {{order: 2}}\ndesign: {{accuracy: {{length: 0.03}}}}\ndevices: {{C1: {{{C1}}}, S1: {{{S1}}}}}"
+SPREADS = {case_id("C1", 0.88): [Spread(0.03, 0.6), Spread(0.06, 0.1)]}
+
+
+def configured(*overlays):
+    """Normal form of the paper's configuration under overlays in YAML, which have no other problems."""
+    config = functools.reduce(merged, map(yaml.safe_load, overlays), PAPER)
+    assert invalid(config) == ()
+    return normalised(config)
+
+
+@pytest.fixture
+def of_pilot(monkeypatch):
+    """Set the spreads that a pilot would show."""
+    return lambda spreads: monkeypatch.setattr(accuracy, "_spreads", lambda *_: spreads)
+
+
+def settings(config, file):
+    """Settings of the job for a dataset."""
+    return Graph(Plan(config)).job(file).settings
+
+
+def test_without_an_accuracy_a_configuration_is_as_it_is():
+    config = configured(SMALL.replace("accuracy: {length: 0.03}", "beams: 400"))
+    assert accuracy.decided(config) is config
+    assert accuracy.numbers(config, {}) is None
+    only_stoppers = configured(f"design: {{accuracy: {{length: 0.03}}}}\ndevices: {{S1: {{{S1}}}}}")
+    assert accuracy.decided(only_stoppers) is only_stoppers
+
+
+def test_jobs_of_devices_have_the_numbers_and_all_others_those_of_the_configuration(of_pilot):
+    of_pilot(SPREADS)
+    config = configured(SMALL)
+    found = accuracy.numbers(config, {})
+    decided, ground = found.within(config), "b_1500x4000"
+    assert found.beams % 200 == 0
+    assert found.samples[ground] % 100 == 0
+    assert settings(decided, "devices/cracks/C1_rh088")["beams"] == found.beams != config["design"]["beams"]
+    plan = Plan(decided)
+    tips = plan.devices.tips("C1").name
+    assert settings(decided, f"devices/contact/tips/{tips}")["contact"]["samples"] == found.beams
+    assert settings(decided, f"devices/contact/{ground}")["contact"]["samples"] == found.samples[ground] != 5000
+    for file in ("devices/contact/b_3000x3000", "contact/b_NG"):
+        assert settings(decided, file) == settings(config, file)
+
+
+def test_devices_have_strips_of_their_own_if_an_accuracy_decides_their_number(of_pilot):
+    of_pilot(SPREADS)
+    config = configured(SMALL, "beam: {width_um: 4}")
+    assert Plan(config).devices.has_strips_of_pair("C1")
+    assert not Plan(accuracy.decided(config)).devices.has_strips_of_pair("C1")
+    assert Plan(accuracy.decided(merged(config, {"contact": {"samples": 400}}))).devices.has_strips_of_pair("C1")
+
+
+def test_a_stated_number_remains_and_the_other_one_follows(of_pilot):
+    of_pilot(SPREADS)
+    free, beams, samples = (
+        accuracy.numbers(configured(SMALL, more), {})
+        for more in ("{}", "design: {beams: 3000}", "contact: {samples: 700}")
+    )
+    assert beams.beams == 3000
+    assert beams.samples["b_1500x4000"] < free.samples["b_1500x4000"], "beams leave more"
+    assert samples.samples == {}
+    assert samples.beams == free.beams
+
+
+def test_an_accuracy_with_nothing_to_decide_is_refused():
+    config = functools.reduce(
+        merged, map(yaml.safe_load, (SMALL, "design: {beams: 400}\ncontact: {samples: 400}")), PAPER
+    )
+    (line,) = map(str, invalid(config))
+    assert line.startswith("design.accuracy is {'length': 0.03}, must have a number to decide: leave out design.beams")
+
+
+def test_what_the_pilot_expects_to_miss_is_said(of_pilot):
+    of_pilot(SPREADS)
+    assert "missed" not in str(accuracy.numbers(configured(SMALL), {}))
+    of_pilot({case_id("C1", 0.88): [Spread(0.5, 0.0)]})
+    missed = accuracy.numbers(configured(SMALL), {})
+    assert missed.beams == MOST_BEAMS
+    assert str(missed).endswith(f"the error is about {0.5 * 9.375 / MOST_BEAMS**0.5:.2g} for C1 at RH 0.88.")
+
+
+def test_without_an_error_of_the_pilot_numbers_are_those_of_the_configuration(of_pilot):
+    of_pilot({})
+    assert accuracy.decided(configured(SMALL))["design"]["beams"] == PAPER["design"]["beams"]
+
+
+# By a pilot
+
+
+@pytest.fixture(scope="module")
+def small():
+    return configured(SMALL, "design: {accuracy: {length: 0.01}}")
+
+
+@pytest.fixture(scope="module")
+def kept(tmp_path_factory):
+    """File that keeps what the pilot showed."""
+    return tmp_path_factory.mktemp("kept") / "accuracy.json"
+
+
+@pytest.fixture(scope="module")
+def found(small, kept):
+    known = DiskCache(kept)
+    numbers = accuracy.numbers(small, {}, "code", known)
+    known.save()
+    return numbers
+
+
+@pytest.mark.slow
+def test_numbers_are_again_the_same_and_those_of_a_device_do_not_depend_on_others(small, monkeypatch):
+    monkeypatch.setattr(accuracy, "PILOT", 40)
+    alone, again = (accuracy.numbers(small, {}) for _ in range(2))
+    assert alone == again
+    other = small["devices"]["C1"] | {"width_um": 3, "thickness_um": 3}
+    together = accuracy.numbers(merged(small, {"devices": {"A1": other}}), {})
+    (case,) = alone.errors
+    assert together.samples.keys() == {"b_1500x3000", "b_1500x4000"}
+    assert together.beams >= alone.beams
+    assert together.errors[case] <= alone.errors[case] * (1 + 1e-9) or together.beams > alone.beams
+
+
+@pytest.mark.slow
+def test_what_a_pilot_showed_is_remembered_until_something_changes_on_which_it_depends(small, found, kept, monkeypatch):
+    monkeypatch.setattr(accuracy, "compute", None)
+    coarser = merged(small, {"design": {"accuracy": {"length": 0.03}}, "figures": {"humidity_points": 7}})
+    assert accuracy.numbers(small, {}, "code", DiskCache(kept)) == found
+    assert accuracy.numbers(coarser, {}, "code", DiskCache(kept)).beams < found.beams
+    for changed in ({"seed": 1}, {"surfaces": {"B2": {"rms_nm": 3}}}, {"devices": {"C1": {"gap_um": 11}}}):
+        with pytest.raises(TypeError, match="not callable"):
+            accuracy.numbers(merged(small, changed), {}, "code", DiskCache(kept))
+
+
+def test_the_random_numbers_of_the_pilot_are_none_of_the_run(small):
+    assert accuracy._Pilot.of(Plan(small)).plan.config["seed"] != small["seed"]
+    assert accuracy._Pilot.of(Plan(small)).plan.config["seed"] == accuracy._Pilot.of(Plan(small)).plan.config["seed"]
+
+
+@pytest.mark.slow
+def test_a_run_reaches_the_accuracy_within_a_factor_of_one_and_a_half(small, found):
+    device = stiction.Device.of(found.within(small), "C1")
+    dataset = device.safe_lengths(0.88).sel(share=1e-3)
+    assert int(dataset.beams) == found.beams
+    errors = np.hypot(dataset.beams_error, dataset.surfaces_error.fillna(0)) / dataset.estimate
+    assert 0.01 / 1.5 < float(errors.max()) < 0.01 * 1.5
+    warned = any("design.accuracy.length" in sentence for sentence in device.warnings(device.safe_lengths(0.88)))
+    assert warned == (float(errors.max()) > 0.01)
