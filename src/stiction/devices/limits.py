@@ -76,7 +76,7 @@ def long_strips(strip: float, longest: float, is_bridge: bool = False) -> str | 
     head = f"Strips of {strip * 1e6:.3g} µm are longer than the {longest * 1e6:.3g} µm that resolve the {what}"
     if strip > LONGER * longest:
         return (
-            f"{head}, by so much that nothing is simulated: all devices count as stuck that surfaces could hold which "
+            f"{head}, by so much that nothing is simulated: all beams count as stuck that surfaces could hold which "
             "are everywhere like their strongest patch, the safe side."
         )
     if is_bridge:
