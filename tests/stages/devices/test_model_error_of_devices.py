@@ -148,6 +148,19 @@ def test_a_device_in_dry_air_has_the_error_of_strips_in_dry_air():
     assert "is not known at a relative humidity of 0.6, beyond the humidities of the pair" in said
 
 
+def test_where_no_water_condenses_a_device_has_the_error_of_dry_air_at_any_humidity():
+    waxed = {"materials": {"Wax": {"contact_angle_deg": 110}}}
+    waxed |= {"surfaces": {name: {"material": "Wax"} for name in ("B2", "Sub1")}}
+    waxed |= {"run": {"pairs": ["b"], "studies": []}, "pairs": {"b": {"humidities": [0.6]}}}
+    graph = Graph(Plan(load(DRY, waxed, {"contact": {"model": "full"}})))
+    assert graph.job("studies/full_contact/across/b").settings["humidities"] == [0]
+    assert graph.job("studies/model_error/across/b").settings["humidities"] == [0]
+    study = full_contact.layout(np.tile([2.0, 1.5, 1, 1, 0, 0, 0, 0, 0], (3, 1, 1)), [0.0], 1e-8)
+    found = graph.job("devices/model_error/S2").compute({"study": study})
+    assert float(found.factor.sel(humidity=0.6)[0]) == pytest.approx(1.5)
+    assert not found.interpolated.any()
+
+
 def test_without_errors_nothing_is_said():
     assert model_errors.sentences("S3", None) == []
     assert np.isnan(model_errors.device_change(ERRORS, "S3", 0.67, FORCE)["model_error_percent"])

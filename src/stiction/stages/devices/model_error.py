@@ -21,6 +21,12 @@ class Settings:
     device: DesignedBeam | None = None  #: none for a stopper
     applied: bool = False  #: whether the predictions are corrected
     across_gaps: bool = False  #: whether solids attract each other across gaps, in both models
+    condenses: bool = True  #: whether water condenses between the surfaces; otherwise all air is dry
+
+    @property
+    def airs(self) -> np.ndarray:
+        """Humidities, 0 where no water condenses (h,) [-]."""
+        return np.array(self.humidities) * self.condenses
 
 
 def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.ndarray:
@@ -44,7 +50,7 @@ def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
     computed, *energies = full_contact.energies(study)
     _, *pull_offs = full_contact.pull_offs(study)
     models = [np.stack(of_model, axis=-1) for of_model in zip(energies, pull_offs, strict=True)]
-    device, at = settings.device, np.array(settings.humidities)
+    device, at = settings.device, settings.airs
     shapes = device.opening.shapes if device else (FORCE,)
     of_shapes = [
         factors(lambda means, of=shape: response(of, means, device), *models, computed, at) for shape in shapes
@@ -65,7 +71,7 @@ def layout(
         {
             "factor": (names, values, {"units": "1"}),
             "factor_error": (names, errors, {"units": "1"}),
-            "interpolated": ("humidity", ~np.isin(settings.humidities, computed)),
+            "interpolated": ("humidity", ~np.isin(settings.airs, computed)),
             "applied": ((), settings.applied),
             "across_gaps": ((), settings.across_gaps),
         },
@@ -85,7 +91,8 @@ def _settings(plan, at):
     own = {"device": section_of_beam(plan, at.device)} if plan.devices.kind(at.device).is_beam else {}
     applied = {"applied": True} if plan.variants.is_corrected() else {}
     gaps = {"across_gaps": True} if "gaps" in plan.air_of_devices.water(section["pair"]) else {}
-    return select(Settings, {"humidities": section["humidities"]} | own | applied | gaps)
+    dry = {} if plan.air_of_devices.is_wetted(section["pair"]) else {"condenses": False}
+    return select(Settings, {"humidities": section["humidities"]} | own | applied | gaps | dry)
 
 
 STAGES = (
