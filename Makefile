@@ -25,6 +25,7 @@
 #   make test-slow  the slow tests alone; those that fail are run a second time
 #   make format     format the code                          make mutants    break the code, name undetected errors
 #   make bench      time the stages                          make times      time the commands (half an hour)
+#   make peers      time the same work here and in public libraries
 #   make docs       build the documentation                  make numbers    take its numbers and pictures from results/
 #   make jobs       time and memory of the jobs of the last run
 #   make cluster    test with SLURM on this machine          make lock       update requirements.lock
@@ -52,7 +53,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench peers times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -177,6 +178,11 @@ bench: $(VENV)/ready
 	$(BIN)/python -m stiction.run.warmup
 	{ $(BIN)/python tests/benchmarks/stages.py; $(BIN)/python tests/benchmarks/scaling.py docs/pictures/scaling.png; } \
 	  | tee docs/tables/bench.md
+
+# Installs the libraries that it compares with.
+peers: $(VENV)/ready
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock --no-build-isolation --editable ".[peers]"
+	$(BIN)/python tests/benchmarks/peers.py | tee docs/tables/peers.md
 
 # Runs every command of the README in folders of its own: half an hour, on a machine without other work.
 times: $(VENV)/ready

@@ -1,81 +1,40 @@
 """Attraction across the gaps of deformed surfaces, and of undeformed ones as in the package: ``make deformed``.
 
-The package takes the attraction across gaps from the bearing area of the undeformed surfaces. Here it acts in full
-elastic contact, where it deforms them as water and the attraction of touching solids do: by how much does it raise the
-adhesion energy of a strip, in either model of the contact?
+The force laws take the attraction across gaps from the bearing area of the undeformed surfaces. In full elastic contact
+it deforms them, as water and the attraction of touching solids do: by how much does it raise the adhesion energy of a
+strip, in either model of the contact? The last columns are what contact.model full does to devices.
 """
 
 import argparse
-from dataclasses import dataclass
+from dataclasses import replace
 
 import numpy as np
 
+from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.config.cases import air
 from stiction.config.files import load
 from stiction.config.units import in_si
-from stiction.contact import elements, forcelaw, gaps
-from stiction.contact.environment import Water
-from stiction.contact.pair import bearing_area
+from stiction.contact import elements, forcelaw
 from stiction.devices.materials import ELASTIC
 from stiction.estimates import mean_with_error
 from stiction.plan.graph import Results
 from stiction.plan.plan import Plan
 from stiction.plan.stage import select
-from stiction.report.format import TO_MJ, with_error
+from stiction.report.format import TO_MJ, signed, with_error
 from stiction.stages.contact import full_contact
 from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
-#: Gaps of the tables of the work [m], up to where it is below 1e-5 of that of touching flats.
-GAPS = np.arange(0, 300e-9, 0.02e-9)
 #: Width of the strips [µm], a third of that of the beam.
 WIDTH = 10.0
 
 
-@dataclass(frozen=True)
-class AcrossGaps(elements.Adhesion):
-    """Attraction of touching summits and water, and across gaps: of the latter, the work beyond that of the summits."""
-
-    work: np.ndarray = None  #: at `GAPS` [J m⁻²]
-    pull: np.ndarray = None  #: its negative derivative [Pa]
-
-    def traction(self, gap):
-        """Attraction q at gaps [Pa]."""
-        return super().traction(gap) + np.interp(gap, GAPS, self.pull).astype(np.float32)
-
-    def energy(self, gap):
-        """Energy w per area at gaps >= 0, negative [J m⁻²]."""
-        return super().energy(gap) - np.interp(gap, GAPS, self.work)
-
-
-def across_gaps(adhesion, water):
-    """Adhesion with the work across gaps as well [J m⁻²].
-
-    Within the range of the summits' stress this work, which vanishes where solids touch, is linear: the stress is
-    weaker there by what the gaps beyond have, and flats that touch need the work of Eq. (10) in all.
-    """
-    work, end = water.gaps.work(GAPS, adhesion.height), adhesion.reach + adhesion.ramp / 2
-    work = np.where(end > GAPS, GAPS / end * np.interp(end, GAPS, work), work)
-    return AcrossGaps(**vars(adhesion), work=work, pull=-np.gradient(work, GAPS))
-
-
-def undeformed(heights, distance, force, work):
-    """Forces of the sum over summits with the attraction across undeformed gaps [Pa], and the energy beyond [J m⁻²]."""
-    step = distance[1] - distance[0]
-    below, above = (int(np.ceil(end / step)) + 1 for end in (-heights.min(), heights.max()))
-    area = bearing_area(heights, step, below, above + 1)[None]
-    pressure, beyond = gaps.gap_pressures(area, -below * step, distance, step, lambda gap: np.interp(gap, GAPS, work))
-    return force + pressure[0], beyond[0]
-
-
-def energies(space, heights, adhesion, curve, water):
+def energies(strip, touching, across):
     """e of one strip: sum over summits, touching and across all gaps; full contact, touching and all gaps [J m⁻²]."""
-    across, (distance, force) = across_gaps(adhesion, water), curve
-    more, beyond = undeformed(heights, distance, force, across.work)
-    found = [forcelaw.adhesion_energy(distance, force), forcelaw.adhesion_energy(distance, more, beyond)]
-    for each, of_summits in ((adhesion, force), (across, more)):
-        state, _ = elements.at_rest(space, heights, each, (distance, of_summits))
-        found.append(-state.energy(heights, each))
-    return found
+    cases = touching, across
+    of_summits = [forcelaw.adhesion_energy(*case.curve, case.beyond) for case in cases]
+    states = [elements.at_rest(*strip, *case[:2])[0] for case in cases]
+    deformed = [-state.energy(strip[1], case.adhesion) for state, case in zip(states, cases, strict=True)]
+    return *of_summits, *deformed
 
 
 def row(pair, humidity, strips):
@@ -84,28 +43,40 @@ def row(pair, humidity, strips):
     config = load(medium | {"beam": {"width_um": WIDTH}})
     plan, results = Plan(config), Results.of(config)
     data = {stage: [results[name] for name in names] for stage, names in surface_inputs(plan, pair).items()}
-    water = plan.air.water(pair)
-    seen = plan.seen_by(pair, (*ELASTIC, "hardness_GPa"), samples=None)
-    others = {"water": {key: value for key, value in water.items() if key != "gaps"}}
-    section = seen | others | {"humidities": [humidity], "strips": strips}
-    settings = in_si(full_contact.Settings, select(full_contact.Settings, section))
-    drawn = full_contact.strips(both(data), pair, settings)
-    found = np.array([energies(*strip, *case, in_si(Water, water)) for *strip, (case,) in drawn])
-    undeformed, deformed = found[:, 1] - found[:, 0], found[:, 3] - found[:, 2]
-    ratio = deformed.mean() / undeformed.mean()
-    error = mean_with_error(deformed - ratio * undeformed)[1] / undeformed.mean()
-    columns = (found[:, 0], undeformed, found[:, 2], deformed)
+    seen = plan.seen_by(pair, (*ELASTIC, "hardness_GPa"), samples=None) | {"humidities": [humidity], "strips": strips}
+    across = in_si(full_contact.Settings, select(full_contact.Settings, seen))
+    touching = replace(across, water=replace(across.water, gaps=None))
+    drawn = [full_contact.strips(both(data), pair, settings) for settings in (touching, across)]
+    found = np.array([energies(strip, *one, *other) for (*strip, one), (*_, other) in zip(*drawn, strict=True)])
+    summits, all_summits, full, all_full = found.T
+    parts, whole = ratio(all_full - full, all_summits - summits), ratio(all_full, all_summits)
+    columns = (summits, all_summits - summits, full, all_full - full)
     return [
         pair,
         air(humidity),
         *(with_error(*(TO_MJ * np.array(mean_with_error(one)))) for one in columns),
-        with_error(ratio, error),
+        with_error(*parts),
+        with_error(*whole),
+        signed(*length_change(*whole)),
     ]
 
 
+def ratio(first, second):
+    """Ratio of two means over the same strips, and its standard error [-]."""
+    found = first.mean() / second.mean()
+    return found, mean_with_error(first - found * second)[1] / second.mean()
+
+
+def length_change(energy, error):
+    """Change of crack lengths by a ratio of energies, and its standard error [%]."""
+    factor = energy**CRACK_LENGTH_POWER
+    return 100 * (factor - 1), 100 * abs(CRACK_LENGTH_POWER) * factor * error / energy
+
+
 #: Pair and humidity (0 in dry air).
-CASES = (("a", 0.45), ("c", 0.6))
+CASES = (("a", 0), ("b", 0), ("c", 0), ("a", 0.45), ("b", 0.44), ("c", 0.6))
 HEADER = ("pair", "air", "summits [mJ/m²]", "+ gaps", "full contact [mJ/m²]", "+ gaps", "+ gaps, full / summits")
+HEADER += ("all, full / summits", "lengths [%]")
 
 
 def main():

@@ -43,7 +43,7 @@ def row(results, pair):
     for space, heights, cases in full_contact.strips(both(results.inputs(job)), pair, settings):
         counted = Counted(space.shape, space.spacing, space.modulus)
         start = time.process_time()
-        for adhesion, curve in cases:
+        for adhesion, curve, _ in cases:
             separation(counted, heights, adhesion, curve)
         taken.append(time.process_time() - start)
         start = time.process_time()

@@ -98,7 +98,11 @@ def test_uncertain_humidities_within_those_of_full_contact_are_corrected():
     for low, high in pairwise(HUMIDITIES[::3]):
         deviation = (high - low) / 3
         stated = {"humidities": [float(low + deviation)], "uncertainty": {"humidity": float(deviation)}}
-        sections = {"contact": {"model": "full"}, "pairs": {"b": {"humidities": [float(low), float(high)]}}}
+        sections = {
+            "contact": {"model": "full"},
+            "surfaces": {},
+            "pairs": {"b": {"humidities": [float(low), float(high)]}},
+        }
         device = {"kind": "cantilever", "pair": "b"} | stated
         relation = meetings.corrections_are_not_extrapolated
         assert not refusals(relation, **sections, devices={"C1": device})

@@ -75,7 +75,7 @@ def reached():
     wanted += [
         f"devices/{stage}/{name}" for stage in ("model_error", "left_out_gaps") for name in PLAN.devices.sections
     ]
-    wanted += [f"studies/model_error/{pair}" for pair in PLAN.pairs]
+    wanted += [f"studies/model_error/{between}{pair}" for between in ("", "across/") for pair in PLAN.pairs]
     wanted += ["process/settings/etch_time_s", "process/pairs/Bump"]
     return behind(GRAPH, wanted)
 

@@ -329,10 +329,11 @@ def test_choices_of_the_medium_change_the_attraction_of_devices_across_gaps_as_w
         ({"beam": {"width_um": 20}}, "all", "all"),
         ({"attraction": {"reach": "touching"}, "beam": {"width_um": 20}}, "touching", "touching"),
         ({"attraction": {"reach": "all"}}, "all", "all"),
-        ({"contact": {"model": "full"}, "pairs": {"b": {"gap_um": 10}}}, "touching", "touching"),
+        ({"contact": {"model": "full"}}, "touching", "all"),
+        ({"contact": {"model": "full"}, "pairs": {"b": {"gap_um": 10}}}, "all", "all"),
     ],
 )
-def test_solids_attract_across_gaps_unless_the_case_is_of_the_paper_or_it_cannot_be_combined(changes, pairs, devices):
+def test_solids_attract_across_gaps_unless_the_case_is_of_the_paper(changes, pairs, devices):
     found = plan(**changes)
     assert (found.air.reach("b"), found.air_of_devices.reach("b")) == (pairs, devices)
     for air, reach in ((found.air, pairs), (found.air_of_devices, devices)):

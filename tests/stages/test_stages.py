@@ -10,14 +10,16 @@ from plans import job_settings
 from published import SURFACES
 from vectors import sampled_vectors
 
+from stiction.beam.energy import apparent_adhesion_energy
 from stiction.beam.montecarlo import Experiment, release_beam
 from stiction.beam.resolution import resolved
 from stiction.chaos.model import draw, draw_laws, fit, fit_report
 from stiction.config.merging import merged
+from stiction.contact import forcelaw
 from stiction.contact.environment import Water
 from stiction.models import FIELD
 from stiction.plan.plan import Plan
-from stiction.stages.beams import beams, releases
+from stiction.stages.beams import beams, pair_warnings, releases
 from stiction.stages.beams.cantilevers import cantilever, strips_along
 from stiction.stages.contact import curves
 from stiction.stages.laws import chaos, forces
@@ -358,11 +360,20 @@ def test_elements_are_chosen_with_laws_that_no_beam_uses():
     assert asked == ["mesh", *range(settings.samples)]
 
 
-def test_a_refusal_of_the_strips_names_the_case():
-    settings = replace(of_beams(), refined=True, sampling=replace(of_beams().sampling, strip_length=7.5e-6))
-    with pytest.raises(ValueError, match="strips of 7.5 µm do not resolve a crack") as refusal:
-        beams.compute(small.chaos_of_case(), small.CASE, settings)
-    assert refusal.value.__notes__ == ["in case b_rh067"]
+@pytest.mark.parametrize("model", ["NG", "GEO"])
+def test_beams_whose_strips_are_far_too_long_stick_as_on_their_strongest_patch(model):
+    usual = beams.compute(small.chaos_of_case(), small.CASE, replace(of_beams(model), refined=True))
+    settings = replace(of_beams(model), refined=True, sampling=replace(of_beams().sampling, strip_length=7.5e-6))
+    found = beams.compute(small.chaos_of_case(), small.CASE, settings)
+    assert "nothing is simulated" in pair_warnings.beam_warnings(found, cantilever(settings, "b"), 7.5e-6)[0]
+    assert np.all(found.state == 0)
+    assert np.all(found.crack_length < usual.crack_length.min()), "the safe side"
+    assert_allclose(found.deflection.max("node"), found.deflection.isel(node=-1))
+    laws = draw_laws(chaos.chaos_model(small.chaos_of_case()), 10_000, stream(small.SEED, "beams", small.CASE, "mesh"))
+    nominal, energy = cantilever(settings, "b"), forcelaw.energy(laws).max()
+    alike = np.abs(found.adhesion_energy / energy - 1).values < 1e-9
+    assert np.all(alike) == (model == "NG")
+    assert_allclose(found.adhesion_energy, apparent_adhesion_energy(found.crack_length.values, nominal), rtol=1e-12)
 
 
 def test_the_nominal_beam_is_that_of_the_settings():

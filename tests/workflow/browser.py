@@ -8,6 +8,7 @@ import tempfile
 import time
 import urllib.error
 import urllib.request
+from importlib import resources
 
 #: Names of the browser on different systems.
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -105,6 +106,13 @@ class Browser:
         while not (found := condition()) and time.monotonic() < end:
             time.sleep(0.05)
         return found
+
+    def violations(self):
+        """Violations of accessibility that axe finds on the page: rule, number of elements, and the first of them."""
+        self.run((resources.files("axe_core_python") / "axe.min.js").read_text(encoding="utf-8"))
+        script = "const done = arguments[0]; axe.run(document).then(({violations}) => done(violations))"
+        found = self.send("POST", "/execute/async", script=script, args=[])
+        return [(one["id"], len(one["nodes"]), one["nodes"][0]["html"]) for one in found]
 
     def errors(self):
         """Errors in the console since the last call."""

@@ -380,6 +380,17 @@ def test_a_page_is_one_small_file_that_everyone_can_use(run, browser, device):
 
 
 @in_a_browser
+@pytest.mark.parametrize("page", ["devices/C1", "devices/R1", "devices/S1", "index"])
+def test_a_checker_of_accessibility_finds_nothing_on_a_page(run, browser, page):
+    pytest.importorskip("axe_core_python")
+    browser.open(run / "results" / f"{page}.html")
+    browser.run("document.querySelectorAll('details').forEach(part => { part.open = true })")
+    for width in (1440, 390):
+        browser.resize(width)
+        assert browser.violations() == []
+
+
+@in_a_browser
 def test_a_browser_shows_the_index_at_every_width(run):
     path = run / "results" / "index.html"
     with Browser() as browser:

@@ -49,12 +49,16 @@ def interpolation_error(logarithms: np.ndarray, humidities: np.ndarray, at: np.n
 
     ASSUME: this difference is of the size of the largest one of three neighbouring humidities, saturated air among
     them, where water decides alone and the factor is 1. On the pairs of the paper, true errors are within twice this
-    standard error; curves that bend several times between two humidities are not.
+    standard error; curves that bend several times between two humidities are not. Dry air, humidity 0, is no point of
+    these curves.
     """
-    nodes, values = np.append(humidities, 1.0), np.append(logarithms, 0.0)
+    humid = humidities > 0
+    if not humid.any():
+        return np.zeros(np.shape(at))
+    nodes, values = np.append(humidities[humid], 1.0), np.append(logarithms[humid], 0.0)
     differences = np.diff(np.diff(values) / np.diff(nodes)) / (nodes[2:] - nodes[:-2])
     above = np.clip(np.searchsorted(nodes, at, side="right"), 1, len(nodes) - 1)
-    return np.abs(differences).max(initial=0.0) * (at - nodes[above - 1]) * (nodes[above] - at)
+    return np.where(at > 0, np.abs(differences).max(initial=0.0) * (at - nodes[above - 1]) * (nodes[above] - at), 0.0)
 
 
 def mean_ratios(

@@ -89,7 +89,7 @@ def fit(vectors: np.ndarray, f_limit: float, order: int, tolerance: float) -> Ch
 
 
 def truncated(model: ChaosModel, order: int) -> ChaosModel:
-    """Model of lower total order. It equals a new fit of that order, because the projection is orthogonal."""
+    """Model of lower total order. It equals a new fit of lower order, because the projection is orthogonal."""
     kept = model.indices.sum(axis=1) <= order
     coefficients = np.ascontiguousarray(model.coefficients[:, kept])
     return ChaosModel(model.coordinates, coefficients, model.indices[kept], model.f_limit)

@@ -181,7 +181,6 @@ def water_is_a_liquid(config):
 #: Values with which attraction ends where surfaces touch, and those that have it across gaps.
 _TOO_SHORT = {
     "attraction.reach": ("touching", "all"),
-    "contact.model": ("full", "summits"),
     "van_der_waals": ("none", "water or dry"),
 }
 
@@ -211,8 +210,16 @@ def corrections_are_not_extrapolated(config):
         known, uncertain = config[of_pair], dict(config.known(meeting.deviation))
         for key, humidities in config.known(own, *others):
             more = sum(uncertain.values()) if key == own else 0
-            if is_at_most(min(known), np.min(humidities) - more) and is_at_most(np.max(humidities) + more, max(known)):
+            if not meeting.is_wetted or _is_within(humidities, more, known):
                 continue
             words = ", with its uncertainty," if more else ""
             restricted = "to which the correction of contact.model full is restricted"
             yield key, f"must be{words} within the humidities of pair {meeting.pair}, {restricted}", of_pair
+
+
+def _is_within(humidities, more, known):
+    """Whether humidities, with their uncertainty, are within known ones: dry air is one of these or not."""
+    humid, of_pair = above_zero(humidities), above_zero(known)
+    if np.min(humidities) == 0 and min(known) > 0 or humid and not of_pair:
+        return False
+    return not humid or is_at_most(min(of_pair), min(humid) - more) and is_at_most(max(humid) + more, max(of_pair))

@@ -140,9 +140,11 @@ def number_of_items(entry: Mapping) -> str:
     --------
     >>> [number_of_items({"minItems": least, "maxItems": most}) for least, most in ((2, 2), (1, 2), (1, 8))]
     ['2', '1 or 2', '1 to 8']
+    >>> number_of_items({"maxItems": 8})
+    '0 to 8'
     """
     most = entry["maxItems"]
-    least = entry.get("minItems", most)
+    least = entry.get("minItems", 0)
     return {0: f"{most}", 1: f"{least} or {most}"}.get(most - least, f"{least} to {most}")
 
 

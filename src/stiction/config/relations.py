@@ -504,15 +504,6 @@ def _without(study, why):
 
 
 @relation
-def full_contact_has_no_attraction_across_gaps(config):
-    """Corrections to full elastic contact are ratios without attraction across gaps."""
-    if config["contact"].get("model") == "full":
-        for key, reach in config.known("attraction.reach", "studies.variants.reach"):
-            if "all" in reach:
-                yield "contact.model", "must be summits where attraction reaches across all gaps", key
-
-
-@relation
 @only_if(pairs_run)
 def beam_is_slender(config):
     """Require a beam longer than its width, thickness and deflection (Euler-Bernoulli)."""

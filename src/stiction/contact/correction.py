@@ -10,14 +10,18 @@ from stiction.rounding import is_at_most
 def interpolated(ratios: np.ndarray, humidities: np.ndarray, at: float | np.ndarray) -> float | np.ndarray:
     """Ratios at some humidities, from ratios (h,) at the computed, increasing ones, NaN beyond them [-].
 
-    ASSUME: between the computed humidities, the logarithm of a ratio is linear in the humidity.
+    ASSUME: between the computed humidities, the logarithm of a ratio is linear in the humidity. Dry air, humidity 0, is
+    no end of such a line.
 
     Examples
     --------
     >>> round(float(interpolated(np.array([0.64, 1.0]), np.array([0.4, 0.8]), 0.6)), 12)
     0.8
     """
-    return np.exp(np.interp(at, humidities, np.log(ratios), left=np.nan, right=np.nan))
+    humid, found = humidities > 0, np.full(np.shape(at), np.nan)
+    if humid.any():
+        found = np.exp(np.interp(at, humidities[humid], np.log(ratios[humid]), left=np.nan, right=np.nan))
+    return found if humid.all() else np.where(np.equal(at, 0), ratios[~humid][0], found)
 
 
 @dataclass(frozen=True)
@@ -28,29 +32,26 @@ class Correction:
     mean planes, those of the deformed surfaces and those of the undeformed ones, and have no common origin.
     """
 
-    humidities: np.ndarray  #: increasing (h,) [-]
+    humidities: np.ndarray  #: increasing (h,), 0 for dry air [-]
     energy: np.ndarray  #: of the mean energies e (h,) [-]
     pull_off: np.ndarray  #: of the mean largest attractions f_max (h,) [-]
 
     def at(self, humidity: float) -> tuple[float, float]:
-        """Ratios of e and of f_max at a humidity.
+        """Ratios of e and of f_max at a humidity, 0 for dry air.
 
         Raises
         ------
         ValueError
             If the humidity is beyond those at which full contact was computed.
         """
-        low, high = self.humidities[[0, -1]]
+        known = self.humidities[(self.humidities > 0) == (humidity > 0)]
+        low, high = known.min(initial=1.0), known.max(initial=0.0)
         if not (is_at_most(low, humidity) and is_at_most(humidity, high)):
+            where = f"at relative humidities from {low:g} to {high:g}" if known.size else "in other air alone"
             raise ValueError(
-                f"full elastic contact was computed at relative humidities from {low:g} to {high:g} and is not "
-                f"extrapolated to {humidity:g}: add it to those of the pair, or choose contact.model: summits"
+                f"full elastic contact was computed {where} and is not extrapolated to {humidity:g}: add it to the "
+                "humidities of the pair, or choose contact.model: summits"
             )
         within = np.clip(humidity, low, high)  # rounding can leave it a little outside
         energy, pull_off = (interpolated(ratios, self.humidities, within) for ratios in (self.energy, self.pull_off))
         return float(energy), float(pull_off)
-
-    def vectors(self, vectors: np.ndarray, limit: float, humidity: float) -> tuple[np.ndarray, float]:
-        """Vectors v of Eq. (11) (n, 4) and f_limit [SI] at a humidity: e and f_max of all samples by one ratio each."""
-        energy, pull_off = self.at(humidity)
-        return vectors * [energy, pull_off, 1, 1], limit * pull_off

@@ -17,15 +17,20 @@ Solids may also yield: elements press with the hardness H at most, and overlap w
 apart. The overlap is flattening that remains (`State.flattening`), and the flattened surface carries the same pressures
 elastically: p = H where g < 0.
 
+Solids can also attract each other across the gaps between them, with the work of `stiction.contact.gaps` at the gaps of
+the deformed surfaces.
+
 ASSUME: solids are linearly elastic up to the hardness, perfectly plastic beyond, without material that piles up beside
 the flattened tops, and frictionless, and slopes are small. Where several states have the same distance, the
 strip is in the one that it reaches during separation, from the state without force; that one begins without attraction.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
+from stiction.contact.environment import Gaps
 from stiction.contact.forcelaw import extremum, limit_distance
 from stiction.contact.halfspace import OWN_DISPLACEMENT, HalfSpace
 from stiction.contact.vanderwaals import DugdaleAttraction
@@ -44,6 +49,10 @@ RELAXATION = 1.4
 FIRST = 10
 #: Share of the adhesion energy that a force may leave where it is taken to vanish.
 ENERGY_LEFT = 1e-3
+#: Spacing of the tables of the attraction across gaps [m].
+GAP_STEP = 0.02e-9
+#: Gaps of these tables [m], to where flats have 1e-5 of the work of flats that touch. ASSUME: no attraction beyond.
+GAPS = np.arange(0, 300e-9, GAP_STEP)
 #: Most turns of the attraction, displacements in each, and distances in the search for one state.
 TURNS, STEPS, STATES = 100, 1000, 40
 _UNSETTLED = (
@@ -57,7 +66,8 @@ class Adhesion:
     """Attraction of two surfaces over their gap: a film of water, and van der Waals forces as a Dugdale stress.
 
     The edge of the latter is a ramp of the same energy. It is twice as wide as the displacement of one element under
-    the stress: with a step, an element could feel all of the stress or none of it at the same distance.
+    the stress: with a step, an element could feel all of the stress or none of it at the same distance. Attraction
+    across gaps is a table of its work beyond film and stress.
     """
 
     height: float  #: h_C of the film [m]
@@ -65,10 +75,19 @@ class Adhesion:
     stress: float = 0.0  #: -σ_vdW [Pa]
     reach: float = 0.0  #: h_vdW [m]
     ramp: float = 1e-10  #: width of its edge [m]
+    work: np.ndarray | None = None  #: across the gaps `GAPS`, if solids attract each other there [J m⁻²]
 
     @classmethod
-    def of(cls, film: tuple[float, float], solids: DugdaleAttraction | None, space: HalfSpace) -> "Adhesion":
+    def of(
+        cls,
+        film: tuple[float, float],
+        solids: DugdaleAttraction | None,
+        space: HalfSpace,
+        across: Gaps | None = None,
+    ) -> "Adhesion":
         """Adhesion of a film (height, tension), see `stiction.contact.meniscus.film`, and van der Waals forces or none.
+
+        Solids with van der Waals forces can attract each other ``across`` gaps as well.
 
         Raises
         ------
@@ -85,18 +104,43 @@ class Adhesion:
                 f"{space.spacing:.3g} m by {ramp / 2:.3g} m, more than their range of {solids.range:.3g} m; decrease "
                 f"sampling.spacing_nm to {enough:.3g}"
             )
-        return cls(*film, solids.stress, solids.range, ramp)
+        touching = cls(*film, solids.stress, solids.range, ramp)
+        return touching._reaching(across) if across else touching
+
+    def _reaching(self, gaps):
+        """Adhesion with the work across gaps beyond film and stress.
+
+        ASSUME: in the range of the stress, the solids pull across gaps as where the range ends. The stress is weaker by
+        as much: flats that touch need the work of Eq. (10) in all, and under a film what the solids have beyond it.
+        """
+        work, end = gaps.work(GAPS, self.height), int(np.searchsorted(GAPS, self.reach + self.ramp / 2))
+        line = work[end] + (work[end] - work[end + 1]) * (end - np.arange(end))
+        stress = self.stress + (work[0] - line[0]) / self._near(0.0)
+        return replace(self, stress=float(stress), work=np.concatenate([line, work[end:]]))
+
+    @cached_property
+    def _pull(self):
+        """Negative derivative of the work across gaps, at `GAPS`, float32 [Pa]."""
+        return -np.gradient(self.work, GAP_STEP).astype(np.float32)
 
     def traction(self, gap: np.ndarray) -> np.ndarray:
         """Attraction q at gaps [Pa], of their shape, float32."""
         law = np.float32([self.height, self.tension, self.stress, self.reach + self.ramp / 2, self.ramp])
-        return _traction(np.ravel(gap).astype(np.float32, copy=False), *law).reshape(np.shape(gap))
+        gaps = np.ravel(gap).astype(np.float32, copy=False)
+        traction = _traction(gaps, *law)
+        if self.work is not None:
+            _add_pull(traction, gaps, self._pull, np.float32(1 / GAP_STEP))
+        return traction.reshape(np.shape(gap))
 
     def energy(self, gap: np.ndarray) -> np.ndarray:
         """Energy w per area at gaps >= 0, negative [J m⁻²]."""
+        touching = -self.tension * np.clip(self.height - gap, 0, None) - self.stress * self._near(gap)
+        return touching if self.work is None else touching - np.interp(gap, GAPS, self.work)
+
+    def _near(self, gap):
+        """Work at gaps against a stress of 1 with the ramp at its end [m]."""
         inside = np.clip(self.reach + self.ramp / 2 - gap, 0, None)
-        near = np.where(inside < self.ramp, inside**2 / (2 * self.ramp), inside - self.ramp / 2)
-        return -self.tension * np.clip(self.height - gap, 0, None) - self.stress * near
+        return np.where(inside < self.ramp, inside**2 / (2 * self.ramp), inside - self.ramp / 2)
 
 
 @dataclass(frozen=True)
@@ -184,6 +228,19 @@ def _traction(gap, height, tension, stress, end, ramp):
         inside = _larger(end - gap[i], none)
         traction[i] = (tension if gap[i] < height else none) + stress * (inside / ramp if inside < ramp else 1)
     return traction
+
+
+@kernel
+def _add_pull(traction, gap, pull, per_gap):
+    """Add a table of the pull [Pa], equally spaced from the gap 0, linear in between, to the attraction at gaps (n,).
+
+    Nodes ``per_gap`` [m⁻¹]. The pull is that of the first node at overlaps, and zero beyond the last.
+    """
+    for i in range(gap.size):
+        place = _larger(gap[i] * per_gap, np.float32(0))
+        node = np.int64(place)
+        if node < pull.size - 1:
+            traction[i] += pull[node] + (place - np.float32(node)) * (pull[node + 1] - pull[node])
 
 
 @kernel

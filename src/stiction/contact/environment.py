@@ -94,6 +94,15 @@ class Water:
         work = self.gaps.work(gap, height) if self.gaps else 0.0
         return work + self.capacitor.work(gap) if self.capacitor else work
 
+    def ratios(self, humidity: float) -> tuple[float, float]:
+        """Ratios of full elastic contact to the sum over summits for e and f_max at a humidity [-].
+
+        They are 1 without a correction, and those of dry air without condensation.
+        """
+        if self.correction is None:
+            return 1.0, 1.0
+        return self.correction.at(humidity if self.film(humidity)[0] else 0.0)
+
     def film(self, humidity: float) -> tuple[float, float]:
         """Height h_C [m] and tension -ΔP [Pa] at a relative humidity, see `stiction.contact.meniscus.film`.
 

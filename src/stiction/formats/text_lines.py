@@ -15,7 +15,7 @@ COORDINATES = 3
 
 
 def misread(text: str, *, commas: bool = False) -> tuple[int, str] | None:
-    r"""First line of data with a value that is no number, and its first such value, or ``None`` without any.
+    r"""First line of data with a value other than a number, and its first such value, or ``None`` without any.
 
     Data are all lines between the first and the last line of numbers, and others with as many values. Empty lines and
     comments, which begin with #, are no data.

@@ -31,13 +31,12 @@ class Air:
     def reach(self, pair: str) -> str:
         """Range of attraction between the solids of a pair, ``touching`` or ``all``: as stated.
 
-        ASSUME: otherwise across all gaps, which is the safe side. The cases of the paper, in humid air, have its model,
-        and corrections to full elastic contact are ratios of forces without attraction across gaps.
+        ASSUME: otherwise across all gaps, which is the safe side. The cases of the paper, in humid air, have its model.
         """
         if stated := self.config["attraction"].get("reach"):
             return stated
         of_paper = not self.of_devices and self._is_of_paper(PairInAir(pair).pair)
-        return "touching" if of_paper or self.config["contact"].get("model") == "full" else "all"
+        return "touching" if of_paper else "all"
 
     def _is_of_paper(self, pair):
         humidities = *self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
@@ -81,9 +80,10 @@ class Air:
         left_out = [f"attraction of solids across gaps{of_some}"] * bool(touching)
         if self.config["van_der_waals"] == "none":
             left_out = ["van der Waals attraction of solids"]
+        wet = [humidity > 0 and self.is_wetted(pair) for pair, humidity in cases]
         if self.config["contact"].get("model") != "full":
-            left_out.append("interaction of neighbouring summits")
-        return limits.not_modelled(left_out, any(humidity > 0 and self.is_wetted(pair) for pair, humidity in cases))
+            left_out += ["interaction of neighbouring summits", *([] if all(wet) else [limits.BENT])]
+        return limits.not_modelled(left_out, any(wet))
 
     def around(self, contact: str, config: dict | None = None) -> dict[str, Any]:
         """Configuration with attraction of the summits of a contact through its own medium."""

@@ -13,6 +13,8 @@ TO_NM, TO_UM, TO_UN, TO_MPA, TO_GPA, TO_MJ = 1e9, 1e6, 1e6, 1e-6, 1e-9, 1e3
 
 #: Text of a missing number.
 MISSING = "–"
+#: Part of a value below which its standard error is rounding.
+_ROUNDING = np.finfo(float).eps
 
 
 def percent(value: float, reference: float) -> float:
@@ -70,11 +72,13 @@ def with_error(value: float, error: float, sign: str = "") -> str:
 
     Examples
     --------
-    >>> with_error(57.82009, 0.19801), with_error(-4.9, 0.042, "+")
-    ('57.82 ± 0.20', '-4.900 ± 0.042')
+    >>> with_error(57.82009, 0.19801), with_error(-4.9, 0.042, "+"), with_error(94.2028, 3e-15)
+    ('57.82 ± 0.20', '-4.900 ± 0.042', '94.2028 ± 0')
     """
     if np.isnan(value):
         return MISSING
+    if 0 < error < _ROUNDING * abs(value):
+        error = 0.0
     if not error > 0:
         return f"{number(value, f'{sign}g')} ± {number(error, 'g')}"
     digits = _decimals(error)

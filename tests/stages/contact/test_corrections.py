@@ -99,6 +99,40 @@ def test_cracks_on_corrected_laws_follow_the_fourth_root_of_the_energy(base):
     assert longer != pytest.approx(0.7**-0.5, rel=0.01)
 
 
+# Dry air
+
+
+def test_dry_air_has_a_ratio_of_its_own_and_is_no_end_of_a_line():
+    given = Correction(np.array([0, 0.44, 0.92]), np.array([0.5, 0.6, 1.0]), np.array([0.4, 0.7, 0.9]))
+    assert given.at(0) == (0.5, 0.4)
+    assert given.at(0.44) == pytest.approx((0.6, 0.7))
+    with pytest.raises(ValueError, match=r"from 0\.44 to 0\.92 and is not extrapolated to 0\.2"):
+        given.at(0.2)
+    with pytest.raises(ValueError, match="in other air alone and is not extrapolated to 0"):
+        Correction(*(np.array(of) for of in ([0.44, 0.92], [0.6, 1], [0.7, 1]))).at(0)
+    with pytest.raises(ValueError, match=r"in other air alone and is not extrapolated to 0\.5"):
+        Correction(*(np.array(of) for of in ([0.0], [0.6], [0.7]))).at(0.5)
+
+
+def test_surfaces_without_condensation_have_the_ratios_of_dry_air_at_any_humidity():
+    given = Correction(np.array([0.0]), np.array([0.6]), np.array([0.7]))
+    waxed = Water(300.0, contact_angles=(1.8, 1.8), correction=given)
+    assert waxed.ratios(0.5) == waxed.ratios(0.0) == (0.6, 0.7)
+    assert Water(300.0).ratios(0.5) == (1, 1)
+
+
+def test_the_error_in_dry_air_is_that_of_its_strips_and_changes_no_humid_one():
+    dry = study(energy=(0.5, 0.6, 1.0)).assign_coords(humidity=[0, 0.44, 0.92])
+    at = stage_model_error.Settings((0, 0.3, 0.44, 0.6, 0.92))
+    found = stage_model_error.compute(dry, at)
+    alone = stage_model_error.compute(dry.isel(humidity=[1, 2]), at)
+    assert float(found.energy_ratio[0]) == pytest.approx(0.5)
+    assert float(found.energy_ratio_error[0]) < 1e-9
+    assert np.isnan(found.energy_ratio[1])
+    for name in ("energy_ratio", "energy_ratio_error", "length_factor_error"):
+        assert_allclose(found[name][2:], alone[name][2:], rtol=1e-9)
+
+
 # The error beside predictions
 
 
@@ -175,9 +209,10 @@ OF_LAWS += ("devices/chart/C1_rh050", "devices/stoppers/S1", "devices/budget/C1_
 
 @pytest.mark.parametrize("name", OF_LAWS)
 def test_all_laws_of_a_corrected_pair_are_corrected_and_otherwise_none(name):
-    assert Graph(FULL).job(name).inputs["model_error"] == "studies/model_error/b"
-    summits = {"contact": FULL.config["contact"] | {"model": "summits"}, "attraction": {"reach": "touching"}}
-    plain = Plan(FULL.config | summits)
+    """Ratios have the attraction across gaps of the laws: devices have it, pairs of the paper in humid air do not."""
+    between = "across/" if name.startswith("devices") else ""
+    assert Graph(FULL).job(name).inputs["model_error"] == f"studies/model_error/{between}b"
+    plain = Plan(FULL.config | {"contact": FULL.config["contact"] | {"model": "summits"}})
     assert "model_error" not in Graph(plain).job(name).inputs
     assert Graph(plain).job(name).settings == Graph(FULL).job(name).settings
 

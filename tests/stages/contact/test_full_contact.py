@@ -8,10 +8,13 @@ from numpy.testing import assert_array_equal
 from plans import job_settings
 
 from stiction.analysis.model_error import interpolation_error, mean_ratios
+from stiction.config.cases import case_id, in_numbers
 from stiction.config.merging import merged
+from stiction.config.units import in_si
 from stiction.contact import elements
+from stiction.contact.environment import Water
 from stiction.plan.graph import Results
-from stiction.stages.contact import full_contact
+from stiction.stages.contact import curves, full_contact
 from stiction.stages.contact.pairs import bodies
 from stiction.stages.laws import forces
 from stiction.stages.surfaces.rough_surfaces import both
@@ -78,10 +81,69 @@ def test_a_grid_too_coarse_for_soft_solids_is_refused_in_one_sentence():
         full_contact.compute(small.surfaces(), "b", soft)
 
 
-def test_attraction_across_gaps_is_refused_in_one_sentence():
-    across = replace(SETTINGS, strips=1, water=replace(SETTINGS.water, gaps=object()))
-    with pytest.raises(ValueError, match="no attraction across gaps"):
-        full_contact.compute(small.surfaces(), "b", across)
+# With attraction across gaps
+
+
+OF_BOTH_MODELS = (("adhesion_energy", "summit_energy"), ("pull_off", "summit_pull_off"))
+
+
+IN_ALL_AIR = {"attraction": {"reach": "all"}, "pairs": {"b": {"humidities": ["dry", 0.44, 0.92]}}}
+IN_ALL_AIR |= {"contact": {"model": "full"}}
+
+
+@cache
+def across():
+    return Results.of(merged(small.PLAN.config, in_numbers(IN_ALL_AIR)))
+
+
+@cache
+def study_across():
+    return across()["studies/full_contact/across/b"]
+
+
+def test_dry_air_comes_before_the_humidities_of_a_pair():
+    assert_array_equal(study_across().humidity, [0, 0.44, 0.92])
+    touching = across().graph.job("studies/full_contact/b").settings
+    assert touching["humidities"] == [0.44, 0.92]
+    assert "gaps" not in touching["water"]
+    plain = Results.of(merged(small.PLAN.config, {"attraction": {"reach": "touching"}}))
+    assert plain.graph.job("studies/full_contact/across/b").settings["humidities"] == [0.44, 0.67, 0.92]
+
+
+@pytest.mark.parametrize("humidity", [0, 0.44, 0.92])
+def test_the_sum_over_summits_is_that_of_the_laws_with_attraction_across_gaps(humidity):
+    plan = across().graph.plan
+    name = plan.air.contact("b", humidity)
+    contact, water = across()[f"contact/{name}_NG"], in_si(Water, plan.air.water(name))
+    there = study_across().sel(humidity=humidity)
+    np.testing.assert_allclose(there.summit_energy, curves.energies(contact, humidity, water)[:2], rtol=1e-6)
+    np.testing.assert_allclose(there.summit_pull_off, curves.pull_offs(contact, humidity, water)[:2], rtol=1e-6)
+
+
+def test_attraction_across_gaps_adds_to_both_models_less_where_water_floods_them():
+    more = study_across().sel(humidity=[0.44, 0.92]) / study().sel(humidity=[0.44, 0.92])
+    for name in ("adhesion_energy", "pull_off", "summit_energy", "summit_pull_off"):
+        assert np.all(more[name] > 1)
+        assert np.all(more[name][:, 0] > more[name][:, 1])
+    assert float(study_across().residual.max()) <= 5 * elements.TOLERANCE
+
+
+@pytest.mark.parametrize("humidity", [0, 0.44])
+def test_energies_and_forces_of_laws_have_their_own_ratios_in_dry_air_and_in_humid_air(humidity):
+    plan, there = across().graph.plan, study_across().sel(humidity=humidity).mean("sample")
+    name, case = plan.air.contact("b", humidity), case_id("b", humidity)
+    given = across()[f"contact/{name}_NG"], humidity, in_si(Water, plan.air.water(name))
+    found, _ = forces.vectors(across()[f"forces/{case}_NG"])
+    ratios = [float(there[full] / there[by]) for full, by in OF_BOTH_MODELS]
+    np.testing.assert_allclose(found[:, 0], ratios[0] * curves.energies(*given), rtol=1e-6)
+    np.testing.assert_allclose(found[:, 1], ratios[1] * curves.pull_offs(*given), rtol=1e-6)
+    assert abs(ratios[0] / ratios[1] - 1) > 0.01
+
+
+def test_dry_surfaces_have_less_than_humid_ones_in_both_models():
+    dry, humid = (study_across().sel(humidity=humidity) for humidity in (0, 0.44))
+    for name in ("adhesion_energy", "summit_energy"):
+        assert np.all(dry[name] < humid[name])
 
 
 @pytest.mark.slow

@@ -213,6 +213,20 @@ def test_a_chart_at_enough_humidities_has_a_cubic_between_its_dots_with_its_erro
     assert covering(few) == covering(figures_devices.chart(NINE, {})) == []
 
 
+def test_a_ragged_curve_of_a_chart_has_a_band_as_wide_as_its_noise():
+    ragged = {case: one.copy() for case, one in NINE.items()}
+    for k, one in enumerate(ragged.values()):  # the first thickness alone
+        one["safe_length"] = one.safe_length * xr.DataArray([1 + 0.05 * (-1) ** k, 1], dims="thickness")
+    panel = figures_devices.chart(ragged, {}).axes[0]
+    bands = [band.get_paths()[0].vertices for band in panel.collections]
+    ends = [band[np.abs(band[:, 0] - 0.6) < 0.002, 1] for band in bands]
+    widths = [np.ptp(lengths) / np.mean(lengths) for lengths in ends]
+    assert len(bands) == 2
+    assert 0.1 < widths[0] < 0.3  # twice the noise, and that of the neighbours
+    assert widths[1] < 0.01
+    assert not figures_devices.chart(CHARTS, STEEP).axes[0].collections, "too few humidities to know"
+
+
 def test_the_axis_of_a_chart_is_that_of_its_own_lengths():
     found = {("C1", 0.5): charted(0.5).assign_coords(shape=[S_SHAPE, EITHER])}
     found["C1", 0.5]["safe_length"] = found["C1", 0.5].safe_length * xr.DataArray([10, 1], dims="shape")

@@ -13,6 +13,7 @@ from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import pages
 from stiction.report.devices import tables as tables_devices
 from stiction.report.model_error import sentences as model_errors
+from stiction.stages.contact import full_contact
 from stiction.stages.devices import model_error
 from stiction.stages.devices.opening import EITHER, FORCE, S_SHAPE
 
@@ -111,7 +112,7 @@ def test_sentences_say_what_full_contact_leaves_out_and_whether_it_has_been_appl
         for changed in ({}, {"across_gaps": True}, {"applied": True})
     )
     assert "is in neither model" in plain
-    assert "across gaps of this prediction. That" in across
+    assert "Attraction across gaps is in both models." in across
     assert "It is not known at a relative humidity of 0.67." in plain
     assert "has changed the lengths" in applied
     assert "safe side" not in applied
@@ -125,27 +126,41 @@ def test_sentences_say_what_full_contact_leaves_out_and_whether_it_has_been_appl
 
 
 DRY = {
-    "attraction": {"reach": "all"},
     "run": {"pairs": ["a"], "studies": ["full_contact"]},
     "pairs": {"b": {"humidities": ["dry"]}},
     "devices": {
-        name: {"kind": "stopper", "pair": pair, "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.6]}
-        for name, pair in (("S1", "a"), ("S2", "b"))
+        name: {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [air]}
+        for name, air in (("S1", "dry"), ("S2", 0.6))
     },
 }
 
 
-def test_a_device_whose_pair_is_in_dry_air_alone_is_left_out_of_the_error_of_the_model():
+def test_a_device_in_dry_air_has_the_error_of_strips_in_dry_air():
     graph = Graph(Plan(load(DRY)))
-    for table in ("tables/stoppers.csv", "devices/S2.html", "devices/S1.html"):
-        named = graph.job(table).inputs["errors"]
-        assert "S2" not in named
-        assert ("S1" in named) == (table != "devices/S2.html")
+    assert graph.job("devices/S1.html").inputs["errors"] == {"S1": "devices/model_error/S1"}
+    assert graph.job("devices/model_error/S1").inputs == {"study": "studies/full_contact/across/b"}
+    assert graph.job("studies/full_contact/across/b").settings["humidities"] == [0]
+    study = full_contact.layout(np.tile([2.0, 1.5, 1, 1, 0, 0, 0, 0, 0], (3, 1, 1)), [0.0], 1e-8)
+    job = graph.job("devices/model_error/S1")
+    assert float(job.compute({"study": study}).factor[0, 0]) == pytest.approx(1.5)
+    humid = graph.job("devices/model_error/S2").compute({"study": study})
+    said = " ".join(model_errors.sentences("S2", {"S2": humid}))
+    assert "is not known at a relative humidity of 0.6, beyond the humidities of the pair" in said
 
 
-def test_what_is_left_out_is_said_and_is_empty_in_the_tables():
-    (said,) = model_errors.sentences("S3", ERRORS)
-    assert said.startswith("The error of the model is not known: full elastic contact needs a humidity")
-    assert model_errors.sentences("S3", {}) == [said]
+def test_where_no_water_condenses_a_device_has_the_error_of_dry_air_at_any_humidity():
+    waxed = {"materials": {"Wax": {"contact_angle_deg": 110}}}
+    waxed |= {"surfaces": {name: {"material": "Wax"} for name in ("B2", "Sub1")}}
+    waxed |= {"run": {"pairs": ["b"], "studies": []}, "pairs": {"b": {"humidities": [0.6]}}}
+    graph = Graph(Plan(load(DRY, waxed, {"contact": {"model": "full"}})))
+    assert graph.job("studies/full_contact/across/b").settings["humidities"] == [0]
+    assert graph.job("studies/model_error/across/b").settings["humidities"] == [0]
+    study = full_contact.layout(np.tile([2.0, 1.5, 1, 1, 0, 0, 0, 0, 0], (3, 1, 1)), [0.0], 1e-8)
+    found = graph.job("devices/model_error/S2").compute({"study": study})
+    assert float(found.factor.sel(humidity=0.6)[0]) == pytest.approx(1.5)
+    assert not found.interpolated.any()
+
+
+def test_without_errors_nothing_is_said():
     assert model_errors.sentences("S3", None) == []
     assert np.isnan(model_errors.device_change(ERRORS, "S3", 0.67, FORCE)["model_error_percent"])

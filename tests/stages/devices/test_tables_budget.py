@@ -226,6 +226,23 @@ def test_no_legend_of_stoppers_covers_a_panel_or_a_text(count):
     assert covering(figures_budget.stoppers(datasets, {"S0": ["Beware."]})) == []
 
 
+@pytest.mark.parametrize(
+    ("name", "unknown"),
+    [("effect", np.inf), *((name, np.nan) for name in ("effect", "effect_error", "slope", "slope_error"))],
+)
+def test_effects_that_are_not_known_have_no_bar_and_leave_the_others(name, unknown):
+    few = BEAMS["C1", 0.67].copy(deep=True)
+    few[name][:1] = unknown
+    whole, part = (figures_budget.budget({("C1", 0.67): one}) for one in (BEAMS["C1", 0.67], few))
+    drawn = [sum(len(panel.patches) for panel in figure.axes) for figure in (whole, part)]
+    assert 0 < drawn[1] <= drawn[0]
+    for panel, before in zip(part.axes, whole.axes, strict=True):
+        assert np.isfinite(panel.get_xlim()).all()
+        assert panel.get_xlim()[1] <= before.get_xlim()[1] or name == "slope"
+    everything = budget_dataset(np.nan)
+    figures_budget.budget({("C1", 0.67): everything.assign(effect=everything.effect * np.nan)})
+
+
 @pytest.mark.parametrize("count", [2, 6, pytest.param(30, marks=pytest.mark.slow)])
 def test_every_panel_has_the_name_of_its_stopper_in_a_figure_that_is_not_too_tall(count):
     datasets = {f"S{k}": stopper_dataset(peak=1 + k) for k in range(count)}

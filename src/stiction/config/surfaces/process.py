@@ -75,7 +75,7 @@ def has_scans(config: Mapping[str, Any]) -> bool:
 
 
 def of_device(config: Mapping[str, Any], device: str) -> list[str]:
-    """Names of the processes of a device: the one that it states, and one of its other surface.
+    """Names of the processes of a device: the stated one, and one of its other surface.
 
     The latter is the second one that it states, or one at the same time.
     """

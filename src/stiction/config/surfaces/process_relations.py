@@ -18,7 +18,7 @@ relation = Relations()
 
 @relation
 def surfaces_of_processes_are_defined(config):
-    """Require a surface that exists and is none at a setting."""
+    """Require an existing surface, and none at a setting."""
     made = all_names(config.config)
     defined = [name for name in config.names("surfaces") if name not in made]
     for name, surface in config.entries("process", "surface"):
@@ -76,7 +76,7 @@ def _refusal(keys, uncertain, of_first):
 
 @relation
 def scans_of_settings_are_those_of_one_surface(config):
-    """Require each file at one setting of a process, and at no other surface than that of the process."""
+    """Require each file at one setting of a process, and at no other surface."""
     listed = list(_listed(config))
     for number, (key, surface, content) in enumerate(listed):
         for other, of_other, same in listed[:number]:
@@ -108,7 +108,7 @@ def _listed(config: Keys) -> Iterator[tuple[str, str, str]]:
 
 @relation
 def laws_are_those_of_moments(config):
-    """Require heights by their moments, of which a process has laws."""
+    """Require heights by their moments. Laws of a process are laws of moments."""
     for name, surface in config.entries("process", "surface"):
         if config["surfaces"].get(surface, {}).get("heights") == "measured":
             message = (
@@ -141,7 +141,7 @@ def processes_at_the_same_time_have_one_variable(config):
 
 @relation
 def processes_of_devices_make_their_surfaces(config):
-    """Require a process of a device that exists and makes a surface of its pair."""
+    """Require an existing process of a surface of the pair of a device."""
     known = config["process"]
     for name, process, pair in config.entries("devices", "process", "pair"):
         key, sides = f"devices.{name}.process", dict.fromkeys(surfaces_of(pair, config))
@@ -156,7 +156,7 @@ def processes_of_devices_make_their_surfaces(config):
 
 @relation
 def second_processes_make_the_other_surface(config):
-    """Require a second process with another variable, of the other surface of the pair, which no other makes."""
+    """Require a second process with another variable, and as the only one of the other surface of the pair."""
     known = config["process"]
     for name, first, second, pair in config.entries("devices", "process", "second_process", "pair"):
         key, sides = f"devices.{name}.second_process", dict.fromkeys(surfaces_of(pair, config))

@@ -1,4 +1,4 @@
-"""Prediction intervals of Table III: where measured lengths lie if the form of the model errs as on other pairs."""
+"""Prediction intervals of Table III: ranges of measured lengths if the form of the model errs as on other pairs."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -26,7 +26,7 @@ _LEARNT_BY = "NG"
 
 
 def with_intervals(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
-    """Rows of Table III with the ends of their prediction intervals; as they are without two other measured pairs.
+    """Rows of Table III with the ends of their prediction intervals, unchanged without two other measured pairs.
 
     The discrepancy of a pair is learnt from all others: its own measured lengths take no part.
     ASSUME: that of beams with scattered dimensions is that of nominal ones. Gaussian surfaces and dry air, with which

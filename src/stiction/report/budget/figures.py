@@ -186,18 +186,26 @@ def _from_zero(dataset, choice):
 
 
 def _tornado(panel, rows: Mapping[str, Sequence[tuple]], colours: Sequence[np.ndarray]):
-    """Draw rows of bars (low, high, error) from top to bottom. The bars of a row are those of the humidities."""
+    """Draw rows of bars (low, high, error) from top to bottom. The bars of a row are those of the humidities.
+
+    Bars that are not known are left out.
+    """
+    widest = 0.0
     for place, bars in enumerate(rows.values()):
         height = _FILLED / len(bars)
         for k, ((low, high, error), shade) in enumerate(zip(bars, colours, strict=True)):
+            if not np.isfinite(high - low):
+                continue
+            error = error if np.isfinite(error) else 0.0
+            widest = max(widest, -low + error, high + error)
             at = place + (k - (len(bars) - 1) / 2) * height
             panel.barh(at, high - low, height, left=low, color=shade, linewidth=0)
             panel.errorbar(high if high > -low else low, at, xerr=error, color="black", linewidth=0.6, capsize=1)
-    widest = max((max(-low, high) + error for bars in rows.values() for low, high, error in bars), default=1.0)
+    ends = 1.1 * (widest or 1.0)
     panel.axvline(0, color="black", linewidth=0.6)
     panel.set_yticks(range(len(rows)), list(rows))
     panel.tick_params(axis="y", length=0)
-    panel.set(ylim=(len(rows) - 0.4, -0.6), xlim=(-1.1 * widest, 1.1 * widest))
+    panel.set(ylim=(len(rows) - 0.4, -0.6), xlim=(-ends, ends))
 
 
 STAGES = (

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from stiction.config.cases import air
-from stiction.devices.chart import FEWEST_HUMIDITIES, between
+from stiction.devices.chart import FEWEST_HUMIDITIES, between, error_between
 from stiction.plan.names import by_case
 from stiction.report.format import TO_UM
 from stiction.report.style import (
@@ -192,7 +192,11 @@ def _thicknesses(panel, whole, shape, marks, placed):
         for part, styles in _parts(whole.sel(thickness=thickness, share=share), (line, dotted)):
             at = [placed[humidity] for humidity in part.relative_humidity.values]
             by_law, lengths = part.by_elements.values == 0, TO_UM * part.safe_length
-            panel.plot(*_curve(at, lengths.values), styles[0], color=shade)
+            fine, curve = _curve(at, lengths.values)
+            panel.plot(fine, curve, styles[0], color=shade)
+            if np.isfinite(error := error_between(np.array(at), lengths.values)):
+                ends = (1 - error) * curve, (1 + error) * curve
+                panel.fill_between(fine, *ends, color=shade, alpha=0.2, linewidth=0)
             panel.plot(np.array(at)[by_law], lengths[by_law], "o", color=shade, fillstyle="none")
             panel.plot(np.array(at)[~by_law], lengths[~by_law], ".", color=shade)
             panel.plot(*_curve(at, TO_UM * part.flooded_length.values), styles[1], color=shade, linewidth=0.8)
@@ -201,7 +205,7 @@ def _thicknesses(panel, whole, shape, marks, placed):
     panel.plot([], [], line, color="0.3", label=f"{state.legend}, p = {share:g}")
     panel.plot([], [], dotted, color="0.3", label=f"{state.legend}, flat surfaces")
     if np.isfinite(error := largest_error_between(whole.sel(share=share))):
-        label = f"cubic between, ± {100 * error:.2g} %"
+        label = f"cubic between, band ± {100 * error:.2g} %"
         named.append(Line2D([], [], color="0.3", marker=".", linestyle="-", label=label))
     if not whole.by_elements.all():
         label = f"by a power law, ± {100 * float(whole.power_law_error.max()):.2g} %"

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.plan.names import by_name
 from stiction.report.format import MISSING, signed
+from stiction.stages.contact.corrections import errors_of_pairs
 
 
 def change(error: xr.Dataset | None, factor: str = "length_factor") -> dict[str, Any]:
@@ -54,4 +54,4 @@ def caption(errors: Mapping[Any, xr.Dataset]) -> str:
 
 def error_inputs(plan: Any) -> dict[str, Any]:
     """Errors of all pairs, as inputs of a stage, none unless they are wanted."""
-    return {"errors": by_name("studies/model_error", plan.humid_pairs)} if plan.states_model_error else {}
+    return {"errors": errors_of_pairs(plan)} if plan.states_model_error else {}

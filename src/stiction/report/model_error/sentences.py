@@ -23,17 +23,9 @@ def device_change(errors: Mapping[str, xr.Dataset] | None, device: str, humidity
 
 
 def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]:
-    """Changes of a device by full contact in words, and the safe side of them, none without errors.
-
-    The errors are known of devices whose pair has humid air.
-    """
+    """Changes of a device by full contact in words, and the safe side of them, none without errors."""
     if errors is None:
         return []
-    if device not in errors:
-        return [
-            "The error of the model is not known: full elastic contact needs a humidity of the pair at which water "
-            "condenses."
-        ]
     error = errors[device]
     shape = str(error["shape"].values[0])
     what = "pull-off force" if shape == FORCE else f"lengths held by the {END_STATES[shape].by}"
@@ -49,9 +41,9 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     if EITHER in error["shape"]:
         said.append("It is not known for what the tip holds.")
     said += [] if error.applied else [_safe_side(known, -1 if shape == FORCE else 1)]
-    gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
     if error.across_gaps:
-        return [*said, f"It leaves out the attraction across gaps of this prediction. That attraction acts {gaps}"]
+        return [*said, "Attraction across gaps is in both models."]
+    gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
     return [*said, f"Attraction across gaps is in neither model. It acts {gaps}"]
 
 
@@ -75,9 +67,5 @@ def _safe_side(known, sign):
 
 
 def error_inputs(plan: Any, *devices: str) -> dict[str, Any]:
-    """Errors of some devices, as inputs of a stage, none unless they are wanted.
-
-    Devices on pairs in dry air alone are left out: full contact is computed where water condenses.
-    """
-    humid = [name for name in devices if plan.air.humid(plan.config["devices"][name]["pair"])]
-    return {"errors": by_name("devices/model_error", humid)} if plan.states_model_error else {}
+    """Errors of some devices, as inputs of a stage, none unless they are wanted."""
+    return {"errors": by_name("devices/model_error", devices)} if plan.states_model_error else {}

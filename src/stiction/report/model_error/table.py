@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.analysis import variants as comparison
-from stiction.plan.names import CORRECTED, Outcome, by_case, by_name, by_outcome
+from stiction.plan.names import CORRECTED, Outcome, by_case, by_outcome
 from stiction.report import published
 from stiction.report.format import UM, as_published, percent, signed, with_error
 from stiction.report.model_error.column import change, marked
@@ -29,6 +29,7 @@ from stiction.report.style import (
 from stiction.report.table import PAIR, Table, table_stage
 from stiction.stages.beams.releases import stuck_lengths
 from stiction.stages.beams.variant_beams import cases_of
+from stiction.stages.contact.corrections import errors_of_pairs
 
 _CAPTION = (
     "Error of the model of the contact: adhesion energy ē of full elastic contact over that of the sum over summits, "
@@ -165,7 +166,7 @@ def _stage(kind, shows, draw, **declared):
         "model_error",
         shows,
         inputs=lambda plan, at: {
-            "errors": by_name("studies/model_error", plan.humid_pairs),
+            "errors": errors_of_pairs(plan),
             "beams": by_case("beams", plan.humid_cases, "_NG"),
             "published": published.file("table_3"),
             "variants": by_outcome(

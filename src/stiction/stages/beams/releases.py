@@ -11,11 +11,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.beam.montecarlo import Experiment, released_beams
-from stiction.beam.release import EndState
+from stiction.beam.energy import apparent_adhesion_energy, arrest_length
+from stiction.beam.foundation import LONGER
+from stiction.beam.montecarlo import Experiment, Outcome, columns, released_beams, scattered_beam
+from stiction.beam.release import EndState, s_shape
 from stiction.beam.resolution import longest, resolved
 from stiction.chaos.model import ChaosModel, draw_laws
 from stiction.config.cases import Case
+from stiction.contact import forcelaw
 from stiction.plan.stage import select
 from stiction.stages.beams import cantilevers
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, strips_along
@@ -65,25 +68,28 @@ def released_on(
 ) -> dict:
     """Release beams of a case on force laws drawn by ``draw(n, rng)``. Beam k has the stream ``address(k)``.
 
-    Raises
-    ------
-    ValueError
-        If the strips are too long for the force laws.
+    Where strips are far too long for the force laws, a patch that counts as a flat surface may be much stiffer than all
+    others. Then the ground of all beams is everywhere like its strongest patch, the safe side.
     """
     beam, strips = cantilever(settings, case.pair), strips_along(settings.beam, settings.sampling)
     if settings.refined:
-        beam = _resolved(beam, strips, draw(_LAWS, address("mesh")), case)
+        laws = draw(_LAWS, address("mesh"))
+        if beam.length / strips > LONGER * longest(beam, laws)[0]:
+            strongest = partial(_on_uniform_ground, beam, float(forcelaw.energy(laws).max()), settings.scatter)
+            return columns([strongest(k, address(k)) for k in range(settings.samples)], shapes)
+        beam = resolved(beam, strips, laws)
     experiment = Experiment(beam, strips, draw, settings.scatter)
     return released_beams(experiment, settings.samples, address, threads, shapes)
 
 
-def _resolved(beam, strips, laws, case):
-    """`resolved`, with the name of the case added to an error."""
-    try:
-        return resolved(beam, strips, laws)
-    except ValueError as error:
-        error.add_note(f"in case {case}")
-        raise
+def _on_uniform_ground(beam, energy, scatter, sample, rng):
+    """Outcome of one beam by Eq. (13) on ground with one adhesion energy [J m⁻²]."""
+    own = scattered_beam(beam, scatter, rng)
+    crack = min(float(arrest_length(energy, own)), own.length)
+    state = EndState.S_SHAPE if crack < own.length else EndState.FREE
+    depth = own.gap if state is EndState.S_SHAPE else 0.0
+    apparent = apparent_adhesion_energy(crack, beam)
+    return Outcome(sample, state, crack, apparent, s_shape(own, depth, crack)[:, 0], imbalance=0.0, iterations=0)
 
 
 def longest_strip(model: ChaosModel, case: Case, settings: OnStrips) -> float:

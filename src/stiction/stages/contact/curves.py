@@ -25,14 +25,14 @@ def parametrised(sampled: ForceCurves, humidity: float, water: Water) -> tuple[n
 
     ASSUME: one ratio of e and one of f_max at a humidity hold for all samples, on strips and patches of any size.
     """
-    vectors = forcelaw.parametrise(*sampled)
-    return water.correction.vectors(*vectors, humidity) if water.correction else vectors
+    vectors, limit = forcelaw.parametrise(*sampled)
+    energy, pull_off = water.ratios(humidity)
+    return vectors * [energy, pull_off, 1, 1], limit * pull_off
 
 
 def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
-    energies = forcelaw.adhesion_energies(*force_curves(contact, humidity, water))
-    return energies * water.correction.at(humidity)[0] if water.correction else energies
+    return forcelaw.adhesion_energies(*force_curves(contact, humidity, water)) * water.ratios(humidity)[0]
 
 
 def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, np.ndarray]:
@@ -72,7 +72,7 @@ def tilted_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.ndar
     ASSUME: the ratio of the pull-off force on parallel patches to full elastic contact is that on tilted ones.
     """
     forces = forcelaw.largest_attractions(*_wedges(contact, humidity, water, endless=False)) * float(contact.length)
-    return forces * water.correction.at(humidity)[1] if water.correction else forces
+    return forces * water.ratios(humidity)[1]
 
 
 def _wedges(contact, humidity, water, endless):
@@ -96,7 +96,7 @@ def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Largest attraction f_max of all samples at a relative humidity (m,) [Pa]."""
     sampled = force_curves(contact, humidity, water)
     forces = forcelaw.pull_offs(*sampled[:3], sampled.flat)
-    return forces * water.correction.at(humidity)[1] if water.correction else forces
+    return forces * water.ratios(humidity)[1]
 
 
 def freeing_potentials(contact: xr.Dataset, humidity: float, water: Water, pull: float) -> np.ndarray:
@@ -108,7 +108,7 @@ def freeing_potentials(contact: xr.Dataset, humidity: float, water: Water, pull:
     without = replace(water, capacitor=replace(unit, voltage=0.0))
     distance, curve, samples, *_, flat = force_curves(contact, humidity, without)
     pressure, _ = gaps.gap_pressures(bearing, starts[1], distance, step, unit.work)
-    needed = pull / water.correction.at(humidity)[1] if water.correction else pull
+    needed = pull / water.ratios(humidity)[1]
     found = np.empty(samples)
     for k in range(samples):
         force, more = np.array(curve(k)), pressure[k].astype(float)
@@ -130,7 +130,7 @@ def fast_pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.nda
     """Values of `pull_offs` in a separation faster than water evaporates, infinite without resistance of summits."""
     _, fast = _separations(contact, humidity, water)
     forces = np.array([np.inf if one is None else -one[0].min() for one in fast])
-    return forces * water.correction.at(humidity)[1] if water.correction else forces
+    return forces * water.ratios(humidity)[1]
 
 
 def fast_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
@@ -141,7 +141,7 @@ def fast_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndar
         np.inf if one is None else forcelaw.adhesion_energy(sampled.distance, one[0], beyond[k] + one[1])
         for k, one in enumerate(fast)
     ]
-    return np.array(energies) * (water.correction.at(humidity)[0] if water.correction else 1.0)
+    return np.array(energies) * water.ratios(humidity)[0]
 
 
 def _separations(contact, humidity, water):

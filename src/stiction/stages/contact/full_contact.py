@@ -1,8 +1,11 @@
-"""Study full_contact: the first samples of stage contact under full elastic contact, beside the sum over summits."""
+"""Study full_contact: the first samples of stage contact under full elastic contact, beside the sum over summits.
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
-from typing import Any
+Both models have the same forces. Force laws without attraction across gaps are compared without it, others with it.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -37,7 +40,7 @@ _VARIABLES = {
 class Settings(pairs.Settings):
     """Settings of the contact, water, humidities and number of strips."""
 
-    water: Water
+    water: Water  #: with the attraction across gaps, if there is any
     humidities: tuple[float, ...]  #: [-]
     strips: int  #: number of pairs of strips: the first samples of stage contact
 
@@ -48,45 +51,62 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
     Raises
     ------
     ValueError
-        If the solids attract each other across gaps, the grid is too coarse, or a strip does not come to rest.
+        If the grid is too coarse, or a strip does not come to rest.
     """
     hardness = solids.softer_hardness(*bodies(settings))
     rows = [
-        [_both_models(*curve, (space, heights, adhesion), hardness) for adhesion, curve in cases]
+        [_both_models((space, heights), case, hardness) for case in cases]
         for space, heights, cases in strips(surfaces, pair, settings)
     ]
     return layout(np.array(rows), settings.humidities, surface_pair(surfaces, "NG", settings).spacing)
 
 
+class InAir(NamedTuple):
+    """Attraction of a strip at a humidity, and the curve of the sum over its summits."""
+
+    adhesion: elements.Adhesion
+    curve: tuple[np.ndarray, np.ndarray]  #: distances [m] and forces [Pa]
+    beyond: float  #: energy beyond the last distance [J m⁻²]
+
+
 def strips(
     surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings
-) -> Iterator[tuple[HalfSpace, np.ndarray, list[tuple[elements.Adhesion, tuple[np.ndarray, np.ndarray]]]]]:
-    """Strips one after the other: elements, heights z (n1, n2) [m], and for each humidity the attraction and the curve.
-
-    The curve is that of the sum over summits: distances [m] and forces [Pa].
-    """
-    if settings.water.gaps is not None:
-        raise ValueError("full elastic contact has no attraction across gaps: it needs attraction.reach: touching")
+) -> Iterator[tuple[HalfSpace, np.ndarray, list[InAir]]]:
+    """Strips one after the other: elements, heights z (n1, n2) [m], and what acts on them at each humidity."""
     drawn = surface_pair(surfaces, "NG", settings)
     streams, materials = streams_of_sides(settings.seed, pair), bodies(settings)
-    summits = contact.compute(surfaces, pair, "NG", settings, range(settings.strips))
-    curves = [force_curves(summits, humidity, settings.water) for humidity in settings.humidities]
     shape = tuple(len(range(0, points, drawn.every)) for points in drawn.beam.grid.shape)
     space = HalfSpace(shape, drawn.spacing, solids.composite_modulus(*materials))
-    attraction = solids.attraction_between(*materials, settings.van_der_waals)
-    adhesions = [elements.Adhesion.of(settings.water.film(each), attraction, space) for each in settings.humidities]
+    media = [settings.van_der_waals if settings.water.film(each)[0] else "dry" for each in settings.humidities]
+    summits = {
+        medium: contact.compute(surfaces, pair, "NG", replace(settings, van_der_waals=medium), range(settings.strips))
+        for medium in dict.fromkeys(media)
+    }
+    airs = [
+        _in_air(
+            summits[medium], humidity, settings.water.at(humidity), solids.attraction_between(*materials, medium), space
+        )
+        for medium, humidity in zip(media, settings.humidities, strict=True)
+    ]
     for k in progress(range(settings.strips), "strips"):
-        found = [(each.distance, each.curve(k)) for each in curves]
-        yield space, drawn.draw(*streams(k)), list(zip(adhesions, found, strict=True))
+        yield space, drawn.draw(*streams(k)), [of_strip(k) for of_strip in airs]
 
 
-def _both_models(distance, force, strip, hardness):
-    """Variables of one strip at one humidity. ``distance``, ``force``: curve of the sum over summits."""
-    found = elements.separation(*strip, (distance, force))
+def _in_air(summits, humidity, water, attraction, space) -> Callable[[int], InAir]:
+    """What acts on each strip at a humidity, by its number. ``summits`` is the dataset of their contact."""
+    adhesion = elements.Adhesion.of(water.film(humidity), attraction, space, water.gaps)
+    found = force_curves(summits, humidity, water)
+    beyond = np.zeros(found.samples) if found.beyond is None else found.beyond
+    return lambda k: InAir(adhesion, (found.distance, found.curve(k)), float(beyond[k]))
+
+
+def _both_models(strip, case, hardness):
+    """Variables of one strip, elements and heights, at one humidity."""
+    found = elements.separation(*strip, case.adhesion, case.curve)
     pressure = found.closed.pressure
     touching = pressure[pressure > 0] / hardness
     shares = [float((touching > level).sum() / max(touching.size, 1)) for level in (ONSET, 1)]
-    summits = forcelaw.adhesion_energy(distance, force), forcelaw.extremum(distance, force)[1]
+    summits = forcelaw.adhesion_energy(*case.curve, case.beyond), forcelaw.extremum(*case.curve)[1]
     return [
         found.adhesion_energy,
         found.pull_off,
@@ -127,27 +147,40 @@ def pull_offs(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def settings_of(plan: Any, at: At) -> dict[str, Any]:
-    """Settings of the contact, with the lowest, the middle and the highest humidity of the pair.
+    """Settings of the contact without attraction across gaps, at three humidities of the pair.
 
-    ASSUME: attraction across gaps is left out, so that both models have the same forces.
+    They are the lowest, the middle and the highest one at which water condenses.
     """
-    all_of_pair = sorted(plan.air.humid(at.pair))
-    chosen = dict.fromkeys(all_of_pair[k] for k in (0, (len(all_of_pair) - 1) // 2, -1))
+    humid = sorted(plan.air.humid(at.pair))
+    chosen = dict.fromkeys(humid[k] for k in (0, (len(humid) - 1) // 2, -1)) if humid else ()
     study = {"humidities": list(chosen), "strips": plan.config["studies"]["full_contact"]["samples"]}
     seen = plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None)
     return select(Settings, seen | study | {"water": plan.air.without_gaps(at.pair)})
 
 
-STAGES = (
-    Stage.writing(
-        "full_contact",
-        "studies/full_contact/{pair}",
+def _settings_across(plan, at):
+    """Settings with attraction across gaps, also in dry air if the pair has any."""
+    touching, humidities = settings_of(plan, at), plan.config["pairs"][at.pair]["humidities"]
+    dry = [0.0] * (len(plan.air.humid(at.pair)) < len(humidities))
+    return touching | {"water": plan.air.across_gaps(at.pair), "humidities": dry + touching["humidities"]}
+
+
+def _stage(name, folder, settings, forces):
+    """Stage of the strips of a pair under some forces."""
+    return Stage.writing(
+        name,
+        f"{folder}/{{pair}}",
         inputs=lambda plan, at: surface_inputs(plan, at.pair),
-        settings=settings_of,
+        settings=settings,
         kind=Settings,
         compute=lambda data, at, settings: compute(both(data), at.pair, settings),
-        message="Full elastic contact of pair {pair}, beside the sum over summits.",
+        message=f"Full elastic contact of pair {{pair}}{forces}, beside the sum over summits.",
         cluster=True,
         minutes=30,
-    ),
+    )
+
+
+STAGES = (
+    _stage("full_contact", "studies/full_contact", settings_of, ""),
+    _stage("full_contact_across", "studies/full_contact/across", _settings_across, " with attraction across gaps"),
 )

@@ -13,7 +13,7 @@ from stiction.stages.contact import full_contact
 
 @dataclass(frozen=True)
 class Settings:
-    """Humidities for the error of the model."""
+    """Humidities for the error of the model, 0 for dry air."""
 
     humidities: tuple[float, ...]  #: [-]
     applied: bool = False  #: whether the predictions are corrected by it
@@ -54,17 +54,26 @@ def layout(
     )
 
 
-STAGES = (
-    Stage.writing(
-        "pair_model_error",
-        "studies/model_error/{pair}",
-        inputs=lambda plan, at: {"study": f"studies/full_contact/{at.pair}"},
-        settings=lambda plan, at: (
-            {"humidities": plan.config["pairs"][at.pair]["humidities"]}
-            | ({"applied": True} if plan.variants.is_corrected() else {})
-        ),
+def _settings(plan, at):
+    """Humidities of a pair, and dry air if no water condenses at any of them."""
+    humidities = plan.config["pairs"][at.pair]["humidities"] if plan.air.humid(at.pair) else [0.0]
+    return {"humidities": humidities} | ({"applied": True} if plan.variants.is_corrected() else {})
+
+
+def _stage(name, between, forces):
+    """Stage of the ratios of a pair under some forces. ``between`` is the folder of the study under them."""
+    return Stage.writing(
+        name,
+        f"studies/model_error/{between}{{pair}}",
+        inputs=lambda plan, at: {"study": f"studies/full_contact/{between}{at.pair}"},
+        settings=_settings,
         kind=Settings,
         compute=compute,
-        message="Error of the model of the contact of pair {pair}.",
-    ),
+        message=f"Error of the model of the contact of pair {{pair}}{forces}.",
+    )
+
+
+STAGES = (
+    _stage("pair_model_error", "", ""),
+    _stage("pair_model_error_across", "across/", " with attraction across gaps"),
 )

@@ -45,8 +45,10 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
     """
     hardness = solids.softer_hardness(*bodies(settings))
     strips = [
-        _strip_pressed(*strip, np.linspace(0, 1, settings.steps + 1), settings.distance, hardness)
-        for strip in full_contact.strips(surfaces, pair, settings)
+        _strip_pressed(
+            *strip, [case[:2] for case in cases], np.linspace(0, 1, settings.steps + 1), settings.distance, hardness
+        )
+        for *strip, cases in full_contact.strips(surfaces, pair, settings)
     ]
     return layout(*map(np.array, zip(*strips, strict=True)), settings.humidities)
 

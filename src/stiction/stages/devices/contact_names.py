@@ -50,7 +50,8 @@ def patch_of_tips(plan: Any, case: Case) -> Patch:
 
 def corrections_of(plan: Any, device: str) -> dict[str, str]:
     """Corrections of the pair of a device, see `stiction.stages.contact.corrections.correction_inputs`."""
-    return correction_inputs(plan, plan.config["devices"][device]["pair"])
+    pair = plan.config["devices"][device]["pair"]
+    return correction_inputs(plan, pair, water=plan.air_of_devices.water(pair))
 
 
 def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:

@@ -1,8 +1,7 @@
 """Stage left_out_gaps: effect of attraction across gaps on a device with results without it.
 
-Devices attract across gaps, unless a configuration states otherwise or corrects them to full elastic contact, whose
-ratios are without it. The change is an effect of a choice of the model, as in a budget: of the same devices on the same
-contact, whose force curves alone differ.
+Devices attract across gaps, unless a configuration states otherwise. The change is an effect of a choice of the model,
+as in a budget: of the same devices on the same contact, whose force curves alone differ.
 """
 
 from collections.abc import Mapping, Sequence

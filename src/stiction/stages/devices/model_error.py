@@ -9,6 +9,7 @@ import xarray as xr
 from stiction.analysis.model_error import factors
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import full_contact
+from stiction.stages.contact.corrections import study_of
 from stiction.stages.devices.opening import EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam, section_of_beam
 
 
@@ -19,7 +20,13 @@ class Settings:
     humidities: tuple[float, ...]  #: [-]
     device: DesignedBeam | None = None  #: none for a stopper
     applied: bool = False  #: whether the predictions are corrected
-    across_gaps: bool = False  #: whether solids attract each other across gaps, which full contact leaves out
+    across_gaps: bool = False  #: whether solids attract each other across gaps, in both models
+    condenses: bool = True  #: whether water condenses between the surfaces; otherwise all air is dry
+
+    @property
+    def airs(self) -> np.ndarray:
+        """Humidities, 0 where no water condenses (h,) [-]."""
+        return np.array(self.humidities) * self.condenses
 
 
 def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.ndarray:
@@ -43,7 +50,7 @@ def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
     computed, *energies = full_contact.energies(study)
     _, *pull_offs = full_contact.pull_offs(study)
     models = [np.stack(of_model, axis=-1) for of_model in zip(energies, pull_offs, strict=True)]
-    device, at = settings.device, np.array(settings.humidities)
+    device, at = settings.device, settings.airs
     shapes = device.opening.shapes if device else (FORCE,)
     of_shapes = [
         factors(lambda means, of=shape: response(of, means, device), *models, computed, at) for shape in shapes
@@ -64,12 +71,18 @@ def layout(
         {
             "factor": (names, values, {"units": "1"}),
             "factor_error": (names, errors, {"units": "1"}),
-            "interpolated": ("humidity", ~np.isin(settings.humidities, computed)),
+            "interpolated": ("humidity", ~np.isin(settings.airs, computed)),
             "applied": ((), settings.applied),
             "across_gaps": ((), settings.across_gaps),
         },
         coords={"shape": list(shapes), "humidity": ("humidity", list(settings.humidities), {"units": "1"})},
     )
+
+
+def _inputs(plan, at):
+    """Study of the pair of a device, with the attraction across gaps that the device has."""
+    pair = plan.config["devices"][at.device]["pair"]
+    return {"study": study_of("studies/full_contact", pair, plan.air_of_devices.water(pair))}
 
 
 def _settings(plan, at):
@@ -78,14 +91,15 @@ def _settings(plan, at):
     own = {"device": section_of_beam(plan, at.device)} if plan.devices.kind(at.device).is_beam else {}
     applied = {"applied": True} if plan.variants.is_corrected() else {}
     gaps = {"across_gaps": True} if "gaps" in plan.air_of_devices.water(section["pair"]) else {}
-    return select(Settings, {"humidities": section["humidities"]} | own | applied | gaps)
+    dry = {} if plan.air_of_devices.is_wetted(section["pair"]) else {"condenses": False}
+    return select(Settings, {"humidities": section["humidities"]} | own | applied | gaps | dry)
 
 
 STAGES = (
     Stage.writing(
         "device_model_error",
         "devices/model_error/{device}",
-        inputs=lambda plan, at: {"study": f"studies/full_contact/{plan.config['devices'][at.device]['pair']}"},
+        inputs=_inputs,
         settings=_settings,
         kind=Settings,
         compute=compute,

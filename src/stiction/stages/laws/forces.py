@@ -43,7 +43,7 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
     dataset = layout(vectors, limit, sampled.distance, kept)
     if settings.water.correction is None:
         return dataset
-    return dataset.assign(dict(zip(_RATIOS, settings.water.correction.at(settings.humidity), strict=True)))
+    return dataset.assign(dict(zip(_RATIOS, settings.water.ratios(settings.humidity), strict=True)))
 
 
 def layout(vectors: np.ndarray, limit: float, distance: np.ndarray, curves: Sequence[np.ndarray]) -> xr.Dataset:

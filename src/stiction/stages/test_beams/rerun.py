@@ -118,7 +118,11 @@ def _inputs(plan, at):
     cases = _cases(plan, at.device)
     patches = {patch_of(of, case): (of, case) for of, case, _ in cases.values()}
     sides = dict.fromkeys(side for patch in patches for side in plan.sides(patch.pair))
-    ratios = {patch.name: correction_inputs(plan, PairInAir(patch.pair).pair).get("model_error") for patch in patches}
+    pairs = {patch.name: PairInAir(patch.pair).pair for patch in patches}
+    waters = {name: plan.air_of_devices.water(pair) for name, pair in pairs.items()}
+    ratios = {
+        name: correction_inputs(plan, pair, water=waters[name]).get("model_error") for name, pair in pairs.items()
+    }
     return {
         "updated": f"devices/test_beams/{at.device}",
         "budgets": {key: name for key, (*_, name) in cases.items()},
