@@ -1,8 +1,10 @@
-"""Curves of devices over a process and over a roughness, by formulas in place of simulations."""
+"""Devices over a process, a roughness and a voltage, by formulas in place of simulations."""
 
 import numpy as np
 
 from stiction.analysis.process_law import fit, grid
+from stiction.contact.environment import Water
+from stiction.stages.devices import stoppers
 from stiction.stages.process import curves as of_process
 from stiction.stages.process import law, maps, recommended
 from stiction.stages.roughness import curves as of_roughness
@@ -12,6 +14,7 @@ SETTINGS, VARIABLE, SHARE = np.array([30.0, 60.0, 90.0, 120.0]), "etch_time_s", 
 REQUIRED = {False: 28e-6, True: 300e-6}
 DEVICE = {"pair": "b", "humidities": [0.8, 0.6], "requirement": {"share": SHARE}}
 STOPPER = DEVICE | {"kind": "stopper", "contact_um": [3, 3], "restoring_force_uN": 28}
+OXIDE = {"voltage_V": 5, "offset_V": 0.5, "dielectric": {"thickness_nm": 100, "permittivity": 4}}
 BEAM = DEVICE | {"kind": "bridge", "thickness_um": 2, "gap_um": 2, "width_um": 30, "residual_stress_MPa": 20}
 
 
@@ -87,3 +90,12 @@ def rough(is_beam=False, unknown=(), others=()):
         for k, value in enumerate(values)
     ]
     return of_roughness.mapped(points, "B2", "rms_nm", "skewness" if others else "")
+
+
+def biased():
+    """Dataset of stage stoppers_at_voltage, some of whose patches no spring frees, not even without voltage."""
+    forces = 28e-6 * np.exp(0.2 * np.random.default_rng(4).normal(-2, 1, size=(2, 400)))
+    settings = stoppers.Settings(1, Water(300.0), (3e-6, 3e-6), REQUIRED[False], (0.8, 0.6), (0.5, 0.9))
+    found = stoppers.layout(settings, forces, np.array([0.5, 0.7, 0.9]), np.tile(forces[:1], (3, 1)))
+    potentials = 10 * np.sqrt(np.maximum(1 - forces / 28e-6, 0))
+    return found.assign(freeing_potential=(("humidity", "sample"), potentials))

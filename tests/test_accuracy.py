@@ -14,7 +14,7 @@ from stiction.config.cases import case_id
 from stiction.config.files import normalised
 from stiction.config.merging import merged
 from stiction.devices.numbers import MOST_BEAMS, Spread
-from stiction.plan.graph import Graph
+from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.run.disk_cache import DiskCache
 
@@ -47,8 +47,19 @@ def test_without_an_accuracy_a_configuration_is_as_it_is():
     config = configured(SMALL.replace("accuracy: {length: 0.03}", "beams: 400"))
     assert accuracy.decided(config) is config
     assert accuracy.numbers(config, {}) is None
-    only_stoppers = configured(f"design: {{accuracy: {{length: 0.03}}}}\ndevices: {{S1: {{{S1}}}}}")
-    assert accuracy.decided(only_stoppers) is only_stoppers
+
+
+def test_without_beams_numbers_are_those_of_the_configuration():
+    config = accuracy.decided(configured(f"design: {{accuracy: {{length: 0.03}}}}\ndevices: {{S1: {{{S1}}}}}"))
+    assert config["design"]["beams"] == PAPER["design"]["beams"]
+    assert settings(config, "devices/contact/b_3000x3000")["contact"]["samples"] == PAPER["contact"]["samples"]
+
+
+def test_numbers_that_are_not_decided_yet_are_not_those_of_the_configuration():
+    results = Results.of(configured(SMALL))
+    for file in ("devices/contact/b_1500x4000", "devices/cracks/C1_rh088"):
+        with pytest.raises(ValueError, match="decided no numbers: use stiction.accuracy.decided"):
+            results[file]
 
 
 def test_jobs_of_devices_have_the_numbers_and_all_others_those_of_the_configuration(of_pilot):
@@ -63,14 +74,14 @@ def test_jobs_of_devices_have_the_numbers_and_all_others_those_of_the_configurat
     tips = plan.devices.tips("C1").name
     assert settings(decided, f"devices/contact/tips/{tips}")["contact"]["samples"] == found.beams
     assert settings(decided, f"devices/contact/{ground}")["contact"]["samples"] == found.samples[ground] != 5000
+    plain = configured(SMALL.replace("design: {accuracy: {length: 0.03}}", ""))
     for file in ("devices/contact/b_3000x3000", "contact/b_NG"):
-        assert settings(decided, file) == settings(config, file)
+        assert settings(decided, file) == settings(plain, file)
 
 
 def test_devices_have_strips_of_their_own_if_an_accuracy_decides_their_number(of_pilot):
     of_pilot(SPREADS)
     config = configured(SMALL, "beam: {width_um: 4}")
-    assert Plan(config).devices.has_strips_of_pair("C1")
     assert not Plan(accuracy.decided(config)).devices.has_strips_of_pair("C1")
     assert Plan(accuracy.decided(merged(config, {"contact": {"samples": 400}}))).devices.has_strips_of_pair("C1")
 

@@ -81,9 +81,10 @@ def numbers(
     code: object = None,
     remember: Callable = lambda _, compute: compute(),
 ) -> Numbers | None:
-    """Numbers for the accuracy of a configuration, none if it asks for none or has no beams.
+    """Numbers for the accuracy of a configuration, none if it asks for none.
 
-    Stated numbers remain. Cases have no part in them if too few of their beams stick for an error.
+    Stated numbers remain, and without beams those of the configuration. Cases have no part in them if too few of their
+    beams stick for an error.
 
     Parameters
     ----------
@@ -97,7 +98,7 @@ def numbers(
         Keeps what the pilot showed, see `stiction.run.disk_cache.DiskCache`.
     """
     plan, design = Plan(config, preliminary), config["design"]
-    if "accuracy" not in design or not plan.devices.beams:
+    if "accuracy" not in design:
         return None
     spreads = _spreads(plan, code, remember)
     share, accuracy = _middle(design["shares"]), design["accuracy"]["length"]

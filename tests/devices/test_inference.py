@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.optimize import minimize
-from scipy.special import logsumexp, ndtr, ndtri, softmax
+from scipy.special import chdtrc, logsumexp, ndtr, ndtri, softmax
 
 from stiction.devices import inference
 from stiction.devices.budget import Budget
@@ -311,6 +311,20 @@ def test_p_values_of_counts_that_err_as_stated_are_nearly_uniform_and_those_of_o
     # Beams shorter than measured cracks that all stick.
     wrong = one_shape(BEAMS[:1], np.array([-0.3]), 0.06, [20], [20])
     assert inference.p_value(PRIOR, DATA, wrong) < 1e-4
+
+
+def test_exactly_known_inputs_explain_counts_by_chance_alone():
+    exact, none = Knowledge((), np.zeros(0), np.zeros((0, 0))), Lengths(np.empty((0, 0)), np.empty(0), np.empty(0))
+    for stuck in ([12, 5], [20, 0]):
+        counts = one_shape(BEAMS[:2, :0], np.array([0.02, -0.05]), 0.06, stuck, [20, 20])
+        expected = chdtrc(2, counts.deviance(np.zeros(0)))
+        assert inference.p_value(exact, none, counts) == pytest.approx(expected)
+        # As with an input of which beams know nothing.
+        unrelated = one_shape(np.zeros((2, 1)), np.array([0.02, -0.05]), 0.06, stuck, [20, 20])
+        assert inference.p_value(Knowledge(("x",), np.zeros(1), np.eye(1)), OF_LENGTH, unrelated) == pytest.approx(
+            expected
+        )
+        assert after(exact, none, counts).mean.shape == (0,)
 
 
 def test_counts_that_all_lengths_explain_hide_no_contradiction_between_lengths():

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import yaml
 from browser import Browser, missing
-from drawn_curves import BEAM, STOPPER, etched, mapped, rough
+from drawn_curves import BEAM, OXIDE, STOPPER, biased, etched, mapped, rough
 
 import stiction
 from stiction.command import main
 from stiction.config.merging import differing
 from stiction.config.reading import paper
-from stiction.report.devices import curve_views, explorer
+from stiction.report.devices import curve_views, explorer, voltage_views
 from stiction.report.page import Page
 
 pytestmark = [
@@ -42,6 +42,7 @@ def views():
         "beam": curve_views.of_process("D", BEAM, *etched(is_beam=True, unknown=(60.0,))),
         "map": curve_views.of_map("D", STOPPER, *mapped()),
         "roughness": curve_views.of_roughness("D", STOPPER, rough(others=(-0.5, 0.0, 0.5))),
+        "voltage": voltage_views.of_stopper("D", STOPPER | OXIDE, biased()),
         "of_beam": curve_views.of_roughness("D", BEAM, rough(is_beam=True, unknown=(2,))),
     }
 
@@ -49,7 +50,7 @@ def views():
 @pytest.fixture(scope="module")
 def page(views, tmp_path_factory):
     """Page with all these views, and a study with a process."""
-    section = STOPPER | {"process": "etch"}
+    section = STOPPER | OXIDE | {"process": "etch"}
     study = differing(stiction.load(STUDY, {"devices": {"D": section}}), paper())
     content = explorer.content("D", section, list(views.values()))
     content["study"] = {key: value for key, value in study.items() if key != "devices"}
@@ -110,6 +111,22 @@ def test_a_page_answers_any_state_as_python_does(views, page, browser, name):
     assert browser.errors() == []
 
 
+def test_a_page_answers_any_voltage_as_python_does(views, page, browser):
+    grid, rng = views["voltage"].grid, np.random.default_rng(3)
+    browser.open(page)
+    for _ in range(50):
+        state = grid.start | {"voltage_V": float(f"{rng.uniform(0.1, grid.size.values[1]):.4g}")}
+        state |= {"humidity": float(rng.choice(grid.axes[0].values))}
+        shown, stuck = go_to(browser, list(views).index("voltage"), state), grid.stuck(state)
+        expected = [stuck.share] if stuck.beyond else [stuck.share, stuck.low, stuck.high]
+        assert numbers(shown["stuck"]) == pytest.approx([100 * part for part in expected], rel=1e-2)
+        safe = grid.safe_size(state)
+        assert ("none: too few" in shown["safe"]) == np.isnan(safe)
+        if np.isfinite(safe):
+            assert numbers(shown["safe"]) == pytest.approx([safe], rel=1e-3)
+    assert browser.errors() == []
+
+
 def test_settings_beyond_the_process_are_not_answered_and_the_page_says_why(page, browser):
     browser.open(page)
     go_to(browser, 0, {"etch_time_s": 75})
@@ -154,13 +171,13 @@ def test_a_checker_of_accessibility_finds_nothing_on_a_curve_but_a_control_witho
     assert [rule for rule, *_ in browser.violations()] == ["label"]
 
 
-@pytest.mark.parametrize("name", ["process", "roughness"])
+@pytest.mark.parametrize("name", ["process", "roughness", "voltage"])
 def test_the_study_of_a_curve_is_one_that_a_run_takes(views, page, browser, tmp_path, capsys, name):
     browser.open(page)
     state = (
         views[name].grid.start
         | {"humidity": 0.6}
-        | {"process": {"etch_time_s": 75.5}, "roughness": {"rms_nm": 6.25}}[name]
+        | {"process": {"etch_time_s": 75.5}, "roughness": {"rms_nm": 6.25}, "voltage": {"voltage_V": 2.5}}[name]
     )
     go_to(browser, list(views).index(name), state)
     (button,) = browser.find("#explorer button:first-of-type")
@@ -174,6 +191,8 @@ def test_the_study_of_a_curve_is_one_that_a_run_takes(views, page, browser, tmp_
     assert config["process"]["etch"]["settings"] == STUDY["process"]["etch"]["settings"]
     if name == "roughness":
         assert config["surfaces"]["B2"]["rms_nm"] == 6.25
+    elif name == "voltage":
+        assert config["devices"]["D"]["voltage_V"] == 2.5
     else:
         assert yaml.safe_load(text).get("surfaces", {}).get("B2") is None
         assert 'stiction.Process.of(stiction.load("mine.yaml"), "etch").at(75.5) in Python' in note

@@ -21,6 +21,7 @@ the inputs, the ln l of the counted beams: these are drawn and weighted (`sticti
 them all inputs are normal.
 """
 
+import math
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
 
@@ -272,7 +273,8 @@ def given(
 
 def _counted_directions(known, counts):
     """Expected inputs per independent standard normal error (k, r). Counts depend on these errors alone."""
-    responses = counts.responses.reshape(-1, len(known.mean))
+    *shape, inputs = counts.responses.shape
+    responses = counts.responses.reshape(math.prod(shape), inputs)
     shared = known.covariance @ responses.T
     variances, axes = np.linalg.eigh(responses @ shared)
     uncertain = variances > _ROUNDING * variances.max()
@@ -306,7 +308,8 @@ class _Misfit:
 
     def most_probable(self) -> np.ndarray:
         """Errors with the least misfit (r,)."""
-        return minimize(self, np.zeros(self.gain.shape[1]), jac=self.slope, method="BFGS").x
+        start = np.zeros(self.gain.shape[1])
+        return minimize(self, start, jac=self.slope, method="BFGS").x if start.size else start
 
 
 # What the data say

@@ -30,6 +30,11 @@ PLATE = 10.0
 STRETCH = 0.5
 #: What plastic contact does to beams and to stoppers that were pressed as hard.
 SHORTER, STRONGER = "beams that were pressed stick at shorter lengths", "stoppers that were pressed hold more"
+#: Error in dry air of contact on summits alone, from six strips of each pair of the paper (docs/tables/deformed.md).
+BENT = (
+    "in dry air the bending of surfaces towards each other (on the surfaces of the paper lengths come out 1 to 8 % too "
+    "long; contact.model full includes it)"
+)
 #: Words of every warning about a result on the unsafe side.
 UNSAFE = "the unsafe side"
 #: How to let plastic contact be checked, and how where the list of studies leaves it out.

@@ -138,10 +138,15 @@ class Pairs:
     best: np.ndarray  #: (2,) pair of the largest margin
     error: np.ndarray  #: (2,) its standard errors
     interval: np.ndarray  #: (2, 2) ends of the 95 % interval of each of its settings
+    next: np.ndarray  #: (2,) setting of each process whose measurement shrinks its error most, NaN if none does
+    again: np.ndarray  #: (2,) whether its surface is measured there already
+    after: np.ndarray  #: (2,) expected standard error after that measurement
 
 
-def recommended_pairs(maps: Sequence[Map], laws: Sequence[Law], rng: np.random.Generator) -> Pairs:
-    """Pairs of settings that suffice for a device, and the best one.
+def recommended_pairs(
+    maps: Sequence[Map], laws: Sequence[Law], errors: Sequence[np.ndarray], rng: np.random.Generator
+) -> Pairs:
+    """Pairs of settings that suffice for a device, the best one, and the settings to measure next.
 
     Parameters
     ----------
@@ -149,17 +154,21 @@ def recommended_pairs(maps: Sequence[Map], laws: Sequence[Law], rng: np.random.G
         At all humidities and against all end states.
     laws : sequence of Law
         Of both processes.
+    errors : sequence of (q, q) array
+        Covariance of the errors of one setting, of each law.
     rng : numpy.random.Generator
     """
     values, steps = (np.linspace(*law.ends, PAIRS) for law in laws)
     seconds = np.union1d(steps, laws[1].settings)
-    drawn = np.concatenate([law.drawn(DRAWS, rng).reshape(DRAWS, -1) for law in laws], axis=1)
-    margin, margins = np.inf, np.inf
+    parts = [law.drawn(DRAWS, rng).reshape(DRAWS, -1) for law in laws]
+    drawn, margin, margins = np.concatenate(parts, axis=1), np.inf, np.inf
     for one in maps:
         rows, common = one.at(values, seconds), rng.standard_normal((DRAWS, 1))
         margin = np.minimum(margin, [row.margin for row in rows])
         margins = np.minimum(margins, np.stack([_drawn(row, laws, drawn, common) for row in rows], axis=1))
     best = np.array([_best_pair(values, seconds, one) for one in margins])
+    of_each = zip(laws, errors, parts, best.T, strict=True)
+    following, after = np.transpose([_next([law], [error], part, wanted) for law, error, part, wanted in of_each])
     return Pairs(
         settings=values,
         seconds=seconds,
@@ -168,6 +177,9 @@ def recommended_pairs(maps: Sequence[Map], laws: Sequence[Law], rng: np.random.G
         best=_best_pair(values, seconds, margin),
         error=best.std(axis=0),
         interval=np.quantile(best, INTERVAL, axis=0).T,
+        next=following,
+        again=np.array([value in law.settings for value, law in zip(following, laws, strict=True)]),
+        after=after,
     )
 
 
@@ -185,7 +197,9 @@ def unknown(settings: np.ndarray, seconds: np.ndarray | None = None) -> Recommen
     none = float("nan")
     if seconds is not None:
         nothing = np.full((len(seconds), len(settings)), none)
-        return Pairs(settings, seconds, nothing, nothing, *(np.full(shape, none) for shape in (2, 2, (2, 2))))
+        best, error, interval, following, after = (np.full(shape, none) for shape in (2, 2, (2, 2), 2, 2))
+        again = np.zeros(2, bool)
+        return Pairs(settings, seconds, nothing, nothing, best, error, interval, following, again, after)
     nothing = np.full(len(settings), none)
     arrays = {"settings": settings, "margin": nothing, "band": np.array([nothing, nothing]), "safe": nothing}
     numbers = dict.fromkeys(("best", "error", "next", "before", "after"), none)

@@ -136,8 +136,17 @@ class DevicePlan:
 
     @property
     def _samples_of_patches(self):
-        """Numbers of samples for the accuracy of lengths, see `stiction.accuracy`, by the name of the patch."""
-        return self.config["design"].get("samples_of_patches", {})
+        """Numbers of samples for the accuracy of lengths, by the name of the patch, see `stiction.accuracy`.
+
+        Raises
+        ------
+        ValueError
+            If an accuracy has not decided them yet.
+        """
+        design = self.config["design"]
+        if "accuracy" in design and "samples_of_patches" not in design:
+            raise ValueError("design.accuracy has decided no numbers: use stiction.accuracy.decided(config)")
+        return design.get("samples_of_patches", {})
 
     def samples(self, ground: Patch) -> int:
         """Number of samples of a patch, in any air."""

@@ -80,9 +80,10 @@ class Air:
         left_out = [f"attraction of solids across gaps{of_some}"] * bool(touching)
         if self.config["van_der_waals"] == "none":
             left_out = ["van der Waals attraction of solids"]
+        wet = [humidity > 0 and self.is_wetted(pair) for pair, humidity in cases]
         if self.config["contact"].get("model") != "full":
-            left_out.append("interaction of neighbouring summits")
-        return limits.not_modelled(left_out, any(humidity > 0 and self.is_wetted(pair) for pair, humidity in cases))
+            left_out += ["interaction of neighbouring summits", *([] if all(wet) else [limits.BENT])]
+        return limits.not_modelled(left_out, any(wet))
 
     def around(self, contact: str, config: dict | None = None) -> dict[str, Any]:
         """Configuration with attraction of the summits of a contact through its own medium."""

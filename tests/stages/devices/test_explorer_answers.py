@@ -6,10 +6,18 @@ import numpy as np
 import pytest
 import xarray as xr
 from test_pages import CANTILEVER, STOPPER, of_length, safe
-from test_tables_budget import BUDGETS, budget_dataset, stopper_dataset
+from test_tables_budget import BUDGETS, C1, budget_dataset, stopper_dataset
 
+from stiction.beam.cantilever import Beam
+from stiction.contact.voltage import Capacitor, Dielectric
 from stiction.devices.risk import SCORES
-from stiction.report.devices import explorer, first_screen
+from stiction.life import holding
+from stiction.report.devices import explorer, first_screen, sentences, voltage_views
+from stiction.stages.devices.safe_lengths import chosen_share
+from stiction.stages.life.answers import AT_VOLTAGE
+from stiction.stages.life.inputs import Errors, OfBeam
+from stiction.stages.life.lengths import least_safe
+from stiction.stages.life.voltage import beam_at_voltage
 
 BRIDGE = CANTILEVER | {"kind": "bridge", "residual_stress_MPa": 10}
 SPRING = {key: value for key, value in STOPPER.items() if key != "restoring_force_uN"}
@@ -67,3 +75,35 @@ def test_the_controls_of_a_stopper_begin_with_the_force_that_it_needs(section, p
     assert "build" not in view.words, "the answer has no margin either"
     assert "No margin for the measurements is added." in screen.basis
     assert bool(view.margin) == bool(budgets)
+
+
+def test_a_cantilever_at_a_voltage_has_the_closed_form_of_flats_and_its_bound_of_life():
+    section = CANTILEVER | {"voltage_V": 5, "offset_V": -0.5, "dielectric": {"thickness_nm": 100, "permittivity": 4.0}}
+    lengths = {0.44: safe(), 0.67: safe(longest=500e-6)}
+    grid = voltage_views.of_beam("C1", section | {"young_modulus_GPa": 164}, lengths).grid
+    beam, oxide = Beam(1e-3, 30e-6, 2.6e-6, 164e9, 20e-6, 1), Dielectric(100e-9, 4.0)
+    rng = np.random.default_rng(8)
+    for volts, humidity, rank in zip(
+        rng.uniform(0, 99.5, 50), [0.44, 0.67] * 25, rng.uniform(0.01, 0.99, 50), strict=True
+    ):
+        energy = holding.energy_of_voltage(Capacitor(oxide, volts, 0.5), 20e-6)
+        state = grid.start | {"voltage_V": volts, "humidity": humidity}
+        least = float(sentences.safe_lengths_of(lengths[humidity]).min())
+        expected = holding.length_at_voltage(least, beam, energy, holding.ARC)
+        assert grid.safe_size(state) == pytest.approx(1e6 * expected, rel=1e-3)
+        sticks = 0.7 * np.linspace(2 / 3, 1, 400) * (600e-6 if humidity == 0.44 else 500e-6)
+        shorter = holding.length_at_voltage(sticks, beam, energy, holding.ARC)
+        length = np.quantile(shorter, rank)
+        assert grid.stuck(state | {"length_um": 1e6 * length}).share == pytest.approx(
+            np.mean(shorter < length), abs=0.02
+        )
+    with pytest.raises(ValueError, match="beyond 99.5 V the dielectric breaks down"):
+        grid.safe_size(grid.start | {"voltage_V": 100.0})
+    of = OfBeam(device=C1, density=2330.0, liquids={}, uncertainty=Errors(), voltage=5.0, offset=-0.5, dielectric=oxide)
+    answers = {one.name: one for one in beam_at_voltage(of, min(map(least_of, lengths.values())), None)}
+    assert grid.safe_size(grid.start) == pytest.approx(1e6 * answers[AT_VOLTAGE].low, rel=1e-3)
+
+
+def least_of(dataset):
+    """Safe length of the middle one of the shares, as in stage life."""
+    return least_safe(dataset, chosen_share(dataset))

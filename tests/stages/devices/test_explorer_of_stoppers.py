@@ -4,11 +4,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import small
 from numpy.testing import assert_allclose
+from test_at_voltage import at
+from test_stage_life import STOPPER as LIFE
 from test_stage_stoppers import SETTINGS
 
-from stiction.report.devices import explorer
+from stiction.contact.voltage import Capacitor, Dielectric
+from stiction.report.devices import explorer, voltage_views
+from stiction.stages.contact import curves
 from stiction.stages.devices import stoppers
+from stiction.stages.life.table import stopper_answers
 
 FORCES = 1e-6 * np.exp(0.2 * np.random.default_rng(4).normal(size=4000))
 AXIS = np.linspace(0.5, 0.9, 5)
@@ -67,3 +73,55 @@ def test_a_tilted_stopper_is_answered_at_its_tilts_and_humidities_alone(stopper)
             assert view.grid.safe_size(state) == pytest.approx(1e6 * float(safe[list(factors).index(factor)]), rel=1e-9)
     with pytest.raises(ValueError, match=r"devices\.S1\.tilt_deg changes this"):
         view.grid.safe_size(view.grid.start | {"tilt_deg": 0.01})
+
+
+OXIDE = {"dielectric": {"thickness_nm": 100, "permittivity": 4.0}, "voltage_V": 5, "offset_V": -0.5}
+
+
+@pytest.mark.slow
+def test_a_stopper_at_a_voltage_has_the_fractions_of_its_stage_at_any_other_one():
+    contact = small.contact_of_pair()
+    pull = np.quantile(curves.pull_offs(contact, 0.88, at(2.0)), 0.7)
+    own = stoppers.Settings(1, at(2.0), (1.5e-6, 6e-6), 9e-12 * pull, (0.88, 0.67), (0.85, 0.9))
+    biased = stoppers.compute_at_voltage(contact, own)
+    view = voltage_views.of_stopper("S1", SECTION | STATED | OXIDE | {"voltage_V": 2}, biased)
+    patches, shares = biased.sizes["sample"], []
+    assert view.grid.start["voltage_V"] == 2
+    for humidity in own.humidities:
+        for volts in np.random.default_rng(2).uniform(*view.grid.size.values, 25):
+            water = replace(own.water, capacitor=Capacitor(own.water.capacitor.dielectric, volts, -0.5))
+            held = np.mean(curves.pull_offs(contact, humidity, water) > pull)
+            stuck = view.grid.stuck(view.grid.start | {"humidity": humidity, "voltage_V": volts})
+            shares.append(held)
+            assert abs(stuck.share - held) < 2 * np.sqrt(held * (1 - held) / patches) + 1 / patches
+    assert 0.1 < np.mean(shares) < 0.9
+    with pytest.raises(ValueError, match=r"computed at 0\.67, 0\.88 alone"):
+        view.grid.stuck(view.grid.start | {"humidity": 0.7})
+
+
+def biased(stopper, potentials):
+    """Dataset of a stopper at a voltage, with potentials that free its patches (n_rh, m)."""
+    return stopper.assign(freeing_potential=(("humidity", "sample"), potentials))
+
+
+def test_the_voltage_that_frees_a_stopper_is_that_of_its_life(stopper):
+    potentials = np.stack([12 * FORCES, 10 * FORCES]) * 1e6
+    found = biased(stopper, potentials)
+    of = replace(LIFE, restoring_force=1e-6, voltage=5.0, offset=-0.5, dielectric=Dielectric(100e-9, 4.0))
+    answers = {one.name: one for one in stopper_answers(stopper, of, found)}
+    grid = voltage_views.of_stopper("S1", SECTION | STATED | OXIDE, found).grid
+    assert grid.start["share"] == 1e-3, "the smallest one with a bound"
+    assert grid.safe_size(grid.start) == pytest.approx(answers["freeing_voltage"].high, rel=1e-9)
+    assert explorer.of_stopper(SECTION | STATED, stopper, {}).grid.share.setting == "", "a stopper has no key of it"
+
+
+def test_no_voltage_beyond_breakdown_and_none_of_a_spring_that_is_too_weak_has_an_answer(stopper):
+    strong = voltage_views.of_stopper(
+        "S1", SECTION | STATED | OXIDE, biased(stopper, np.stack([2000 * FORCES / 1e-6] * 2))
+    )
+    assert strong.grid.size.values[1] <= 1.05 * 99.5
+    assert np.isnan(strong.grid.stuck(strong.grid.start).share)
+    weak = voltage_views.of_stopper("S1", SECTION | STATED | OXIDE, biased(stopper, np.zeros((2, len(FORCES)))))
+    assert np.isnan(weak.grid.safe_size(weak.grid.start))
+    assert (weak.grid.stuck(weak.grid.start).beyond, weak.grid.stuck(weak.grid.start).share > 0.99) == (1, True)
+    assert "does not free them without voltage" in weak.words["none"]

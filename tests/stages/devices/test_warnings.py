@@ -422,7 +422,7 @@ IN_FORCE = [
         {"attraction": {"reach": "touching"}},
         ["attraction of solids across gaps", "interaction of neighbouring summits"],
     ),
-    ({"contact": {"model": "full"}}, ["attraction of solids across gaps"]),
+    ({"contact": {"model": "full"}}, []),
     ({"van_der_waals": "none"}, ["van der Waals attraction of solids", "interaction of neighbouring summits"]),
 ]
 
@@ -452,6 +452,20 @@ def test_what_is_not_in_the_model_of_dry_devices_is_about_no_water():
     said = Graph(Plan(load({"devices": {"S1": dry}}))).job("devices/S1.html").settings["not_modelled"]
     assert "water" not in said
     assert "across gaps" not in said
+    assert "too long; contact.model full includes it" in said
+
+
+@pytest.mark.parametrize(
+    ("model", "humidity", "bent"), [("summits", "dry", True), ("summits", 0.6, False), ("full", "dry", False)]
+)
+def test_devices_in_dry_air_say_that_summits_leave_out_the_bending_of_surfaces(model, humidity, bent):
+    pair = {"mine": {"beam": "B2", "substrate": "Sub1", "gap_um": 20, "humidities": ["dry", 0.6]}}
+    lever = {"kind": "cantilever", "pair": "mine", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
+    devices = {"C1": lever | {"humidities": [humidity]}}
+    study = {"run": {"pairs": ["mine"]}, "figures": {"humidity": 0.6}, "contact": {"model": model}}
+    config = load(study | {"pairs": pair, "devices": devices})
+    said = Graph(Plan(config)).job("devices/C1.html").settings["not_modelled"]
+    assert (limits.BENT in said) == bent
 
 
 def test_what_pairs_leave_out_is_named_with_those_of_the_paper():

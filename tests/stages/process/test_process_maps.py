@@ -135,6 +135,8 @@ def straight(low, high, error=0.1):
 
 
 LAWS = [straight(30.0, 90.0), straight(5.0, 20.0)]
+#: Covariance of the errors of a setting of each process.
+ERRORS = [np.array([[0.01]])] * 2
 
 
 def plane(a=1.0, b=1.0, c=0.0, common=0.0):
@@ -147,7 +149,7 @@ def plane(a=1.0, b=1.0, c=0.0, common=0.0):
 
 
 def test_pairs_that_suffice_are_beyond_the_line_of_the_requirement_by_the_error_of_both_laws():
-    found = recommended_pairs([plane()], LAWS, np.random.default_rng(1))
+    found = recommended_pairs([plane()], LAWS, ERRORS, np.random.default_rng(1))
     x, y = (found.settings - 60) / 30, (found.seconds[:, None] - 12.5) / 7.5
     np.testing.assert_allclose(found.margin, x + y, atol=1e-9)
     variance = [0.1**2 * ((1 - one) ** 2 + (1 + one) ** 2) / 4 for one in (x, y)]  # of a line through both settings
@@ -157,7 +159,7 @@ def test_pairs_that_suffice_are_beyond_the_line_of_the_requirement_by_the_error_
 
 def test_the_best_pair_of_two_maps_is_on_their_common_line():
     maps_of = [plane(1, 0, 0.2), plane(-1, 0, 0.2)]
-    found = recommended_pairs(maps_of, LAWS, np.random.default_rng(2))
+    found = recommended_pairs(maps_of, LAWS, ERRORS, np.random.default_rng(2))
     np.testing.assert_allclose(found.best, [60, 12.5], atol=1e-6)  # any second setting, hence the middle
     np.testing.assert_allclose(found.error[0], 30 * 0.1 / np.sqrt(2), rtol=0.1)
     assert found.interval[0, 0] < 60 < found.interval[0, 1]
@@ -165,7 +167,7 @@ def test_the_best_pair_of_two_maps_is_on_their_common_line():
 
 def test_the_error_of_simulation_and_model_is_common_to_all_pairs():
     laws = [straight(30.0, 90.0, 1e-9), straight(5.0, 20.0, 1e-9)]
-    found = recommended_pairs([plane(common=0.5)], laws, np.random.default_rng(3))
+    found = recommended_pairs([plane(common=0.5)], laws, ERRORS, np.random.default_rng(3))
     np.testing.assert_allclose(found.margin - found.safe, 1.645 * 0.5, atol=0.06)
     assert np.ptp(found.margin - found.safe) < 1e-6
     assert found.error.tolist() == [0, 0]
@@ -177,7 +179,7 @@ def test_the_row_of_a_map_is_the_curve_of_one_process_and_the_second_one_adds_it
     both, first = law_error(row, LAWS), law_error(alone, LAWS[:1])
     np.testing.assert_allclose(both**2 - first**2, 0.1**2 / 2)
     exact = [LAWS[0], straight(5.0, 20.0, 1e-9)]
-    pairs = recommended_pairs([plane()], exact, np.random.default_rng(4))
+    pairs = recommended_pairs([plane()], exact, ERRORS, np.random.default_rng(4))
     one = recommended([alone], LAWS[:1], [np.array([[0.01]])], np.random.default_rng(4))
     middle = list(pairs.seconds).index(12.5)
     np.testing.assert_allclose(pairs.safe[middle], np.interp(pairs.settings, one.settings, one.safe), atol=0.02)
@@ -199,7 +201,37 @@ def drawn_pair(rng, number=4, error=0.06):
     (first, a), (second, b) = (bent(law.at(at)[:, 0]) for law, at in zip(laws, (values, seconds), strict=True))
     margin = first + second[:, None]
     slopes = np.stack(np.broadcast_arrays(a, b[:, None]), axis=-1)
-    return recommended_pairs([Map(values, seconds, margin, slopes, np.full(margin.shape, 0.02))], laws, rng)
+    return recommended_pairs(
+        [Map(values, seconds, margin, slopes, np.full(margin.shape, 0.02))], laws, [np.array([[error**2]])] * 2, rng
+    )
+
+
+def test_the_next_setting_of_each_process_is_that_of_this_process_alone_where_the_margins_add():
+    laws = [law_of_bend(ends) for ends in ((30.0, 90.0), (5.0, 20.0))]
+    values, seconds = grid(laws[0].settings), grid(laws[1].settings, 4)
+    (first, a), (second, b) = (bent(law.at(at)[:, 0]) for law, at in zip(laws, (values, seconds), strict=True))
+    slopes = np.stack(np.broadcast_arrays(a, b[:, None]), axis=-1)
+    none = np.zeros(slopes.shape[:2])
+    found = recommended_pairs(
+        [Map(values, seconds, first + second[:, None], slopes, none)], laws, ERRORS, np.random.default_rng(6)
+    )
+    curves = Curve(values, first, a[:, None], none[0]), Curve(seconds, second, b[:, None], none[:, 0])
+    for k, (curve, law) in enumerate(zip(curves, laws, strict=True)):
+        alone = recommended([curve], [law], ERRORS[:1], np.random.default_rng(7))
+        assert (found.next[k], found.again[k]) == (alone.next, alone.again)
+        np.testing.assert_allclose([found.error[k], found.after[k]], [alone.before, alone.after], rtol=0.2)
+        assert found.after[k] < found.error[k]
+    names = {"variable": "etch_time_s", "second_variable": "deposition_time_min"}
+    settings = stage.xr.Dataset({"share": 0.05}, attrs=names)
+    *_, last = maps.answers(stage.layout(found, settings, laws[1].settings))
+    when = "again" if found.again[1] else "next"
+    assert last.startswith(f"Deposition time: measure {found.next[1]:g} min {when}: this is expected to shrink")
+
+
+def law_of_bend(ends):
+    """Law of one quantity, from -0.9 to 0.9 at four settings."""
+    values = np.linspace(-0.9, 0.9, 4)[:, None]
+    return fit(np.linspace(*ends, 4), values, np.full((4, 1, 1), 0.01))
 
 
 @pytest.mark.slow
@@ -225,7 +257,7 @@ def told(c=0.0, known=True):
     names = {"variable": "etch_time_s", "second_variable": "deposition_time_min"}
     settings = stage.xr.Dataset({"share": 0.05}, attrs=names)
     pairs = (
-        recommended_pairs([found], LAWS, np.random.default_rng(1))
+        recommended_pairs([found], LAWS, ERRORS, np.random.default_rng(1))
         if known
         else unknown(np.linspace(30, 90, 5), LAWS[1].settings)
     )

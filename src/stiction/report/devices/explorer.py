@@ -57,7 +57,7 @@ def of_beam(
 ) -> View:
     """View of a cantilever or bridge. Parameters as of `stiction.report.devices.pages.beam_page`."""
     humid = {humidity: chart for humidity, chart in sorted(charts.items()) if humidity > 0}
-    joined = _charted(humid) if humid else _alone(section, safe_lengths)
+    joined = _charted(humid) if humid else alone(section, safe_lengths)
     worst = _worst(safe_lengths)
     chart = f"devices.{name}.chart"
     axes = (
@@ -69,8 +69,8 @@ def of_beam(
     )
     safe, quantiles = joined.safe_length.values / UM, joined["quantile"].values / UM
     start = section.get("length_um", float(sentences.safe_lengths_of(safe_lengths[worst]).min()) / UM)
-    size = _size("length_um", "length", "µm", (safe, quantiles), start)
-    share = _share(joined.share.values, sentences.chosen(safe_lengths[worst]))
+    size = size_axis("length_um", "length", "µm", (safe, quantiles), start)
+    share = share_axis(joined.share.values, sentences.chosen(safe_lengths[worst]), "shares")
     grid = Grid(axes, share, size, safe, quantiles, int(joined.beams), falls=False)
     words = {
         "what": "length",
@@ -95,7 +95,7 @@ def _charted(charts):
     return joined.sortby("share").assign(beams=parts[0].beams).transpose("humidity", "thickness", "gap", ...)
 
 
-def _alone(section, safe_lengths):
+def alone(section: Mapping[str, Any], safe_lengths: Mapping[float, xr.Dataset]) -> xr.Dataset:
     """Safe lengths of the device itself, as a chart of one thickness and gap."""
     parts = []
     for humidity, dataset in sorted(safe_lengths.items()):
@@ -162,9 +162,9 @@ def _of_forces(axes, safe, scored, section, stopper):
     if key not in section:
         key, label, unit, per = "stiffness_N_per_m", "stiffness of the spring", "N/m", section["gap_um"] * UM
     numbers = known.values / per, scored / per
-    size = _size(key, label, unit, numbers, float(stopper.restoring_force) / per)
+    size = size_axis(key, label, unit, numbers, float(stopper.restoring_force) / per)
     least = sentences.bounded_share(stopper)
-    share = _share(known.share.values, least if least in known.share.values else float(known.share[-1]))
+    share = share_axis(known.share.values, least if least in known.share.values else float(known.share[-1]), "")
     grid = Grid(axes, share, size, *numbers, stopper.sizes["sample"], falls=True)
     words = {"what": label, "safe": f"Sufficient {label}", "stick": f"Stoppers with this {label} that stick"}
     return View("humidity", grid, words | {"bound": "sufficient"})
@@ -189,16 +189,18 @@ def _of_size(key, label, values, section, stated):
     return Axis(key, label, "µm", "log", values, start, several, f"it is {text}; {stated} changes this", key)
 
 
-def _share(values, start):
-    """Axis of the fractions that may stick."""
+def share_axis(values: Sequence[float], start: float, setting: str) -> Axis:
+    """Axis of the fractions that may stick. Only beams have a key of them."""
     values = tuple(map(float, values))
-    reason = f"safe values are computed for p from {values[0]:g} to {values[-1]:g}; design.shares changes this"
+    several = f"from {values[0]:g} to {values[-1]:g}" if len(values) > 1 else f"= {values[0]:g} alone"
+    reason = f"safe values are computed for p {several}"
+    reason += f"; design.{setting} changes this" if setting else ""
     return Axis(
-        "share", "fraction p that may stick", "", "score", values, float(start), len(values) > 1, reason, "shares"
+        "share", "fraction p that may stick", "", "score", values, float(start), len(values) > 1, reason, setting
     )
 
 
-def _size(key, label, unit, computed, start):
+def size_axis(key: str, label: str, unit: str, computed: Sequence[np.ndarray], start: float) -> Axis:
     """Axis of lengths or forces, around all computed ones and the first of a page."""
     numbers = np.concatenate([np.ravel(part) for part in computed])
     numbers = np.append(numbers[np.isfinite(numbers)], start)

@@ -21,7 +21,7 @@ from stiction.plan.stage import File, Shown, Stage
 from stiction.report import html
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
-from stiction.report.devices import curve_views, explorer, first_screen, life, own_length, sentences
+from stiction.report.devices import curve_views, explorer, first_screen, life, own_length, sentences, voltage_views
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
 from stiction.report.drawings.devices import device_drawing
@@ -41,7 +41,9 @@ from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budgets_of
 from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.devices.opening import section_of_beam
 from stiction.stages.devices.stoppers import ends, shares_stuck
+from stiction.stages.life.table import is_biased
 
 #: What a map over two quantities shows.
 _OF_MAPS = (
@@ -301,7 +303,8 @@ def _inputs(plan, at):
     own |= {"style": File(STYLE), "templates": [File(_GLOSSARY), *html.files(TEMPLATE)]}
     if not devices.kind(at.device).is_beam:
         tilted = {"tilted": f"devices/tilted/{at.device}"} if "tilt_deg" in section else {}
-        return own | {"stopper": f"devices/stoppers/{at.device}"} | tilted
+        biased = {"biased": f"devices/at_voltage/{at.device}"} if is_biased(plan, at.device) else {}
+        return own | {"stopper": f"devices/stoppers/{at.device}"} | tilted | biased
     charts = devices.chart_cases(at.device) if at.device in devices.charted else []
     return own | {
         "safe_lengths": {key[1]: name for key, name in by_case("devices/safe_lengths", cases).items()},
@@ -323,6 +326,8 @@ def _settings(plan, at):
     assumed = plan.devices.assumed(at.device)
     measured = [name for name in names.values() if is_measured(plan.config["surfaces"][name])]
     known = {"assumed": assumed, "measured": measured}
+    if plan.devices.kind(at.device).has_tip and is_biased(plan, at.device):
+        known["young_modulus_GPa"] = section_of_beam(plan, at.device)["young_modulus_GPa"]
     return section | {"surfaces": surfaces} | not_modelled | {key: some for key, some in known.items() if some}
 
 
@@ -334,10 +339,14 @@ def _page(data, at, settings):
         views = [explorer.of_stopper(settings, data["stopper"], budgets)]
         if "tilted" in data:
             views.append(explorer.of_tilted(at.device, settings, data["tilted"], data["stopper"]))
+        if "biased" in data:
+            views.append(voltage_views.of_stopper(at.device, settings, data["biased"]))
         page = stopper_page(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
         views = [explorer.of_beam(at.device, settings, lengths, charts, budgets)]
+        if "young_modulus_GPa" in settings:
+            views.append(voltage_views.of_beam(at.device, settings, lengths))
         page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
     views += curve_views.views(at.device, settings, data)
     page = process_section.with_process(page, at.device, data)

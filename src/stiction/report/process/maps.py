@@ -24,7 +24,8 @@ def answers(pairs: xr.Dataset) -> list[str]:
         return [briefly(pairs)]
     said = [briefly(pairs), *(_at_settings(pairs, first, second) if second.sufficient.size else [])]
     for view in (first, second):
-        said += [f"{_words(view).capitalize()}: {one[:1].lower()}{one[1:]}" for one in tables.best(view)]
+        own = [*tables.best(view), *tables.following(view, tables.unit_of(view))]
+        said += [f"{_words(view).capitalize()}: {one[:1].lower()}{one[1:]}" for one in own]
     return said
 
 

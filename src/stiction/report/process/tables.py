@@ -23,7 +23,7 @@ def answers(recommended: xr.Dataset, who: str) -> list[str]:
     said = [_sufficient(one, who, unit)]
     if places := [at(one, *pair) for pair in _pairs(one.crossing, one.crossing_error)]:
         said.append(f"The estimate meets the requirement exactly at {' and at '.join(places)}.")
-    return said + best(one) + _next(one, unit)
+    return said + best(one) + following(one, unit)
 
 
 def briefly(recommended: xr.Dataset, who: str) -> str:
@@ -91,8 +91,8 @@ def best(one: xr.Dataset) -> list[str]:
     return said
 
 
-def _next(one, unit):
-    """Setting to measure next."""
+def following(one: xr.Dataset, unit: str) -> list[str]:
+    """Setting to measure next, or nothing if none shrinks an error."""
     if np.isnan(float(one.next)):
         return []
     subject = {"best": "the best setting", "range": "the length of the range that suffices"}[

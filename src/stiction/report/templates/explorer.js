@@ -269,10 +269,10 @@ function opened(number) {
     const build = words.build && less && safe * Math.exp(-2 * less.total);
     return {
       stuck: `${words.stick}: ${stuckText(stuckAt(state[grid.size.key], levels))}`,
-      safe: `${words.safe} for ${oneIn(state.share)}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : `not known from ${grid.samples} devices`}`,
+      safe: `${words.safe} for ${oneIn(state.share)}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : words.none ?? `not known from ${grid.samples} devices`}`,
       budget: less
         ? `Measurements leave ${text(100 * less.total, 2)} %, most of it ${less.most}: ${Number.isFinite(build) && words.build ? `build ${words.build} ${text(build, DIGITS)} ${unit}` : "no margin is added for them"}`
-        : `Margin for the measurements: not computed ${data.margin ? "at this humidity" : "without stated uncertainties"}`,
+        : `Margin for the measurements: not computed ${data.margin ? "at this humidity" : content.views.some(view => view.margin) ? "in this view" : "without stated uncertainties"}`,
     };
   }
 
@@ -434,7 +434,7 @@ function opened(number) {
       section[setting] = ["humidities", "tilt_deg"].includes(setting) ? [state[key]] : state[key];
     }
     const all = [...new Set([...shares, state.share])].sort((a, b) => b - a);
-    const design = grid.falls || grid.lines ? {} : {design: {...data.study.design, shares: all}};
+    const design = grid.share.setting ? {design: {...data.study.design, shares: all}} : {};
     return yaml({...whole, ...design, devices: {[data.name]: section}});
   }
 

@@ -108,20 +108,24 @@ def compute(data: Mapping[str, Any], settings: dict[str, Any]) -> xr.Dataset:
     return layout(in_order(answers), of, length_of(lengths, of))
 
 
+def is_biased(plan: Any, device: str) -> bool:
+    """Whether a device has a voltage at which its dielectric does not break down."""
+    capacitor = plan.devices.capacitor(device)
+    return bool(capacitor) and in_si(Capacitor, capacitor).field <= BREAKDOWN
+
+
 def _inputs(plan, at):
     """Safe lengths at all humidities of a beam, for all touchdowns and at its voltage as well, or forces of a stopper.
 
     Beyond the breakdown of the dielectric, no voltage is there that could hold, and flats alone bound what it does.
     """
-    section, capacitor = plan.config["devices"][at.device], plan.devices.capacitor(at.device)
-    fast = separation_inputs(plan, at.device)
-    is_biased = bool(capacitor) and in_si(Capacitor, capacitor).field <= BREAKDOWN
+    section, fast = plan.config["devices"][at.device], separation_inputs(plan, at.device)
     if not plan.devices.kind(at.device).is_beam:
-        biased = {"biased": f"devices/at_voltage/{at.device}"} if is_biased else {}
+        biased = {"biased": f"devices/at_voltage/{at.device}"} if is_biased(plan, at.device) else {}
         tilted = {"tilted": f"devices/tilted/{at.device}"} if "tilt_deg" in section else {}
         return {"stopper": f"devices/stoppers/{at.device}"} | biased | tilted | fast
     cases = {humidity: case_id(at.device, humidity) for humidity in section["humidities"]}
-    more, biased = cases if "touchdowns" in section else {}, cases if is_biased else {}
+    more, biased = cases if "touchdowns" in section else {}, cases if is_biased(plan, at.device) else {}
     dimpled = cases if "dimples" in section else {}
     return fast | {
         "lengths": {humidity: f"devices/safe_lengths/{case}" for humidity, case in cases.items()},

@@ -62,7 +62,8 @@ def recommended(found: xr.Dataset, laws: Sequence[xr.Dataset], device: str, seed
     if len(maps) < found.sizes["humidity"] * found.sizes["shape"]:
         pairs = unknown(np.linspace(*known[0].ends, PAIRS), known[1].settings)
     else:
-        pairs = recommended_pairs(maps, known, stream(seed, "process", "pairs", device))
+        errors = [law.errors.values.mean(axis=0) for law in laws]
+        pairs = recommended_pairs(maps, known, errors, stream(seed, "process", "pairs", device))
     return layout(pairs, found, known[1].settings)
 
 
@@ -76,6 +77,9 @@ def layout(pairs: Pairs, found: xr.Dataset, settings: np.ndarray) -> xr.Dataset:
             "best": ("process", pairs.best, {"long_name": "pair of settings with the largest margin"}),
             "best_error": ("process", pairs.error),
             "best_interval": (("process", "end"), pairs.interval),
+            "next": ("process", pairs.next, {"long_name": "setting to measure next"}),
+            "next_again": ("process", pairs.again),
+            "next_after": ("process", pairs.after, {"long_name": "expected error of the best setting then"}),
             "second_settings": ("setting", settings),
             "share": found.share,
         },
@@ -96,7 +100,9 @@ def of_processes(pairs: xr.Dataset) -> list[xr.Dataset]:
 def _of_process(pairs, number, own, other, variable):
     """Settings of one process."""
     ranges = sufficient(pairs[own].values, pairs.safe.max(other, skipna=False).values)
-    best = {name: pairs[name].isel(process=number) for name in ("best", "best_error", "best_interval")}
+    named = ("best", "best_error", "best_interval", "next", "next_again", "next_after")
+    best = {name: pairs[name].isel(process=number) for name in named}
+    best |= {"next_before": best["best_error"], "next_subject": xr.DataArray("best")}
     places = {"value": ("place", pairs[own].values), "sufficient": (("range", "end"), np.reshape(ranges, (-1, 2)))}
     return xr.Dataset(
         places | {name: one.variable for name, one in best.items()}, attrs={"variable": pairs.attrs[variable]}
