@@ -7,6 +7,9 @@ import pickle
 import pytest
 from hypothesis import settings
 
+# Needs libraries of the extra peers.
+collect_ignore = ["benchmarks/peers.py"]
+
 # Nearly everything that a collection of thousands of tests creates remains; looking for garbage takes a quarter of it.
 gc.disable()
 

@@ -9,27 +9,15 @@ HUMIDITIES = np.array([0.44, 0.67, 0.92])
 CORRECTION = Correction(HUMIDITIES, np.array([0.64, 0.9, 1.0]), np.array([0.72, 0.95, 1.0]))
 
 
-def test_models_that_agree_are_corrected_by_nothing_bit_for_bit():
-    same = Correction(HUMIDITIES, np.ones(3), np.ones(3))
-    for humidity in (0.44, 0.5, 0.92):
-        vectors, limit = same.vectors(VECTORS, F_LIMIT, humidity)
-        assert np.array_equal(vectors, VECTORS)
-        assert limit == F_LIMIT
-
-
-def test_energies_and_largest_attractions_change_by_their_ratios_and_distances_do_not():
-    (vectors, limit), (energy, pull_off) = CORRECTION.vectors(VECTORS, F_LIMIT, 0.5), CORRECTION.at(0.5)
-    assert 0.64 < energy < pull_off < 0.95
-    np.testing.assert_allclose(vectors / VECTORS, np.tile([energy, pull_off, 1, 1], (len(VECTORS), 1)))
-    assert limit == vectors[:, 1].max()
+def corrected(vectors, humidity):
+    """Vectors and threshold times the ratios of energy and force, as laws take them."""
+    energy, pull_off = CORRECTION.at(humidity)
+    return vectors * [energy, pull_off, 1, 1], F_LIMIT * pull_off
 
 
 def test_force_laws_have_the_corrected_energy_and_depth_and_keep_the_steepness_of_their_repulsion():
-    lawful = VECTORS[forcelaw.admissible(*CORRECTION.vectors(VECTORS, F_LIMIT, 0.44))]
-    base, changed = (
-        forcelaw.coefficients(lawful, F_LIMIT),
-        forcelaw.coefficients(*CORRECTION.vectors(lawful, F_LIMIT, 0.44)),
-    )
+    lawful = VECTORS[forcelaw.admissible(*corrected(VECTORS, 0.44))]
+    base, changed = forcelaw.coefficients(lawful, F_LIMIT), forcelaw.coefficients(*corrected(lawful, 0.44))
     np.testing.assert_allclose(forcelaw.energy(changed), 0.64 * forcelaw.energy(base))
     np.testing.assert_allclose(changed[:, 0], 0.72 * base[:, 0])
     np.testing.assert_allclose(changed[:, 1:3], base[:, 1:3])

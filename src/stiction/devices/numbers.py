@@ -14,7 +14,6 @@ from functools import cache
 
 import numpy as np
 from scipy.special import ndtri
-from scipy.stats import norm
 
 from stiction.devices.risk import samples_for
 from stiction.devices.tail import scaled_errors
@@ -45,7 +44,7 @@ def quantile_errors(numbers: np.ndarray, share: float) -> np.ndarray:
 
     As in `stiction.devices.risk.safe_length`: an order statistic if there are enough, otherwise a fit of the lowest.
     """
-    sampled = np.sqrt(share * (1 - share)) / norm.pdf(ndtri(share))
+    sampled = np.sqrt(2 * np.pi * share * (1 - share)) * np.exp(ndtri(share) ** 2 / 2)
     return np.where(numbers >= samples_for(share), sampled, _of_one_fitted(share)) / numbers**0.5
 
 

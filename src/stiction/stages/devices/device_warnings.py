@@ -1,7 +1,6 @@
 """Results of devices beyond the limits of the model, in sentences of `stiction.devices.limits`."""
 
 import json
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
@@ -80,11 +79,12 @@ def beam_warnings(
 
 
 def _accuracy_warnings(safe_lengths, of):
-    """Warning about the error of the length of one shape at the share that pages speak of."""
+    """Warning about the error of the length of one shape at the share that pages speak of, if an accuracy is stated."""
+    if of.accuracy is None:
+        return []
     one = safe_lengths.sel(share=chosen_share(safe_lengths))
     parts = [float(one[name] / one.estimate) for name in ("beams_error", "surfaces_error")]
-    asked = of.accuracy.length if of.accuracy else math.inf
-    return limits.given(limits.missed_accuracy(*parts, asked))
+    return limits.given(limits.missed_accuracy(*parts, of.accuracy.length))
 
 
 def chart_warnings(
