@@ -11,7 +11,7 @@ import stiction
 from stiction.analysis.process_law import fit, grid
 from stiction.devices.process import Curve, Map, law_error, recommended, recommended_pairs, unknown
 from stiction.plan.graph import Results
-from stiction.report.page import Page
+from stiction.report.page import Page, Summary
 from stiction.report.process import figures, maps, section
 from stiction.report.style import png
 from stiction.stages.process import maps as stage
@@ -84,8 +84,12 @@ def test_a_map_joins_all_its_points_with_slopes_by_both_laws(mapped):
     assert len(table.frame) == len(points)
     assert "Bump: " + maps.briefly(pairs) in table.caption
     data = {"process_map": found, "process_pairs": pairs, "process_laws": laws}
-    page = section.with_process(Page("Bump", {}, ["It is safe.", "Because."]), "Bump", data)
+    screen = Summary(
+        "good", "Suffices", "It is safe.", (), {"What decides": "RH 0.6.", "What to change": "Less."}, None
+    )
+    page = section.with_process(Page("Bump", {}, ["It is safe.", "Because."], summary=screen), "Bump", data)
     assert page.answer == ["It is safe.", maps.briefly(pairs), "Because."]
+    assert page.summary.points == {"What decides": "RH 0.6.", "What to change": f"Less. {maps.briefly(pairs)}"}
     assert [one.title for one in page.sections] == [
         "Which settings of the two processes?",
         "Law of B2",

@@ -349,9 +349,8 @@ def _page(data, at, settings):
             views.append(voltage_views.of_beam(at.device, settings, lengths))
         page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
     views += curve_views.views(at.device, settings, data)
-    page = process_section.with_process(page, at.device, data)
     drawing = device_drawing(_with_force(settings)).svg
-    page = with_life(page, at.device, data["life"])
+    page = process_section.with_process(with_life(page, at.device, data["life"]), at.device, data)
     return replace(
         page,
         not_modelled=settings["not_modelled"],

@@ -11,6 +11,9 @@ from stiction.report.page import Page, Section
 from stiction.report.process import figures, maps, tables
 from stiction.stages.process.recommended import ALL
 
+#: Point of the first screen that has the settings.
+CHANGE = "What to change"
+
 
 def inputs(plan: Any, device: str) -> dict[str, Any]:
     """Names of the datasets of the process of a device, none without one."""
@@ -29,7 +32,7 @@ def inputs(plan: Any, device: str) -> dict[str, Any]:
 
 
 def with_process(page: Page, device: str, data: Mapping[str, Any]) -> Page:
-    """Page with the sufficient settings for its device, or itself without a process."""
+    """Page with the sufficient settings for its device, also on its first screen, or itself without a process."""
     if "process_laws" not in data:
         return page
     laws, (verdict, *reasons) = data["process_laws"], page.answer
@@ -42,8 +45,14 @@ def with_process(page: Page, device: str, data: Mapping[str, Any]) -> Page:
         own = _section(device, data["process"], data["process_settings"], laws)
         answer = tables.briefly(data["process_settings"], device)
     pictures = [Section(f"Law of {law.surface}", (), None, figures.laws(law)) for law in laws]
-    answer = [verdict, answer, *reasons]
-    return replace(page, answer=answer, sections=[*page.sections, own, *pictures])
+    summary = page.summary and replace(page.summary, points=_advised(page.summary.points, answer))
+    sections = [*page.sections, own, *pictures]
+    return replace(page, summary=summary, answer=[verdict, answer, *reasons], sections=sections)
+
+
+def _advised(points, answer):
+    """Points of a first screen, with the settings of the process as a change to consider."""
+    return points | {CHANGE: " ".join(filter(None, [points.get(CHANGE, ""), answer]))}
 
 
 def _of_map(device, found, pairs, laws):
