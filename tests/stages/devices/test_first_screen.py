@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from test_pages import CANTILEVER, STOPPER, of_length, safe
 from test_tables_budget import BUDGETS, STOPPERS
 
@@ -87,6 +88,19 @@ def test_a_warning_of_the_unsafe_side_stands_in_place_of_the_number():
     ):
         assert (shown.tone, shown.answer, shown.basis) == ("bad", UNSAFE, ())
     assert "Safe up to" in first_screen.beam_screen(CANTILEVER, {0.67: safe()}, {}, ["Steep."]).answer
+
+
+@pytest.mark.parametrize(("p_value", "forbidden"), [(1e-5, True), (0.2, False)])
+def test_test_beams_that_nothing_explains_forbid_the_number(p_value, forbidden):
+    update = xr.Dataset(
+        {"p_value": p_value, "updated_safe": (("share", "humidity"), np.full((3, 1), 1e-4))}, {"humidity": [0.67]}
+    )
+    for shown in (
+        first_screen.beam_screen(CANTILEVER, {0.67: safe()}, {}, [], update),
+        first_screen.stopper_screen(STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, [], update),
+    ):
+        assert (shown.sign == "Do not rely on a number") == forbidden
+        assert ("rely neither on the update" in shown.answer) == forbidden
 
 
 def test_a_number_comes_with_the_error_of_the_model_or_says_that_it_is_not_stated():

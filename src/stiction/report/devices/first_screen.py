@@ -15,7 +15,7 @@ from stiction.report.budget.tables import percentage
 from stiction.report.devices import sentences
 from stiction.report.format import UM, UN, airs, humidity_text, number, with_error
 from stiction.report.page import Summary
-from stiction.report.test_beams.tables import is_reliable
+from stiction.report.test_beams.tables import contradiction, is_reliable
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import EITHER, S_SHAPE
@@ -60,7 +60,8 @@ def beam_screen(
         "What to change": _change_beam(section, safe / UM),
         "What to measure": _measure(sentences.shortest_budgets(safe_lengths, budgets).values()),
     }
-    return _unless_forbidden(Summary(*verdict, basis, points, _table_of_beam(safe_lengths, test_beams)), warnings)
+    summary = Summary(*verdict, basis, points, _table_of_beam(safe_lengths, test_beams))
+    return _unless_forbidden(summary, warnings, test_beams)
 
 
 def _chosen(dataset):
@@ -156,9 +157,13 @@ def _with_test_beams(update, humidity):
 
 
 def stopper_screen(
-    section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset], warnings: Sequence[str]
+    section: Mapping[str, Any],
+    stopper: xr.Dataset,
+    budgets: Mapping[tuple, xr.Dataset],
+    warnings: Sequence[str],
+    test_beams: xr.Dataset | None = None,
 ) -> Summary:
-    """First screen of a stopper: its section, dataset of stage stoppers, budgets and warnings."""
+    """First screen of a stopper: its section, dataset of stage stoppers, budgets, warnings, and perhaps test beams."""
     force, share = float(stopper.restoring_force), sentences.bounded_share(stopper)
     humidity, *stuck = max(shares_stuck(stopper), key=lambda row: row[3])
     needed = np.nan if share is None else float(stopper.safe_force.sel(part="safe", share=share).max(skipna=False))
@@ -186,7 +191,7 @@ def stopper_screen(
         "What to measure": _measure(budgets.values()),
     }
     cells = _table_of_stopper(stopper, share)
-    return _unless_forbidden(Summary(*verdict, list(filter(None, basis)), points, cells), warnings)
+    return _unless_forbidden(Summary(*verdict, list(filter(None, basis)), points, cells), warnings, test_beams)
 
 
 def _table_of_stopper(stopper, share):
@@ -201,9 +206,11 @@ def _table_of_stopper(stopper, share):
     return pd.DataFrame(rows)
 
 
-def _unless_forbidden(summary: Summary, warnings: Sequence[str]) -> Summary:
-    """Summary with a warning in place of its number, if one forbids relying on it."""
-    forbidding = [warning for warning in warnings if limits.forbids(warning)]
+def _unless_forbidden(summary: Summary, warnings: Sequence[str], test_beams: xr.Dataset | None) -> Summary:
+    """Summary with a warning in place of its number, if one forbids relying on it, or test beams contradict it."""
+    contradicted = test_beams is not None and not is_reliable(test_beams)
+    forbidding = [contradiction(test_beams)] if contradicted else []
+    forbidding += filter(limits.forbids, warnings)
     if not forbidding:
         return summary
     return Summary("bad", "Do not rely on a number", " ".join(forbidding), (), summary.points, summary.cells)

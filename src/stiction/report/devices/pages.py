@@ -166,7 +166,8 @@ def stopper_page(
     answer += [*forces, *worst, *of_model]
     more = [*forces, *worst, *rough, *built, *of_model[1:]]
     words = _terms()["stoppers"] | (_terms()["worst_humidity"] if worst else {}) | _words_of_budgets(budgets)
-    summary = _with_model_error(first_screen.stopper_screen(section, stopper, budgets, listed), name, errors)
+    summary = first_screen.stopper_screen(section, stopper, budgets, listed, test_beams)
+    summary = _with_model_error(summary, name, errors)
     return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary, more=more)
 
 

@@ -101,7 +101,7 @@ def built(update: xr.Dataset) -> str:
     responses = list(dict.fromkeys(map(str, update.response.values)))
     none = f"With the test beams, no {'force' if FORCE in responses else 'length'} is stated"
     if not is_reliable(update):
-        return f"{none}. {_wrong(update)}"
+        return f"{none}. {contradiction(update)}"
     if update.result_after.isnull().any():
         return f"{none}: {_FEW}."
     (before, after), *others = (_built(update, response) for response in sorted(responses, key=_WEAKEST.index))
@@ -344,7 +344,7 @@ def _contradictions(update):
     """Data not explained by the inputs, or by inputs and model together."""
     of_inputs = float(update.p_value_of_inputs)
     if not is_reliable(update):
-        yield _wrong(update)
+        yield contradiction(update)
     elif of_inputs < UNLIKELY:
         factor, slope = (float(update["shift"].sel(input=name)) for name in (inference.FACTOR, inference.SLOPE))
         yield (
@@ -360,8 +360,8 @@ def _contradictions(update):
         )
 
 
-def _wrong(update):
-    """Sentence on data explained by nothing."""
+def contradiction(update: xr.Dataset) -> str:
+    """Sentence on test beams that neither inputs nor model explain, which forbids relying on any length."""
     return (
         "Neither the errors of the inputs nor those of the model, as stated, explain the test beams (p = "
         f"{float(update.p_value):.1g}): something else is wrong, such as a dimension, a humidity or plastic contact. "
