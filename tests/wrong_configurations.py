@@ -256,7 +256,6 @@ WRONG_RELATIONS = [
     (UNCERTAIN + "poisson_ratio: 0.3}}}", "devices.C1.uncertainty.poisson_ratio", "0.3", "its budget needs 0.23 ± 0.3"),
     (UNCERTAIN + "hamaker_constant_zJ: 98}}}", "devices.C1.uncertainty.hamaker_constant_zJ", "98",
      "below the Hamaker constant itself, 97.5 zJ (given van_der_waals = 'water')"),
-    ("contact: {model: full}\nfigures: {humidity: 0.5}", "figures.humidity", "0.5", "within the humidities of pair c"),
     (f"contact: {{model: full}}\ndevices: {{S1: {STOPPER}}}", "design.worst_humidities", "[0.4, 0.98]",
      "within the humidities of pair b, to which the correction"),
     (f"contact: {{model: full}}\npairs: {{b: {{humidities: [0.5, 0.7]}}}}\ndevices: {{C1: {CANTILEVER}}}",

@@ -202,12 +202,14 @@ def attraction_reaches_across_dry_gaps(config):
 
 @relation
 def corrections_are_not_extrapolated(config):
-    """Pairs and devices are corrected to full elastic contact within the humidities of their pair."""
+    """Devices are corrected to full elastic contact within the humidities of their pair and of its figures."""
     if config["contact"].get("model") != "full":
         return
-    for meeting in meetings(config):
+    for name, _ in config.entries("devices", "pair"):
+        meeting = device_meeting(name, config)
         of_pair, (own, *others) = f"pairs.{meeting.pair}.humidities", meeting.airs
-        known, uncertain = config[of_pair], dict(config.known(meeting.deviation))
+        shown = [air for _, air in config.known("figures.humidity") if meeting.pair in config["run.pairs"]]
+        known, uncertain = [*config[of_pair], *shown], dict(config.known(meeting.deviation))
         for key, humidities in config.known(own, *others):
             more = sum(uncertain.values()) if key == own else 0
             if not meeting.is_wetted or _is_within(humidities, more, known):

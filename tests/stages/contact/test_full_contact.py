@@ -9,11 +9,13 @@ from plans import job_settings
 
 from stiction.analysis.model_error import interpolation_error, mean_ratios
 from stiction.config.cases import case_id, in_numbers
+from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact import elements
 from stiction.contact.environment import Water
-from stiction.plan.graph import Results
+from stiction.plan.graph import Graph, Results
+from stiction.plan.plan import Plan
 from stiction.stages.contact import curves, full_contact
 from stiction.stages.contact.pairs import bodies
 from stiction.stages.laws import forces
@@ -108,6 +110,25 @@ def test_dry_air_comes_before_the_humidities_of_a_pair():
     assert "gaps" not in touching["water"]
     plain = Results.of(merged(small.PLAN.config, {"attraction": {"reach": "touching"}}))
     assert plain.graph.job("studies/full_contact/across/b").settings["humidities"] == [0.44, 0.67, 0.92]
+
+
+@pytest.mark.parametrize(
+    ("own", "shown", "touching", "across"),
+    [
+        ([0.44, 0.67, 0.92], 0.65, [0.44, 0.67, 0.92], [0.44, 0.67, 0.92]),
+        ([0.7, 0.92], 0.65, [0.65, 0.7, 0.92], [0.65, 0.7, 0.92]),
+        (["dry"], 0.65, [0.65], [0, 0.65]),
+        (["dry"], "dry", [], [0]),
+        ([0.5, 0.8], "dry", [0.5, 0.8], [0, 0.5, 0.8]),
+    ],
+)
+def test_full_contact_reaches_the_humidity_of_the_figures(own, shown, touching, across):
+    pair = {"beam": "B2", "substrate": "Sub1", "gap_um": 20, "humidities": own}
+    study = {"run": {"pairs": ["mine"], "studies": []}, "contact": {"model": "full"}, "figures": {"humidity": shown}}
+    plan = Plan(load(study | {"pairs": {"mine": pair}}))
+    for folder, humidities in ("studies/full_contact", touching), ("studies/full_contact/across", across):
+        job = Graph(plan).job(f"{folder}/mine")
+        assert list(job.settings["humidities"]) == humidities
 
 
 @pytest.mark.parametrize("humidity", [0, 0.44, 0.92])

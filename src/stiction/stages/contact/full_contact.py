@@ -149,9 +149,9 @@ def pull_offs(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def settings_of(plan: Any, at: At) -> dict[str, Any]:
     """Settings of the contact without attraction across gaps, at three humidities of the pair.
 
-    They are the lowest, the middle and the highest one at which water condenses.
+    They are the lowest, the middle and the highest one at which water condenses, that of its figures among them.
     """
-    humid = sorted(plan.air.humid(at.pair))
+    humid = sorted(filter(None, plan.air.of_full_contact(at.pair))) if plan.air.is_wetted(at.pair) else []
     chosen = dict.fromkeys(humid[k] for k in (0, (len(humid) - 1) // 2, -1)) if humid else ()
     study = {"humidities": list(chosen), "strips": plan.config["studies"]["full_contact"]["samples"]}
     seen = plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None)
@@ -160,8 +160,8 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
 
 def _settings_across(plan, at):
     """Settings with attraction across gaps, also in dry air if the pair has any."""
-    touching, humidities = settings_of(plan, at), plan.config["pairs"][at.pair]["humidities"]
-    dry = [0.0] * (len(plan.air.humid(at.pair)) < len(humidities))
+    touching = settings_of(plan, at)
+    dry = [] if all(plan.air.of_full_contact(at.pair)) and plan.air.is_wetted(at.pair) else [0.0]
     return touching | {"water": plan.air.across_gaps(at.pair), "humidities": dry + touching["humidities"]}
 
 
