@@ -129,6 +129,8 @@ def test_full_contact_reaches_the_humidity_of_the_figures(own, shown, touching, 
     for folder, humidities in ("studies/full_contact", touching), ("studies/full_contact/across", across):
         job = Graph(plan).job(f"{folder}/mine")
         assert list(job.settings["humidities"]) == humidities
+    corrected = Graph(plan).job("studies/model_error/across/mine").settings["humidities"]
+    assert set(across) <= set(corrected), "every law of the pair has a ratio"
 
 
 @pytest.mark.parametrize("humidity", [0, 0.44, 0.92])

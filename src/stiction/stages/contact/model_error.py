@@ -55,8 +55,8 @@ def layout(
 
 
 def _settings(plan, at):
-    """Humidities of a pair, and dry air if no water condenses at any of them."""
-    humidities = plan.config["pairs"][at.pair]["humidities"] if plan.air.humid(at.pair) else [0.0]
+    """Humidities of a pair and of its figures; dry air alone if no water condenses."""
+    humidities = plan.air.of_full_contact(at.pair) if plan.air.is_wetted(at.pair) else [0.0]
     return {"humidities": humidities} | ({"applied": True} if plan.variants.is_corrected() else {})
 
 
