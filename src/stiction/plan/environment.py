@@ -72,11 +72,12 @@ class Air:
         return [rh for rh in self.config["pairs"][pair]["humidities"] if rh > 0] if self.is_wetted(pair) else []
 
     def of_full_contact(self, pair: str) -> list[float]:
-        """Humidities of a pair, and that of its figures if it is in the run and beyond them."""
+        """Humidities of a pair, and that of its figures if these show corrected laws beyond them."""
         own, shown = self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
         humid = [rh for rh in own if rh > 0]
         within = shown in own or shown > 0 and humid and min(humid) <= shown <= max(humid)
-        return [*own, shown] if pair in self.config["run"]["pairs"] and not within else own
+        corrected = self.config["contact"].get("model") == "full" and pair in self.config["run"]["pairs"]
+        return [*own, shown] if corrected and not within else own
 
     def not_modelled(self, cases: Iterable[tuple[str, float]]) -> str:
         """Sentence on the effects missing in the results of some cases, each a pair and a humidity."""
