@@ -33,7 +33,7 @@ SHORTER, STRONGER = "beams that were pressed stick at shorter lengths", "stopper
 #: Error in dry air of contact on summits alone, from six strips of each pair of the paper (docs/tables/deformed.md).
 BENT = (
     "in dry air the bending of surfaces towards each other (on the surfaces of the paper lengths come out 1 to 8 % too "
-    "long; contact.model full includes it)"
+    "long and forces 10 to 30 % too small; contact.model full includes it)"
 )
 #: Words of every warning about a result on the unsafe side.
 UNSAFE = "the unsafe side"
