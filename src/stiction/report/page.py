@@ -10,11 +10,11 @@ from matplotlib.figure import Figure
 
 from stiction.report import html
 from stiction.report.format import MISSING
-from stiction.report.style import png
+from stiction.report.style import strips
 
 TEMPLATE, SCRIPT = "page.html", "explorer.js"
-#: Pixels of a page for one inch of a figure, and most rows of a table that is not folded.
-_PIXELS, _ROWS = 120, 30
+#: Most rows of a table that is not folded.
+_ROWS = 30
 
 
 @dataclass(frozen=True)
@@ -38,14 +38,9 @@ class Section:
         return len(self.cells) > _ROWS
 
     @property
-    def picture(self) -> str:
-        """Figure as PNG in Base64."""
-        return base64.b64encode(png(self.figure)).decode()
-
-    @property
-    def width(self) -> int:
-        """Width of the figure on the page [pixels]."""
-        return round(_PIXELS * self.figure.get_figwidth())
+    def pictures(self) -> list[str]:
+        """Panels and legends of the figure as PNG in Base64."""
+        return [base64.b64encode(strip).decode() for strip in strips(self.figure)]
 
 
 @dataclass(frozen=True)

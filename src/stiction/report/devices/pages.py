@@ -31,7 +31,7 @@ from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.process import section as process_section
 from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
-from stiction.report.style import STYLE
+from stiction.report.style import STYLE, on_a_page
 from stiction.report.surfaces.words import described
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
@@ -332,6 +332,7 @@ def _settings(plan, at):
     return section | {"surfaces": surfaces} | not_modelled | {key: some for key, some in known.items() if some}
 
 
+@on_a_page()
 def _page(data, at, settings):
     """Page of a device."""
     warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]

@@ -278,7 +278,7 @@ function opened(number) {
 
   // Charts
 
-  const [WIDTH, HEIGHT, LEFT, BOTTOM, TOP, RIGHT] = [520, 320, 58, 46, 12, 12];
+  const [WIDTH, HEIGHT, LEFT, BOTTOM, TOP, RIGHT] = [400, 280, 58, 46, 12, 12];
 
   function ticks(low, high) {
     const rough = (high - low) / 6, power = 10 ** Math.floor(Math.log10(rough));
