@@ -3,6 +3,7 @@
 import re
 
 import numpy as np
+import pandas as pd
 import pytest
 import yaml
 from browser import Browser, missing
@@ -13,7 +14,7 @@ from stiction.command import main
 from stiction.config.merging import differing
 from stiction.config.reading import paper
 from stiction.report.devices import curve_views, explorer, voltage_views
-from stiction.report.page import Page
+from stiction.report.page import FORBIDDEN, Page, Summary
 
 pytestmark = [
     pytest.mark.slow,
@@ -63,6 +64,26 @@ def page(views, tmp_path_factory):
 def browser():
     with Browser() as browser:
         yield browser
+
+
+@pytest.fixture(scope="module")
+def forbidden(views, tmp_path_factory):
+    """Page with all these views and a warning in the place of its number."""
+    content = explorer.content("D", STOPPER, list(views.values())) | {"study": {}}
+    summary = Summary("bad", FORBIDDEN, "It is plastic.", (), {}, pd.DataFrame({"RH": ["0.6"], "force [µN]": ["–"]}))
+    path = tmp_path_factory.mktemp("forbidden") / "D.html"
+    page = Page("D: stopper", {}, ["It is safe up to 5 µm."], explorer=content, summary=summary)
+    path.write_text(page.html, encoding="utf-8")
+    return path
+
+
+def test_a_warning_that_forbids_a_number_stands_in_the_place_of_all_answers(views, forbidden, browser):
+    browser.open(forbidden)
+    for number, view in enumerate(views.values()):
+        assert go_to(browser, number, view.grid.start) == {"forbidden": "Do not rely on a number: It is plastic."}
+        assert browser.run("return document.querySelectorAll('.charts svg').length") == 0
+        assert browser.run("return document.querySelectorAll('.control').length") >= 3
+    assert browser.errors() == []
 
 
 def go_to(browser, number, state):

@@ -15,6 +15,8 @@ from stiction.report.style import strips
 TEMPLATE, SCRIPT = "page.html", "explorer.js"
 #: Most rows of a table that is not folded.
 _ROWS = 30
+#: Sign of a first screen without a number.
+FORBIDDEN = "Do not rely on a number"
 
 
 @dataclass(frozen=True)
@@ -53,11 +55,22 @@ class Summary:
     basis: Sequence[str]  #: what the number rests on
     points: Mapping[str, str]  #: what decides, what to change, what to measure
     cells: pd.DataFrame  #: one small table
+    missing: str = "test beams contradict the model, or too few samples bound it"  #: why cells have no number
 
     @property
     def has_missing(self) -> bool:
         """Whether a cell has no number."""
         return bool((self.cells == MISSING).any(axis=None))
+
+    @property
+    def line(self) -> str:
+        """Answer in a line."""
+        return f"{self.sign}: {self.answer}"
+
+    @property
+    def is_forbidden(self) -> bool:
+        """Whether a warning stands in the place of the number, here and wherever the page states one in words."""
+        return self.sign == FORBIDDEN
 
 
 @dataclass(frozen=True)
@@ -84,9 +97,19 @@ class Page:
 
     @property
     def lines(self) -> list[str]:
-        """Answer for a file of text: the first screen in a line, and all sentences."""
-        first = [f"{self.summary.sign}: {self.summary.answer}"] if self.summary else []
-        return [*first, *self.answer]
+        """Answer for a file of text: the first screen in a line, and all sentences unless a warning forbids them."""
+        first = [self.summary.line] if self.summary else []
+        return first if self.is_forbidden else [*first, *self.answer]
+
+    @property
+    def is_forbidden(self) -> bool:
+        """Whether a warning stands in the place of all numbers in words."""
+        return self.summary is not None and self.summary.is_forbidden
+
+    @property
+    def controls(self) -> dict[str, Any]:
+        """Content of its controls, with the warning that stands in the place of their answers, if there is one."""
+        return self.explorer | {"forbidden": self.summary.line if self.is_forbidden else ""}
 
     @property
     def html(self) -> str:

@@ -246,8 +246,11 @@ function opened(number) {
   let shown;
 
   function answer() {
-    for (const [name, content] of Object.entries((grid.lines ? textsOfCurve : texts)())) shown[name].textContent = content;
+    for (const [name, content] of Object.entries(answersOf())) shown[name].textContent = content;
   }
+
+  /** Texts of the answers; the warning instead of all of them, if there is one. */
+  const answersOf = data.forbidden ? () => ({forbidden: data.forbidden}) : grid.lines ? textsOfCurve : texts;
 
   function textsOfCurve() {
     const {words} = data, [quantity] = grid.axes, [[margin, ...ends], [size, ...band]] = sizes(state);
@@ -453,14 +456,14 @@ function opened(number) {
   const panel = make(root, "div", {class: "controls"});
   for (const axis of controls) control(panel, axis);
   const answers = make(panel, "div", {class: "answers", "aria-live": "polite"});
-  shown = Object.fromEntries((grid.lines ? ["enough", "size", "stuck", "margin"] : ["stuck", "safe", "budget"]).map(name => [name, make(answers, "p", {"data-answer": name})]));
+  shown = Object.fromEntries((data.forbidden ? ["forbidden"] : grid.lines ? ["enough", "size", "stuck", "margin"] : ["stuck", "safe", "budget"]).map(name => [name, make(answers, "p", {"data-answer": name})]));
   const buttons = make(panel, "p"), copy = make(buttons, "button", {type: "button"}, "Copy as YAML");
   const reset = make(buttons, "button", {type: "button"}, "Back to this device");
   const status = make(panel, "p", {class: "note", role: "status"});
   const place = make(panel, "textarea", {readonly: "", rows: 8, "aria-label": "study as YAML", hidden: ""});
   copy.addEventListener("click", () => copied(place, status));
   const figures = make(root, "div", {class: "charts"}), moving = grid.axes.filter(axis => axis.values.length > 1 && allSafe.length);
-  const charts = grid.lines ? curveCharts(figures) : [stuckChart(figures), ...moving.slice(0, 1).map(axis => safeChart(figures, axis))];
+  const charts = data.forbidden ? [] : grid.lines ? curveCharts(figures) : [stuckChart(figures), ...moving.slice(0, 1).map(axis => safeChart(figures, axis))];
   let state, refused;
   const start = () => { [state, refused] = fromAddress(); refresh(refused); };
   reset.addEventListener("click", () => { state = Object.fromEntries(controls.map(axis => [axis.key, axis.start])); refresh({}); });
