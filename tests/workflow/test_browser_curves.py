@@ -13,7 +13,9 @@ import stiction
 from stiction.command import main
 from stiction.config.merging import differing
 from stiction.config.reading import paper
+from stiction.devices.risk import SCORES
 from stiction.report.devices import curve_views, explorer, voltage_views
+from stiction.report.devices.grid import Axis, Grid
 from stiction.report.page import FORBIDDEN, Page, Summary
 
 pytestmark = [
@@ -84,6 +86,35 @@ def test_a_warning_that_forbids_a_number_stands_in_the_place_of_all_answers(view
         assert browser.run("return document.querySelectorAll('.charts svg').length") == 0
         assert browser.run("return document.querySelectorAll('.control').length") >= 3
     assert browser.errors() == []
+
+
+def test_a_small_chart_has_the_noise_of_its_curve_as_a_band(browser, tmp_path):
+    humidities, noisy = np.linspace(0.4, 0.8, 9), 300 * (1 + 0.02 * np.random.default_rng(6).normal(size=(9, 1)))
+    axes = (explorer.humidity_axis(humidities, 0.8, "humidities", True),)
+    grid = Grid(
+        axes,
+        explorer.share_axis([0.01], 0.01, ""),
+        Axis("length_um", "length", "µm", "linear", (100, 400), 200, True, ""),
+        noisy,
+        noisy * np.exp(0.1 * SCORES),
+        400,
+        False,
+    )
+    view = explorer.View("air", grid, {"safe": "Safe length", "stick": "Stuck", "bound": "safe"})
+    path = tmp_path / "D.html"
+    path.write_text(Page("D", {}, ["Yes."], explorer=explorer.content("D", BEAM, [view])).html, encoding="utf-8")
+    browser.open(path)
+    chart = "[...document.querySelectorAll('.charts svg')].at(-1)"
+    paths = f"return [...{chart}.querySelectorAll('path')].map(one => one.getAttribute('d'))"
+    band, curve = (np.array(re.findall(r"[ML]\S+ ([^ML]+)", one), float) for one in browser.run(paths))
+    ground = browser.run(f"return Number({chart}.querySelector('line').getAttribute('y1'))")
+    heights = ground - curve
+    noise = grid.noise_at(grid.start)
+    assert noise > 0.01
+    assert ground - band[: len(curve)] == pytest.approx((1 - noise) * heights, abs=0.2)
+    assert ground - band[len(curve) :][::-1] == pytest.approx((1 + noise) * heights, abs=0.2)
+    captions = browser.run("return [...document.querySelectorAll('.charts figcaption')].map(one => one.textContent)")
+    assert f"± {100 * noise:.2g} %" in captions[-1]
 
 
 def go_to(browser, number, state):

@@ -13,6 +13,7 @@ from stiction.contact.voltage import Capacitor, Dielectric
 from stiction.devices.risk import SCORES
 from stiction.life import holding
 from stiction.report.devices import explorer, first_screen, sentences, voltage_views
+from stiction.stages.devices.chart import largest_error_between
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.life.answers import AT_VOLTAGE
 from stiction.stages.life.inputs import Errors, OfBeam
@@ -75,6 +76,26 @@ def test_the_controls_of_a_stopper_begin_with_the_force_that_it_needs(section, p
     assert "build" not in view.words, "the answer has no margin either"
     assert "No margin for the measurements is added." in screen.basis
     assert bool(view.margin) == bool(budgets)
+
+
+def ragged():
+    """Charts of a device at nine humidities, whose lengths scatter by a percent."""
+    factors = 1 + 0.01 * np.random.default_rng(6).normal(size=9)
+    return {round(0.4 + 0.05 * k, 2): charted(safe(longest=600e-6 * one)) for k, one in enumerate(factors)}
+
+
+def test_the_band_of_a_small_chart_is_that_of_the_figure():
+    charts = ragged()
+    grid = explorer.of_beam("C1", CANTILEVER, {0.6: safe()}, charts, {}).grid
+    of_axis = xr.concat([one.assign_coords(relative_humidity=rh) for rh, one in charts.items()], "relative_humidity")
+    for thickness in (2.0, 2.6):
+        for share in grid.share.values:
+            one = of_axis.isel(shape=[-1]).sel(share=[share], thickness=[1e-6 * thickness], method="nearest")
+            found = grid.noise_at(grid.start | {"thickness_um": thickness, "share": share})
+            assert found == pytest.approx(largest_error_between(one), rel=1e-9)
+            assert 0.002 < found < 0.05
+    few = explorer.of_beam("C1", CANTILEVER, {0.6: safe()}, dict(list(charts.items())[:4]), {}).grid
+    assert np.isnan(few.noise_at(few.start))
 
 
 def test_a_cantilever_at_a_voltage_has_the_closed_form_of_flats_and_its_bound_of_life():

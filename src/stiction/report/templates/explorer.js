@@ -93,6 +93,8 @@ function opened(number) {
     return Math.exp(monotone(known.get("share"), at(grid.safe, state), score(state.share)));
   }
 
+  const noiseAt = state => Math.exp(monotone(known.get("share"), at(grid.noise, state, grid.axes.slice(1)), score(state.share)));
+
   function levelsOf(state) {
     const found = at(grid.quantiles, state);
     const keep = found.map(Number.isFinite);
@@ -383,19 +385,24 @@ function opened(number) {
     return [() => sizeChart(size.start), () => stuck()];
   }
 
-  const allSafe = (grid.safe ?? []).flat(Infinity).filter(value => value !== null);
+  const all = values => (values ?? []).flat(Infinity).filter(value => value !== null);
+  const allSafe = all(grid.safe);
 
   function safeChart(parent, axis) {
     const ends = [axis.values[0], axis.values[axis.values.length - 1]], unit = grid.size.unit;
-    const top = 1.05 * Math.max(...allSafe);
+    const top = 1.05 * Math.max(...allSafe) * (1 + Math.max(0, ...all(grid.noise)));
     const chart = axesOf(parent, `${data.words.safe} against ${axis.label}`, ends, [0, top], [nameOf(axis), `${data.words.safe} [${unit}]`]);
+    const noise = () => axis === grid.axes[0] ? noiseAt(state) : NaN, ragged = make(chart.svg, "path", {class: "band"});
     const curve = make(chart.svg, "path", {class: "curve"}), marks = axis.values.map(() => make(chart.svg, "circle", {r: 3, class: "mark"}));
     const dot = make(chart.svg, "circle", {r: 6, class: "here"});
     const safe = value => safeSize({...state, [axis.key]: value});
-    const describe = value => `At ${valueText(axis, value)}: ${data.words.bound} ${text(safe(value), DIGITS)} ${unit}. Small dots: computed.`;
+    const describe = value => `At ${valueText(axis, value)}: ${data.words.bound} ${text(safe(value), DIGITS)} ${unit}. Small dots: computed.${Number.isFinite(noise()) ? ` Band: error between them, ± ${text(100 * noise(), 2)} %.` : ""}`;
     const caption = hover(chart, ends, value => describe(nearest(axis, value)), () => state[axis.key]);
     return () => {
-      if (axis.between) curve.setAttribute("d", path(spread(...ends).map(value => [chart.x(value), chart.y(safe(value))])));
+      const points = axis.between ? spread(...ends).map(value => [value, safe(value)]) : [];
+      const along = factor => points.map(([value, one]) => [chart.x(value), chart.y(factor * one)]);
+      curve.setAttribute("d", path(along(1)));
+      ragged.setAttribute("d", Number.isFinite(noise()) ? path([...along(1 - noise()), ...along(1 + noise()).reverse()]) : "");
       axis.values.forEach((value, k) => {
         marks[k].setAttribute("cx", chart.x(value));
         marks[k].setAttribute("cy", chart.y(safe(value)));
