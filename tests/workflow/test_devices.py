@@ -37,6 +37,10 @@ SMALL = {
 }
 
 
+#: Tables of the run.
+TABLES = {"safe_lengths", "chart", "stoppers", "budget", "life"}
+
+
 def in_a_browser(test):
     """Test that needs a browser."""
     return pytest.mark.browser(pytest.mark.skipif(bool(missing()), reason=missing())(test))
@@ -66,8 +70,7 @@ def run(shared):
 def test_every_device_has_a_page_and_every_table_and_figure_is_there(run):
     results = run / "results"
     assert {path.stem for path in (results / "devices").glob("*.html")} == {"C1", "R1", "S1"}
-    tables = {"safe_lengths", "chart", "stoppers", "budget", "life"}
-    assert {path.stem for path in (results / "tables").glob("*.html")} == tables
+    assert {path.stem for path in (results / "tables").glob("*.html")} == TABLES
     figures = {"risk", "chart", "stoppers", "life", *(f"budget_{device}" for device in ("C1", "R1", "S1"))}
     assert {path.stem for path in (results / "figures").glob("*.png")} == figures
 
@@ -397,7 +400,9 @@ def test_a_page_is_one_small_file_that_everyone_can_use(run, browser, device):
 
 
 @in_a_browser
-@pytest.mark.parametrize("page", ["devices/C1", "devices/R1", "devices/S1", "index"])
+@pytest.mark.parametrize(
+    "page", ["devices/C1", "devices/R1", "devices/S1", "index", *(f"tables/{one}" for one in sorted(TABLES))]
+)
 def test_a_checker_of_accessibility_finds_nothing_on_a_page(run, browser, page):
     pytest.importorskip("axe_core_python")
     browser.open(run / "results" / f"{page}.html")
@@ -405,6 +410,7 @@ def test_a_checker_of_accessibility_finds_nothing_on_a_page(run, browser, page):
     for width in (1440, 390):
         browser.resize(width)
         assert browser.violations() == []
+        assert browser.run("return document.documentElement.scrollWidth") <= width
 
 
 @in_a_browser
