@@ -338,7 +338,7 @@ def _page(data, at, settings):
     warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
     more = {name: data.get(name) for name in ("test_beams", "errors", "roughness")}
     if "stopper" in data:
-        views = [explorer.of_stopper(settings, data["stopper"], budgets)]
+        views = explorer.views_of_stopper(settings, data["stopper"], budgets)
         if "tilted" in data:
             views.append(explorer.of_tilted(at.device, settings, data["tilted"], data["stopper"]))
         if "biased" in data:
@@ -346,7 +346,7 @@ def _page(data, at, settings):
         page = stopper_page(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
-        views = [explorer.of_beam(at.device, settings, lengths, charts, budgets)]
+        views = explorer.views_of_beam(at.device, settings, lengths, charts, budgets)
         if "young_modulus_GPa" in settings:
             views.append(voltage_views.of_beam(at.device, settings, lengths))
         page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
