@@ -52,6 +52,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
     figure, columns, lines = columns_of_panels(len(datasets), 2, at_most_double(SINGLE), 5.0)
     for column, dataset in zip(columns, datasets.values(), strict=True):
         _stuck_over_force(column[0], dataset)
+        column[0].set_xlabel(on_own_axes("restoring force [µN]", columns.T))
         _force_over_humidity(column[1], dataset)
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
@@ -74,7 +75,7 @@ def _stuck_over_force(panel, dataset):
         panel.plot(at, share, color=colour, linestyle=dashes(k), label=air(humidity))
         panel.fill_between(at, low, high, color=colour, alpha=0.2, linewidth=0)
     panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
-    panel.set(xlabel="restoring force [µN]", yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
+    panel.set(yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
     is_left = restoring < np.mean(panel.get_xlim())
     panel.annotate(
         "restoring force",

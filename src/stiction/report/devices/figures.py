@@ -77,7 +77,9 @@ def risk(datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tup
         legend_below(panel, named)
         _own_length(panel, dataset)
         shares = np.concatenate([dataset.share.values for dataset in cases.values()])
-        panel.set(yscale="log", ylim=(shares.min() / 2, 1.3), xlabel="length of the device [µm]")
+        panel.set(
+            yscale="log", ylim=(shares.min() / 2, 1.3), xlabel=on_own_axes("length of the device [µm]", columns.T)
+        )
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
     letter_lines(lines, names)

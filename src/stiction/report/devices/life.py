@@ -1,5 +1,6 @@
 """Life of devices: causes of contact, adhesion then, and ways to free them."""
 
+import textwrap
 from collections.abc import Mapping
 
 import numpy as np
@@ -72,8 +73,10 @@ CAPTION = (
     "that it wets."
 )
 _COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#D55E00", "#CC79A7", "#009E73"), strict=True))
-#: Height of a row, and of everything else in a panel [in].
-_ROW, _AROUND = 0.3, 1.1
+#: Height of a row, and of everything else in a panel [in]. Size of text [points], mean width of its characters in sizes,
+#: and share of a column of panels that it may take.
+_ROW, _AROUND = 0.34, 1.1
+_SIZE, _CHARACTER, _FILLED = 7, 0.45, 0.85
 
 
 def table(datasets: Mapping[str, xr.Dataset]) -> Table:
@@ -295,7 +298,7 @@ def figure(datasets: Mapping[str, xr.Dataset]) -> Figure:
     height = _AROUND + _ROW * max(map(len, rows.values()))
     made, columns, lines = columns_of_panels(len(rows), 1, at_most_double(1.6 * SINGLE), height)
     for panel, (name, answers) in zip(columns[:, 0], rows.items(), strict=True):
-        _bars(panel, answers, float(datasets[name].length))
+        _bars(panel, answers, float(datasets[name].length), len(rows))
     letter_lines(lines, list(rows))
     entries = [Line2D([], [], color=colour, linewidth=4, label=name) for name, colour in _COLOURS.items()]
     legend_outside(made, (entries, list(_COLOURS)), "upper", 4)
@@ -308,19 +311,23 @@ def _rows(dataset):
     return [one for one in answers_of(dataset) if one.unit == unit and np.isfinite(one.high)]
 
 
-def _bars(panel: Axes, answers, length):
-    """One bar for each answer from its lower to its upper bound, and the length of a beam."""
+def _bars(panel: Axes, answers, length, count):
+    """One bar for each answer from its lower to its upper bound, and the length of a beam. A figure has some panels."""
     factor, unit = _UNITS[answers[0].unit]
+    grid, figure = panel.get_gridspec(), panel.figure
+    longest = int(_FILLED * figure.get_figwidth() / grid.ncols * 72 / (_SIZE * _CHARACTER))
     for row, one in enumerate(reversed(answers)):
         low, high = factor * (one.high if np.isnan(one.low) else one.low), factor * one.high
         panel.plot([low, high], [row, row], color=_COLOURS[one.question], linewidth=4, solid_capstyle="butt")
         panel.plot([low, high], [row, row], "|", color=_COLOURS[one.question], markersize=8)
-        text = one.what.partition(":")[0]
-        panel.annotate(text, (0.02, row + 0.2), xycoords=("axes fraction", "data"), fontsize=7, path_effects=OUTLINED)
+        text = textwrap.fill(one.what.partition(":")[0], longest)
+        place = {"xycoords": ("axes fraction", "data"), "va": "bottom", "linespacing": 1}
+        panel.annotate(text, (0.02, row + 0.15), **place, fontsize=_SIZE, path_effects=OUTLINED)
     if np.isfinite(length):
         panel.axvline(factor * length, color="0.4", linestyle=":", linewidth=0.8)
     what = "length" if unit == "µm" else "force"
-    panel.set(xlabel=f"{what} [{unit}]", xlim=(0, 1.05 * panel.dataLim.x1), ylim=(-0.5, len(answers) - 0.3), yticks=[])
+    label = f"{what} [{unit}]" + ", axes differ" * (count > 1)
+    panel.set(xlabel=label, xlim=(0, 1.05 * panel.dataLim.x1), ylim=(-0.5, len(answers) - 0.1), yticks=[])
 
 
 #: What table and figure declare alike.
