@@ -268,6 +268,8 @@ def test_the_controls_begin_with_the_number_of_the_answer(run, browser, device):
     else:
         assert float(answer[1]) == pytest.approx(numbers(shown["budget"])[-1], abs=0.51)
     assert shown["budget"].endswith("no margin is added for them") == (device == "S1")
+    for stuck in re.findall(r"(\S+ %) stick( \(.* %\))", screen.replace("\N{NO-BREAK SPACE}", " ")):
+        assert shown["stuck"].endswith("".join(stuck))
 
 
 @in_a_browser

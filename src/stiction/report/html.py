@@ -15,7 +15,7 @@ from stiction.plan.stage import File
 
 TEMPLATES = Path(__file__).with_name("templates")
 #: Most characters of a cell that is never broken.
-_LONG = 40
+_LONG = 24
 _ENVIRONMENT = Environment(
     loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
 )

@@ -55,6 +55,17 @@ BEAMS = {
 }
 
 
+def stated(answer):
+    """P(stuck) and its band [%] in an answer."""
+    return re.findall(r"(\S+) % stick \((\S+) to (\S+) %\)", answer)
+
+
+def shown(grid):
+    """P(stuck) and its band [%] at the beginning of the controls."""
+    stuck = grid.stuck(grid.start)
+    return [tuple(f"{100 * part:.3g}" for part in (stuck.share, stuck.low, stuck.high))]
+
+
 @pytest.mark.parametrize("name", BEAMS)
 def test_the_controls_of_a_beam_begin_with_its_length_to_build(name):
     section, lengths, budgets, chart = BEAMS[name]
@@ -66,6 +77,7 @@ def test_the_controls_of_a_beam_begin_with_its_length_to_build(name):
     assert bool(total) == bool(budgets)
     build = view.grid.safe_size(view.grid.start) * np.exp(-2 * total)
     assert f"{build:.0f}" == re.match(r"Safe up to (\d+) µm", answer)[1]
+    assert stated(answer) == ([] if name != "length" else shown(view.grid))
     if total:
         assert (view.margin.low, view.margin.high) == (0.44, 0.67)
 
@@ -80,6 +92,7 @@ def test_the_controls_of_a_stopper_begin_with_the_force_that_it_needs(section, p
     screen = first_screen.stopper_screen(section, stopper, budgets, [])
     needed = re.match(r"At least (\S+) µN needed", screen.answer)[1]
     assert f"{per * view.grid.safe_size(view.grid.start):.3g}" == needed
+    assert stated(screen.answer) == shown(view.grid)
     assert "build" not in view.words, "the answer has no margin either"
     assert "No margin for the measurements is added." in screen.basis
     assert bool(view.margin) == bool(budgets)
@@ -94,6 +107,7 @@ def test_the_controls_of_a_stopper_whose_worst_air_is_dry_begin_there():
     alone, over = explorer.views_of_stopper(section, stopper, {})
     needed = re.match(r"At least (\S+) µN needed", first_screen.stopper_screen(section, stopper, {}, []).answer)[1]
     assert f"{alone.grid.safe_size(alone.grid.start):.3g}" == needed
+    assert stated(first_screen.stopper_screen(section, stopper, {}, []).answer) == shown(alone.grid)
     assert (alone.grid.start["humidity"], over.grid.axes[0].values[0]) == (0.0, 0.5)
     assert f"{over.grid.safe_size(over.grid.start):.3g}" != needed
 

@@ -17,6 +17,7 @@ from stiction.report.devices.curves import Curves
 from stiction.report.devices.grid import Axis, Grid
 from stiction.report.format import UM, UN
 from stiction.stages.devices.budget import budget_of, groups_of
+from stiction.stages.devices.stoppers import shares_stuck
 
 #: Title of a view of a device in its own airs.
 _ALONE = "the device itself"
@@ -91,7 +92,13 @@ def of_beam(
     start = section.get("length_um", float(sentences.safe_lengths_of(safe_lengths[worst]).min()) / UM)
     size = size_axis("length_um", "length", "µm", (safe, quantiles), start)
     share = share_axis(joined.share.values, sentences.chosen(safe_lengths[worst]), "shares")
-    grid = Grid(axes, share, size, safe, quantiles, int(joined.beams), falls=False)
+    sizes = {"thickness_um": float(section["thickness_um"]), "gap_um": float(section["gap_um"])}
+    counted = [
+        ({"humidity": humidity, size.key: size.start} | sizes, *map(float, one.isel(shape=-1).stuck_at_length))
+        for humidity, one in safe_lengths.items()
+        if "length_of_device" in one
+    ]
+    grid = Grid(axes, share, size, safe, quantiles, int(joined.beams), False, counted)
     words = {
         "what": "length",
         "safe": "Safe length",
@@ -206,7 +213,9 @@ def _of_forces(axes, safe, scored, section, stopper):
     size = size_axis(key, label, unit, numbers, float(stopper.restoring_force) / per)
     least = sentences.bounded_share(stopper)
     share = share_axis(known.share.values, least if least in known.share.values else float(known.share[-1]), "")
-    grid = Grid(axes, share, size, *numbers, stopper.sizes["sample"], falls=True)
+    counted = [({"humidity": humidity, key: size.start}, *stuck) for humidity, *stuck in shares_stuck(stopper)]
+    of_axes = {axis.key for axis in axes} == {"humidity"}
+    grid = Grid(axes, share, size, *numbers, stopper.sizes["sample"], True, counted if of_axes else ())
     words = {"what": label, "safe": f"Sufficient {label}", "stick": f"Stoppers with this {label} that stick"}
     return View("humidity", grid, words | {"bound": "sufficient"})
 
@@ -247,7 +256,7 @@ def size_axis(key: str, label: str, unit: str, computed: Sequence[np.ndarray], s
     numbers = np.append(numbers[np.isfinite(numbers)], start)
     low, high = (float(f"{value:.3g}") for value in (numbers.min() * (1 - _ROOM), numbers.max() * (1 + _ROOM)))
     reason = f"the simulated devices end between {low:g} and {high:g} {unit}"
-    return Axis(key, label, unit, "linear", (low, high), float(f"{start:.3g}"), True, reason, key)
+    return Axis(key, label, unit, "linear", (low, high), float(f"{start:.4g}"), True, reason, key)
 
 
 def _listed(values):

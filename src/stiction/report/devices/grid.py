@@ -79,6 +79,7 @@ class Grid:
     quantiles: np.ndarray  #: over the axes and the scores of `stiction.devices.risk`; NaN if unknown
     samples: int  #: simulated devices of each state
     falls: bool  #: whether fewer stick at a larger size
+    counted: Sequence[tuple[Mapping[str, float], float, float, float]] = ()  #: states of tables, fraction and its band
 
     def safe_size(self, state: Mapping[str, float]) -> float:
         """Safe size for the state's share."""
@@ -87,7 +88,10 @@ class Grid:
         )
 
     def stuck(self, state: Mapping[str, float]) -> Stuck:
-        """P(stuck) at the state's size."""
+        """P(stuck) at the state's size: as in the tables if they have this state."""
+        for at, *found in self.counted:
+            if all(state[key] == value for key, value in at.items()):
+                return Stuck(*found, 0)
         levels, scores = self._levels(state)
         if not len(levels):
             return Stuck(np.nan, np.nan, np.nan, 0)

@@ -73,8 +73,8 @@ CAPTION = (
     "that it wets."
 )
 _COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#D55E00", "#CC79A7", "#009E73"), strict=True))
-#: Height of a row, and of everything else in a panel [in]. Size of text [points], mean width of its characters in sizes,
-#: and share of a column of panels that it may take.
+#: Height of a row, and of everything else in a panel [in]. Size of text [points], mean width of its characters in
+#: sizes, and share of a column of panels that it may take.
 _ROW, _AROUND = 0.34, 1.1
 _SIZE, _CHARACTER, _FILLED = 7, 0.45, 0.85
 

@@ -139,7 +139,11 @@ function opened(number) {
     return [-1, 1].map(sign => (share + part / 2 + sign * half) / (1 + part));
   }
 
+  /** P(stuck) at a size and the other values of the state: as in the tables if they have it. */
   function stuckAt(size, [levels, scores]) {
+    const here = {...state, [grid.size.key]: size};
+    const counted = grid.counted.find(([at]) => Object.entries(at).every(([key, value]) => here[key] === value));
+    if (counted) return {share: counted[1], low: counted[2], high: counted[3], beyond: 0};
     if (!levels.length) return {share: NaN, low: NaN, high: NaN, beyond: 0};
     const place = Math.log(size), sign = grid.falls ? -1 : 1;
     const share = probability(sign * line(levels, scores, place));
