@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 from drawn_curves import etched, law_of, rough
 from test_pages import CANTILEVER, STOPPER, of_length, safe
-from test_tables_budget import BUDGETS, STOPPERS
+from test_tables_budget import BUDGETS, STOPPERS, stopper_dataset
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
@@ -47,6 +47,16 @@ def test_a_stated_length_is_judged_by_its_own_share(length, sign):
     share, low, high = 100 * dataset.stuck_at_length.sel(shape=EITHER).values
     assert f"{share:.3g} % stick ({low:.3g} to {high:.3g} %)" in shown.answer
     assert shown.cells.iloc[0, -1] == f"{share:.3g} ({low:.3g} to {high:.3g})"
+
+
+def test_dry_air_is_in_words():
+    forces = stopper_dataset().assign_coords(humidity=[0.0, 0.67])
+    stopped = first_screen.stopper_screen(STOPPER, forces.assign(restoring_force=1e-9), {}, [])
+    released = first_screen.beam_screen(CANTILEVER | {"length_um": 400}, {0.0: of_length(400e-6)}, {}, [])
+    for shown in (stopped, released):
+        assert shown.answer.endswith(" %) in dry air.")
+        assert shown.points["What decides"].startswith("Dry air, ")
+    assert any(text.startswith("Estimate in dry air: ") for text in released.basis)
 
 
 def test_the_uncertainty_of_the_measurements_shortens_the_answer_as_in_words():

@@ -96,13 +96,15 @@ def _force_over_humidity(panel, dataset):
     light = {"color": _COLOUR, "alpha": 0.2, "linewidth": 0}
     placed, humid = places([*dataset.axis.values.tolist(), float(dataset.worst_humidity)]), dataset.axis.values > 0
     axis, means = dataset.axis[humid], TO_UN * dataset.mean_along
-    band = panel.fill_between(axis, low[humid], high[humid], **light, label="5 to 95 % of the patches")
-    (mean,) = panel.plot(axis, means[humid], color=_COLOUR, label="mean")
+    entries: list = []
+    if humid.any():
+        entries += panel.plot(axis, means[humid], color=_COLOUR, label="mean")
+        entries.append(panel.fill_between(axis, low[humid], high[humid], **light, label="5 to 95 % of the patches"))
     if not humid.all():
         reach = np.abs(np.stack([low, high]) - means.values)[:, ~humid]
-        panel.errorbar(placed[0.0], means[~humid], reach, fmt="o", color=_COLOUR, markersize=3, alpha=0.6)
+        dry = {"fmt": "o", "color": _COLOUR, "markersize": 3, "alpha": 0.6, "label": "mean and 5 to 95 %, dry"}
+        entries.append(panel.errorbar(placed[0.0], means[~humid], reach, **dry))
     panel.axhline(TO_UN * float(dataset.restoring_force), color="0.4", linestyle=":", linewidth=0.8)
-    entries = [mean, band]
     if humid.any():
         worst = float(dataset.worst_humidity)
         label = f"worst humidity {worst:.2f}" if worst else "worst in dry air"

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.config.cases import air
+from stiction.config.cases import air, in_air
 from stiction.devices import limits
 from stiction.devices.risk import one_in
 from stiction.report.budget import tables as tables_budget
@@ -45,13 +45,13 @@ def beam_screen(
     point = _chosen(worst).isel(shape=-1)
     verdict = _verdict(section.get("length_um"), safe / UM, safe_lengths)
     estimate = with_error(float(point.estimate) / UM, float(np.hypot(point.beams_error, _finite(point))) / UM)
-    where = f"{air(humidity)}, the worst" if len(safe_lengths) > 1 else air(humidity)
+    where = in_air(humidity) + ", the worst" * (len(safe_lengths) > 1)
     basis = [
         f"At most {one_in(float(point.share))} sticks {airs(safe_lengths)}, with 95 % confidence, from "
         f"{int(worst.beams)} simulated beams at each humidity.",
-        f"Estimate at {where}: {estimate} µm (standard error of the simulation)."
+        f"Estimate {where}: {estimate} µm (standard error of the simulation)."
         if np.isfinite(point.estimate)
-        else f"At {where}, too few beams stick for an estimate.",
+        else f"{where[0].upper()}{where[1:]}, too few beams stick for an estimate.",
         f"Subtracted for the measurements: {100 * (1 - safe / least):.2g} %, twice their standard uncertainty."
         if total
         else "Nothing is subtracted for the measurements.",
@@ -63,6 +63,11 @@ def beam_screen(
     }
     summary = Summary(*verdict, basis, points, _table_of_beam(safe_lengths, test_beams))
     return _unless_forbidden(summary, warnings, test_beams)
+
+
+def _air(humidity):
+    """Air, for the beginning of a sentence."""
+    return air(humidity) if humidity else "Dry air"
 
 
 def _chosen(dataset):
@@ -87,7 +92,7 @@ def _verdict(length, safe, safe_lengths):
         sign = "good", "Safe"
     else:
         sign = ("bad", "Too long") if low > float(_chosen(worst).share) else ("open", "Not shown to be safe")
-    return *sign, f"{answer}; your {length:g} µm: {_stuck(stuck, low, high)} at {air(humidity)}."
+    return *sign, f"{answer}; your {length:g} µm: {_stuck(stuck, low, high)} {in_air(humidity)}."
 
 
 def _stuck(stuck, low, high):
@@ -99,7 +104,7 @@ def _decides_beam(humidity, worst, budgets, section):
     """Humidity and end state of the shortest safe length, and a decisive assumed input."""
     lengths = _chosen(worst).safe_length
     shape = str(lengths["shape"].values[int(lengths.argmin("shape"))])
-    yield f"{air(humidity)}, held by the {END_STATES[shape].by}."
+    yield f"{_air(humidity)}, held by the {END_STATES[shape].by}."
     if shape == EITHER:
         yield f"If the tip could not touch: {float(lengths.sel(shape=S_SHAPE)) / UM:.0f} µm."
     yield from tables_budget.decided(budgets.values(), section.get("assumed", ()))
@@ -168,7 +173,7 @@ def stopper_screen(
     force, share = float(stopper.restoring_force), sentences.bounded_share(stopper)
     humidity, *stuck = max(shares_stuck(stopper), key=lambda row: row[3])
     needed = np.nan if share is None else float(stopper.safe_force.sel(part="safe", share=share).max(skipna=False))
-    own = f"with {force / UN:g} µN, {_stuck(*stuck)} at {air(humidity)}"
+    own = f"with {force / UN:g} µN, {_stuck(*stuck)} {in_air(humidity)}"
     if share is None:
         verdict = "open", "Not known", f"There are too few patches to bound a force; {own}."
     else:
@@ -184,7 +189,7 @@ def stopper_screen(
     points = {
         "What decides": " ".join(
             [
-                f"{air(humidity)}, where most stick.",
+                f"{_air(humidity)}, where most stick.",
                 *tables_budget.decided(budgets.values(), section.get("assumed", ())),
             ]
         ),
