@@ -21,6 +21,8 @@ from stiction.report.style import PAGE, on_a_page, panels, strips, styled
 from stiction.stages.life.answers import layout
 from stiction.stages.life.table import beam_answers
 
+pytestmark = pytest.mark.slow
+
 #: Width of a phone without its margins, and least height of text there [pixels].
 PHONE, LEAST = 358, 11
 FIGURES = {

@@ -772,6 +772,15 @@ def test_numbers_of_counts_cross_neither_the_line_of_dry_air_nor_the_frame(shape
         assert not [one for one in panel.collections if _crosses(one, panel, at)]
 
 
+def test_the_number_of_the_longest_counted_beams_is_below_the_frame(shapes):
+    shapes(10.0)
+    found = computed([], stuck=counts(as_computed(0.7)[:1], [20], 20, HUMIDITIES[:1]))
+    figure = figures_test_beams.test_beams(found.assign(length_of_count=("count", [1.8e-3])))
+    figure.draw_without_rendering()
+    panel = figure.axes[0]
+    assert max(text.get_window_extent().y1 for text in panel.texts) < panel.bbox.y1
+
+
 def _crosses(band, panel, at):
     """Whether a band is on both sides of a place [pixels]."""
     along = panel.transData.transform(band.get_paths()[0].vertices)[:, 0]

@@ -30,6 +30,8 @@ _LEFT, _RIGHT = {"xytext": (-4, -3), "ha": "right", "va": "top"}, {"xytext": (4,
 _ALONE, _NEXT = 0.01, 0.3
 #: Share of an axis as wide as the figure that the numbers of the counts in dry air need on their left.
 _ROOM = 0.1
+#: Share of an axis above its data, for the number of the longest counted beams.
+_HEAD = 0.12
 
 
 @styled
@@ -92,7 +94,7 @@ def _lengths(panel, data, room):
         side = _LEFT if place[0] in on_the_left else _RIGHT
         panel.annotate(f"{int(at.stuck)} of {int(at.counted)}", place, textcoords="offset points", **side)
         entries += [mark] if k == 0 else []
-    panel.set(xlabel="relative humidity [–]", ylim=(0, None))
+    panel.set(xlabel="relative humidity [–]", ylim=(0, (1 + _HEAD) * panel.dataLim.y1))
     if 0 in data.humidity_of_count:
         left, right = panel.get_xlim()
         panel.set_xlim(min(left, (placed[0] - room * right) / (1 - room)), right)
