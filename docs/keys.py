@@ -26,6 +26,7 @@ EXAMPLES = [
 OF_SIMULATION = (
     "seed",
     "scans",
+    "sampling",
     "character",
     "identification",
     "solid",
