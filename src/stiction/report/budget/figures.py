@@ -24,6 +24,7 @@ from stiction.report.style import (
     humidity_axis,
     humidity_colours,
     legend_below,
+    legend_outside,
     letter,
     letter_lines,
     on_own_axes,
@@ -142,7 +143,7 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
             line[1].set_xlabel("change [%]")
     letter(list(titles), list(titles.values()))
     marks = [Patch(color=colour, label=air(humidity)) for humidity, colour in colours.items()]
-    figure.legend(handles=marks, loc="outside lower center", ncols=8)
+    legend_outside(figure, (marks, [mark.get_label() for mark in marks]), "lower", 8)
     return figure
 
 

@@ -18,6 +18,8 @@ from stiction.report.devices.grid import Axis, Grid
 from stiction.report.format import UM, UN
 from stiction.stages.devices.budget import budget_of, groups_of
 
+#: Title of a view of a device in its own airs.
+_ALONE = "the device itself"
 #: Part of a size beyond the smallest and largest computed ones that a control reaches.
 _ROOM = 0.05
 
@@ -46,6 +48,24 @@ def content(name: str, section: Mapping[str, Any], views: Sequence[View]) -> dic
     """Content of the controls of the page of a device."""
     own = {key: value for key, value in section.items() if key in kind_of(section).known}
     return {"name": name, "section": own, "views": [asdict(view) | {"grid": view.grid.json} for view in views]}
+
+
+def views_of_beam(
+    name: str,
+    section: Mapping[str, Any],
+    safe_lengths: Mapping[float, xr.Dataset],
+    charts: Mapping[float, xr.Dataset],
+    budgets: Mapping[tuple, xr.Dataset],
+) -> list[View]:
+    """Views of a cantilever or bridge, the first of which begins with the number of its answer.
+
+    It is the one over the chart, or, if the chart has neither the device itself nor its worst air, the device alone.
+    """
+    view = of_beam(name, section, safe_lengths, charts, budgets)
+    own = _worst(safe_lengths), section["thickness_um"], section["gap_um"]
+    if all(np.isclose(axis.values, value, rtol=1e-9).any() for axis, value in zip(view.grid.axes, own, strict=True)):
+        return [view]
+    return [replace(of_beam(name, section, safe_lengths, {}, budgets), title=_ALONE), view]
 
 
 def of_beam(
@@ -115,18 +135,39 @@ def _quantiles(lengths, stuck, samples):
     return np.where(inside, np.interp(shares, stuck, lengths), np.nan)
 
 
+def views_of_stopper(
+    section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]
+) -> list[View]:
+    """Views of a stopper, the first of which begins with the force of its answer.
+
+    It is the one over the humidity, or, if the worst of its airs is dry and others are humid, the device alone.
+    """
+    view, worst = of_stopper(section, stopper, budgets), _worst_air(stopper)
+    if worst in view.grid.axes[0].values:
+        return [view]
+    own = stopper.sortby("humidity")
+    axis = humidity_axis(own.humidity.values, worst, "humidities of the device", False)
+    scored = np.array([quantiles(row) for row in own.pull_off.values])
+    alone = _of_forces((axis,), own.safe_force.sel(part="safe", drop=True), scored, section, stopper)
+    return [replace(alone, title=_ALONE, margin=view.margin), view]
+
+
 def of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> View:
-    """View of a stopper: its section, dataset of stage stoppers and budgets."""
+    """View of a stopper over the humidity: its section, dataset of stage stoppers and budgets."""
     is_humid = stopper.axis.values[-1] > 0
     safe, scored = _along(stopper)
     shown = safe.axis.values > 0 if is_humid else slice(None)
     key = "design.worst_humidities" if is_humid else "humidities of the device"
-    share = sentences.bounded_share(stopper)
-    stated = stopper.pull_off.mean("sample") if share is None else stopper.safe_force.sel(part="safe", share=share)
-    worst = float(stopper.humidity[int(np.argmax(stated.values))])
-    axis = humidity_axis(safe.axis.values[shown], worst, key, True)
+    axis = humidity_axis(safe.axis.values[shown], _worst_air(stopper), key, True)
     view = _of_forces((axis,), safe.isel(axis=shown), scored[shown], section, stopper)
     return replace(view, margin=_margin(budgets))
+
+
+def _worst_air(stopper):
+    """Stated humidity of the largest sufficient force, which is that of the answer."""
+    share = sentences.bounded_share(stopper)
+    stated = stopper.pull_off.mean("sample") if share is None else stopper.safe_force.sel(part="safe", share=share)
+    return float(stopper.humidity[int(np.argmax(stated.values))])
 
 
 def _along(stopper):

@@ -23,6 +23,7 @@ from stiction.report.style import (
     humidity_axis,
     humidity_colours,
     legend_below,
+    legend_outside,
     letter_lines,
     on_own_axes,
     places,
@@ -81,7 +82,7 @@ def risk(datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tup
         line[0, 0].set_ylabel("P(stuck) [–]")
     letter_lines(lines, names)
     _explain(columns[0, 0], datasets)
-    figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=4 if len(names) > 1 else 3)
+    legend_outside(figure, handles(columns[0, 0]), "upper", 4 if len(names) > 1 else 3)
     refer_to_warnings(figure, warnings)
     return figure
 
@@ -168,7 +169,7 @@ def chart(
     letter_lines(
         lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].legend}" for name, gap, shape in subjects]
     )
-    figure.legend(*handles(*columns[:, 0]), loc="outside upper center", ncols=2)
+    legend_outside(figure, handles(*columns[:, 0]), "upper", 2)
     refer_to_warnings(figure, warnings)
     return figure
 

@@ -13,8 +13,8 @@ from stiction.devices.risk import one_in
 from stiction.report.budget import tables as tables_budget
 from stiction.report.budget.tables import percentage
 from stiction.report.devices import sentences
-from stiction.report.format import UM, UN, airs, humidity_text, number, with_error
-from stiction.report.page import Summary
+from stiction.report.format import MISSING, UM, UN, airs, humidity_text, number, with_error
+from stiction.report.page import FORBIDDEN, Summary
 from stiction.report.test_beams.tables import contradiction, is_reliable
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.end_states import END_STATES
@@ -23,6 +23,7 @@ from stiction.stages.devices.stoppers import shares_stuck
 
 #: Powers of thickness and gap in the length that sticks at an adhesion energy, of beams without tension; Eq. (13).
 _OF_THICKNESS, _OF_GAP = 3 / 4, 1 / 2
+_MEASURE = "What to measure"
 #: How to learn what to measure where no uncertainty is stated.
 _UNSTATED = "State the uncertainties of the inputs in section uncertainty: the budget then says what to measure better."
 
@@ -58,7 +59,7 @@ def beam_screen(
     points = {
         "What decides": " ".join(_decides_beam(humidity, worst, budgets, section)),
         "What to change": _change_beam(section, safe / UM),
-        "What to measure": _measure(sentences.shortest_budgets(safe_lengths, budgets).values()),
+        _MEASURE: _measure(sentences.shortest_budgets(safe_lengths, budgets).values()),
     }
     summary = Summary(*verdict, basis, points, _table_of_beam(safe_lengths, test_beams))
     return _unless_forbidden(summary, warnings, test_beams)
@@ -188,7 +189,7 @@ def stopper_screen(
             ]
         ),
         "What to change": change if share else "Compute more patches: contact.samples.",
-        "What to measure": _measure(budgets.values()),
+        _MEASURE: _measure(budgets.values()),
     }
     cells = _table_of_stopper(stopper, share)
     return _unless_forbidden(Summary(*verdict, list(filter(None, basis)), points, cells), warnings, test_beams)
@@ -213,4 +214,8 @@ def _unless_forbidden(summary: Summary, warnings: Sequence[str], test_beams: xr.
     forbidding += filter(limits.forbids, warnings)
     if not forbidding:
         return summary
-    return Summary("bad", "Do not rely on a number", " ".join(forbidding), (), summary.points, summary.cells)
+    points = {_MEASURE: summary.points[_MEASURE]}
+    cells = summary.cells.assign(**dict.fromkeys(summary.cells.columns[1:], MISSING))
+    return Summary(
+        "bad", FORBIDDEN, " ".join(forbidding), (), points, cells, "the warning above forbids to rely on one"
+    )

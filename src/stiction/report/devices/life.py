@@ -19,6 +19,7 @@ from stiction.report.style import (
     at_most_double,
     columns_of_panels,
     figure_stage,
+    legend_outside,
     letter_lines,
     styled,
 )
@@ -297,7 +298,7 @@ def figure(datasets: Mapping[str, xr.Dataset]) -> Figure:
         _bars(panel, answers, float(datasets[name].length))
     letter_lines(lines, list(rows))
     entries = [Line2D([], [], color=colour, linewidth=4, label=name) for name, colour in _COLOURS.items()]
-    made.legend(handles=entries, loc="outside upper center", ncols=4)
+    legend_outside(made, (entries, list(_COLOURS)), "upper", 4)
     return made
 
 
@@ -315,7 +316,7 @@ def _bars(panel: Axes, answers, length):
         panel.plot([low, high], [row, row], color=_COLOURS[one.question], linewidth=4, solid_capstyle="butt")
         panel.plot([low, high], [row, row], "|", color=_COLOURS[one.question], markersize=8)
         text = one.what.partition(":")[0]
-        panel.annotate(text, (0.02, row + 0.2), xycoords=("axes fraction", "data"), fontsize=6, path_effects=OUTLINED)
+        panel.annotate(text, (0.02, row + 0.2), xycoords=("axes fraction", "data"), fontsize=7, path_effects=OUTLINED)
     if np.isfinite(length):
         panel.axvline(factor * length, color="0.4", linestyle=":", linewidth=0.8)
     what = "length" if unit == "µm" else "force"

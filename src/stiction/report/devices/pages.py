@@ -31,7 +31,7 @@ from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.process import section as process_section
 from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
-from stiction.report.style import STYLE
+from stiction.report.style import STYLE, on_a_page
 from stiction.report.surfaces.words import described
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
@@ -332,12 +332,13 @@ def _settings(plan, at):
     return section | {"surfaces": surfaces} | not_modelled | {key: some for key, some in known.items() if some}
 
 
+@on_a_page()
 def _page(data, at, settings):
     """Page of a device."""
     warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
     more = {name: data.get(name) for name in ("test_beams", "errors", "roughness")}
     if "stopper" in data:
-        views = [explorer.of_stopper(settings, data["stopper"], budgets)]
+        views = explorer.views_of_stopper(settings, data["stopper"], budgets)
         if "tilted" in data:
             views.append(explorer.of_tilted(at.device, settings, data["tilted"], data["stopper"]))
         if "biased" in data:
@@ -345,7 +346,7 @@ def _page(data, at, settings):
         page = stopper_page(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
-        views = [explorer.of_beam(at.device, settings, lengths, charts, budgets)]
+        views = explorer.views_of_beam(at.device, settings, lengths, charts, budgets)
         if "young_modulus_GPa" in settings:
             views.append(voltage_views.of_beam(at.device, settings, lengths))
         page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)

@@ -18,6 +18,7 @@ from stiction.report.style import (
     figure_stage,
     handles,
     humidity_colours,
+    legend_outside,
     letter,
     panels,
     plain_log,
@@ -65,7 +66,7 @@ def devices(curve: xr.Dataset, recommended: xr.Dataset, who: str) -> Figure:
         panel.set_xlabel(f"{process.words_of(curve.variable)} [{unit}]")
     axes[0, 0].set_ylabel(f"{along}, p = {float(curve.share):g}")
     letter(axes, [END_STATES[shape].by for shape in shapes])
-    figure.legend(*handles(*axes[0]), loc="outside lower center", ncols=2 * len(shapes))
+    legend_outside(figure, handles(*axes[0]), "lower", 2 * len(shapes))
     return figure
 
 
@@ -97,7 +98,7 @@ def laws(dataset: xr.Dataset) -> Figure:
         )
         panel.set_xlabel(f"{process.words_of(dataset.variable)} [{process.unit_of(dataset.variable)}]")
         panel.set_ylabel(words)
-    figure.legend(*handles(columns[0][0]), loc="outside lower center", ncols=3)
+    legend_outside(figure, handles(columns[0][0]), "lower", 3)
     return figure
 
 
@@ -135,7 +136,7 @@ def process_map(found: xr.Dataset, pairs: xr.Dataset) -> Figure:
     for scale, variable in ((panel.set_xlabel, "variable"), (panel.set_ylabel, "second_variable")):
         name = found.attrs[variable]
         scale(f"{process.words_of(name)} [{process.unit_of(name)}]")
-    figure.legend(*handles(panel), loc="outside lower center", ncols=2)
+    legend_outside(figure, handles(panel), "lower", 2)
     return figure
 
 

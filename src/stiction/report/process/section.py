@@ -45,7 +45,9 @@ def with_process(page: Page, device: str, data: Mapping[str, Any]) -> Page:
         own = _section(device, data["process"], data["process_settings"], laws)
         answer = tables.briefly(data["process_settings"], device)
     pictures = [Section(f"Law of {law.surface}", (), None, figures.laws(law)) for law in laws]
-    summary = page.summary and replace(page.summary, points=_advised(page.summary.points, answer))
+    summary = page.summary
+    if summary and not page.is_forbidden:
+        summary = replace(summary, points=_advised(summary.points, answer))
     sections = [*page.sections, own, *pictures]
     return replace(page, summary=summary, answer=[verdict, answer, *reasons], sections=sections)
 

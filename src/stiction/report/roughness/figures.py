@@ -17,6 +17,7 @@ from stiction.report.style import (
     figure_stage,
     handles,
     humidity_colours,
+    legend_outside,
     letter,
     panels,
     plain_log,
@@ -52,7 +53,7 @@ def roughness(dataset: xr.Dataset) -> Figure:
         _axis(panel.xaxis, panel.set_xscale, curve)
     axes[0, 0].set_ylabel(f"{along}, p = {float(curve.share):g}")
     letter(axes, [END_STATES[shape].by for shape in shapes])
-    figure.legend(*handles(*axes[0]), loc="outside lower center", ncols=2 * len(shapes))
+    legend_outside(figure, handles(*axes[0]), "lower", 2 * len(shapes))
     return figure
 
 

@@ -5,7 +5,17 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.report.format import TO_UM
-from stiction.report.style import DOUBLE, INTERVAL, figure_stage, humidity_axis, letter, panels, places, styled
+from stiction.report.style import (
+    DOUBLE,
+    INTERVAL,
+    figure_stage,
+    humidity_axis,
+    legend_outside,
+    letter,
+    panels,
+    places,
+    styled,
+)
 
 #: Colours before and after the measurement.
 _BEFORE, _AFTER = "0.6", "#0072B2"
@@ -39,7 +49,7 @@ def test_beams(update: xr.Dataset) -> Figure:
     axes[0, 0].set_ylabel("crack length [µm]")
     _inputs(axes[0, -1], uncertain)
     letter(axes, [*arrays, "inputs"])
-    figure.legend(handles=list(shared.values()), loc="outside lower center", ncols=3)
+    legend_outside(figure, (list(shared.values()), list(shared)), "lower", 3)
     return figure
 
 
