@@ -75,7 +75,9 @@ def test_the_chart_at_the_size_of_the_device_has_its_safe_lengths(device):
 def test_a_bridge_has_strips_of_its_own_width_and_no_tips():
     bridge = stiction.Device.of(CONFIG, "R1")
     assert bridge.tips is None
-    assert bridge.results.graph.job("devices/cracks/R1_rh088").inputs == {"contact": "devices/contact/b_500x4000"}
+    assert bridge.results.graph.job("devices/ground/b_rh088_500x4000").inputs == {
+        "contact": "devices/contact/b_500x4000"
+    }
     assert bridge.contact.sizes["sample"] == 40
 
 

@@ -32,7 +32,7 @@ from stiction.plan.devices import Patch
 from stiction.plan.plan import Plan
 from stiction.run.disk_cache import DiskCache
 from stiction.stages.contact import curves
-from stiction.stages.devices import cracks
+from stiction.stages.devices import cracks, ground
 from stiction.stages.devices.opening import fitted
 from stiction.stages.laws import forces
 from stiction.study import PairStudy
@@ -203,9 +203,11 @@ def test_strips_are_allowed_where_those_of_the_jobs_are_accurate_within_the_erro
     (line,) = map(str, pilot.problems(config, {}, "code", REMEMBER))
     thickness, longest, error, enough = map(float, re.search(LENGTHS, line).groups())
     device = Device.of(config, "D")
-    settings = in_si(cracks.Settings, device.results.graph.job("devices/cracks/D_rh067").settings)
-    vectors, limit = curves.vectors(device.contact, 0.67, settings.water)
-    laws = draw_laws(fitted(vectors, limit, settings.chaos), 10_000, np.random.default_rng(1))
+    graph = device.results.graph
+    settings = in_si(cracks.Settings, graph.job("devices/cracks/D_rh067").settings)
+    of_laws = in_si(ground.Settings, graph.job("devices/ground/b_rh067_1500x10000").settings)
+    vectors, limit = curves.vectors(device.contact, 0.67, of_laws.water)
+    laws = draw_laws(fitted(vectors, limit, of_laws.chaos), 10_000, np.random.default_rng(1))
 
     def is_accurate(thickness_um, strip_um):
         """Whether stage cracks resolves another thickness and length of the strips on the same force laws."""

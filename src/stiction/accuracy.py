@@ -16,11 +16,13 @@ from typing import Any
 
 import numpy as np
 
+from stiction.chaos.model import Truncation
 from stiction.config.cases import Case, in_air
 from stiction.config.merging import merged
 from stiction.config.reading import is_stated
 from stiction.config.scans import preliminary_estimates, with_preliminary_estimates
 from stiction.config.units import in_si
+from stiction.contact.environment import Water
 from stiction.devices.numbers import Spread, beams_for, strips_for
 from stiction.devices.tail import fit_tail
 from stiction.pilot import surface
@@ -31,9 +33,8 @@ from stiction.progress import without_progress
 from stiction.stages.contact.changes.patches import GROUND, TIPS, Place
 from stiction.stages.contact.contact import compute
 from stiction.stages.contact.pairs import Settings
-from stiction.stages.devices import cracks
 from stiction.stages.devices.contact_names import patch_of, patch_of_tips
-from stiction.stages.devices.opening import settings_of_beam
+from stiction.stages.devices.opening import DesignedBeam, settings_of_beam
 from stiction.stages.devices.sticking import Released, ground, released
 from stiction.streams import stream
 
@@ -149,6 +150,18 @@ def _spreads(plan, code, remember):
 
 
 @dataclass(frozen=True)
+class _Settings:
+    """Settings of the beams of a case and of their force laws."""
+
+    seed: int
+    chaos: Truncation
+    water: Water
+    humidity: float  #: [-]
+    device: DesignedBeam
+    beams: int
+
+
+@dataclass(frozen=True)
 class _Pilot:
     """Devices on few samples."""
 
@@ -176,7 +189,7 @@ class _Pilot:
 
     def spreads(self, case: Case) -> list[tuple[float, float]]:
         """Slope and error of the surfaces of the lengths of each shape, none where too few beams stick."""
-        settings = in_si(cracks.Settings, self._of_beam(case))
+        settings = in_si(_Settings, self._of_beam(case))
         try:
             with without_progress():
                 contact, *tips = (self._contact(*one) for one in self._places(case))
@@ -188,7 +201,7 @@ class _Pilot:
 
     def _of_beam(self, case):
         """Settings of the beams of a case."""
-        return select(cracks.Settings, settings_of_beam(self.plan, case))
+        return select(_Settings, settings_of_beam(self.plan, case))
 
     def _places(self, case):
         """Kinds of patch of a case, its ground first, each with the patch."""

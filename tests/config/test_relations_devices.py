@@ -21,11 +21,12 @@ from stiction.contact.environment import Water
 from stiction.contact.meniscus import meniscus_height
 from stiction.plan import memory
 from stiction.plan.devices import DevicePlan
+from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.stages.beams import pair_warnings
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.contact import contact
-from stiction.stages.devices import chart, cracks, device_warnings, safe_lengths
+from stiction.stages.devices import chart, cracks, device_warnings, ground, safe_lengths
 
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67, 0.44]}
 R1 = {"kind": "bridge", "pair": "b", "thickness_um": 2, "gap_um": 2, "width_um": 30, "residual_stress_MPa": 50}
@@ -469,6 +470,7 @@ def test_the_axis_of_a_chart_has_names_and_ends():
 PLAN = Plan(normalised(ALL))
 JOBS = {
     cracks: job_settings(PLAN, "devices/cracks/C1_rh067"),
+    ground: job_settings(PLAN, Graph(PLAN).job("devices/cracks/C1_rh067").inputs["ground"]),
     safe_lengths: job_settings(PLAN, "devices/safe_lengths/R1_rh067"),
     chart: job_settings(PLAN, "devices/chart/C1_rh067"),
     contact: job_settings(
@@ -491,8 +493,10 @@ def test_settings_in_si_are_those_of_the_device():
     found = in_si(cracks.Settings, JOBS[cracks])
     assert found.device.beam.young_modulus == pytest.approx(79e9)
     assert (found.device.thickness, found.device.strip) == pytest.approx((2.6e-6, 1.2e-6))
-    assert replace(found.water, gaps=None) == Water(300, pytest.approx((1.0471975512, 0.0)))
-    assert found.water.gaps.wavelength == pytest.approx(100e-9)
+    laws = in_si(ground.Settings, JOBS[ground])
+    assert (laws.strip, laws.humidity) == (found.device.strip, 0.67)
+    assert replace(laws.water, gaps=None) == Water(300, pytest.approx((1.0471975512, 0.0)))
+    assert laws.water.gaps.wavelength == pytest.approx(100e-9)
     bridge = in_si(safe_lengths.Settings, JOBS[safe_lengths])
     assert bridge.device.beam.tension == pytest.approx(50e6 * 60e-12)
     assert in_si(chart.Settings, JOBS[chart]).gaps == pytest.approx((10e-6, 20e-6))

@@ -122,12 +122,11 @@ def test_choices_of_solids_leave_the_surfaces_as_they_are():
         "poisson_ratio_0.28",
     ]
     settings = job_settings(PLAN, f"devices/contact/tips/choices/{TIP}_poisson_ratio_0.28")
-    assert settings == job_settings(PLAN, f"devices/contact/tips/{TIP}") | {
-        "solid": PLAN.config["solid"] | {"poisson_ratio": 0.28}
-    }
+    few = {"contact": {"samples": PLAN.config["studies"]["slopes"]["samples"]}, "solid": {"poisson_ratio": 0.28}}
+    assert settings == merged(job_settings(PLAN, f"devices/contact/tips/{TIP}"), few)
 
 
-def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_tips_as_beams():
+def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_changed_tips_as_samples_of_slopes():
     found = job_settings(PLAN, "devices/budget/C1_rh067_tip")
     of_beam = job_settings(PLAN, "devices/budget/C1_rh067")
     assert found["budget"].pop("share") == 1e-3
@@ -136,7 +135,8 @@ def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_tips_as_beams():
         of_beam["quantities"],
         PLAN.variants.choices_of_solids("b"),
     )
-    number = PLAN.config["design"]["beams"]
+    number = PLAN.config["studies"]["slopes"]["samples"]
+    assert number < PLAN.config["design"]["beams"]
     for name in OF_CONTACT:
         tips, strips = (job_settings(PLAN, f"devices/contact/{folder}{name}/{TIP}_less") for folder in ("tips/", ""))
         assert tips["contact"]["samples"] == number

@@ -9,6 +9,7 @@ import stiction
 from stiction.config.cases import case_id
 from stiction.report.devices import explorer
 from stiction.stages.devices import sticking
+from stiction.stages.devices.ground import ground_from
 
 pytestmark = pytest.mark.slow
 
@@ -42,7 +43,8 @@ def settings_of(device, humidity):
     results = device.results
     job = results.graph.job(f"devices/chart/{case_id('C1', humidity)}")
     inputs, settings = results.inputs(job), job.stage.converted(job.settings)
-    return settings, sticking.ground(inputs["contact"], inputs["tips"], humidity, settings)
+    met = ground_from(inputs["ground"], settings)
+    return settings, sticking.with_tips(met, inputs["tips"], humidity, settings.water)
 
 
 def resized(settings, ground, thickness, gap):

@@ -426,7 +426,7 @@ def test_errors_from_inside_the_library_are_not_quoted(error):
 
 
 def test_what_libraries_print_log_and_warn_of_is_not_shown(capfd, caplog):
-    with reading._silenced():
+    with reading.silenced():
         print("printed")  # noqa: T201
         print("printed", file=sys.stderr)  # noqa: T201
         warnings.warn("warned", stacklevel=1)

@@ -68,7 +68,7 @@ READ_BY = {
     " device_contact tip_contact",
     "character": "table_1 checks",
     "contact_chunk": "contact",
-    "contact": "forces fit humidity variant cracks safe_lengths chart sensitivity",
+    "contact": "forces fit humidity variant ground safe_lengths sensitivity",
     "forces": "fit chaos table_3 sample_sizes orders mesh resampling checks",
     "sensitivity_contact": "sensitivity",
     "variant_summits": "variant_contact",
@@ -77,7 +77,8 @@ READ_BY = {
     "beams": "table_3 checks model_limits",
     "plasticity": "model_limits device_warnings",
     "device_warnings": "table_safe_lengths table_chart device_limits",
-    "device_contact": "cracks safe_lengths",
+    "device_contact": "ground safe_lengths",
+    "ground": "cracks chart",
     "tip_contact": "safe_lengths chart",
     "cracks": "safe_lengths",
     "safe_lengths": "table_safe_lengths device_warnings",
@@ -91,7 +92,16 @@ SHARED = {"table_3", "device_warnings", "table_safe_lengths", "table_chart"}
 #: Rules of pair b only.
 OF_FIGURE = {"sensitivity_contact", "sensitivity", "sample_sizes", "orders", "mesh"}
 #: Rules of devices, which belong to pair b as well.
-OF_DEVICES = {"device_contact", "tip_contact", "cracks", "safe_lengths", "chart", "table_safe_lengths", "table_chart"}
+OF_DEVICES = {
+    "ground",
+    "device_contact",
+    "tip_contact",
+    "cracks",
+    "safe_lengths",
+    "chart",
+    "table_safe_lengths",
+    "table_chart",
+}
 OF_DEVICES |= {"device_warnings", "device_limits"}
 OF_FIGURE |= OF_DEVICES
 
@@ -131,13 +141,13 @@ MATRIX = [
     ("strips of Table I", "character: {strips: 50}", "character", (), "contact|forces"),
     ("spacing of Table I", "character: {spacing_nm: 10}", "identification character", (), "results/contact|forces"),
     ("patches of identification", "identification: {patches: 4}", "identification", (), "spectrum|_base"),
-    ("water", "water: {temperature_K: 310}", "full_contact pressed readings forces humidity sensitivity variant cracks safe_lengths chart", (), "results/contact"),
-    ("adsorbed water", "water: {adsorbed_nm: 0.1}", "full_contact pressed readings forces humidity sensitivity variant cracks safe_lengths chart", (), "results/contact"),
+    ("water", "water: {temperature_K: 310}", "full_contact pressed readings forces humidity sensitivity variant ground safe_lengths chart", (), "results/contact"),
+    ("adsorbed water", "water: {adsorbed_nm: 0.1}", "full_contact pressed readings forces humidity sensitivity variant ground safe_lengths chart", (), "results/contact"),
     ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (),
      "studies/(sensitivity/contact|plas|variants/(contact|summits))|psd_identified|tips"),
     ("distance step", "contact: {distance_step_nm: 0.1}",
      "contact_chunk sensitivity_contact plasticity full_contact pressed variant_summits readings device_contact tip_contact", (), "spectrum"),
-    ("chaos order", "chaos: {order: 6}", "chaos variant cracks chart", (), "forces"),
+    ("chaos order", "chaos: {order: 6}", "chaos variant ground", (), "forces"),
     ("beam thickness", "beam: {thickness_um: 2.5}",
      "forces humidity sensitivity beams resampling mesh variant checks", (), "contact"),
     ("beam width", "beam: {width_um: 24}", "character contact_chunk beams resampling mesh sensitivity_contact plasticity full_contact pressed variant_summits readings checks model_limits device_contact",
@@ -164,16 +174,16 @@ MATRIX = [
     ("study: finer elements", "studies: {variants: {strips_per_element: [2, 1]}}", "variant", (), "_base|_element_2"),
     # A wetter air reaches further: the strips of the tips are stored at more distances.
     ("one humidity of a device", "devices: {C1: {humidities: [0.7, 0.9]}}",
-     "tip_contact cracks table_safe_lengths device_limits", (), "contact/b|cracks/C1_rh070|R1"),
+     "tip_contact ground table_safe_lengths device_limits", (), "contact/b|cracks/C1_rh070|R1"),
     ("a device added", "devices: {C2: {kind: cantilever, pair: a, thickness_um: 3, gap_um: 20, width_um: 30, "
-     "humidities: [0.6]}}", "tip_contact cracks table_safe_lengths device_limits", {"chart", "table_chart"}, "contact/[ab]_|tips/b_|C1|R1|beams"),
+     "humidities: [0.6]}}", "tip_contact ground table_safe_lengths device_limits", {"chart", "table_chart"}, "contact/[ab]_|tips/b_|C1|R1|beams"),
     ("thickness of a device", "devices: {C1: {thickness_um: 3}}", "cracks safe_lengths chart", (), "contact|R1"),
     ("thicknesses of a chart", "devices: {C1: {chart: {thicknesses_um: [2.6]}}}", "tip_contact chart", (),
      "contact/b|R1|cracks"),
     ("uncertainty of a device", "devices: {C1: {uncertainty: {gap_um: 1}}}", "", (), ""),
     ("beams of devices", "design: {beams: 300}", "tip_contact cracks chart", (), "results/contact"),
     ("contact angle of a body", "materials: {Wet: {contact_angle_deg: 20}}\nsurfaces: {B2: {material: Wet}}",
-     "full_contact pressed readings forces humidity sensitivity variant cracks safe_lengths chart table_1 table_2 table_3 checks model_limits",
+     "full_contact pressed readings forces humidity sensitivity variant ground safe_lengths chart table_1 table_2 table_3 checks model_limits",
      (), "results/contact/|/a_"),
     ("order of humidities", "pairs: {a: {humidities: [0.8, 0.6]}}", "", (), ""),
 ]  # fmt: skip

@@ -35,8 +35,9 @@ READ_BY = {
     " tip_solid_contact tip_choice_contact tip_budget process_point",
     "identification": "device_choice_summits",
     "contact_chunk": "contact",
-    "contact": "cracks safe_lengths chart budget separation",
-    "device_contact": "cracks safe_lengths stoppers budget separation",
+    "contact": "ground safe_lengths budget separation",
+    "device_contact": "ground safe_lengths stoppers budget separation",
+    "ground": "cracks chart",
     "tip_contact": "safe_lengths chart tip_budget separation",
     "slope_contact": "budget",
     "device_slope_contact": "budget",
@@ -75,7 +76,7 @@ COMPUTING = set(READ_BY)
 OF_STOPPERS = {"stoppers", "table_stoppers", "figure_stoppers"}
 SHOWN = {"table_safe_lengths", "figure_risk"}
 OF_CHARTS = {"chart", "table_chart", "figure_chart"}
-OF_BEAMS = {"cracks", "safe_lengths"} | SHOWN | OF_CHARTS
+OF_BEAMS = {"ground", "cracks", "safe_lengths"} | SHOWN | OF_CHARTS
 BODY = "surfaces: {B2: {material: Other}}\nmaterials: {Other: "
 
 #: Description of a change; overlay; rules that it affects directly, whose readers rerun as well; rules excepted because
@@ -110,19 +111,19 @@ MATRIX = [
      "C1|R1|contact|S1_rh070"),
     ("area of a stopper", "devices: {S1: {contact_um: [3, 2]}}", "device_contact solid_contact device_choice_summits",
      OF_BEAMS, "C1|R1|1500x"),
-    ("samples of slopes", "studies: {slopes: {samples: 200}}", "slope_contact solid_contact device_choice_summits process_point", (),
-     "stoppers|chart|cracks|tip"),
+    ("samples of slopes", "studies: {slopes: {samples: 200}}", "slope_contact solid_contact device_choice_summits process_point"
+     " tip_slope_contact tip_solid_contact tip_choice_contact", (), "stoppers|chart|cracks"),
     ("beams of slopes", "design: {budget_beams: 100}", "budget", (), "S1|contact|chart|cracks|tip"),
-    ("beams, each with a tip", "design: {beams: 900}", "cracks tip_contact tip_slope_contact tip_solid_contact tip_choice_contact chart", OF_STOPPERS,
+    ("beams, each with a tip", "design: {beams: 900}", "cracks tip_contact chart", OF_STOPPERS,
      "S1|budget/C1_rh070.nc"),
     ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", "stoppers device_warnings", OF_BEAMS, "C1|R1|budget|contact"),
     ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
      "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
-    ("water", "water: {temperature_K: 310}", "cracks safe_lengths chart stoppers budget tip_budget separation process_point", (), "contact"),
-    ("adsorbed water", "water: {adsorbed_nm: 0.1}", "cracks safe_lengths chart stoppers budget tip_budget separation process_point", (), "contact"),
+    ("water", "water: {temperature_K: 310}", "ground safe_lengths chart stoppers budget tip_budget separation process_point", (), "contact"),
+    ("adsorbed water", "water: {adsorbed_nm: 0.1}", "ground safe_lengths chart stoppers budget tip_budget separation process_point", (), "contact"),
     ("uncertainty of the adsorbed water", "devices: {C1: {uncertainty: {adsorbed_nm: 0.1}}}", "budget tip_budget", (),
      "R1|S1|contact|chart"),
-    ("attraction across gaps", "attraction: {wavelength_nm: 90}", "cracks safe_lengths chart stoppers budget tip_budget separation process_point", (),
+    ("attraction across gaps", "attraction: {wavelength_nm: 90}", "ground safe_lengths chart stoppers budget tip_budget separation process_point", (),
      "contact"),
     ("skewness of a surface", "surfaces: {B2: {skewness: -0.7}}", "heights device_choice_summits process_law", (), "Sub1.nc"),
     ("skewness of another surface", "surfaces: {B1: {skewness: -0.7}}", "", (), ""),
@@ -131,9 +132,10 @@ MATRIX = [
     ("edge of tips", "design: {tip_edge: square}", "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact", OF_STOPPERS,
      "cracks|S1|contact/b|budget/C1_rh070.nc"),
     ("shares", "design: {shares: [0.02]}", "safe_lengths chart tip_budget", OF_STOPPERS, "cracks|S1|contact|budget/C1_rh070.nc"),
-    ("points of charts", "design: {chart_points: 4}", "chart", OF_STOPPERS, "rh060|rh080|cracks|safe|S1|R1|contact"),
+    ("points of charts", "design: {chart_points: 4}", "ground",
+     OF_STOPPERS | {"cracks", "safe_lengths", "life", "table_life", "figure_life"}, "rh060|rh080|cracks|safe|S1|R1|contact"),
     ("humidities of a chart", "devices: {C1: {chart: {humidities: [0.6, 0.9]}}}",
-     "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact chart", OF_STOPPERS,
+     "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact ground", OF_STOPPERS | {"cracks"},
      "cracks|S1|R1|contact/b|contact/slopes"),
     ("gap of a beam", "devices: {C1: {gap_um: 19}}", "separation cracks safe_lengths chart budget tip_budget", OF_STOPPERS, "contact|S1|R1"),
     ("width of a beam", "devices: {C1: {width_um: 24}}",
@@ -177,6 +179,7 @@ LAYOUTS = {
     "stages/devices/chart": {"chart"},
 }
 LAYOUTS |= {
+    "stages/devices/ground": {"ground"},
     "stages/devices/cracks": {"cracks", "safe_lengths"},
     "stages/devices/safe_lengths": {"safe_lengths"},
 }

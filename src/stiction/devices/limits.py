@@ -30,10 +30,12 @@ PLATE = 10.0
 STRETCH = 0.5
 #: What plastic contact does to beams and to stoppers that were pressed as hard.
 SHORTER, STRONGER = "beams that were pressed stick at shorter lengths", "stoppers that were pressed hold more"
-#: Error in dry air of contact on summits alone, from six strips of each pair of the paper (docs/tables/deformed.md).
+#: Error in dry air of contact on summits alone, from six strips of each pair of the paper (docs/tables/deformed.md)
+#: and five of the coated pair of examples/sealed.yaml. On the smoothest pair there, full contact does not settle.
 BENT = (
-    "in dry air the bending of surfaces towards each other (on the surfaces of the paper lengths come out 1 to 8 % too "
-    "long and forces 10 to 30 % too small; contact.model full includes it)"
+    "in dry air the bending of surfaces towards each other (on surfaces like those of the paper lengths come out 1 to "
+    "8 % too long and forces 10 to 40 % too small, on smoother ones by an unknown amount; contact.model full includes "
+    "it)"
 )
 #: Words of every warning about a result on the unsafe side.
 UNSAFE = "the unsafe side"

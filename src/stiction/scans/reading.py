@@ -1,6 +1,6 @@
 """Files of microscopes, read by SurfaceTopography and `stiction.formats`: units, axes, undefined points, and channel.
 
-The library is imported only here, and only when a file is read. It regards every channel with a length, and some
+The library is imported only when a file is read. It regards every channel with a length, and some
 without, as heights; the channel is therefore selected by name and unit. What the library prints, logs or raises never
 reaches the user: every unusable file is a `stiction.errors.ScanError`.
 """
@@ -10,6 +10,7 @@ import io
 import logging
 import re
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -69,7 +70,7 @@ def read(path: str | Path, source: Source | None = None) -> ScanFile:
     """
     path = Path(path)
     _refuse_empty(path)
-    with _silenced():
+    with silenced():
         library = _library(path.name)
         try:
             return _read(library, path, source or Source())
@@ -127,7 +128,7 @@ def _refuse_empty(path):
 
 
 @contextlib.contextmanager
-def _silenced():
+def silenced() -> Iterator[None]:
     """Suppress warnings, log records and output of libraries."""
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)

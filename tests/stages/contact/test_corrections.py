@@ -203,8 +203,13 @@ FULL = Plan(
     )
 )
 #: Jobs that make force laws of a contact.
-OF_LAWS = ("forces/b_rh067_NG", "humidity/b_NG", "studies/variants/b_rh067_base", "devices/cracks/C1_rh067")
-OF_LAWS += ("devices/chart/C1_rh050", "devices/stoppers/S1", "devices/budget/C1_rh067", "devices/budget/S1_rh067")
+OF_LAWS = ("forces/b_rh067_NG", "humidity/b_NG", "studies/variants/b_rh067_base", "devices/ground/b_rh067_1500x30000")
+OF_LAWS += (
+    "devices/ground/b_rh050_1500x30000",
+    "devices/stoppers/S1",
+    "devices/budget/C1_rh067",
+    "devices/budget/S1_rh067",
+)
 
 
 @pytest.mark.parametrize("name", OF_LAWS)

@@ -14,7 +14,7 @@ from stiction.contact import forcelaw
 from stiction.contact.environment import Water
 from stiction.devices.sampling import SampledSurfaces
 from stiction.stages.contact import curves
-from stiction.stages.devices import cracks, safe_lengths
+from stiction.stages.devices import cracks, ground, safe_lengths
 from stiction.stages.devices.opening import DesignedBeam
 from stiction.stages.devices.sticking import Released
 from stiction.streams import stream
@@ -32,7 +32,7 @@ RMS = 3.4e-9
 
 
 def settings(device=C1, beams=200):
-    return cracks.Settings(2021, Truncation(3, 0.001), WATER, 0.67, device, beams)
+    return cracks.Settings(2021, device, beams)
 
 
 def contact():
@@ -42,15 +42,21 @@ def contact():
     return xr.Dataset({"bearing_area": (("sample", "height"), area), "step": 0.05e-9}, coords={"height": height})
 
 
-def computed(wanted, vectors, limit=None):
-    """Dataset of stage cracks on given vectors."""
+VECTORS = sampled_vectors(400, 0.24)
+
+
+def met(device=C1, vectors=VECTORS, limit=None):
+    """Dataset of stage ground on given vectors."""
     limit = limit or 1.2 * vectors[:, 1].max()
     drawn = {"vectors": lambda *_: (vectors, limit), "share_flat": lambda *_: 0.0}
     with patch.multiple(curves, **drawn):
-        return cracks.compute(contact(), wanted)
+        wanted = ground.Settings(Truncation(3, 0.001), WATER, 0.67, device.strip, device.width)
+        return ground.compute(contact(), wanted)
 
 
-VECTORS = sampled_vectors(400, 0.24)
+def computed(wanted, vectors, limit=None):
+    """Dataset of stage cracks on given vectors."""
+    return cracks.compute(met(wanted.device, vectors, limit), wanted)
 
 
 #: Errors of mean and scatter of the samples.

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from beams import E_BAR, PAPER
-from ground import C1, R1, RMS, UM, VECTORS, WATER, contact, settings, smooth_tips
+from ground import C1, R1, RMS, UM, VECTORS, WATER, met, settings, smooth_tips
 from numpy.testing import assert_allclose
 
 from stiction.beam.energy import apparent_adhesion_energy, arrest_length
@@ -116,12 +116,9 @@ def test_few_sizes_are_all_computed(count):
 
 
 def computed(device, thicknesses, gaps, tips=None, shares=(1e-2,)):
-    wanted = chart.Settings(2021, Truncation(3, 0.001), WATER, 0.67, device, 200, shares, thicknesses, gaps)
-    with (
-        patch.object(curves, "vectors", lambda *_: (VECTORS, 1.2 * VECTORS[:, 1].max())),
-        patch.object(curves, "tip_forces", lambda *_: smooth_tips(tips)),
-    ):
-        return chart.compute(contact(), None if tips is None else xr.Dataset(), wanted), wanted
+    wanted = chart.Settings(2021, WATER, 0.67, device, 200, shares, thicknesses, gaps)
+    with patch.object(curves, "tip_forces", lambda *_: smooth_tips(tips)):
+        return chart.compute(met(device), None if tips is None else xr.Dataset(), wanted), wanted
 
 
 def alone(device, wanted, tips=None):

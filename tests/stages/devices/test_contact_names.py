@@ -31,10 +31,11 @@ def test_all_contacts_of_a_budget_are_declared_by_stages_of_contacts_of_devices(
     assert {GRAPH.job(name).stage.name for name in named} <= declared
 
 
-def test_the_contacts_of_tips_have_as_many_samples_as_beams_and_a_tilt_and_those_of_strips_do_not():
+def test_tips_have_as_many_samples_as_beams_or_slopes_if_changed_and_a_tilt_and_strips_have_none():
+    unchanged = contact_names.contacts_of_tip_budget(PLAN, Case("C1_rh067"))["contact"]
     for name in of_budget(contact_names.contacts_of_tip_budget):
         settings = job_settings(PLAN, name)
-        assert settings["contact"]["samples"] == 700
+        assert settings["contact"]["samples"] == (700 if name == unchanged else 300)
         assert settings["tilt"]["slopes"]
     for name in contact_names.contacts_of_budget(PLAN, Case("C1_rh067"))["less"].values():
         settings = job_settings(PLAN, name)

@@ -59,8 +59,9 @@ PLAN = plan_of(["dry", 0.67])
 @pytest.mark.parametrize(
     ("job", "inputs"),
     [
-        ("devices/cracks/C1_dry", {"contact": "devices/contact/b_dry_1500x6000"}),
-        ("devices/cracks/C1_rh067", {"contact": "devices/contact/b_1500x6000"}),
+        ("devices/cracks/C1_dry", {"ground": "devices/ground/b_dry_1500x6000"}),
+        ("devices/ground/b_dry_1500x6000", {"contact": "devices/contact/b_dry_1500x6000"}),
+        ("devices/ground/b_rh067_1500x6000", {"contact": "devices/contact/b_1500x6000"}),
         ("devices/stoppers/S1", {"contact": "devices/contact/b_1500x6000", "dry": "devices/contact/b_dry_1500x6000"}),
     ],
 )
@@ -78,7 +79,10 @@ def test_tips_budgets_and_charts_have_contacts_in_dry_air_with_the_same_surfaces
                 continue
             settings = graph.job(file).settings
             assert settings == graph.job(file.replace("b_dry_", "b_")).settings | {"van_der_waals": "dry"}
-        assert {file.replace("b_dry_", "b_") for file in files} - _files(humid.inputs) <= {"devices/cracks/C1_dry"}
+        assert {file.replace("b_dry_", "b_") for file in files} - _files(humid.inputs) <= {
+            "devices/cracks/C1_dry",
+            "devices/ground/b_1500x6000",
+        }
 
 
 def _files(inputs):

@@ -14,6 +14,7 @@ from numpy.testing import assert_allclose
 from test_dry_devices import ACROSS, plan_of
 
 from stiction.beam.energy import arrest_length
+from stiction.config.cases import Case
 from stiction.config.files import load
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
@@ -23,6 +24,7 @@ from stiction.report.devices import pages, sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.stages.contact import curves
 from stiction.stages.devices import prediction, safe_lengths
+from stiction.stages.devices.contact_names import contact_of
 from stiction.stages.devices.opening import EITHER, S_SHAPE
 from stiction.streams import stream
 
@@ -164,7 +166,7 @@ def test_only_cantilevers_in_humid_air_are_compared_with_the_paper():
     plan = plan_of(["dry", 0.67])
     inputs = {case: Graph(plan).job(f"devices/safe_lengths/{case}").inputs for case in ("C1_rh067", "C1_dry")}
     assert inputs["C1_rh067"]["paper"] == prediction.PAPER_LENGTHS.as_posix()
-    assert inputs["C1_rh067"]["contact"] == Graph(plan).job("devices/cracks/C1_rh067").inputs["contact"]
+    assert inputs["C1_rh067"]["contact"] == contact_of(plan, Case("C1_rh067"))
     assert not {"paper", "contact"} & set(inputs["C1_dry"])
     example = Graph(Plan(load(yaml.safe_load((EXAMPLES / "devices.yaml").read_text()))))
     assert set(example.job("devices/safe_lengths/R1_rh067").inputs) == {"cracks"}

@@ -9,6 +9,7 @@ from ground import C1, R1
 from numpy.testing import assert_allclose
 from scipy.integrate import trapezoid
 
+from stiction.config.cases import Case
 from stiction.config.files import load
 from stiction.contact.environment import Gaps, Water
 from stiction.contact.pair import DistanceGrid
@@ -18,6 +19,7 @@ from stiction.plan.plan import Plan
 from stiction.run import storage
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import curves
+from stiction.stages.devices.contact_names import contact_of
 from stiction.stages.life import separation
 
 WATER = Water(300.0)
@@ -117,7 +119,7 @@ def test_only_humid_air_has_a_fast_separation_and_on_the_contact_of_the_device()
             assert list(contacts) == humid
             assert list(graph.job("devices/separation/C1").inputs["tips"]) == humid
             assert not graph.job("devices/separation/S1").inputs["tips"]
-            assert contacts[0.67] == graph.job("devices/cracks/C1_rh067").inputs["contact"]
+            assert contacts[0.67] == contact_of(graph.plan, Case("C1_rh067"))
     dry = Graph(Plan(load({"devices": {"C1": BEAM | {"humidities": ["dry"]}}})))
     assert "separation" not in dry.job("devices/life/C1").inputs
 

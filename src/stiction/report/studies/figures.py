@@ -42,7 +42,7 @@ from stiction.report.style import (
     styled,
 )
 from stiction.stages.beams.variant_beams import by_pair, cases_of
-from stiction.stages.laws.chaos import chaos_model
+from stiction.stages.laws.stored_model import chaos_model
 
 _COLOURS = ("#0072B2", "#56B4E9", "#E69F00", "#D55E00", "#CC79A7", "#009E73", "#882255", "#7F7F00", "#332288")
 _ZERO = {"color": "0.6", "linewidth": 0.6, "zorder": 0}

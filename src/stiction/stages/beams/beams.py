@@ -10,7 +10,7 @@ from stiction.models import surface_model
 from stiction.plan.stage import Stage
 from stiction.stages.beams import releases
 from stiction.stages.beams.cantilevers import cantilever
-from stiction.stages.laws.chaos import chaos_model
+from stiction.stages.laws.stored_model import chaos_model
 
 #: Number of beam shapes stored for Fig. 14.
 _KEPT = 100

@@ -27,6 +27,7 @@ from stiction.devices.tail import FEWEST, TAIL, fit_tail
 from stiction.plan.stage import At, Stage, chosen
 from stiction.progress import progress
 from stiction.stages.contact import curves
+from stiction.stages.contact.changes.patches import TIPS
 from stiction.stages.contact.contact import first
 from stiction.stages.contact.corrections import corrected
 from stiction.stages.contact.error_notes import explain_errors
@@ -51,10 +52,19 @@ class Responses:
     centre: Callable[[np.ndarray], float]  #: the number that stands for all devices of a state
     shared: np.ndarray | None = None  #: of the samples that all beams share (states, m, ...): energies, for example
     length: Callable[[np.ndarray], float] | None = None  #: length on the mean of the samples (m, ...) [m]
+    compared: Callable[[np.ndarray], float] | None = None  #: stands for all where two states are compared; else centre
+
+    @property
+    def of_slopes(self) -> Callable[[np.ndarray], float]:
+        """The number that stands for all devices of a state beside another state."""
+        return self.compared or self.centre
 
 
 #: Folder of the budgets of test beams, and the share of their tips whose length theirs is of.
 OF_ARRAYS, HALF = "devices/test_beams/budget", 0.5
+#: Part of the tips that is fitted for slopes. ASSUME: inputs move the lowest quarter as the lowest 5 %. Slopes of 1000
+#: tips of pair b by both differ by less than their errors, and those by the quarter have 0.6 times the error.
+_OF_SLOPES = 0.25
 #: Devices at several states.
 Respond = Callable[[Sequence[State]], Responses]
 
@@ -174,15 +184,20 @@ def tip_responses(states: Sequence[State], share: float) -> Responses:
         (curves.tip_forces(state.contact, state.humidity, state.water), state.device.beam) for state in states
     ]
     lengths = [arcs.longest_free(*forces, beam) for forces, beam in forces_and_beams]
-    return Responses(np.array(lengths), partial(_held, share=share))
+    return Responses(np.array(lengths), partial(_held, share=share), compared=partial(_held_of_slopes, share=share))
 
 
-def _held(lengths, share):
-    """Length with a fraction stuck, infinite if too few stick. Small fractions take the fit of the short end."""
+def _held_of_slopes(lengths, share):
+    """As `_held`, from the part of the tips for slopes, or from as many as a fit needs."""
+    return _held(lengths, share, max(_OF_SLOPES, (FEWEST + 0.5) / len(lengths)))
+
+
+def _held(lengths, share, part=TAIL):
+    """Length with a fraction stuck, infinite if too few stick. Small fractions take the fit of the shortest part."""
     known = np.isfinite(lengths)
     if share > TAIL:
         return float(np.quantile(lengths, share)) if known.all() or known.mean() > share + 1 / len(lengths) else np.inf
-    return fit_tail(lengths).length(share) if known.sum() >= FEWEST else np.inf
+    return fit_tail(lengths, part).length(share) if known.sum() >= FEWEST else np.inf
 
 
 def beam_responses(states: Sequence[State], mesh: Beam, strips: int, number: int, address: Callable) -> Responses:
@@ -233,7 +248,7 @@ def slopes(inputs: Sequence[Input], respond: Respond) -> np.ndarray:
 
 def _slope(responses, step):
     """Slope between two states and its standard error, of the devices and of their common samples."""
-    value, own = log_slope(responses.centre, *responses.values, step)
+    value, own = log_slope(responses.of_slopes, *responses.values, step)
     if responses.shared is None:
         return value, own
     return value, np.hypot(own, log_slope(responses.length, *responses.shared, step)[1])
@@ -242,7 +257,7 @@ def _slope(responses, step):
 def effect(base: State, changed: State, respond: Respond) -> tuple[float, float]:
     """Relative change of the response by another choice of the model, with its standard error [-]."""
     responses = respond([base, changed])
-    return choice_effect(*map(responses.centre, responses.values)), _slope(responses, 1.0)[1]
+    return choice_effect(*map(responses.of_slopes, responses.values)), _slope(responses, 1.0)[1]
 
 
 def effect_if_known(base: State, changed: State, respond: Respond) -> tuple[float, float]:
@@ -391,10 +406,11 @@ def _memory_of_tips(plan, view, names):
     slopes = []
     for name in names:
         contacts = contacts_of_tip_budget(view, case_id(name, view.devices.sections[name]["humidities"][0]))
-        left_out = [] if view is plan else contacts["choices"]
-        number = sum(1 if isinstance(some, str) else len(some) for some in contacts.values()) - len(left_out)
-        slopes.append(number * len(plan.devices.tilt(view.devices.tips(name))["slopes"]))
-    return memory.tip_memory(plan.config["design"]["beams"] * max(slopes, default=0))
+        left_out = ["contact"] + ["choices"] * (view is not plan)
+        changed = sum(len(some) for kind, some in contacts.items() if kind not in left_out)
+        tips = TIPS.samples(plan, None) + changed * TIPS.fewer(plan, None)
+        slopes.append(tips * len(plan.devices.tilt(view.devices.tips(name))["slopes"]))
+    return memory.tip_memory(max(slopes, default=0))
 
 
 BUDGET = Stage.writing(

@@ -12,25 +12,22 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.chaos.model import Truncation
 from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.chart import checked_power_law, error_between
 from stiction.plan.names import by_case
 from stiction.plan.stage import Stage, chosen, select
-from stiction.stages.contact.contact import surface_rms
-from stiction.stages.contact.corrections import corrected
 from stiction.stages.devices import sticking
-from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
+from stiction.stages.devices.contact_names import tips_of
+from stiction.stages.devices.ground import ground_from, ground_inputs
 from stiction.stages.devices.opening import DesignedBeam, settings_of_beam
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of a chart at one humidity, without the contact of strips and tips."""
+    """Settings of a chart at one humidity, without its ground and the contact of tips."""
 
     seed: int
-    chaos: Truncation
     water: Water
     humidity: float  #: [-]
     device: DesignedBeam
@@ -53,9 +50,9 @@ class Filled:
 _UNKNOWN = (lambda thickness, _gap: np.full(len(thickness), np.nan)), 0.0
 
 
-def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
+def compute(ground: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
     """Safe lengths and quantiles of all thicknesses and gaps. Inputs as in the stages cracks and safe_lengths."""
-    met = sticking.ground(contact, tips, settings.humidity, settings)
+    met = sticking.with_tips(ground_from(ground, settings), tips, settings.humidity, settings.water)
 
     def by_elements(thickness, gap):
         """Safe lengths of beams of one size and their quantiles (shapes, shares and scores) [m]."""
@@ -68,7 +65,7 @@ def compute(contact: xr.Dataset, tips: xr.Dataset | None, settings: Settings) ->
 
     chart = filled(settings.thicknesses, settings.gaps, by_elements)
     longest = [settings.device.opening.longest_strip(device, met.laws) for device in _designed(settings)]
-    return layout(chart, surface_rms(contact), longest, settings)
+    return layout(chart, float(ground.rms), longest, settings)
 
 
 def _resized(settings, thickness, gap):
@@ -203,12 +200,10 @@ STAGES = (
     Stage.writing(
         "chart",
         "devices/chart/{case}",
-        inputs=lambda plan, at: (
-            {"contact": contact_of(plan, at.case)} | tips_of(plan, at.case) | corrections_of(plan, at.case.device)
-        ),
+        inputs=lambda plan, at: ground_inputs(plan, at.case) | tips_of(plan, at.case),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, settings: compute(data["contact"], data.get("tips"), corrected(settings, data)),
+        compute=lambda data, settings: compute(data["ground"], data.get("tips"), settings),
         message="Chart of {case}.",
         cluster=True,
         minutes=120,

@@ -12,38 +12,30 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.chaos.model import Truncation
 from stiction.contact import forcelaw
-from stiction.contact.environment import Water
 from stiction.devices.sampling import SampledSurfaces
 from stiction.plan.stage import Stage, select
-from stiction.stages.contact import curves
-from stiction.stages.contact.contact import surface_rms
-from stiction.stages.contact.corrections import corrected
-from stiction.stages.devices.contact_names import contact_of, corrections_of
+from stiction.stages.devices.ground import ground_from, ground_inputs
 from stiction.stages.devices.opening import BEAMS, DesignedBeam, ground_of, settings_of_beam
-from stiction.stages.devices.sticking import Released, ground, released
+from stiction.stages.devices.sticking import Released, released
 
 
 @dataclass(frozen=True)
 class Settings:
-    """Settings of the cracks, without the contact."""
+    """Settings of the cracks, without the ground."""
 
     seed: int
-    chaos: Truncation
-    water: Water
-    humidity: float  #: [-]
     device: DesignedBeam
     beams: int  #: number of beams
 
 
-def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Fit the force laws and release long beams."""
-    device, met = settings.device, ground(contact, None, settings.humidity, settings)
-    dataset = layout(released(device, met, settings), ground_of(device, met.laws)[0], met.laws, surface_rms(contact))
+def compute(ground: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Release long beams on the force laws of a ground."""
+    device, met = settings.device, ground_from(ground, settings)
+    dataset = layout(released(device, met, settings), ground_of(device, met.laws)[0], met.laws, float(ground.rms))
     return dataset.assign(
         longest_strip=((), device.opening.longest_strip(device, met.laws), {"units": "m"}),
-        share_flat=((), curves.share_flat(contact, settings.humidity, settings.water), {"units": "1"}),
+        share_flat=ground.share_flat,
     )
 
 
@@ -104,10 +96,10 @@ STAGES = (
     Stage.writing(
         "cracks",
         "devices/cracks/{case}",
-        inputs=lambda plan, at: {"contact": contact_of(plan, at.case)} | corrections_of(plan, at.case.device),
+        inputs=lambda plan, at: ground_inputs(plan, at.case),
         settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
         kind=Settings,
-        compute=lambda data, settings: compute(data["contact"], corrected(settings, data)),
+        compute=compute,
         message="Release long beams of {case}.",
         cluster=True,
         minutes=120,

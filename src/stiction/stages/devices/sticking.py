@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import xarray as xr
@@ -33,13 +33,26 @@ class Settings(Protocol):
 
 
 class BeamSettings(Protocol):
-    """Settings of any job with released beams, from the contact on."""
+    """Settings of any job with released beams."""
 
     seed: int
-    chaos: Truncation
-    water: Water
     device: DesignedBeam
     beams: int
+
+
+class LawSettings(Protocol):
+    """Settings of any job with force laws of strips."""
+
+    chaos: Truncation
+    water: Water
+
+
+@dataclass(frozen=True)
+class Laws:
+    """Force laws of strips at one humidity."""
+
+    model: ChaosModel
+    sampled: np.ndarray  #: those of the strips themselves (m, 4) [SI]
 
 
 @dataclass(frozen=True)
@@ -73,14 +86,32 @@ class Released:
         return replace(self, arrested=move(self.arrested), reach=float(move(self.reach)))
 
 
-def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settings: BeamSettings) -> Ground:
-    """Force laws at a relative humidity, from the contact of the strips and of the tips, or ``None`` for a bridge."""
-    with on_patch(settings.device.strip, settings.device.width):
+def fitted_laws(contact: xr.Dataset, humidity: float, settings: LawSettings, sides: tuple[float, float]) -> Laws:
+    """Force laws at a relative humidity, from the contact of strips with these sides [m]."""
+    with on_patch(*sides):
         vectors, limit = curves.vectors(contact, humidity, settings.water)
     model = opening.fitted(vectors, limit, settings.chaos)
-    laws = draw_laws(model, opening.LAWS, opening.addresses(settings)("mesh"))
-    sampled = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
-    return Ground(model, laws, sampled, None if tips is None else curves.tip_forces(tips, humidity, settings.water))
+    return Laws(model, forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit))
+
+
+def ground_of_laws(of: Laws, settings: BeamSettings) -> Ground:
+    """Ground without tips, of the force laws of its strips."""
+    laws = draw_laws(of.model, opening.LAWS, opening.addresses(settings)("mesh"))
+    return Ground(of.model, laws, of.sampled, None)
+
+
+def with_tips(met: Ground, tips: xr.Dataset | None, humidity: float, water: Water) -> Ground:
+    """Ground with the contact of tips at a relative humidity, ``None`` for a bridge."""
+    return met if tips is None else replace(met, tips=curves.tip_forces(tips, humidity, water))
+
+
+def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settings: Any) -> Ground:
+    """Ground at a relative humidity, from the contact of the strips and of the tips, or ``None`` for a bridge.
+
+    The settings are `BeamSettings` and `LawSettings`.
+    """
+    laws = fitted_laws(contact, humidity, settings, (settings.device.strip, settings.device.width))
+    return with_tips(ground_of_laws(laws, settings), tips, humidity, settings.water)
 
 
 def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> Released:

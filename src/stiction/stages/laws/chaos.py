@@ -6,10 +6,10 @@ import numpy as np
 import xarray as xr
 
 from stiction.chaos import model as chaos
-from stiction.chaos.coordinates import PrincipalCoordinates
 from stiction.chaos.model import ChaosModel, Truncation
 from stiction.plan.stage import Stage, select
 from stiction.stages.laws.forces import COMPONENTS, vectors
+from stiction.stages.laws.stored_model import chaos_model, model_variables
 from stiction.streams import stream
 
 #: Number of draws for the comparison of the model with its input.
@@ -42,17 +42,10 @@ def layout(model: ChaosModel, report: tuple[np.ndarray, np.ndarray], rejected: f
     The report has statistics and correlations by source, input, kernel density and chaos, (3, 4, 4) each; ``rejected``
     is the share of draws without a force law [-].
     """
-    coordinates = model.coordinates
     statistics, correlations = report
     return xr.Dataset(
-        {
-            "coefficient": (("eta", "term"), model.coefficients),
-            "multi_index": (("term", "eta"), model.indices),
-            "scale": ("component", coordinates.scale),
-            "mean": ("component", coordinates.mean),
-            "variance": ("axis", coordinates.variances),
-            "axes": (("component", "axis"), coordinates.axes),
-            "limit": ((), model.f_limit, {"units": "Pa"}),
+        model_variables(model)
+        | {
             "dimension_error": ("axis", model.dimension_error, {"long_name": "Err_DR if this many axes are kept"}),
             "truncation_error": ("eta", model.truncation_error),
             "rejected": ((), rejected, {"long_name": "share of draws without a force law"}),
@@ -67,12 +60,6 @@ def layout(model: ChaosModel, report: tuple[np.ndarray, np.ndarray], rejected: f
             "statistic": ["mean", "standard deviation", "1 % quantile", "99 % quantile"],
         },
     )
-
-
-def chaos_model(dataset: xr.Dataset) -> ChaosModel:
-    """Chaos model from its dataset. It can draw force laws."""
-    coordinates = PrincipalCoordinates(*(dataset[name].values for name in ("scale", "mean", "variance", "axes")))
-    return ChaosModel(coordinates, dataset.coefficient.values, dataset.multi_index.values, float(dataset.limit))
 
 
 def generated_laws(dataset: xr.Dataset, number: int, case: str, seed: int) -> np.ndarray:

@@ -12,8 +12,8 @@ from stiction.chaos import density
 from stiction.chaos import model as chaos
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
-from stiction.stages.laws.chaos import chaos_model
 from stiction.stages.laws.forces import vectors
+from stiction.stages.laws.stored_model import chaos_model
 from stiction.streams import stream
 
 #: Bins of the marginal densities.

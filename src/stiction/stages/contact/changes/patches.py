@@ -23,8 +23,12 @@ class Place:
     #: Number of samples of the unchanged contact, by the plan and the wildcards.
     samples: Callable[[Any, Any], int] = lambda plan, _at: plan.config["contact"]["samples"]
 
+    def fewer(self, plan: Any, at: Any) -> int:
+        """Number of samples of a changed contact, compared with the first samples of the unchanged one."""
+        return min(plan.config["studies"]["slopes"]["samples"], self.samples(plan, at))
+
     def settings(self, plan: Any, at: Any, samples: int) -> dict[str, Any]:
-        """Settings of the unchanged contact of a patch. For tips, the number of samples is the number of beams."""
+        """Settings of the unchanged contact of a patch."""
         return merged(select(Settings, plan.seen_by(at.pair, samples=samples)), self.size(plan, at))
 
 
@@ -40,11 +44,10 @@ def _size(_plan, at):
 
 
 def _size_of_tips(plan, at):
-    """Tilted strips with larger steps of the distance. Every beam has its own tip."""
+    """Tilted strips with larger steps of the distance."""
     step = OF_TIPS * plan.config["contact"]["distance_step_nm"]
     tilt = plan.devices.tilt(Patch(at.pair, int(at.length), int(at.width)))
-    own = {"distance_step_nm": step, "samples": plan.config["design"]["beams"]}
-    return _size(plan, at) | {"contact": own, "tilt": tilt}
+    return _size(plan, at) | {"contact": {"distance_step_nm": step}, "tilt": tilt}
 
 
 def _size_of_tilted(plan, at):
@@ -58,8 +61,13 @@ def _size_of_tilted(plan, at):
 STRIPS = Place("{pair}", "", lambda plan, at: {})
 #: Patch on which a device sticks: strips of another size, or the whole area of a stopper.
 GROUND = Place("{pair}_{length}x{width}", ", {length} x {width} nm,", _size, _samples)
-#: Tilted strips that hold the tips of cantilevers.
-TIPS = Place(GROUND.file, f"{GROUND.words} at the tips of beams,", _size_of_tips)
+#: Tilted strips that hold the tips of cantilevers, one for each beam.
+TIPS = Place(
+    GROUND.file,
+    f"{GROUND.words} at the tips of beams,",
+    _size_of_tips,
+    lambda plan, _at: plan.config["design"]["beams"],
+)
 #: Area in which a tilted stopper touches.
 TILTED = Place(GROUND.file, f"{GROUND.words} of tilted stoppers,", _size_of_tilted)
 

@@ -42,7 +42,7 @@ SOLID = Change(
     words="with {side} {solid_property} of the solids",
     end="_{side}",
     settings=lambda plan, at, place: less_or_more(
-        place.settings(plan, at, plan.samples_of_slopes), at.solid_property, at.side
+        place.settings(plan, at, place.fewer(plan, at)), at.solid_property, at.side
     ),
 )
 #: The solids of a variant of the model, on surfaces drawn for it.
@@ -50,6 +50,6 @@ VARIANT_OF_SOLIDS = Change(
     words="under variant {variant}",
     end="_{variant}",
     settings=lambda plan, at, place: (
-        place.settings(plan, at, plan.samples_of_slopes) | plan.variants.solids(at.pair, at.variant)
+        place.settings(plan, at, place.fewer(plan, at)) | plan.variants.solids(at.pair, at.variant)
     ),
 )

@@ -1,0 +1,104 @@
+"""Stage ground: force laws of strips of one size at a humidity, for all beams of devices on them.
+
+The chaos model of a ground is fitted once. Cracks and charts of devices of any thickness, gap and length draw from it.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import xarray as xr
+
+from stiction.chaos.model import Truncation
+from stiction.config.cases import Case, case_id
+from stiction.contact.environment import Water
+from stiction.plan.stage import At, Stage, select
+from stiction.stages.contact import curves
+from stiction.stages.contact.contact import surface_rms
+from stiction.stages.contact.corrections import corrected
+from stiction.stages.devices.contact_names import contact_of, corrections_of
+from stiction.stages.devices.opening import settings_of_beam
+from stiction.stages.devices.sticking import BeamSettings, Ground, Laws, fitted_laws, ground_of_laws
+from stiction.stages.laws.stored_model import chaos_model, model_variables
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Settings of the force laws of a ground, without its contact."""
+
+    chaos: Truncation
+    water: Water
+    humidity: float  #: [-]
+    strip: float  #: length of a strip [m]
+    width: float  #: [m]
+
+
+def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
+    """Fit the force laws of a contact."""
+    laws = fitted_laws(contact, settings.humidity, settings, (settings.strip, settings.width))
+    share = curves.share_flat(contact, settings.humidity, settings.water)
+    return layout(laws, surface_rms(contact), share)
+
+
+def layout(laws: Laws, rms: float, share_flat: float) -> xr.Dataset:
+    """Dataset of force laws, with the rms of the sum of both surfaces [m] and the share of flat samples [-]."""
+    return xr.Dataset(
+        model_variables(laws.model)
+        | {
+            "sampled": (("sample", "parameter"), laws.sampled, {"units": "SI"}),
+            "rms": ((), rms, {"units": "m"}),
+            "share_flat": ((), share_flat, {"units": "1"}),
+        },
+        coords={"parameter": ["f_max", "d_max", "a_left", "a_right"]},
+    )
+
+
+def ground_from(dataset: xr.Dataset, settings: BeamSettings) -> Ground:
+    """Ground without tips from its dataset."""
+    return ground_of_laws(Laws(chaos_model(dataset), dataset.sampled.values), settings)
+
+
+def ground_inputs(plan: Any, case: Case) -> dict[str, str]:
+    """Ground of a device at a humidity, as input of a stage."""
+    size = plan.devices.ground(case.device)
+    return {"ground": f"devices/ground/{case_id(size.pair, case.humidity)}_{size.length}x{size.width}"}
+
+
+def _case_on(plan, at):
+    """Case of one of the devices on a ground.
+
+    Raises
+    ------
+    KeyError
+        If no device is on it.
+    """
+    size = (at.case.pair, int(at.length), int(at.width))
+    users = [name for name in plan.devices.beams if plan.devices.ground(name) == size]
+    if not users:
+        raise KeyError(f"no device is on strips of {at.length} x {at.width} nm of pair {at.case.pair}")
+    return case_id(users[0], at.case.humidity)
+
+
+def _inputs(plan: Any, at: At) -> dict[str, str]:
+    """Contact of a ground, with its correction."""
+    case = _case_on(plan, at)
+    return {"contact": contact_of(plan, case)} | corrections_of(plan, case.device)
+
+
+def _settings(plan: Any, at: At) -> dict[str, Any]:
+    """Settings of the force laws, the same for all devices on a ground."""
+    case = _case_on(plan, at)
+    sides = {"strip_um": plan.devices.strip(case.device), "width_um": plan.config["devices"][case.device]["width_um"]}
+    return select(Settings, settings_of_beam(plan, case) | sides)
+
+
+STAGES = (
+    Stage.writing(
+        "ground",
+        "devices/ground/{case}_{length}x{width}",
+        inputs=_inputs,
+        settings=_settings,
+        kind=Settings,
+        compute=lambda data, settings: compute(data["contact"], corrected(settings, data)),
+        message="Force laws of {case}, strips of {length} x {width} nm.",
+    ),
+)
