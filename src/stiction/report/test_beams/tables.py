@@ -113,11 +113,12 @@ def built(update: xr.Dataset) -> str:
     alone = "".join(
         f"; if its tip cannot touch, {one:.0f} µm with them and {other:.0f} µm without" for other, one in others
     )
-    held = "" if _show_errors_of_tips(update) else " for devices that cracks along the beam hold"
+    beyond = "" if _show_errors_of_tips(update) else ", but not where tips or the middle of a bridge hold"
     margin = _margin(update, "lengths", 2.3)
     return (
         f"With the test beams, build it no longer than {after:.0f} µm, without them {before:.0f} µm{alone}. "
-        f"{margin[0].upper()}{margin[1:]} is subtracted, with that of the model{held}.{_beyond_cracks(update)}"
+        f"{margin[0].upper()}{margin[1:]} is subtracted. It includes the error of the model{beyond}."
+        f"{_beyond_cracks(update)}"
     )
 
 
