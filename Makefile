@@ -149,7 +149,7 @@ test-all: lint
 test-slow: SLOW := slow and not browser and not cluster
 test-slow: lint
 	$(BIN)/python -m stiction.run.warmup
-	$(BIN)/python -m pytest $(WORKERS) -m "$(SLOW)" $(ARGS) || \
+	$(BIN)/python -m pytest $(WORKERS) -m "$(SLOW)" --durations 30 $(ARGS) || \
 	  { [ $$? = 1 ] && $(BIN)/python -m pytest -m "$(SLOW)" --last-failed --last-failed-no-failures none; }
 
 lint: $(VENV)/ready

@@ -40,7 +40,7 @@ from stiction.contact.forcelaw import pressure as law_pressure
 from stiction.contact.forcelaw import energy as law_energy
 from stiction.chaos.model import ChaosModel as ChaosModel
 from stiction.chaos.model import fit as fit_chaos
-from stiction.stages.laws.chaos import chaos_model as chaos_model
+from stiction.stages.laws.stored_model import chaos_model as chaos_model
 from stiction.chaos.model import draw_laws as draw_laws
 
 # beams

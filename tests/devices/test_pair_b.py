@@ -1,8 +1,11 @@
 """Safe lengths of the paper's pair b from few beams, against many, and the air in which its patches hold most."""
 
+from unittest.mock import patch
+
 import numpy as np
 import pytest
 import small
+import xarray as xr
 from plans import job_settings
 
 import stiction
@@ -14,7 +17,9 @@ from stiction.constants import WATER_SURFACE_ENERGY
 from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.stoppers import worst_humidity
+from stiction.plan.graph import Results
 from stiction.stages.contact import contact, curves
+from stiction.stages.devices import safe_lengths
 from stiction.stages.laws import forces
 from stiction.streams import stream
 
@@ -24,8 +29,17 @@ BRUTE_FORCE = {1e-3: (627.8e-6, 625.9e-6, 630.5e-6), 1e-4: (616.5e-6, 614.5e-6, 
 #: Standard error of such a length due to 5000 samples of contact [m].
 SAMPLING = 0.8e-6
 
+BEAMS = 2900
+C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
 #: The lengths of 110 000 beams are those of summits that attract only where they touch.
 TOUCHING = {"attraction": {"reach": "touching"}}
+
+
+@pytest.fixture(scope="module")
+def results():
+    """Results of pair b and of a device on it, which share their contact."""
+    design = {"design": {"beams": BEAMS, "shares": [1e-3, 1e-4]}}
+    return Results.of(stiction.load({"devices": {"C1": C1}} | design | TOUCHING))
 
 
 def test_real_patches_hold_most_well_below_saturation_although_their_energy_keeps_growing():
@@ -43,11 +57,11 @@ def test_real_patches_hold_most_well_below_saturation_although_their_energy_keep
 
 
 @pytest.mark.slow
-def test_a_few_thousand_beams_of_pair_b_find_the_lengths_of_110_000():
-    study = stiction.PairStudy.of(stiction.load(), "b")
+def test_a_few_thousand_beams_of_pair_b_find_the_lengths_of_110_000(results):
+    study = stiction.PairStudy("b", "NG", results)
     vectors, limit = forces.vectors(study.forces(0.67))
     experiment = Experiment(study.beam, 1000, lambda n, rng: resample_laws(vectors, limit, n, rng))
-    cracks = columns(list(simulate(experiment, range(2900), lambda k: stream(7, k), threads=2)))["crack_length"]
+    cracks = columns(list(simulate(experiment, range(BEAMS), lambda k: stream(7, k), threads=2)))["crack_length"]
     for share, (length, low, high) in BRUTE_FORCE.items():
         found = risk.safe_length(cracks, share, stream(0))
         assert found.basis is risk.Basis.FITTED
@@ -58,10 +72,11 @@ def test_a_few_thousand_beams_of_pair_b_find_the_lengths_of_110_000():
 
 
 @pytest.mark.slow
-def test_the_stages_of_a_device_find_the_lengths_of_110_000():
-    beam = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
-    config = stiction.load({"devices": {"C1": beam}, "design": {"beams": 2900, "shares": [1e-3, 1e-4]}} | TOUCHING)
-    found = stiction.Device.of(config, "C1").safe_lengths(0.67).sel(shape="S-shape")
+def test_the_stages_of_a_device_find_the_lengths_of_110_000(results):
+    job = results.graph.job("devices/safe_lengths/C1_rh067")
+    cracks, no_attraction = results["devices/cracks/C1_rh067"], (np.array([0.01, 0.1]), np.zeros((BEAMS, 2)))
+    with patch.object(curves, "tip_forces", lambda *_: no_attraction):
+        found = safe_lengths.compute(cracks, xr.Dataset(), job.stage.converted(job.settings)).sel(shape="S-shape")
     for share, (length, low, high) in BRUTE_FORCE.items():
         one = found.sel(share=share)
         held = risk.HOLD * 3.4e-6

@@ -384,6 +384,17 @@ def disturbed(scan, rng):
 TILT = Settings(Levelling("plane", "tilt"))
 
 
+def large_scans():
+    """Ten large scans of B2."""
+    return published("B2", 10e-6, 10)
+
+
+@functools.cache
+def of_large_scans():
+    """Estimate of each large scan by itself."""
+    return estimates(large_scans())
+
+
 @pytest.mark.slow
 def test_lines_that_jump_and_tilt_are_told_from_others_and_levelled():
     jumping = [disturbed(scan, stream(1, "lines", k)) for k, scan in enumerate(B2)]
@@ -399,8 +410,7 @@ def test_lines_that_jump_and_tilt_are_told_from_others_and_levelled():
 
 @pytest.mark.slow
 def test_lines_that_jump_and_tilt_change_neither_moments_nor_spectrum():
-    scans = published("B2", 10e-6, 10, "lines")
-    clean = estimates(scans)
+    scans, clean = large_scans(), of_large_scans()
     jumping = estimates([disturbed(scan, stream(1, "lines", k)) for k, scan in enumerate(scans)], TILT)
 
     def change(of):
@@ -492,7 +502,7 @@ def test_particles_leave_the_measured_density():
 
 @pytest.mark.slow
 def test_errors_cover_the_truth_as_often_as_they_say():
-    found = estimates(published("B2", SIDE, 100, "coverage"))
+    found = estimates(published("B2", SIDE, 64, "coverage"))
     deviation = np.array([(one.moments - truth("B2")) / one.errors for one in found])
     within = np.mean(np.abs(deviation) < 1, axis=0)
     assert np.all((within >= 0.58) & (within <= 0.78)), within
@@ -526,8 +536,7 @@ def test_errors_by_tiles_cover_the_moments_of_heavy_tails_and_the_closed_form_do
 @pytest.mark.slow
 def test_forms_of_the_density_are_told_apart_in_nine_of_ten_scans():
     cubic, maximum = (
-        np.array([one.goodness[1] for one in estimates(scans)])
-        for scans in (fleishman(10e-6, 10), published("B2", 10e-6, 10))
+        np.array([one.goodness[1] for one in found]) for found in (estimates(fleishman(10e-6, 10)), of_large_scans())
     )
     assert np.sum(cubic < 0.01) >= 9
     assert np.sum(maximum < 0.01) <= 1

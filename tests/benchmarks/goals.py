@@ -1,0 +1,119 @@
+"""CPU of what a user waits for, beside goals and an earlier version: ``python tests/benchmarks/goals.py [NAME...]``.
+
+CPU is user and system time of a command with all its processes, on one core at a time, so that other work on a machine
+counts little. The loop before each command tells how fast the machine is: the time of a command over that of the loop
+compares machines. Prints rows of docs/tables/goals.md. ``--source FOLDER`` measures another checkout.
+"""
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import yaml
+
+import stiction
+
+ROOT = Path(__file__).parents[2]
+#: A cantilever of the paper, and a target of a run that states its safe length.
+BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
+ONE, LENGTHS = (
+    {"run": {"pairs": []}, "devices": {"C1": BEAM | {"humidities": [0.67]}}},
+    "results/tables/safe_lengths.md",
+)
+#: Few samples and beams, for a first answer.
+FEW = {"contact": {"samples": 500}, "chaos": {"order": 6}, "design": {"beams": 300}}
+MORE = {"run": {"pairs": []}, "devices": {"C1": BEAM | {"humidities": [0.67, 0.8]}}}
+
+
+def of_many(number):
+    """Study of cantilevers of as many thicknesses, at four humidities each."""
+    beams = {
+        f"D{k}": BEAM | {"thickness_um": round(2 + 0.001 * k, 3), "humidities": [0.44, 0.6, 0.75, 0.9]}
+        for k in range(number)
+    }
+    return {"run": {"pairs": []}, "devices": beams}
+
+
+#: What is measured: configurations one after the other in one folder, of which the last counts, and arguments.
+RUNS = {
+    "first safe length": ([ONE], [LENGTHS]),
+    "first safe length, 500 samples, 300 beams": ([ONE | FEW], [LENGTHS]),
+    "one more humidity": ([ONE, MORE], [LENGTHS]),
+    "plan of 250 devices at 4 humidities": ([of_many(250)], ["-n"]),
+    "plan of 2500 devices at 4 humidities": ([of_many(2500)], ["-n"]),
+    "make devices": (["examples/devices.yaml"], []),
+}
+#: Measured by `of_step`.
+STEP = "plan of a job on a cluster, 2500 devices"
+
+
+def loop():
+    """CPU of a loop in Python, best of three [s]."""
+
+    def once():
+        """CPU of one loop [s]."""
+        start = time.process_time()
+        sum(k * k for k in range(3_000_000))
+        return time.process_time() - start
+
+    return min(once() for _ in range(3))
+
+
+def cpu_of(words, source, folder):
+    """CPU of a Python command and all its processes [s], and the memory of the largest process so far [MB]."""
+    environment = os.environ | {"PYTHONPATH": str(source / "src"), "OMP_NUM_THREADS": "1"}
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    command = [sys.executable, *map(str, words)]
+    subprocess.run(
+        command, env=environment, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=True
+    )
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, after.ru_maxrss / 1024
+
+
+def measured(name, source):
+    """CPU, loops and memory of the last run of an entry of `RUNS`."""
+    configurations, arguments = RUNS[name]
+    with tempfile.TemporaryDirectory() as folder:
+        for number, one in enumerate(configurations):
+            path = source / one if isinstance(one, str) else Path(folder) / f"{number}.yaml"
+            if not isinstance(one, str):
+                path.write_text(yaml.safe_dump(one), encoding="utf-8")
+            unit = loop()
+            words = ["devices", path, "--directory", Path(folder) / "run", "--", *arguments, "--cores", "1"]
+            seconds, megabytes = cpu_of(["-m", "stiction.command.main", *words], source, folder)
+    return seconds, seconds / unit, megabytes
+
+
+def of_step(source, number=2500):
+    """As `measured`, of the plan that each job of a study of many devices makes on a cluster."""
+    with tempfile.TemporaryDirectory() as folder:
+        handed = Path(folder) / "configuration.json"
+        handed.write_text(json.dumps({"planned": [stiction.load(of_many(number)), {}]}), encoding="utf-8")
+        words = ["-m", "snakemake", "results/devices/cracks/D0_rh044.nc", "--snakefile", source / "Snakefile"]
+        words += ["--directory", folder, "--configfile", handed, "--mode", "remote", "--cores", "1", "--nolock", "-n"]
+        unit = loop()
+        seconds, megabytes = cpu_of(words, source, folder)
+    return seconds, seconds / unit, megabytes
+
+
+def main():
+    """Print the rows."""
+    options = argparse.ArgumentParser()
+    options.add_argument("names", nargs="*", default=[*RUNS, STEP])
+    options.add_argument("--source", type=Path, default=ROOT)
+    given = options.parse_args()
+    for name in given.names:
+        source = given.source.resolve()
+        seconds, loops, megabytes = of_step(source) if name == STEP else measured(name, source)
+        print(f"| {name} | {seconds:.1f} | {loops:.0f} | {megabytes:.0f} |", flush=True)  # noqa: T201
+
+
+if __name__ == "__main__":
+    main()
