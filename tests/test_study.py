@@ -118,7 +118,7 @@ def test_a_spectrum_that_is_to_be_identified_is_identified_first():
     )
     pair = PairStudy.of(plan.config, "b").surfaces
     assert pair.beam.underlying.cutoff == spectrum_of(found).cutoff != pair.substrate.underlying.cutoff
-    expected = spectrum.compute(density, found, in_si(spectrum.Settings, job_settings(plan, "spectrum/B2")))
+    expected = spectrum.compute(density, in_si(spectrum.Settings, job_settings(plan, "spectrum/B2")), found)
     assert_array_equal(pair.beam.underlying.density, expected.underlying)
 
 

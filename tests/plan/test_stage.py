@@ -88,6 +88,16 @@ def test_a_name_matches_its_pattern_alone(pattern, name, values):
         assert pattern.format(**vars(At(**found.groupdict()))) == name
 
 
+def test_the_data_of_the_inputs_complete_the_settings_of_a_computation():
+    def compute(forces, settings):
+        return forces, settings
+
+    stage = Stage.writing(
+        "one", "one", message="", complete=lambda settings, data: settings + data["error"], compute=compute
+    )
+    assert stage.result({"forces": 1, "error": 2}, At(), 3) == (1, 5)
+
+
 def test_a_stage_with_ends_writes_one_dataset_for_each():
     stage = Stage.writing(
         "two", "two/{pair}_{each}", message="", compute=lambda data, at, settings: [], each=lambda plan: plan

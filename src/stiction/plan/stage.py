@@ -146,6 +146,7 @@ class Stage:
     inputs: Callable[[Any, At], Mapping[str, Names]] = _nothing
     settings: Callable[[Any, At], dict] = _nothing
     kind: type | None = None  #: dataclass to which the settings are converted
+    complete: Callable[[Any, Mapping[str, Any]], Any] | None = None  #: completes the settings by the data of the inputs
     save: Callable[[Any, dict], None] | None = None  #: writes what ``compute`` returns to the files, if no dataset
     label: str = ""  #: name in the label of a dataset, if it differs from that of the rule
     each: Callable[[Any], Sequence[str]] | None = None  #: ends of the datasets that one job writes, by the plan
@@ -201,7 +202,8 @@ class Stage:
 
     def result(self, data: Mapping[str, Any], at: At, settings: Any) -> Any:
         """Compute from the data of the inputs, the wildcards and the converted settings."""
-        known = vars(at) | {"settings": settings, "data": data, "at": at} | data
+        complete = self.complete(settings, data) if self.complete else settings
+        known = vars(at) | {"settings": complete, "data": data, "at": at} | data
         return self.compute(**{name: known[name] for name in signature(self.compute).parameters if name in known})
 
     def patterns(self, plan: Any) -> dict[str, str]:

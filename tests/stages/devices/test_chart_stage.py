@@ -118,7 +118,7 @@ def test_few_sizes_are_all_computed(count):
 def computed(device, thicknesses, gaps, tips=None, shares=(1e-2,)):
     wanted = chart.Settings(2021, WATER, 0.67, device, 200, shares, thicknesses, gaps)
     with patch.object(curves, "tip_forces", lambda *_: smooth_tips(tips)):
-        return chart.compute(met(device), None if tips is None else xr.Dataset(), wanted), wanted
+        return chart.compute(met(device), wanted, None if tips is None else xr.Dataset()), wanted
 
 
 def alone(device, wanted, tips=None):

@@ -175,7 +175,7 @@ _WORST = {"worst RH": (worst_humidity, "worst_humidity", "worst_humidity_se", "w
 # Budget
 
 
-def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset] | None = None) -> Table:
+def budget(budgets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset] | None = None) -> Table:
     """Uncertainty of every device: effect of each measurement, total, scatter, choices of the model.
 
     The numbers hold every input with its slope; the text is by measurement, with a sentence on what to measure better.
@@ -184,12 +184,12 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
     frame = pd.DataFrame(
         [
             row
-            for (device, rh, *_), one in datasets.items()
+            for (device, rh, *_), one in budgets.items()
             for row in [*_budget_rows(device, rh, one), *_model_rows(device, rh, one, errors)]
         ]
     )
-    sentences = [f"{device}, {air(humidity)}: {advised(one)}" for (device, humidity, *_), one in datasets.items()]
-    omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in datasets.items()}
+    sentences = [f"{device}, {air(humidity)}: {advised(one)}" for (device, humidity, *_), one in budgets.items()]
+    omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in budgets.items()}
     caption = with_list(
         "Relative standard uncertainty of a result due to each measurement, if all others were exact, ± standard error "
         "of the simulation. The result is the mean length of beams stuck as S-shapes, the length at which few stick "
@@ -320,7 +320,7 @@ STAGES = (
             {"budgets": budgets_of(plan, *plan.devices.budgeted)}
             | model_errors.error_inputs(plan, *plan.devices.budgeted)
         ),
-        compute=lambda data: budget(data["budgets"], data.get("errors")),
+        compute=budget,
         jobs=lambda plan: [{}] if plan.devices.budgeted else [],
         targets=("devices",),
     ),

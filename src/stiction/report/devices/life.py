@@ -76,10 +76,10 @@ _COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#D55E00", "#CC79A7", "#009E73"), str
 _ROW, _AROUND = 0.3, 1.1
 
 
-def table(datasets: Mapping[str, xr.Dataset]) -> Table:
+def table(life: Mapping[str, xr.Dataset]) -> Table:
     """Answers about all devices, one row each."""
     rows = []
-    for device, dataset in datasets.items():
+    for device, dataset in life.items():
         for answer in answers_of(dataset):
             factor, unit = _UNITS[answer.unit]
             numbers = {"at_least": answer.low, "at_most": answer.high, "standard_uncertainty": answer.error}
@@ -289,13 +289,13 @@ def _high(answer: Answer) -> str:
 
 
 @styled
-def figure(datasets: Mapping[str, xr.Dataset]) -> Figure:
+def figure(life: Mapping[str, xr.Dataset]) -> Figure:
     """Limits of the lives of devices on one axis: lengths of beams, or forces of stoppers, a panel for each device."""
-    rows = {name: _rows(dataset) for name, dataset in datasets.items()}
+    rows = {name: _rows(dataset) for name, dataset in life.items()}
     height = _AROUND + _ROW * max(map(len, rows.values()))
     made, columns, lines = columns_of_panels(len(rows), 1, at_most_double(1.6 * SINGLE), height)
     for panel, (name, answers) in zip(columns[:, 0], rows.items(), strict=True):
-        _bars(panel, answers, float(datasets[name].length))
+        _bars(panel, answers, float(life[name].length))
     letter_lines(lines, list(rows))
     entries = [Line2D([], [], color=colour, linewidth=4, label=name) for name, colour in _COLOURS.items()]
     legend_outside(made, (entries, list(_COLOURS)), "upper", 4)
@@ -334,14 +334,14 @@ STAGES = (
     table_stage(
         "life",
         "what brings devices into contact, holds and frees them",
-        compute=lambda data: table(data["life"]),
+        compute=table,
         **_OF_ALL,
     ),
     figure_stage(
         "life",
         "what limits the life of devices, on one axis",
         "Devices",
-        compute=lambda data: figure(data["life"]),
+        compute=figure,
         **_OF_ALL,
     ),
 )

@@ -96,7 +96,8 @@ STAGES = (
         settings=_settings,
         kind=Settings,
         first=lambda settings: {"sample": slice(settings.samples)},
-        compute=lambda data, at, settings: compute(data["contact"], at.case, corrections.corrected(settings, data)),
+        complete=corrections.corrected,
+        compute=compute,
         message="Crack lengths of {case} under variant {variant}.",
     ),
 )

@@ -50,7 +50,7 @@ class Filled:
 _UNKNOWN = (lambda thickness, _gap: np.full(len(thickness), np.nan)), 0.0
 
 
-def compute(ground: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
+def compute(ground: xr.Dataset, settings: Settings, tips: xr.Dataset | None = None) -> xr.Dataset:
     """Safe lengths and quantiles of all thicknesses and gaps. Inputs as in the stages cracks and safe_lengths."""
     met = sticking.with_tips(ground_from(ground, settings), tips, settings.humidity, settings.water)
 
@@ -203,7 +203,7 @@ STAGES = (
         inputs=lambda plan, at: ground_inputs(plan, at.case) | tips_of(plan, at.case),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, settings: compute(data["ground"], data.get("tips"), settings),
+        compute=compute,
         message="Chart of {case}.",
         cluster=True,
         minutes=120,

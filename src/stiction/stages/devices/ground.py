@@ -98,7 +98,8 @@ STAGES = (
         inputs=_inputs,
         settings=_settings,
         kind=Settings,
-        compute=lambda data, settings: compute(data["contact"], corrected(settings, data)),
+        complete=corrected,
+        compute=compute,
         message="Force laws of {case}, strips of {length} x {width} nm.",
     ),
 )

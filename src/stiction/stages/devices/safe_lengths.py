@@ -37,7 +37,7 @@ class Settings:
     length: float | None = None  #: of the device, at which P(stuck) is stated [m]
 
 
-def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
+def compute(cracks: xr.Dataset, settings: Settings, tips: xr.Dataset | None = None) -> xr.Dataset:
     """P(stuck) and safe lengths. Each beam has one of the tips, and a bridge has none."""
     device, held = settings.device, None
     if tips is not None:
@@ -51,7 +51,7 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
 
 
 def compute_at_voltage(
-    contact: xr.Dataset, cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings
+    contact: xr.Dataset, cracks: xr.Dataset, settings: Settings, tips: xr.Dataset | None = None
 ) -> xr.Dataset:
     """Safe lengths at a voltage, from the contact of the strips and the cracks without voltage, see `compute`.
 
@@ -65,7 +65,7 @@ def compute_at_voltage(
     moved = stage_cracks.with_lengths(cracks, lambda lengths: device.opening.at_voltage(lengths, *means, device.beam))
     added, error = mean_with_error(at[:, 0] - without[:, 0])
     energies = {"voltage_energy": ((), added, {"units": "J m-2"}), "voltage_error": ((), error, {"units": "J m-2"})}
-    return compute(moved, tips, settings).assign(energies)
+    return compute(moved, settings, tips).assign(energies)
 
 
 def at_length(beams: Released, length: float) -> dict[str, tuple]:
@@ -168,7 +168,7 @@ _SAFE_LENGTHS = Stage.writing(
         Settings, settings_of_beam(plan, at.case) | chosen(plan.config["devices"][at.case.device], ["length_um"])
     ),
     kind=Settings,
-    compute=lambda data, settings: compute(data["cracks"], data.get("tips"), settings),
+    compute=compute,
     message="Safe lengths of {case}.",
 )
 STAGES = (
@@ -176,7 +176,7 @@ STAGES = (
         _SAFE_LENGTHS,
         inputs=lambda plan, at: _SAFE_LENGTHS.inputs(plan, at) | prediction.inputs(plan, at.case),
         compute=lambda data, settings: prediction.with_intervals(
-            compute(data["cracks"], data.get("tips"), settings), data, settings
+            compute(data["cracks"], settings, data.get("tips")), data, settings
         ),
     ),
     replace(
@@ -196,9 +196,8 @@ STAGES = (
         ),
         settings=lambda plan, at: select(Settings, at_voltage(plan, at.case.device, settings_of_beam(plan, at.case))),
         kind=Settings,
-        compute=lambda data, settings: compute_at_voltage(
-            data["contact"], data["cracks"], data.get("tips"), corrected(settings, data)
-        ),
+        complete=corrected,
+        compute=compute_at_voltage,
         message="Safe lengths of {case} at its voltage.",
     ),
 )

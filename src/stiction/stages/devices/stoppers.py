@@ -289,7 +289,8 @@ _STOPPERS = Stage.writing(
     inputs=_inputs,
     settings=_settings,
     kind=Settings,
-    compute=lambda data, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
+    complete=corrected,
+    compute=compute,
     message="Pull-off force of stopper {device}.",
 )
 
@@ -318,7 +319,8 @@ STAGES = (
         inputs=lambda plan, at: {"contact": dimples_of(plan, at.case)} | corrections_of(plan, at.case.device),
         settings=_settings_of_dimples,
         kind=Dimples,
-        compute=lambda data, settings: compute_dimples(data["contact"], corrected(settings, data)),
+        complete=corrected,
+        compute=compute_dimples,
         message="Pull-off force of the dimples of {case}.",
     ),
     replace(
@@ -328,7 +330,7 @@ STAGES = (
         inputs=_inputs_tilted,
         settings=lambda plan, at: _settings(plan, at) | {"slopes": plan.devices.slopes(at.device)},
         kind=Tilted,
-        compute=lambda data, settings: compute_tilted(data, corrected(settings, data)),
+        compute=compute_tilted,
         message="Pull-off force of tilted stopper {device}.",
     ),
     replace(
@@ -336,7 +338,7 @@ STAGES = (
         name="stoppers_at_voltage",
         files={"dataset": "devices/at_voltage/{device}"},
         settings=lambda plan, at: at_voltage(plan, at.device, _settings(plan, at)),
-        compute=lambda data, settings: compute_at_voltage(data["contact"], corrected(settings, data), data.get("dry")),
+        compute=compute_at_voltage,
         message="Pull-off force of stopper {device} at its voltage.",
     ),
 )

@@ -130,7 +130,8 @@ STAGES = (
         inputs=_inputs,
         settings=_settings,
         kind=Settings,
-        compute=lambda data, settings: compute(data["contacts"], corrected(settings, data), data["tips"]),
+        complete=corrected,
+        compute=compute,
         message="Fast separation of device {device}.",
     ),
 )

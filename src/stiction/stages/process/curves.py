@@ -135,7 +135,7 @@ STAGES = (
         inputs=inputs,
         settings=settings_of,
         kind=Settings,
-        compute=lambda data, settings: compute(data["points"], data["laws"], settings, data.get("model_error")),
+        compute=compute,
         message="Device {device} over its process.",
     ),
 )

@@ -121,7 +121,7 @@ STAGES = (
         inputs=inputs,
         settings=settings_of,
         kind=Settings,
-        compute=lambda data, settings: compute(data["points"], data["laws"], settings, data.get("model_error")),
+        compute=compute,
         message="Device {device} over two processes.",
     ),
     Stage.writing(

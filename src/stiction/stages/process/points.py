@@ -131,7 +131,7 @@ def _points(
     for number in range(len(changed)):
         at, tip = ({humid: some[number] for humid, some in of.items()} for of in (patches, tips))
         yield curves.compute(
-            {humid: one.assign(roughness=settings.value) for humid, one in at.items()}, tip, settings.device
+            {humid: one.assign(roughness=settings.value) for humid, one in at.items()}, settings.device, tip
         )
 
 

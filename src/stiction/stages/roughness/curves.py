@@ -119,24 +119,24 @@ class OfStopper:
         return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)], ""
 
 
-def point_settings(settings: dict[str, Any]) -> OfBeam | OfStopper:
-    """Settings of a point from those of a job: those of beams have their dimensions."""
-    return in_si(OfBeam if "device" in settings else OfStopper, settings)
+def point_settings(settings: dict[str, Any], data: Mapping[str, Any]) -> OfBeam | OfStopper:
+    """Settings of a point from those of a job and its inputs: those of beams have their dimensions."""
+    return corrected(in_si(OfBeam if "device" in settings else OfStopper, settings), data)
 
 
 # Points
 
 
 def compute(
-    contacts: Mapping[bool, xr.Dataset], tips: Mapping[bool, xr.Dataset], settings: OfBeam | OfStopper
+    contact: Mapping[bool, xr.Dataset], settings: OfBeam | OfStopper, tips: Mapping[bool, xr.Dataset] | None = None
 ) -> xr.Dataset:
     """One point of the curve: lengths or forces at all humidities, or the reason against them.
 
-    The contacts are those of `stiction.stages.roughness.contacts`; there are none of tips of other devices.
+    The contacts are those of `stiction.stages.roughness.contacts` in humid and in dry air, of tips if there are any.
     """
     responses, flagged, refused = [], [], []
     for humidity in settings.humidities:
-        met, air = (contacts[humidity > 0], tips.get(humidity > 0)), settings.water.at(humidity)
+        met, air = (contact[humidity > 0], (tips or {}).get(humidity > 0)), settings.water.at(humidity)
         try:
             found, flag = replace(settings, water=air).responses(*met, humidity)
             reason = ""
@@ -147,10 +147,10 @@ def compute(
         responses.append(found)
         flagged.append(flag)
         refused.append(reason)
-    contact = next(iter(contacts.values()))
+    first = next(iter(contact.values()))
     said = {"flagged": ("humidity", flagged), "refused": ("humidity", refused)}
-    point = layout(responses, roughness_of(contact), contact.sizes["sample"], settings).assign(said)
-    return point.assign({name: contact[name] for name in (*OTHERS, KURTOSIS) if name in contact})
+    point = layout(responses, roughness_of(first), first.sizes["sample"], settings).assign(said)
+    return point.assign({name: first[name] for name in (*OTHERS, KURTOSIS) if name in first})
 
 
 def layout(
@@ -306,9 +306,8 @@ STAGES = (
         # ASSUME: a correction to full elastic contact is that of the given surfaces at every roughness.
         inputs=lambda plan, at: contacts_of(plan, at.device, int(at.number)) | corrections_of(plan, at.device),
         settings=settings_of,
-        compute=lambda data, settings: compute(
-            data["contact"], data.get("tips", {}), corrected(point_settings(settings), data)
-        ),
+        complete=point_settings,
+        compute=compute,
         message="Device {device} at roughness {number}.",
         cluster=True,
         minutes=120,
