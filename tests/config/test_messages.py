@@ -66,7 +66,7 @@ def test_a_name_that_is_not_safe_in_file_names_is_rejected(section, name):
 def test_a_missing_key_is_named_with_what_it_must_be(leaf):
     (line,) = problems(without(leaf.path))
     assert line.startswith(f"{leaf} is missing, must be ")
-    assert line.endswith(messages.described(leaf.entry))
+    assert line.endswith(messages.description(leaf.entry))
 
 
 @pytest.mark.parametrize("section", PAPER)
@@ -80,7 +80,7 @@ def test_no_number_is_replaced_by_something_else(leaf):
     for junk in (None, True, False, "1.0", "", [1], {}, math.nan, math.inf, -math.inf, 10**400):
         (line,) = problems(replaced(leaf.path, junk))
         assert line.startswith(f"{leaf} is "), junk
-        assert messages.described(leaf.entry) in line, junk
+        assert messages.description(leaf.entry) in line, junk
 
 
 @pytest.mark.parametrize("section", [entry for entry in entries(SCHEMA) if len(entry.get("required", ())) > 1], ids=str)
@@ -119,14 +119,16 @@ def test_a_device_with_an_unknown_key_gets_the_keys_of_its_kind_in_one_sentence(
     (line,) = problems(changed(f"devices: {{D: {{kind: {kind}, pair: b, humidities: [0.5], gap: 3}}}}"))
     assert line.startswith("devices.D.gap is unknown (value 3), must be one of kind, pair, humidities")
     known = line.partition("one of ")[2].partition(";")[0].split(", ")
-    assert known == list(KINDS[kind].known)
+    assert known == list(KINDS[kind].allowed_keys)
     assert line.endswith("; did you mean gap_um? Keys carry their unit.")
 
 
 def test_no_message_ends_with_what_only_stands_for_a_unit():
     for entry in entries(SCHEMA):
         said = (
-            str(messages.Problem(("key",), f"must be {messages._allowed(entry)}")) if entry["type"] != "object" else ""
+            str(messages.Problem(("key",), f"must be {messages._allowed_values(entry)}"))
+            if entry["type"] != "object"
+            else ""
         )
         assert not re.search(r"\[(choice|name|path)\]", said)
 

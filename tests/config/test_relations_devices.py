@@ -390,14 +390,14 @@ def test_the_normal_form_sorts_the_humidities_of_devices():
 
 def test_a_configuration_without_devices_has_no_cases():
     none = DevicePlan(load())
-    assert (none.cases, none.charted, none.pressed_pairs) == ([], [], [])
+    assert (none.cases, none.with_chart, none.pressed_pairs) == ([], [], [])
 
 
 def test_cases_are_beams_at_their_humidities():
     devices = DevicePlan(load({"devices": DEVICES}))
     assert devices.cases == ["C1_rh044", "C1_rh067", "R1_rh067"]
     assert devices.stoppers == ["S1", "S2"]
-    assert devices.charted == ["C1"]
+    assert devices.with_chart == ["C1"]
     assert devices.pressed_pairs == ["b"]
     other = {"pairs": {"d": PAPER["pairs"]["b"]}, "devices": {"C1": C1 | {"pair": "d"}}}
     assert DevicePlan(load(other)).pressed_pairs == []
@@ -552,9 +552,9 @@ def test_warnings_know_what_is_stated_of_a_material():
 
 def test_patches_of_devices_count_for_the_memory_of_jobs():
     wide = normalised(with_device(width_um=600))
-    assert memory.of_job(wide) == round(field_memory(2.5, 601, 10))
+    assert memory.job_memory(wide) == round(field_memory(2.5, 601, 10))
     stopper = normalised(merged(PAPER, {"devices": {"S1": S1 | {"contact_um": [30, 40]}}}))
-    assert memory.of_job(stopper) == round(field_memory(31, 41, 10))
+    assert memory.job_memory(stopper) == round(field_memory(31, 41, 10))
 
 
 def test_the_axis_of_the_worst_humidity_holds_no_air_that_is_too_dry_for_a_stopper():

@@ -160,16 +160,16 @@ def test_test_beams_in_dry_air_need_attraction_across_gaps_and_have_no_uncertain
     assert "[0].humidity = 'dry')" in problem
     across = Plan(load(config))
     assert "humidity" in across.config["devices"]["C1"]["uncertainty"]
-    assert "humidity" not in across.of_test_beams.config["devices"]["first"]["uncertainty"]
+    assert "humidity" not in across.with_test_beams.config["devices"]["first"]["uncertainty"]
     mixed = config | {"test_beams": {"first": array | {"stuck": [COUNTS[0], COUNTS[0] | {"humidity": "dry"}]}}}
     assert problems(merged(PAPER, mixed)) == ()
 
 
 def test_tips_of_counted_beams_are_drawn_with_their_own_slopes():
     thin = Plan(load(merged(SECTIONS, {"test_beams": {"first": {"stuck": COUNTS}}})))
-    tips = thin.of_test_beams.devices.tips("first")
+    tips = thin.with_test_beams.devices.tips("first")
     assert tips != thin.devices.tips("C1")
-    assert thin.devices.tilt(tips)["slopes"] == list(thin.of_test_beams.devices._slopes("first"))
+    assert thin.devices.tilt(tips)["slopes"] == list(thin.with_test_beams.devices._slopes("first"))
     with pytest.raises(KeyError, match="no device has tips"):
         PLAN.devices.tilt(tips)  # beams that were not counted need no tips
 
@@ -226,7 +226,7 @@ def test_only_devices_with_test_beams_have_them_in_their_jobs():
     graph = Graph(PLAN)
     assert "test_beams" in graph.job("devices/C1.html").inputs
     assert "test_beams" not in graph.job("devices/C2.html").inputs
-    assert PLAN.devices.tested == ["C1"]
+    assert PLAN.devices.with_test_beams == ["C1"]
     assert set(graph.job("devices/test_beams/C1").inputs["test_beams"]) == {("first", 0.44), ("first", 0.67)}
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import pytest
 
-from stiction.plan.stage import WILDCARDS, At, Stage, chosen, expression, select
+from stiction.plan.stage import WILDCARDS, At, Stage, expression, select, subsection
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def test_what_is_given_replaces_the_section_and_may_have_fields_that_it_lacks():
 
 def test_a_missing_key_is_reported_by_the_field_that_needs_it():
     with pytest.raises(KeyError, match="Settings.seed"):
-        select(Settings, chosen(CONFIG, ["beam", "pairs"]))
+        select(Settings, subsection(CONFIG, ["beam", "pairs"]))
 
 
 def test_settings_are_converted_to_the_class_and_stay_plain_without_one():

@@ -399,9 +399,9 @@ def test_beams_are_selected_by_the_name_of_their_state():
     of_samples = forces.layout(np.zeros((1, 4)), 0.0, np.arange(2.0), np.zeros((1, 2))).adhesion_energy.attrs
     assert of_samples["long_name"] == "adhesion energy of a sample, Eq. (11)"
     assert found.adhesion_energy.attrs["long_name"].startswith("apparent adhesion energy of a beam, Eq. (13)")
-    assert_array_equal(releases.ended(found, "S-shape"), [True, False, False, True])
-    assert_array_equal(releases.ended(found, "arc"), [False, True, False, False])
-    assert_array_equal(releases.ended(found, "free"), [False, False, True, False])
+    assert_array_equal(releases.ends_as(found, "S-shape"), [True, False, False, True])
+    assert_array_equal(releases.ends_as(found, "arc"), [False, True, False, False])
+    assert_array_equal(releases.ends_as(found, "free"), [False, False, True, False])
     assert found.state.attrs["flag_meanings"] == "S-shape arc free"
 
 

@@ -98,23 +98,23 @@ def without_wildcards(file: str) -> str:
     return re.sub(r"_?\{\w+\}", "", file)
 
 
-def named(kind: str, file: str) -> str:
+def stage_name(kind: str, file: str) -> str:
     """Name of the stage of a ``table`` or ``figure`` with a file of this name.
 
     Examples
     --------
-    >>> named("figure", "figure_05"), named("figure", "budget_{device}")
+    >>> stage_name("figure", "figure_05"), stage_name("figure", "budget_{device}")
     ('figure_05', 'figure_budget')
     """
     return f"{kind}_{without_wildcards(file).removeprefix(f'{kind}_')}"
 
 
-def titled(name: str, shows: str) -> str:
+def title_of(name: str, shows: str) -> str:
     """Title of a table or figure in the report.
 
     Examples
     --------
-    >>> titled("figure_05", "a force curve"), titled("fit_quality", "errors of Eq. (12)")
+    >>> title_of("figure_05", "a force curve"), title_of("fit_quality", "errors of Eq. (12)")
     ('Figure 5: a force curve', 'Fit quality: errors of Eq. (12)')
     """
     return f"{name.replace('_0', ' ').replace('_', ' ').capitalize()}: {shows}"
@@ -213,7 +213,7 @@ class Stage:
         return {end: self.files["dataset"].replace("{each}", end) for end in self.each(plan)}
 
 
-def declared(module: str) -> tuple[Stage, ...]:
+def stages_of(module: str) -> tuple[Stage, ...]:
     """Stages declared by a module."""
     return getattr(import_module(module), "STAGES", ())
 
@@ -236,7 +236,7 @@ def filled(pattern: str, at: At) -> str:
     return pattern.format(**vars(at))
 
 
-def chosen(section: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
+def subsection(section: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
     """Section reduced to the named keys, as far as it contains them."""
     return {name: section[name] for name in names if name in section}
 

@@ -86,7 +86,7 @@ def _parsed(text):
     for node in nodes:
         if isinstance(node, _DOCUMENTED) and ast.get_docstring(node, clean=False) is not None:
             del node.body[0]
-    names = [name for node in nodes for name in imported(node)]
+    names = [name for node in nodes for name in imports_of(node)]
     return [hashlib.sha256(ast.dump(tree).encode()).hexdigest()[:8], names]
 
 
@@ -98,7 +98,7 @@ def _statements(node):
             yield from _statements(child)
 
 
-def imported(node: ast.AST) -> list[str]:
+def imports_of(node: ast.AST) -> list[str]:
     """Full names imported from the package by a statement, empty for any other node."""
     if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "stiction":
         return [f"{node.module}.{alias.name}" for alias in node.names]

@@ -230,10 +230,10 @@ def test_gaussian_surfaces_and_tips_are_not_corrected():
 def test_a_stopper_is_corrected_by_the_ratio_of_the_forces():
     wanted = stoppers.Settings(1, WATER, (6e-6, 1.5e-6), 2e-5, (0.67,), (0.5, 0.8))
     error = stage_model_error.compute(study(), stage_model_error.Settings(HUMIDITIES))
-    full = corrections.corrected(wanted, {"model_error": error})
+    full = corrections.with_correction(wanted, {"model_error": error})
     base, found = (stoppers.compute(small.contact_of_pair(), one) for one in (wanted, full))
     assert_allclose(found.pull_off, 0.95 * base.pull_off)
-    assert corrections.corrected(wanted, {}) is wanted
+    assert corrections.with_correction(wanted, {}) is wanted
 
 
 def test_the_contact_itself_does_not_know_of_the_correction():

@@ -228,7 +228,7 @@ STAGES = (
         "Devices",
         inputs=lambda plan, at: {"budgets": budgets_of(plan, at.device)},
         compute=budget,
-        jobs=lambda plan: [{"device": name} for name in plan.devices.budgeted],
+        jobs=lambda plan: [{"device": name} for name in plan.devices.with_budget],
         targets=("devices",),
     ),
 )

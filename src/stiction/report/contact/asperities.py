@@ -224,7 +224,7 @@ def _stage(kind, shows, draw, **declared):
         },
         settings=lambda plan, at: {"of_paper": plan.paper.pairs},
         compute=lambda data, settings: draw(
-            data["studies"], data["full"], data["beams"], published.compared(data, settings)
+            data["studies"], data["full"], data["beams"], published.published_rows(data, settings)
         ),
         study="asperities",
         targets=("asperities",),

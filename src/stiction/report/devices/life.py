@@ -128,8 +128,8 @@ def sentences(dataset: xr.Dataset) -> list[str]:
     at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
     said = [*_touching(answers, at), *_asking(one for one in unknown if one.question == TOUCH)]
-    said += [*_pulled_in(answers, potential), *_drying(answers, at, length), *_dimpled(answers), *_tilted(answers)]
-    said += [*_biased(answers, potential), *_fast(answers), *_often(answers, int(dataset.touchdowns))]
+    said += [*_pulled_in(answers, potential), *_drying(answers, at, length), *_on_dimples(answers), *_at_tilts(answers)]
+    said += [*_at_voltage(answers, potential), *_fast(answers), *_often(answers, int(dataset.touchdowns))]
     return [*said, *_asking(one for one in unknown if one.question != TOUCH)]
 
 
@@ -153,7 +153,7 @@ def _pulled_in(answers, potential):
     return [f"Its own voltage of {significant(potential)} V pulls it in."]
 
 
-def _dimpled(answers):
+def _on_dimples(answers):
     """Whether a beam sticks on its dimples, and whether it touches beside them."""
     if DIMPLES not in answers:
         return []
@@ -174,7 +174,7 @@ def _dimpled(answers):
     return [f"{said} But it touches beside them, where they do not protect it."]
 
 
-def _tilted(answers):
+def _at_tilts(answers):
     """Force on a stopper at its tilts, and the tilt that makes it that of a wedge."""
     if TILTED not in answers:
         return []
@@ -183,7 +183,7 @@ def _tilted(answers):
     return [f"Its {one.what}, is {ends} µN. Beyond a tilt of {limit}°, a longer side of its area hardly holds more."]
 
 
-def _biased(answers, potential):
+def _at_voltage(answers, potential):
     """Effect of a voltage on a touching device, and on its dielectric."""
     if AT_VOLTAGE not in answers:
         return []
@@ -193,13 +193,13 @@ def _biased(answers, potential):
     ends = list(dict.fromkeys(end for end, value in ((_low(one), one.low), (_high(one), one.high)) if value == value))
     said = [f"{on} {what} {' to '.join(ends)} {unit}."]
     if FREEING in answers:
-        said.append(_released(answers[FREEING]))
+        said.append(_release_voltage(answers[FREEING]))
     if field.high > BREAKDOWN:
         said.append(f"The field in its dielectric, {_high(field)} V/nm, is above 1 V/nm, where thin oxides break down.")
     return said
 
 
-def _released(one):
+def _release_voltage(one):
     """Voltage below which the spring of a stopper frees it."""
     fraction = one.what.rpartition("frees ")[2]
     if not max(one.low, one.high) > 0:

@@ -155,7 +155,7 @@ STAGES = (
             "recommended": f"process/settings/{process.variable_of(plan.config, at.device)}",
         },
         compute=devices,
-        jobs=lambda plan: _jobs(plan.devices.processed, "device"),
+        jobs=lambda plan: _jobs(plan.devices.over_process, "device"),
         targets=("devices",),
     ),
     figure_stage(
@@ -164,7 +164,7 @@ STAGES = (
         "Devices",
         inputs=lambda plan, at: {"law": f"process/laws/{at.process}"},
         compute=laws,
-        jobs=lambda plan: _jobs(process.used(plan.config), "process"),
+        jobs=lambda plan: _jobs(process.used_processes(plan.config), "process"),
         targets=("devices",),
     ),
     figure_stage(

@@ -191,7 +191,7 @@ STAGES = (
         "Surfaces (Sec. II)",
         name="surface_sheet",
         inputs=lambda plan, at: {
-            stage: f"{stage}/{at.surface}" for stage in ("estimate", *["spectrum"] * plan.simulated(at.surface))
+            stage: f"{stage}/{at.surface}" for stage in ("estimate", *["spectrum"] * plan.is_drawn(at.surface))
         },
         compute=surface_sheet,
         jobs=lambda plan: [{"surface": name} for name in plan.scans.surfaces],

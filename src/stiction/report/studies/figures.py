@@ -455,7 +455,7 @@ def _curve(panel, humidity, change, error, style):
 
 def _sensitivities(data, settings):
     """Sensitivities to the moments, and the published ones."""
-    stated = published.compared(data, settings)
+    stated = published.published_rows(data, settings)
     stated = stated[stated.pair.isin(settings["pairs"]) & stated.moment.isin(settings["moments"])]
     places = zip(stated.pair, stated.moment, stated.relative_humidity, strict=True)
     return sensitivities(data["studies"], dict(zip(places, stated.slope, strict=True)))
@@ -466,7 +466,7 @@ def _variants(data, settings):
     known = by_pair(data["studies"])
     pairs, names = (dict.fromkeys(parts) for parts in zip(*known, strict=True))
     whole = {(pair, name): known.get((pair, name), known[pair, "base"]) for pair in pairs for name in names}
-    return variants(whole, published.compared(data, settings))
+    return variants(whole, published.published_rows(data, settings))
 
 
 def _study(name, shows, **declared):

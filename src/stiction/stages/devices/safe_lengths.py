@@ -11,15 +11,15 @@ from stiction.devices import arcs, risk
 from stiction.devices.risk import Known, SafeLength
 from stiction.estimates import mean_with_error
 from stiction.life.freeing import probability_for
-from stiction.plan.stage import Stage, chosen, select
+from stiction.plan.stage import Stage, select, subsection
 from stiction.stages.contact import curves
-from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.corrections import with_correction
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices import cracks as stage_cracks
 from stiction.stages.devices import prediction
 from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
 from stiction.stages.devices.opening import DesignedBeam, at_voltage, settings_of_beam
-from stiction.stages.devices.sticking import Released, by_shape, known
+from stiction.stages.devices.sticking import Released, by_shape, lengths_without_samples
 
 #: Points along the axis of the lengths.
 _POINTS = 300
@@ -43,7 +43,7 @@ def compute(cracks: xr.Dataset, settings: Settings, tips: xr.Dataset | None = No
     if tips is not None:
         held = arcs.longest_free(*curves.tip_forces(tips, settings.humidity, settings.water), device.beam)
     beams = stage_cracks.beams_of(cracks, device, held)
-    without_samples = known(device, settings.water, settings.humidity, beams.reach)
+    without_samples = lengths_without_samples(device, settings.water, settings.humidity, beams.reach)
     dataset = layout(beams.lengths, by_shape(beams, settings, without_samples), without_samples, settings).assign(
         cracks[["rms", "share_flat", "longest_strip"]]
     )
@@ -165,7 +165,7 @@ _SAFE_LENGTHS = Stage.writing(
     "devices/safe_lengths/{case}",
     inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, at.case),
     settings=lambda plan, at: select(
-        Settings, settings_of_beam(plan, at.case) | chosen(plan.config["devices"][at.case.device], ["length_um"])
+        Settings, settings_of_beam(plan, at.case) | subsection(plan.config["devices"][at.case.device], ["length_um"])
     ),
     kind=Settings,
     compute=compute,
@@ -196,7 +196,7 @@ STAGES = (
         ),
         settings=lambda plan, at: select(Settings, at_voltage(plan, at.case.device, settings_of_beam(plan, at.case))),
         kind=Settings,
-        complete=corrected,
+        complete=with_correction,
         compute=compute_at_voltage,
         message="Safe lengths of {case} at its voltage.",
     ),

@@ -106,7 +106,7 @@ STAGES = (
         ),
         settings=lambda plan, at: select(Settings, plan.at(at.case)),
         kind=Settings,
-        complete=corrections.corrected,
+        complete=corrections.with_correction,
         compute=compute,
         message="Force curves of {case}, {model} (Sec. III-B1).",
     ),

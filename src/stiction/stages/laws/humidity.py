@@ -62,7 +62,7 @@ STAGES = (
         ),
         settings=_settings,
         kind=Settings,
-        complete=corrections.corrected,
+        complete=corrections.with_correction,
         compute=compute,
         message="Adhesion energy of {model} surfaces of pair {pair} against relative humidity.",
     ),
