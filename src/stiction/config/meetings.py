@@ -14,7 +14,7 @@ from stiction.config.kinds import KINDS
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.meniscus import dry_air, is_wetted, meniscus_height
 from stiction.devices import limits
-from stiction.devices.materials import COATING
+from stiction.devices.properties import COATING
 from stiction.models import SIDES
 from stiction.rounding import is_at_most
 

@@ -28,7 +28,7 @@ from stiction.config.relations import (
     without_density,
 )
 from stiction.config.test_beams import DATA, shared_uncertainty
-from stiction.devices.materials import COATING_ATTRACTION, OF_CONTACT
+from stiction.devices.properties import COATING_ATTRACTION, OF_CONTACT
 from stiction.rounding import is_at_most
 from stiction.surface.feasible import largest_kurtosis
 

@@ -19,7 +19,7 @@ from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, un
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
-from stiction.devices.materials import OF_CONTACT
+from stiction.devices.properties import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.plan.stage import subsection
 

@@ -14,7 +14,7 @@ from stiction.config.units import to_si
 from stiction.contact.meniscus import is_wetted, require_humidity
 from stiction.contact.vanderwaals import combined
 from stiction.devices import limits
-from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS
+from stiction.devices.properties import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.models import SIDES
 from stiction.plan.materials import PairMaterials
 from stiction.plan.paper import is_pair

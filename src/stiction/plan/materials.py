@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from stiction.config.cases import PairInAir
 from stiction.config.materials import material_of
 from stiction.config.reading import paper
-from stiction.devices.materials import COATING, ELASTIC, OF_COATINGS, PROPERTIES
+from stiction.devices.properties import COATING, ELASTIC, OF_COATINGS, PROPERTIES
 from stiction.models import SIDES
 from stiction.plan.stage import subsection
 

@@ -15,7 +15,7 @@ from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
 from stiction.config.surfaces.knowledge import sentences
 from stiction.config.test_beams import as_cantilevers
-from stiction.devices.materials import ELASTIC
+from stiction.devices.properties import ELASTIC
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SURFACE_MODELS
 from stiction.plan.devices import DevicePlan
 from stiction.plan.environment import Air
