@@ -177,13 +177,32 @@ UNITS = {
 }
 
 
+def keys_with_values(schema, path=()):
+    """Every key of the schema that holds a value, as a path, with its part. Names chosen by users are NAME."""
+    if schema["type"] == "array" and schema["items"]["type"] == "object":
+        return keys_with_values(schema["items"], path)
+    if schema["type"] != "object":
+        return {path: schema}
+    inside = schema.get("properties", {}).items()
+    named = [("NAME", schema["additionalProperties"])] if isinstance(schema.get("additionalProperties"), dict) else []
+    return {
+        key: value for name, part in (*inside, *named) for key, value in keys_with_values(part, (*path, name)).items()
+    }
+
+
 def test_the_description_of_a_key_ends_with_the_unit_of_its_name():
-    for leaf in LEAVES:
+    keys = keys_with_values(SCHEMA)
+    assert len(keys) > 200, len(keys)
+    for path, entry in keys.items():
         # The last key on the path with a unit; the keys below it are names chosen by the user.
-        units = [UNITS[suffix] for key in leaf.path for suffix in sorted(UNITS, key=len) if key.endswith(suffix)][-1:]
-        text = {"string", "boolean"} & {leaf.entry["type"], leaf.entry.get("items", {}).get("type")}
-        ends = tuple(units or (["[name]", "[choice]"] if text else ["[-]"]))
-        assert leaf.entry["description"].endswith(ends), leaf
+        units = [UNITS[suffix] for key in path for suffix in sorted(UNITS, key=len) if key.endswith(suffix)][-1:]
+        text = {"string", "boolean"} & {entry["type"], entry.get("items", {}).get("type")}
+        others = (
+            ("[name]", "[choice]", "[path]", "[text]")
+            if text
+            else ("[-]", "[unit of the key]", "[unit of the variable]")
+        )
+        assert entry["description"].endswith(tuple(units) or others), path
 
 
 @pytest.mark.parametrize("config", [None, [], 5, "seed: 1", {}, {None: 1}, math.nan, True])

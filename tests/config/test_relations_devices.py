@@ -8,9 +8,8 @@ from dataclasses import MISSING, fields, replace
 
 import numpy as np
 import pytest
-from configurations import PAPER, SCHEMA, changed, leaves, problems
+from configurations import PAPER, changed, problems
 from plans import job_settings
-from test_messages import UNITS
 
 from stiction.config.files import load, normalised
 from stiction.config.kinds import KEYS
@@ -73,17 +72,6 @@ def plan(**changes):
 def test_devices_and_materials_with_all_their_keys_are_valid():
     assert problems(ALL) == ()
     assert set(KEYS) <= {key for section in DEVICES.values() for key in section}
-
-
-@pytest.mark.parametrize(
-    "leaf",
-    [leaf for leaf in leaves(ALL, SCHEMA) if {"devices", "materials", "design", "material"} & set(leaf.path)],
-    ids=str,
-)
-def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
-    units = [UNITS[suffix] for key in leaf.path for suffix in sorted(UNITS, key=len) if key.endswith(suffix)][-1:]
-    text = "string" in (leaf.entry["type"], leaf.entry.get("items", {}).get("type"))
-    assert leaf.entry["description"].endswith(tuple(units or (["[name]", "[choice]"] if text else ["[-]"])))
 
 
 LONG, ROUGH = {"share": 0.001, "length_um": 300}, {"surface": "B2", "rms_nm": [1, 8]}

@@ -4,9 +4,8 @@ import copy
 from pathlib import Path
 
 import pytest
-from configurations import PAPER, SCHEMA, leaves, problems
+from configurations import PAPER, problems
 from plans import job_settings
-from test_messages import UNITS
 
 from stiction.config.files import load
 from stiction.config.merging import merged
@@ -37,13 +36,6 @@ def refused(array=None, datum=None, **device):
 
 def test_test_beams_with_all_their_keys_are_valid():
     assert refused() == ()
-
-
-@pytest.mark.parametrize("leaf", leaves({"test_beams": {"first": {**ARRAY, "strip_um": 1}}}, SCHEMA), ids=str)
-def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
-    units = [UNITS[suffix] for key in leaf.path for suffix in sorted(UNITS, key=len) if key.endswith(suffix)][-1:]
-    if leaf.path[-1] not in ("pair", "crack_lengths"):
-        assert leaf.entry["description"].endswith(tuple(units))
 
 
 @pytest.mark.parametrize(
