@@ -90,8 +90,8 @@ ROUGHNESS_PICTURES = {"roughness_Bump": 700, "roughness_Lever": 1000, "roughness
 #: Sentences, and picture with its width [pixels], of ``make devices CONFIG=examples/test_beams.yaml``.
 TEST_BEAMS = "test_beams"
 TEST_BEAMS_SAID = {
-    "build": tables_test_beams.built,
-    "further": tables_test_beams.advised,
+    "build": tables_test_beams.sizes_to_build,
+    "further": tables_test_beams.beams_to_add,
     "warned": lambda update: " ".join(tables_test_beams.warnings(update)),
 }
 TEST_BEAMS_PICTURE = ("test_beams_onB", 1100)

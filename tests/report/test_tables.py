@@ -19,7 +19,7 @@ from stiction.report.studies import tables as tables_studies
 from stiction.report.surfaces import tables as tables_surfaces
 from stiction.run.markdown import plain
 from stiction.stages.beams.pair_warnings import as_markdown
-from stiction.stages.contact import model_error
+from stiction.stages.contact import pair_model_error
 from stiction.stages.laws import forces as stage_forces
 
 RESOURCES = Path(published.__file__).with_name("resources")
@@ -73,7 +73,7 @@ def test_energies_without_a_force_law_are_reported_separately():
 
 def test_the_error_of_the_model_stands_beside_all_but_gaussian_surfaces():
     known = {name: (np.array([1.1, 1.05]), np.array([0.01, 0.02])) for name in ("energy_ratio", "length_factor")}
-    errors = {"a": model_error.layout(known, np.array([0.45, 0.6]), [0.45], 20)}
+    errors = {"a": pair_model_error.layout(known, np.array([0.45, 0.6]), [0.45], 20)}
     keys = [("a", humidity, model) for humidity in (0.45, 0.6) for model in ("NG", "G")]
     given = {key: beams(0, 0, 1) for key in keys}, {key: forces() for key in keys}, PUBLISHED
     table, plain = tables_beams.table_3(*given, errors=errors), tables_beams.table_3(*given)

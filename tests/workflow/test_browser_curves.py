@@ -41,12 +41,12 @@ STUDY = {
 @pytest.fixture(scope="module")
 def views():
     return {
-        "process": curve_views.of_process("D", STOPPER, *etched()),
-        "beam": curve_views.of_process("D", BEAM, *etched(is_beam=True, unknown=(60.0,))),
-        "map": curve_views.of_map("D", STOPPER, *mapped()),
-        "roughness": curve_views.of_roughness("D", STOPPER, rough(others=(-0.5, 0.0, 0.5))),
-        "voltage": voltage_views.of_stopper("D", STOPPER | OXIDE, biased()),
-        "of_beam": curve_views.of_roughness("D", BEAM, rough(is_beam=True, unknown=(2,))),
+        "process": curve_views.process_view("D", STOPPER, *etched()),
+        "beam": curve_views.process_view("D", BEAM, *etched(is_beam=True, unknown=(60.0,))),
+        "map": curve_views.map_view("D", STOPPER, *mapped()),
+        "roughness": curve_views.roughness_view("D", STOPPER, rough(others=(-0.5, 0.0, 0.5))),
+        "voltage": voltage_views.stopper_view("D", STOPPER | OXIDE, biased()),
+        "of_beam": curve_views.roughness_view("D", BEAM, rough(is_beam=True, unknown=(2,))),
     }
 
 

@@ -207,7 +207,7 @@ def _cost(config):
 
     preliminary, _ = preliminary_estimates(config)
     jobs = Graph(Plan(config, preliminary)).needed("tables", "figures", "devices", "all")
-    return cost.in_words(sum(job.seconds for job in jobs), memory.of_job(config))
+    return cost.in_words(sum(job.seconds for job in jobs), memory.job_memory(config))
 
 
 def _run(arguments, *targets):

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 from stiction.beam.foundation import ACCURACY, LONGER, TOO_EARLY
 from stiction.constants import WATER_MOLECULE
-from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
+from stiction.devices.properties import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
 
 #: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.
 PLASTIC = 0.02
@@ -287,7 +287,7 @@ def forbids(warning: str) -> bool:
     return UNSAFE in warning
 
 
-def given(*warnings: str | None) -> list[str]:
+def triggered(*warnings: str | None) -> list[str]:
     """Triggered warnings, in order."""
     return [warning for warning in warnings if warning is not None]
 
@@ -296,7 +296,7 @@ def beam_warnings(
     gap: float, width: float, thickness: float, crack_length: float, film: float, rms: float
 ) -> list[str]:
     """All warnings about the dimensions of a beam with this crack length, film height and rms roughness [m]."""
-    return given(
+    return triggered(
         filled_gap(gap, film, rms),
         large_rotation(gap, crack_length),
         stubby_beam(crack_length, thickness),

@@ -26,7 +26,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from stiction.config.cases import DRY
-from stiction.plan.stage import File, Shown, Stage, named, titled, without_wildcards
+from stiction.plan.stage import File, Shown, Stage, stage_name, title_of, without_wildcards
 from stiction.run.atomic import save_bytes
 
 STYLE = Path(__file__).with_name("stiction.mplstyle")
@@ -349,12 +349,12 @@ def figure_stage(
     """
     caption = caption or without_wildcards(file)
     return Stage(
-        name=name or named("figure", file),
+        name=name or stage_name("figure", file),
         files={key: f"figures/{file}.{key}" for key in ("pdf", "png", "txt")},
         inputs=lambda plan, at: {**inputs(plan, at), "style": File(STYLE)},
         save=lambda figure, paths: save(figure, paths["pdf"], paths["png"]),
-        shown=Shown(file="png", title=titled(file, shows), category=category, caption=caption),
-        message=f"{titled(file, shows)}.",
+        shown=Shown(file="png", title=title_of(file, shows), category=category, caption=caption),
+        message=f"{title_of(file, shows)}.",
         **declared,
     )
 

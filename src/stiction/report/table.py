@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from stiction.plan.stage import Shown, Stage, named, titled
+from stiction.plan.stage import Shown, Stage, stage_name, title_of
 from stiction.report import html
 from stiction.report.format import humidity_text, number
 from stiction.run import markdown
@@ -94,8 +94,8 @@ def save(table: Table, paths: Mapping[str, str], title: str) -> None:
 def table_stage(file: str, shows: str, inputs: Callable, name: str = "", **declared: Any) -> Stage:
     """Stage for a `Table` in files of a name. ``shows`` ends its title in the report."""
     files = {key: f"tables/{file}.{end}" for key, end in (("csv", "csv"), ("markdown", "md"), ("html", "html"))}
-    shown = Shown(file="html", title=titled(file, shows), category="Tables")
-    name, message = name or named("table", file), f"{titled(file, shows)}."
+    shown = Shown(file="html", title=title_of(file, shows), category="Tables")
+    name, message = name or stage_name("table", file), f"{title_of(file, shows)}."
     return Stage(
         name=name,
         files=files,

@@ -19,7 +19,7 @@ from stiction.contact.environment import Water
 from stiction.report.devices import own_length, pages, sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.page import Page, Section, Summary
-from stiction.report.surfaces.words import described
+from stiction.report.surfaces.words import surface_in_words
 from stiction.stages.devices import device_warnings, safe_lengths, sticking
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import EITHER, S_SHAPE, DesignedBeam
@@ -44,7 +44,7 @@ def safe(kind="cantilever", longest=600e-6, reach=np.inf):
     shapes = {device.opening.shapes[0]: np.linspace(2 / 3, 1, 400) * longest}
     if kind == "cantilever":
         shapes[EITHER] = 0.7 * shapes[S_SHAPE]
-    known = sticking.known(device, settings.water, 0.67, reach)
+    known = sticking.lengths_without_samples(device, settings.water, 0.67, reach)
     bounds = {shape: sticking.safe_lengths(values, settings, known[shape]) for shape, values in shapes.items()}
     return safe_lengths.layout(shapes, bounds, known, settings).assign(rms=3e-9, share_flat=0.0, longest_strip=1e-3)
 
@@ -107,7 +107,7 @@ def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_sec
     }
     said = {name: ("humidity", [""]) for name in ("flagged", "refused")}
     points = [curves.layout([[one]], rms, 400, asked).assign(said) for rms, one in responses.items()]
-    rough = curves.joined(points, "rms_nm", "B2")
+    rough = curves.join_points(points, "rms_nm", "B2")
     section = STOPPER | {"requirement": {"share": 0.05}, "roughness": {"surface": "B2", "rms_nm": [2, 8]}}
     page = pages.stopper_page("S1", section, STOPPERS["S1"], {}, [], roughness=rough)
     assert "<td>requirement</td><td>at most 1 in 20 sticks</td>" in page.html
@@ -231,10 +231,10 @@ def test_a_page_explains_the_terms_that_it_uses_and_no_others():
 
 
 def test_surfaces_are_described_by_their_numbers_or_their_scans():
-    assert described({"rms_nm": 2, "psd": "identified", "summit_density_per_um2": 40}, {}) == (
+    assert surface_in_words({"rms_nm": 2, "psd": "identified", "summit_density_per_um2": 40}, {}) == (
         "rms 2 nm, density of summits 40 per µm²"
     )
-    assert described({"scans": {"files": ["a.gwy", "b.gwy"]}}, {}) == "described by 2 scans"
+    assert surface_in_words({"scans": {"files": ["a.gwy", "b.gwy"]}}, {}) == "described by 2 scans"
 
 
 def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():

@@ -118,15 +118,15 @@ def _force_over_humidity(panel, dataset):
 
 
 @styled
-def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
+def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
     """Tornado of a device: effect of each measurement and their total. Beside it, choices of the model.
 
     The budgets are by device, humidity and, for those of tips, ``tip``.
     """
     parts = {}
-    for (_, humidity, *_), dataset in datasets.items():
+    for (_, humidity, *_), dataset in budgets.items():
         parts.setdefault(response_text(dataset), {})[humidity] = dataset
-    colours = humidity_colours(humidity for _, humidity, *_ in datasets)
+    colours = humidity_colours(humidity for _, humidity, *_ in budgets)
     bars = [(_measurements(cases), _choices(cases)) for cases in parts.values()]
     heights = [_ROW * max(map(len, of_row)) + _AROUND for of_row in bars]
     size = DOUBLE, sum(heights) + _LEGEND
@@ -230,8 +230,8 @@ STAGES = (
         "uncertainty of {device}",
         "Devices",
         inputs=lambda plan, at: {"budgets": budgets_of(plan, at.device)},
-        compute=lambda data: budget(data["budgets"]),
-        jobs=lambda plan: [{"device": name} for name in plan.devices.budgeted],
+        compute=budget,
+        jobs=lambda plan: [{"device": name} for name in plan.devices.with_budget],
         targets=("devices",),
     ),
 )

@@ -17,6 +17,7 @@ from stiction.report.devices.curves import Curves
 from stiction.report.devices.grid import Axis, Grid
 from stiction.report.format import UM, UN
 from stiction.stages.devices.budget import budget_of, groups_of
+from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import shares_stuck
 
 #: Title of a view of a device in its own airs.
@@ -62,14 +63,14 @@ def views_of_beam(
 
     It is the one over the chart, or, if the chart has neither the device itself nor its worst air, the device alone.
     """
-    view = of_beam(name, section, safe_lengths, charts, budgets)
+    view = beam_view(name, section, safe_lengths, charts, budgets)
     own = _worst(safe_lengths), section["thickness_um"], section["gap_um"]
     if all(np.isclose(axis.values, value, rtol=1e-9).any() for axis, value in zip(view.grid.axes, own, strict=True)):
         return [view]
-    return [replace(of_beam(name, section, safe_lengths, {}, budgets), title=_ALONE), view]
+    return [replace(beam_view(name, section, safe_lengths, {}, budgets), title=_ALONE), view]
 
 
-def of_beam(
+def beam_view(
     name: str,
     section: Mapping[str, Any],
     safe_lengths: Mapping[float, xr.Dataset],
@@ -78,20 +79,20 @@ def of_beam(
 ) -> View:
     """View of a cantilever or bridge. Parameters as of `stiction.report.devices.pages.beam_page`."""
     humid = {humidity: chart for humidity, chart in sorted(charts.items()) if humidity > 0}
-    joined = _charted(humid) if humid else alone(section, safe_lengths)
+    joined = _chart_views(humid) if humid else alone(section, safe_lengths)
     worst = _worst(safe_lengths)
     chart = f"devices.{name}.chart"
     axes = (
         humidity_axis(
             joined.humidity.values, worst, f"{chart}.humidities" if humid else f"devices.{name}.humidities", humid
         ),
-        _of_size("thickness_um", "thickness", joined.thickness.values / UM, section, f"{chart}.thicknesses_um"),
-        _of_size("gap_um", "gap", joined.gap.values / UM, section, f"{chart}.gaps_um"),
+        _size_axis("thickness_um", "thickness", joined.thickness.values / UM, section, f"{chart}.thicknesses_um"),
+        _size_axis("gap_um", "gap", joined.gap.values / UM, section, f"{chart}.gaps_um"),
     )
     safe, quantiles = joined.safe_length.values / UM, joined["quantile"].values / UM
     start = section.get("length_um", float(sentences.safe_lengths_of(safe_lengths[worst]).min()) / UM)
     size = size_axis("length_um", "length", "µm", (safe, quantiles), start)
-    share = share_axis(joined.share.values, sentences.chosen(safe_lengths[worst]), "shares")
+    share = share_axis(joined.share.values, chosen_share(safe_lengths[worst]), "shares")
     sizes = {"thickness_um": float(section["thickness_um"]), "gap_um": float(section["gap_um"])}
     counted = [
         ({"humidity": humidity, size.key: size.start} | sizes, *map(float, one.isel(shape=-1).stuck_at_length))
@@ -114,7 +115,7 @@ def _worst(safe_lengths):
     return min(safe_lengths, key=lambda humidity: float(sentences.safe_lengths_of(safe_lengths[humidity]).min()))
 
 
-def _charted(charts):
+def _chart_views(charts):
     """Charts of all humid airs, for whatever holds the devices, over humidity, thickness, gap and share."""
     parts = [chart.isel(shape=-1).assign_coords(humidity=humidity) for humidity, chart in charts.items()]
     names = ["safe_length", "quantile"]
@@ -149,24 +150,24 @@ def views_of_stopper(
 
     It is the one over the humidity, or, if the worst of its airs is dry and others are humid, the device alone.
     """
-    view, worst = of_stopper(section, stopper, budgets), _worst_air(stopper)
+    view, worst = stopper_view(section, stopper, budgets), _worst_air(stopper)
     if worst in view.grid.axes[0].values:
         return [view]
     own = stopper.sortby("humidity")
     axis = humidity_axis(own.humidity.values, worst, "humidities of the device", False)
     scored = np.array([quantiles(row) for row in own.pull_off.values])
-    alone = _of_forces((axis,), own.safe_force.sel(part="safe", drop=True), scored, section, stopper)
+    alone = _force_view((axis,), own.safe_force.sel(part="safe", drop=True), scored, section, stopper)
     return [replace(alone, title=_ALONE, margin=view.margin), view]
 
 
-def of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> View:
+def stopper_view(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> View:
     """View of a stopper over the humidity: its section, dataset of stage stoppers and budgets."""
     is_humid = stopper.axis.values[-1] > 0
     safe, scored = _along(stopper)
     shown = safe.axis.values > 0 if is_humid else slice(None)
     key = "design.worst_humidities" if is_humid else "humidities of the device"
     axis = humidity_axis(safe.axis.values[shown], _worst_air(stopper), key, True)
-    view = _of_forces((axis,), safe.isel(axis=shown), scored[shown], section, stopper)
+    view = _force_view((axis,), safe.isel(axis=shown), scored[shown], section, stopper)
     return replace(view, margin=_margin(budgets))
 
 
@@ -188,7 +189,7 @@ def _along(stopper):
     return safe.isel(axis=order), np.concatenate([scored, stopper.scored_along.values[kept]])[order]
 
 
-def of_tilted(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopper: xr.Dataset) -> View:
+def tilted_view(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopper: xr.Dataset) -> View:
     """View of a stopper over its tilts: its section, datasets of stages tilted_stoppers and stoppers."""
     tilted, key = tilted.sortby("humidity"), f"devices.{name}"
     tilts = tuple(float(f"{from_si(float(tilt), 'deg'):.6g}") for tilt in tilted.tilt)
@@ -199,10 +200,10 @@ def of_tilted(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopper
     humidity = humidity_axis(tilted.humidity.values, worst, f"{key}.humidities", False)
     scored = np.apply_along_axis(quantiles, -1, tilted.pull_off.transpose("tilt", "humidity", "sample").values)
     safe = tilted.safe_force.sel(part="safe").transpose("tilt", "humidity", "share")
-    return replace(_of_forces((tilt, humidity), safe, scored, section, stopper), title="tilt")
+    return replace(_force_view((tilt, humidity), safe, scored, section, stopper), title="tilt")
 
 
-def _of_forces(axes, safe, scored, section, stopper):
+def _force_view(axes, safe, scored, section, stopper):
     """View of safe forces (axes, shares) and quantiles of forces (axes, scores) [N]."""
     bounded = np.isfinite(safe.values).all(axis=tuple(range(len(axes))))
     known = safe.isel(share=bounded if bounded.any() else [int(np.argmax(safe.share.values))]).sortby("share")
@@ -224,13 +225,17 @@ def humidity_axis(values: Sequence[float], worst: float, key: str, between: bool
     """Axis of relative humidities."""
     values = tuple(map(float, values))
     several = between and len(values) > 1
-    text = f"computed from {values[0]:g} to {values[-1]:g}" if several else f"computed at {_listed(values)} alone"
+    text = (
+        f"computed from {values[0]:g} to {values[-1]:g}"
+        if several
+        else f"computed at {_humidities_in_words(values)} alone"
+    )
     start = min(max(worst, values[0]), values[-1]) if between else worst
     reason = f"it is {text}; {key} changes this"
     return Axis("humidity", "relative humidity", "", "linear", values, start, bool(between), reason, "humidities")
 
 
-def _of_size(key, label, values, section, stated):
+def _size_axis(key, label, values, section, stated):
     """Axis of thicknesses or gaps [µm]."""
     values = tuple(float(f"{value:.9g}") for value in values)
     several = len(values) > 1
@@ -259,7 +264,7 @@ def size_axis(key: str, label: str, unit: str, computed: Sequence[np.ndarray], s
     return Axis(key, label, unit, "linear", (low, high), float(f"{start:.4g}"), True, reason, key)
 
 
-def _listed(values):
+def _humidities_in_words(values):
     """Humidities in words."""
     return ", ".join(f"{value:g}" if value else "0 (dry air)" for value in values)
 

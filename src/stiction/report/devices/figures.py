@@ -106,10 +106,10 @@ def _own_length(panel, dataset):
 
 def _marks(numbers: Mapping[tuple, Iterable[int]], *subject) -> str:
     """Numbers of the warnings about all shapes of a subject."""
-    return _listed({k for (*about, _), marks in numbers.items() if tuple(about) == subject for k in marks})
+    return _marks_of_warnings({k for (*about, _), marks in numbers.items() if tuple(about) == subject for k in marks})
 
 
-def _listed(numbers):
+def _marks_of_warnings(numbers):
     """Numbers of warnings as marks in a label."""
     return "".join(f" ({k})" for k in sorted(numbers))
 
@@ -161,7 +161,9 @@ def chart(
     figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
         whole = wholes[name].sel(gap=gap, shape=shape)
-        marks = [_listed(numbers.get((name, thickness, gap, shape), ())) for thickness in whole.thickness.values]
+        marks = [
+            _marks_of_warnings(numbers.get((name, thickness, gap, shape), ())) for thickness in whole.thickness.values
+        ]
         legend_below(panel, _thicknesses(panel, whole, shape, marks, placed[name]))
         low, high = panel.dataLim.intervaly
         panel.set(xlabel="relative humidity [–]", ylim=(0.95 * low, high + _ROOM * (high - low)))
@@ -248,9 +250,9 @@ STAGES = (
         "chart",
         "safe length against relative humidity",
         "Devices",
-        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.charted)},
+        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.with_chart)},
         compute=lambda data: chart(data["charts"], device_warnings.read(data["warnings"]).curves),
-        jobs=lambda plan: [{}] if plan.devices.charted else [],
+        jobs=lambda plan: [{}] if plan.devices.with_chart else [],
         targets=("devices",),
     ),
 )

@@ -41,8 +41,8 @@ def beam_screen(
     and, if there are test beams, the dataset of stage test_beams_rerun.
     """
     least, total, safe = sentences.length_to_build(safe_lengths, budgets)
-    humidity, worst = min(safe_lengths.items(), key=lambda case: float(_chosen(case[1]).safe_length.min()))
-    point = _chosen(worst).isel(shape=-1)
+    humidity, worst = min(safe_lengths.items(), key=lambda case: float(_middle_lengths(case[1]).safe_length.min()))
+    point = _middle_lengths(worst).isel(shape=-1)
     verdict = _verdict(section.get("length_um"), safe / UM, safe_lengths)
     estimate = with_error(float(point.estimate) / UM, float(np.hypot(point.beams_error, _finite(point))) / UM)
     where = in_air(humidity) + ", the worst" * (len(safe_lengths) > 1)
@@ -70,7 +70,7 @@ def _air(humidity):
     return air(humidity) if humidity else "Dry air"
 
 
-def _chosen(dataset):
+def _middle_lengths(dataset):
     """Lengths for the middle one of the shares, by shape."""
     return dataset.isel(share=dataset.sizes["share"] // 2)
 
@@ -91,23 +91,23 @@ def _verdict(length, safe, safe_lengths):
     if length <= safe:
         sign = "good", "Safe"
     else:
-        sign = ("bad", "Too long") if low > float(_chosen(worst).share) else ("open", "Not shown to be safe")
-    return *sign, f"{answer}; your {length:g} µm: {_stuck(stuck, low, high)} {in_air(humidity)}."
+        sign = ("bad", "Too long") if low > float(_middle_lengths(worst).share) else ("open", "Not shown to be safe")
+    return *sign, f"{answer}; your {length:g} µm: {_stuck_with_band(stuck, low, high)} {in_air(humidity)}."
 
 
-def _stuck(stuck, low, high):
+def _stuck_with_band(stuck, low, high):
     """Fraction stuck with its band of 95 % confidence."""
     return f"{100 * stuck:.3g} % stick ({100 * low:.3g} to {100 * high:.3g} %)"
 
 
 def _decides_beam(humidity, worst, budgets, section):
     """Humidity and end state of the shortest safe length, and a decisive assumed input."""
-    lengths = _chosen(worst).safe_length
+    lengths = _middle_lengths(worst).safe_length
     shape = str(lengths["shape"].values[int(lengths.argmin("shape"))])
     yield f"{_air(humidity)}, held by the {END_STATES[shape].by}."
     if shape == EITHER:
         yield f"If the tip could not touch: {float(lengths.sel(shape=S_SHAPE)) / UM:.0f} µm."
-    yield from tables_budget.decided(budgets.values(), section.get("assumed", ()))
+    yield from tables_budget.first_to_measure(budgets.values(), section.get("assumed", ()))
 
 
 def _change_beam(section, safe):
@@ -135,14 +135,14 @@ def _measure(budgets: Iterable[xr.Dataset]) -> str:
     stated = [dataset for dataset in budgets if budget_of(dataset).total != 0]
     if not stated:
         return _UNSTATED
-    return tables_budget.advised(max(stated, key=lambda dataset: np.nan_to_num(budget_of(dataset).total)))
+    return tables_budget.what_to_measure(max(stated, key=lambda dataset: np.nan_to_num(budget_of(dataset).total)))
 
 
 def _table_of_beam(safe_lengths, test_beams):
     """Safe lengths by humidity, with and without tip and test beams, and P(stuck) at the stated length."""
     rows = []
     for humidity, dataset in safe_lengths.items():
-        lengths = _chosen(dataset).safe_length
+        lengths = _middle_lengths(dataset).safe_length
         row = {"RH": humidity_text(humidity), "safe length [µm]": number(float(lengths.min()) / UM, ".0f")}
         if EITHER in lengths["shape"].values:
             row["if the tip cannot touch [µm]"] = number(float(lengths.sel(shape=S_SHAPE)) / UM, ".0f")
@@ -159,7 +159,7 @@ def _with_test_beams(update, humidity):
     """Safe length after test beams, before any margin [m], NaN if they are unreliable."""
     if not is_reliable(update) or humidity not in update.humidity:
         return np.nan
-    return float(_chosen(update).updated_safe.sel(humidity=humidity).min())
+    return float(_middle_lengths(update).updated_safe.sel(humidity=humidity).min())
 
 
 def stopper_screen(
@@ -173,7 +173,7 @@ def stopper_screen(
     force, share = float(stopper.restoring_force), sentences.bounded_share(stopper)
     humidity, *stuck = max(shares_stuck(stopper), key=lambda row: row[3])
     needed = np.nan if share is None else float(stopper.safe_force.sel(part="safe", share=share).max(skipna=False))
-    own = f"with {force / UN:g} µN, {_stuck(*stuck)} {in_air(humidity)}"
+    own = f"with {force / UN:g} µN, {_stuck_with_band(*stuck)} {in_air(humidity)}"
     if share is None:
         verdict = "open", "Not known", f"There are too few patches to bound a force; {own}."
     else:
@@ -190,7 +190,7 @@ def stopper_screen(
         "What decides": " ".join(
             [
                 f"{_air(humidity)}, where most stick.",
-                *tables_budget.decided(budgets.values(), section.get("assumed", ())),
+                *tables_budget.first_to_measure(budgets.values(), section.get("assumed", ())),
             ]
         ),
         "What to change": change if share else "Compute more patches: contact.samples.",

@@ -137,7 +137,7 @@ class Grid:
     @property
     def json(self) -> dict:
         """Content for a page."""
-        numbers = {name: rounded(getattr(self, name)) for name in ("safe", "quantiles", "noise")}
+        numbers = {name: nested_lists(getattr(self, name)) for name in ("safe", "quantiles", "noise")}
         return asdict(self) | numbers | {"scores": SCORES.tolist()}
 
 
@@ -188,8 +188,8 @@ def _slope(k, widths, secants):
         return np.where(d0 * d1 <= 0, 0 * d0 * d1, (w0 + w1) / (w0 / d0 + w1 / d1))
 
 
-def rounded(values: np.ndarray) -> list:
+def nested_lists(values: np.ndarray) -> list:
     """Nested lists of numbers with few digits, `None` for NaN."""
     if values.ndim > 1:
-        return [rounded(part) for part in values]
+        return [nested_lists(part) for part in values]
     return [float(f"{value:.{_DIGITS}g}") if np.isfinite(value) else None for value in values]

@@ -132,7 +132,7 @@ STAGES = (
         "Devices",
         inputs=lambda plan, at: {"test_beams": f"devices/test_beams/{at.device}"},
         compute=lambda data: test_beams(data["test_beams"]),
-        jobs=lambda plan: [{"device": name} for name in plan.devices.tested],
+        jobs=lambda plan: [{"device": name} for name in plan.devices.with_test_beams],
         targets=("devices",),
     ),
 )
