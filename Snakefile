@@ -122,7 +122,7 @@ onstart:
     interrupt = signal.getsignal(signal.SIGINT)
     signal.signal(signal.SIGTERM, interrupt if callable(interrupt) else signal.default_int_handler)
     try:
-        HELD.append(run_lock.reserved(".snakemake/running"))
+        HELD.append(run_lock.reserve(".snakemake/running"))
         refuse_what_samples_show()
         provenance.record("results/provenance.json", BASE, config)
         hand_to_jobs()

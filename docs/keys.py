@@ -1,4 +1,4 @@
-"""All keys of the configuration, from its schema: the table of the docs."""
+"""All keys of the configuration, from its schema: tables of the docs."""
 
 import json
 from collections.abc import Iterator
@@ -22,6 +22,22 @@ EXAMPLES = [
 ]
 
 
+#: Sections that a study of a device rarely states, in a table of their own.
+OF_SIMULATION = (
+    "seed",
+    "scans",
+    "sampling",
+    "character",
+    "identification",
+    "solid",
+    "van_der_waals",
+    "chaos",
+    "beam",
+    "figures",
+    "studies",
+)
+
+
 class Key(NamedTuple):
     """One key that holds a value; ``*`` stands for names in its path."""
 
@@ -32,12 +48,6 @@ class Key(NamedTuple):
     def meaning(self) -> str:
         """Description without the unit."""
         return self.entry["description"].rpartition(" [")[0] or self.entry["description"]
-
-    @property
-    def unit(self) -> str:
-        """Unit, from the end of the description; names, choices and paths have none."""
-        unit = self.entry["description"].rpartition(" [")[2].rstrip("]")
-        return unit if "[" in self.entry["description"] and unit not in ("name", "choice", "path", "text", "-") else ""
 
     @property
     def example(self) -> Any:
@@ -93,12 +103,23 @@ def allowed(entry: dict) -> str:
 
 
 def page() -> str:
-    """Sections and tables of all keys in Markdown."""
+    """Sections and tables of the keys of surfaces and devices in Markdown."""
+    return _tables([name for name in schema()["properties"] if name not in OF_SIMULATION])
+
+
+def of_simulation() -> str:
+    """Sections and tables of all other keys in Markdown."""
+    return _tables(OF_SIMULATION)
+
+
+def _tables(names):
+    """Sections of these names and their tables in Markdown."""
     parts = []
-    for name, entry in schema()["properties"].items():
+    for name in names:
+        entry = schema()["properties"][name]
         named = isinstance(entry.get("additionalProperties"), dict)
         rows = [_row(key, 1 + named) for key in keys(entry, (name,))]
-        head = [f"| {name}{'.NAME' * named} | meaning | allowed; default (example) |", "|---|---|---|"]
+        head = [f"| {name}{'.NAME' * named} | meaning | allowed |", "|---|---|---|"]
         about = entry["description"].partition(" [")[0]
         said = [f"{about[0].upper()}{about[1:]}.", ""] if entry["type"] == "object" else []
         parts.append("\n".join([f"## {name}", "", *said, *head, *rows]))
@@ -116,8 +137,8 @@ def _row(key, above):
     """Row of one key, without the first names of its path; defaults hold without a file of one's own."""
     default = "" if "*" in key.path else next((_yaml(value) for value in _values(PAPER, key.path)), "")
     name = ".".join(key.path[above:] or key.path).replace("*", "NAME")
-    values = f"{allowed(key.entry)} [{key.unit}]" if key.unit else allowed(key.entry)
-    return f"| `{name}` | {key.meaning} | {values}{f'; {default}' if default else f' ({_yaml(_first(key.example))})'} |"
+    value = f"; {default}" if default else f" ({_yaml(_first(key.example))})"
+    return f"| `{name}` | {key.meaning} | {allowed(key.entry)}{value} |"
 
 
 def _first(value):

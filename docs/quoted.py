@@ -233,7 +233,7 @@ def intervals(table_3):
         name = f"{100 * coverage:.0f}"
         low, high = (rows[end] for end in prediction.ENDS[coverage])
         widths = 100 * np.log(high / low) / 2
-        texts[f"contained_{name}"] = str(prediction.contained(table_3, coverage)[0])
+        texts[f"contained_{name}"] = str(prediction.count_contained(table_3, coverage)[0])
         texts |= {
             f"naive_{name}": f"{100 * sizes * naive:.0f}",
             f"naive_contained_{name}": str((off < sizes * naive).sum()),

@@ -7,8 +7,8 @@
    folders of ``runs`` beside it.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture. The package
    receives the lengths from which runs of devices learn how far the model errs.
-3. The drawings are drawn, and the pages of ``docs`` and ``config/README.md`` are generated from ``docs/templates``,
-   with numbers and tables inserted.
+3. The drawings are drawn, the table of keys is written, and the pages of ``docs`` and ``config/README.md`` are
+   generated from ``docs/templates``, with numbers and tables inserted.
 
 Steps 2 and 3 depend on ``docs`` alone: ``tests/test_docs.py`` repeats them and compares.
 """
@@ -90,8 +90,8 @@ ROUGHNESS_PICTURES = {"roughness_Bump": 700, "roughness_Lever": 1000, "roughness
 #: Sentences, and picture with its width [pixels], of ``make devices CONFIG=examples/test_beams.yaml``.
 TEST_BEAMS = "test_beams"
 TEST_BEAMS_SAID = {
-    "build": tables_test_beams.built,
-    "further": tables_test_beams.advised,
+    "build": tables_test_beams.sizes_to_build,
+    "further": tables_test_beams.beams_to_add,
     "warned": lambda update: " ".join(tables_test_beams.warnings(update)),
 }
 TEST_BEAMS_PICTURE = ("test_beams_onB", 1100)
@@ -150,7 +150,7 @@ def main(results):
             print(f"{reason}: the docs keep their present numbers")  # noqa: T201
         else:
             collected(folder)
-    for written in (drawings, pages):  # pages state checksums of the drawings
+    for written in (drawings, tables, pages):  # pages state checksums of drawings and tables
         for path, text in written().items():
             path.write_text(text, encoding="utf-8")
 
@@ -441,6 +441,11 @@ def shrink(picture, smaller, width):
 
 
 # 2. and 3. From docs/tables to results.json and the pages
+
+
+def tables():
+    """Path to text of every table that is written from the schema."""
+    return {DOCS / "tables" / "keys_of_the_simulation.md": keys.of_simulation() + "\n"}
 
 
 def pages():

@@ -79,13 +79,13 @@ class Measured:
 
     def data(self, responses):
         """Measured crack lengths beside the computed ones."""
-        return stage.measured(self.beams, responses, self.settings.crack_lengths)
+        return stage.length_data(self.beams, responses, self.settings.crack_lengths)
 
     def errors(self, fitted, slope=True):
         """Differences of the other beams from what the fitted ones predict, and their standard deviations [-]."""
         prior, responses = self.prior(slope=slope, fitted=fitted)
         data, others = self.data(responses), [k for k in self.places if k not in fitted]
-        known = inference.given(prior, part(data, list(fitted)))
+        known = inference.update(prior, part(data, list(fitted)))
         shift, deviation = known.of(data.responses[others])
         return data.differences[others] - shift, np.hypot(deviation, data.errors[others])
 
@@ -116,7 +116,7 @@ def of_pair(array):
     """Numbers of a pair as text by name."""
     prior, responses = array.prior()
     data, (without, its_responses) = array.data(responses), array.prior(slope=False)
-    known = inference.given(prior, data)
+    known = inference.update(prior, data)
     factor, slope = (known.names.index(name) for name in (inference.FACTOR, inference.SLOPE))
     halves = [range(0, 6, 2), range(1, 6, 2)]
     texts = {
@@ -140,7 +140,7 @@ def of_inputs_alone(array):
     prior, responses = array.prior()
     inputs, count = stage.common_inputs(array.beams), len(prior.names) - 2 - len(array.beams)
     data = replace(array.data(responses), responses=responses[: len(array.beams), :count])
-    best = inference.given(inputs, data)
+    best = inference.update(inputs, data)
     moved = dict(zip(inputs.names, np.abs(best.mean) / inputs.deviations, strict=True))
     numbers = {
         "humidity": moved["humidity"],
@@ -198,7 +198,7 @@ def lengths(array):
     """Lengths of equal beams of another device before and after, whose dimensions and rests are its own [µm]."""
     others = [beam._replace(owner="C1") for beam in array.beams]
     prior, responses = array.prior(others)
-    known, device = inference.given(prior, array.data(responses)), responses[len(array.beams) :]
+    known, device = inference.update(prior, array.data(responses)), responses[len(array.beams) :]
     texts = {}
     for beam, row, error, difference in zip(
         array.beams, device, array.data(responses).errors, array.data(responses).differences, strict=True
@@ -219,7 +219,7 @@ def from_one_to_another(array, other):
     for name, slope in (("slope", True), ("factor", False)):
         prior, responses = array.prior(other.beams, slope)
         theirs = other.data(responses[len(array.beams) :])
-        shift, deviation = inference.given(prior, array.data(responses)).of(theirs.responses)
+        shift, deviation = inference.update(prior, array.data(responses)).of(theirs.responses)
         away = theirs.differences - shift
         texts[f"rms_of_{name}"] = percent(away)
         if slope:

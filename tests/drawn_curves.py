@@ -89,7 +89,7 @@ def rough(is_beam=False, unknown=(), others=()):
         for other in others or (0.0,)
         for k, value in enumerate(values)
     ]
-    return of_roughness.mapped(points, "B2", "rms_nm", "skewness" if others else "")
+    return of_roughness.curve_or_map(points, "B2", "rms_nm", "skewness" if others else "")
 
 
 def biased():

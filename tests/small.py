@@ -54,7 +54,7 @@ def heights_of(surface):
 
 @cache
 def spectrum_of(surface):
-    return spectrum.compute(heights_of(surface), None, settings_of(spectrum, job_settings(PLAN, f"spectrum/{surface}")))
+    return spectrum.compute(heights_of(surface), settings_of(spectrum, job_settings(PLAN, f"spectrum/{surface}")))
 
 
 @cache

@@ -61,8 +61,10 @@ def module_name(path):
 FILES = sorted(path for path in PACKAGE.rglob("*.py") if path.name != "__init__.py")
 MODULES = sorted(map(module_name, FILES))
 PHYSICS = [name for name in MODULES if ORDER.index(room(name)) < ORDER.index("run")]
+#: Modules with the library for files of microscopes.
+READERS = {"scans.reading", "scans.published"}
 #: Physics that knows files, and the compiler that keeps its results in files.
-PHYSICS = [name for name in PHYSICS if name not in {"scans.reading", "regular_files", "temporary", "kernels"}]
+PHYSICS = [name for name in PHYSICS if name not in READERS | {"regular_files", "temporary", "kernels"}]
 SCRIPTS = sorted((PACKAGE.parents[1] / "workflow" / "scripts").glob("*.py"))
 
 
@@ -109,10 +111,10 @@ def test_physics_does_not_import_libraries_for_files_labels_workflows_or_figures
             assert not {name.split(".")[0] for name in imports(path)} & BORDER, path
 
 
-def test_files_of_microscopes_are_read_in_one_module_which_imports_its_library_when_it_reads():
+def test_files_of_microscopes_are_read_in_two_modules_which_import_their_library_when_they_read():
     for path in FILES:
         used = {name.split(".")[0] for name in imports(path)}
-        assert (MICROSCOPES in used) == (module_name(path) == "scans.reading"), path
+        assert (MICROSCOPES in used) == (module_name(path) in READERS), path
         head = (node for node in nodes(path)[0].body if isinstance(node, ast.ImportFrom))
         assert not any(node.module.startswith(MICROSCOPES) for node in head), path
 

@@ -52,11 +52,12 @@ update, quoted = (module(DOCS / f"{name}.py") for name in ("update", "quoted"))
 @pytest.fixture(scope="module")
 def written():
     """Path to text of every file that ``make numbers`` writes."""
-    return update.drawings() | update.pages()
+    return update.drawings() | update.tables() | update.pages()
 
 
 WRITTEN = [
     *(DOCS / "pictures" / f"{name}.svg" for name in ("beam", "stopper_and_bridge", "method")),
+    DOCS / "tables" / "keys_of_the_simulation.md",
     DOCS / "results.json",
     prediction.PAPER_LENGTHS,
     *(update.page_of(path) for path in sorted((DOCS / "templates").glob("*.md"))),
@@ -236,8 +237,9 @@ def test_nearest_feasible_moments_are_those_that_the_heights_get():
 # Keys
 
 
-def test_the_page_of_keys_gives_meaning_allowed_values_and_an_allowed_example_for_every_key():
-    page = (DOCS / "keys.md").read_text(encoding="utf-8")
+def test_the_pages_of_keys_give_meaning_allowed_values_and_an_allowed_example_for_every_key():
+    places = (DOCS / "keys.md", DOCS / "tables" / "keys_of_the_simulation.md")
+    page = "\n".join(path.read_text(encoding="utf-8") for path in places)
     listed = list(update.keys.keys(schema()))
     assert len(re.findall(r"^\| `[\w.]+` \| ", page, re.MULTILINE)) == len(listed) > 100
     for key in listed:

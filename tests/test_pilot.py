@@ -33,7 +33,7 @@ from stiction.plan.plan import Plan
 from stiction.run.disk_cache import DiskCache
 from stiction.stages.contact import curves
 from stiction.stages.devices import cracks, ground
-from stiction.stages.devices.opening import fitted
+from stiction.stages.devices.opening import fit_chaos
 from stiction.stages.laws import forces
 from stiction.study import PairStudy
 
@@ -207,7 +207,7 @@ def test_strips_are_allowed_where_those_of_the_jobs_are_accurate_within_the_erro
     settings = in_si(cracks.Settings, graph.job("devices/cracks/D_rh067").settings)
     of_laws = in_si(ground.Settings, graph.job("devices/ground/b_rh067_1500x10000").settings)
     vectors, limit = curves.vectors(device.contact, 0.67, of_laws.water)
-    laws = draw_laws(fitted(vectors, limit, of_laws.chaos), 10_000, np.random.default_rng(1))
+    laws = draw_laws(fit_chaos(vectors, limit, of_laws.chaos), 10_000, np.random.default_rng(1))
 
     def is_accurate(thickness_um, strip_um):
         """Whether stage cracks resolves another thickness and length of the strips on the same force laws."""

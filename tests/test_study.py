@@ -118,7 +118,7 @@ def test_a_spectrum_that_is_to_be_identified_is_identified_first():
     )
     pair = PairStudy.of(plan.config, "b").surfaces
     assert pair.beam.underlying.cutoff == spectrum_of(found).cutoff != pair.substrate.underlying.cutoff
-    expected = spectrum.compute(density, found, in_si(spectrum.Settings, job_settings(plan, "spectrum/B2")))
+    expected = spectrum.compute(density, in_si(spectrum.Settings, job_settings(plan, "spectrum/B2")), found)
     assert_array_equal(pair.beam.underlying.density, expected.underlying)
 
 
@@ -139,7 +139,7 @@ def test_surfaces_on_which_no_adhesion_is_left_are_accepted_and_do_not_hold_a_be
     few = {"run": {"pairs": ["b"]}, "figures": {"humidity": 0.67}, "contact": {"samples": 100}, "chaos": {"order": 4}}
     config = load(few, {"surfaces": {"B2": {"rms_nm": rms}}, "beam": {"samples": 5}})
     beams = PairStudy.of(config, "b").beams(0.67)
-    assert not releases.ended(beams, "S-shape").any()
+    assert not releases.ends_as(beams, "S-shape").any()
     assert np.all(beams.crack_length > 0.99 * config["beam"]["length_um"] * 1e-6)
 
 

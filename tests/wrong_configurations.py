@@ -266,7 +266,6 @@ WRONG_RELATIONS = [
      "must be left out if the material states coating_hamaker_constant_zJ"),
 ]  # fmt: skip
 
-WRONG = [*WRONG_VALUES, *WRONG_RELATIONS]
 
 # Overlay | offending key | part of the message
 UNKNOWN = [

@@ -35,7 +35,7 @@ from stiction.stages.contact.contact import compute
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices.contact_names import patch_of, patch_of_tips
 from stiction.stages.devices.opening import DesignedBeam, settings_of_beam
-from stiction.stages.devices.sticking import Released, ground, released
+from stiction.stages.devices.sticking import Released, ground, release_beams
 from stiction.streams import stream
 
 #: Samples of a ground, and beams with tips, of the pilot; order of its chaos model, which so many samples carry.
@@ -194,7 +194,7 @@ class _Pilot:
             with without_progress():
                 contact, *tips = (self._contact(*one) for one in self._places(case))
                 met = ground(contact, tips[0] if tips else None, case.humidity, settings)
-                beams = released(settings.device, met, settings)
+                beams = release_beams(settings.device, met, settings)
             return spreads_of(beams, _middle(self.plan.config["design"]["shares"]), len(met.sampled))
         except (ValueError, ArithmeticError):  # which the jobs of the case state
             return []

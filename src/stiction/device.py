@@ -168,13 +168,13 @@ class Device:
 
         The first call draws the surfaces with every uncertain input changed, a few minutes.
         """
-        self._must_state("uncertainty", self.name in self._plan.devices.budgeted)
+        self._must_state("uncertainty", self.name in self._plan.devices.with_budget)
         return self._result("budget", humidity)
 
     def tip_budget(self, humidity: float | str) -> xr.Dataset:
         """Uncertainty of the length of adhesion at the tip of a cantilever, see `budget`."""
         self._must_be(lambda kind: kind.has_tip)
-        self._must_state("uncertainty", self.name in self._plan.devices.budgeted)
+        self._must_state("uncertainty", self.name in self._plan.devices.with_budget)
         return self._result("budget", humidity, "_tip")
 
     def roughness(self) -> xr.Dataset:

@@ -25,7 +25,7 @@ import xarray as xr
 
 from stiction.beam.resolution import longest
 from stiction.config.cases import case_id, in_air
-from stiction.config.messages import Problem, dotted, shown
+from stiction.config.messages import Problem, dotted, one_line
 from stiction.config.relations import field_too_large
 from stiction.config.scans import is_measured, with_preliminary_estimates
 from stiction.config.test_beams import DATA
@@ -102,26 +102,26 @@ def problems(
         air = plan.air_of_devices if use.of_devices else plan.air
         return of_patch(use.patch._replace(pair=air.contact(use.patch.pair, humidity)), model, air.of_devices)
 
-    guessed, by_key = _guessed(config), {}
-    for use in chain(_pairs(plan), _devices(plan, "devices"), _devices(plan.of_test_beams, "test_beams")):
+    guessed, by_key = _identified_spectra(config), {}
+    for use in chain(_pairs(plan), _devices(plan, "devices"), _devices(plan.with_test_beams, "test_beams")):
         given = [guessed[name] for name in dict.fromkeys(plan.sides(use.patch.pair)) if name in guessed]
         given += ["contact.model = 'full'"] * plan.variants.is_corrected()
         for path, message in _refusals(use, samples, preliminary=bool(given)):
             end = f" (preliminary, given {', '.join(given)})" if given else ""
-            value = shown(reduce(getitem, path, config))
+            value = one_line(reduce(getitem, path, config))
             by_key.setdefault((path, use.patch), Problem(path, f"is {value}, {message}{end}"))
     return list(by_key.values())
 
 
-def _guessed(config):
+def _identified_spectra(config):
     """Keys and values of the surfaces with a spectrum to be improved by the run, by name."""
     guesses = {}
     for name, entry in config["surfaces"].items():
         if is_measured(entry):
             files = [Path(file).name for file in entry["scans"]["files"]]
-            guesses[name] = f"surfaces.{name}.scans.files = {shown(files)}"
+            guesses[name] = f"surfaces.{name}.scans.files = {one_line(files)}"
         elif entry["psd"] != "published":
-            guesses[name] = f"surfaces.{name}.psd = {shown(entry['psd'])}"
+            guesses[name] = f"surfaces.{name}.psd = {one_line(entry['psd'])}"
     return guesses
 
 
@@ -133,7 +133,7 @@ def _tips_beyond_memory(plan):
         if refusal := field_too_large(length + margin, width + margin, spacing):
             reason = f"{refusal}; the wedge at the tip of a beam is the longer, the smaller the gap"
             gap = plan.devices.sections[name]["gap_um"]
-            yield Problem(("devices", name, "gap_um"), f"is {shown(gap)}, {reason}")
+            yield Problem(("devices", name, "gap_um"), f"is {one_line(gap)}, {reason}")
 
 
 # What sticks
@@ -155,12 +155,12 @@ def _pairs(plan):
             of_devices=False,
         )
         stated, shown = config["pairs"][pair]["humidities"], [config["figures"]["humidity"]]
-        yield use(stated, air=("pairs", pair, "humidities"), resolved=_refined(plan, pair, stated))
-        cracks = _refined(plan, pair, shown) if pair == plan.figure_pair else []
+        yield use(stated, air=("pairs", pair, "humidities"), resolved=_humidities_of_elements(plan, pair, stated))
+        cracks = _humidities_of_elements(plan, pair, shown) if pair == plan.figure_pair else []
         yield use(shown, air=("figures", "humidity"), resolved=cracks)
 
 
-def _refined(plan, pair, humidities):
+def _humidities_of_elements(plan, pair, humidities):
     """Humidities with elements of the beams of a pair after their force laws."""
     return [humidity for humidity in humidities if not plan.paper.has_mesh(case_id(pair, humidity))]
 

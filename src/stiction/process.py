@@ -139,7 +139,7 @@ class Process:
     @property
     def _mapped(self):
         """Devices over this process and another one."""
-        named = {one: process.of_device(self._plan.config, one) for one in self._plan.devices.processed_twice}
+        named = {one: process.processes_of(self._plan.config, one) for one in self._plan.devices.processed_twice}
         return [one for one, processes in named.items() if self.name in processes]
 
     @property

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from standard_errors import ALLOWED
 
-from stiction.analysis.model_error import factors, interpolation_error, length_factors, mean_ratios
+from stiction.analysis.model_error import factors, interpolation_error, length_factors, mean_ratios, rms_deviation
 
 HUMIDITIES = np.array([0.4, 0.6, 0.9])
 RATIOS = np.array([0.6, 0.9, 1.0])
@@ -104,3 +104,15 @@ def test_a_response_to_several_means_follows_their_ratios():
     alone = [mean_ratios(full[..., k], summits[..., k], HUMIDITIES, HUMIDITIES)[0] for k in range(2)]
     np.testing.assert_allclose(found, np.sqrt(np.prod(alone, axis=0)))
     assert np.all(errors > 0)
+
+
+def test_the_rms_deviation_is_that_of_the_crack_lengths():
+    """Of energies that differ by a factor at each humidity, so that it has no error."""
+    others = np.random.default_rng(2).uniform(1, 2, (8, 2))
+    rms, error = rms_deviation(others * [0.5, 2.0], others)
+    assert rms == pytest.approx(np.sqrt(((2**0.25 - 1) ** 2 + (2**-0.25 - 1) ** 2) / 2))
+    assert error < 1e-12
+    shorter, _ = rms_deviation(others * [0.5, 2.0], others, np.array([2**-0.25, 2**0.25]))
+    assert shorter == pytest.approx(0, abs=1e-12)
+    _, scattering = rms_deviation(others[::-1], others)
+    assert scattering > 1e-3

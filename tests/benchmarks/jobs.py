@@ -17,7 +17,7 @@ TOOK = re.compile(r"^took ([\d.]+) s, (\d+) MB$", re.MULTILINE)
 def rules(results):
     """For every stage: name, pattern of its logs, and the memory [MB] and minutes that its last run requested."""
     config = json.loads((results / "provenance.json").read_text(encoding="utf-8"))[-1]["config"]
-    plan, usual = Plan(config), memory.of_job(config)
+    plan, usual = Plan(config), memory.job_memory(config)
     for name, (stage, _) in sorted(stages().items()):
         least = stage.memory(plan) if stage.memory else 0.0
         yield name, expression(stage.log, WILDCARDS), max(usual, round(least)), stage.minutes

@@ -132,7 +132,7 @@ def test_no_rule_of_strips_grids_and_pairs_applies_where_nothing_is_simulated(fo
     found = scans_alone.alone([str(path)], tmp_path)
     config = files.load(found.overlay)
     assert Plan(config).pairs == []
-    assert not Plan(config).simulated("Etched")
+    assert not Plan(config).is_drawn("Etched")
 
 
 @pytest.mark.parametrize("used", ["pair", "device", "neither"])
@@ -140,7 +140,7 @@ def test_a_surface_is_simulated_if_a_pair_that_runs_or_a_device_has_it(used):
     config = {"surfaces": {"A": {}, "B": {}}, "pairs": {"p": {"beam": "A", "substrate": "B"}}, "run": {"pairs": []}}
     config |= {"run": {"pairs": ["p"]}} if used == "pair" else {}
     config |= {"devices": {"D": {"pair": "p"}}} if used == "device" else {}
-    assert Plan(config).simulated("A") == (used != "neither")
+    assert Plan(config).is_drawn("A") == (used != "neither")
 
 
 def test_wrong_keys_are_told_before_any_file_is_read(folder, tmp_path):
@@ -154,8 +154,8 @@ def test_moments_without_a_density_leave_the_measured_one_whether_or_not_anythin
 ):
     overlays = etched(folder / "B2-0.gwy"), {"run": {"pairs": pairs}}
     assert files.load(*overlays)["surfaces"]["Etched"]["heights"] == "moments", "control"
-    estimate = scans._evaluated
-    monkeypatch.setattr(scans, "_evaluated", lambda *given: estimate(*given) | {"feasible": None})
+    estimate = scans._preliminary_numbers
+    monkeypatch.setattr(scans, "_preliminary_numbers", lambda *given: estimate(*given) | {"feasible": None})
     assert files.load(*overlays)["surfaces"]["Etched"]["heights"] == "measured"
 
 

@@ -92,7 +92,7 @@ def test_what_a_surface_leaves_open_is_unknown(entry, unknown):
 def known(entry):
     """What is known of the surface of a device, and its uncertain quantities."""
     plan = DevicePlan(load(of(entry)))
-    return plan.known("C1")["Mine"], [quantity for _, quantity in plan.quantities("C1")]
+    return plan.surface_errors("C1")["Mine"], [quantity for _, quantity in plan.quantities("C1")]
 
 
 def test_the_scatter_over_the_library_is_the_uncertainty_of_what_is_unknown():
@@ -115,8 +115,8 @@ def test_a_stated_uncertainty_takes_the_place_of_the_scatter_and_is_in_the_units
 
 
 def test_a_device_on_such_a_surface_has_a_budget_and_one_on_surfaces_of_the_paper_has_none():
-    assert DevicePlan(load(of(LIKE))).budgeted == ["C1"]
-    assert DevicePlan(load(of(STATED | {"skewness": 0, "kurtosis": 3}))).budgeted == []
+    assert DevicePlan(load(of(LIKE))).with_budget == ["C1"]
+    assert DevicePlan(load(of(STATED | {"skewness": 0, "kurtosis": 3}))).with_budget == []
 
 
 def test_readers_are_told_what_is_assumed_and_how_uncertain_it_is():

@@ -42,9 +42,9 @@ def test_a_device_states_its_force_in_exactly_one_way():
 @pytest.mark.parametrize("name", KINDS)
 def test_a_key_of_another_kind_is_refused_with_the_keys_of_this_one(name):
     kind = KINDS[name]
-    for strange in sorted(KNOWN - {*kind.known}):
+    for strange in sorted(KNOWN - {*kind.allowed_keys}):
         refusal = kind.refusal([*kind.keys, strange])
-        assert refusal == f"must come without {strange}: its keys are {', '.join(kind.known)}"
+        assert refusal == f"must come without {strange}: its keys are {', '.join(kind.allowed_keys)}"
 
 
 def test_the_force_of_a_spring_is_its_stiffness_times_its_deflection():

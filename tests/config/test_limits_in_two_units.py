@@ -53,7 +53,7 @@ def refused(spacing, psd):
 @pytest.mark.parametrize("beyond", ["cut", "continued"])
 def test_a_measured_spectrum_up_to_the_nyquist_wave_number_fits_on_every_grid(beyond):
     for spacing in SPACINGS:
-        psd = scans._described({"beyond": beyond, "heights": "moments"}, SCANNED, spacing)["published_psd"]
+        psd = scans._by_numbers({"beyond": beyond, "heights": "moments"}, SCANNED, spacing)["published_psd"]
         assert not any(refused(spacing, psd)), spacing
         assert all(refused(spacing, psd | {"cutoff_rad_per_um": psd["cutoff_rad_per_um"] * 1.0001})), spacing
 

@@ -158,8 +158,8 @@ def test_measured_surfaces_keep_their_material_and_make_devices_uncertain():
 def test_a_configuration_with_good_scans_is_valid_and_its_surfaces_are_shifted_like_others(folder):
     config = files.load(etched(*both(folder)))
     plan = Plan(config)
-    assert plan.estimated == ["Etched"]
-    assert plan.described == ["Sub1"]
+    assert plan.surfaces_with_scans == ["Etched"]
+    assert plan.surfaces_by_numbers == ["Sub1"]
     assert plan.with_summits == ["Sub1"]
     assert plan.shifted_moments == ["rms", "skewness", "kurtosis"]
     assert Plan(files.load(etched(*both(folder), heights="measured"))).shifted_moments == ["rms"]
@@ -501,7 +501,7 @@ def test_tips_on_scanned_surfaces_are_those_on_surfaces_of_their_preliminary_rms
     found, _ = scans.preliminary_estimates(config)
     numbers = scans.with_preliminary_estimates(config, found)
     assert DevicePlan(config).tips("C1") == DevicePlan(numbers).tips("C1")
-    assert memory.of_job(config) == memory.of_job(numbers)
+    assert memory.job_memory(config) == memory.job_memory(numbers)
     rough = merged(numbers, {"surfaces": {"Etched": {"rms_nm": 100}}})
     assert DevicePlan(config).tips("C1").length < DevicePlan(rough).tips("C1").length
 

@@ -212,3 +212,12 @@ def test_the_command_imports_no_library_for_numbers_before_it_checks_its_files()
     code = "import sys, stiction.command.main; print(*sys.modules)"
     modules = subprocess.run([sys.executable, "-c", code], text=True, capture_output=True, check=True).stdout.split()
     assert not {"numpy", "scipy", "numba", "xarray", "snakemake"} & set(modules)
+
+
+def test_the_workflow_imports_no_library_that_only_jobs_need():
+    common = (ROOT / "workflow" / "rules" / "common.smk").read_text()
+    head = [line for line in common.splitlines() if line.startswith("from stiction")]
+    code = "\n".join([*head, "import sys", "print(*sys.modules)"])
+    modules = subprocess.run([sys.executable, "-c", code], text=True, capture_output=True, check=True).stdout.split()
+    assert "stiction.plan.planner" in modules
+    assert not {"scipy", "numba", "xarray", "netCDF4", "pandas", "matplotlib"} & set(modules)

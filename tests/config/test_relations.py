@@ -127,7 +127,7 @@ def test_a_key_that_is_wrong_is_unknown_as_are_the_sections_around_it_and_the_ke
     assert config.names("pairs") == ["a", "b"]
     assert list(config.entries("pairs", "gap_um")) == [("a", 20)]
     assert list(config.items("pairs.b.gap_um")) == [("pairs.b.gap_um.1", 2)]
-    assert list(config.known("seed", "sead", "pairs")) == [("seed", 1)]
+    assert list(config.valid("seed", "sead", "pairs")) == [("seed", 1)]
 
 
 def test_numbers_of_measured_surfaces_are_named_by_their_files():

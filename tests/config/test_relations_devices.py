@@ -8,9 +8,8 @@ from dataclasses import MISSING, fields, replace
 
 import numpy as np
 import pytest
-from configurations import PAPER, SCHEMA, changed, leaves, problems
+from configurations import PAPER, changed, problems
 from plans import job_settings
-from test_messages import UNITS
 
 from stiction.config.files import load, normalised
 from stiction.config.kinds import KEYS
@@ -73,17 +72,6 @@ def plan(**changes):
 def test_devices_and_materials_with_all_their_keys_are_valid():
     assert problems(ALL) == ()
     assert set(KEYS) <= {key for section in DEVICES.values() for key in section}
-
-
-@pytest.mark.parametrize(
-    "leaf",
-    [leaf for leaf in leaves(ALL, SCHEMA) if {"devices", "materials", "design", "material"} & set(leaf.path)],
-    ids=str,
-)
-def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
-    units = [UNITS[suffix] for key in leaf.path for suffix in sorted(UNITS, key=len) if key.endswith(suffix)][-1:]
-    text = "string" in (leaf.entry["type"], leaf.entry.get("items", {}).get("type"))
-    assert leaf.entry["description"].endswith(tuple(units or (["[name]", "[choice]"] if text else ["[-]"])))
 
 
 LONG, ROUGH = {"share": 0.001, "length_um": 300}, {"surface": "B2", "rms_nm": [1, 8]}
@@ -390,14 +378,14 @@ def test_the_normal_form_sorts_the_humidities_of_devices():
 
 def test_a_configuration_without_devices_has_no_cases():
     none = DevicePlan(load())
-    assert (none.cases, none.charted, none.pressed_pairs) == ([], [], [])
+    assert (none.cases, none.with_chart, none.pressed_pairs) == ([], [], [])
 
 
 def test_cases_are_beams_at_their_humidities():
     devices = DevicePlan(load({"devices": DEVICES}))
     assert devices.cases == ["C1_rh044", "C1_rh067", "R1_rh067"]
     assert devices.stoppers == ["S1", "S2"]
-    assert devices.charted == ["C1"]
+    assert devices.with_chart == ["C1"]
     assert devices.pressed_pairs == ["b"]
     other = {"pairs": {"d": PAPER["pairs"]["b"]}, "devices": {"C1": C1 | {"pair": "d"}}}
     assert DevicePlan(load(other)).pressed_pairs == []
@@ -552,9 +540,9 @@ def test_warnings_know_what_is_stated_of_a_material():
 
 def test_patches_of_devices_count_for_the_memory_of_jobs():
     wide = normalised(with_device(width_um=600))
-    assert memory.of_job(wide) == round(field_memory(2.5, 601, 10))
+    assert memory.job_memory(wide) == round(field_memory(2.5, 601, 10))
     stopper = normalised(merged(PAPER, {"devices": {"S1": S1 | {"contact_um": [30, 40]}}}))
-    assert memory.of_job(stopper) == round(field_memory(31, 41, 10))
+    assert memory.job_memory(stopper) == round(field_memory(31, 41, 10))
 
 
 def test_the_axis_of_the_worst_humidity_holds_no_air_that_is_too_dry_for_a_stopper():

@@ -4,9 +4,8 @@ import copy
 from pathlib import Path
 
 import pytest
-from configurations import PAPER, SCHEMA, leaves, problems
+from configurations import PAPER, problems
 from plans import job_settings
-from test_messages import UNITS
 
 from stiction.config.files import load
 from stiction.config.merging import merged
@@ -37,13 +36,6 @@ def refused(array=None, datum=None, **device):
 
 def test_test_beams_with_all_their_keys_are_valid():
     assert refused() == ()
-
-
-@pytest.mark.parametrize("leaf", leaves({"test_beams": {"first": {**ARRAY, "strip_um": 1}}}, SCHEMA), ids=str)
-def test_the_description_of_a_key_ends_with_the_unit_of_its_name(leaf):
-    units = [UNITS[suffix] for key in leaf.path for suffix in sorted(UNITS, key=len) if key.endswith(suffix)][-1:]
-    if leaf.path[-1] not in ("pair", "crack_lengths"):
-        assert leaf.entry["description"].endswith(tuple(units))
 
 
 @pytest.mark.parametrize(
@@ -160,16 +152,16 @@ def test_test_beams_in_dry_air_need_attraction_across_gaps_and_have_no_uncertain
     assert "[0].humidity = 'dry')" in problem
     across = Plan(load(config))
     assert "humidity" in across.config["devices"]["C1"]["uncertainty"]
-    assert "humidity" not in across.of_test_beams.config["devices"]["first"]["uncertainty"]
+    assert "humidity" not in across.with_test_beams.config["devices"]["first"]["uncertainty"]
     mixed = config | {"test_beams": {"first": array | {"stuck": [COUNTS[0], COUNTS[0] | {"humidity": "dry"}]}}}
     assert problems(merged(PAPER, mixed)) == ()
 
 
 def test_tips_of_counted_beams_are_drawn_with_their_own_slopes():
     thin = Plan(load(merged(SECTIONS, {"test_beams": {"first": {"stuck": COUNTS}}})))
-    tips = thin.of_test_beams.devices.tips("first")
+    tips = thin.with_test_beams.devices.tips("first")
     assert tips != thin.devices.tips("C1")
-    assert thin.devices.tilt(tips)["slopes"] == list(thin.of_test_beams.devices._slopes("first"))
+    assert thin.devices.tilt(tips)["slopes"] == list(thin.with_test_beams.devices._slopes("first"))
     with pytest.raises(KeyError, match="no device has tips"):
         PLAN.devices.tilt(tips)  # beams that were not counted need no tips
 
@@ -226,7 +218,7 @@ def test_only_devices_with_test_beams_have_them_in_their_jobs():
     graph = Graph(PLAN)
     assert "test_beams" in graph.job("devices/C1.html").inputs
     assert "test_beams" not in graph.job("devices/C2.html").inputs
-    assert PLAN.devices.tested == ["C1"]
+    assert PLAN.devices.with_test_beams == ["C1"]
     assert set(graph.job("devices/test_beams/C1").inputs["test_beams"]) == {("first", 0.44), ("first", 0.67)}
 
 

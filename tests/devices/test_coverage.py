@@ -8,7 +8,7 @@ import logging
 import numpy as np
 import pytest
 
-from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths, given, lognormal, with_discrepancy
+from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths, lognormal, update, with_discrepancy
 from stiction.streams import stream
 
 TRUTHS, SCATTER = 400, 0.05
@@ -50,7 +50,7 @@ def test_intervals_of_95_percent_hold_95_percent_of_the_true_lengths(held_by, be
     by_deviation, by_quantiles, is_box = [], [], []
     for k in range(TRUTHS):
         truth, counts = drawn(stream(k, "truth"), CENTRES[held_by], beams)
-        found, lengths = given(PRIOR, NOTHING, counts, stream(k, "draws")), RESULTS @ truth
+        found, lengths = update(PRIOR, NOTHING, counts, stream(k, "draws")), RESULTS @ truth
         mean, deviation = found.of(RESULTS)
         low, high = found.quantiles(RESULTS, np.array([-1.96, 1.96])).T
         by_deviation.append(np.abs(lengths - mean) < 1.96 * deviation)

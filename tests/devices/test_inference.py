@@ -10,7 +10,7 @@ from scipy.special import chdtrc, logsumexp, ndtr, ndtri, softmax
 
 from stiction.devices import inference
 from stiction.devices.budget import Budget
-from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths, given, given_lengths
+from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths, given_lengths, update
 from stiction.report import published
 from stiction.streams import stream
 
@@ -37,15 +37,15 @@ def assert_equal(one, other, rtol=1e-9):
 
 
 def test_without_data_the_posterior_is_the_prior():
-    found = given(PRIOR, part(DATA))
+    found = update(PRIOR, part(DATA))
     assert_array_equal(found.mean, PRIOR.mean)
     assert_array_equal(found.covariance, PRIOR.covariance)
-    assert not np.allclose(given(PRIOR, part(DATA, 0)).covariance, PRIOR.covariance)  # control
+    assert not np.allclose(update(PRIOR, part(DATA, 0)).covariance, PRIOR.covariance)  # control
 
 
 def test_an_input_measured_exactly_leaves_the_conditional_distribution():
     # Of the rms alone: E[x | x_0 = d] = C[:, 0] d / C[0, 0], and the budget's own remaining uncertainty.
-    exact = given(PRIOR, Lengths(np.eye(5)[:1], np.array([0.03]), np.zeros(1)))
+    exact = update(PRIOR, Lengths(np.eye(5)[:1], np.array([0.03]), np.zeros(1)))
     assert_allclose(exact.mean, PRIOR.covariance[:, 0] * 0.03 / PRIOR.covariance[0, 0], rtol=1e-12)
     budget = Budget(NAMES, DEVICE[0], PRIOR.covariance)
     assert_allclose(exact.of(DEVICE[0])[1], budget.remaining(["rms"]), rtol=1e-9)
@@ -53,15 +53,15 @@ def test_an_input_measured_exactly_leaves_the_conditional_distribution():
 
 
 def test_equal_data_twice_are_data_of_twice_as_many_beams():
-    twice = given(PRIOR, part(DATA, 0, 1, 2, 0, 1, 2))
-    assert_equal(twice, given(PRIOR, replace(DATA, errors=DATA.errors / np.sqrt(2))))
+    twice = update(PRIOR, part(DATA, 0, 1, 2, 0, 1, 2))
+    assert_equal(twice, update(PRIOR, replace(DATA, errors=DATA.errors / np.sqrt(2))))
     with pytest.raises(AssertionError):
-        assert_equal(twice, given(PRIOR, DATA))
+        assert_equal(twice, update(PRIOR, DATA))
 
 
 def test_the_order_of_the_data_does_not_matter_nor_whether_they_come_at_once():
-    assert_equal(given(PRIOR, DATA), given(PRIOR, part(DATA, 2, 0, 1)))
-    assert_equal(given(PRIOR, DATA), given(given(PRIOR, part(DATA, 0)), part(DATA, 1, 2)))
+    assert_equal(update(PRIOR, DATA), update(PRIOR, part(DATA, 2, 0, 1)))
+    assert_equal(update(PRIOR, DATA), update(update(PRIOR, part(DATA, 0)), part(DATA, 1, 2)))
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -72,18 +72,18 @@ def test_more_beams_widen_no_interval(seed):
     results = rng.normal(size=(20, 5))
     widths = [known.of(results)[1]]
     for response in rng.normal(size=(6, 5)):
-        known = given(known, Lengths(response[None], rng.normal(size=1), np.array([0.3])))
+        known = update(known, Lengths(response[None], rng.normal(size=1), np.array([0.3])))
         widths.append(known.of(results)[1])
     assert np.all(np.diff(widths, axis=0) <= 1e-12)
     assert widths[-1].max() < 0.9 * widths[0].max()
 
 
 def test_shared_inputs_tell_about_the_device_and_inputs_of_the_test_beams_alone_do_not():
-    found = given(PRIOR, DATA)
+    found = update(PRIOR, DATA)
     assert found.of(DEVICE[0])[1] < 0.5 * PRIOR.of(DEVICE[0])[1]
     assert_allclose(found.deviations[-1], PRIOR.deviations[-1], rtol=1e-12)  # thickness of the device
     apart = Lengths(BEAMS * (np.array(NAMES) == "thickness of test beams"), DATA.differences, DATA.errors)
-    assert_allclose(given(PRIOR, apart).of(DEVICE[0]), PRIOR.of(DEVICE[0]), rtol=1e-12)
+    assert_allclose(update(PRIOR, apart).of(DEVICE[0]), PRIOR.of(DEVICE[0]), rtol=1e-12)
 
 
 # Known truth
@@ -107,13 +107,13 @@ def coverage(posterior, repeats=100):
 
 
 def test_stated_intervals_hold_the_true_lengths_of_drawn_test_beams():
-    inner, outer = coverage(lambda data: given(PRIOR, data))
+    inner, outer = coverage(lambda data: update(PRIOR, data))
     assert abs(inner - 0.68) <= 0.10
     assert abs(outer - 0.95) <= 0.04
 
 
 def test_intervals_that_forget_the_scatter_between_beams_do_not():
-    inner, outer = coverage(lambda data: given(PRIOR, replace(data, errors=data.errors / 5)))
+    inner, outer = coverage(lambda data: update(PRIOR, replace(data, errors=data.errors / 5)))
     assert inner < 0.58
     assert outer < 0.91
 
@@ -149,7 +149,7 @@ WORTH = 2048
 
 
 def after(prior, lengths, counts):
-    return given(prior, lengths, counts, stream(0, "test"))
+    return update(prior, lengths, counts, stream(0, "test"))
 
 
 def stuck_of(counts, stuck):
@@ -255,7 +255,7 @@ def test_counts_say_what_the_lengths_of_the_same_beams_say():
     rng, response = np.random.default_rng(3), np.ones((1, 1))
     flat = Knowledge(("ln l",), np.zeros(1), np.ones((1, 1)))
     single = 0.1 + scatter * rng.normal(size=number)
-    measured = given(flat, Lengths(response, single.mean(keepdims=True), np.array([scatter / np.sqrt(number)])))
+    measured = update(flat, Lengths(response, single.mean(keepdims=True), np.array([scatter / np.sqrt(number)])))
     counts = one_shape(response, np.array([0.1]), scatter, [np.sum(single < 0.1)], [number])
     counted = after(flat, OF_LENGTH, counts)
     assert_allclose(counted.deviations / measured.deviations, np.sqrt(np.pi / 2), rtol=4 / np.sqrt(2 * WORTH))
@@ -353,7 +353,7 @@ def test_p_values_of_data_that_err_as_stated_are_uniform_and_those_of_others_sma
 
 def test_one_length_determines_one_combination_and_leaves_its_inputs_on_a_line():
     independent = replace(PRIOR, covariance=np.diag(np.diag(PRIOR.covariance)))
-    first, *others = inference.combinations(independent, given(independent, part(DATA, 0)))
+    first, *others = inference.combinations(independent, update(independent, part(DATA, 0)))
     assert_allclose([one.remaining for one in others], 1, rtol=1e-9)
     # Correlation of input k with h^T x: h_k σ_k / |h σ|.
     effects = BEAMS[0] * independent.deviations
@@ -366,15 +366,15 @@ def test_combinations_leave_out_what_is_known_and_what_is_fully_correlated():
     covariance[1, 2] = covariance[2, 1] = 1
     known = Knowledge(("exact", "angle", "other angle"), np.zeros(3), covariance)
     data = Lengths(np.array([[1.0, 1, 1]]), np.zeros(1), np.ones(1))
-    (only,) = inference.combinations(known, given(known, data))
+    (only,) = inference.combinations(known, update(known, data))
     assert_allclose(only.correlations, [0, 1, 1], atol=1e-9)
     assert_allclose(only.remaining**2, 1 / (1 + 4), rtol=1e-9)
 
 
 def test_the_expected_gain_of_further_beams_is_that_of_the_update_with_them():
-    found = given(PRIOR, DATA)
+    found = update(PRIOR, DATA)
     expected = inference.further_beams(found, DEVICE[0], BEAMS[2], 0.01)
-    later = given(found, Lengths(BEAMS[2:], np.array([0.3]), np.array([0.01])))
+    later = update(found, Lengths(BEAMS[2:], np.array([0.3]), np.array([0.01])))
     assert_allclose(expected, later.of(DEVICE[0])[1], rtol=1e-12)
     assert expected < found.of(DEVICE[0])[1]
     assert_allclose(inference.further_beams(found, DEVICE[0], np.zeros(5), 0.01), found.of(DEVICE[0])[1], rtol=1e-12)
@@ -407,7 +407,7 @@ def predicted(known, asked, stated=STATED, beams=1):
         nothing, np.zeros((len(reduced), 0)), reduced, list(range(len(reduced))), stated
     )
     data = Lengths(responses[:n], differences, errors / np.sqrt(beams))
-    mean, deviation = given(prior, data).of(responses[n:])
+    mean, deviation = update(prior, data).of(responses[n:])
     return truth - mean, np.hypot(deviation, scatter / np.sqrt(beams)), inference.p_value(prior, data)
 
 

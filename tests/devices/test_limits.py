@@ -6,7 +6,7 @@ from beams import PAPER
 
 from stiction.constants import WATER_MOLECULE
 from stiction.devices import limits
-from stiction.devices.materials import OF_COATINGS, PROPERTIES
+from stiction.devices.properties import OF_COATINGS, PROPERTIES
 
 UM, NM = 1e-6, 1e-9
 
@@ -74,7 +74,7 @@ def test_beyond_a_limit_the_warning_is_a_sentence_with_the_number_and_within_the
     limit, beyond, number, within
 ):
     sentence = limit(*beyond)
-    assert limits.given(sentence) == [sentence]
+    assert limits.triggered(sentence) == [sentence]
     assert re.search(number, sentence), sentence
     assert sentence[-1] == "."
     assert limit(*within) is None
@@ -86,7 +86,7 @@ def test_every_limit_is_tested():
     }
     assert functions == {case[0] for case in CASES} | {
         limits.forbids,
-        limits.given,
+        limits.triggered,
         limits.beam_warnings,
         limits.least_gap,
         limits.not_modelled,

@@ -11,7 +11,7 @@ from plans import job_settings
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.units import in_si
-from stiction.devices.materials import OF_CONTACT
+from stiction.devices.properties import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.plan.devices import DevicePlan, patch
 from stiction.plan.graph import Graph, Job, stages
@@ -82,16 +82,16 @@ def test_a_stopper_sticks_with_its_whole_area_and_a_beam_with_its_strips():
 
 def test_only_devices_with_an_uncertain_input_have_a_budget_and_cantilevers_one_of_their_tips():
     found = planned()
-    assert found.budgeted == ["C1", "S1"]
+    assert found.with_budget == ["C1", "S1"]
     assert found.budgets() == ["C1_rh067", "C1_rh067_tip", "S1_rh044", "S1_rh090"]
     assert found.budgets("C2") == ["C2_rh067", "C2_rh067_tip"]
-    assert planned(devices={"S1": {"uncertainty": {"humidity": 0}}}).budgeted == ["C1"]
+    assert planned(devices={"S1": {"uncertainty": {"humidity": 0}}}).with_budget == ["C1"]
 
 
 def test_a_device_on_scans_has_a_budget_without_a_stated_uncertainty():
     scanned = {"scans": {"files": ["a.npy"]}, "heights": "moments", "psd": "fitted"}
     found = DevicePlan(merged(PLAN.config, {"surfaces": {"B2": scanned}}))
-    assert found.budgeted == ["C1", "C2", "S1"]
+    assert found.with_budget == ["C1", "C2", "S1"]
     assert found.quantities("C2") == [("B2", quantity) for quantity in MOMENT_QUANTITIES + SPECTRUM_QUANTITIES]
     assert (
         budget.budget_settings(job_settings(PLAN, "devices/budget/C2_rh067")["budget"]).uncertainty

@@ -69,7 +69,7 @@ def reached():
     """All jobs behind the files that the targets want, by the first name of each."""
     wanted = wanted_files(PLAN)
     wanted += [f"devices/{stage}/{case}" for stage in ("safe_lengths", "cracks") for case in PLAN.devices.cases]
-    wanted += [f"devices/chart/{case}" for name in PLAN.devices.charted for case in PLAN.devices.chart_cases(name)]
+    wanted += [f"devices/chart/{case}" for name in PLAN.devices.with_chart for case in PLAN.devices.chart_cases(name)]
     wanted += [f"devices/stoppers/{name}" for name in PLAN.devices.stoppers]
     wanted += [f"devices/budget/{name}" for name in PLAN.devices.budgets()]
     wanted += [

@@ -53,7 +53,7 @@ def test_memory_grows_with_the_number_of_points():
 
 
 def test_the_paper_needs_no_more_than_the_usual_memory_and_time_of_the_profiles():
-    assert memory.of_job(PAPER) == USUAL
+    assert memory.job_memory(PAPER) == USUAL
     for profile in ("default", "slurm"):
         settings = yaml.safe_load((ROOT / "profiles" / profile / "config.yaml").read_text(encoding="utf-8"))
         assert {f"mem_mb={USUAL}", f"runtime={Stage.minutes}"} <= set(settings["default-resources"])
@@ -70,7 +70,7 @@ def test_the_paper_needs_no_more_than_the_usual_memory_and_time_of_the_profiles(
     ],
 )
 def test_the_largest_field_of_a_configuration_counts(overlay, size):
-    assert memory.of_job(changed(overlay)) == max(USUAL, round(field_memory(*size))) > USUAL
+    assert memory.job_memory(changed(overlay)) == max(USUAL, round(field_memory(*size))) > USUAL
 
 
 STICKING = """
@@ -96,9 +96,9 @@ def test_the_patch_of_a_device_with_an_uncertainty_is_also_drawn_with_the_points
     plain = STICKING.replace("PAIR", "b").replace("100000", "100").replace("[1.5, 30]", "[40, 40]")
     stated = plain.replace("humidities: [0.5]", "humidities: [0.5], uncertainty: {gap_um: 1}")
     finer = "\nstudies: {variants: {spacing_nm: [5]}}"
-    assert memory.of_job(changed(plain)) == pytest.approx(field_memory(41, 41, 10), abs=1)
-    assert memory.of_job(changed(plain + finer)) == memory.of_job(changed(plain))
-    assert memory.of_job(changed(stated + finer)) == pytest.approx(field_memory(41, 41, 5), abs=1)
+    assert memory.job_memory(changed(plain)) == pytest.approx(field_memory(41, 41, 10), abs=1)
+    assert memory.job_memory(changed(plain + finer)) == memory.job_memory(changed(plain))
+    assert memory.job_memory(changed(stated + finer)) == pytest.approx(field_memory(41, 41, 5), abs=1)
 
 
 HOLDING = """
@@ -161,4 +161,4 @@ def test_budgets_of_tips_reserve_the_memory_of_all_their_tips_under_every_input(
 
 
 def test_a_job_that_failed_may_use_twice_as_much():
-    assert [memory.of_attempt(1700, attempt) for attempt in (1, 2, 3)] == [1700, 3400, 6800]
+    assert [memory.for_attempt(1700, attempt) for attempt in (1, 2, 3)] == [1700, 3400, 6800]

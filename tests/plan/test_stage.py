@@ -4,7 +4,7 @@ from dataclasses import dataclass, field, replace
 
 import pytest
 
-from stiction.plan.stage import WILDCARDS, At, Stage, chosen, expression, select
+from stiction.plan.stage import WILDCARDS, At, Stage, expression, select, subsection
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ def test_what_is_given_replaces_the_section_and_may_have_fields_that_it_lacks():
 
 def test_a_missing_key_is_reported_by_the_field_that_needs_it():
     with pytest.raises(KeyError, match="Settings.seed"):
-        select(Settings, chosen(CONFIG, ["beam", "pairs"]))
+        select(Settings, subsection(CONFIG, ["beam", "pairs"]))
 
 
 def test_settings_are_converted_to_the_class_and_stay_plain_without_one():
@@ -86,6 +86,16 @@ def test_a_name_matches_its_pattern_alone(pattern, name, values):
     assert (found.groupdict() if found else {}) == (values if values is not None else found.groupdict())
     if found:
         assert pattern.format(**vars(At(**found.groupdict()))) == name
+
+
+def test_the_data_of_the_inputs_complete_the_settings_of_a_computation():
+    def compute(forces, settings):
+        return forces, settings
+
+    stage = Stage.writing(
+        "one", "one", message="", complete=lambda settings, data: settings + data["error"], compute=compute
+    )
+    assert stage.result({"forces": 1, "error": 2}, At(), 3) == (1, 5)
 
 
 def test_a_stage_with_ends_writes_one_dataset_for_each():

@@ -35,7 +35,7 @@ def device():
 def grid(device):
     charts = {humidity: device.chart(humidity) for humidity in np.linspace(*SIZES["humidities"], 5).round(4).tolist()}
     section = SMALL["devices"]["C1"]
-    return explorer.of_beam("C1", section, {0.67: device.safe_lengths(0.67)}, charts, {}).grid
+    return explorer.beam_view("C1", section, {0.67: device.safe_lengths(0.67)}, charts, {}).grid
 
 
 def settings_of(device, humidity):
@@ -50,7 +50,7 @@ def settings_of(device, humidity):
 def resized(settings, ground, thickness, gap):
     """Device of another size [µm], and its beams."""
     beam = replace(settings.device, thickness=thickness * UM, gap=gap * UM)
-    return beam, sticking.released(beam, ground, settings)
+    return beam, sticking.release_beams(beam, ground, settings)
 
 
 def is_close(found, expected, error):
@@ -65,7 +65,7 @@ def test_random_states_are_those_of_devices_that_were_not_computed_for_the_grid(
         settings, ground = settings_of(device, humidity)
         for thickness, gap in zip(rng.uniform(2, 4, OF_AIR), rng.uniform(10, 20, OF_AIR), strict=True):
             beam, released = resized(settings, ground, thickness, gap)
-            known = sticking.known(beam, settings.water, humidity, released.reach)
+            known = sticking.lengths_without_samples(beam, settings.water, humidity, released.reach)
             *_, sticks = released.lengths.values()
             for share, rank in zip(rng.uniform(0.01, 0.05, OF_SIZE), rng.uniform(0.03, 0.97, OF_SIZE), strict=True):
                 length = np.quantile(sticks, rank, method="lower")

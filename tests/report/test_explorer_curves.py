@@ -40,7 +40,7 @@ def are_those_of_the_table(grid, state, row):
 @pytest.mark.parametrize(("is_beam", "section"), DEVICES)
 def test_a_page_has_at_the_settings_of_a_process_the_numbers_of_its_table(is_beam, section):
     curve, settings = etched(is_beam)
-    grid = curve_views.of_process("D", section, curve, settings).grid
+    grid = curve_views.process_view("D", section, curve, settings).grid
     for state, row in states(grid, tables.table({"D": curve}, [], {"D": []}).frame):
         are_those_of_the_table(grid, state, row)
         assert grid.at(state)["margin"] == pytest.approx(row["margin"], abs=1e-12)
@@ -51,7 +51,7 @@ def test_a_page_has_at_the_settings_of_a_process_the_numbers_of_its_table(is_bea
 
 def test_a_page_has_at_the_pairs_of_two_processes_the_numbers_of_their_table():
     found, pairs = mapped()
-    grid = curve_views.of_map("D", STOPPER, found, pairs).grid
+    grid = curve_views.map_view("D", STOPPER, found, pairs).grid
     for state, row in states(grid, maps.table({"D": found}, {}, {"D": []}).frame, "bake_min"):
         are_those_of_the_table(grid, state, row)
 
@@ -60,7 +60,7 @@ def test_a_page_has_at_the_pairs_of_two_processes_the_numbers_of_their_table():
 @pytest.mark.parametrize(("is_beam", "section"), DEVICES)
 def test_a_page_has_at_the_points_of_a_roughness_the_numbers_of_its_table(is_beam, section, others):
     found = rough(is_beam, others=others)
-    grid = curve_views.of_roughness("D", section, found).grid
+    grid = curve_views.roughness_view("D", section, found).grid
     frame = tables_roughness.roughness({"D": found}).frame
     frame["value"] = frame["value"].map(lambda value: min(grid.axes[0].values, key=lambda one: abs(one - value)))
     frame = frame.rename(columns={"other_value": "second_value"})
@@ -73,7 +73,7 @@ def test_a_page_has_at_the_points_of_a_roughness_the_numbers_of_its_table(is_bea
 
 def test_between_settings_the_margin_is_the_one_behind_the_recommendation():
     curve, settings = etched()
-    grid = curve_views.of_process("D", STOPPER, curve, settings).grid
+    grid = curve_views.process_view("D", STOPPER, curve, settings).grid
     values, known = np.linspace(SETTINGS[0], SETTINGS[-1], 77), {rh: one for rh, _, one in curves_of(curve)}
     for humidity, one in known.items():
         found = [grid.at(grid.start | {"etch_time_s": value, "humidity": humidity})["margin"] for value in values]
@@ -87,7 +87,7 @@ def test_between_settings_the_margin_is_the_one_behind_the_recommendation():
 
 def test_between_points_of_a_roughness_the_range_that_suffices_is_that_of_its_safe_values():
     found = rough()
-    grid = curve_views.of_roughness("D", STOPPER, found).grid
+    grid = curve_views.roughness_view("D", STOPPER, found).grid
     for humidity in found.humidity.values:
         line = found.safe.sel(humidity=humidity, shape="force")
         cubic = PchipInterpolator(np.log(found.roughness.values), -np.log(line.values / 28e-6))
@@ -100,9 +100,9 @@ def test_between_points_of_a_roughness_the_range_that_suffices_is_that_of_its_sa
 @pytest.mark.parametrize("quantity", ["etch_time_s", "rms_nm"])
 def test_nothing_is_said_beyond_the_computed_points_and_next_to_one_that_could_not_be_computed(quantity):
     if quantity == "rms_nm":
-        view = curve_views.of_roughness("D", STOPPER, rough(unknown=(2,)))
+        view = curve_views.roughness_view("D", STOPPER, rough(unknown=(2,)))
     else:
-        view = curve_views.of_process("D", STOPPER, *etched(unknown=(60.0,)))
+        view = curve_views.process_view("D", STOPPER, *etched(unknown=(60.0,)))
     grid, (axis, humidity) = view.grid, view.grid.axes
     for value in (0.99 * axis.values[0], 1.01 * axis.values[-1]):
         with pytest.raises(ValueError, match="has no answer: "):
@@ -120,7 +120,7 @@ def test_nothing_is_said_beyond_the_computed_points_and_next_to_one_that_could_n
 def test_a_device_that_never_sticks_has_the_largest_margin():
     found = rough(is_beam=True)
     never = found.assign(estimate=found.estimate * np.inf, safe=found.safe * np.inf, error=found.error * np.nan)
-    assert curve_views.of_roughness("D", BEAM, never).grid.at({"rms_nm": 3.4, "humidity": 0.6})["margin"] == LARGEST
+    assert curve_views.roughness_view("D", BEAM, never).grid.at({"rms_nm": 3.4, "humidity": 0.6})["margin"] == LARGEST
 
 
 def test_a_device_has_a_view_for_each_of_its_studies_and_their_numbers_are_valid_json():
@@ -140,7 +140,7 @@ def test_a_device_has_a_view_for_each_of_its_studies_and_their_numbers_are_valid
 
 def test_a_study_with_another_rms_states_it_unless_scans_measure_the_surface():
     described, measured = (
-        curve_views.of_roughness("D", STOPPER | known, rough()) for known in ({}, {"measured": ["B2"]})
+        curve_views.roughness_view("D", STOPPER | known, rough()) for known in ({}, {"measured": ["B2"]})
     )
     assert (described.grid.axes[0].setting, described.words["copied"]) == ("surfaces.B2.rms_nm", "")
     assert measured.grid.axes[0].setting == ""

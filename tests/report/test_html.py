@@ -13,7 +13,7 @@ from stiction.report.table import Table
 
 #: Templates, each with what fills it.
 FILLED = {
-    "table.html": lambda: Table(pd.DataFrame(), HOSTILE, pd.DataFrame({HOSTILE: [HOSTILE]})).html,
+    "table.html": lambda: Table(pd.DataFrame(), HOSTILE, pd.DataFrame({HOSTILE: [HOSTILE]})).page(HOSTILE),
     "page.html": lambda: Page(HOSTILE, {HOSTILE: HOSTILE}, [HOSTILE], more=[HOSTILE], explorer={HOSTILE: HOSTILE}).html,
     "front.html": lambda: html.rendered(
         "front.html", **dict.fromkeys(["subjects", "checks", "changes"], HOSTILE),
@@ -42,4 +42,4 @@ def test_whatever_fills_a_template_is_text(template):
 
 def test_a_value_that_a_template_lacks_is_an_error():
     with pytest.raises(UndefinedError, match="'caption' is undefined"):
-        html.rendered("table.html", cells=pd.DataFrame({"pair": ["b"]}))
+        html.rendered("table.html", title="Table 3", cells=pd.DataFrame({"pair": ["b"]}))

@@ -32,7 +32,7 @@ def test_a_change_is_the_factor_less_one_in_percent():
 def test_an_unknown_error_is_no_error_of_zero():
     found = column.change(None)
     assert np.isnan(found["model_error_percent"])
-    assert column.marked(*found.values()) == "–"
+    assert column.marked_change(*found.values()) == "–"
 
 
 @pytest.mark.parametrize(("applied", "words"), [(True, "has changed"), (False, "would change")])

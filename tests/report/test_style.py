@@ -18,7 +18,7 @@ from stiction.beam.cantilever import Beam
 from stiction.config.files import load
 from stiction.contact import forcelaw
 from stiction.plan.plan import Plan
-from stiction.report.beams.figures import adhesion_energies, beam_shapes, converted
+from stiction.report.beams.figures import adhesion_energies, beam_shapes, energies_with_bars
 from stiction.report.laws.figures import fitted_curve, force_curves, typical
 from stiction.report.style import humidity_axis, humidity_colours, letter, panels, save
 from stiction.report.surfaces.figures import elevation_maps, height_densities, profiles, spectra, summits
@@ -109,7 +109,7 @@ def released(lengths, states=None):
         "sample": np.arange(len(lengths)),
         "state": np.zeros(len(lengths), int) if states is None else states,
         "crack_length": lengths,
-        "energy": converted(lengths, 0 * lengths, BEAM)[0],
+        "energy": energies_with_bars(lengths, 0 * lengths, BEAM)[0],
         "imbalance": 0 * lengths,
         "iterations": np.ones(len(lengths), int),
         "deflection": BEAM.gap * np.minimum(nodes / lengths[:3, None], 1),
@@ -428,7 +428,7 @@ def test_figure_of_beams_that_are_all_free_states_their_number(tmp_path):
 
 
 def test_crack_length_710_um_is_6_81_mJ_per_m2_and_longer_cracks_are_weaker():
-    energy, (below, above) = converted(np.array([710e-6]), np.array([71e-6]), BEAM)
+    energy, (below, above) = energies_with_bars(np.array([710e-6]), np.array([71e-6]), BEAM)
     assert energy[0] == pytest.approx(6.81e-3, rel=1e-3)
     assert below[0] == pytest.approx(energy[0] * (1 - 1.1**-4))
     assert above[0] == pytest.approx(energy[0] * (0.9**-4 - 1))

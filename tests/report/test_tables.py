@@ -19,7 +19,7 @@ from stiction.report.studies import tables as tables_studies
 from stiction.report.surfaces import tables as tables_surfaces
 from stiction.run.markdown import plain
 from stiction.stages.beams.pair_warnings import as_markdown
-from stiction.stages.contact import model_error
+from stiction.stages.contact import pair_model_error
 from stiction.stages.laws import forces as stage_forces
 
 RESOURCES = Path(published.__file__).with_name("resources")
@@ -73,7 +73,7 @@ def test_energies_without_a_force_law_are_reported_separately():
 
 def test_the_error_of_the_model_stands_beside_all_but_gaussian_surfaces():
     known = {name: (np.array([1.1, 1.05]), np.array([0.01, 0.02])) for name in ("energy_ratio", "length_factor")}
-    errors = {"a": model_error.layout(known, np.array([0.45, 0.6]), [0.45], 20)}
+    errors = {"a": pair_model_error.layout(known, np.array([0.45, 0.6]), [0.45], 20)}
     keys = [("a", humidity, model) for humidity in (0.45, 0.6) for model in ("NG", "G")]
     given = {key: beams(0, 0, 1) for key in keys}, {key: forces() for key in keys}, PUBLISHED
     table, plain = tables_beams.table_3(*given, errors=errors), tables_beams.table_3(*given)
@@ -223,10 +223,11 @@ def test_a_table_is_saved_as_numbers_as_markdown_and_as_html(tmp_path):
     key = ("a", 0.45, "NG")
     table = tables_beams.table_3({key: beams(0, 0, 1)}, {key: forces()}, PUBLISHED)
     paths = {kind: tmp_path / kind for kind in ("csv", "markdown", "html")}
-    tables.save(table, paths)
+    tables.save(table, paths, "Table 3: cracks")
     assert_allclose(pd.read_csv(paths["csv"]).crack_length_um, 620)
     assert paths["markdown"].read_text(encoding="utf-8").startswith("Table III")
     page = paths["html"].read_text(encoding="utf-8")
+    assert "<title>Table 3: cracks</title>" in page
     assert page.count("<tr") == 2
     assert "<td>620 ± 28</td>" in page
 
@@ -236,8 +237,8 @@ def test_markdown_and_html_show_the_same_text_even_if_it_looks_like_a_number():
     table = tables.Table(pd.DataFrame({"x": [1.0]}), "Caption & units.", cells)
     for text in ("+1.0", "-0.50"):
         assert f" {text} |" in table.markdown
-        assert f"<td>{text}</td>" in table.html
-    assert table.html.count("<td>") == 4
+        assert f"<td>{text}</td>" in table.page("T")
+    assert table.page("T").count("<td>") == 4
 
 
 def variant(*states):
@@ -295,7 +296,7 @@ def test_text_of_users_in_a_table_is_shown_as_it_is():
     columns = {"file": (str, "file"), "channel": (str, "channel")}
     row = {"file": HOSTILE_FILE, "channel": HOSTILE}
     table = tables.Table.of([row, row], tables.with_list(f"Scans {HOSTILE}.", [HOSTILE]), columns)
-    for html in (table.html, rendered(table.markdown)):
+    for html in (table.page(HOSTILE), rendered(table.markdown)):
         shown = Reading(html)
         assert [code for code in shown.code if code != "meta"] == []
         assert shown.text["td"] == [HOSTILE_FILE, HOSTILE] * 2

@@ -7,8 +7,7 @@ from stiction.config.files import load
 from stiction.plan.plan import Plan
 from stiction.report import style
 from stiction.report.model_error import table as model_error
-from stiction.stages.contact import full_contact
-from stiction.stages.contact import model_error as stage_model_error
+from stiction.stages.contact import full_contact, pair_model_error
 
 HUMIDITIES = [0.45, 0.7, 0.9]
 PUBLISHED = pd.DataFrame(
@@ -35,8 +34,8 @@ def beams(length=600e-6):
     return xr.Dataset({"crack_length": ("sample", lengths), "state": ("sample", states)})
 
 
-ALL = stage_model_error.Settings((0.45, 0.6, 0.7, 0.9))
-DATA = {"a": stage_model_error.compute(study(), ALL)}, {("a", humidity): beams() for humidity in (0.45, 0.6, 0.7, 0.9)}
+ALL = pair_model_error.Settings((0.45, 0.6, 0.7, 0.9))
+DATA = {"a": pair_model_error.compute(study(), ALL)}, {("a", humidity): beams() for humidity in (0.45, 0.6, 0.7, 0.9)}
 
 
 def test_the_table_states_the_error_of_every_case_and_marks_interpolated_ones():

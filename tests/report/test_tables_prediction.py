@@ -93,9 +93,9 @@ def test_dry_air_and_cases_without_cracks_have_no_interval():
 
 def test_the_caption_counts_the_measured_lengths_in_their_intervals():
     found = with_intervals(table())
-    assert prediction.contained(found, 0.95) == (18, 18)
+    assert prediction.count_contained(found, 0.95) == (18, 18)
     far = found.assign(experiment_um=np.where(found.pair == "a", 9e9, found.experiment_um))
-    assert prediction.contained(far, 0.95) == (12, 18)
+    assert prediction.count_contained(far, 0.95) == (12, 18)
     assert "and 12 of 18 measured lengths" in prediction.caption(far)
 
 

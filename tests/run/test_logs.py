@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import pytest
 
 from stiction.progress import progress
-from stiction.run.logs import logged, peak_memory, recorded
+from stiction.run.logs import logged, peak_memory, recorded_checksums
 
 
 def test_a_successful_job_logs_progress_warnings_time_and_memory(tmp_path):
@@ -30,7 +30,7 @@ def test_a_log_records_the_checksums_of_the_final_results_of_its_job(tmp_path):
         result.write_bytes(b"abc")
     # SHA-256 of "abc", FIPS 180-2, App. B.1.
     known = "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"
-    assert recorded(tmp_path / "logs") == {str(result): known}
+    assert recorded_checksums(tmp_path / "logs") == {str(result): known}
 
 
 def test_the_logged_memory_is_the_peak(tmp_path):

@@ -11,28 +11,28 @@ from stiction.run import run_lock
 
 def test_only_one_run_uses_a_folder_until_it_ends(tmp_path):
     lock = tmp_path / "running"
-    held = run_lock.reserved(lock)
+    held = run_lock.reserve(lock)
     with pytest.raises(RuntimeError, match="Another run is using this folder"):
-        run_lock.reserved(lock)
+        run_lock.reserve(lock)
     held.close()
-    run_lock.reserved(lock).close()
+    run_lock.reserve(lock).close()
 
 
 def test_other_folders_stay_free(tmp_path):
-    with run_lock.reserved(tmp_path / "one"), run_lock.reserved(tmp_path / "other"):
+    with run_lock.reserve(tmp_path / "one"), run_lock.reserve(tmp_path / "other"):
         pass
 
 
 def test_the_lock_of_a_killed_run_is_released(tmp_path):
-    hold = "import sys, time; from stiction.run import run_lock; f = run_lock.reserved('running'); print(1, flush=True)"
+    hold = "import sys, time; from stiction.run import run_lock; f = run_lock.reserve('running'); print(1, flush=True)"
     with subprocess.Popen(
         [sys.executable, "-c", f"{hold}; time.sleep(60)"], cwd=tmp_path, stdout=subprocess.PIPE
     ) as run:
         run.stdout.readline()
         with pytest.raises(RuntimeError, match="Another run"):
-            run_lock.reserved(tmp_path / "running")
+            run_lock.reserve(tmp_path / "running")
         run.kill()
-    run_lock.reserved(tmp_path / "running").close()
+    run_lock.reserve(tmp_path / "running").close()
 
 
 def test_a_disk_without_locks_is_reported_with_the_remedy(tmp_path, monkeypatch):
@@ -41,7 +41,7 @@ def test_a_disk_without_locks_is_reported_with_the_remedy(tmp_path, monkeypatch)
 
     monkeypatch.setattr(fcntl, "flock", flock)
     with pytest.raises(RuntimeError, match=r"cannot be locked \(.*not supported\)\. Choose a --directory"):
-        run_lock.reserved(tmp_path / "running")
+        run_lock.reserve(tmp_path / "running")
 
 
 def test_a_folder_that_cannot_be_written_is_refused_in_one_sentence(tmp_path):

@@ -14,7 +14,7 @@ import xarray as xr
 from stiction.run import labels, stale_results, storage
 from stiction.run.atomic import DataError
 from stiction.run.disk_cache import DiskCache
-from stiction.run.logs import checksum, logged, recorded
+from stiction.run.logs import checksum, logged, recorded_checksums
 
 HEIGHTS, SPECTRUM = {"rms_nm": 3.4, "kurtosis": 3.9}, {"spacing_nm": 7.5, "psd": {"floor_nm4": 0.8}}
 
@@ -168,7 +168,7 @@ def test_a_result_that_was_cut_off_or_changed_after_its_job_is_recognised(tmp_pa
     with logged("logs/tables/table_1.log", [result.name, other.name]):
         result.write_bytes(b"a,b\n1,2\n3,4\n")
         other.write_bytes(b"a,b\n")
-    assert set(recorded("logs")) == {result.name, other.name}
+    assert set(recorded_checksums("logs")) == {result.name, other.name}
     assert damaged() == {}
     for content in (b"a,b\n1,2\n", b"", b"a,b\n1,2\n3,5\n"):
         result.write_bytes(content)
@@ -221,7 +221,7 @@ def test_a_failed_job_records_no_checksum(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(SystemExit), logged("logs/x.log", ["x.csv"]):
         raise ValueError
-    assert recorded("logs") == {}
+    assert recorded_checksums("logs") == {}
 
 
 def test_the_summary_has_one_line_per_folder():

@@ -104,7 +104,7 @@ DELIVERED = [("µm", "nm", "µm"), ("nm", "nm", "nm"), (("um", None), "nm", "nm"
 def test_the_library_returns_heights_in_the_lateral_unit_if_that_is_a_length(lateral, unit, expected):
     (channel,) = channels(("Height", unit))
     channel.unit = lateral
-    assert reading._delivered(channel, unit) == expected
+    assert reading._delivered_unit(channel, unit) == expected
 
 
 @pytest.mark.parametrize(("unit", "metres"), [("nm", 1e-9), ("um", 1e-6), ("Å", 1e-10), ("pm", 1e-12)])
@@ -426,7 +426,7 @@ def test_errors_from_inside_the_library_are_not_quoted(error):
 
 
 def test_what_libraries_print_log_and_warn_of_is_not_shown(capfd, caplog):
-    with reading._silenced():
+    with reading.silenced():
         print("printed")  # noqa: T201
         print("printed", file=sys.stderr)  # noqa: T201
         warnings.warn("warned", stacklevel=1)
@@ -486,7 +486,7 @@ def test_damage_that_shows_only_later_is_told_in_the_same_sentence(tmp_path, mon
         (IndexError("list index out of range\nin some reader"), ""),
         (SurfaceTopography.Exceptions.CorruptFile("File is too short."), r" [(]File is too short[)]"),
     ):
-        monkeypatch.setattr(reading, "_opened", lambda *_, error=error: Damaged(where, error))
+        monkeypatch.setattr(reading, "_reader_of", lambda *_, error=error: Damaged(where, error))
         with pytest.raises(
             ScanError,
             match=f"^files: a.tiff cannot be read as any .* or is damaged{quoted}{GWYDDION}$",

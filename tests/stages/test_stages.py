@@ -100,7 +100,7 @@ def test_spectra_have_unit_variance_and_the_heights_get_what_was_asked_for():
 def test_an_identified_spectrum_comes_from_its_stage_and_a_published_one_does_not():
     other = CutoffSelfAffine(plateau=1e-32, floor=1e-36, corner=2e7, cutoff=1e8)
     settings = spectrum.Settings(10e-9, "identified")
-    identified = spectrum.compute(small.heights_of("B2"), parameters.variables(other), settings)
+    identified = spectrum.compute(small.heights_of("B2"), settings, parameters.variables(other))
     assert parameters.spectrum_of(identified) == other
     assert spectrum.underlying(identified, "NG").cutoff == other.cutoff
 
@@ -166,7 +166,7 @@ def test_the_spectrum_of_a_job_is_checked_where_it_is_identified():
     settings = small.settings_of(spectrum, job_settings(plan, "spectrum/B2"))
     assert settings.identified == spectrum.Use("B2", 1.5e-6, pytest.approx(0.2e-6))
     with pytest.raises(ValueError, match=r"sampling.margin_um is 0.2, .* surface B2"):
-        spectrum.compute(small.heights_of("B2"), identified(), settings)
+        spectrum.compute(small.heights_of("B2"), settings, identified())
 
 
 def test_identification_finds_what_the_surface_was_asked_for(through_a_file):
@@ -399,9 +399,9 @@ def test_beams_are_selected_by_the_name_of_their_state():
     of_samples = forces.layout(np.zeros((1, 4)), 0.0, np.arange(2.0), np.zeros((1, 2))).adhesion_energy.attrs
     assert of_samples["long_name"] == "adhesion energy of a sample, Eq. (11)"
     assert found.adhesion_energy.attrs["long_name"].startswith("apparent adhesion energy of a beam, Eq. (13)")
-    assert_array_equal(releases.ended(found, "S-shape"), [True, False, False, True])
-    assert_array_equal(releases.ended(found, "arc"), [False, True, False, False])
-    assert_array_equal(releases.ended(found, "free"), [False, False, True, False])
+    assert_array_equal(releases.ends_as(found, "S-shape"), [True, False, False, True])
+    assert_array_equal(releases.ends_as(found, "arc"), [False, True, False, False])
+    assert_array_equal(releases.ends_as(found, "free"), [False, False, True, False])
     assert found.state.attrs["flag_meanings"] == "S-shape arc free"
 
 

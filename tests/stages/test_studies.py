@@ -83,14 +83,14 @@ def test_slopes_and_their_errors_are_those_of_the_chosen_quantities():
 
 def test_slopes_are_those_of_the_energies_at_both_values_and_of_their_own_quantity():
     settings = small.settings_of(quantities, job_settings(small.PLAN, "studies/slopes/contact/b_B2_rms_less"))
-    both = quantities.compute(small.surfaces(), "b", "B2", "rms", settings)
+    less, more = quantities.compute(small.surfaces(), "b", "B2", "rms", settings)
     wanted = small.settings_of(slopes, job_settings(small.PLAN, "studies/sensitivity/b_rms"))
-    found = slopes.compute({"rms": both, "kurtosis": both[::-1]}, wanted)
+    found = slopes.compute({"rms": less, "kurtosis": more}, {"rms": more, "kurtosis": less}, wanted)
     for k, h in enumerate(wanted.humidities):
-        less, more = (curves.energies(contact, h, WATER) for contact in both)
-        expected = np.log(more.mean() / less.mean()) / 0.1
+        low, high = (curves.energies(contact, h, WATER) for contact in (less, more))
+        expected = np.log(high.mean() / low.mean()) / 0.1
         assert_allclose(slopes.of(found, ["rms", "kurtosis"])[k], [expected, -expected], rtol=1e-9)
-        paired = np.std(np.log(more / less) / 0.1, ddof=1) / np.sqrt(len(less))
+        paired = np.std(np.log(high / low) / 0.1, ddof=1) / np.sqrt(len(low))
         assert 0.3 * paired < float(found.standard_error[0, k]) < 3 * paired
     # Rougher surfaces adhere less, the more so the drier the air.
     of_rms = slopes.of(found, ["rms"])[:, 0]

@@ -3,6 +3,7 @@
 import re
 
 import numpy as np
+import pandas as pd
 import pytest
 import yaml
 from browser import Browser, missing
@@ -12,8 +13,10 @@ import stiction
 from stiction.command import main
 from stiction.config.merging import differing
 from stiction.config.reading import paper
+from stiction.devices.risk import SCORES
 from stiction.report.devices import curve_views, explorer, voltage_views
-from stiction.report.page import Page
+from stiction.report.devices.grid import Axis, Grid
+from stiction.report.page import FORBIDDEN, Page, Summary
 
 pytestmark = [
     pytest.mark.slow,
@@ -38,12 +41,12 @@ STUDY = {
 @pytest.fixture(scope="module")
 def views():
     return {
-        "process": curve_views.of_process("D", STOPPER, *etched()),
-        "beam": curve_views.of_process("D", BEAM, *etched(is_beam=True, unknown=(60.0,))),
-        "map": curve_views.of_map("D", STOPPER, *mapped()),
-        "roughness": curve_views.of_roughness("D", STOPPER, rough(others=(-0.5, 0.0, 0.5))),
-        "voltage": voltage_views.of_stopper("D", STOPPER | OXIDE, biased()),
-        "of_beam": curve_views.of_roughness("D", BEAM, rough(is_beam=True, unknown=(2,))),
+        "process": curve_views.process_view("D", STOPPER, *etched()),
+        "beam": curve_views.process_view("D", BEAM, *etched(is_beam=True, unknown=(60.0,))),
+        "map": curve_views.map_view("D", STOPPER, *mapped()),
+        "roughness": curve_views.roughness_view("D", STOPPER, rough(others=(-0.5, 0.0, 0.5))),
+        "voltage": voltage_views.stopper_view("D", STOPPER | OXIDE, biased()),
+        "of_beam": curve_views.roughness_view("D", BEAM, rough(is_beam=True, unknown=(2,))),
     }
 
 
@@ -63,6 +66,55 @@ def page(views, tmp_path_factory):
 def browser():
     with Browser() as browser:
         yield browser
+
+
+@pytest.fixture(scope="module")
+def forbidden(views, tmp_path_factory):
+    """Page with all these views and a warning in the place of its number."""
+    content = explorer.content("D", STOPPER, list(views.values())) | {"study": {}}
+    summary = Summary("bad", FORBIDDEN, "It is plastic.", (), {}, pd.DataFrame({"RH": ["0.6"], "force [µN]": ["–"]}))
+    path = tmp_path_factory.mktemp("forbidden") / "D.html"
+    page = Page("D: stopper", {}, ["It is safe up to 5 µm."], explorer=content, summary=summary)
+    path.write_text(page.html, encoding="utf-8")
+    return path
+
+
+def test_a_warning_that_forbids_a_number_stands_in_the_place_of_all_answers(views, forbidden, browser):
+    browser.open(forbidden)
+    for number, view in enumerate(views.values()):
+        assert go_to(browser, number, view.grid.start) == {"forbidden": "Do not rely on a number: It is plastic."}
+        assert browser.run("return document.querySelectorAll('.charts svg').length") == 0
+        assert browser.run("return document.querySelectorAll('.control').length") >= 3
+    assert browser.errors() == []
+
+
+def test_a_small_chart_has_the_noise_of_its_curve_as_a_band(browser, tmp_path):
+    humidities, noisy = np.linspace(0.4, 0.8, 9), 300 * (1 + 0.02 * np.random.default_rng(6).normal(size=(9, 1)))
+    axes = (explorer.humidity_axis(humidities, 0.8, "humidities", True),)
+    grid = Grid(
+        axes,
+        explorer.share_axis([0.01], 0.01, ""),
+        Axis("length_um", "length", "µm", "linear", (100, 400), 200, True, ""),
+        noisy,
+        noisy * np.exp(0.1 * SCORES),
+        400,
+        False,
+    )
+    view = explorer.View("air", grid, {"safe": "Safe length", "stick": "Stuck", "bound": "safe"})
+    path = tmp_path / "D.html"
+    path.write_text(Page("D", {}, ["Yes."], explorer=explorer.content("D", BEAM, [view])).html, encoding="utf-8")
+    browser.open(path)
+    chart = "[...document.querySelectorAll('.charts svg')].at(-1)"
+    paths = f"return [...{chart}.querySelectorAll('path')].map(one => one.getAttribute('d'))"
+    band, curve = (np.array(re.findall(r"[ML]\S+ ([^ML]+)", one), float) for one in browser.run(paths))
+    ground = browser.run(f"return Number({chart}.querySelector('line').getAttribute('y1'))")
+    heights = ground - curve
+    noise = grid.noise_at(grid.start)
+    assert noise > 0.01
+    assert ground - band[: len(curve)] == pytest.approx((1 - noise) * heights, abs=0.2)
+    assert ground - band[len(curve) :][::-1] == pytest.approx((1 + noise) * heights, abs=0.2)
+    captions = browser.run("return [...document.querySelectorAll('.charts figcaption')].map(one => one.textContent)")
+    assert f"± {100 * noise:.2g} %" in captions[-1]
 
 
 def go_to(browser, number, state):

@@ -37,6 +37,10 @@ SMALL = {
 }
 
 
+#: Tables of the run.
+TABLES = {"safe_lengths", "chart", "stoppers", "budget", "life"}
+
+
 def in_a_browser(test):
     """Test that needs a browser."""
     return pytest.mark.browser(pytest.mark.skipif(bool(missing()), reason=missing())(test))
@@ -66,8 +70,7 @@ def run(shared):
 def test_every_device_has_a_page_and_every_table_and_figure_is_there(run):
     results = run / "results"
     assert {path.stem for path in (results / "devices").glob("*.html")} == {"C1", "R1", "S1"}
-    tables = {"safe_lengths", "chart", "stoppers", "budget", "life"}
-    assert {path.stem for path in (results / "tables").glob("*.html")} == tables
+    assert {path.stem for path in (results / "tables").glob("*.html")} == TABLES
     figures = {"risk", "chart", "stoppers", "life", *(f"budget_{device}" for device in ("C1", "R1", "S1"))}
     assert {path.stem for path in (results / "figures").glob("*.png")} == figures
 
@@ -120,7 +123,7 @@ def test_a_browser_shows_the_answer_and_the_figures_of_a_page(run, device):
         assert browser.run("return document.querySelector('.answer').getBoundingClientRect().bottom") < 900
         widths = browser.run("return [...document.images].map(picture => picture.naturalWidth)")
         assert len(widths) == len(re.findall("<img", path.read_text(encoding="utf-8"))) >= 2
-        assert min(widths) > 600
+        assert min(widths) >= 600
         for width in (1440, 390):
             browser.resize(width)
             assert browser.run("return document.documentElement.scrollWidth") <= width
@@ -156,6 +159,20 @@ UNNAMED = """
 const named = part => part.getAttribute("aria-label") || part.labels?.length || part.textContent.trim() || part.alt;
 return [...document.querySelectorAll("input, button, textarea, img, svg[role], a")].filter(part => !named(part))
   .map(part => part.outerHTML.slice(0, 80));
+"""
+#: Least height of text in figures and charts [pixels]: of 7 points in pictures 3 inches wide, and of SVG.
+TEXT = """
+const charts = [...document.querySelectorAll(".charts svg")]
+  .map(svg => [svg.getScreenCTM().a, svg.querySelector("text")])
+  .map(([scale, text]) => scale * parseFloat(getComputedStyle(text).fontSize));
+return Math.min(...charts, ...[...document.images].map(one => one.getBoundingClientRect().width / 3 / 72 * 7));
+"""
+#: Share of the width that the widest row of pictures takes, of each figure.
+ROWS = """
+const width = boxes => Math.max(...boxes.map(one => one.right)) - Math.min(...boxes.map(one => one.left));
+const whole = width([document.querySelector("main").getBoundingClientRect()]);
+return [...document.querySelectorAll(".panels")]
+  .map(one => width([...one.querySelectorAll("img")].map(all => all.getBoundingClientRect())) / whole);
 """
 LEVELS = "return [...document.querySelectorAll('h1, h2, h3, h4')].map(head => Number(head.tagName[1]))"
 
@@ -251,6 +268,8 @@ def test_the_controls_begin_with_the_number_of_the_answer(run, browser, device):
     else:
         assert float(answer[1]) == pytest.approx(numbers(shown["budget"])[-1], abs=0.51)
     assert shown["budget"].endswith("no margin is added for them") == (device == "S1")
+    for stuck in re.findall(r"(\S+ %) stick( \(.* %\))", screen.replace("\N{NO-BREAK SPACE}", " ")):
+        assert shown["stuck"].endswith("".join(stuck))
 
 
 @in_a_browser
@@ -367,6 +386,8 @@ def test_a_page_is_one_small_file_that_everyone_can_use(run, browser, device):
         browser.resize(width)
         assert browser.run("return document.documentElement.scrollWidth") <= width
         assert browser.run("return document.querySelector('#explorer').getBoundingClientRect().width") > 0.85 * width
+        assert browser.run(TEXT) >= 11
+        assert min(browser.run(ROWS)) > 0.85
     assert (
         browser.run("return performance.getEntriesByType('resource').filter(one => !one.name.startsWith('data:'))")
         == []
@@ -381,7 +402,9 @@ def test_a_page_is_one_small_file_that_everyone_can_use(run, browser, device):
 
 
 @in_a_browser
-@pytest.mark.parametrize("page", ["devices/C1", "devices/R1", "devices/S1", "index"])
+@pytest.mark.parametrize(
+    "page", ["devices/C1", "devices/R1", "devices/S1", "index", *(f"tables/{one}" for one in sorted(TABLES))]
+)
 def test_a_checker_of_accessibility_finds_nothing_on_a_page(run, browser, page):
     pytest.importorskip("axe_core_python")
     browser.open(run / "results" / f"{page}.html")
@@ -389,6 +412,7 @@ def test_a_checker_of_accessibility_finds_nothing_on_a_page(run, browser, page):
     for width in (1440, 390):
         browser.resize(width)
         assert browser.violations() == []
+        assert browser.run("return document.documentElement.scrollWidth") <= width
 
 
 @in_a_browser

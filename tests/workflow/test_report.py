@@ -31,7 +31,7 @@ def browser():
 
 
 #: Whether an open table is wider than its frame, and the lines of its tallest cell, apart from heads.
-WIDTH = "return document.documentElement.scrollWidth - document.documentElement.clientWidth"
+WIDTH = "const table = document.querySelector('.table'); return table.scrollWidth - table.clientWidth"
 LINES = "return Math.max(...[...document.querySelectorAll('td')].map(cell => cell.getClientRects()[0].height)) / 17"
 
 

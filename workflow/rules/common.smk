@@ -213,7 +213,7 @@ def of_job(rule, key):
 
 
 #: Memory of a job that draws the largest field [MB].
-MEMORY = memory.of_job(config)
+MEMORY = memory.job_memory(config)
 
 
 def seconds_of(rule):
@@ -224,7 +224,7 @@ def seconds_of(rule):
 def memory_of(rule):
     """Function of the attempt that gives the memory to reserve for a job [MB]."""
     megabytes = max(MEMORY, round(rule["memory"]))
-    return lambda wildcards, attempt: memory.of_attempt(megabytes, attempt)
+    return lambda wildcards, attempt: memory.for_attempt(megabytes, attempt)
 
 
 def minutes_of(rule):
@@ -232,6 +232,6 @@ def minutes_of(rule):
 
     def minutes(wildcards, attempt):
         seconds = planner.job(rule["name"], wildcards)["seconds"]
-        return memory.of_attempt(cost.minutes(seconds, rule["minutes"]), attempt)
+        return memory.for_attempt(cost.minutes(seconds, rule["minutes"]), attempt)
 
     return minutes

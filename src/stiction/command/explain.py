@@ -33,7 +33,7 @@ def explained(run: Run) -> Iterator[str]:
     yield from run.warnings
     for cause in sorted({cause for _, cause in causes}, key=lambda cause: (not cause, cause)):
         rules = Counter({rule: number for (rule, why), number in causes.items() if why == cause})
-        yield f"{cause or 'follow from the jobs above'}: {counted(rules)}"
+        yield f"{cause or 'follow from the jobs above'}: {count_jobs(rules)}"
 
 
 def _cost(jobs):
@@ -42,7 +42,7 @@ def _cost(jobs):
     return f", {cost.in_words(seconds, max(job.megabytes for job in jobs))}" if seconds else ""
 
 
-def counted(rules: Counter) -> str:
+def count_jobs(rules: Counter) -> str:
     """Rules with the numbers of their jobs, in the order of their first occurrence."""
     return ", ".join(f"{rule} ({number})" if number > 1 else rule for rule, number in rules.items())
 
@@ -51,17 +51,17 @@ def reasons(job: Job) -> Iterator[str]:
     """Yield the reasons of a job in words, apart from jobs before it."""
     others, params, values = job.reason.partition("Params have changed")
     if params:  # also explains results that are missing because they were temporary
-        yield changed(values)
+        yield what_changed(values)
         return
     for part in filter(None, others.split("; ")):
         known = [words for start, words in _REASONS.items() if part.startswith(start)]
         yield from filter(None, known[:1] or [part])
 
 
-def changed(reason: str) -> str:
+def what_changed(reason: str) -> str:
     """Code or settings changed for a job, in words, from the parameters printed by Snakemake."""
     try:
-        before, now = map(_merged, _CHANGED.search(reason).groups())
+        before, now = map(_printed_parameters, _CHANGED.search(reason).groups())
     except (AttributeError, SyntaxError, ValueError, TypeError):
         return "settings or code changed"
     differing = [key for key in sorted({*before, *now}) if before.get(key) != now.get(key)]
@@ -73,17 +73,17 @@ def changed(reason: str) -> str:
     return " and ".join(parts) or "settings or code changed"
 
 
-def _merged(text):
+def _printed_parameters(text):
     """Parameters printed one after the other, as one dictionary with dotted keys."""
     none = "<nothing exclusive>"
     parts = () if text.strip() == none else ast.literal_eval(f"[{text.strip()}]")
-    return {key: value for part in parts for key, value in _dotted(part)}
+    return {key: value for part in parts for key, value in _dotted_entries(part)}
 
 
-def _dotted(section, path=()):
+def _dotted_entries(section, path=()):
     """Dotted key and value of every entry of nested sections."""
     for key, value in section.items():
         if isinstance(value, dict):
-            yield from _dotted(value, (*path, str(key)))
+            yield from _dotted_entries(value, (*path, str(key)))
         else:
             yield ".".join((*path, str(key))), value

@@ -18,7 +18,7 @@ from stiction.config.reading import paper
 from stiction.report.format import with_error
 from stiction.report.html import rendered
 from stiction.run.markdown import plain
-from stiction.run.provenance import code_of, recorded, started
+from stiction.run.provenance import code_of, recorded_runs, start_of
 
 #: Where the command leaves the page for Snakemake, relative to the folder of the run.
 FRONT = Path(".snakemake", "front.rst")
@@ -31,14 +31,14 @@ _OF_PAIRS = ("table_3", "figure_overview", "table_scans", "table_1")
 
 def front_page(results: Path) -> str:
     """Front page of the results of a finished run, as Snakemake takes it: HTML within reStructuredText."""
-    runs = recorded(results / "provenance.json")
+    runs = recorded_runs(results / "provenance.json")
     last, config = runs[-1], runs[-1]["config"]
     changes = differing(config, paper())
     page = rendered(
         "front.html",
         subjects=subjects(config),
         answers=answers(results, config),
-        opened=_opened(results, config),
+        opened=_first_results(results, config),
         checks=_text(results / "verdict.txt").strip() if config["run"]["pairs"] else None,
         warnings=list(warnings(results, config)),
         provenance=provenance(last, len(runs)),
@@ -50,7 +50,7 @@ def front_page(results: Path) -> str:
 
 def is_finished(results: Path) -> bool:
     """Whether a run has computed all pairs and devices of its configuration."""
-    runs = recorded(results / "provenance.json")
+    runs = recorded_runs(results / "provenance.json")
     if not runs:
         return False
     has_pairs = runs[-1]["config"]["run"]["pairs"]
@@ -106,7 +106,7 @@ def _ends(row):
     return f"{where}: {100 * stuck:.3g} % stick behind a crack of {crack} µm"
 
 
-def _opened(results, config):
+def _first_results(results, config):
     """Results to open first, by category and title in the menu of the report."""
     from stiction.plan.graph import stages  # imports the physics
 
@@ -121,7 +121,7 @@ def _opened(results, config):
 
 def warnings(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
     """Sentences about results beyond the limits of the model."""
-    return (item for page in warning_pages(results, config) for item in listed(_text(page)))
+    return (item for page in warning_pages(results, config) for item in list_items(_text(page)))
 
 
 def warning_pages(results: Path, config: Mapping[str, Any]) -> list[Path]:
@@ -130,7 +130,7 @@ def warning_pages(results: Path, config: Mapping[str, Any]) -> list[Path]:
     return [results / page for page, subjects in pages.items() if subjects and (results / page).exists()]
 
 
-def listed(markdown: str) -> Iterator[str]:
+def list_items(markdown: str) -> Iterator[str]:
     """Items of the lists of a page in Markdown, as their characters."""
     return (plain(line.removeprefix("- ")) for line in markdown.splitlines() if line.startswith("- "))
 
@@ -138,7 +138,7 @@ def listed(markdown: str) -> Iterator[str]:
 def provenance(run: Mapping[str, Any], number: int) -> Iterator[str]:
     """Date, code, machine and scans of a run from its record, the last of a number of runs."""
     before = f", the last of {number} runs" if number > 1 else ""
-    yield f"Started {started(run)}{before}; all are in results/provenance.json."
+    yield f"Started {start_of(run)}{before}; all are in results/provenance.json."
     yield from code_of(run)
     if run["git"] and run["git"]["untracked"]:
         yield f"Files that are untracked in its folder: {', '.join(run['git']['untracked'])}"

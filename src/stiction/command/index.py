@@ -22,9 +22,9 @@ from stiction.plan.planner import Planner
 from stiction.plan.stage import WILDCARDS, expression
 from stiction.report.drawings.devices import device_drawing
 from stiction.report.html import rendered
-from stiction.report.surfaces.words import described
+from stiction.report.surfaces.words import surface_in_words
 from stiction.run.atomic import save_text
-from stiction.run.provenance import code_of, recorded, started
+from stiction.run.provenance import code_of, recorded_runs, start_of
 
 #: Name of the page, and of the folder of results in names of files.
 INDEX, _RESULTS = "index.html", "results/"
@@ -57,7 +57,7 @@ def write_for_last_run(results: Path) -> Path | None:
     ValueError
         If the record of runs is damaged.
     """
-    if not (runs := recorded(results / "provenance.json")):
+    if not (runs := recorded_runs(results / "provenance.json")):
         return None
     write(results, Planner(runs[-1]["config"], {}, _now, _now).rules)
     return results / INDEX
@@ -70,13 +70,13 @@ def _now(_key: Any, compute: Callable[[], Any]) -> Any:
 
 def index(results: Path, rules: Iterable[Mapping[str, Any]]) -> str:
     """Page with the results of the last run of a folder."""
-    runs = recorded(results / "provenance.json")
+    runs = recorded_runs(results / "provenance.json")
     last, config, found = runs[-1], runs[-1]["config"], list(items(results, rules))
     changes = differing(config, paper())
     return rendered(
         "index.html",
-        title=front_page.subjects(config) or f"surfaces {', '.join(_used(config))}",
-        made=f"Last run: {started(last)}, {next(code_of(last))}.",
+        title=front_page.subjects(config) or f"surfaces {', '.join(_surfaces_of_run(config))}",
+        made=f"Last run: {start_of(last)}, {next(code_of(last))}.",
         devices=list(_devices(results, config, found)),
         pairs=list(front_page.pair_answers(results, config)),
         surfaces=list(_surfaces(results, config)),
@@ -137,18 +137,18 @@ def _subjects_of(sentence: str) -> list[str]:
 
 def _surfaces(results: Path, config: Mapping) -> Iterator[dict[str, Any]]:
     """Surfaces of the run: measured ones with their sheet and flags, others by their numbers."""
-    flags = [flag.partition(": ") for flag in front_page.listed(_text(results / "tables" / "scans.md"))]
-    for name in _used(config):
+    flags = [flag.partition(": ") for flag in front_page.list_items(_text(results / "tables" / "scans.md"))]
+    for name in _surfaces_of_run(config):
         section, sheet = config["surfaces"][name], f"figures/surface_sheet_{name}.png"
         yield {
             "name": name,
-            "described": described(section, material_of(config, name)),
+            "described": surface_in_words(section, material_of(config, name)),
             "flags": [flag for surface, _, flag in flags if surface == name],
             "sheet": sheet if (results / sheet).exists() else "",
         }
 
 
-def _used(config: Mapping) -> list[str]:
+def _surfaces_of_run(config: Mapping) -> list[str]:
     """Surfaces of the pairs and devices of a run, or those with scans if it has neither."""
     pairs = [*config["run"]["pairs"], *(device["pair"] for device in config.get("devices", {}).values())]
     sides = [config["pairs"][pair][side] for pair in pairs for side in SIDES]

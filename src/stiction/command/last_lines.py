@@ -60,36 +60,36 @@ def last_lines(
         after = f" after {run.done} of {run.total} jobs" if run.planned else ""
         yield f"stopped{after}; run the same command to continue"
     elif ended == Status.CHECKS:
-        yield from _failed_checks(shown(directory / "results"))
+        yield from _failed_checks(short_path(directory / "results"))
     elif run.failures:
-        yield from _failed(list(run.failures.values()), directory)
+        yield from _first_error(list(run.failures.values()), directory)
     elif ended != Status.DONE:
         yield run.refusal or printed or "Snakemake stopped without a message"
         if run.fault:
             yield from fault(directory / PRINTED)
     elif run.planned or run.up_to_date:
-        yield _finished(run)
-        yield from where_to_look(shown(directory / "results"), targets)
+        yield _report_end(run)
+        yield from where_to_look(short_path(directory / "results"), targets)
 
 
 def fault(log: Path) -> Iterator[str]:
     """Last lines after an error of the code."""
     yield FAULT
-    yield f"log: {shown(log)}"
+    yield f"log: {short_path(log)}"
 
 
-def shown(path: Path) -> Path:
+def short_path(path: Path) -> Path:
     """Path relative to the present folder, if below it, else from the root.
 
     Examples
     --------
-    >>> shown(Path("runs/results")), shown(Path("/a/b"))
+    >>> short_path(Path("runs/results")), short_path(Path("/a/b"))
     (PosixPath('runs/results'), PosixPath('/a/b'))
     """
     return path.relative_to(Path.cwd()) if path.is_relative_to(Path.cwd()) else path
 
 
-def _finished(run):
+def _report_end(run):
     """Report the end of a run and its duration."""
     if run.up_to_date:
         return "Nothing to do: all results are up to date."
@@ -135,7 +135,7 @@ def _failed_checks(results):
     yield f"{len(failed)} of {len(rows)} checks of the results failed: {results / 'checks.md'}"
 
 
-def _failed(jobs: list[Job], directory: Path) -> Iterator[str]:
+def _first_error(jobs: list[Job], directory: Path) -> Iterator[str]:
     """Yield the error of the first failed job, and its log."""
     first, logs = jobs[0], list(_existing(jobs[0].logs, directory))
     others = f" (and {len(jobs) - 1} more)" if len(jobs) > 1 else ""
@@ -146,14 +146,14 @@ def _failed(jobs: list[Job], directory: Path) -> Iterator[str]:
     yield said
     if is_fault(said.partition(":")[0], ValueError, RuntimeError):
         yield FAULT
-    yield f"log: {logs[0] if logs else shown(directory / 'results' / 'logs')}"
+    yield f"log: {logs[0] if logs else short_path(directory / 'results' / 'logs')}"
 
 
 def _existing(logs: Iterable[str], directory: Path) -> Iterator[Path]:
     """Yield existing logs. Their paths are relative to the folder of the run."""
     for log in logs:
         if (directory / log).is_file():
-            yield shown(directory / log)
+            yield short_path(directory / log)
 
 
 def sentence(log: Path) -> str:

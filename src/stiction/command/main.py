@@ -73,6 +73,7 @@ def _parser():
     _add(commands, "paper", _run, "compute every table and figure of the paper", files=None)
     _add(commands, "devices", _devices, "compute only what a design of devices needs (default: the example)", files="*")
     _add(commands, "scans", _scans, "evaluate scans alone: sheets, statistics and warnings", files="+")
+    _add(commands, "published", _published, "write published scans into files, and a study that names them", files=1)
     _add(commands, "figures", _figures, "draw the figures", files="*")
     _add(commands, "report", _report, "put the results into one file, results/report.html", files="*")
     _add(commands, "show", _show, "open the index of the results, results/index.html", files=None)
@@ -95,7 +96,9 @@ def _add(commands, name: str, run: Callable, purpose: str, files: str | None):
     added = commands.add_parser(name, help=purpose, description=f"{purpose[0].upper()}{purpose[1:]}.", epilog=_STATUS)
     added.formatter_class = argparse.RawDescriptionHelpFormatter
     added.set_defaults(run=run, files=[])
-    if files:
+    if run is _published:
+        added.add_argument("files", nargs=1, metavar="SOURCE", help="container file, DOI, or address of its page")
+    elif files:
         added.add_argument(
             "files", nargs=files, metavar="FILE", help="changes single keys of the paper's configuration"
         )
@@ -104,7 +107,7 @@ def _add(commands, name: str, run: Callable, purpose: str, files: str | None):
         added.add_argument(
             "--test-beams", action="store_true", help="write test_beams.csv, a table of single test beams"
         )
-    if run not in (_init, _check, _show):
+    if run not in (_init, _check, _show, _published):
         added.add_argument("--cores", "-c", metavar="N", help="number of jobs at the same time (default: all cores)")
         added.add_argument("--dry-run", "-n", action="store_true", help="only say what would be computed")
         added.add_argument("--verbose", "-v", action="store_true", help="show everything that Snakemake prints")
@@ -204,7 +207,7 @@ def _cost(config):
 
     preliminary, _ = preliminary_estimates(config)
     jobs = Graph(Plan(config, preliminary)).needed("tables", "figures", "devices", "all")
-    return cost.in_words(sum(job.seconds for job in jobs), memory.of_job(config))
+    return cost.in_words(sum(job.seconds for job in jobs), memory.job_memory(config))
 
 
 def _run(arguments, *targets):
@@ -261,6 +264,16 @@ def _scans(arguments):
         if not arguments.dry_run:
             say(f"  sheet: {scans_alone.draw_refused(name, entry, reasons, directory / 'results')}")
     return ended
+
+
+def _published(arguments):
+    """Write published scans into files, and a study that names them."""
+    from stiction.command import published  # imports the library for files of scans
+
+    launch.require_folder(directory := Path(arguments.directory))
+    study = published.written(*arguments.files, directory)
+    say(f"{study} names the scans: stiction scans {shlex.quote(str(study))} evaluates them.")
+    return Status.DONE
 
 
 def _figures(arguments):

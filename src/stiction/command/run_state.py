@@ -178,10 +178,10 @@ class Run:
         finished = sum(map(sum, list(self.seconds.values())))
         if self.done < 3 or elapsed < 5 or not finished:
             return None
-        left = elapsed * self._expected(finished / self.done) / finished - (now - self.ended)
+        left = elapsed * self._time_left(finished / self.done) / finished - (now - self.ended)
         return left if left >= 0 else None
 
-    def _expected(self, mean):
+    def _time_left(self, mean):
         """Time of all unfinished jobs [s]. The mean is for rules without a finished job."""
         spent = ((number, self.seconds.get(rule, ())) for rule, number in self.planned.items())
         return sum((number - len(times)) * (sum(times) / len(times) if times else mean) for number, times in spent)

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from stiction.config.cases import in_words
-from stiction.config.messages import Problem, dotted, shown
+from stiction.config.messages import Problem, dotted, one_line
 
 
 class Unknown(LookupError):
@@ -69,7 +69,7 @@ class Keys:
             else [*map(str, range(len(value)))]
         )
 
-    def known(self, *keys: str) -> Iterator[tuple[str, Any]]:
+    def valid(self, *keys: str) -> Iterator[tuple[str, Any]]:
         """Yield (key, value) for every valid key."""
         for key in keys:
             with suppress(Unknown):
@@ -78,13 +78,13 @@ class Keys:
     def items(self, listed: str) -> Iterator[tuple[str, Any]]:
         """Keys of the items of a list, with their values."""
         with suppress(Unknown):
-            yield from self.known(*(f"{listed}.{index}" for index in self.names(listed)))
+            yield from self.valid(*(f"{listed}.{index}" for index in self.names(listed)))
 
     def entries(self, section: str, *keys: str) -> Iterator[tuple]:
         """Yield the name of every entry of a section with all these keys valid, and their values."""
         with suppress(Unknown):
             for name in self.names(section):
-                values = dict(self.known(*(f"{section}.{name}.{key}" for key in keys)))
+                values = dict(self.valid(*(f"{section}.{name}.{key}" for key in keys)))
                 if len(values) == len(keys):
                     yield name, *values.values()
 
@@ -94,14 +94,14 @@ class Keys:
 
     def problem(self, key: str, message: str, *given: str) -> Problem:
         """Problem with a key, and the other keys behind it."""
-        path, value = self._stated(key)
+        path, value = self._origin(key)
         follows = path[0] == "surfaces" and path != _path(key) and value != self[key]
         number = f", which gives {_path(key)[-1]} = {self[key]:.4g}" if follows else ""
-        others = dict.fromkeys(f"{dotted(other)} = {shown(given)}" for other, given in map(self._stated, given))
+        others = dict.fromkeys(f"{dotted(other)} = {one_line(given)}" for other, given in map(self._origin, given))
         more = f" (given {', '.join(others)})" if others else ""
-        return Problem(path, f"is {shown(value)}{number}, {message}{more}")
+        return Problem(path, f"is {one_line(value)}{number}, {message}{more}")
 
-    def _stated(self, key):
+    def _origin(self, key):
         """Path and value as the user states them: numbers of a surface may follow from other keys or from files."""
         path = _path(key)
         if path in self.origins:

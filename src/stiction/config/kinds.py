@@ -69,7 +69,7 @@ class Kind:
     longest_strip: float = math.inf  #: of its strips where not stated [µm]; short ones resolve the middle of a beam
 
     @property
-    def known(self) -> tuple[str, ...]:
+    def allowed_keys(self) -> tuple[str, ...]:
         """All keys allowed for it."""
         return (*COMMON, *self.keys, *chain.from_iterable(self.ways), *self.optional)
 
@@ -83,8 +83,8 @@ class Kind:
         """
         if missing := [key for key in self.keys if key not in keys]:
             return f"must come with {', '.join(missing)}"
-        if strange := [key for key in keys if key not in self.known]:
-            return f"must come without {', '.join(sorted(strange))}: its keys are {', '.join(self.known)}"
+        if strange := [key for key in keys if key not in self.allowed_keys]:
+            return f"must come without {', '.join(sorted(strange))}: its keys are {', '.join(self.allowed_keys)}"
         if {key for way in self.ways for key in way if key in keys} not in map(set, self.ways):
             return f"must come with either {', or '.join(map(' and '.join, self.ways))}"
         return None
@@ -136,7 +136,7 @@ KINDS = {
     ),
 }
 #: Keys of the devices of all kinds.
-KNOWN = frozenset(chain.from_iterable(kind.known for kind in KINDS.values()))
+KNOWN = frozenset(chain.from_iterable(kind.allowed_keys for kind in KINDS.values()))
 
 
 def kind_of(device: Mapping) -> Kind:

@@ -14,7 +14,7 @@ from stiction.config.kinds import KINDS
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.meniscus import dry_air, is_wetted, meniscus_height
 from stiction.devices import limits
-from stiction.devices.materials import COATING
+from stiction.devices.properties import COATING
 from stiction.models import SIDES
 from stiction.rounding import is_at_most
 
@@ -36,7 +36,7 @@ class Meeting:
     asked: tuple[str, ...] = ()  #: key that says whether it is computed
     deviation: str = ""  #: key of the uncertainty of the humidities
 
-    def given(self, *more: str) -> list[str]:
+    def keys_behind(self, *more: str) -> list[str]:
         """List the keys behind a refusal, ``more`` among them."""
         return [*self.asked, *more, *self.stated]
 
@@ -100,7 +100,7 @@ def meetings(config: Keys) -> Iterator[Meeting]:
 
 def pair_meetings(config: Keys) -> Iterator[Meeting]:
     """Yield the meetings of the pairs in the run."""
-    running = [pair for _, pairs in config.known("run.pairs") for pair in pairs]
+    running = [pair for _, pairs in config.valid("run.pairs") for pair in pairs]
     for pair, *surfaces in config.entries("pairs", *SIDES):
         if pair in running:
             section, shown = f"pairs.{pair}", "figures.humidity"
@@ -114,10 +114,10 @@ def device_meeting(name: str, config: Keys) -> Meeting:
     section = f"devices.{name}"
     pair, humidities = config[f"{section}.pair"], f"{section}.humidities"
     airs, gaps = [humidities], [(f"{section}.gap_um", humidities)]
-    for _, chart in config.known(f"{section}.chart"):
+    for _, chart in config.valid(f"{section}.chart"):
         airs.append(f"{section}.chart.humidities")
         gaps.append((f"{section}.{'chart.gaps_um' if 'gaps_um' in chart else 'gap_um'}", airs[-1]))
-    known = dict(config.known(f"{section}.kind", humidities))
+    known = dict(config.valid(f"{section}.kind", humidities))
     if len(known) == 2 and not KINDS[known[f"{section}.kind"]].is_beam and any(known[humidities]):
         airs.append("design.worst_humidities")
     scanned = config.scanned(*surfaces_of(pair, config))
@@ -133,11 +133,11 @@ def gaps_are_far_above_the_film(config):
     for meeting in meetings(config):
         refused = {}
         for gap, air in meeting.gaps:
-            values = dict(config.known(gap, air))
+            values = dict(config.valid(gap, air))
             if len(values) == 2 and meeting.sides:
-                adsorbed = dict(config.known(ADSORBED))
+                adsorbed = dict(config.valid(ADSORBED))
                 least, refusal = _least_gap(values[air], meeting, adsorbed.get(ADSORBED, 0))
-                found = least, gap, refusal, air, *meeting.given(TEMPERATURE, *adsorbed)
+                found = least, gap, refusal, air, *meeting.keys_behind(TEMPERATURE, *adsorbed)
                 if np.min(values[gap]) < least:
                     refused[gap] = max(refused.get(gap, found), found, key=operator.itemgetter(0))
         yield from (found[1:] for found in refused.values())
@@ -161,10 +161,10 @@ def coatings_leave_a_gap(config):
     """Require both coatings together to be thinner than the gap."""
     for meeting in meetings(config):
         coatings = sum(material.get(COATING, 0) for material in meeting.materials)
-        for key, gap in config.known(*dict.fromkeys(gap for gap, _ in meeting.gaps)):
+        for key, gap in config.valid(*dict.fromkeys(gap for gap, _ in meeting.gaps)):
             if np.min(gap) * NM_PER_UM <= coatings:
                 message = f"must be above the thickness of the coatings of both surfaces, {coatings:g} nm"
-                yield key, message, *meeting.given()
+                yield key, message, *meeting.keys_behind()
 
 
 @relation
@@ -172,9 +172,9 @@ def water_is_a_liquid(config):
     """Require air humid enough for a film of liquid water. The humidity of the figures is refused once."""
     refused = {}
     for meeting in meetings(config):
-        for key, humidities in config.known(*meeting.airs):
+        for key, humidities in config.valid(*meeting.airs):
             if refusal := meeting.too_dry(humidities):
-                refused.setdefault(key, (key, refusal, *meeting.given(TEMPERATURE)))
+                refused.setdefault(key, (key, refusal, *meeting.keys_behind(TEMPERATURE)))
     yield from refused.values()
 
 
@@ -189,15 +189,20 @@ _TOO_SHORT = {
 def attraction_reaches_across_dry_gaps(config):
     """Require attraction across gaps in dry air. There surfaces attract each other mostly out of contact."""
     for meeting in meetings(config):
-        dry = [key for key, humidities in config.known(*meeting.airs) if np.min(humidities) == 0]
+        dry = [key for key, humidities in config.valid(*meeting.airs) if np.min(humidities) == 0]
         if meeting.is_wetted and not dry:
             continue
         angles = " and ".join(f"{material.get('contact_angle_deg', 0):g}" for material in meeting.materials)
         why = "in dry air" if meeting.is_wetted else f"where no water condenses at contact angles of {angles} degrees"
-        for key, value in config.known(*_TOO_SHORT):
+        for key, value in config.valid(*_TOO_SHORT):
             refused, allowed = _TOO_SHORT[key]
             if value == refused:
-                yield key, f"must be {allowed} for pair {meeting.pair}, {why}: {TOO_LITTLE}", *dry, *meeting.given()
+                yield (
+                    key,
+                    f"must be {allowed} for pair {meeting.pair}, {why}: {TOO_LITTLE}",
+                    *dry,
+                    *meeting.keys_behind(),
+                )
 
 
 @relation
@@ -208,9 +213,9 @@ def corrections_are_not_extrapolated(config):
     for name, _ in config.entries("devices", "pair"):
         meeting = device_meeting(name, config)
         of_pair, (own, *others) = f"pairs.{meeting.pair}.humidities", meeting.airs
-        shown = [air for _, air in config.known("figures.humidity") if meeting.pair in config["run.pairs"]]
-        known, uncertain = [*config[of_pair], *shown], dict(config.known(meeting.deviation))
-        for key, humidities in config.known(own, *others):
+        shown = [air for _, air in config.valid("figures.humidity") if meeting.pair in config["run.pairs"]]
+        known, uncertain = [*config[of_pair], *shown], dict(config.valid(meeting.deviation))
+        for key, humidities in config.valid(own, *others):
             more = sum(uncertain.values()) if key == own else 0
             if not meeting.is_wetted or _is_within(humidities, more, known):
                 continue

@@ -51,11 +51,11 @@ def values(config: Mapping[str, Any]) -> dict[str, tuple[float, ...]]:
     >>> values({"compare": {"surfaces.B2.skewness": [-0.5, 0], "surfaces.B2.kurtosis": [3.4, 3]}})
     {'Kurtosis3p4Skewnessm0p5': (3.4, -0.5), 'Kurtosis3Skewness0': (3, 0)}
     """
-    together = zip(*([(path, value) for value in listed] for path, listed in _compared(config)), strict=False)
+    together = zip(*([(path, value) for value in listed] for path, listed in _compared_keys(config)), strict=False)
     return {"".join(map(_end, numbers)): tuple(value for _, value in numbers) for numbers in together}
 
 
-def _compared(config):
+def _compared_keys(config):
     """Compared keys with their values, in alphabetical order."""
     return sorted(config.get("compare", {}).items())
 
@@ -82,19 +82,19 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
     """
     if not _is_valid(config.get("compare")):
         return config
-    paths = [_parts_of_path(config, path) for path, _ in _compared(config)]
-    copied, stated, ends = _affected(config, *((section, name) for section, name, _ in paths)), config, values(config)
+    paths = [_parts_of_path(config, path) for path, _ in _compared_keys(config)]
+    copied, stated, ends = _users_of(config, *((section, name) for section, name, _ in paths)), config, values(config)
     for end, numbers in ends.items():
         config = _with_copies(config, copied, end)
         for (section, name, keys), number in zip(paths, numbers, strict=True):
-            config = merged(config, _nested(number, section, name + end, *keys.split(".")))
-    if replaced := next(_changed(stated, config), None):
-        compared = " and ".join(f"compare.{path}" for path, _ in _compared(stated))
+            config = merged(config, _only_at(number, section, name + end, *keys.split(".")))
+    if replaced := next(_changed_entries(stated, config), None):
+        compared = " and ".join(f"compare.{path}" for path, _ in _compared_keys(stated))
         raise ConfigError(f"{replaced} must have another name: {compared} makes a copy of this name")
     return _in_place(config, copied, ends)
 
 
-def _changed(before, after):
+def _changed_entries(before, after):
     """Yield dotted names of entries different in two configurations, also below studies."""
     for place in _places(before):
         entries, now = _section(before, *place), _section(after, *place)
@@ -142,7 +142,7 @@ def _section(config, *place):
     return config if isinstance(config, dict) else {}
 
 
-def _nested(value, *place):
+def _only_at(value, *place):
     """Configuration with nothing but a value at a place."""
     for name in reversed(place):
         value = {name: value}
@@ -157,18 +157,18 @@ def _places(config):
     )
 
 
-def _affected(config, *entries):
+def _users_of(config, *entries):
     """Names by section of some entries and of all their users."""
     copied = {kind: list(dict.fromkeys(name for section, name in entries if section == kind)) for kind in _NAMED}
     for kind in _NAMED:
         for other, entry in _section(config, kind).items():
-            uses = isinstance(other, str) and _renamed(entry, kind, copied, "x") != entry
+            uses = isinstance(other, str) and _with_suffixes(entry, kind, copied, "x") != entry
             if uses and other not in copied[kind]:
                 copied[kind].append(other)
     return copied
 
 
-def _renamed(entry, section, copied, end):
+def _with_suffixes(entry, section, copied, end):
     """Append a suffix to the names of copied entries in an entry, nested sections included."""
     if not isinstance(entry, dict):
         return entry
@@ -188,7 +188,7 @@ def _renamed(entry, section, copied, end):
 def _with_copies(config, copied, end):
     """Configuration with a copy of every affected entry, and of settings of studies by the name of a pair."""
     added = {
-        section: {name + end: _renamed(config[section][name], section, copied, end) for name in names}
+        section: {name + end: _with_suffixes(config[section][name], section, copied, end) for name in names}
         for section, names in copied.items()
         if names
     }
@@ -196,7 +196,7 @@ def _with_copies(config, copied, end):
     for place in _places(config):
         stated = _section(config, *place) if place[0] == "studies" else {}
         if of_copies := {name + end: stated[name] for name in copied["pairs"] if name in stated}:
-            config = merged(config, _nested(of_copies, *place))
+            config = merged(config, _only_at(of_copies, *place))
     return config
 
 

@@ -50,7 +50,7 @@ def faulty(faults: Iterable[tuple], section: str) -> set[str]:
 def schema_problems(config: object, schema: dict) -> list[Problem]:
     """Problems of single keys, found with the schema."""
     try:
-        return [problem for error in _strict()(schema).iter_errors(config) for problem in _explained(error, schema)]
+        return [problem for error in _strict()(schema).iter_errors(config) for problem in _problems_of(error, schema)]
     except (ValueError, RecursionError) as reason:
         # Each error of jsonschema prints the value, and Python cannot print very long integers or very deep nesting.
         return [Problem((), f"cannot be printed ({reason}): must contain short numbers and few levels of nesting")]
@@ -80,7 +80,7 @@ def _also(path):
     return ", _ and -, not dry_ at the beginning" if path == ("surfaces",) else ""
 
 
-def _explained(error, schema):
+def _problems_of(error, schema):
     """Problems for one error of jsonschema."""
     path, value = tuple(error.absolute_path), error.instance
     if "propertyNames" in error.absolute_schema_path:
@@ -89,21 +89,21 @@ def _explained(error, schema):
     if error.validator == "required":
         missing, *more = [key for key in error.validator_value if key not in value]
         as_well = f"; {' and '.join(more)} {'is' if len(more) == 1 else 'are'} missing as well" if more else ""
-        message = f"is missing, must be {_allowed(_entry(schema, (*path, missing)))}{as_well}"
+        message = f"is missing, must be {_allowed_values(_entry(schema, (*path, missing)))}{as_well}"
         return [Problem((*path, missing), message, tuple((*path, key) for key in more))]
     if error.validator == "additionalProperties":
         strange = [(*path, key) for key in value if key not in error.schema["properties"]]
         known = _keys_of_kind(path, value) or list(error.schema["properties"])
         answers = ((place, _FORMER.get(place) or _NEVER.get(place[-1])) for place in strange)
         return [Problem(place, said or _unknown(place[-1], value[place[-1]], known)) for place, said in answers]
-    stated = shown(in_words(value, path))
-    return [Problem(path, f"is {stated}, must be {_allowed(error.schema)}{_hint(path, value, error.schema)}")]
+    stated = one_line(in_words(value, path))
+    return [Problem(path, f"is {stated}, must be {_allowed_values(error.schema)}{_hint(path, value, error.schema)}")]
 
 
 def _keys_of_kind(path, section):
     """Keys of a device of a known kind. None for other sections."""
     kind = section.get("kind") if path[:1] == ("devices",) and len(path) == 2 else None
-    return KINDS[kind].known if isinstance(kind, str) and kind in KINDS else ()
+    return KINDS[kind].allowed_keys if isinstance(kind, str) and kind in KINDS else ()
 
 
 def _entry(schema, path):
@@ -119,7 +119,7 @@ _KINDS |= {"boolean": "true or false"}
 _BOUNDS = {"exclusiveMinimum": "above", "minimum": "at least", "exclusiveMaximum": "below", "maximum": "at most"}
 
 
-def _allowed(entry):
+def _allowed_values(entry):
     """Allowed values of a schema entry in words, with description and unit."""
     words = [f"one of {', '.join(entry['enum'])}" if "enum" in entry else _KINDS[entry["type"]]]
     words.append(" and ".join(f"{word} {entry[bound]}" for bound, word in _BOUNDS.items() if bound in entry))
@@ -130,7 +130,7 @@ def _allowed(entry):
         words.append(f"with {number_of_items(entry)} entries")
     elif "minItems" in entry or "minProperties" in entry:
         words.append("with at least one entry")
-    return f"{' '.join(filter(None, words))}: {described(entry)}"
+    return f"{' '.join(filter(None, words))}: {description(entry)}"
 
 
 def number_of_items(entry: Mapping) -> str:
@@ -148,7 +148,7 @@ def number_of_items(entry: Mapping) -> str:
     return {0: f"{most}", 1: f"{least} or {most}"}.get(most - least, f"{least} to {most}")
 
 
-def described(entry: Mapping) -> str:
+def description(entry: Mapping) -> str:
     """Description of a part of the schema, with its unit, but without a mark for texts."""
     return re.sub(r" \[(choice|name|path)\]$", "", entry["description"])
 
@@ -172,7 +172,7 @@ def _unknown(key, value, known):
     with_unit = [name for name in known if name.startswith(f"{key}_")]
     question = _question(with_unit) or did_you_mean(key, known)
     unit = " Keys carry their unit." if with_unit else ""
-    return f"is unknown (value {shown(value)}), must be one of {', '.join(known)}{question}{unit}"
+    return f"is unknown (value {one_line(value)}), must be one of {', '.join(known)}{question}{unit}"
 
 
 def did_you_mean(word: object, known: Iterable[str]) -> str:
@@ -311,10 +311,10 @@ def dotted(path: tuple) -> str:
 
 def _plain(key):
     """Key as it is if it is a single word, otherwise its Python representation."""
-    return key if isinstance(key, str) and re.fullmatch(r"\w+", key) else shown(key)
+    return key if isinstance(key, str) and re.fullmatch(r"\w+", key) else one_line(key)
 
 
-def shown(value: object) -> str:
+def one_line(value: object) -> str:
     """Value as one short line."""
     text = repr(value)
     return text if len(text) <= 100 else f"{text[:80]} …"

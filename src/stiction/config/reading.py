@@ -14,7 +14,7 @@ from typing import Any
 import yaml
 
 from stiction.config.memory import GRID
-from stiction.config.messages import ConfigError, duplicates, shown
+from stiction.config.messages import ConfigError, duplicates, one_line
 from stiction.regular_files import require_regular
 
 #: Configuration of the paper: a copy of ``config.yaml`` in the root folder, which users may edit.
@@ -49,7 +49,7 @@ def read(path: str | Path) -> dict:
         causes = [f"; {cause}" for symptom, cause in _CAUSES.items() if symptom in message]
         raise ConfigError(f"{path} cannot be read: {message}{''.join(causes)}") from reason
     if not isinstance(content, dict):
-        held = "is empty" if content is None else f"holds {shown(content)}"
+        held = "is empty" if content is None else f"holds {one_line(content)}"
         raise ConfigError(f"{path} {held}, must be sections such as 'contact: {{samples: 5000}}'")
     return content
 
@@ -122,7 +122,7 @@ class _Strict(yaml.SafeLoader):
         value, text = construct(node), str(node.value)
         for pattern, base in ((_BASE_60, 60), (_BASE_8, 8)):
             if pattern.fullmatch(text) and (base == 60 or value != int(text)):
-                message = f"YAML reads {text} in base {base}, as {shown(value)}: write the number that is meant"
+                message = f"YAML reads {text} in base {base}, as {one_line(value)}: write the number that is meant"
                 raise yaml.constructor.ConstructorError(None, None, message, node.start_mark)
         return value
 

@@ -19,10 +19,10 @@ from stiction.config.cases import DRY, IN_HUMID_AIR, NAMEABLE, decimals
 from stiction.config.keys import Keys, Relations
 from stiction.config.materials import hamaker_constants
 from stiction.config.meetings import above_zero, pair_meetings
-from stiction.config.messages import did_you_mean, duplicates, shown
-from stiction.config.surfaces.grid import published_correlation, used
+from stiction.config.messages import did_you_mean, duplicates, one_line
+from stiction.config.surfaces.grid import published_correlation, used_surfaces
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si
-from stiction.devices.materials import COATING, COATING_ATTRACTION
+from stiction.devices.properties import COATING, COATING_ATTRACTION
 from stiction.errors import NotConverged
 from stiction.models import SIDES
 from stiction.rounding import is_at_most, is_multiple
@@ -46,9 +46,9 @@ relation = Relations()
 def lists_have_no_duplicates(config):
     """Require each pair, study, scan and fraction once in its list."""
     scans = [f"surfaces.{name}.scans.files" for name, _ in config.entries("surfaces", "scans.files")]
-    for key, values in config.known("design.shares", *scans, "run.studies", "run.pairs"):
+    for key, values in config.valid("design.shares", *scans, "run.studies", "run.pairs"):
         if repeated := duplicates(values):
-            yield key, f"must list each value once; {shown(repeated[0])} is listed twice"
+            yield key, f"must list each value once; {one_line(repeated[0])} is listed twice"
 
 
 @relation
@@ -59,7 +59,7 @@ def compared_values_make_different_copies(config):
         if len(listed) != len(compared[0]):
             yield "compare", f"must list as many values of {path} as of {paths[0]}, {len(compared[0])}"
     for twice in duplicates(zip(*compared, strict=False)):
-        yield "compare", f"must list each copy once; {', '.join(map(shown, twice))} is listed twice"
+        yield "compare", f"must list each copy once; {', '.join(map(one_line, twice))} is listed twice"
 
 
 @relation
@@ -74,11 +74,11 @@ def something_is_computed(config):
 def selected_pairs_exist(config):
     """Require pairs in the run to be defined."""
     pairs = config.names("pairs")
-    for key, names in config.known(
+    for key, names in config.valid(
         *(f"studies.{name}.distance_nm" for name in ("plasticity", "pressing")), "run.pairs"
     ):
         if strange := [name for name in names if name not in pairs]:
-            yield key, f"{undefined(strange[0], pairs)}; {shown(strange[0])} is not"
+            yield key, f"{undefined(strange[0], pairs)}; {one_line(strange[0])} is not"
 
 
 @relation
@@ -245,13 +245,13 @@ def variants_of_pairs_run(config: Keys) -> bool:
 
 def spectra_are_identified(config: Keys) -> bool:
     """Whether spectra may be identified: by a variant of pairs, or for a surface itself."""
-    sources = [psd for name, psd in config.entries("surfaces", "psd") if name in set(used(config.config))]
+    sources = [psd for name, psd in config.entries("surfaces", "psd") if name in set(used_surfaces(config.config))]
     return pairs_run(config) or "identified" in sources
 
 
-def _drawn(config, *keys):
+def _drawn_surfaces(config, *keys):
     """Name and values of some keys of every drawn surface."""
-    drawn = set(used(config.config))
+    drawn = set(used_surfaces(config.config))
     return (entry for entry in config.entries("surfaces", *keys) if entry[0] in drawn)
 
 
@@ -260,7 +260,7 @@ def grid_carries_the_roughness(config):
     """Require a cut-off within the Nyquist wave number of the grid."""
     nyquist = math.pi / config["sampling.spacing_nm"] * NM_PER_UM
     message = f"must be at most the Nyquist wave number of the grid, {nyquist:.6g} rad/µm"
-    for name, cutoff in _drawn(config, _CUTOFF):
+    for name, cutoff in _drawn_surfaces(config, _CUTOFF):
         if not is_at_most(cutoff, nyquist):
             yield f"surfaces.{name}.{_CUTOFF}", message, "sampling.spacing_nm"
 
@@ -270,7 +270,7 @@ def grid_carries_the_roughness(config):
 def other_grids_carry_the_roughness(config):
     """Require a cut-off within the Nyquist wave number of the grid of a variant."""
     for key, spacing in config.items("studies.variants.spacing_nm"):
-        for name, cutoff in _drawn(config, _CUTOFF):
+        for name, cutoff in _drawn_surfaces(config, _CUTOFF):
             largest = math.pi / cutoff * NM_PER_UM
             if not is_at_most(spacing, largest):
                 message = f"must be at most {largest:.6g} nm, for the Nyquist wave number of the grid"
@@ -282,7 +282,7 @@ def other_grids_carry_the_roughness(config):
 def other_grids_carry_an_identified_spectrum(config):
     """Require grids no coarser than Table I's for an identified spectrum, cut off at the Nyquist wave number there."""
     for key, spacing in config.items("studies.variants.spacing_nm"):
-        for name, psd in _drawn(config, "psd"):
+        for name, psd in _drawn_surfaces(config, "psd"):
             if spacing > config["character.spacing_nm"] and psd != "published":
                 yield key, "must be at most that of Table I", "character.spacing_nm", f"surfaces.{name}.psd"
 
@@ -298,8 +298,8 @@ def lengths_exceed_the_correlation(config):
     lengths = {"sampling.margin_um": ("published_psd",)}
     if spectra_are_identified(config):
         lengths["identification.patch_um"] = ("published_psd", "summit_density_per_um2")
-    for key, length in config.known(*lengths):
-        for name, psd, *_ in _drawn(config, *lengths[key]):
+    for key, length in config.valid(*lengths):
+        for name, psd, *_ in _drawn_surfaces(config, *lengths[key]):
             yield key, correlated(length, psd), *(f"surfaces.{name}.{stated}" for stated in lengths[key])
 
 
@@ -317,8 +317,8 @@ def lengths_can_exceed_the_correlation(config):
     """Require lengths above the estimated correlation of an identified spectrum. The jobs check the spectrum itself."""
     keys = "psd", "rms_nm", "mean_summit_radius_um", "summit_density_per_um2"
     spacing = config["character.spacing_nm"]
-    for key, length in config.known("sampling.margin_um", "identification.patch_um"):
-        for name, psd, *summits in _drawn(config, *keys):
+    for key, length in config.valid("sampling.margin_um", "identification.patch_um"):
+        for name, psd, *summits in _drawn_surfaces(config, *keys):
             if psd == "identified" and (refusal := correlated_as_estimated(length, *summits, spacing)):
                 given = [f"surfaces.{name}.{stated}" for stated in keys]
                 yield key, refusal, *given, "character.spacing_nm"
@@ -361,7 +361,7 @@ def strips_are_whole_under_a_variant(config):
     """Require whole strips for the step in grid points times the grid spacing, with either changed by a variant."""
     sides = "sampling.strip_length_um", *(["beam.width_um"] * pairs_run(config))
     variants = {"sampling.spacing_nm": "studies.variants.every", "contact.every": "studies.variants.spacing_nm"}
-    for other, step in config.known(*variants):
+    for other, step in config.valid(*variants):
         for key, changed in config.items(variants[other]):
             if any(off_grid(config[side], changed, step) for side in sides):
                 yield key, "must divide both sides of a strip into whole contact points", other, *sides
@@ -392,7 +392,7 @@ def summits_are_sought_on_the_grid(config):
 def strips_can_hold_a_summit(config):
     """Require strips with room for a summit and its eight neighbours."""
     coarse = config["character.spacing_nm"]
-    for key, side in config.known("beam.width_um", "sampling.strip_length_um", "identification.patch_um"):
+    for key, side in config.valid("beam.width_um", "sampling.strip_length_um", "identification.patch_um"):
         if not is_at_most(3 * coarse, side * NM_PER_UM):
             yield "character.spacing_nm", f"must be at most a third of a side of {side} µm", key
 
@@ -482,7 +482,7 @@ def studies_in_humid_air_have_some(config):
     humid = {
         meeting.pair: above_zero(humidities) and meeting.is_wetted
         for meeting in pair_meetings(config)
-        for _, humidities in config.known(f"pairs.{meeting.pair}.humidities")
+        for _, humidities in config.valid(f"pairs.{meeting.pair}.humidities")
     }
     running = [pair for pair in config["run.pairs"] if pair in humid]
     shown = [pair for pair in running if pair == config["figures.pair"]] or running[:1]
@@ -508,7 +508,7 @@ def _without(study, why):
 def beam_is_slender(config):
     """Require a beam longer than its width, thickness and deflection (Euler-Bernoulli)."""
     gaps = [f"pairs.{pair}.gap_um" for pair, _ in config.entries("pairs", "gap_um")]
-    for key, size in config.known("beam.thickness_um", "beam.width_um", *gaps):
+    for key, size in config.valid("beam.thickness_um", "beam.width_um", *gaps):
         if size >= config["beam.length_um"]:
             yield key, "must be below the length of the beam", "beam.length_um"
 
@@ -520,7 +520,7 @@ def strips_fit_into_memory(config):
     given = "sampling.strip_length_um", "sampling.margin_um", "beam.width_um"
     length, margin, width = (config[key] for key in given)
     grids = [key for key, _ in config.items("studies.variants.spacing_nm") if variants_of_pairs_run(config)]
-    for key, spacing in config.known(*grids, "sampling.spacing_nm"):
+    for key, spacing in config.valid(*grids, "sampling.spacing_nm"):
         yield key, field_too_large(length + margin, width + margin, spacing), *given
 
 

@@ -28,7 +28,7 @@ from stiction.config.relations import (
     without_density,
 )
 from stiction.config.test_beams import DATA, shared_uncertainty
-from stiction.devices.materials import COATING_ATTRACTION, OF_CONTACT
+from stiction.devices.properties import COATING_ATTRACTION, OF_CONTACT
 from stiction.rounding import is_at_most
 from stiction.surface.feasible import largest_kurtosis
 
@@ -61,7 +61,7 @@ def strips_and_patches_are_whole_on_the_grid(config):
     """Sides of strips, and of the area of a stopper, are multiples of the distance between contact points."""
     sides = ("strip_um", "width_um", "contact_um")
     of_devices = [f"devices.{name}.{key}" for key in sides for name, _ in config.entries("devices", key)]
-    for key, stated in config.known(*["beam.width_um"] * pairs_run(config), _STRIP, *of_devices):
+    for key, stated in config.valid(*["beam.width_um"] * pairs_run(config), _STRIP, *of_devices):
         refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(stated))
         yield key, next(filter(None, refusals), None), *_GRID
 
@@ -169,7 +169,7 @@ def axes_increase(config):
     charts = [f"devices.{name}.{axis}" for axis in axes for name, _ in config.entries("devices", axis)]
     tilts = [f"devices.{name}.tilt_deg" for name, _ in config.entries("devices", "tilt_deg")]
     rows = [f"devices.{name}.dimples.at_um" for name, _ in config.entries("devices", "dimples.at_um")]
-    for key, values in config.known(*charts, *tilts, *rows, "design.worst_humidities"):
+    for key, values in config.valid(*charts, *tilts, *rows, "design.worst_humidities"):
         if any(low >= high for low, high in zip(values, values[1:], strict=False)):
             yield key, "must be in increasing order, each value once"
 
@@ -189,7 +189,7 @@ def uncertain_water_of_devices_is_a_liquid(config):
                 continue  # other relations report it
             if refusal := meeting.too_dry(driest, more, warmer):
                 message = f"must leave water that is a liquid: the humidity, {driest:g}, {refusal}"
-                given = f"devices.{name}.humidities", *meeting.given(TEMPERATURE)
+                given = f"devices.{name}.humidities", *meeting.keys_behind(TEMPERATURE)
                 yield f"devices.{name}.uncertainty.{key}", message, *given
 
 
@@ -225,7 +225,7 @@ def uncertain_moduli_stay_positive(config):
         value = _material(config, name)["young_modulus_GPa"]
         if deviation >= value:
             message = f"must be below Young's modulus itself, {value:g} GPa"
-            yield f"devices.{name}.{key}", message, *_scanned(config, name)
+            yield f"devices.{name}.{key}", message, *_keys_of_scans(config, name)
 
 
 @relation
@@ -237,7 +237,7 @@ def uncertain_poisson_ratios_stay_within_their_limits(config):
         change = max(deviation, OF_CONTACT["poisson_ratio"].step.size)
         if deviation and not (value - change > -1 and value + change < 0.5):
             message = f"must leave Poisson's ratio above -1 and below 0.5: its budget needs {value:g} ± {change:g}"
-            yield f"devices.{name}.{key}", message, *_scanned(config, name)
+            yield f"devices.{name}.{key}", message, *_keys_of_scans(config, name)
 
 
 @relation
@@ -248,7 +248,7 @@ def uncertain_hamaker_constants_stay_positive(config):
         value = hamaker_constant(_material(config, name), config["van_der_waals"])
         if deviation >= value:
             message = f"must be below the Hamaker constant itself, {value:g} zJ"
-            yield f"devices.{name}.{key}", message, "van_der_waals", *_scanned(config, name)
+            yield f"devices.{name}.{key}", message, "van_der_waals", *_keys_of_scans(config, name)
 
 
 @relation
@@ -298,10 +298,10 @@ def uncertain_contact_angles_leave_water(config):
         meeting = device_meeting(name, config)
         if meeting.wetting() and not meeting.wetting(deviation):
             message = "must leave contact angles at which water condenses: their cosines must add up to more than zero"
-            yield f"devices.{name}.{key}", message, *_scanned(config, name)
+            yield f"devices.{name}.{key}", message, *_keys_of_scans(config, name)
         if not meeting.is_wetted and meeting.wetting(-deviation):
             message = "must leave contact angles at which no water condenses: their cosines add up to zero or less"
-            yield f"devices.{name}.{key}", message, *_scanned(config, name)
+            yield f"devices.{name}.{key}", message, *_keys_of_scans(config, name)
 
 
 @relation
@@ -324,7 +324,7 @@ def _sides(config, name):
     return sides_of(*surfaces_of(config["devices"][name]["pair"], config), config["surfaces"])
 
 
-def _scanned(config, name):
+def _keys_of_scans(config, name):
     """Keys of the measured surfaces of a device."""
     return config.scanned(*surfaces_of(config["devices"][name]["pair"], config))
 
@@ -429,7 +429,7 @@ def arrays_have_the_materials_of_their_devices(config):
         )
         if other := next(others, None):
             message = f"must have the materials of the device: those of {other} differ"
-            yield f"devices.{name}.test_beams", message, *_scanned(config, name)
+            yield f"devices.{name}.test_beams", message, *_keys_of_scans(config, name)
 
 
 def _names_of_materials(config, pair):

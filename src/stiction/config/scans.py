@@ -74,7 +74,7 @@ def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder:
     scanned = {
         name: entry for name, entry in _surfaces(config).items() if _files(entry) and _files(entry) == files.get(name)
     }
-    moved = {name: _moved(entry, Path(folder).absolute()) for name, entry in scanned.items()}
+    moved = {name: _in_folder(entry, Path(folder).absolute()) for name, entry in scanned.items()}
     return config | {"surfaces": config["surfaces"] | moved} if moved else config
 
 
@@ -91,7 +91,7 @@ def _files(entry):
     return files if isinstance(files, list) and all(isinstance(file, str) for file in files) else None
 
 
-def _moved(entry, folder):
+def _in_folder(entry, folder):
     """Section of a surface with its relative files in a folder."""
     return entry | {"scans": entry["scans"] | {"files": [str(folder / file) for file in entry["scans"]["files"]]}}
 
@@ -137,7 +137,7 @@ def preliminary_estimates(
     for name, entry in config["surfaces"].items():
         if name not in wrong and is_measured(entry):
             try:
-                estimates[name] = _evaluated(complete(entry), config["scans"], kept)
+                estimates[name] = _preliminary_numbers(complete(entry), config["scans"], kept)
                 problems += _without_power_law(name, entry, estimates[name])
             except ScanError as refusal:
                 problems.append(_problem(name, complete(entry), refusal))
@@ -171,7 +171,7 @@ def usable(
         left_out = {"left_out": reasons} if reasons else {}
         part = entry | {"scans": entry["scans"] | {"files": files} | left_out}
         try:
-            _evaluated(complete(part), section, kept)
+            _preliminary_numbers(complete(part), section, kept)
         except ScanError as refusal:
             key = "" if refusal.key == "files" else f" (key {refusal.key})"
             reasons.append(f"{refusal.file} is not used: it {refusal.reason}{key}")
@@ -199,7 +199,7 @@ def _unusable(faults):
     return bool(sections & {(), ("surfaces",), ("scans",), ("sampling",)})
 
 
-def _evaluated(entry, section, kept):
+def _preliminary_numbers(entry, section, kept):
     """Preliminary numbers of one surface, computed if they are not known yet."""
     files = dict(zip(_labels(entry), entry["scans"]["files"], strict=True))
     contents, settings = _contents(files), (source(entry), evaluation(entry, section))
@@ -357,11 +357,11 @@ def with_preliminary_estimates(config: dict[str, Any], estimates: Mapping[str, d
     Devices on measured surfaces are uncertain even if nothing else about them is.
     """
     spacing = config["sampling"]["spacing_nm"]
-    described = {name: _described(complete(config["surfaces"][name]), estimates[name], spacing) for name in estimates}
+    described = {name: _by_numbers(complete(config["surfaces"][name]), estimates[name], spacing) for name in estimates}
     return with_uncertain_devices(config | {"surfaces": config["surfaces"] | described}, described)
 
 
-def _described(entry, preliminary, spacing):
+def _by_numbers(entry, preliminary, spacing):
     """Section of a surface by numbers: skewness and kurtosis, or the measured form if it gives the heights."""
     grid = math.pi / spacing * NM_PER_UM
     cutoff = min(preliminary["end_rad_per_um"], grid) if entry["beyond"] == "cut" else grid

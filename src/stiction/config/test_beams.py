@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 
 from stiction.config.cases import DRY
 from stiction.config.kinds import KEYS
-from stiction.config.messages import ConfigError, did_you_mean, shown
+from stiction.config.messages import ConfigError, did_you_mean, one_line
 from stiction.config.reading import text
 
 #: Keys of an array that list what was measured.
@@ -85,7 +85,7 @@ def at_single_humidities(config: Mapping) -> list[dict[str, dict]]:
     ]
 
 
-def counted(config: Mapping) -> dict[str, dict]:
+def counts_as_devices(config: Mapping) -> dict[str, dict]:
     """Sections of the arrays with counts as if they were devices: their tips may hold them."""
     return {name: one for name, one in as_cantilevers(config).items() if "stuck" in config["test_beams"][name]}
 
@@ -138,7 +138,7 @@ def with_files(config: dict[str, Any], named: Mapping[str, Any], folder: str | P
     """
     files = {name: entry["file"] for name, entry in _arrays(named)}
     own = {name: entry for name, entry in _arrays(config) if entry["file"] == files.get(name)}
-    replaced = {name: _replaced(name, entry, Path(folder)) for name, entry in own.items()}
+    replaced = {name: _with_file(name, entry, Path(folder)) for name, entry in own.items()}
     return config | {"test_beams": config["test_beams"] | replaced} if replaced else config
 
 
@@ -150,9 +150,9 @@ def _arrays(config) -> Iterator[tuple[str, dict]]:
             yield name, entry
 
 
-def _replaced(name, entry, folder):
+def _with_file(name, entry, folder):
     """Section of an array with the content of its file."""
-    key = f"test_beams.{name}.file is {shown(entry['file'])}"
+    key = f"test_beams.{name}.file is {one_line(entry['file'])}"
     stated = [other for other in _REPLACED if other in entry]
     if stated:
         raise ConfigError(f"{key}, must come without {', '.join(stated)}: the file has them")
@@ -179,7 +179,7 @@ def in_files(sentence: str, config: Any) -> str:
     """Sentence with file, row and column in place of the keys of data from files."""
     for name, origin in _origins(config).items():
         for key, row, words in _places(origin.beams, config["test_beams"][name]):
-            place = f"test_beams.{name}.file is {shown(origin.file)}, row {row}: {words}"
+            place = f"test_beams.{name}.file is {one_line(origin.file)}, row {row}: {words}"
             sentence = sentence.replace(f"test_beams.{name}.{key}", place)
     return sentence
 
@@ -243,7 +243,7 @@ def _check_columns(row, columns):
     for name in columns:
         if name not in COLUMNS:
             hint = "; separate columns by commas" if ";" in name or "\t" in name else did_you_mean(name, COLUMNS)
-            raise _Wrong(f"row {row}: column {shown(name)} is unknown, must be among {', '.join(COLUMNS)}{hint}")
+            raise _Wrong(f"row {row}: column {one_line(name)} is unknown, must be among {', '.join(COLUMNS)}{hint}")
     missing = [name for name in COLUMNS[:2] if name not in columns]
     if missing or len(set(columns)) < len(columns):
         raise _Wrong(
@@ -264,7 +264,7 @@ def _beam(row, cells, columns):
         raise _Wrong(f"row {row}: it must have either crack_length_um or stuck")
     if of["stuck"]:
         if of["stuck"].lower() not in _WORDS:
-            raise _Wrong(f"row {row}: stuck is {shown(of['stuck'])}, must be yes or no")
+            raise _Wrong(f"row {row}: stuck is {one_line(of['stuck'])}, must be yes or no")
         return Beam(row, humidity, length, None, _WORDS[of["stuck"].lower()])
     crack = _number(row, of, "crack_length_um", length, f"below the length of the beam, {length:g} µm")
     return Beam(row, humidity, length, crack, None)
@@ -277,7 +277,7 @@ def _number(row, cells, column, limit, words):
     except ValueError:
         value = math.nan
     if not 0 < value < limit:
-        raise _Wrong(f"row {row}: {column} is {shown(cells[column])}, must be a number above 0, {words}")
+        raise _Wrong(f"row {row}: {column} is {one_line(cells[column])}, must be a number above 0, {words}")
     return value
 
 

@@ -98,8 +98,8 @@ class _KeysOfArrays(Keys):
 
     devices: dict = field(default_factory=dict)  #: those of the configuration
 
-    def _stated(self, key):
-        path, value = super()._stated(key)
+    def _origin(self, key):
+        path, value = super()._origin(key)
         if path[0] != "devices":
             return path, value
         _, name, *below = path

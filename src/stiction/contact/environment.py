@@ -53,7 +53,7 @@ class Gaps:
         If the summits attract through dry air, so do the solids across the film.
         """
         across = gaps.work_across_film(gap, height, self.through(self.summits), self.through("dry"))
-        return across - self._counted.work(gap)
+        return across - self._summit_attraction.work(gap)
 
     def scaled(self, factor: float, sides: Collection[str]) -> "Gaps":
         """Gaps with a factor of the Hamaker constants of the solids on some sides, see ``combined``."""
@@ -64,7 +64,7 @@ class Gaps:
         return replace(self, hamaker_constant=constants, bodies=bodies)
 
     @property
-    def _counted(self):
+    def _summit_attraction(self):
         """Attraction of the summits."""
         if self.bodies:
             return attraction_between(*self.bodies.values(), self.summits)

@@ -16,13 +16,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
+from scipy import fft
 
 from stiction.contact.vanderwaals import DugdaleAttraction
 
 #: Strength b of the retardation of flats [-]; J. Gregory, J. Colloid Interface Sci. 83, 138 (1981).
 RETARDATION = 5.32
-#: Most pressures, between a distance and a step of the bearing area, that are held at once; an rms of 200 nm has 2e9.
+#: Most points of bearing areas that are convolved at once.
 _BLOCK = 2**20
 
 
@@ -126,12 +126,14 @@ def gap_pressures(
     steps, number = bearing.shape[-1] - 1, len(distance)
     # Every gap between a distance and a node, increasing: those of all steps at one distance are a window of them.
     needed = work(np.maximum(distance[0] - first + step * np.arange(-steps, number), 0.0))
-    pressures = sliding_window_view((np.diff(needed) / step).astype(np.float32), steps)
-    energy = 0.5 * (needed[number:] + needed[number - 1 : -1])[::-1].astype(np.float32)
-    shares = -np.diff(bearing, axis=-1).astype(np.float32, copy=False)
-    pressure, rows = np.empty((*shares.shape[:-1], number), np.float32), max(_BLOCK // steps, 1)
-    for start in range(0, number, rows):
+    size = fft.next_fast_len(steps + number - 1, real=True)
+    waves = fft.rfft(np.diff(needed) / step, size)
+    energy = 0.5 * (needed[number:] + needed[number - 1 : -1])[::-1]
+    samples, rows = bearing.reshape(-1, steps + 1), max(_BLOCK // size, 1)
+    pressure, beyond = np.empty((len(samples), number), np.float32), np.empty(len(samples))
+    for start in range(0, len(samples), rows):
         block = slice(start, start + rows)
-        found = shares @ np.vstack([pressures[block, ::-1], energy]).T
-        pressure[..., block] = found[..., :-1]
-    return pressure, found[..., -1].astype(float)
+        shares = -np.diff(samples[block].astype(float), axis=-1)  # single precision would lose small pressures
+        pressure[block] = fft.irfft(fft.rfft(shares, size) * waves, size)[:, steps - 1 : steps + number - 1]
+        beyond[block] = shares @ energy
+    return pressure.reshape(*bearing.shape[:-1], number), beyond.reshape(bearing.shape[:-1])

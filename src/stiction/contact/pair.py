@@ -140,9 +140,9 @@ class EquivalentSurface:
         if by_fit:
             spheres = np.where(np.isfinite(found.fits), found.fits, spheres)
         first = np.where(found.levels == lowest, 0, found.levels * stride)
-        touching = Ranges(first, np.minimum((found.levels + 1) * stride, self._lost(found.tops)))
+        touching = Ranges(first, np.minimum((found.levels + 1) * stride, self._first_without_contact(found.tops)))
         high = summits.tops >= lowest * levels.step
-        apart = Ranges(self._lost(summits.tops[high]), np.full(high.sum(), grid.above))
+        apart = Ranges(self._first_without_contact(summits.tops[high]), np.full(high.sum(), grid.above))
         return Summits(
             np.append(spheres[:, 0], summits.tops[high]),
             np.append(spheres[:, 1], summits.curvatures[high]),
@@ -150,7 +150,7 @@ class EquivalentSurface:
             Ranges(*map(np.append, touching, apart)),
         )
 
-    def _lost(self, tops):
+    def _first_without_contact(self, tops):
         """Numbers of the first distances without contact of asperities with these tops (m,) [m]."""
         return np.floor(tops / self.step).astype(int) + 1
 
@@ -233,13 +233,13 @@ def contacts_of_samples(
     """
     found = [([], []) for _ in pairs]
     for k in samples:
-        for curves, pair, heights in zip(found, pairs, _drawn(pairs, streams, k), strict=True):
+        for curves, pair, heights in zip(found, pairs, _equivalent_surface(pairs, streams, k), strict=True):
             for column, curve in zip(curves, pair.contact(heights), strict=True):
                 column.append(curve.astype(np.float32))
     return [(np.array(solid), np.array(bearing)) for solid, bearing in found]
 
 
-def _drawn(pairs, streams, sample):
+def _equivalent_surface(pairs, streams, sample):
     """Equivalent surface of one sample of each pair."""
     if len(pairs) == 1:  # the second surface is added in place, which needs no array of its heights
         yield pairs[0].draw(*streams(sample))

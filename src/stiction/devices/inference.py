@@ -247,7 +247,7 @@ def _spread(prior, data):
     return data.responses @ prior.covariance @ data.responses.T + np.diag(data.errors**2)
 
 
-def given(
+def update(
     prior: Knowledge, lengths: Lengths, counts: Counts | None = None, rng: np.random.Generator | None = None
 ) -> Knowledge:
     """Knowledge after measured crack lengths and counts of stuck beams. For counts, errors are drawn.

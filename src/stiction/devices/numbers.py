@@ -45,11 +45,11 @@ def quantile_errors(numbers: np.ndarray, share: float) -> np.ndarray:
     As in `stiction.devices.risk.safe_length`: an order statistic if there are enough, otherwise a fit of the lowest.
     """
     sampled = np.sqrt(2 * np.pi * share * (1 - share)) * np.exp(ndtri(share) ** 2 / 2)
-    return np.where(numbers >= samples_for(share), sampled, _of_one_fitted(share)) / numbers**0.5
+    return np.where(numbers >= samples_for(share), sampled, _error_of_fit(share)) / numbers**0.5
 
 
 @cache
-def _of_one_fitted(share):
+def _error_of_fit(share):
     """Error of a fit, times the root of the number of beams [-]."""
     return scaled_errors(_SIMULATED, share, stream(0, "numbers"))[0].std() * _SIMULATED**0.5
 
@@ -62,17 +62,19 @@ def beams_for(spreads: Sequence[Spread], share: float, accuracy: float, strips: 
     """
     numbers = np.arange(_BEAMS, MOST_BEAMS + 1, _BEAMS)
     errors = quantile_errors(numbers, share)
-    enough = np.all([one.slope * errors <= _left(accuracy, one.surfaces / strips**0.5) for one in spreads], axis=0)
+    enough = np.all(
+        [one.slope * errors <= _remaining_error(accuracy, one.surfaces / strips**0.5) for one in spreads], axis=0
+    )
     return int(numbers[np.argmax(enough) if enough.any() else np.argmin(errors)])
 
 
 def strips_for(spreads: Sequence[Spread], share: float, accuracy: float, beams: int, fewest: int) -> int:
     """Smallest number of strips for an accuracy of all lengths with a number of beams, up to `MOST_STRIPS`."""
     error = quantile_errors(np.array([beams]), share)[0]
-    needed = max((one.surfaces / _left(accuracy, one.slope * error)) ** 2 for one in spreads)
+    needed = max((one.surfaces / _remaining_error(accuracy, one.slope * error)) ** 2 for one in spreads)
     return min(max(int(np.ceil(needed / _STRIPS)), -(-fewest // _STRIPS)) * _STRIPS, MOST_STRIPS)
 
 
-def _left(accuracy, other):
+def _remaining_error(accuracy, other):
     """Error that the other part leaves of an accuracy, at least half of its square [-]."""
     return max(accuracy**2 / 2, accuracy**2 - other**2) ** 0.5

@@ -103,7 +103,7 @@ def recommended(
     drawn = np.concatenate([law.drawn(DRAWS, rng).reshape(DRAWS, -1) for law in laws], axis=1)
     here = [curve.at(values) for curve in curves]
     margin = np.min([curve.margin for curve in here], axis=0)
-    margins = np.min([_drawn(curve, laws, drawn, rng.standard_normal((DRAWS, 1))) for curve in here], axis=0)
+    margins = np.min([_drawn_margins(curve, laws, drawn, rng.standard_normal((DRAWS, 1))) for curve in here], axis=0)
     best = np.array([_best(values, one) for one in margins])
     safe = np.quantile(margins, 1 - CONFIDENCE, axis=0)
     subject = "best" if best.std() else "range"
@@ -165,7 +165,7 @@ def recommended_pairs(
     for one in maps:
         rows, common = one.at(values, seconds), rng.standard_normal((DRAWS, 1))
         margin = np.minimum(margin, [row.margin for row in rows])
-        margins = np.minimum(margins, np.stack([_drawn(row, laws, drawn, common) for row in rows], axis=1))
+        margins = np.minimum(margins, np.stack([_drawn_margins(row, laws, drawn, common) for row in rows], axis=1))
     best = np.array([_best_pair(values, seconds, one) for one in margins])
     of_each = zip(laws, errors, parts, best.T, strict=True)
     following, after = np.transpose([_next([law], [error], part, wanted) for law, error, part, wanted in of_each])
@@ -224,7 +224,7 @@ def _between(places, values, others):
     return np.transpose([np.interp(others, places, column) for column in flat.T]).reshape(-1, *values.shape[1:])
 
 
-def _drawn(curve, laws, drawn, common):
+def _drawn_margins(curve, laws, drawn, common):
     """Margins of a curve on drawn laws, whose coefficients differ by ``drawn`` (draws, all), (draws, n).
 
     Errors ``common`` (draws, 1) are those of simulation and model [standard errors].

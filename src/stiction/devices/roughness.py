@@ -56,7 +56,7 @@ def crossings(axis: np.ndarray, margin: np.ndarray, errors: np.ndarray) -> list[
         ASSUME: the cubic errs as much as it differs from that of Akima, which has other slopes at the points.
     """
     crossed = []
-    for points in _known(margin):
+    for points in _known_runs(margin):
         monotone = PchipInterpolator(axis[points], margin[points])
         other = Akima1DInterpolator(axis[points], margin[points])
         for place in _zeros(monotone):
@@ -72,7 +72,7 @@ def sufficient(axis: np.ndarray, margin: np.ndarray) -> list[tuple[float, float]
     Ranges reach a point whose margin is the largest from their inside alone: beside it, the margin may be any.
     """
     ranges, margin = [], np.where(margin >= LARGEST, _LEAST, margin)
-    for points in _known(margin):
+    for points in _known_runs(margin):
         monotone, known = PchipInterpolator(axis[points], margin[points]), axis[points]
         ends = np.array([known[0], *_zeros(monotone), known[-1]])
         enough = monotone((ends[:-1] + ends[1:]) / 2) >= 0
@@ -80,7 +80,7 @@ def sufficient(axis: np.ndarray, margin: np.ndarray) -> list[tuple[float, float]
     return ranges
 
 
-def _known(margin: np.ndarray) -> list[slice]:
+def _known_runs(margin: np.ndarray) -> list[slice]:
     """Runs of at least two neighbouring points with a margin."""
     runs = np.ma.clump_unmasked(np.ma.masked_invalid(margin))
     return [run for run in runs if run.stop - run.start > 1]

@@ -45,14 +45,18 @@ def height_channel(channels: Sequence[Any], wanted: str | None, name: str) -> tu
     if wanted is not None:
         chosen = [channel for channel in channels if wanted in (channel.channel_id, channel.name)]
         if not chosen:
-            raise ScanError(name, "channel", f"has no channel {wanted}, only: {_listed(channels)}")
+            raise ScanError(name, "channel", f"has no channel {wanted}, only: {_first_channels(channels)}")
     else:
         chosen = [channel for channel in channels if _is_height(channel)] or _only_length(channels)
         if not chosen:
-            raise ScanError(name, "channel", f"has no channel that is named as a height, only: {_listed(channels)}")
+            raise ScanError(
+                name, "channel", f"has no channel that is named as a height, only: {_first_channels(channels)}"
+            )
         if len({frozenset(_words(channel.name) - _DIRECTION) for channel in chosen}) > 1:
-            raise ScanError(name, "channel", f"has several channels of heights; name one of: {_listed(_first(chosen))}")
-    others = f"; the file also has {_listed(chosen[1:])}" if chosen[1:] else ""
+            raise ScanError(
+                name, "channel", f"has several channels of heights; name one of: {_first_channels(_first(chosen))}"
+            )
+    others = f"; the file also has {_first_channels(chosen[1:])}" if chosen[1:] else ""
     unnamed = not (wanted or _is_height(chosen[0]) or _NAMELESS.match(chosen[0].name))
     others += "; its name does not say that it has heights, but no other has lengths" if unnamed else ""
     return chosen[0], (f"{name}: channel {chosen[0].channel_id} was read{others}",) if others else ()
@@ -91,7 +95,7 @@ def _first(channels):
     return [channel for k, channel in enumerate(channels) if names.index(channel.name) == k]
 
 
-def _listed(channels):
+def _first_channels(channels):
     """Channels by their identifiers, the first of many."""
     names = [channel.channel_id for channel in channels]
     more = len(names) - _MOST_LISTED

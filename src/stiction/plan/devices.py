@@ -19,9 +19,9 @@ from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, un
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
-from stiction.devices.materials import OF_CONTACT
+from stiction.devices.properties import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
-from stiction.plan.stage import chosen
+from stiction.plan.stage import subsection
 
 #: Steps of the distance for the contact of tips, in those of section contact. ASSUME: they suffice for the largest
 #: attraction, the vertex of a parabola: with four, lengths of pair b are 0.02 to 0.19 % longer than with one.
@@ -95,7 +95,7 @@ class DevicePlan:
         return [case_id(name, humidity) for name in self.beams for humidity in self.sections[name]["humidities"]]
 
     @cached_property
-    def charted(self) -> list[str]:
+    def with_chart(self) -> list[str]:
         """Devices with a chart."""
         return [name for name in self.beams if "chart" in self.sections[name]]
 
@@ -114,9 +114,9 @@ class DevicePlan:
     @property
     def pressed_pairs(self) -> list[str]:
         """Pairs of beams in the study of plasticity."""
-        return self.pressed(*self.beams)
+        return self.pairs_of_plasticity(*self.beams)
 
-    def pressed(self, *devices: str) -> list[str]:
+    def pairs_of_plasticity(self, *devices: str) -> list[str]:
         """Pairs of some devices in the study of plasticity."""
         pairs = dict.fromkeys(self.sections[name]["pair"] for name in devices)
         return [pair for pair in pairs if pair in self.config["studies"]["plasticity"]["distance_nm"]]
@@ -132,7 +132,7 @@ class DevicePlan:
 
     def capacitor(self, device: str) -> dict:
         """Voltage of a device and its dielectric, empty without a voltage."""
-        return chosen(self.sections[device], ("voltage_V", "offset_V", "dielectric"))
+        return subsection(self.sections[device], ("voltage_V", "offset_V", "dielectric"))
 
     @property
     def _samples_of_patches(self):
@@ -200,7 +200,7 @@ class DevicePlan:
             If no tip has these strips.
         """
         tips = tips._replace(pair=PairInAir(tips.pair).pair)
-        counted = DevicePlan(self.config | {"devices": test_beams.counted(self.config)})
+        counted = DevicePlan(self.config | {"devices": test_beams.counts_as_devices(self.config)})
         users = [(plan, name) for plan in (self, counted) for name in plan.with_tips if plan.tips(name) == tips]
         if not users:
             raise KeyError(f"no device has tips on strips {tips.name}")
@@ -255,22 +255,22 @@ class DevicePlan:
     # Budgets
 
     @cached_property
-    def tested(self) -> list[str]:
+    def with_test_beams(self) -> list[str]:
         """Devices with test beams."""
         return [name for name, device in self.sections.items() if "test_beams" in device]
 
     @cached_property
-    def roughened(self) -> list[str]:
+    def over_roughness(self) -> list[str]:
         """Devices computed along the roughness of a surface."""
         return [name for name, device in self.sections.items() if "roughness" in device]
 
     @cached_property
-    def mapped(self) -> list[str]:
-        """Devices of `roughened` computed along two quantities."""
-        return [name for name in self.roughened if len(ROUGHNESSES.keys() & self.sections[name]["roughness"]) > 1]
+    def over_two_quantities(self) -> list[str]:
+        """Devices of `over_roughness` computed along two quantities."""
+        return [name for name in self.over_roughness if len(ROUGHNESSES.keys() & self.sections[name]["roughness"]) > 1]
 
     @cached_property
-    def processed(self) -> list[str]:
+    def over_process(self) -> list[str]:
         """Devices computed over the variable of a process."""
         return [name for name in self._over_processes if name not in self.processed_twice]
 
@@ -285,7 +285,7 @@ class DevicePlan:
         return [name for name, device in self.sections.items() if "process" in device]
 
     @cached_property
-    def budgeted(self) -> list[str]:
+    def with_budget(self) -> list[str]:
         """Devices with an uncertain input: with a stated uncertainty, or on a surface described by scans."""
         stated = {name: any(device.get("uncertainty", {}).values()) for name, device in self.sections.items()}
         return [name for name in self.sections if stated[name] or self.quantities(name)]
@@ -298,7 +298,7 @@ class DevicePlan:
     def budgets(self, *devices: str) -> list[str]:
         """Budgets of devices, of all with an uncertain input by default: at each humidity, and those of tips."""
         names = []
-        for name in devices or self.budgeted:
+        for name in devices or self.with_budget:
             parts = ("", "_tip") if self.kind(name).has_tip else ("",)
             cases = [case_id(name, humidity) for humidity in self.sections[name]["humidities"]]
             names += [case + part for part in parts for case in cases]
@@ -321,14 +321,14 @@ class DevicePlan:
         }
         return [(name, quantity) for name, of_surface in by_surface.items() for quantity in of_surface]
 
-    def known(self, device: str) -> dict[str, Knowledge]:
+    def surface_errors(self, device: str) -> dict[str, Knowledge]:
         """Stated errors of each surface of a device without scans."""
         library = paper()["surfaces"]
         return {
             name: knowledge(entry, library) for name, entry in self._surfaces(device).items() if not is_measured(entry)
         }
 
-    def assumed(self, device: str) -> list[str]:
+    def assumed_inputs(self, device: str) -> list[str]:
         """Inputs of the budget of a device assumed without measurement, such as ``skewness of B2``."""
         return [
             f"{quantity} of {name}" for name, entry in self._surfaces(device).items() for quantity in assumed(entry)

@@ -14,11 +14,11 @@ from stiction.config.units import to_si
 from stiction.contact.meniscus import is_wetted, require_humidity
 from stiction.contact.vanderwaals import combined
 from stiction.devices import limits
-from stiction.devices.materials import COATING, COATING_ATTRACTION, OF_COATINGS
+from stiction.devices.properties import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.models import SIDES
 from stiction.plan.materials import PairMaterials
 from stiction.plan.paper import is_pair
-from stiction.plan.stage import chosen
+from stiction.plan.stage import subsection
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ class Air:
         """Humidities of a pair with condensation of water: studies against humidity leave out dry air."""
         return [rh for rh in self.config["pairs"][pair]["humidities"] if rh > 0] if self.is_wetted(pair) else []
 
-    def of_full_contact(self, pair: str) -> list[float]:
+    def humidities_of_full_contact(self, pair: str) -> list[float]:
         """Humidities of a pair, and that of its figures if these show corrected laws beyond them."""
         own, shown = self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
         humid = [rh for rh in own if rh > 0]
@@ -118,7 +118,7 @@ class Air:
 
     def _contact_angles(self, pair):
         """Contact angles on both surfaces of a pair [°]."""
-        return [material.get("contact_angle_deg", 0) for material in self._materials.stated(pair)]
+        return [material.get("contact_angle_deg", 0) for material in self._materials.properties_of(pair)]
 
     def _gaps(self, pair, config):
         """Attraction across the gaps between the solids of a pair, if there is any."""
@@ -127,17 +127,17 @@ class Air:
             return {}
         constants = {medium: self._hamaker_constant(pair, medium) for medium in (summits, "dry")}
         retarded = {"wavelength_nm": across["wavelength_nm"]} if across["retarded"] else {}
-        stated = self._materials.stated(pair)
+        stated = self._materials.properties_of(pair)
         spacer = sum(material.get(COATING, 0) for material in stated)
         coated = {"spacer_nm": spacer} if spacer else {}
         if any(COATING_ATTRACTION in material for material in stated):
-            bodies = (chosen(material, ("hamaker_constant_zJ", *OF_COATINGS)) for material in stated)
+            bodies = (subsection(material, ("hamaker_constant_zJ", *OF_COATINGS)) for material in stated)
             coated["bodies"] = dict(zip(SIDES, bodies, strict=True))
         return {"gaps": {"hamaker_constant_zJ": constants, "summits": summits} | retarded | coated}
 
     def _hamaker_constant(self, pair, medium):
         """Hamaker constant of the two bodies of a pair through a medium [zJ]."""
-        return combined(*(hamaker_constants(material)[medium] for material in self._materials.stated(pair)))
+        return combined(*(hamaker_constants(material)[medium] for material in self._materials.properties_of(pair)))
 
     def hamaker_constant(self, contact: str) -> float:
         """Hamaker constant of the two bodies of a contact, zero without van der Waals forces [zJ]."""
@@ -146,4 +146,4 @@ class Air:
 
     def beam_hamaker_constant(self, pair: str) -> float:
         """Hamaker constant of two bodies like the beam of a pair, through the medium between the solids [zJ]."""
-        return hamaker_constant(self._materials.stated(pair)[0], self.config["van_der_waals"])
+        return hamaker_constant(self._materials.properties_of(pair)[0], self.config["van_der_waals"])

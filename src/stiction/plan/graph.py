@@ -11,7 +11,7 @@ import xarray as xr
 
 from stiction.plan import cost
 from stiction.plan.plan import Plan
-from stiction.plan.stage import FOLDERS, WILDCARDS, At, File, Names, Stage, declared, expression
+from stiction.plan.stage import FOLDERS, WILDCARDS, At, File, Names, Stage, expression, stages_of
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -34,7 +34,7 @@ def stages() -> dict[str, tuple[Stage, str]]:
     """
     declarations = {}
     for module in modules():
-        for stage in declared(module):
+        for stage in stages_of(module):
             if stage.name in declarations:
                 raise ValueError(f"{module} and {declarations[stage.name][1]} both declare stage {stage.name}")
             declarations[stage.name] = stage, module

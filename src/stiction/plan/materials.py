@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from stiction.config.cases import PairInAir
 from stiction.config.materials import material_of
 from stiction.config.reading import paper
-from stiction.devices.materials import COATING, ELASTIC, OF_COATINGS, PROPERTIES
+from stiction.devices.properties import COATING, ELASTIC, OF_COATINGS, PROPERTIES
 from stiction.models import SIDES
-from stiction.plan.stage import chosen
+from stiction.plan.stage import subsection
 
 #: ASSUME: a solid is polysilicon if its Young's modulus differs from that of the paper by no more than this share.
 _POLYSILICON = 0.1
@@ -24,7 +24,7 @@ class PairMaterials:
         """Names of the surfaces of a pair, the beam's first."""
         return [self.config["pairs"][PairInAir(pair).pair][side] for side in SIDES]
 
-    def stated(self, pair: str) -> list[dict]:
+    def properties_of(self, pair: str) -> list[dict]:
         """Stated properties of the materials of both surfaces of a pair."""
         return [material_of(self.config, surface) for surface in self.sides(pair)]
 
@@ -33,7 +33,7 @@ class PairMaterials:
 
         What a material does not state is taken from section ``solid``, by default that of the configuration.
         """
-        stated = [chosen(material, properties) for material in self.stated(pair)]
+        stated = [subsection(material, properties) for material in self.properties_of(pair)]
         if not any(stated):
             return {}
         others = solid or self.config["solid"]
@@ -60,4 +60,4 @@ class PairMaterials:
 
     def beam_modulus(self, pair: str) -> dict:
         """Young's modulus of the beam of a pair if its material states one, otherwise empty."""
-        return chosen(self.stated(pair)[0], ["young_modulus_GPa"])
+        return subsection(self.properties_of(pair)[0], ["young_modulus_GPa"])

@@ -5,17 +5,17 @@ from stiction.config.units import NM_PER_UM
 from stiction.plan.devices import DevicePlan
 
 
-def of_job(config: dict) -> int:
+def job_memory(config: dict) -> int:
     """Memory to reserve for each job of a configuration [MB]. Stages with many samples or large scans may need more."""
     return round(max(USUAL, _largest_field_memory(config)))
 
 
-def of_attempt(first: int, attempt: int) -> int:
+def for_attempt(first: int, attempt: int) -> int:
     """Memory or time to reserve for an attempt of a job, from the first: twice as much after each failure.
 
     Examples
     --------
-    >>> [of_attempt(800, attempt) for attempt in (1, 2, 3)]
+    >>> [for_attempt(800, attempt) for attempt in (1, 2, 3)]
     [800, 1600, 3200]
     """
     return first * 2 ** (attempt - 1)

@@ -15,14 +15,14 @@ from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
 from stiction.config.surfaces.knowledge import sentences
 from stiction.config.test_beams import as_cantilevers
-from stiction.devices.materials import ELASTIC
+from stiction.devices.properties import ELASTIC
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SURFACE_MODELS
 from stiction.plan.devices import DevicePlan
 from stiction.plan.environment import Air
 from stiction.plan.materials import PairMaterials
 from stiction.plan.paper import SUMMITS, PaperCase
 from stiction.plan.scans import Scans
-from stiction.plan.stage import chosen
+from stiction.plan.stage import subsection
 from stiction.plan.variants import Variants
 
 
@@ -69,7 +69,7 @@ class Plan:
         return Variants(self)
 
     @cached_property
-    def of_test_beams(self) -> "Plan":
+    def with_test_beams(self) -> "Plan":
         """Plan with the arrays of test beams as devices."""
         return replace(self, config=self.config | {"devices": as_cantilevers(self.config)})
 
@@ -96,7 +96,7 @@ class Plan:
         used = {name for pair in self.pairs for name in self.sides(pair)}
         return [name for name in self.config["surfaces"] if name in used]
 
-    def simulated(self, surface: str) -> bool:
+    def is_drawn(self, surface: str) -> bool:
         """Whether a surface is drawn for a pair in the run, a device or test beams."""
         users = (*self.config.get("devices", {}).values(), *self.config.get("test_beams", {}).values())
         pairs = [*self.pairs, *(user["pair"] for user in users if "pair" in user)]
@@ -138,12 +138,12 @@ class Plan:
         return min(self.config["studies"]["slopes"]["samples"], self.config["contact"]["samples"])
 
     @property
-    def estimated(self) -> list[str]:
+    def surfaces_with_scans(self) -> list[str]:
         """Surfaces of the pairs in the run described by scans."""
         return [name for name in self.surfaces if name in self.scans.surfaces]
 
     @property
-    def described(self) -> list[str]:
+    def surfaces_by_numbers(self) -> list[str]:
         """Surfaces of the pairs in the run described by numbers."""
         return [name for name in self.surfaces if name not in self.scans.surfaces]
 
@@ -157,7 +157,7 @@ class Plan:
         modes = MODE_QUANTITIES if surface in self.scans.surfaces else ()
         return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
 
-    def assumed(self, *pairs: str) -> dict[str, list[str]]:
+    def assumptions(self, *pairs: str) -> dict[str, list[str]]:
         """Sentences on assumed properties of the surfaces of some pairs, by pair, without empty ones."""
         library, entries = paper()["surfaces"], self.config["surfaces"]
         by_surface = {name: sentences(name, entries[name], library) for name in self.scans.others}
@@ -293,7 +293,7 @@ class Plan:
 
         entry, names = self.config["surfaces"][surface], ("skewness", "kurtosis")
         if not is_measured(entry):
-            return chosen(nearest_feasible(**chosen(entry, names))._asdict(), names)
+            return subsection(nearest_feasible(**subsection(entry, names))._asdict(), names)
         if entry["heights"] == "measured":
             return None
         known = self.preliminary or preliminary_estimates(self.config)[0]

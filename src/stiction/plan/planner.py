@@ -52,7 +52,7 @@ class Planner:
             self._codes[file] = fingerprint(file, self._remember)
         return self._codes[file]
 
-    def _known(self, key, compute):
+    def _kept(self, key, compute):
         """Value kept under a key, or computed now: plain numbers, strings, lists and dicts."""
         return self._remember_jobs([self._determined_by, key], compute)
 
@@ -68,7 +68,7 @@ class Planner:
     @cached_property
     def rules(self) -> list[dict]:
         """Rules, without the inputs and settings of their jobs."""
-        return self._known("rules", self._rules)
+        return self._kept("rules", self._rules)
 
     def _rules(self):
         """Rules of all declared stages with a file under this configuration."""
@@ -109,7 +109,7 @@ class Planner:
 
     def job(self, rule: str, wildcards: Mapping[str, str]) -> dict:
         """Files and structure of the inputs and settings of a job."""
-        return self._known(f"{rule} {sorted(wildcards.items())}", lambda: self._job(rule, wildcards))
+        return self._kept(f"{rule} {sorted(wildcards.items())}", lambda: self._job(rule, wildcards))
 
     def _job(self, rule, wildcards):
         """Job from the declaration, see `job`."""

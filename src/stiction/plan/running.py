@@ -5,25 +5,25 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from stiction.plan.stage import At, Stage, declared
+from stiction.plan.stage import At, Stage, stages_of
 from stiction.run import storage
 from stiction.run.atomic import save_text
 
 
 def run(job: Any) -> None:
     """Run a job as Snakemake describes it to a script."""
-    (stage,) = (stage for stage in declared(job.params.module) if stage.name == job.rule)
+    (stage,) = (stage for stage in stages_of(job.params.module) if stage.name == job.rule)
     stated = job.params.settings
     settings = stage.converted(stated)
     part = stage.first(settings) if stage.first else {}
-    data = {name: _loaded(job.input.get(name, []), *how, part, stage) for name, how in job.params.inputs.items()}
+    data = {name: _load_input(job.input.get(name, []), *how, part, stage) for name, how in job.params.inputs.items()}
     result = stage.result(data, At(**job.wildcards), settings)
     if stage.save is not None:
         stage.save(result, dict(job.output.items()))
         if template := job.input.get("caption"):
             save_text(_caption(stage, job, template, result.get_label()), job.output.txt)
         return
-    datasets = [path for name, (label, _) in job.params.inputs.items() if label for path in _listed(job.input[name])]
+    datasets = [path for name, (label, _) in job.params.inputs.items() if label for path in _as_list(job.input[name])]
     for dataset, path in zip(result if stage.each else [result], job.output, strict=True):
         storage.save(dataset, path, stage.stage, stated, datasets)
 
@@ -37,17 +37,17 @@ def _caption(stage, job, template, more) -> str:
     return "\n\n".join(filter(None, [stage.shown.title.format(**job.wildcards), *paragraphs, more])) + "\n"
 
 
-def _listed(paths) -> list[str]:
+def _as_list(paths) -> list[str]:
     """Paths of an input as a list. Snakemake gives a single one as text."""
     return [paths] if isinstance(paths, str) else list(paths)
 
 
-def _loaded(paths: Any, label: str | None, keys: Any, part: dict, stage: Stage) -> Any:
+def _load_input(paths: Any, label: str | None, keys: Any, part: dict, stage: Stage) -> Any:
     """Data of an input, structured as it was declared. Paths of files other than datasets stay paths.
 
     ``keys`` are those of a dict, ``True`` for an order, and ``None`` for one dataset.
     """
-    paths = _listed(paths)
+    paths = _as_list(paths)
     read: Iterator = (storage.load(path, label, **part) for path in paths) if label else iter(paths)
     if keys is None:
         return next(read)

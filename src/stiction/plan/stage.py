@@ -18,7 +18,7 @@ from typing import Any, get_args, get_origin, get_type_hints
 
 from stiction.config.cases import CASE, PAIR_IN_AIR, Case, PairInAir
 from stiction.config.units import in_si, without_unit
-from stiction.devices.materials import OF_CONTACT
+from stiction.devices.properties import OF_CONTACT
 from stiction.models import (
     ALTERNATIVES_OF_SCANS,
     BEAM_MODELS,
@@ -98,23 +98,23 @@ def without_wildcards(file: str) -> str:
     return re.sub(r"_?\{\w+\}", "", file)
 
 
-def named(kind: str, file: str) -> str:
+def stage_name(kind: str, file: str) -> str:
     """Name of the stage of a ``table`` or ``figure`` with a file of this name.
 
     Examples
     --------
-    >>> named("figure", "figure_05"), named("figure", "budget_{device}")
+    >>> stage_name("figure", "figure_05"), stage_name("figure", "budget_{device}")
     ('figure_05', 'figure_budget')
     """
     return f"{kind}_{without_wildcards(file).removeprefix(f'{kind}_')}"
 
 
-def titled(name: str, shows: str) -> str:
+def title_of(name: str, shows: str) -> str:
     """Title of a table or figure in the report.
 
     Examples
     --------
-    >>> titled("figure_05", "a force curve"), titled("fit_quality", "errors of Eq. (12)")
+    >>> title_of("figure_05", "a force curve"), title_of("fit_quality", "errors of Eq. (12)")
     ('Figure 5: a force curve', 'Fit quality: errors of Eq. (12)')
     """
     return f"{name.replace('_0', ' ').replace('_', ' ').capitalize()}: {shows}"
@@ -146,6 +146,7 @@ class Stage:
     inputs: Callable[[Any, At], Mapping[str, Names]] = _nothing
     settings: Callable[[Any, At], dict] = _nothing
     kind: type | None = None  #: dataclass to which the settings are converted
+    complete: Callable[[Any, Mapping[str, Any]], Any] | None = None  #: completes the settings by the data of the inputs
     save: Callable[[Any, dict], None] | None = None  #: writes what ``compute`` returns to the files, if no dataset
     label: str = ""  #: name in the label of a dataset, if it differs from that of the rule
     each: Callable[[Any], Sequence[str]] | None = None  #: ends of the datasets that one job writes, by the plan
@@ -201,7 +202,8 @@ class Stage:
 
     def result(self, data: Mapping[str, Any], at: At, settings: Any) -> Any:
         """Compute from the data of the inputs, the wildcards and the converted settings."""
-        known = vars(at) | {"settings": settings, "data": data, "at": at} | data
+        complete = self.complete(settings, data) if self.complete else settings
+        known = vars(at) | {"settings": complete, "data": data, "at": at} | data
         return self.compute(**{name: known[name] for name in signature(self.compute).parameters if name in known})
 
     def patterns(self, plan: Any) -> dict[str, str]:
@@ -211,7 +213,7 @@ class Stage:
         return {end: self.files["dataset"].replace("{each}", end) for end in self.each(plan)}
 
 
-def declared(module: str) -> tuple[Stage, ...]:
+def stages_of(module: str) -> tuple[Stage, ...]:
     """Stages declared by a module."""
     return getattr(import_module(module), "STAGES", ())
 
@@ -234,7 +236,7 @@ def filled(pattern: str, at: At) -> str:
     return pattern.format(**vars(at))
 
 
-def chosen(section: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
+def subsection(section: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
     """Section reduced to the named keys, as far as it contains them."""
     return {name: section[name] for name in names if name in section}
 

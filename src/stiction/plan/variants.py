@@ -7,11 +7,11 @@ from typing import Any
 
 from stiction.config.cases import Case, PairInAir, case_id
 from stiction.config.merging import merged
-from stiction.devices.materials import ELASTIC
+from stiction.devices.properties import ELASTIC
 from stiction.models import SIDES
 from stiction.plan.names import CORRECTED
 from stiction.plan.paper import MOMENTS
-from stiction.plan.stage import chosen
+from stiction.plan.stage import subsection
 
 #: Key that a variant changes, and its section; the source of the spectrum is a key of each surface.
 _CHANGED = {
@@ -64,7 +64,7 @@ class Variants:
         """Description of a surface under a variant, for drawing it."""
         entry, psd = self.config["surfaces"][surface], self._psd_under(variant, surface)
         used = [*MOMENTS, "published_psd"] if psd == "published" else MOMENTS
-        return chosen(entry, used) | {"psd": psd}
+        return subsection(entry, used) | {"psd": psd}
 
     def water(self, pair: str, variant: str) -> dict:
         """Section ``water`` of a pair under a variant."""
@@ -83,20 +83,20 @@ class Variants:
         A measured surface is that of the base: no variant changes its heights or its spectrum.
         """
         pair, scanned = PairInAir(pair).pair, self.plan.scans.surfaces
-        contact = chosen(self.config["contact"], ("distance_step_nm", "every", "asperity"))
-        base = chosen(self.config, ("seed", "sampling")) | {
+        contact = subsection(self.config["contact"], ("distance_step_nm", "every", "asperity"))
+        base = subsection(self.config, ("seed", "sampling")) | {
             "contact": contact | {"samples": self.config["studies"]["variants"]["samples"]},
-            "beam": chosen(self.config["beam"], ["width_um"]),
-            "pairs": {pair: chosen(self.config["pairs"][pair], SIDES)},
+            "beam": subsection(self.config["beam"], ["width_um"]),
+            "pairs": {pair: subsection(self.config["pairs"][pair], SIDES)},
             "surfaces": {name: self.surface(variant, name) for name in self.plan.sides(pair) if name not in scanned},
         }
-        changes = {} if variant == CORRECTED else chosen(self.changes[variant], ("sampling", "contact"))
+        changes = {} if variant == CORRECTED else subsection(self.changes[variant], ("sampling", "contact"))
         identified = sorted(name for name, entry in base["surfaces"].items() if entry["psd"] == "identified")
         return {"base": base, "changes": changes, "identified": identified}
 
     def solids(self, pair: str, variant: str) -> dict:
         """Solids of a pair under a variant: the settings of the contact, given the summits."""
-        sections = merged(chosen(self.config, _SOLIDS), chosen(self.changes[variant], _SOLIDS))
+        sections = merged(subsection(self.config, _SOLIDS), subsection(self.changes[variant], _SOLIDS))
         return self.plan.air.around(pair, sections) | self.plan.materials.settings(pair, ELASTIC, sections["solid"])
 
     def with_summits_of(self, pair: str, variant: str) -> str:

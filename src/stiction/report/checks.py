@@ -29,7 +29,7 @@ from stiction.errors import NotConverged
 from stiction.estimates import jackknife, mean_with_error
 from stiction.models import MOMENT_KEYS, SURFACE_MODELS, surface_model
 from stiction.plan.names import Outcome, by_case, by_model, by_name, by_outcome
-from stiction.plan.stage import File, Stage, chosen, select
+from stiction.plan.stage import File, Stage, select, subsection
 from stiction.report.format import TO_MJ, TO_NM, TO_UM, number, with_error
 from stiction.report.surfaces.tables import surface_statistics
 from stiction.run.atomic import save_text
@@ -411,7 +411,7 @@ def markdown(table: pd.DataFrame) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def _checked(data, settings):
+def _all_checks(data, settings):
     """All checks, passed or failed."""
     nominal = in_si(Cantilevers, {name: settings[name] for name in ("solid", "beam", "pairs")})
     beams = {pair: cantilever(nominal, pair) for pair in settings["pairs"]}
@@ -438,7 +438,7 @@ def _save(checked, paths):
     save_text(markdown(checked), paths["markdown"])
 
 
-def _skewed(plan):
+def _skewed_pairs(plan):
     """Pairs of the paper without a positively skewed surface and with a negatively skewed one.
 
     The claim that negative skewness increases adhesion applies to the pairs of the paper only.
@@ -473,8 +473,10 @@ STAGES = (
         },
         settings=lambda plan, at: (
             {
-                "targets": {name: chosen(plan.config["surfaces"][name], MOMENT_KEYS) for name in plan.described},
-                "skewed": _skewed(plan),
+                "targets": {
+                    name: subsection(plan.config["surfaces"][name], MOMENT_KEYS) for name in plan.surfaces_by_numbers
+                },
+                "skewed": _skewed_pairs(plan),
                 "flooded": {
                     pair: {"water": plan.air.water(pair), "hamaker_constant_zJ": plan.air.hamaker_constant(pair)}
                     for pair in plan.pairs
@@ -485,7 +487,7 @@ STAGES = (
             }
             | sections(plan, *plan.pairs)
         ),
-        compute=_checked,
+        compute=_all_checks,
         save=_save,
         message="Check the results.",
     ),

@@ -72,7 +72,9 @@ def _columns(keys):
     return [f"value_{k}" if k > 1 else "value" for k in range(1, len(keys) + 1)]
 
 
-def compared(table: pd.DataFrame, source: Source, keys: Sequence[str], ends: Mapping[str, Sequence[float]]) -> Table:
+def comparison_table(
+    table: pd.DataFrame, source: Source, keys: Sequence[str], ends: Mapping[str, Sequence[float]]
+) -> Table:
     """Numbers of all copies, those of different values below each other."""
     caption = (
         f"The {source.words.partition(' [')[0]} for values of {' and '.join(keys)}, ± standard error. The copies have "
@@ -85,7 +87,9 @@ def compared(table: pd.DataFrame, source: Source, keys: Sequence[str], ends: Map
 
 
 @styled
-def drawn(table: pd.DataFrame, source: Source, keys: Sequence[str], ends: Mapping[str, Sequence[float]]) -> Figure:
+def comparison_figure(
+    table: pd.DataFrame, source: Source, keys: Sequence[str], ends: Mapping[str, Sequence[float]]
+) -> Figure:
     """Compared number against the values of a key: a line for each humidity, for the middle fraction.
 
     Copies whose keys change together are one beside the other.
@@ -142,8 +146,8 @@ def _stages(source):
         return lambda data, settings: show(pd.read_csv(data["table"]), source, settings["keys"], settings["ends"])
 
     return (
-        table_stage(name, shows, compute=made(compared), **declared),
-        figure_stage(name, shows, "Comparison", caption="compared", compute=made(drawn), **declared),
+        table_stage(name, shows, compute=made(comparison_table), **declared),
+        figure_stage(name, shows, "Comparison", caption="compared", compute=made(comparison_figure), **declared),
     )
 
 

@@ -107,6 +107,17 @@ def as_published(value: float, deviation: float) -> str:
     return MISSING if np.isnan(value) else f"{number(value, 'g')} ± {number(deviation, 'g')}"
 
 
+def with_band(value: float, low: float, high: float) -> str:
+    """Value and the ends of its band as text, – for NaN.
+
+    Examples
+    --------
+    >>> with_band(0.05, 0.031, 0.0774), with_band(*[float("nan")] * 3)
+    ('0.05 (0.031 to 0.0774)', '–')
+    """
+    return MISSING if np.isnan(value) else f"{value:.3g} ({low:.3g} to {high:.3g})"
+
+
 def error_alone(error: float) -> str:
     """Standard error as text, with the same digits as after ± in `with_error`.
 

@@ -14,9 +14,19 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined, meta
 from stiction.plan.stage import File
 
 TEMPLATES = Path(__file__).with_name("templates")
+#: Most characters of a cell that is never broken.
+_LONG = 24
 _ENVIRONMENT = Environment(
     loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
 )
+
+
+def _texts(cells):
+    """Whether each column has cells so long that they are broken and read from the left."""
+    return [bool((column.astype(str).str.len() > _LONG).any()) for _, column in cells.items()]
+
+
+_ENVIRONMENT.filters["texts"] = _texts
 
 
 def rendered(template: str, **values: Any) -> str:

@@ -10,11 +10,13 @@ from matplotlib.figure import Figure
 
 from stiction.report import html
 from stiction.report.format import MISSING
-from stiction.report.style import png
+from stiction.report.style import strips
 
 TEMPLATE, SCRIPT = "page.html", "explorer.js"
-#: Pixels of a page for one inch of a figure, and most rows of a table that is not folded.
-_PIXELS, _ROWS = 120, 30
+#: Most rows of a table that is not folded.
+_ROWS = 30
+#: Sign of a first screen without a number.
+FORBIDDEN = "Do not rely on a number"
 
 
 @dataclass(frozen=True)
@@ -38,14 +40,9 @@ class Section:
         return len(self.cells) > _ROWS
 
     @property
-    def picture(self) -> str:
-        """Figure as PNG in Base64."""
-        return base64.b64encode(png(self.figure)).decode()
-
-    @property
-    def width(self) -> int:
-        """Width of the figure on the page [pixels]."""
-        return round(_PIXELS * self.figure.get_figwidth())
+    def pictures(self) -> list[str]:
+        """Panels and legends of the figure as PNG in Base64."""
+        return [base64.b64encode(strip).decode() for strip in strips(self.figure)]
 
 
 @dataclass(frozen=True)
@@ -58,11 +55,22 @@ class Summary:
     basis: Sequence[str]  #: what the number rests on
     points: Mapping[str, str]  #: what decides, what to change, what to measure
     cells: pd.DataFrame  #: one small table
+    missing: str = "test beams contradict the model, or too few samples bound it"  #: why cells have no number
 
     @property
     def has_missing(self) -> bool:
         """Whether a cell has no number."""
         return bool((self.cells == MISSING).any(axis=None))
+
+    @property
+    def line(self) -> str:
+        """Answer in a line."""
+        return f"{self.sign}: {self.answer}"
+
+    @property
+    def is_forbidden(self) -> bool:
+        """Whether a warning stands in the place of the number, here and wherever the page states one in words."""
+        return self.sign == FORBIDDEN
 
 
 @dataclass(frozen=True)
@@ -89,9 +97,19 @@ class Page:
 
     @property
     def lines(self) -> list[str]:
-        """Answer for a file of text: the first screen in a line, and all sentences."""
-        first = [f"{self.summary.sign}: {self.summary.answer}"] if self.summary else []
-        return [*first, *self.answer]
+        """Answer for a file of text: the first screen in a line, and all sentences unless a warning forbids them."""
+        first = [self.summary.line] if self.summary else []
+        return first if self.is_forbidden else [*first, *self.answer]
+
+    @property
+    def is_forbidden(self) -> bool:
+        """Whether a warning stands in the place of all numbers in words."""
+        return self.summary is not None and self.summary.is_forbidden
+
+    @property
+    def controls(self) -> dict[str, Any]:
+        """Content of its controls, with the warning that stands in the place of their answers, if there is one."""
+        return self.explorer | {"forbidden": self.summary.line if self.is_forbidden else ""}
 
     @property
     def html(self) -> str:

@@ -36,7 +36,7 @@ def rows_of_paper(published: pd.DataFrame, names: Iterable[str]) -> pd.DataFrame
     return published[published.iloc[:, 0].isin(list(names))]
 
 
-def compared(data: Mapping[str, Any], settings: Mapping[str, Any]) -> pd.DataFrame:
+def published_rows(data: Mapping[str, Any], settings: Mapping[str, Any]) -> pd.DataFrame:
     """Published values of the surfaces or pairs equal to the paper's: settings ``rows_of_paper`` of a stage."""
     return rows_of_paper(read(data["published"]), settings["of_paper"])
 

@@ -4,8 +4,10 @@ Figures are drawn in the modules ``figures`` of each subject: functions of datas
 """
 
 import io
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from itertools import islice
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from contextvars import ContextVar
+from itertools import chain, islice
 from pathlib import Path
 from string import ascii_lowercase
 from typing import Any
@@ -18,12 +20,13 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.figure import Figure, FigureBase
+from matplotlib.image import imsave
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 
 from stiction.config.cases import DRY
-from stiction.plan.stage import File, Shown, Stage, named, titled, without_wildcards
+from stiction.plan.stage import File, Shown, Stage, stage_name, title_of, without_wildcards
 from stiction.run.atomic import save_bytes
 
 STYLE = Path(__file__).with_name("stiction.mplstyle")
@@ -41,6 +44,11 @@ _SHORTEST = 0.1
 _BESIDE = 0.2
 #: Largest number of columns of panels side by side.
 _ABREAST = 4
+#: Width of the panels on a page [in]: text of 7 points has 11 pixels on a phone 358 pixels wide.
+PAGE = 3.0
+_ON_A_PAGE = ContextVar("on a page", default=False)
+#: Space around a strip of a figure [in].
+_AROUND = 0.04
 #: Points of an inch; height of the labels below a panel, in points.
 _POINTS, _LABELLED = 72, 24
 #: Mean width of a character and of a handle with its space, in units of the size of the text of a legend.
@@ -89,10 +97,29 @@ def humidity_colours(humidities: Iterable[float]) -> dict[float, np.ndarray]:
     return dict(zip(ordered, shades(len(ordered), 0.25), strict=True))
 
 
+@contextmanager
+def on_a_page() -> Iterator[None]:
+    """Draw figures for a page: all panels below each other, each as wide as a phone."""
+    token = _ON_A_PAGE.set(True)
+    try:
+        yield
+    finally:
+        _ON_A_PAGE.reset(token)
+
+
 def panels(rows: int, columns: int, size: tuple[float, float], **shared) -> tuple[Figure, np.ndarray]:
     """New figure of ``size`` (width, height) [in] and its axes (rows, columns), ``shared`` as in Figure.subplots."""
+    if _ON_A_PAGE.get():
+        return _stacked(rows, columns, size[1], shared.get("height_ratios", [1] * rows))
     figure = Figure(figsize=size, layout="constrained")
     return figure, figure.subplots(rows, columns, squeeze=False, **shared)
+
+
+def _stacked(rows, columns, height, ratios):
+    """New figure of a page with all panels of rows and columns below each other, and its axes (rows, columns)."""
+    figure = Figure(figsize=(PAGE, columns * height), layout="constrained")
+    axes = figure.subplots(rows * columns, 1, squeeze=False, height_ratios=np.repeat(ratios, columns))
+    return figure, axes.reshape(rows, columns)
 
 
 def at_most_double(each: float) -> Callable[[int], float]:
@@ -138,14 +165,15 @@ def blocks_of_columns(
         Part of the figure, which can have a legend of its own, and its ``columns`` and ``lines``.
     """
     many, across = _arrangement(count)
-    figure = Figure(figsize=(width(across), min(height * many * blocks, TALLEST)), layout="constrained")
+    wide, tall = (PAGE, np.inf) if _ON_A_PAGE.get() else (width(across), TALLEST)
+    figure = Figure(figsize=(wide, min(height * many * blocks, tall)), layout="constrained")
     parts = [figure] if blocks == 1 else figure.subfigures(blocks, 1)
     return figure, [(part, *_columns(part, count, rows, shared)) for part in parts]
 
 
 def _arrangement(count):
     """Number of lines of columns of panels, and of columns side by side."""
-    many = -(-count // _ABREAST)
+    many = -(-count // (1 if _ON_A_PAGE.get() else _ABREAST))
     return many, -(-count // many)
 
 
@@ -180,12 +208,26 @@ def legend_below(panel: Axes, entries: Sequence[Artist]) -> None:
 
     It has as many columns as fit below the panel.
     """
-    grid, figure, em = panel.get_gridspec(), panel.figure, rcParams["legend.fontsize"] / _POINTS
-    longest = max(len(entry.get_label()) for entry in entries)
-    columns = int(figure.bbox.width / figure.dpi / grid.ncols / (em * (_CHARACTER * longest + _HANDLE)))
+    grid, figure = panel.get_gridspec(), panel.figure
+    columns = _fitting(figure.bbox.width / figure.dpi / grid.ncols, [entry.get_label() for entry in entries])
     below = panel.transAxes + ScaledTranslation(0, -_LABELLED / _POINTS, figure.dpi_scale_trans)
     place = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": below}
-    panel.legend(handles=entries, ncols=max(1, columns), **place)
+    panel.legend(handles=entries, ncols=columns, **place)
+
+
+def legend_outside(figure: Figure, shown: tuple[Sequence[Artist], Sequence[str]], place: str, most: int) -> None:
+    """Legend of ``shown`` handles and labels above (``upper``) or below (``lower``) all panels of a figure.
+
+    It has as many columns as fit, at most ``most``.
+    """
+    columns = min(most, _fitting(figure.get_figwidth(), shown[1]))
+    figure.legend(*shown, loc=f"outside {place} center", ncols=columns)
+
+
+def _fitting(width, labels):
+    """Number of columns of a legend with some labels that fit into a width [in], at least one."""
+    em, longest = rcParams["legend.fontsize"] / _POINTS, max(map(len, labels), default=0)
+    return max(1, int(width / (em * (_CHARACTER * longest + _HANDLE))))
 
 
 def places(humidities: Iterable[float]) -> dict[float, float]:
@@ -307,12 +349,12 @@ def figure_stage(
     """
     caption = caption or without_wildcards(file)
     return Stage(
-        name=name or named("figure", file),
+        name=name or stage_name("figure", file),
         files={key: f"figures/{file}.{key}" for key in ("pdf", "png", "txt")},
         inputs=lambda plan, at: {**inputs(plan, at), "style": File(STYLE)},
         save=lambda figure, paths: save(figure, paths["pdf"], paths["png"]),
-        shown=Shown(file="png", title=titled(file, shows), category=category, caption=caption),
-        message=f"{titled(file, shows)}.",
+        shown=Shown(file="png", title=title_of(file, shows), category=category, caption=caption),
+        message=f"{title_of(file, shows)}.",
         **declared,
     )
 
@@ -331,7 +373,45 @@ def preload() -> None:
 
 @styled
 def png(figure: Figure) -> bytes:
-    """Content of a PNG file of a figure, for pages with figures inside."""
+    """Content of a PNG file of a figure."""
     content = io.BytesIO()
     _write_png(figure, content)
     return content.getvalue()
+
+
+@styled
+def strips(figure: Figure) -> list[bytes]:
+    """PNG files of the panels of a figure that was drawn for a page, from top to bottom, and of its legends.
+
+    A page arranges them in as many columns as fit.
+    """
+    canvas = FigureCanvasAgg(figure)
+    for panel in figure.axes:
+        for text in (panel.title, panel._left_title, panel.xaxis.label):
+            text.set_wrap(True)
+    canvas.draw()
+    pixels, around = np.asarray(canvas.buffer_rgba()), _AROUND * figure.dpi
+    boxes = [part.get_tightbbox(canvas.get_renderer()) for part in _parts(figure)]
+    found = []
+    for low, high in _joined([(box.y0, box.y1) for box in boxes]):
+        ends = len(pixels) - np.array([high + around, low - around])
+        top, bottom = np.clip(ends, 0, len(pixels)).round().astype(int)
+        content = io.BytesIO()
+        imsave(content, pixels[top:bottom], format="png", pil_kwargs={"optimize": True})
+        found.append(content.getvalue())
+    return found
+
+
+def _parts(figure):
+    """Panels and legends of a figure and its parts."""
+    return [*figure.axes, *figure.legends, *chain.from_iterable(part.legends for part in figure.subfigs)]
+
+
+def _joined(intervals):
+    """Intervals with overlapping ones joined, from the highest to the lowest."""
+    found: list[tuple[float, float]] = []
+    for low, high in sorted(intervals, key=lambda ends: -ends[1]):
+        if found and high > found[-1][0]:
+            low, high = min(low, found[-1][0]), found.pop()[1]
+        found.append((low, high))
+    return found

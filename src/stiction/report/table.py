@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from stiction.plan.stage import Shown, Stage, named, titled
+from stiction.plan.stage import Shown, Stage, stage_name, title_of
 from stiction.report import html
 from stiction.report.format import humidity_text, number
 from stiction.run import markdown
@@ -46,10 +46,9 @@ class Table:
         grid = self.cells.map(markdown.cell).to_markdown(index=False, disable_numparse=True, stralign="right")
         return "\n".join([*map(markdown.literal, self.caption.split("\n")), "", grid, ""])
 
-    @property
-    def html(self) -> str:
-        """Page of caption and cells."""
-        return html.rendered(_TEMPLATE, caption=self.caption, cells=self.cells)
+    def page(self, title: str) -> str:
+        """Page of title, caption and cells, as HTML."""
+        return html.rendered(_TEMPLATE, title=title, caption=self.caption, cells=self.cells)
 
 
 def as_text(frame: pd.DataFrame, columns: Columns) -> pd.DataFrame:
@@ -85,22 +84,23 @@ def with_list(caption: str, sentences: Sequence[str]) -> str:
     return "\n".join([caption, *([""] if sentences else []), *(f"- {sentence}" for sentence in sentences)])
 
 
-def save(table: Table, paths: Mapping[str, str]) -> None:
-    """Write a table as CSV, as Markdown for reading and as HTML for the report: ``paths`` has these three keys."""
-    for key, path in paths.items():
-        save_text(getattr(table, key), path)
+def save(table: Table, paths: Mapping[str, str], title: str) -> None:
+    """Write a table as CSV, as Markdown for reading and as a page: ``paths`` has the keys csv, markdown and html."""
+    save_text(table.csv, paths["csv"])
+    save_text(table.markdown, paths["markdown"])
+    save_text(table.page(title), paths["html"])
 
 
 def table_stage(file: str, shows: str, inputs: Callable, name: str = "", **declared: Any) -> Stage:
     """Stage for a `Table` in files of a name. ``shows`` ends its title in the report."""
     files = {key: f"tables/{file}.{end}" for key, end in (("csv", "csv"), ("markdown", "md"), ("html", "html"))}
-    shown = Shown(file="html", title=titled(file, shows), category="Tables")
-    name, message = name or named("table", file), f"{titled(file, shows)}."
+    shown = Shown(file="html", title=title_of(file, shows), category="Tables")
+    name, message = name or stage_name("table", file), f"{title_of(file, shows)}."
     return Stage(
         name=name,
         files=files,
         inputs=lambda plan, at: {**inputs(plan, at), "templates": html.files(_TEMPLATE)},
-        save=save,
+        save=lambda table, paths: save(table, paths, shown.title),
         shown=shown,
         message=message,
         **declared,

@@ -20,10 +20,8 @@ SILENT |= {
     f"stiction.stages.{name}" for name in ("contact.changes.patches", "contact.changes.table", "devices.contact_names")
 }
 SILENT |= {f"stiction.config.{name}" for name in ("keys", "meetings", "relations", "relations_devices", "validation")}
-#: Fields of a syntax tree that do not affect what the code does.
-_WITHOUT_MEANING = {"kind", "type_comment", "type_ignores"}
 #: Kinds of nodes that may begin with a docstring.
-_DOCUMENTED = {ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef}
+_DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
 def _compute(_determined_by, compute):
@@ -35,7 +33,7 @@ def fingerprint(script: str | Path, remember: Callable[[object, Callable[[], Any
     """Hash a script and every imported module of the package, directly or through other modules.
 
     The hashes do not depend on comments, docstrings and formatting, and the modules in ``SILENT`` are left out, so that
-    such changes rerun nothing. All versions of Python give the same hashes.
+    such changes rerun nothing. Versions of Python print syntax trees differently, so another one reruns everything.
 
     Parameters
     ----------
@@ -84,8 +82,12 @@ def _this_module():
 def _parsed(text):
     """Hash of a module, and the full names of all its imports from the package."""
     tree = ast.parse(text)
-    names = [name for node in _statements(tree) for name in imported(node)]
-    return [hashlib.sha256(canonical(tree).encode()).hexdigest()[:8], names]
+    nodes = [tree, *_statements(tree)]
+    for node in nodes:
+        if isinstance(node, _DOCUMENTED) and ast.get_docstring(node, clean=False) is not None:
+            del node.body[0]
+    names = [name for node in nodes for name in imports_of(node)]
+    return [hashlib.sha256(ast.dump(tree).encode()).hexdigest()[:8], names]
 
 
 def _statements(node):
@@ -96,7 +98,7 @@ def _statements(node):
             yield from _statements(child)
 
 
-def imported(node: ast.AST) -> list[str]:
+def imports_of(node: ast.AST) -> list[str]:
     """Full names imported from the package by a statement, empty for any other node."""
     if isinstance(node, ast.ImportFrom) and (node.module or "").split(".")[0] == "stiction":
         return [f"{node.module}.{alias.name}" for alias in node.names]
@@ -105,51 +107,9 @@ def imported(node: ast.AST) -> list[str]:
     return []
 
 
+@cache
 def files_of(name: str) -> list[Path]:
     """Files of the package behind a full name: a module, or the module with the definition of an object."""
     parts = name.split(".")
     paths = [PACKAGE.joinpath(*parts[1:end]).with_suffix(".py") for end in (None, -1)]
     return [path for path in paths if path != PACKAGE.with_suffix(".py") and path.is_file()]
-
-
-def canonical(node: object) -> str:
-    """Syntax tree without docstrings as text, the same in every version of Python.
-
-    The output of `ast.dump` is not: versions differ in whether they print empty fields and in how they split formatted
-    strings.
-    """
-    if isinstance(node, list):
-        return f"[{','.join(map(canonical, node))}]"
-    if not isinstance(node, ast.AST):
-        return repr(node)
-    kind, fields = type(node), vars(node)
-    if not fields:  # a third of all nodes, such as ``Load()``
-        return f"{kind.__name__}()"
-    if kind in _DOCUMENTED and ast.get_docstring(node, clean=False) is not None:
-        fields = fields | {"body": node.body[1:]}
-    elif kind is ast.JoinedStr:
-        fields = {"values": _joined(node.values)}
-    parts = [
-        f"{name}={canonical(value)}"
-        for name in _meaningful(kind)
-        if (value := fields.get(name)) or value not in (None, [])  # constants may be 0, False or empty
-    ]
-    return f"{kind.__name__}({','.join(parts)})"
-
-
-@cache
-def _meaningful(kind):
-    """Sorted names of the fields of a kind of node with an effect on the code."""
-    return sorted({*kind._fields} - _WITHOUT_MEANING)
-
-
-def _joined(values):
-    """Parts of a formatted string, with adjacent literals joined and empty literals left out."""
-    joined = []
-    for value in values:
-        text = isinstance(value, ast.Constant)
-        if text and joined and isinstance(joined[-1], ast.Constant):
-            joined[-1] = ast.Constant(joined[-1].value + value.value)
-        elif not text or value.value:
-            joined.append(value)
-    return joined

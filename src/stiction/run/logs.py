@@ -41,7 +41,7 @@ def checksum(path: str | Path) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def recorded(folder: str | Path) -> dict[str, str]:
+def recorded_checksums(folder: str | Path) -> dict[str, str]:
     """Checksums of results in the logs of a folder, by file."""
     texts = (path.read_text(encoding="utf-8") for path in sorted(Path(folder).rglob("*.log")))
     return {file: sha for text in texts for sha, file in re.findall(r"^([0-9a-f]{64})  (.+)$", text, re.MULTILINE)}

@@ -41,11 +41,11 @@ def record(path: str | Path, checkout: str | Path, config: dict) -> None:
         If the file cannot be written.
     """
     path = Path(path)
-    runs = [*recorded(path), _run(checkout, config)]
+    runs = [*recorded_runs(path), _run(checkout, config)]
     save_text(json.dumps(runs, indent=1, sort_keys=True) + "\n", path)
 
 
-def recorded(path: Path) -> list[dict]:
+def recorded_runs(path: Path) -> list[dict]:
     """Runs in a record, oldest first. Empty if there is no record.
 
     Raises
@@ -124,12 +124,12 @@ def cpu_name() -> str:
 # In words
 
 
-def started(run: Mapping[str, Any]) -> str:
+def start_of(run: Mapping[str, Any]) -> str:
     """Date and time of the start of a run.
 
     Examples
     --------
-    >>> started({"started": "2026-01-31T23:05:59+00:00"})
+    >>> start_of({"started": "2026-01-31T23:05:59+00:00"})
     '2026-01-31 23:05 UTC'
     """
     return f"{datetime.datetime.fromisoformat(run['started']):%Y-%m-%d %H:%M %Z}"
@@ -148,6 +148,6 @@ def code_of(run: Mapping[str, Any]) -> Iterator[str]:
 
 def last_run(record: Path) -> list[str]:
     """Say the time and code of the last run of a record behind a result."""
-    run = recorded(record)[-1]
+    run = recorded_runs(record)[-1]
     more = "Machine, libraries and configuration of this run are in results/provenance.json."
-    return [f"Made by the run of {started(run)}.", *(f"{sentence}." for sentence in code_of(run)), more]
+    return [f"Made by the run of {start_of(run)}.", *(f"{sentence}." for sentence in code_of(run)), more]

@@ -25,7 +25,7 @@ def require_writable(record: str | Path) -> None:
         ) from error
 
 
-def reserved(lock: str | Path) -> IO[str]:
+def reserve(lock: str | Path) -> IO[str]:
     """Lock the folder of a run by an open file. The lock ends with the process, or when the file is closed.
 
     Raises

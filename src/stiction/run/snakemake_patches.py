@@ -47,13 +47,13 @@ def fork_jobs() -> bool:
     script = _part("script", "PythonScript")
     start = getattr(script, "execute_script", None)
     if sys.platform != "linux":  # the libraries of macOS do not survive a fork
-        return _refused("forks of loaded libraries are safe on Linux only")
+        return _without_forks("forks of loaded libraries are safe on Linux only")
     if start is None or list(inspect.signature(start).parameters) != ["self", "fname", "edit"]:
-        return _refused("this version of Snakemake starts scripts in a way not known here")
+        return _without_forks("this version of Snakemake starts scripts in a way not known here")
     try:
         server = Server(environment(1, tempfile.gettempdir()))
     except ConnectionError as error:
-        return _refused(str(error))
+        return _without_forks(str(error))
 
     def execute_script(job, fname, edit=False):
         """Run the script of a job as a fork, or as Snakemake does."""
@@ -62,14 +62,14 @@ def fork_jobs() -> bool:
                 return _run(server, fname)
             except BrokenPipeError:
                 script.execute_script = start
-                _refused("the server of jobs was stopped")
+                _without_forks("the server of jobs was stopped")
         return start(job, fname, edit)
 
     script.execute_script = execute_script
     return True
 
 
-def _refused(reason):
+def _without_forks(reason):
     """Print why jobs do not start as forks."""
     logger.info(f"Each job starts an interpreter of its own, which takes longer: {reason}.")
     return False

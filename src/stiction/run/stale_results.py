@@ -13,7 +13,7 @@ from typing import Any
 
 from stiction.run import labels
 from stiction.run.atomic import DataError
-from stiction.run.logs import checksum, recorded
+from stiction.run.logs import checksum, recorded_checksums
 
 
 def foreign(
@@ -80,7 +80,7 @@ def damaged(logs: str | Path, remember: Callable[[object, Callable[[], Any]], An
     Files that are missing and files without a checksum are left out. A `stiction.run.disk_cache.DiskCache` keeps the
     checksums of files that have not changed.
     """
-    for path, written in recorded(logs).items():
+    for path, written in recorded_checksums(logs).items():
         file = Path(path)
         if file.is_file() and remember([_state(file), "checksum"], partial(checksum, file)) != written:
             yield path, "is not as its job wrote it"

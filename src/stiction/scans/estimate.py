@@ -122,7 +122,7 @@ def estimate(
     farthest = LARGEST_DISTANCE_OF_SCANS if nearest is None else np.inf
     residuals = []
     for number in range(_ROUNDS):
-        drawn = _drawn(
+        drawn = _drawn_scans(
             inspection, model, lambda k, number=number: stream(seed, "estimate", surface, number, k), model_scans
         )
         of_sizes, heights = _unbiased(inspection, drawn, model)
@@ -183,7 +183,7 @@ def _unbiased(inspection, drawn, model):
     return of_sizes, inspection.averaged([maps.quantiles - part.levelled_off.mean(axis=0) for maps, part in counted])
 
 
-def _drawn(inspection, model, rng, fewest):
+def _drawn_scans(inspection, model, rng, fewest):
     """Draw model scans of every size. ``rng(k)`` gives the random numbers of number k of all."""
     counts = [max(fewest, _PER_SCAN * len(maps.names)) for maps in inspection.sizes]
     first = np.cumsum([0, *counts])

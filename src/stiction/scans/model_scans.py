@@ -55,16 +55,16 @@ class SurfaceModel:
     @cached_property
     def covariance(self) -> np.ndarray:
         """Covariance of (ln rms, skewness, kurtosis) of one scan, (3, 3)."""
-        return covariance(self.translation, self.underlying, self.frame.size, self._known)
+        return covariance(self.translation, self.underlying, self.frame.size, self._longest_lag)
 
     @cached_property
     def overlaps(self) -> np.ndarray:
         """Integrals I_1 … I_24 of `stiction.scans.moments.overlap_integrals`, (24,) [-]."""
         terms = len(self.translation.hermite_coefficients)
-        return overlap_integrals(self.underlying, self.frame.size, self._known, terms)
+        return overlap_integrals(self.underlying, self.frame.size, self._longest_lag, terms)
 
     @property
-    def _known(self):
+    def _longest_lag(self):
         """Longest lag of a known autocorrelation [m]."""
         return self._points * min(self.frame.pixel) / 2
 

@@ -1,6 +1,6 @@
 """Files of microscopes, read by SurfaceTopography and `stiction.formats`: units, axes, undefined points, and channel.
 
-The library is imported only here, and only when a file is read. It regards every channel with a length, and some
+The library is imported only when a file is read. It regards every channel with a length, and some
 without, as heights; the channel is therefore selected by name and unit. What the library prints, logs or raises never
 reaches the user: every unusable file is a `stiction.errors.ScanError`.
 """
@@ -10,6 +10,7 @@ import io
 import logging
 import re
 import warnings
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -69,7 +70,7 @@ def read(path: str | Path, source: Source | None = None) -> ScanFile:
     """
     path = Path(path)
     _refuse_empty(path)
-    with _silenced():
+    with silenced():
         library = _library(path.name)
         try:
             return _read(library, path, source or Source())
@@ -83,7 +84,7 @@ def read(path: str | Path, source: Source | None = None) -> ScanFile:
 def _read(library, path, source):
     """`ScanFile` of a non-empty file."""
     name, file = path.name, content_of(path.name, str(path), path.read_bytes())
-    with _opened(library, file) as reader:
+    with _reader_of(library, file) as reader:
         if not reader.channels:
             raise ScanError(
                 name,
@@ -96,7 +97,7 @@ def _read(library, path, source):
         if reader.format() in (_LINES, _POINTS):
             _require_all_lines(library, file, reader.format(), channel)
         unit, size = _unit(channel, source, name), _size(channel, source, name)
-        heights = UNITS[_delivered(channel, unit)] * _heights(channel, name)
+        heights = UNITS[_delivered_unit(channel, unit)] * _heights(channel, name)
         notes += _instrument_levelling(channel, name) + _note(channel, name)
         identifier = channel.channel_id
     if source.fast_axis == "y":
@@ -127,7 +128,7 @@ def _refuse_empty(path):
 
 
 @contextlib.contextmanager
-def _silenced():
+def silenced() -> Iterator[None]:
     """Suppress warnings, log records and output of libraries."""
     before = logging.root.manager.disable
     logging.disable(logging.CRITICAL)
@@ -164,7 +165,7 @@ def _library(name):
     )
 
 
-def _opened(library, file):
+def _reader_of(library, file):
     """Reader of a file, first by its ending. Refuses a file of no known format."""
     if own := own_reader(file):
         return own
@@ -199,11 +200,11 @@ def _error_of(kind, file):
 
 def _unreadable(library, name, error):
     """Refusal of a file in one sentence, with the reason of the library and a way out."""
-    reason = f"cannot be read as any known format, or is damaged{_quoted(library, error)}"
+    reason = f"cannot be read as any known format, or is damaged{_first_line_of(library, error)}"
     return ScanError(name, "files", f"{reason}; open it in Gwyddion and save it as .gwy")
 
 
-def _quoted(library, error):
+def _first_line_of(library, error):
     """First line of an error of the library itself, in brackets, if it is short."""
     message = str(error) if isinstance(error, library.error) else ""
     line = next(iter(message.strip().splitlines()), "").rstrip(". ")
@@ -222,7 +223,7 @@ def _require_all_lines(library, file, kind, channel):
             f"has {shown!r} in line {line}, must be a number, or nan where no height is defined",
         )
     if kind == _LINES and channel.nb_grid_pts[0] <= COORDINATES:
-        reason = _quoted(library, _error_of(library.formats[_POINTS], file))
+        reason = _first_line_of(library, _error_of(library.formats[_POINTS], file))
         raise ScanError(file.label, "files", f"lists points that are on no regular grid{reason}; a map is needed")
 
 
@@ -239,7 +240,7 @@ def _unit(channel, source, name):
     return stored or source.height_unit
 
 
-def _delivered(channel, unit):
+def _delivered_unit(channel, unit):
     """Unit of the heights from the library. It converts lengths to the lateral unit, if that is a length."""
     return channel.unit if channel.unit in STORED else unit
 
@@ -271,7 +272,7 @@ def _require_some_unit(channel, size, name):
 
 
 def _heights(channel, name):
-    """Heights of a channel, (n_x, n_y) float64, NaN where undefined, in the unit of `_delivered`."""
+    """Heights of a channel, (n_x, n_y) float64, NaN where undefined, in the unit of `_delivered_unit`."""
     size = None if channel.physical_sizes is not None else channel.nb_grid_pts
     topography = channel.topography(physical_sizes=size)
     if not topography.is_uniform:

@@ -246,7 +246,7 @@ def fit(rings: Rings, within: Reach) -> WhittleFit:
     plateau = np.average(density / relative, weights=weight)
     chi2, freedom = float(np.sum(known.modes * (density / (plateau * relative) - 1) ** 2)), len(wavenumber) - 3
     scale = max(chi2 / freedom, 1.0)
-    bend = _shown(objective, (corner, slope), bounds[0], weight.sum() / (scale * NON_GAUSSIAN**2))
+    bend = _corner_of_rings(objective, (corner, slope), bounds[0], weight.sum() / (scale * NON_GAUSSIAN**2))
     hidden = [_second_moment(value, *ends) for value, ends in ((corner, bounds[0]), (slope, _SLOPES[[-1, 0]]))]
     covariance = _covariance(scale, _information(wavenumber, weight, bend, slope), hidden)
     return WhittleFit(float(plateau), float(np.exp(corner)), float(slope), covariance, chi2, freedom)
@@ -268,7 +268,7 @@ def shape(wavenumber: np.ndarray, log_corner: float, slope: float) -> np.ndarray
     return np.maximum(wavenumber / np.exp(log_corner), 1.0) ** slope
 
 
-def _shown(objective, best, ends, weight):
+def _corner_of_rings(objective, best, ends, weight):
     """Logarithm of the corner that the rings show, or an end of its range if, but for chance, the fit there is as good.
 
     Without a plateau the rings show a slope alone, without a power law neither.

@@ -2,7 +2,8 @@
 
 The numbers are those of ``numpy.random.Generator.standard_normal``, bit for bit, in a quarter of its time: the
 ziggurat of G. Marsaglia and W. W. Tsang (J. Stat. Softw. 5 (8), 2000) with 256 layers, compiled together with the
-generator SFC64 (C. Doty-Humphrey, PractRand) that `stiction.streams` uses.
+generator SFC64 (C. Doty-Humphrey, PractRand) that `stiction.streams` uses. The jobs of the paper draw two times 46 200
+strips, for which NumPy's would take a minute more, 8 % of their time.
 """
 
 from math import erfc

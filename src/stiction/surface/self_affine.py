@@ -11,8 +11,6 @@ definition for random surfaces.
 """
 
 import numpy as np
-from scipy.optimize import brentq
-from scipy.special import j0, j1
 
 from stiction.surface.spectrum import CutoffSelfAffine
 
@@ -62,6 +60,8 @@ def correlation_at(lag: float, slope: float, corner: float, cutoff: float) -> fl
     As `stiction.surface.spectrum.autocovariance`, for a corner at any fraction of the cut-off: the plateau is
     integrated in closed form, the power law over ln ζ.
     """
+    from scipy.special import j0, j1  # takes 0.2 s, and a plan needs only the numbers of spectra
+
     shape, end = spectrum(1e-9, slope, corner, cutoff), min(cutoff, max(_FAR / lag, corner))
     places = np.linspace(np.log(corner), np.log(end), _FEWEST + int(np.log(end / corner) * end * lag / _STEP))
     zeta = np.exp(places)
@@ -78,6 +78,8 @@ def corner_of(correlation_length: float, slope: float, cutoff: float) -> float:
     ValueError
         If roughness below the cut-off [rad m⁻¹] is correlated over more than this length.
     """
+    from scipy.optimize import brentq  # takes 0.2 s more
+
     largest = cutoff * (1 - 1e-9)  # a corner is below the cut-off
 
     def excess(corner):

@@ -13,8 +13,6 @@ from functools import cache
 from typing import Protocol
 
 import numpy as np
-from scipy import fft
-from scipy.special import j0
 
 from stiction.rounding import is_at_most
 
@@ -186,6 +184,8 @@ def autocovariance(spectrum: Spectrum, lag: np.ndarray, panels: int = 4000, end:
     (n,) array
         In the unit of the heights squared, [m²].
     """
+    from scipy.special import j0  # takes 0.2 s, and a plan needs only the numbers of spectra
+
     zeta = np.linspace(0, min(spectrum.cutoff, end), panels + 1)
     weights = np.full(panels + 1, zeta[1])
     weights[[0, -1]] /= 2
@@ -246,7 +246,7 @@ def ring_means(values: np.ndarray, inside: np.ndarray | None = None) -> np.ndarr
 @cache
 def _rings(n):
     """Number of the ring of every wave number of an FFT of n x n points, (n²,)."""
-    axis = fft.fftfreq(n, 1 / n)
+    axis = np.fft.fftfreq(n, 1 / n)
     return np.rint(np.hypot(axis[:, None], axis)).astype(int).ravel()
 
 

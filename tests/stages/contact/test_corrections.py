@@ -14,10 +14,8 @@ from stiction.contact.environment import Water
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.stages.beams import variant_beams
-from stiction.stages.contact import contact, corrections, curves, full_contact
-from stiction.stages.contact import model_error as stage_model_error
-from stiction.stages.devices import model_error as device_model_error
-from stiction.stages.devices import stoppers
+from stiction.stages.contact import contact, corrections, curves, full_contact, pair_model_error
+from stiction.stages.devices import device_model_error, stoppers
 from stiction.stages.devices.opening import EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam
 from stiction.stages.laws import fit, forces
 
@@ -123,9 +121,9 @@ def test_surfaces_without_condensation_have_the_ratios_of_dry_air_at_any_humidit
 
 def test_the_error_in_dry_air_is_that_of_its_strips_and_changes_no_humid_one():
     dry = study(energy=(0.5, 0.6, 1.0)).assign_coords(humidity=[0, 0.44, 0.92])
-    at = stage_model_error.Settings((0, 0.3, 0.44, 0.6, 0.92))
-    found = stage_model_error.compute(dry, at)
-    alone = stage_model_error.compute(dry.isel(humidity=[1, 2]), at)
+    at = pair_model_error.Settings((0, 0.3, 0.44, 0.6, 0.92))
+    found = pair_model_error.compute(dry, at)
+    alone = pair_model_error.compute(dry.isel(humidity=[1, 2]), at)
     assert float(found.energy_ratio[0]) == pytest.approx(0.5)
     assert float(found.energy_ratio_error[0]) < 1e-9
     assert np.isnan(found.energy_ratio[1])
@@ -137,7 +135,7 @@ def test_the_error_in_dry_air_is_that_of_its_strips_and_changes_no_humid_one():
 
 
 def test_the_error_of_a_pair_is_interpolated_between_the_computed_humidities_and_marked():
-    found = stage_model_error.compute(study(), stage_model_error.Settings((0.92, 0.55, 0.44, 0.67, 0.4)))
+    found = pair_model_error.compute(study(), pair_model_error.Settings((0.92, 0.55, 0.44, 0.67, 0.4)))
     assert found.humidity.values.tolist() == [0.4, 0.44, 0.55, 0.67, 0.92]
     assert found.interpolated.values.tolist() == [True, False, True, False, False]
     assert np.isnan(found.energy_ratio[0])
@@ -229,11 +227,11 @@ def test_gaussian_surfaces_and_tips_are_not_corrected():
 
 def test_a_stopper_is_corrected_by_the_ratio_of_the_forces():
     wanted = stoppers.Settings(1, WATER, (6e-6, 1.5e-6), 2e-5, (0.67,), (0.5, 0.8))
-    error = stage_model_error.compute(study(), stage_model_error.Settings(HUMIDITIES))
-    full = corrections.corrected(wanted, {"model_error": error})
+    error = pair_model_error.compute(study(), pair_model_error.Settings(HUMIDITIES))
+    full = corrections.with_correction(wanted, {"model_error": error})
     base, found = (stoppers.compute(small.contact_of_pair(), one) for one in (wanted, full))
     assert_allclose(found.pull_off, 0.95 * base.pull_off)
-    assert corrections.corrected(wanted, {}) is wanted
+    assert corrections.with_correction(wanted, {}) is wanted
 
 
 def test_the_contact_itself_does_not_know_of_the_correction():

@@ -37,20 +37,20 @@ def test_chunks_contain_every_sample_once_in_order_and_are_nearly_equal(samples,
 
 def test_samples_do_not_depend_on_the_chunks():
     chunks = [part(contact.chunk(SAMPLES, number, 3)) for number in range(3)]
-    xr.testing.assert_identical(contact.joined(iter(chunks), SETTINGS), small.contact_of_pair())
+    xr.testing.assert_identical(contact.join_chunks(iter(chunks), SETTINGS), small.contact_of_pair())
 
 
 def test_chunks_that_are_missing_repeated_or_of_other_distances_are_refused():
     first, second = (part(contact.chunk(4, number, 2)) for number in range(2))
     with pytest.raises(ValueError, match="the chunk after 2 of 4 samples does not continue the contact"):
-        contact.joined([first, first], FEW)
+        contact.join_chunks([first, first], FEW)
     with pytest.raises(ValueError, match="the chunk after 0 of 4 samples does not continue the contact"):
-        contact.joined([second, first], FEW)
+        contact.join_chunks([second, first], FEW)
     with pytest.raises(ValueError, match="the chunks contain 2 of 4 samples"):
-        contact.joined([first], FEW)
+        contact.join_chunks([first], FEW)
     shifted = second.isel(height=slice(1, None))
     with pytest.raises(ValueError, match="the chunk after 2 of 4 samples does not continue the contact"):
-        contact.joined([first, shifted], FEW)
+        contact.join_chunks([first, shifted], FEW)
 
 
 def test_the_first_samples_are_those_computed_alone():

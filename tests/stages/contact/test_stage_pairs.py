@@ -23,7 +23,7 @@ def datasets(name):
     """Datasets of stages heights and spectrum of a surface."""
     of = SURFACES[name]
     found = heights.compute(heights.Settings(of.rms, of.skewness, of.kurtosis))
-    return found, spectrum.compute(found, None, spectrum.Settings(SPACING, of.spectrum))
+    return found, spectrum.compute(found, spectrum.Settings(SPACING, of.spectrum))
 
 
 def pair():

@@ -85,7 +85,7 @@ def wanted(device=C1, shares=(1e-2, 1e-3)):
 
 def safe_without_tips(device=R1, **more):
     """Dataset of stage safe_lengths of a bridge."""
-    return safe_lengths.compute(lognormal_cracks(device, **more), None, wanted(device))
+    return safe_lengths.compute(lognormal_cracks(device, **more), wanted(device))
 
 
 def smooth_tips(energies):
@@ -96,7 +96,7 @@ def smooth_tips(energies):
 def safe_with_tips(energies, **more):
     """Dataset of stage safe_lengths of a cantilever whose tips have given adhesion energies (n,) [J m⁻²]."""
     with patch.object(curves, "tip_forces", lambda *_: smooth_tips(energies)):
-        return safe_lengths.compute(lognormal_cracks(number=len(energies), **more), xr.Dataset(), wanted())
+        return safe_lengths.compute(lognormal_cracks(number=len(energies), **more), wanted(), xr.Dataset())
 
 
 def rng(*address):

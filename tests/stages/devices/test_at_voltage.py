@@ -53,8 +53,8 @@ def of_device(device, voltage=None):
     cracks, own = lognormal_cracks(device), replace(wanted(device), water=at(voltage or 0.0))
     with patch.multiple(curves, vectors=vectors, tip_forces=tip_forces):
         if voltage is None:
-            return safe_lengths.compute(cracks, tips, wanted(device))
-        return safe_lengths.compute_at_voltage(xr.Dataset(), cracks, tips, own)
+            return safe_lengths.compute(cracks, wanted(device), tips)
+        return safe_lengths.compute_at_voltage(xr.Dataset(), cracks, own, tips)
 
 
 @pytest.mark.parametrize("device", [C1, R1], ids=["cantilever", "bridge"])

@@ -11,7 +11,7 @@ from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.devices.budget import Budget
-from stiction.devices.materials import OF_CONTACT
+from stiction.devices.properties import OF_CONTACT
 from stiction.estimates import jackknife
 from stiction.models import MOMENT_QUANTITIES
 from stiction.plan.plan import Plan

@@ -118,12 +118,12 @@ def test_few_sizes_are_all_computed(count):
 def computed(device, thicknesses, gaps, tips=None, shares=(1e-2,)):
     wanted = chart.Settings(2021, WATER, 0.67, device, 200, shares, thicknesses, gaps)
     with patch.object(curves, "tip_forces", lambda *_: smooth_tips(tips)):
-        return chart.compute(met(device), None if tips is None else xr.Dataset(), wanted), wanted
+        return chart.compute(met(device), wanted, None if tips is None else xr.Dataset()), wanted
 
 
 def alone(device, wanted, tips=None):
     """Safe lengths of a device by shape and share, as in the stages cracks and safe_lengths."""
-    model = opening.fitted(VECTORS, 1.2 * VECTORS[:, 1].max(), Truncation(3, 0.001))
+    model = opening.fit_chaos(VECTORS, 1.2 * VECTORS[:, 1].max(), Truncation(3, 0.001))
     address = opening.addresses(settings())
     laws = draw_laws(model, opening.LAWS, address("mesh"))
     ground = device.opening.resolved(device, laws)
@@ -133,7 +133,7 @@ def alone(device, wanted, tips=None):
     opens, on_mean = device.opening, partial(device.opening.length_on_mean, beam=device.beam)
     surfaces = sampled_surfaces(sampled, opens.contribution, on_mean, opens.uniform(ground[0], sampled))
     beams = sticking.Released(device, lengths, np.inf, foundation_length(ground[0], laws), surfaces, held)
-    found = sticking.by_shape(beams, wanted, sticking.known(device, WATER, 0.67, np.inf))
+    found = sticking.by_shape(beams, wanted, sticking.lengths_without_samples(device, WATER, 0.67, np.inf))
     return [[one.length for one in row] for row in found.values()]
 
 

@@ -31,7 +31,7 @@ def stopper():
 
 @pytest.mark.parametrize(("stated", "unit"), [(STATED, 1e-6), (SPRING, 0.5e-6)])
 def test_a_stopper_has_at_every_humidity_the_forces_or_stiffnesses_of_its_stage(stopper, stated, unit):
-    grid = explorer.of_stopper(SECTION | stated, stopper, {}).grid
+    grid = explorer.stopper_view(SECTION | stated, stopper, {}).grid
     key = next(iter(stated))
     assert grid.start[key] == pytest.approx(1e-6 / unit)
     assert grid.start["humidity"] == float(stopper.humidity[1]), "the stated one that holds most"
@@ -50,7 +50,7 @@ def test_a_stopper_with_few_patches_has_fractions_and_no_sufficient_force():
     few = FORCES[:60]
     settings = replace(SETTINGS, restoring_force=1e-6)
     found = stoppers.layout(settings, np.stack([few, 2 * few]), AXIS, FACTORS[:, None] * few)
-    grid = explorer.of_stopper(SECTION | STATED, found, {}).grid
+    grid = explorer.stopper_view(SECTION | STATED, found, {}).grid
     assert np.isnan(grid.safe_size(grid.start))
     assert 0 < grid.stuck(grid.start | {"humidity": 0.5, "restoring_force_uN": 1.5}).share < 1
 
@@ -61,7 +61,7 @@ def test_a_tilted_stopper_is_answered_at_its_tilts_and_humidities_alone(stopper)
     factors = np.array([1, 0.5, 0.25])
     pull_off = factors[:, None, None] * np.stack([FORCES, 2 * FORCES])
     tilted = stoppers.layout_tilted(settings, pull_off, np.array([3e-4, 5e-4]))
-    view = explorer.of_tilted("S1", SECTION | STATED, tilted, stopper)
+    view = explorer.tilted_view("S1", SECTION | STATED, tilted, stopper)
     tilt, humidity = view.grid.axes
     assert_allclose(np.tan(np.radians(tilt.values)), slopes, rtol=1e-5)
     for value, factor in zip(tilt.values, factors, strict=True):
@@ -84,7 +84,7 @@ def test_a_stopper_at_a_voltage_has_the_fractions_of_its_stage_at_any_other_one(
     pull = np.quantile(curves.pull_offs(contact, 0.88, at(2.0)), 0.7)
     own = stoppers.Settings(1, at(2.0), (1.5e-6, 6e-6), 9e-12 * pull, (0.88, 0.67), (0.85, 0.9))
     biased = stoppers.compute_at_voltage(contact, own)
-    view = voltage_views.of_stopper("S1", SECTION | STATED | OXIDE | {"voltage_V": 2}, biased)
+    view = voltage_views.stopper_view("S1", SECTION | STATED | OXIDE | {"voltage_V": 2}, biased)
     patches, shares = biased.sizes["sample"], []
     assert view.grid.start["voltage_V"] == 2
     for humidity in own.humidities:
@@ -109,19 +109,19 @@ def test_the_voltage_that_frees_a_stopper_is_that_of_its_life(stopper):
     found = biased(stopper, potentials)
     of = replace(LIFE, restoring_force=1e-6, voltage=5.0, offset=-0.5, dielectric=Dielectric(100e-9, 4.0))
     answers = {one.name: one for one in stopper_answers(stopper, of, found)}
-    grid = voltage_views.of_stopper("S1", SECTION | STATED | OXIDE, found).grid
+    grid = voltage_views.stopper_view("S1", SECTION | STATED | OXIDE, found).grid
     assert grid.start["share"] == 1e-3, "the smallest one with a bound"
     assert grid.safe_size(grid.start) == pytest.approx(answers["freeing_voltage"].high, rel=1e-9)
-    assert explorer.of_stopper(SECTION | STATED, stopper, {}).grid.share.setting == "", "a stopper has no key of it"
+    assert explorer.stopper_view(SECTION | STATED, stopper, {}).grid.share.setting == "", "a stopper has no key of it"
 
 
 def test_no_voltage_beyond_breakdown_and_none_of_a_spring_that_is_too_weak_has_an_answer(stopper):
-    strong = voltage_views.of_stopper(
+    strong = voltage_views.stopper_view(
         "S1", SECTION | STATED | OXIDE, biased(stopper, np.stack([2000 * FORCES / 1e-6] * 2))
     )
     assert strong.grid.size.values[1] <= 1.05 * 99.5
     assert np.isnan(strong.grid.stuck(strong.grid.start).share)
-    weak = voltage_views.of_stopper("S1", SECTION | STATED | OXIDE, biased(stopper, np.zeros((2, len(FORCES)))))
+    weak = voltage_views.stopper_view("S1", SECTION | STATED | OXIDE, biased(stopper, np.zeros((2, len(FORCES)))))
     assert np.isnan(weak.grid.safe_size(weak.grid.start))
     assert (weak.grid.stuck(weak.grid.start).beyond, weak.grid.stuck(weak.grid.start).share > 0.99) == (1, True)
     assert "does not free them without voltage" in weak.words["none"]

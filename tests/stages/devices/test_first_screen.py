@@ -1,17 +1,22 @@
 """The first screen of a page has one answer, which agrees with the datasets, or the warning that forbids it."""
 
+import re
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
+from drawn_curves import etched, law_of, rough
 from test_pages import CANTILEVER, STOPPER, of_length, safe
-from test_tables_budget import BUDGETS, STOPPERS
+from test_tables_budget import BUDGETS, STOPPERS, stopper_dataset
 
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.devices import limits
 from stiction.report.devices import first_screen, pages, sentences
 from stiction.report.page import Page, Section, Summary
+from stiction.report.process.section import with_process
 from stiction.stages.devices.opening import EITHER, S_SHAPE
 from stiction.stages.devices.stoppers import shares_stuck
 
@@ -42,6 +47,16 @@ def test_a_stated_length_is_judged_by_its_own_share(length, sign):
     share, low, high = 100 * dataset.stuck_at_length.sel(shape=EITHER).values
     assert f"{share:.3g} % stick ({low:.3g} to {high:.3g} %)" in shown.answer
     assert shown.cells.iloc[0, -1] == f"{share:.3g} ({low:.3g} to {high:.3g})"
+
+
+def test_dry_air_is_in_words():
+    forces = stopper_dataset().assign_coords(humidity=[0.0, 0.67])
+    stopped = first_screen.stopper_screen(STOPPER, forces.assign(restoring_force=1e-9), {}, [])
+    released = first_screen.beam_screen(CANTILEVER | {"length_um": 400}, {0.0: of_length(400e-6)}, {}, [])
+    for shown in (stopped, released):
+        assert shown.answer.endswith(" %) in dry air.")
+        assert shown.points["What decides"].startswith("Dry air, ")
+    assert any(text.startswith("Estimate in dry air: ") for text in released.basis)
 
 
 def test_the_uncertainty_of_the_measurements_shortens_the_answer_as_in_words():
@@ -101,6 +116,57 @@ def test_test_beams_that_nothing_explains_forbid_the_number(p_value, forbidden):
     ):
         assert (shown.sign == "Do not rely on a number") == forbidden
         assert ("rely neither on the update" in shown.answer) == forbidden
+
+
+TIPS = {(0.67, "tip"): BUDGETS["C1", 0.67, "tip"]}
+
+
+def beam(kind, warnings, **given):
+    """Page of a cantilever or bridge of a length that is too long, with a warning about all shapes."""
+    own = {"length_um": 800} if kind == "cantilever" else {"residual_stress_MPa": 10}
+    section = CANTILEVER | {"kind": kind} | own
+    lengths = {rh: of_length(800e-6) if kind == "cantilever" else safe("bridge") for rh in (0.44, 0.67)}
+    shapes = lengths[0.67]["shape"].values
+    said = {("C1", humidity, str(shape)): warnings for humidity in lengths for shape in shapes}
+    return pages.beam_page("C1", section, lengths, {}, TIPS if kind == "cantilever" else {}, said, **given)
+
+
+def stopper(warnings, **given):
+    """Page of a stopper."""
+    return pages.stopper_page("S1", STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, warnings, **given)
+
+
+def processed(warnings):
+    """Page of a stopper over a process."""
+    curve, settings = etched()
+    data = {"process": curve, "process_settings": settings, "process_laws": [law_of()]}
+    return with_process(stopper(warnings), "D", data)
+
+
+KINDS = {
+    "cantilever": lambda warnings: beam("cantilever", warnings),
+    "bridge": lambda warnings: beam("bridge", warnings),
+    "stopper": stopper,
+    "roughness": lambda warnings: stopper(warnings, roughness=rough()),
+    "process": processed,
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_warning_that_forbids_a_number_stands_in_the_place_of_all_numbers_in_words(kind):
+    open_, shut = (replace(KINDS[kind](one), more=["More."], explorer={"name": kind}) for one in (["Steep."], [UNSAFE]))
+    assert len(open_.lines) > 1
+    assert shut.summary.answer.endswith(UNSAFE)
+    assert shut.lines == [f"Do not rely on a number: {shut.summary.answer}"]
+    assert (open_.controls["forbidden"], shut.controls["forbidden"]) == ("", shut.lines[0])
+    numbers = shut.summary.cells.iloc[:, 1:]
+    assert numbers.size
+    assert (numbers == "–").all(axis=None)
+    first = shut.html.partition('class="answer')[2].partition('class="device"')[0]
+    assert "– means no number: the warning above forbids to rely on one." in first
+    assert not re.findall(r"\d µ[mN]", re.sub(r"<th>[^<]*</th>", "", first))
+    assert ("What to change" in open_.summary.points, "What to change" in shut.summary.points) == (True, False)
+    assert ("More in words" in open_.html, "More in words" in shut.html) == (True, False)
 
 
 def test_a_number_comes_with_the_error_of_the_model_or_says_that_it_is_not_stated():

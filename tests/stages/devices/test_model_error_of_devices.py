@@ -14,7 +14,7 @@ from stiction.report.devices import pages
 from stiction.report.devices import tables as tables_devices
 from stiction.report.model_error import sentences as model_errors
 from stiction.stages.contact import full_contact
-from stiction.stages.devices import model_error
+from stiction.stages.devices import device_model_error
 from stiction.stages.devices.opening import EITHER, FORCE, S_SHAPE
 
 COLUMN = "model error [%]"
@@ -24,8 +24,8 @@ def error(shapes, factor, computed=(0.44,), **changed):
     """Errors at two humidities; that of the last one of two end states is not known."""
     values = np.tile(np.array(factor, float), (len(shapes), 1))
     values[1:] = np.nan
-    settings = model_error.Settings((0.44, 0.67), **changed)
-    return model_error.layout(values, 0.01 * np.ones_like(values), shapes, settings, np.array(computed))
+    settings = device_model_error.Settings((0.44, 0.67), **changed)
+    return device_model_error.layout(values, 0.01 * np.ones_like(values), shapes, settings, np.array(computed))
 
 
 ERRORS = {

@@ -19,7 +19,7 @@ from stiction.contact.environment import Water
 from stiction.report.devices import own_length, pages, sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.page import Page, Section, Summary
-from stiction.report.surfaces.words import described
+from stiction.report.surfaces.words import surface_in_words
 from stiction.stages.devices import device_warnings, safe_lengths, sticking
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import EITHER, S_SHAPE, DesignedBeam
@@ -44,7 +44,7 @@ def safe(kind="cantilever", longest=600e-6, reach=np.inf):
     shapes = {device.opening.shapes[0]: np.linspace(2 / 3, 1, 400) * longest}
     if kind == "cantilever":
         shapes[EITHER] = 0.7 * shapes[S_SHAPE]
-    known = sticking.known(device, settings.water, 0.67, reach)
+    known = sticking.lengths_without_samples(device, settings.water, 0.67, reach)
     bounds = {shape: sticking.safe_lengths(values, settings, known[shape]) for shape, values in shapes.items()}
     return safe_lengths.layout(shapes, bounds, known, settings).assign(rms=3e-9, share_flat=0.0, longest_strip=1e-3)
 
@@ -58,7 +58,8 @@ def stopper():
 def test_a_page_is_one_file_with_its_figures(stopper):
     assert stopper.startswith("<!DOCTYPE html>")
     pictures = re.findall(r'src="data:image/png;base64,([^"]+)"', stopper)
-    assert [base64.b64decode(picture)[:4] for picture in pictures] == [b"\x89PNG"] * 2
+    assert stopper.count('class="panels"') == 2
+    assert {base64.b64decode(picture)[:4] for picture in pictures} == {b"\x89PNG"}
     assert not re.findall(r'(?:src|href)="(?!data:|#)', stopper)
 
 
@@ -106,7 +107,7 @@ def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_sec
     }
     said = {name: ("humidity", [""]) for name in ("flagged", "refused")}
     points = [curves.layout([[one]], rms, 400, asked).assign(said) for rms, one in responses.items()]
-    rough = curves.joined(points, "rms_nm", "B2")
+    rough = curves.join_points(points, "rms_nm", "B2")
     section = STOPPER | {"requirement": {"share": 0.05}, "roughness": {"surface": "B2", "rms_nm": [2, 8]}}
     page = pages.stopper_page("S1", section, STOPPERS["S1"], {}, [], roughness=rough)
     assert "<td>requirement</td><td>at most 1 in 20 sticks</td>" in page.html
@@ -114,7 +115,7 @@ def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_sec
     shown = page.html.partition("<h2>How rough must it be?</h2>")[2].partition("<h2>Limits")[0]
     assert "exactly 1 in 20 sticks at " in shown
     assert "On the surfaces as they are given, at 3.4 nm" in shown
-    assert shown.count("<img") == 1
+    assert shown.count('class="panels"') == 1
     assert shown.count("rms of B2 [nm]</td>") == len(responses)
     assert page.answer[1] == (
         "For a restoring force of 1 µN, at a relative humidity of 0.6, at most 1 in 20 sticks where the rms of B2 is "
@@ -230,10 +231,10 @@ def test_a_page_explains_the_terms_that_it_uses_and_no_others():
 
 
 def test_surfaces_are_described_by_their_numbers_or_their_scans():
-    assert described({"rms_nm": 2, "psd": "identified", "summit_density_per_um2": 40}, {}) == (
+    assert surface_in_words({"rms_nm": 2, "psd": "identified", "summit_density_per_um2": 40}, {}) == (
         "rms 2 nm, density of summits 40 per µm²"
     )
-    assert described({"scans": {"files": ["a.gwy", "b.gwy"]}}, {}) == "described by 2 scans"
+    assert surface_in_words({"scans": {"files": ["a.gwy", "b.gwy"]}}, {}) == "described by 2 scans"
 
 
 def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():
@@ -249,14 +250,14 @@ def test_a_beam_without_chart_and_budget_has_neither():
     plain = pages.beam_page("C1", CANTILEVER, {0.67: safe()}, {}, {}, silent).html
     assert "Uncertainty, and" not in plain
     assert "Other thicknesses" not in plain
-    assert plain.count("<img") == 1
+    assert plain.count('class="panels"') == 1
     budgets = {(0.44,): budget_dataset(2.0), (0.67,): budget_dataset(), (0.67, "tip"): budget_dataset(0.5, TIPS)}
     both = pages.beam_page("C1", CANTILEVER, {0.67: safe()}, {}, budgets, silent).html
-    assert both.count("<img") == 2
+    assert both.count('class="panels"') == 2
     assert all(f"RH {humidity}: effect [%]" in both for humidity in (0.44, 0.67))
     assert both.count("Counted as exact: ") == 1
     assert "1 in 1000 tips hold (arc) would fall" in both
-    rows = re.findall(r"<td>(beam|tip)</td>\s*<td>thickness</td>", both)
+    rows = re.findall(r"<td>(beam|tip)</td>\s*<td[^>]*>thickness</td>", both)
     assert rows == ["beam", "tip"]
 
 
@@ -268,7 +269,7 @@ def test_warnings_of_a_beam_have_the_numbers_of_its_tables():
     assert "<p>(1) Too steep.</p>\n<p>(2) Too thin.</p>" in page
     rows = re.findall(r"<td>([^<]*)</td>\s*</tr>", page.partition("How long")[2])  # last cells
     assert rows == [""] * 3 + ["1"] * 3 + ["2, 1"] + [""] * 7
-    assert page.count("<img") == 2
+    assert page.count('class="panels"') == 2
     assert "<details>" not in page
 
 
@@ -302,6 +303,7 @@ def test_a_saved_page_ends_with_date_version_and_commit_of_the_last_run_and_diff
 
 def test_text_is_shown_as_it_is():
     figure, cells = Figure(figsize=(1, 1)), pd.DataFrame({HOSTILE: [HOSTILE]})
+    figure.subplots()
     sections, words = [Section(HOSTILE, [HOSTILE], cells, figure)], {HOSTILE: HOSTILE}
     summary = Summary("good", HOSTILE, HOSTILE, [HOSTILE], words, cells)
     page = Page(HOSTILE, {HOSTILE: HOSTILE}, [HOSTILE] * 2, sections, [HOSTILE], words, [HOSTILE], summary=summary)

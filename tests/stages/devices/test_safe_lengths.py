@@ -98,7 +98,7 @@ def test_a_bridge_sticks_if_it_is_longer_than_the_shortest_that_its_middle_holds
 def test_the_axis_of_lengths_is_finite_although_some_beams_never_stick():
     dataset = lognormal_cracks(R1)
     dataset["held_length"][:20] = np.inf
-    found = safe_lengths.compute(dataset, None, wanted(R1))
+    found = safe_lengths.compute(dataset, wanted(R1))
     assert np.isfinite(found.length).all()
     assert float(found.stuck[0, -1]) == pytest.approx(0.95)
 
@@ -117,14 +117,14 @@ def test_lengths_in_saturated_air_are_those_of_flooded_flats(cantilever):
 
 def test_contact_angles_reduce_the_film():
     tilted = replace(wanted(R1), water=Water(300.0, (np.radians(60), 0.0)))
-    found = safe_lengths.compute(lognormal_cracks(R1), None, tilted)
+    found = safe_lengths.compute(lognormal_cracks(R1), tilted)
     assert_allclose(float(found.film / safe_without_tips().film), 0.75, rtol=1e-12)
 
 
 def of_length(device, length, dataset=None):
     """Dataset of devices of a length [m], without one for ``None``."""
     dataset = lognormal_cracks(device) if dataset is None else dataset
-    return safe_lengths.compute(dataset, None, replace(wanted(device), length=length))
+    return safe_lengths.compute(dataset, replace(wanted(device), length=length))
 
 
 @pytest.mark.parametrize("device", [C1, R1], ids=["cantilever", "bridge"])

@@ -24,9 +24,7 @@ def lengths(seed, samples, beams):
     """Safe length and estimate of P(stuck) = 0.01 of a study, its bound given the surfaces, and its two errors [m]."""
     cracks = cracks_of(seed, samples, beams)
     exact = cracks.assign(surfaces_covariance=0 * cracks.surfaces_covariance)
-    found, given = (
-        safe_lengths.compute(one, None, wanted(C1, (SHARE,))).isel(shape=0, share=0) for one in (cracks, exact)
-    )
+    found, given = (safe_lengths.compute(one, wanted(C1, (SHARE,))).isel(shape=0, share=0) for one in (cracks, exact))
     numbers = found.safe_length, found.estimate, given.safe_length, found.beams_error, found.surfaces_error
     return list(map(float, numbers))
 

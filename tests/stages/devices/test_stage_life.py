@@ -21,6 +21,7 @@ from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.devices import life as report
 from stiction.report.devices.pages import Page, Section, with_life
+from stiction.report.style import save
 from stiction.run import storage
 from stiction.stages.life.answers import QUESTIONS, answers_of, layout
 from stiction.stages.life.inputs import Electrode, Errors, Liquid, OfBeam, OfStopper
@@ -423,6 +424,18 @@ def test_the_figure_has_a_bar_for_every_length_and_covers_nothing(found):
         assert len(panel.texts) >= len(shown)
         assert len(panel.lines) == 2 * len(shown) + (unit == "m")
     assert not covering(figure)
+
+
+@pytest.mark.parametrize("count", [1, 3, 4])
+def test_the_texts_of_the_figure_stay_in_their_panels(found, count):
+    figure = report.figure({f"C{k}": found["C1"] for k in range(count)})
+    save(figure)  # lays it out
+    for panel in figure.axes:
+        boxes = [text.get_window_extent() for text in panel.texts]
+        assert panel.bbox.x0 <= min(box.x0 for box in boxes)
+        assert panel.bbox.x1 >= max(box.x1 for box in boxes)
+        assert panel.bbox.y1 >= max(box.y1 for box in boxes)
+        assert ("axes differ" in panel.get_xlabel()) == (count > 1)
 
 
 def test_a_page_says_the_life_below_its_verdict_and_shows_all_answers(found):

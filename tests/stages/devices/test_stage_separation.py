@@ -65,17 +65,17 @@ def wedges(resisting=3):
 
 def test_smooth_wedges_hold_as_long_beams_fast_as_slowly():
     settings = separation.Settings(WATER, device=C1)
-    factor, error = separation.of_tips(wedges(), 0.67, settings)
+    factor, error = separation.factor_of_tips(wedges(), 0.67, settings)
     assert_allclose(factor, 1, rtol=1e-2)  # they rest up to one distance above the ground
     assert error < 1e-6
-    assert separation.of_tips(wedges(2), 0.67, settings)[0] == 0
+    assert separation.factor_of_tips(wedges(2), 0.67, settings)[0] == 0
 
 
 def test_a_cantilever_has_factors_of_its_beam_and_of_its_tip():
     wet = {0.67: small.contact_of_pair()}
     found = separation.compute(wet, separation.Settings(WATER, device=C1), {0.67: wedges()})
     assert list(found["shape"].values) == ["S-shape", "S-shape or arc"]
-    assert_allclose(found.factor[0], [separation.of_strips(wet[0.67], 0.67, WATER)[0], 1], rtol=1e-2)
+    assert_allclose(found.factor[0], [separation.factor_of_strips(wet[0.67], 0.67, WATER)[0], 1], rtol=1e-2)
 
 
 def test_what_fast_separation_needs_more_is_the_work_of_the_water_alone():
@@ -95,7 +95,7 @@ def test_the_error_of_a_factor_is_the_scatter_of_factors_on_other_strips():
     energies = np.array([of(contact, 0.44, WATER) for of in (curves.fast_energies, curves.energies)])
     again = [energies[:, rng.integers(20, size=20)].mean(axis=1) for _ in range(2000)]
     scatter = np.std([(slow / fast) ** 0.25 for fast, slow in again])
-    assert_allclose(separation.of_strips(contact, 0.44, WATER)[1], scatter, rtol=0.2)
+    assert_allclose(separation.factor_of_strips(contact, 0.44, WATER)[1], scatter, rtol=0.2)
 
 
 def test_strips_that_no_summits_stop_have_no_bound():
@@ -103,7 +103,7 @@ def test_strips_that_no_summits_stop_have_no_bound():
     flat.solid_pressure[0] = 0.0
     assert np.isinf(curves.fast_pull_offs(flat, 0.67, ACROSS)[0])
     assert np.isfinite(curves.fast_pull_offs(flat, 0.67, ACROSS)[1:]).all()
-    factor, error = separation.of_strips(flat, 0.67, ACROSS)
+    factor, error = separation.factor_of_strips(flat, 0.67, ACROSS)
     assert factor == 0
     assert np.isnan(error)
 

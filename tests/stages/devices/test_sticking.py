@@ -65,14 +65,14 @@ def test_the_bound_of_a_bridge_is_that_of_flooded_flats_in_contact_at_its_humidi
 
 
 def test_no_safe_length_of_a_bridge_is_below_its_bound_and_a_tip_has_none():
-    bound = sticking.known(R1, WATER, 0.67, np.inf)[MIDDLE].safe
+    bound = sticking.lengths_without_samples(R1, WATER, 0.67, np.inf)[MIDDLE].safe
     scattered = bound * np.exp(0.3 + 0.1 * np.random.default_rng(3).standard_normal(200))
     asked = replace(wanted(), shares=(1e-2, 1e-4))
     free, held = (sticking.safe_lengths(scattered, asked, Known(safe=least)) for least in (0.0, bound))
     assert free[1].length < bound
     assert [one.length for one in held] == [max(one.length, bound) for one in free]
     assert [one.estimate for one in held] == [one.estimate for one in free]
-    assert [one.safe for one in sticking.known(C1, WATER, 0.67, np.inf).values()] == [0, 0]
+    assert [one.safe for one in sticking.lengths_without_samples(C1, WATER, 0.67, np.inf).values()] == [0, 0]
 
 
 def test_there_is_one_safe_length_for_every_share():

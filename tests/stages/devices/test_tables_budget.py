@@ -124,7 +124,7 @@ def test_an_exact_slope_is_shown_without_an_error():
 
 def test_without_uncertainties_no_advice_is_given():
     exact = BUDGETS["C1", 0.67].assign(covariance=0 * BUDGETS["C1", 0.67].covariance)
-    assert tables_budget.advised(exact) == "No uncertainty of an input is stated."
+    assert tables_budget.what_to_measure(exact) == "No uncertainty of an input is stated."
 
 
 def test_numbers_of_stoppers_are_those_of_the_dataset():
@@ -304,11 +304,11 @@ def test_equal_data_give_equal_files(draw, tmp_path):
 
 def test_an_assumed_input_is_named_where_it_decides_and_nowhere_else():
     datasets = BEAMS.values()  # heights of B2 decide; the total at 0.44 is twice that at 0.67
-    (said,) = tables_budget.decided(datasets, ["skewness of B2"])
+    (said,) = tables_budget.first_to_measure(datasets, ["skewness of B2"])
     assert said.startswith("What decides is assumed, not measured: heights of B2. If that were known, the standard ")
     assert said.endswith("beams stick (S-shape) would be 1.6 instead of 5.2 %.")
-    assert tables_budget.decided(datasets, ["thickness"]) == tables_budget.decided(datasets, []) == []
-    assert tables_budget.decided([], ["skewness of B2"]) == []
+    assert tables_budget.first_to_measure(datasets, ["thickness"]) == tables_budget.first_to_measure(datasets, []) == []
+    assert tables_budget.first_to_measure([], ["skewness of B2"]) == []
 
 
 def test_a_budget_without_other_choices_of_the_model_has_no_empty_panel():

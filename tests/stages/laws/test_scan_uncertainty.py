@@ -195,7 +195,8 @@ def slopes_of_b2():
         )
         for name in QUANTITIES
     }
-    return slopes.compute(contacts, WANTED)
+    less, more = ({name: pair[k] for name, pair in contacts.items()} for k in (0, 1))
+    return slopes.compute(less, more, WANTED)
 
 
 @cache

@@ -313,7 +313,7 @@ def test_a_device_over_two_processes_has_a_page_a_table_and_a_figure_of_them():
     assert {"process_map", "process_pairs", "process_laws"} <= page.inputs.keys()
     assert graph.job("figures/process_map_Bump.png").inputs.keys() > {"map", "pairs"}
     devices = graph.plan.devices
-    assert (devices.processed, devices.processed_twice) == ([], ["Bump"])
+    assert (devices.over_process, devices.processed_twice) == ([], ["Bump"])
     needed = {job.stage.name for job in graph.needed("devices")}
     assert {"table_process_map", "figure_process_map", "figure_process_law"} <= needed
     assert not {"process_curve", "process_settings", "table_process", "figure_process"} & needed

@@ -161,7 +161,7 @@ def test_tables_figures_and_pages_show_them(etched):
         assert png(figure)[:4] == b"\x89PNG"
     page = etched.results.graph.job("devices/Bump.html")
     assert section.inputs(etched.results.graph.plan, "Bump").items() <= page.inputs.items()
-    assert pages._asked(page.settings) == {"requirement": "at most 1 in 20 sticks"}
+    assert pages._requirement(page.settings) == {"requirement": "at most 1 in 20 sticks"}
 
 
 def test_a_process_shows_itself_pickles_and_says_what_there_is(etched):

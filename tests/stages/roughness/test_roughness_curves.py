@@ -118,7 +118,7 @@ def test_surfaces_that_no_water_wets_are_held_at_any_humidity_as_in_dry_air():
 
 def test_the_legend_of_a_cantilever_names_the_bounds_of_beam_and_tip(cantilever):
     given = cantilever.results[f"devices/roughness/points/C1_{POINTS - 1}"]
-    figure = figures_roughness.roughness(curves.joined([given.assign(roughness=2e-9), given], "rms_nm", "B2"))
+    figure = figures_roughness.roughness(curves.join_points([given.assign(roughness=2e-9), given], "rms_nm", "B2"))
     assert {"flat surfaces, beam", "flat surfaces, beam or tip"} < {
         text.get_text() for text in figure.legends[0].get_texts()
     }
@@ -177,7 +177,7 @@ def test_points_are_spaced_by_equal_factors_or_evenly_and_the_last_one_is_the_gi
 
 def test_a_range_that_ends_at_the_given_roughness_has_it_once():
     points = [point(value) for value in (1e-9, 2e-9, 3.4e-9, 3.4e-9 * (1 + 1e-15))]
-    found = curves.joined(points, "rms_nm", "B2")
+    found = curves.join_points(points, "rms_nm", "B2")
     np.testing.assert_array_equal(found.roughness, [1e-9, 2e-9, 3.4e-9 * (1 + 1e-15)])
 
 
@@ -197,7 +197,7 @@ RANGE8 = [*RANGE, 3.4e-9]
 
 
 def test_page_and_table_say_which_roughness_suffices_with_its_error():
-    found = curves.joined([*map(point, RANGE), point(3.4e-9)], "rms_nm", "B2")
+    found = curves.join_points([*map(point, RANGE), point(3.4e-9)], "rms_nm", "B2")
     (sentence,) = tables_roughness.answers(found)
     assert "at most 1 in 20 sticks where the rms of B2 is 4.13 to 8 nm" in sentence  # 4 nm (1.1)^(1/3)
     assert "exactly 1 in 20 sticks at 4.000 ± 0.040 nm." in sentence
@@ -220,7 +220,7 @@ def test_page_and_table_say_which_roughness_suffices_with_its_error():
 )
 def test_none_and_all_of_a_range_are_answers(force, said):
     points = [point(rms, force=force) for rms in (*RANGE, 3.4e-9)]
-    (sentence,) = tables_roughness.answers(curves.joined(points, "rms_nm", "B2"))
+    (sentence,) = tables_roughness.answers(curves.join_points(points, "rms_nm", "B2"))
     assert said in sentence
 
 
@@ -234,7 +234,7 @@ def test_a_beam_that_sticks_at_no_length_is_an_answer():
         curves.layout([[never]], rms, 100, beam).assign(flagged=("humidity", [""]), refused=("humidity", [""]))
         for rms in RANGE
     ]
-    found = curves.joined(points, "rms_nm", "B2")
+    found = curves.join_points(points, "rms_nm", "B2")
     (sentence,) = tables_roughness.answers(found)
     assert "at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm" in sentence
     assert "at 8 nm, 0 % (0 to " in sentence
@@ -252,27 +252,29 @@ def test_a_margin_errs_by_the_relative_error_of_its_length_and_not_at_all_where_
 
 def test_a_stopper_that_is_held_most_inside_the_range_has_a_worst_roughness():
     forces = 4e-6 * np.exp(-(np.log(RANGE / 2e-9) ** 2))
-    found = curves.joined([*map(point, RANGE, [""] * len(RANGE), forces), point(3.4e-9, force=3e-6)], "rms_nm", "B2")
+    found = curves.join_points(
+        [*map(point, RANGE, [""] * len(RANGE), forces), point(3.4e-9, force=3e-6)], "rms_nm", "B2"
+    )
     (sentence,) = tables_roughness.answers(found)
     assert "The worst rms of B2 is inside this range, near 2 nm: less and more of it hold less." in sentence
-    (monotone,) = tables_roughness.answers(curves.joined([*map(point, RANGE), point(3.4e-9)], "rms_nm", "B2"))
+    (monotone,) = tables_roughness.answers(curves.join_points([*map(point, RANGE), point(3.4e-9)], "rms_nm", "B2"))
     assert "worst" not in monotone
 
 
 def test_what_cannot_be_computed_is_named_with_its_reason_and_leaves_the_rest():
     points = [point(RANGE[0], "too smooth", np.nan), *map(point, RANGE[1:]), point(3.4e-9)]
-    sentence, refusal = tables_roughness.answers(curves.joined(points, "rms_nm", "B2"))
+    sentence, refusal = tables_roughness.answers(curves.join_points(points, "rms_nm", "B2"))
     assert "where the rms of B2 is 4.13 to 8 nm" in sentence
     assert "computed for 1.41 to 8 nm" in sentence
     assert refusal == "Not computed where the rms of B2 is 1 nm (RH 0.6): too smooth."
     nowhere = [point(rms, "too smooth", np.nan) for rms in RANGE8]
-    sentence, _ = tables_roughness.answers(curves.joined(nowhere, "rms_nm", "B2"))
+    sentence, _ = tables_roughness.answers(curves.join_points(nowhere, "rms_nm", "B2"))
     assert "nothing is computed" in sentence
 
 
 def test_what_is_less_accurate_is_named_with_its_place():
     points = [point(RANGE[0], flagged="Strips are long."), *map(point, RANGE[1:]), point(3.4e-9)]
-    _, flag = tables_roughness.answers(curves.joined(points, "rms_nm", "B2"))
+    _, flag = tables_roughness.answers(curves.join_points(points, "rms_nm", "B2"))
     assert flag == "Where the rms of B2 is 1 nm (RH 0.6): Strips are long."
 
 
@@ -362,11 +364,11 @@ def test_a_skewness_comes_with_the_largest_kurtosis_up_to_that_of_the_surface_an
 
 
 def test_the_kurtosis_stands_beside_every_skewness_in_sentences_tables_and_figures():
-    over_both = curves.mapped(
+    over_both = curves.curve_or_map(
         [skewed(rms, value) for value in (0, -1, 0.5) for rms in RANGE8], "B2", "rms_nm", "skewness"
     )
     alone = [point(3e-9).assign(roughness=value, kurtosis=3 + value**2) for value in (-1.0, 0.5, 0.0)]
-    over_one = curves.joined(alone, "skewness", "B2")
+    over_one = curves.join_points(alone, "skewness", "B2")
     for found, axis in ((over_both, "yaxis"), (over_one, "xaxis")):
         draw = figures_roughness.roughness_map if "other" in found.dims else figures_roughness.roughness
         labels = [text.get_text() for text in getattr(draw(found).axes[0], axis).get_ticklabels()]
@@ -380,21 +382,21 @@ def test_the_kurtosis_stands_beside_every_skewness_in_sentences_tables_and_figur
         "Where the skewness of B2 is 0 and the kurtosis 3, as given",
         "Where the skewness of B2 is 0.5 and the kurtosis 3.25",
     ]
-    plain = curves.joined([point(rms) for rms in RANGE8], "rms_nm", "B2")  # control: nothing of it elsewhere
+    plain = curves.join_points([point(rms) for rms in RANGE8], "rms_nm", "B2")  # control: nothing of it elsewhere
     assert "kurtosis" not in tables_roughness.roughness({"S1": plain}).caption + tables_roughness.form(plain)
 
 
 def test_a_second_value_that_is_the_given_one_is_there_once():
     points = [skewed(rms, value) for value in (0, -1, -0.5, 1e-14, 1) for rms in RANGE8]
     points[:POINTS] = [point(rms).assign(kurtosis=3.0) for rms in RANGE8]
-    found = curves.mapped(points, "B2", "rms_nm", "skewness")
+    found = curves.curve_or_map(points, "B2", "rms_nm", "skewness")
     assert found.other.values.tolist() == [-1, -0.5, 0, 1]
     assert [len(one.crossing) for one in curves.curves_of(found)] == [1] * 4
 
 
 def test_a_map_of_a_stopper_has_positive_margins_where_the_restoring_force_exceeds_the_adhesion():
     points = [skewed(rms, value) for value in (0, -1) for rms in RANGE8]
-    figure = figures_roughness.roughness_map(curves.mapped(points, "B2", "rms_nm", "skewness"))
+    figure = figures_roughness.roughness_map(curves.curve_or_map(points, "B2", "rms_nm", "skewness"))
     panel, bar = figure.axes
     assert bar.get_ylabel() == "lg (restoring force / force needed)"
     margins = panel.collections[0]
@@ -415,7 +417,7 @@ def test_a_stopper_of_30_micronewton_sticks_at_3_4_nm_and_not_at_5_nm():
 @pytest.mark.parametrize(("share", "samples"), [(1e-6, 29_956), (1e-3, 2995), (1e-4, 1000), (1e-6, 2_995_731)])
 def test_a_share_beyond_samples_and_verification_is_called_extrapolated(share, samples):
     found = xr.Dataset({"share": share, "samples": samples})
-    (said,) = tables_roughness.extrapolated(found) or [""]
+    (said,) = tables_roughness.note_on_extrapolation(found) or [""]
     assert said.startswith("The result for 1 in 1000000 is extrapolated from 29956") == (samples == 29_956)
     assert bool(said) == (samples == 29_956)
 

@@ -161,8 +161,8 @@ def test_tips_adhere_as_much_more_as_cracks_show_that_no_input_explains():
     assert_allclose(moved.sel(shape=S_SHAPE), adhesion**-0.25, rtol=1e-4)
     assert_allclose(moved.sel(shape=EITHER), adhesion ** (-1 / 3), rtol=1e-4)
     assert_allclose((less.updated_safe / less.safe).sel(shape=EITHER), 1, rtol=1e-6)
-    assert "up to 2.4 times the adhesion that the inputs explain: tips" in tables_test_beams.built(more)
-    assert "no more adhesion than the inputs explain" in tables_test_beams.built(less)
+    assert "up to 2.4 times the adhesion that the inputs explain: tips" in tables_test_beams.sizes_to_build(more)
+    assert "no more adhesion than the inputs explain" in tables_test_beams.sizes_to_build(less)
 
 
 def test_two_equal_arrays_that_share_their_dimensions_are_one_of_twice_as_many_beams():
@@ -295,8 +295,8 @@ def test_data_of_which_the_simulation_shows_nothing_are_left_out_and_named(monke
     only_known(monkeypatch, lambda beam, humidity, _: (beam, humidity) != (ARRAY, 0.44))
     found = computed(as_computed(1.1))
     xr.testing.assert_allclose(found[RESULTS], without[RESULTS])
-    assert "Left out are arrayA, RH 0.44: so few" in tables_test_beams.explained(found)
-    assert "Left out" not in tables_test_beams.explained(without)
+    assert "Left out are arrayA, RH 0.44: so few" in tables_test_beams.agreement(found)
+    assert "Left out" not in tables_test_beams.agreement(without)
 
 
 def test_data_of_which_all_are_left_out_leave_the_device_as_it_was(monkeypatch):
@@ -305,7 +305,7 @@ def test_data_of_which_all_are_left_out_leave_the_device_as_it_was(monkeypatch):
     assert_allclose(found.result_after, found.result_before, rtol=1e-12)
     assert_allclose(found.result_shift, 0)
     assert float(found.p_value) == 1
-    assert "arrayA, RH 0.92" in tables_test_beams.explained(found)
+    assert "arrayA, RH 0.92" in tables_test_beams.agreement(found)
     assert "measured" not in tables_test_beams.test_beams({"C1": found}).cells
     assert figures_test_beams.test_beams(found).axes
 
@@ -317,8 +317,8 @@ def test_what_is_not_known_of_a_device_is_said_and_leaves_the_rest(monkeypatch):
     known = found.humidity_of_result.values > 0.44
     assert_allclose(found.result_after[known], whole.result_after[known])
     assert np.isnan(found.result_after[~known]).all()
-    assert "no length is stated: so few of the simulated devices stick" in tables_test_beams.built(found)
-    assert len(tables_test_beams.stuck(found)) == 2
+    assert "no length is stated: so few of the simulated devices stick" in tables_test_beams.sizes_to_build(found)
+    assert len(tables_test_beams.stuck_sentences(found)) == 2
     table = tables_test_beams.test_beams({"C1": found})
     assert "nan" not in f"{table.caption} {table.cells.to_string()}"
     assert figures_test_beams.test_beams(found).axes
@@ -429,11 +429,11 @@ def test_small_shares_are_those_of_the_fit_and_not_those_of_the_few_counted_beam
 )
 def test_pages_state_what_follows_for_bridges_and_stoppers(found, built, stuck, rows):
     found = found()
-    assert tables_test_beams.built(found).startswith(built)
-    (sentence,) = tables_test_beams.stuck(found)
+    assert tables_test_beams.sizes_to_build(found).startswith(built)
+    (sentence,) = tables_test_beams.stuck_sentences(found)
     assert sentence.startswith(f"At a relative humidity of {float(found.humidity[0]):g}, ")
     assert stuck in sentence
-    (in_dry_air,) = tables_test_beams.stuck(found.assign_coords(humidity=[0.0]))
+    (in_dry_air,) = tables_test_beams.stuck_sentences(found.assign_coords(humidity=[0.0]))
     assert in_dry_air.startswith("In dry air, ")
     frame = tables_test_beams.test_beams({"R1": found}).frame
     assert frame.part.str.contains("safe|stuck").sum() == rows
@@ -454,7 +454,7 @@ def test_lengths_to_build_are_the_least_safe_ones_less_twice_the_uncertainty_of_
     ]
     lengths = [built(*case) for case in cases]
     assert len(set(lengths)) == 4
-    assert re.findall(r"\d+ µm", tables_test_beams.built(found)) == lengths
+    assert re.findall(r"\d+ µm", tables_test_beams.sizes_to_build(found)) == lengths
 
 
 # Counts
@@ -490,9 +490,9 @@ def test_counts_that_say_nothing_lengthen_no_tip():
     assert np.all(alone.adhesion_of_tips[3:] > 1.5)
     assert_allclose(counted.adhesion_of_tips, alone.adhesion_of_tips, rtol=0.02)
     assert_allclose(counted.result_shift, alone.result_shift, atol=0.01)
-    assert "times the adhesion that the inputs explain" in tables_test_beams.built(counted)
+    assert "times the adhesion that the inputs explain" in tables_test_beams.sizes_to_build(counted)
     nothing_measured = computed([], stuck=sure)
-    assert "Cracks" not in tables_test_beams.built(nothing_measured)
+    assert "Cracks" not in tables_test_beams.sizes_to_build(nothing_measured)
     assert_array_equal(nothing_measured.adhesion_of_tips, 1)
 
 
@@ -553,10 +553,10 @@ def test_lengths_to_build_after_counts_are_their_quantile_two_standard_deviation
     tips = found.isel(result=slice(3, None))
     doubt = float((tips.result_shift - tips.result_quantile.sel(score=-2)).max())
     said = "with their counts the distance to the quantile at 2.3 %, is subtracted"
-    assert said in tables_test_beams.built(found)
-    assert said not in tables_test_beams.built(computed(as_computed(0.7)))
+    assert said in tables_test_beams.sizes_to_build(found)
+    assert said not in tables_test_beams.sizes_to_build(computed(as_computed(0.7)))
     least = float(found.updated_safe.sel(shape=EITHER).min()) / UM
-    assert tables_test_beams.built(found).startswith(
+    assert tables_test_beams.sizes_to_build(found).startswith(
         f"With the test beams, build it no longer than {least * np.exp(-doubt):.0f} µm"
     )
     assert doubt > 2.05 * float(tips.result_after.max())  # control
@@ -613,8 +613,8 @@ def test_the_dataset_is_stored_and_read_unchanged(tmp_path):
 
 def test_data_that_the_inputs_explain_give_no_warning():
     assert tables_test_beams.warnings(computed(as_computed(1.01))) == []
-    assert tables_test_beams.explained(computed(as_computed(1.01))).startswith("The test beams are as computed, ")
-    assert tables_test_beams.explained(computed(as_computed(1.3))).startswith("Differences from the computed ")
+    assert tables_test_beams.agreement(computed(as_computed(1.01))).startswith("The test beams are as computed, ")
+    assert tables_test_beams.agreement(computed(as_computed(1.3))).startswith("Differences from the computed ")
 
 
 def test_data_that_only_the_model_explains_say_so_with_its_factor():
@@ -637,13 +637,13 @@ def contradicted(found, p_value=2e-6):
 @pytest.mark.parametrize("found", [lambda: computed(as_computed()), of_bridge, of_stopper])
 def test_an_update_that_nothing_explains_recommends_nothing_and_its_warning_counts(found):
     reliable, refused = found(), contradicted(found())
-    words, refusal = tables_test_beams.built(reliable), tables_test_beams.built(refused)
+    words, refusal = tables_test_beams.sizes_to_build(reliable), tables_test_beams.sizes_to_build(refused)
     assert re.search(r"\d (µm|µN)", words)
     assert not re.search(r"\d (µm|µN)", refusal)
     assert "(p = 2e-06)" in refusal
     assert refusal.endswith("rely neither on the update nor on what is stated without it.")
-    assert tables_test_beams.stuck(reliable)
-    assert tables_test_beams.stuck(refused) == []
+    assert tables_test_beams.stuck_sentences(reliable)
+    assert tables_test_beams.stuck_sentences(refused) == []
     safe, others = (of_safe_sizes(each) for each in (reliable, refused))
     assert safe.after.notnull().all()
     assert others.after.isnull().all()
@@ -770,6 +770,15 @@ def test_numbers_of_counts_cross_neither_the_line_of_dry_air_nor_the_frame(shape
     for at in [panel.transData.transform((place, 0))[0] for place in lines] + [panel.bbox.x0, panel.bbox.x1]:
         assert not [box for box in boxes if box.x0 < at < box.x1]
         assert not [one for one in panel.collections if _crosses(one, panel, at)]
+
+
+def test_the_number_of_the_longest_counted_beams_is_below_the_frame(shapes):
+    shapes(10.0)
+    found = computed([], stuck=counts(as_computed(0.7)[:1], [20], 20, HUMIDITIES[:1]))
+    figure = figures_test_beams.test_beams(found.assign(length_of_count=("count", [1.8e-3])))
+    figure.draw_without_rendering()
+    panel = figure.axes[0]
+    assert max(text.get_window_extent().y1 for text in panel.texts) < panel.bbox.y1
 
 
 def _crosses(band, panel, at):

@@ -58,7 +58,7 @@ def compared(exponent):
         coords={"input": [one.name for one in inputs]},
     )
     errors = {f"{name} of C1" if name != "humidity" else name: value for name, value in ERRORS.items()}
-    return rerun.compared(Result("C1", 0.6, budget, None), EMPTY, EMPTY, errors, settings)
+    return rerun.change_of_response(Result("C1", 0.6, budget, None), EMPTY, EMPTY, errors, settings)
 
 
 def reported(numbers):

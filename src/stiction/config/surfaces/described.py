@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from stiction.config.messages import Problem, did_you_mean, faulty, shown
+from stiction.config.messages import Problem, did_you_mean, faulty, one_line
 from stiction.config.surfaces.knowledge import Library, slope, with_uncertain_devices
 from stiction.config.units import from_si, to_si
 from stiction.surface import self_affine
@@ -135,7 +135,7 @@ def _problem(name, entry, key, message):
     """Problem with a key of a surface, or with the surface as a whole."""
     if not key:
         return Problem(("surfaces", name), message)
-    return Problem(("surfaces", name, *key.split(".")), f"is {shown(_value(entry, key))}, {message}")
+    return Problem(("surfaces", name, *key.split(".")), f"is {one_line(_value(entry, key))}, {message}")
 
 
 def _value(entry, key):

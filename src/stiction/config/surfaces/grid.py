@@ -38,7 +38,7 @@ def completed(config: dict[str, Any], estimates: Mapping[str, dict], faults: Col
     if {"spacing_nm", "margin_um"} <= set(sampling):
         return config
     wrong = faulty(faults, "surfaces")
-    waves = [_waves(config, name, estimates) for name in dict.fromkeys(used(config)) if name not in wrong]
+    waves = [_waves(config, name, estimates) for name in dict.fromkeys(used_surfaces(config)) if name not in wrong]
     waves = list(filter(None, waves))
     chosen = {"margin_um": max((_margin(length) for _, length in waves), default=_MARGIN)} | sampling
     config = config | {"sampling": {"spacing_nm": _SPACING} | chosen}
@@ -59,7 +59,7 @@ def _section(config, *place):
     return config if isinstance(config, dict) else {}
 
 
-def used(config: Mapping[str, Any]) -> Iterator[str]:
+def used_surfaces(config: Mapping[str, Any]) -> Iterator[str]:
     """Names of the surfaces of pairs in the run, of devices and of test beams, as often as they occur."""
     running = _section(config, "run").get("pairs")
     devices = chain.from_iterable(_section(config, section).values() for section in ("devices", "test_beams"))

@@ -123,14 +123,14 @@ def sentences(name: str, entry: Mapping[str, Any], library: Library) -> list[str
     values = {"rms": entry["rms_nm"], "skewness": entry["skewness"], "kurtosis": entry["kurtosis"]}
     if psd := entry.get("published_psd"):
         values |= {"corner": psd["corner_rad_per_um"], "hurst": self_affine.hurst_of(slope(psd))}
-    listed = [_assumed(word, values.get(word), errors[name]) for name, word in unknown.items()]
+    listed = [_assumption(word, values.get(word), errors[name]) for name, word in unknown.items()]
     return [
         f"surface {name}: not measured but assumed, with the scatter over {len(library)} typical surfaces "
         f"({', '.join(library)}) as standard uncertainty: {'; '.join(listed)}"
     ]
 
 
-def _assumed(word, value, error):
+def _assumption(word, value, error):
     """Assumed value with its standard uncertainty, in words."""
     label, unit, relative = _WORDS[word]
     scale = 100 * error if relative else error / 2 if word == "hurst" else error

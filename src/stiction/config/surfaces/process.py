@@ -74,7 +74,7 @@ def has_scans(config: Mapping[str, Any]) -> bool:
     return any("scans" in _section(setting) for section in sections for setting in _settings(section))
 
 
-def of_device(config: Mapping[str, Any], device: str) -> list[str]:
+def processes_of(config: Mapping[str, Any], device: str) -> list[str]:
     """Names of the processes of a device: the stated one, and one of its other surface.
 
     The latter is the second one that it states, or one at the same time.
@@ -98,9 +98,9 @@ def variable_of(config: Mapping[str, Any], device: str) -> str:
     return config["process"][config["devices"][device]["process"]]["variable"]
 
 
-def used(config: Mapping[str, Any]) -> list[str]:
+def used_processes(config: Mapping[str, Any]) -> list[str]:
     """Names of the processes of all devices."""
-    return list(dict.fromkeys(name for device in config.get("devices", {}) for name in of_device(config, device)))
+    return list(dict.fromkeys(name for device in config.get("devices", {}) for name in processes_of(config, device)))
 
 
 def with_surfaces(config: dict[str, Any]) -> dict[str, Any]:
@@ -154,11 +154,11 @@ def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder:
             isinstance(settings, list)
             and _section(_section(config.get("process")).get(process)).get("settings") == settings
         ):
-            moved[process] = config["process"][process] | {"settings": [_moved(one, folder) for one in settings]}
+            moved[process] = config["process"][process] | {"settings": [_in_folder(one, folder) for one in settings]}
     return config | {"process": config["process"] | moved} if moved else config
 
 
-def _moved(setting, folder):
+def _in_folder(setting, folder):
     """Setting with its relative files in a folder."""
     scans = _section(setting).get("scans")
     if not (isinstance(scans, list) and all(isinstance(file, str) for file in scans)):

@@ -77,7 +77,7 @@ def _refusal(keys, uncertain, of_first):
 @relation
 def scans_of_settings_are_those_of_one_surface(config):
     """Require each file at one setting of a process, and at no other surface."""
-    listed = list(_listed(config))
+    listed = list(_files_of_scans(config))
     for number, (key, surface, content) in enumerate(listed):
         for other, of_other, same in listed[:number]:
             if same == content and (surface != of_other or key.startswith("process.") == other.startswith("process.")):
@@ -85,7 +85,7 @@ def scans_of_settings_are_those_of_one_surface(config):
                 break
 
 
-def _listed(config: Keys) -> Iterator[tuple[str, str, str]]:
+def _files_of_scans(config: Keys) -> Iterator[tuple[str, str, str]]:
     """Keys of all files of scans, surface of each, and content. Those of surfaces are before those of settings."""
     settings = {
         f"process.{name}.settings.{number}.scans": (surface, setting.get("scans", ()))

@@ -33,7 +33,7 @@ from stiction.report.style import (
     styled,
 )
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
-from stiction.stages.beams.releases import ended, stuck_energies, stuck_lengths
+from stiction.stages.beams.releases import ends_as, stuck_energies, stuck_lengths
 
 # Figure 14
 
@@ -42,7 +42,7 @@ from stiction.stages.beams.releases import ended, stuck_energies, stuck_lengths
 def beam_shapes(beams: xr.Dataset) -> Figure:
     """Figure 14: shapes of some released beams, one highlighted. Histogram of the crack lengths of S-shapes."""
     figure, ((shapes, histogram),) = panels(1, 2, (DOUBLE, 2.5))
-    stuck = ended(beams, "S-shape")
+    stuck = ends_as(beams, "S-shape")
     deflection, x = TO_UM * beams.deflection.values, TO_UM * beams.node.values
     shapes.plot(x, deflection.T, color="0.7", linewidth=0.4, rasterized=True)
     for k in np.flatnonzero(stuck[: len(deflection)])[:1]:
@@ -67,7 +67,7 @@ def _summary(crack, total):
 # Figure 15
 
 
-def converted(crack_length: np.ndarray, deviation: np.ndarray, beam: Beam) -> tuple[np.ndarray, np.ndarray]:
+def energies_with_bars(crack_length: np.ndarray, deviation: np.ndarray, beam: Beam) -> tuple[np.ndarray, np.ndarray]:
     """Energies of Eq. (13), and the lengths of their error bars for crack lengths ± ``deviation``.
 
     Parameters
@@ -131,9 +131,9 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
             _bounds(panel, flat.get(pair), weakest)
             for surface in sorted(bands.keys() & (SURFACE_MODELS if "G" in models else ("NG",))):
                 _band(panel, bands[surface], surface)
-            _known(panel, known, beam, models)
+            _draw_measured(panel, known, beam, models)
             for model in models:
-                _released(panel, released, model)
+                _draw_simulated(panel, released, model)
                 if below is None:
                     _labels(panel, released, model, TO_MJ * weakest)
         # Markers beside their places are no data to the axis.
@@ -189,7 +189,7 @@ def _labels_meet(released, published):
 def _shares(released, model):
     """Share of S-shaped beams at every humidity [-]."""
     by_humidity = sorted((humidity, beams) for (humidity, which), beams in released.items() if which == model)
-    return [(humidity, float(ended(beams, "S-shape").mean())) for humidity, beams in by_humidity]
+    return [(humidity, float(ends_as(beams, "S-shape").mean())) for humidity, beams in by_humidity]
 
 
 def _panels_of_shares(row, released, limits):
@@ -215,12 +215,14 @@ def _bounds(panel, flat, weakest):
     panel.axhline(TO_MJ * weakest, linestyle=":", label="crack as long as the beam", **style)
 
 
-def _known(panel, published, beam, models):
+def _draw_measured(panel, published, beam, models):
     """Measured and published results of Table III, if any."""
     if published.empty:
         return
     humidity = published.relative_humidity.to_numpy()
-    energy, bars = converted(published.experiment.to_numpy() / TO_UM, published.experiment_std.to_numpy() / TO_UM, beam)
+    energy, bars = energies_with_bars(
+        published.experiment.to_numpy() / TO_UM, published.experiment_std.to_numpy() / TO_UM, beam
+    )
     style = {"fmt": "D", "color": "black", "markersize": 3, "zorder": 5}
     panel.errorbar(humidity, TO_MJ * energy, TO_MJ * bars, label="measured", **style)
     for model in {"NG", "GEO"}.intersection(models):
@@ -254,7 +256,7 @@ def _reach(beams):
     return 1.1 * (energies.mean() + energies.std()) if len(energies) else 0.0
 
 
-def _released(panel, released, model):
+def _draw_simulated(panel, released, model):
     """Mean and standard deviation over the S-shaped beams of every humidity."""
     marker, colour = _MARKERS[model]
     points = [(humidity, _energies(beams)) for (humidity, which), beams in released.items() if which == model]
@@ -302,7 +304,7 @@ def _adhesion_energies(data, settings):
         released = {key[1:]: beams for key, beams in data["beams"].items() if key[0] == pair}
         bands = {model: band for (name, model), band in data["humidity"].items() if name == pair}
         pairs[pair] = cantilever(nominal, pair), released, bands
-    return adhesion_energies(pairs, published.compared(data, settings), flat)
+    return adhesion_energies(pairs, published.published_rows(data, settings), flat)
 
 
 _CATEGORY = "Beams (Secs. IV and V)"

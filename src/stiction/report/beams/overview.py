@@ -14,7 +14,7 @@ from stiction.report import published
 from stiction.report.format import TO_MPA, TO_NM, TO_UM
 from stiction.report.published import rows
 from stiction.report.style import MODELS, PUBLISHED, figure_stage, humidity_axis, letter, panels, places, styled
-from stiction.stages.beams.releases import ended, stuck_lengths
+from stiction.stages.beams.releases import ends_as, stuck_lengths
 from stiction.stages.laws import forces as stage_forces
 
 _SIZE = 7.2, 2.2
@@ -96,7 +96,7 @@ def _shapes(panel, beams):
     """Shapes of the first beams, one S-shaped beam highlighted."""
     deflection, x = TO_UM * beams.deflection.values, TO_UM * beams.node.values
     panel.plot(x, deflection.T, color="0.75", linewidth=0.4, rasterized=True)
-    for k in np.flatnonzero(ended(beams, "S-shape")[: len(deflection)])[:1]:
+    for k in np.flatnonzero(ends_as(beams, "S-shape")[: len(deflection)])[:1]:
         panel.plot(x, deflection[k], color=_COLOUR, linewidth=1.6)
     ground = deflection.max()
     panel.axhspan(ground, 1.1 * ground, color="0.35")
@@ -152,7 +152,7 @@ STAGES = (
         compute=lambda data, settings: overview(
             settings["pair"],
             *(data[stage] for stage in ("character", "forces", "beams", "released")),
-            published.compared(data, settings),
+            published.published_rows(data, settings),
         ),
         targets=("figures",),
     ),

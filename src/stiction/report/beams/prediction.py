@@ -64,7 +64,7 @@ def _ends(rows, discrepancy, middle):
     return found
 
 
-def contained(table: pd.DataFrame, coverage: float) -> tuple[int, int]:
+def count_contained(table: pd.DataFrame, coverage: float) -> tuple[int, int]:
     """Number of the measured lengths in their intervals of a probability, and of all, model NG."""
     known = table[(table.model == _LEARNT_BY) & table.experiment_um.notna() & table[ENDS[coverage][0]].notna()]
     low, high = (known[name] for name in ENDS[coverage])
@@ -73,7 +73,7 @@ def contained(table: pd.DataFrame, coverage: float) -> tuple[int, int]:
 
 def caption(table: pd.DataFrame) -> str:
     """Meaning of the columns, and how many measured lengths they contain."""
-    stated = [(_percent(coverage), *contained(table, coverage)) for coverage in COVERAGES]
+    stated = [(_percent(coverage), *count_contained(table, coverage)) for coverage in COVERAGES]
     number = " and ".join(f"{inside}" for _, inside, _ in stated)
     return (
         f"{' and '.join(name for name, *_ in stated)}: prediction intervals of a measured length, with the form of the "
@@ -124,7 +124,7 @@ def intervals(table: pd.DataFrame) -> Figure:
     return figure
 
 
-def _measured(plan):
+def _measured_pairs(plan):
     """Pairs of the run with enough measured lengths to learn from."""
     return [pair for pair in plan.paper.pairs if len(plan.air.humid(pair)) >= LENGTHS]
 
@@ -135,7 +135,7 @@ STAGES = (
         "crack lengths with prediction intervals",
         "Beams (Secs. IV and V)",
         inputs=lambda plan, at: {"table": File("results/tables/table_3.csv")},
-        jobs=lambda plan: [{}] if len(plan.pairs) > PAIRS <= len(_measured(plan)) else [],
+        jobs=lambda plan: [{}] if len(plan.pairs) > PAIRS <= len(_measured_pairs(plan)) else [],
         compute=lambda data: intervals(pd.read_csv(data["table"], dtype={"pair": str})),
         targets=("figures",),
     ),

@@ -20,7 +20,7 @@ from stiction.report.model_error import column as beside
 from stiction.report.published import value
 from stiction.report.table import PAIR, Table, table_stage, with_list
 from stiction.stages.beams import pair_warnings
-from stiction.stages.beams.releases import STATES, ended, stuck_energies, stuck_lengths
+from stiction.stages.beams.releases import STATES, ends_as, stuck_energies, stuck_lengths
 from stiction.stages.laws import forces as stage_forces
 from stiction.stages.laws.scan_uncertainty import pair_errors
 from stiction.stages.surfaces import surface_flags
@@ -82,7 +82,7 @@ def _row_3(key, beams, forces, published):
     """
     pair, humidity, model = key
     case = {"pair": pair, "relative_humidity": humidity}
-    row = case | {"model": model} | _simulated(beams, forces)
+    row = case | {"model": model} | _simulated_numbers(beams, forces)
     for name, columns in (("published", _PUBLISHED.get(model)), ("experiment", ("experiment", "experiment_std"))):
         known = [value(published, column, **case) for column in columns] if columns else [np.nan, np.nan]
         row |= dict(zip((f"{name}_um", f"{name}_std_um"), known, strict=True))
@@ -93,7 +93,7 @@ def _row_3(key, beams, forces, published):
     return row | {"published_bias_error_percent": bias}
 
 
-def _simulated(beams, forces):
+def _simulated_numbers(beams, forces):
     """Crack length and energies of one case, with errors over beams and over their common samples."""
     meso = stage_forces.energies(forces)
     quantities = {
@@ -112,7 +112,7 @@ def _simulated(beams, forces):
     # Beams are released only on samples that have a force law of Eq. (12).
     lawful = admissible(*stage_forces.vectors(forces))
     row |= {"share_without_law": float(np.mean(~lawful)), "meso_energy_lawful_J_per_m2": meso[lawful].mean()}
-    return row | {_share(state): float(ended(beams, state).mean()) for state in STATES}
+    return row | {_share(state): float(ends_as(beams, state).mean()) for state in STATES}
 
 
 def _by_scans(row, relative):
@@ -256,7 +256,7 @@ def _table_3(data, settings):
     warnings = pair_warnings.film_warnings(data["beams"], water)
     flags = pair_warnings.surface_notes(data, settings["surfaces"], settings["assumed"])
     warnings += [f"Pair {pair}: {sentence}" for pair, said in flags.items() for sentence in said]
-    known = published.compared(data, settings)
+    known = published.published_rows(data, settings)
     return table_3(data["beams"], data["forces"], known, by_scans, warnings, data.get("errors"))
 
 
@@ -277,7 +277,7 @@ STAGES = (
         settings=lambda plan, at: {
             "of_paper": plan.paper.pairs,
             "surfaces": {pair: plan.scans.sides(pair) for pair in plan.pairs},
-            "assumed": plan.assumed(*plan.pairs),
+            "assumed": plan.assumptions(*plan.pairs),
             "water": {pair: plan.air.water(pair) for pair in plan.pairs},
         },
         compute=_table_3,

@@ -24,6 +24,7 @@ from stiction.report.style import (
     humidity_axis,
     humidity_colours,
     legend_below,
+    legend_outside,
     letter,
     letter_lines,
     on_own_axes,
@@ -51,6 +52,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
     figure, columns, lines = columns_of_panels(len(datasets), 2, at_most_double(SINGLE), 5.0)
     for column, dataset in zip(columns, datasets.values(), strict=True):
         _stuck_over_force(column[0], dataset)
+        column[0].set_xlabel(on_own_axes("restoring force [µN]", columns.T))
         _force_over_humidity(column[1], dataset)
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
@@ -73,7 +75,7 @@ def _stuck_over_force(panel, dataset):
         panel.plot(at, share, color=colour, linestyle=dashes(k), label=air(humidity))
         panel.fill_between(at, low, high, color=colour, alpha=0.2, linewidth=0)
     panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
-    panel.set(xlabel="restoring force [µN]", yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
+    panel.set(yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
     is_left = restoring < np.mean(panel.get_xlim())
     panel.annotate(
         "restoring force",
@@ -94,13 +96,15 @@ def _force_over_humidity(panel, dataset):
     light = {"color": _COLOUR, "alpha": 0.2, "linewidth": 0}
     placed, humid = places([*dataset.axis.values.tolist(), float(dataset.worst_humidity)]), dataset.axis.values > 0
     axis, means = dataset.axis[humid], TO_UN * dataset.mean_along
-    band = panel.fill_between(axis, low[humid], high[humid], **light, label="5 to 95 % of the patches")
-    (mean,) = panel.plot(axis, means[humid], color=_COLOUR, label="mean")
+    entries: list = []
+    if humid.any():
+        entries += panel.plot(axis, means[humid], color=_COLOUR, label="mean")
+        entries.append(panel.fill_between(axis, low[humid], high[humid], **light, label="5 to 95 % of the patches"))
     if not humid.all():
         reach = np.abs(np.stack([low, high]) - means.values)[:, ~humid]
-        panel.errorbar(placed[0.0], means[~humid], reach, fmt="o", color=_COLOUR, markersize=3, alpha=0.6)
+        dry = {"fmt": "o", "color": _COLOUR, "markersize": 3, "alpha": 0.6, "label": "mean and 5 to 95 %, dry"}
+        entries.append(panel.errorbar(placed[0.0], means[~humid], reach, **dry))
     panel.axhline(TO_UN * float(dataset.restoring_force), color="0.4", linestyle=":", linewidth=0.8)
-    entries = [mean, band]
     if humid.any():
         worst = float(dataset.worst_humidity)
         label = f"worst humidity {worst:.2f}" if worst else "worst in dry air"
@@ -114,15 +118,15 @@ def _force_over_humidity(panel, dataset):
 
 
 @styled
-def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
+def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
     """Tornado of a device: effect of each measurement and their total. Beside it, choices of the model.
 
     The budgets are by device, humidity and, for those of tips, ``tip``.
     """
     parts = {}
-    for (_, humidity, *_), dataset in datasets.items():
+    for (_, humidity, *_), dataset in budgets.items():
         parts.setdefault(response_text(dataset), {})[humidity] = dataset
-    colours = humidity_colours(humidity for _, humidity, *_ in datasets)
+    colours = humidity_colours(humidity for _, humidity, *_ in budgets)
     bars = [(_measurements(cases), _choices(cases)) for cases in parts.values()]
     heights = [_ROW * max(map(len, of_row)) + _AROUND for of_row in bars]
     size = DOUBLE, sum(heights) + _LEGEND
@@ -142,7 +146,7 @@ def budget(datasets: Mapping[tuple, xr.Dataset]) -> Figure:
             line[1].set_xlabel("change [%]")
     letter(list(titles), list(titles.values()))
     marks = [Patch(color=colour, label=air(humidity)) for humidity, colour in colours.items()]
-    figure.legend(handles=marks, loc="outside lower center", ncols=8)
+    legend_outside(figure, (marks, [mark.get_label() for mark in marks]), "lower", 8)
     return figure
 
 
@@ -226,8 +230,8 @@ STAGES = (
         "uncertainty of {device}",
         "Devices",
         inputs=lambda plan, at: {"budgets": budgets_of(plan, at.device)},
-        compute=lambda data: budget(data["budgets"]),
-        jobs=lambda plan: [{"device": name} for name in plan.devices.budgeted],
+        compute=budget,
+        jobs=lambda plan: [{"device": name} for name in plan.devices.with_budget],
         targets=("devices",),
     ),
 )

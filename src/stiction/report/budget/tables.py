@@ -175,7 +175,7 @@ _WORST = {"worst RH": (worst_humidity, "worst_humidity", "worst_humidity_se", "w
 # Budget
 
 
-def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset] | None = None) -> Table:
+def budget(budgets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset] | None = None) -> Table:
     """Uncertainty of every device: effect of each measurement, total, scatter, choices of the model.
 
     The numbers hold every input with its slope; the text is by measurement, with a sentence on what to measure better.
@@ -184,12 +184,14 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
     frame = pd.DataFrame(
         [
             row
-            for (device, rh, *_), one in datasets.items()
+            for (device, rh, *_), one in budgets.items()
             for row in [*_budget_rows(device, rh, one), *_model_rows(device, rh, one, errors)]
         ]
     )
-    sentences = [f"{device}, {air(humidity)}: {advised(one)}" for (device, humidity, *_), one in datasets.items()]
-    omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in datasets.items()}
+    sentences = [
+        f"{device}, {air(humidity)}: {what_to_measure(one)}" for (device, humidity, *_), one in budgets.items()
+    ]
+    omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in budgets.items()}
     caption = with_list(
         "Relative standard uncertainty of a result due to each measurement, if all others were exact, ± standard error "
         "of the simulation. The result is the mean length of beams stuck as S-shapes, the length at which few stick "
@@ -202,7 +204,7 @@ def budget(datasets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset
     return Table(frame, caption, as_text(frame[frame.part != "input"], _BUDGET))
 
 
-def advised(dataset: xr.Dataset) -> str:
+def what_to_measure(dataset: xr.Dataset) -> str:
     """Sentence on the most useful measurement."""
     uncertainty = budget_of(dataset)
     if np.isnan(uncertainty.total):
@@ -212,7 +214,7 @@ def advised(dataset: xr.Dataset) -> str:
     return advice(uncertainty, groups_of(dataset), response_text(dataset))
 
 
-def decided(datasets: Iterable[xr.Dataset], assumed: Sequence[str]) -> list[str]:
+def first_to_measure(datasets: Iterable[xr.Dataset], assumed: Sequence[str]) -> list[str]:
     """Sentence about the most uncertain of some budgets, if assumed inputs are the first to measure."""
     budgets = [(budget_of(dataset), dataset) for dataset in datasets]
     budgets = [budget for budget in budgets if np.isfinite(budget[0].total)]
@@ -281,7 +283,7 @@ def _part(part, name):
 def _effect_as_text(part, effect, error):
     """Effect with its standard error, if it has one. Effects of a choice, or of the model, have a sign."""
     if part in MODEL:
-        return column.marked(effect, error, part == MODEL[1])
+        return column.marked_change(effect, error, part == MODEL[1])
     if not error > 0 or np.isnan(effect):
         return number(effect, ".2g")
     return (signed if part == "choice" else with_error)(effect, error)
@@ -317,11 +319,11 @@ STAGES = (
         "budget",
         "uncertainty of devices, and what to measure better",
         inputs=lambda plan, at: (
-            {"budgets": budgets_of(plan, *plan.devices.budgeted)}
-            | model_errors.error_inputs(plan, *plan.devices.budgeted)
+            {"budgets": budgets_of(plan, *plan.devices.with_budget)}
+            | model_errors.error_inputs(plan, *plan.devices.with_budget)
         ),
-        compute=lambda data: budget(data["budgets"], data.get("errors")),
-        jobs=lambda plan: [{}] if plan.devices.budgeted else [],
+        compute=budget,
+        jobs=lambda plan: [{}] if plan.devices.with_budget else [],
         targets=("devices",),
     ),
 )

@@ -7,8 +7,7 @@ import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
 
-from stiction.analysis.asperities import rms_deviation
-from stiction.analysis.model_error import length_factors
+from stiction.analysis.model_error import length_factors, rms_deviation
 from stiction.plan.names import by_case, by_name
 from stiction.report import published
 from stiction.report.format import TO_NM, UM, number, percent, signed, with_error
@@ -224,7 +223,7 @@ def _stage(kind, shows, draw, **declared):
         },
         settings=lambda plan, at: {"of_paper": plan.paper.pairs},
         compute=lambda data, settings: draw(
-            data["studies"], data["full"], data["beams"], published.compared(data, settings)
+            data["studies"], data["full"], data["beams"], published.published_rows(data, settings)
         ),
         study="asperities",
         targets=("asperities",),

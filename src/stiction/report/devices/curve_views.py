@@ -17,7 +17,7 @@ from stiction.report.devices.explorer import View, humidity_axis
 from stiction.report.devices.grid import Axis
 from stiction.report.format import UM
 from stiction.report.roughness.tables import in_unit, name_of
-from stiction.stages.process.maps import of_processes
+from stiction.stages.process.maps import settings_of_processes
 from stiction.stages.roughness.curves import curves_of
 
 #: Parts of the standard error of a margin over a process.
@@ -79,12 +79,12 @@ def _one(key, label, unit, scale, value, reason):
     return Axis(key, label, unit, scale, (value,), value, False, reason)
 
 
-def _joined(parts: Sequence[Mapping[str, np.ndarray]], sizes: Sequence[int]) -> dict[str, np.ndarray]:
+def _joined_lines(parts: Sequence[Mapping[str, np.ndarray]], sizes: Sequence[int]) -> dict[str, np.ndarray]:
     """Lines of all choices together, from those of each."""
     return {name: np.reshape([one[name] for one in parts], (*sizes, *parts[0][name].shape)) for name in parts[0]}
 
 
-def _stuck(curve, places):
+def _stuck_lines(curve, places):
     """Lines of the fraction stuck and its band."""
     return {
         name: line(places, curve.stuck.sel(end=end).values, PchipInterpolator)
@@ -96,41 +96,41 @@ def views(name: str, section: Mapping[str, Any], data: Mapping[str, Any]) -> lis
     """Views of a device with the datasets of its page: over its process and over a roughness, as far as it has them."""
     found = []
     if "process_map" in data:
-        found.append(of_map(name, section, data["process_map"], data["process_pairs"]))
+        found.append(map_view(name, section, data["process_map"], data["process_pairs"]))
     if "process_settings" in data:
-        found.append(of_process(name, section, data["process"], data["process_settings"]))
+        found.append(process_view(name, section, data["process"], data["process_settings"]))
     if "roughness" in data:
-        found.append(of_roughness(name, section, data["roughness"]))
+        found.append(roughness_view(name, section, data["roughness"]))
     return found
 
 
 # Process
 
 
-def of_process(name: str, section: Mapping[str, Any], curve: xr.Dataset, recommended: xr.Dataset) -> View:
+def process_view(name: str, section: Mapping[str, Any], curve: xr.Dataset, recommended: xr.Dataset) -> View:
     """View over one process: section of a device, datasets of stages process_curve and process_settings."""
     curve, one = curve.sortby("humidity"), recommended.sel(who=name)
     ranges = one.sufficient.values[np.isfinite(one.sufficient.values[:, 0])].tolist()
     best = tuple(float(part) for part in (one.best, *one.best_interval.values))
-    required, axis = _Required(name, section, curve), _of_variable(curve, "value", best[0])
+    required, axis = _Required(name, section, curve), _variable_axis(curve, "value", best[0])
     humidity = required.humidity(curve.margin.isel(shape=-1))
     grid = Curves(
         (axis, humidity),
         required.share,
         required.size,
-        _joined([_over_process(curve.sel(humidity=rh), axis) for rh in humidity.values], [len(humidity.values)]),
+        _joined_lines([_over_process(curve.sel(humidity=rh), axis) for rh in humidity.values], [len(humidity.values)]),
         [ranges for _ in humidity.values],
         best if np.isfinite(best[0]) else None,
         required.falls,
     )
-    return View(axis.label, grid, required.words("in all airs of the device", _copied(curve)))
+    return View(axis.label, grid, required.words("in all airs of the device", _note_on_copy(curve)))
 
 
-def of_map(name: str, section: Mapping[str, Any], found: xr.Dataset, pairs: xr.Dataset) -> View:
+def map_view(name: str, section: Mapping[str, Any], found: xr.Dataset, pairs: xr.Dataset) -> View:
     """View over the first of two processes at settings of the second: datasets of stages process_map, process_pairs."""
-    found, (first, second) = found.sortby("humidity"), of_processes(pairs)
-    required, axis = _Required(name, section, found), _of_variable(found, "value", float(first.best))
-    other = _of_variable(found, "second", float(second.best), between=False)
+    found, (first, second) = found.sortby("humidity"), settings_of_processes(pairs)
+    required, axis = _Required(name, section, found), _variable_axis(found, "value", float(first.best))
+    other = _variable_axis(found, "second", float(second.best), between=False)
     humidity = required.humidity(found.margin.isel(shape=-1))
     rows = [found.sel(second=value, humidity=rh) for value in other.values for rh in humidity.values]
     safe = [pairs.safe.interp(second=value).values for value in other.values]
@@ -138,12 +138,12 @@ def of_map(name: str, section: Mapping[str, Any], found: xr.Dataset, pairs: xr.D
         (axis, other, humidity),
         required.share,
         required.size,
-        _joined([_over_process(row, axis) for row in rows], [len(other.values), len(humidity.values)]),
+        _joined_lines([_over_process(row, axis) for row in rows], [len(other.values), len(humidity.values)]),
         [[sufficient(pairs["value"].values, one)] * len(humidity.values) for one in safe],
         None,
         required.falls,
     )
-    words = required.words("in all airs of the device", _copied(found))
+    words = required.words("in all airs of the device", _note_on_copy(found))
     return View(f"{axis.label}, {other.label}", grid, words)
 
 
@@ -155,10 +155,10 @@ def _over_process(curve, axis):
         "margin": line(axis.places, held.margin.values, Akima1DInterpolator),
         "error": line(axis.places, error, PchipInterpolator),
     }
-    return lines | _stuck(held, axis.places)
+    return lines | _stuck_lines(held, axis.places)
 
 
-def _of_variable(found, dimension, start, between=True):
+def _variable_axis(found, dimension, start, between=True):
     """Axis of the variable of a process, which starts at the best setting if it is known."""
     variable = found.attrs["variable" if dimension == "value" else "second_variable"]
     values, unit = tuple(float(f"{value:.9g}") for value in found[dimension].values), process.unit_of(variable)
@@ -173,7 +173,7 @@ def _of_variable(found, dimension, start, between=True):
     return Axis(variable, process.words_of(variable), unit, "linear", values, start, between, reason)
 
 
-def _copied(found):
+def _note_on_copy(found):
     """Note on a copied study: a setting of a process is no key."""
     name = str(found.law_process.values[0])
     call = f'stiction.Process.of(stiction.load("mine.yaml"), "{name}").at({{value}})'
@@ -183,15 +183,15 @@ def _copied(found):
 # Roughness
 
 
-def of_roughness(name: str, section: Mapping[str, Any], found: xr.Dataset) -> View:
+def roughness_view(name: str, section: Mapping[str, Any], found: xr.Dataset) -> View:
     """View over the roughness of a surface: section of a device, dataset of stage roughness."""
     found = found.sortby("humidity")
     required, curves = _Required(name, section, found), curves_of(found)
-    axis = _of_roughness(found, "key", found.roughness.values, float(found.given), name)
+    axis = _roughness_axis(found, "key", found.roughness.values, float(found.given), name)
     if found.surface in section.get("measured", ()):
         axis = replace(axis, setting="")
     others = [
-        _of_roughness(found, "other_key", found.other.values, float(found.other_given), name) for _ in curves[1:2]
+        _roughness_axis(found, "other_key", found.other.values, float(found.other_given), name) for _ in curves[1:2]
     ]
     humidity = required.humidity(_margin(found, "estimate", required.falls).isel(shape=-1))
     cases = [(curve, rh) for curve in curves for rh in humidity.values]
@@ -201,7 +201,7 @@ def of_roughness(name: str, section: Mapping[str, Any], found: xr.Dataset) -> Vi
         (axis, *others, humidity),
         required.share,
         required.size,
-        _joined(rows, [*(len(other.values) for other in others), len(humidity.values)]),
+        _joined_lines(rows, [*(len(other.values) for other in others), len(humidity.values)]),
         ranges if others else ranges[0],
         None,
         required.falls,
@@ -218,7 +218,7 @@ def _over_roughness(curve, axis, falls):
     lines = {name: _margin(held, name, falls).values for name in ("estimate", "safe")}
     error[np.isnan(lines["estimate"])] = np.nan
     parts = {"margin": lines["estimate"], "error": error, "safe": lines["safe"]}
-    return {name: line(axis.places, part, PchipInterpolator) for name, part in parts.items()} | _stuck(
+    return {name: line(axis.places, part, PchipInterpolator) for name, part in parts.items()} | _stuck_lines(
         held, axis.places
     )
 
@@ -235,7 +235,7 @@ def _ranges(curve, humidity):
     return [[float(f"{end:.9g}") for end in row] for row in in_unit(curve, ends.astype(float))]
 
 
-def _of_roughness(found, key, values, given, name):
+def _roughness_axis(found, key, values, given, name):
     """Axis of a varied quantity, which starts as it is given."""
     quantity, unit = ROUGHNESSES[found.attrs[key]], ROUGHNESSES[found.attrs[key]].unit.strip()
     shown, between = tuple(float(f"{in_unit(found, value, key):.9g}") for value in values), key == "key"

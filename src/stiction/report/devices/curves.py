@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from stiction.devices.roughness import LARGEST
-from stiction.report.devices.grid import Z95, Axis, hermite, rounded
+from stiction.report.devices.grid import Z95, Axis, hermite, nested_lists
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Curves:
     def at(self, state: Mapping[str, float]) -> dict[str, float]:
         """Value of each line at a state, NaN next to a point that could not be computed."""
         quantity, place = self.axes[0], self.axes[0].place(state[self.axes[0].key])
-        return {name: _at(quantity.places, *self._chosen(line, state), place) for name, line in self.lines.items()}
+        return {name: _at(quantity.places, *self._selection(line, state), place) for name, line in self.lines.items()}
 
     def sizes(self, state: Mapping[str, float]) -> tuple[float, float, float]:
         """Length or force with the allowed fraction stuck, and the ends of its 95 % band."""
@@ -46,9 +46,9 @@ class Curves:
     def suffices(self, state: Mapping[str, float]) -> bool:
         """Whether the quantity is in a range that suffices."""
         value = state[self.axes[0].key]
-        return any(low <= value <= high for low, high in self._chosen(self.ranges, state))
+        return any(low <= value <= high for low, high in self._selection(self.ranges, state))
 
-    def _chosen(self, part, state):
+    def _selection(self, part, state):
         """Part of the lines or ranges for the choices of a state."""
         for axis in self.axes[1:]:
             axis.place(state[axis.key])
@@ -63,7 +63,7 @@ class Curves:
     @property
     def json(self) -> dict[str, Any]:
         """Content for a page."""
-        lines = {name: rounded(line) for name, line in self.lines.items()}
+        lines = {name: nested_lists(line) for name, line in self.lines.items()}
         return asdict(self) | {"lines": lines, "largest": float(LARGEST)}
 
 

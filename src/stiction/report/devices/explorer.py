@@ -17,7 +17,11 @@ from stiction.report.devices.curves import Curves
 from stiction.report.devices.grid import Axis, Grid
 from stiction.report.format import UM, UN
 from stiction.stages.devices.budget import budget_of, groups_of
+from stiction.stages.devices.safe_lengths import chosen_share
+from stiction.stages.devices.stoppers import shares_stuck
 
+#: Title of a view of a device in its own airs.
+_ALONE = "the device itself"
 #: Part of a size beyond the smallest and largest computed ones that a control reaches.
 _ROOM = 0.05
 
@@ -48,7 +52,25 @@ def content(name: str, section: Mapping[str, Any], views: Sequence[View]) -> dic
     return {"name": name, "section": own, "views": [asdict(view) | {"grid": view.grid.json} for view in views]}
 
 
-def of_beam(
+def views_of_beam(
+    name: str,
+    section: Mapping[str, Any],
+    safe_lengths: Mapping[float, xr.Dataset],
+    charts: Mapping[float, xr.Dataset],
+    budgets: Mapping[tuple, xr.Dataset],
+) -> list[View]:
+    """Views of a cantilever or bridge, the first of which begins with the number of its answer.
+
+    It is the one over the chart, or, if the chart has neither the device itself nor its worst air, the device alone.
+    """
+    view = beam_view(name, section, safe_lengths, charts, budgets)
+    own = _worst(safe_lengths), section["thickness_um"], section["gap_um"]
+    if all(np.isclose(axis.values, value, rtol=1e-9).any() for axis, value in zip(view.grid.axes, own, strict=True)):
+        return [view]
+    return [replace(beam_view(name, section, safe_lengths, {}, budgets), title=_ALONE), view]
+
+
+def beam_view(
     name: str,
     section: Mapping[str, Any],
     safe_lengths: Mapping[float, xr.Dataset],
@@ -57,21 +79,27 @@ def of_beam(
 ) -> View:
     """View of a cantilever or bridge. Parameters as of `stiction.report.devices.pages.beam_page`."""
     humid = {humidity: chart for humidity, chart in sorted(charts.items()) if humidity > 0}
-    joined = _charted(humid) if humid else alone(section, safe_lengths)
+    joined = _chart_views(humid) if humid else alone(section, safe_lengths)
     worst = _worst(safe_lengths)
     chart = f"devices.{name}.chart"
     axes = (
         humidity_axis(
             joined.humidity.values, worst, f"{chart}.humidities" if humid else f"devices.{name}.humidities", humid
         ),
-        _of_size("thickness_um", "thickness", joined.thickness.values / UM, section, f"{chart}.thicknesses_um"),
-        _of_size("gap_um", "gap", joined.gap.values / UM, section, f"{chart}.gaps_um"),
+        _size_axis("thickness_um", "thickness", joined.thickness.values / UM, section, f"{chart}.thicknesses_um"),
+        _size_axis("gap_um", "gap", joined.gap.values / UM, section, f"{chart}.gaps_um"),
     )
     safe, quantiles = joined.safe_length.values / UM, joined["quantile"].values / UM
     start = section.get("length_um", float(sentences.safe_lengths_of(safe_lengths[worst]).min()) / UM)
     size = size_axis("length_um", "length", "µm", (safe, quantiles), start)
-    share = share_axis(joined.share.values, sentences.chosen(safe_lengths[worst]), "shares")
-    grid = Grid(axes, share, size, safe, quantiles, int(joined.beams), falls=False)
+    share = share_axis(joined.share.values, chosen_share(safe_lengths[worst]), "shares")
+    sizes = {"thickness_um": float(section["thickness_um"]), "gap_um": float(section["gap_um"])}
+    counted = [
+        ({"humidity": humidity, size.key: size.start} | sizes, *map(float, one.isel(shape=-1).stuck_at_length))
+        for humidity, one in safe_lengths.items()
+        if "length_of_device" in one
+    ]
+    grid = Grid(axes, share, size, safe, quantiles, int(joined.beams), False, counted)
     words = {
         "what": "length",
         "safe": "Safe length",
@@ -87,7 +115,7 @@ def _worst(safe_lengths):
     return min(safe_lengths, key=lambda humidity: float(sentences.safe_lengths_of(safe_lengths[humidity]).min()))
 
 
-def _charted(charts):
+def _chart_views(charts):
     """Charts of all humid airs, for whatever holds the devices, over humidity, thickness, gap and share."""
     parts = [chart.isel(shape=-1).assign_coords(humidity=humidity) for humidity, chart in charts.items()]
     names = ["safe_length", "quantile"]
@@ -115,18 +143,39 @@ def _quantiles(lengths, stuck, samples):
     return np.where(inside, np.interp(shares, stuck, lengths), np.nan)
 
 
-def of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> View:
-    """View of a stopper: its section, dataset of stage stoppers and budgets."""
+def views_of_stopper(
+    section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]
+) -> list[View]:
+    """Views of a stopper, the first of which begins with the force of its answer.
+
+    It is the one over the humidity, or, if the worst of its airs is dry and others are humid, the device alone.
+    """
+    view, worst = stopper_view(section, stopper, budgets), _worst_air(stopper)
+    if worst in view.grid.axes[0].values:
+        return [view]
+    own = stopper.sortby("humidity")
+    axis = humidity_axis(own.humidity.values, worst, "humidities of the device", False)
+    scored = np.array([quantiles(row) for row in own.pull_off.values])
+    alone = _force_view((axis,), own.safe_force.sel(part="safe", drop=True), scored, section, stopper)
+    return [replace(alone, title=_ALONE, margin=view.margin), view]
+
+
+def stopper_view(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> View:
+    """View of a stopper over the humidity: its section, dataset of stage stoppers and budgets."""
     is_humid = stopper.axis.values[-1] > 0
     safe, scored = _along(stopper)
     shown = safe.axis.values > 0 if is_humid else slice(None)
     key = "design.worst_humidities" if is_humid else "humidities of the device"
+    axis = humidity_axis(safe.axis.values[shown], _worst_air(stopper), key, True)
+    view = _force_view((axis,), safe.isel(axis=shown), scored[shown], section, stopper)
+    return replace(view, margin=_margin(budgets))
+
+
+def _worst_air(stopper):
+    """Stated humidity of the largest sufficient force, which is that of the answer."""
     share = sentences.bounded_share(stopper)
     stated = stopper.pull_off.mean("sample") if share is None else stopper.safe_force.sel(part="safe", share=share)
-    worst = float(stopper.humidity[int(np.argmax(stated.values))])
-    axis = humidity_axis(safe.axis.values[shown], worst, key, True)
-    view = _of_forces((axis,), safe.isel(axis=shown), scored[shown], section, stopper)
-    return replace(view, margin=_margin(budgets))
+    return float(stopper.humidity[int(np.argmax(stated.values))])
 
 
 def _along(stopper):
@@ -140,7 +189,7 @@ def _along(stopper):
     return safe.isel(axis=order), np.concatenate([scored, stopper.scored_along.values[kept]])[order]
 
 
-def of_tilted(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopper: xr.Dataset) -> View:
+def tilted_view(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopper: xr.Dataset) -> View:
     """View of a stopper over its tilts: its section, datasets of stages tilted_stoppers and stoppers."""
     tilted, key = tilted.sortby("humidity"), f"devices.{name}"
     tilts = tuple(float(f"{from_si(float(tilt), 'deg'):.6g}") for tilt in tilted.tilt)
@@ -151,10 +200,10 @@ def of_tilted(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopper
     humidity = humidity_axis(tilted.humidity.values, worst, f"{key}.humidities", False)
     scored = np.apply_along_axis(quantiles, -1, tilted.pull_off.transpose("tilt", "humidity", "sample").values)
     safe = tilted.safe_force.sel(part="safe").transpose("tilt", "humidity", "share")
-    return replace(_of_forces((tilt, humidity), safe, scored, section, stopper), title="tilt")
+    return replace(_force_view((tilt, humidity), safe, scored, section, stopper), title="tilt")
 
 
-def _of_forces(axes, safe, scored, section, stopper):
+def _force_view(axes, safe, scored, section, stopper):
     """View of safe forces (axes, shares) and quantiles of forces (axes, scores) [N]."""
     bounded = np.isfinite(safe.values).all(axis=tuple(range(len(axes))))
     known = safe.isel(share=bounded if bounded.any() else [int(np.argmax(safe.share.values))]).sortby("share")
@@ -165,7 +214,9 @@ def _of_forces(axes, safe, scored, section, stopper):
     size = size_axis(key, label, unit, numbers, float(stopper.restoring_force) / per)
     least = sentences.bounded_share(stopper)
     share = share_axis(known.share.values, least if least in known.share.values else float(known.share[-1]), "")
-    grid = Grid(axes, share, size, *numbers, stopper.sizes["sample"], falls=True)
+    counted = [({"humidity": humidity, key: size.start}, *stuck) for humidity, *stuck in shares_stuck(stopper)]
+    of_axes = {axis.key for axis in axes} == {"humidity"}
+    grid = Grid(axes, share, size, *numbers, stopper.sizes["sample"], True, counted if of_axes else ())
     words = {"what": label, "safe": f"Sufficient {label}", "stick": f"Stoppers with this {label} that stick"}
     return View("humidity", grid, words | {"bound": "sufficient"})
 
@@ -174,13 +225,17 @@ def humidity_axis(values: Sequence[float], worst: float, key: str, between: bool
     """Axis of relative humidities."""
     values = tuple(map(float, values))
     several = between and len(values) > 1
-    text = f"computed from {values[0]:g} to {values[-1]:g}" if several else f"computed at {_listed(values)} alone"
+    text = (
+        f"computed from {values[0]:g} to {values[-1]:g}"
+        if several
+        else f"computed at {_humidities_in_words(values)} alone"
+    )
     start = min(max(worst, values[0]), values[-1]) if between else worst
     reason = f"it is {text}; {key} changes this"
     return Axis("humidity", "relative humidity", "", "linear", values, start, bool(between), reason, "humidities")
 
 
-def _of_size(key, label, values, section, stated):
+def _size_axis(key, label, values, section, stated):
     """Axis of thicknesses or gaps [µm]."""
     values = tuple(float(f"{value:.9g}") for value in values)
     several = len(values) > 1
@@ -206,10 +261,10 @@ def size_axis(key: str, label: str, unit: str, computed: Sequence[np.ndarray], s
     numbers = np.append(numbers[np.isfinite(numbers)], start)
     low, high = (float(f"{value:.3g}") for value in (numbers.min() * (1 - _ROOM), numbers.max() * (1 + _ROOM)))
     reason = f"the simulated devices end between {low:g} and {high:g} {unit}"
-    return Axis(key, label, unit, "linear", (low, high), float(f"{start:.3g}"), True, reason, key)
+    return Axis(key, label, unit, "linear", (low, high), float(f"{start:.4g}"), True, reason, key)
 
 
-def _listed(values):
+def _humidities_in_words(values):
     """Humidities in words."""
     return ", ".join(f"{value:g}" if value else "0 (dry air)" for value in values)
 

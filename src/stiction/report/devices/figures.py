@@ -23,6 +23,7 @@ from stiction.report.style import (
     humidity_axis,
     humidity_colours,
     legend_below,
+    legend_outside,
     letter_lines,
     on_own_axes,
     places,
@@ -76,12 +77,14 @@ def risk(datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tup
         legend_below(panel, named)
         _own_length(panel, dataset)
         shares = np.concatenate([dataset.share.values for dataset in cases.values()])
-        panel.set(yscale="log", ylim=(shares.min() / 2, 1.3), xlabel="length of the device [µm]")
+        panel.set(
+            yscale="log", ylim=(shares.min() / 2, 1.3), xlabel=on_own_axes("length of the device [µm]", columns.T)
+        )
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
     letter_lines(lines, names)
     _explain(columns[0, 0], datasets)
-    figure.legend(*handles(columns[0, 0]), loc="outside upper center", ncols=4 if len(names) > 1 else 3)
+    legend_outside(figure, handles(columns[0, 0]), "upper", 4 if len(names) > 1 else 3)
     refer_to_warnings(figure, warnings)
     return figure
 
@@ -103,10 +106,10 @@ def _own_length(panel, dataset):
 
 def _marks(numbers: Mapping[tuple, Iterable[int]], *subject) -> str:
     """Numbers of the warnings about all shapes of a subject."""
-    return _listed({k for (*about, _), marks in numbers.items() if tuple(about) == subject for k in marks})
+    return _marks_of_warnings({k for (*about, _), marks in numbers.items() if tuple(about) == subject for k in marks})
 
 
-def _listed(numbers):
+def _marks_of_warnings(numbers):
     """Numbers of warnings as marks in a label."""
     return "".join(f" ({k})" for k in sorted(numbers))
 
@@ -158,7 +161,9 @@ def chart(
     figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
         whole = wholes[name].sel(gap=gap, shape=shape)
-        marks = [_listed(numbers.get((name, thickness, gap, shape), ())) for thickness in whole.thickness.values]
+        marks = [
+            _marks_of_warnings(numbers.get((name, thickness, gap, shape), ())) for thickness in whole.thickness.values
+        ]
         legend_below(panel, _thicknesses(panel, whole, shape, marks, placed[name]))
         low, high = panel.dataLim.intervaly
         panel.set(xlabel="relative humidity [–]", ylim=(0.95 * low, high + _ROOM * (high - low)))
@@ -168,7 +173,7 @@ def chart(
     letter_lines(
         lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].legend}" for name, gap, shape in subjects]
     )
-    figure.legend(*handles(*columns[:, 0]), loc="outside upper center", ncols=2)
+    legend_outside(figure, handles(*columns[:, 0]), "upper", 2)
     refer_to_warnings(figure, warnings)
     return figure
 
@@ -245,9 +250,9 @@ STAGES = (
         "chart",
         "safe length against relative humidity",
         "Devices",
-        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.charted)},
+        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.with_chart)},
         compute=lambda data: chart(data["charts"], device_warnings.read(data["warnings"]).curves),
-        jobs=lambda plan: [{}] if plan.devices.charted else [],
+        jobs=lambda plan: [{}] if plan.devices.with_chart else [],
         targets=("devices",),
     ),
 )

@@ -7,14 +7,14 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.config.cases import air
+from stiction.config.cases import air, in_air
 from stiction.devices import limits
 from stiction.devices.risk import one_in
 from stiction.report.budget import tables as tables_budget
 from stiction.report.budget.tables import percentage
 from stiction.report.devices import sentences
-from stiction.report.format import UM, UN, airs, humidity_text, number, with_error
-from stiction.report.page import Summary
+from stiction.report.format import MISSING, UM, UN, airs, humidity_text, number, with_error
+from stiction.report.page import FORBIDDEN, Summary
 from stiction.report.test_beams.tables import contradiction, is_reliable
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.end_states import END_STATES
@@ -23,6 +23,7 @@ from stiction.stages.devices.stoppers import shares_stuck
 
 #: Powers of thickness and gap in the length that sticks at an adhesion energy, of beams without tension; Eq. (13).
 _OF_THICKNESS, _OF_GAP = 3 / 4, 1 / 2
+_MEASURE = "What to measure"
 #: How to learn what to measure where no uncertainty is stated.
 _UNSTATED = "State the uncertainties of the inputs in section uncertainty: the budget then says what to measure better."
 
@@ -40,17 +41,17 @@ def beam_screen(
     and, if there are test beams, the dataset of stage test_beams_rerun.
     """
     least, total, safe = sentences.length_to_build(safe_lengths, budgets)
-    humidity, worst = min(safe_lengths.items(), key=lambda case: float(_chosen(case[1]).safe_length.min()))
-    point = _chosen(worst).isel(shape=-1)
+    humidity, worst = min(safe_lengths.items(), key=lambda case: float(_middle_lengths(case[1]).safe_length.min()))
+    point = _middle_lengths(worst).isel(shape=-1)
     verdict = _verdict(section.get("length_um"), safe / UM, safe_lengths)
     estimate = with_error(float(point.estimate) / UM, float(np.hypot(point.beams_error, _finite(point))) / UM)
-    where = f"{air(humidity)}, the worst" if len(safe_lengths) > 1 else air(humidity)
+    where = in_air(humidity) + ", the worst" * (len(safe_lengths) > 1)
     basis = [
         f"At most {one_in(float(point.share))} sticks {airs(safe_lengths)}, with 95 % confidence, from "
         f"{int(worst.beams)} simulated beams at each humidity.",
-        f"Estimate at {where}: {estimate} µm (standard error of the simulation)."
+        f"Estimate {where}: {estimate} µm (standard error of the simulation)."
         if np.isfinite(point.estimate)
-        else f"At {where}, too few beams stick for an estimate.",
+        else f"{where[0].upper()}{where[1:]}, too few beams stick for an estimate.",
         f"Subtracted for the measurements: {100 * (1 - safe / least):.2g} %, twice their standard uncertainty."
         if total
         else "Nothing is subtracted for the measurements.",
@@ -58,13 +59,18 @@ def beam_screen(
     points = {
         "What decides": " ".join(_decides_beam(humidity, worst, budgets, section)),
         "What to change": _change_beam(section, safe / UM),
-        "What to measure": _measure(sentences.shortest_budgets(safe_lengths, budgets).values()),
+        _MEASURE: _measure(sentences.shortest_budgets(safe_lengths, budgets).values()),
     }
     summary = Summary(*verdict, basis, points, _table_of_beam(safe_lengths, test_beams))
     return _unless_forbidden(summary, warnings, test_beams)
 
 
-def _chosen(dataset):
+def _air(humidity):
+    """Air, for the beginning of a sentence."""
+    return air(humidity) if humidity else "Dry air"
+
+
+def _middle_lengths(dataset):
     """Lengths for the middle one of the shares, by shape."""
     return dataset.isel(share=dataset.sizes["share"] // 2)
 
@@ -85,23 +91,23 @@ def _verdict(length, safe, safe_lengths):
     if length <= safe:
         sign = "good", "Safe"
     else:
-        sign = ("bad", "Too long") if low > float(_chosen(worst).share) else ("open", "Not shown to be safe")
-    return *sign, f"{answer}; your {length:g} µm: {_stuck(stuck, low, high)} at {air(humidity)}."
+        sign = ("bad", "Too long") if low > float(_middle_lengths(worst).share) else ("open", "Not shown to be safe")
+    return *sign, f"{answer}; your {length:g} µm: {_stuck_with_band(stuck, low, high)} {in_air(humidity)}."
 
 
-def _stuck(stuck, low, high):
+def _stuck_with_band(stuck, low, high):
     """Fraction stuck with its band of 95 % confidence."""
     return f"{100 * stuck:.3g} % stick ({100 * low:.3g} to {100 * high:.3g} %)"
 
 
 def _decides_beam(humidity, worst, budgets, section):
     """Humidity and end state of the shortest safe length, and a decisive assumed input."""
-    lengths = _chosen(worst).safe_length
+    lengths = _middle_lengths(worst).safe_length
     shape = str(lengths["shape"].values[int(lengths.argmin("shape"))])
-    yield f"{air(humidity)}, held by the {END_STATES[shape].by}."
+    yield f"{_air(humidity)}, held by the {END_STATES[shape].by}."
     if shape == EITHER:
         yield f"If the tip could not touch: {float(lengths.sel(shape=S_SHAPE)) / UM:.0f} µm."
-    yield from tables_budget.decided(budgets.values(), section.get("assumed", ()))
+    yield from tables_budget.first_to_measure(budgets.values(), section.get("assumed", ()))
 
 
 def _change_beam(section, safe):
@@ -129,14 +135,14 @@ def _measure(budgets: Iterable[xr.Dataset]) -> str:
     stated = [dataset for dataset in budgets if budget_of(dataset).total != 0]
     if not stated:
         return _UNSTATED
-    return tables_budget.advised(max(stated, key=lambda dataset: np.nan_to_num(budget_of(dataset).total)))
+    return tables_budget.what_to_measure(max(stated, key=lambda dataset: np.nan_to_num(budget_of(dataset).total)))
 
 
 def _table_of_beam(safe_lengths, test_beams):
     """Safe lengths by humidity, with and without tip and test beams, and P(stuck) at the stated length."""
     rows = []
     for humidity, dataset in safe_lengths.items():
-        lengths = _chosen(dataset).safe_length
+        lengths = _middle_lengths(dataset).safe_length
         row = {"RH": humidity_text(humidity), "safe length [µm]": number(float(lengths.min()) / UM, ".0f")}
         if EITHER in lengths["shape"].values:
             row["if the tip cannot touch [µm]"] = number(float(lengths.sel(shape=S_SHAPE)) / UM, ".0f")
@@ -153,7 +159,7 @@ def _with_test_beams(update, humidity):
     """Safe length after test beams, before any margin [m], NaN if they are unreliable."""
     if not is_reliable(update) or humidity not in update.humidity:
         return np.nan
-    return float(_chosen(update).updated_safe.sel(humidity=humidity).min())
+    return float(_middle_lengths(update).updated_safe.sel(humidity=humidity).min())
 
 
 def stopper_screen(
@@ -167,7 +173,7 @@ def stopper_screen(
     force, share = float(stopper.restoring_force), sentences.bounded_share(stopper)
     humidity, *stuck = max(shares_stuck(stopper), key=lambda row: row[3])
     needed = np.nan if share is None else float(stopper.safe_force.sel(part="safe", share=share).max(skipna=False))
-    own = f"with {force / UN:g} µN, {_stuck(*stuck)} at {air(humidity)}"
+    own = f"with {force / UN:g} µN, {_stuck_with_band(*stuck)} {in_air(humidity)}"
     if share is None:
         verdict = "open", "Not known", f"There are too few patches to bound a force; {own}."
     else:
@@ -183,12 +189,12 @@ def stopper_screen(
     points = {
         "What decides": " ".join(
             [
-                f"{air(humidity)}, where most stick.",
-                *tables_budget.decided(budgets.values(), section.get("assumed", ())),
+                f"{_air(humidity)}, where most stick.",
+                *tables_budget.first_to_measure(budgets.values(), section.get("assumed", ())),
             ]
         ),
         "What to change": change if share else "Compute more patches: contact.samples.",
-        "What to measure": _measure(budgets.values()),
+        _MEASURE: _measure(budgets.values()),
     }
     cells = _table_of_stopper(stopper, share)
     return _unless_forbidden(Summary(*verdict, list(filter(None, basis)), points, cells), warnings, test_beams)
@@ -213,4 +219,8 @@ def _unless_forbidden(summary: Summary, warnings: Sequence[str], test_beams: xr.
     forbidding += filter(limits.forbids, warnings)
     if not forbidding:
         return summary
-    return Summary("bad", "Do not rely on a number", " ".join(forbidding), (), summary.points, summary.cells)
+    points = {_MEASURE: summary.points[_MEASURE]}
+    cells = summary.cells.assign(**dict.fromkeys(summary.cells.columns[1:], MISSING))
+    return Summary(
+        "bad", FORBIDDEN, " ".join(forbidding), (), points, cells, "the warning above forbids to rely on one"
+    )

@@ -6,14 +6,16 @@ are interpolated by monotone cubics, axis by axis. Nothing is extrapolated.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.special import ndtr, ndtri
 
+from stiction.devices.chart import error_between
 from stiction.devices.risk import SCORES
 
-#: Significant digits of the numbers in a page.
-_DIGITS = 7
+#: Significant digits of the numbers in a page, and an error too small to show, which has a logarithm.
+_DIGITS, _EXACT = 7, 1e-9
 #: Normal score of a band of 95 %.
 Z95 = float(ndtri(0.975))
 #: Coordinate of a value along an axis, by its scale.
@@ -77,13 +79,19 @@ class Grid:
     quantiles: np.ndarray  #: over the axes and the scores of `stiction.devices.risk`; NaN if unknown
     samples: int  #: simulated devices of each state
     falls: bool  #: whether fewer stick at a larger size
+    counted: Sequence[tuple[Mapping[str, float], float, float, float]] = ()  #: states of tables, fraction and its band
 
     def safe_size(self, state: Mapping[str, float]) -> float:
         """Safe size for the state's share."""
-        return float(np.exp(monotone(self.share.places, self._at(self.safe, state), self.share.place(state["share"]))))
+        return float(
+            np.exp(monotone(self.share.places, self._at(self.safe, state, self.axes), self.share.place(state["share"])))
+        )
 
     def stuck(self, state: Mapping[str, float]) -> Stuck:
-        """P(stuck) at the state's size."""
+        """P(stuck) at the state's size: as in the tables if they have this state."""
+        for at, *found in self.counted:
+            if all(state[key] == value for key, value in at.items()):
+                return Stuck(*found, 0)
         levels, scores = self._levels(state)
         if not len(levels):
             return Stuck(np.nan, np.nan, np.nan, 0)
@@ -92,16 +100,31 @@ class Grid:
         share = float(ndtr(sign * np.interp(at, levels, scores)))
         return Stuck(share, *band(share, self.samples), beyond)
 
+    @cached_property
+    def noise(self) -> np.ndarray:
+        """Relative error of safe sizes between computed values of the first axis, over the other axes and shares.
+
+        It is that of the band in the figure of a chart, NaN for too few values.
+        """
+        values = self.axes[0].values if self.axes[0].between else ()
+        errors = np.apply_along_axis(lambda sizes: error_between(np.array(values), sizes), 0, self.safe)
+        return np.maximum(errors, _EXACT)
+
+    def noise_at(self, state: Mapping[str, float]) -> float:
+        """Relative error of the safe size between computed values of the first axis, at the state's others."""
+        found = self._at(self.noise, state, self.axes[1:])
+        return float(np.exp(monotone(self.share.places, found, self.share.place(state["share"]))))
+
     def _levels(self, state):
         """Logarithms of the known quantiles at a state, and their normal scores."""
-        levels = self._at(self.quantiles, state)
+        levels = self._at(self.quantiles, state, self.axes)
         known = np.isfinite(levels)
         return levels[known], SCORES[known]
 
-    def _at(self, values, state):
-        """Logarithms of values at a state, over their last dimension."""
+    def _at(self, values, state, axes):
+        """Logarithms of values over some axes at a state, over their last dimension."""
         found = np.log(values)
-        for axis in self.axes:
+        for axis in axes:
             place = axis.place(state[axis.key])
             found = monotone(axis.places, found, place) if axis.between else found[axis.values.index(state[axis.key])]
         return found
@@ -114,7 +137,7 @@ class Grid:
     @property
     def json(self) -> dict:
         """Content for a page."""
-        numbers = {name: rounded(getattr(self, name)) for name in ("safe", "quantiles")}
+        numbers = {name: nested_lists(getattr(self, name)) for name in ("safe", "quantiles", "noise")}
         return asdict(self) | numbers | {"scores": SCORES.tolist()}
 
 
@@ -165,8 +188,8 @@ def _slope(k, widths, secants):
         return np.where(d0 * d1 <= 0, 0 * d0 * d1, (w0 + w1) / (w0 / d0 + w1 / d1))
 
 
-def rounded(values: np.ndarray) -> list:
+def nested_lists(values: np.ndarray) -> list:
     """Nested lists of numbers with few digits, `None` for NaN."""
     if values.ndim > 1:
-        return [rounded(part) for part in values]
+        return [nested_lists(part) for part in values]
     return [float(f"{value:.{_DIGITS}g}") if np.isfinite(value) else None for value in values]

@@ -1,5 +1,6 @@
 """Life of devices: causes of contact, adhesion then, and ways to free them."""
 
+import textwrap
 from collections.abc import Mapping
 
 import numpy as np
@@ -19,6 +20,7 @@ from stiction.report.style import (
     at_most_double,
     columns_of_panels,
     figure_stage,
+    legend_outside,
     letter_lines,
     styled,
 )
@@ -71,14 +73,16 @@ CAPTION = (
     "that it wets."
 )
 _COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#D55E00", "#CC79A7", "#009E73"), strict=True))
-#: Height of a row, and of everything else in a panel [in].
-_ROW, _AROUND = 0.3, 1.1
+#: Height of a row, and of everything else in a panel [in]. Size of text [points], mean width of its characters in
+#: sizes, and share of a column of panels that it may take.
+_ROW, _AROUND = 0.34, 1.1
+_SIZE, _CHARACTER, _FILLED = 7, 0.45, 0.85
 
 
-def table(datasets: Mapping[str, xr.Dataset]) -> Table:
+def table(life: Mapping[str, xr.Dataset]) -> Table:
     """Answers about all devices, one row each."""
     rows = []
-    for device, dataset in datasets.items():
+    for device, dataset in life.items():
         for answer in answers_of(dataset):
             factor, unit = _UNITS[answer.unit]
             numbers = {"at_least": answer.low, "at_most": answer.high, "standard_uncertainty": answer.error}
@@ -127,8 +131,8 @@ def sentences(dataset: xr.Dataset) -> list[str]:
     at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
     said = [*_touching(answers, at), *_asking(one for one in unknown if one.question == TOUCH)]
-    said += [*_pulled_in(answers, potential), *_drying(answers, at, length), *_dimpled(answers), *_tilted(answers)]
-    said += [*_biased(answers, potential), *_fast(answers), *_often(answers, int(dataset.touchdowns))]
+    said += [*_pulled_in(answers, potential), *_drying(answers, at, length), *_on_dimples(answers), *_at_tilts(answers)]
+    said += [*_at_voltage(answers, potential), *_fast(answers), *_often(answers, int(dataset.touchdowns))]
     return [*said, *_asking(one for one in unknown if one.question != TOUCH)]
 
 
@@ -152,7 +156,7 @@ def _pulled_in(answers, potential):
     return [f"Its own voltage of {significant(potential)} V pulls it in."]
 
 
-def _dimpled(answers):
+def _on_dimples(answers):
     """Whether a beam sticks on its dimples, and whether it touches beside them."""
     if DIMPLES not in answers:
         return []
@@ -173,7 +177,7 @@ def _dimpled(answers):
     return [f"{said} But it touches beside them, where they do not protect it."]
 
 
-def _tilted(answers):
+def _at_tilts(answers):
     """Force on a stopper at its tilts, and the tilt that makes it that of a wedge."""
     if TILTED not in answers:
         return []
@@ -182,7 +186,7 @@ def _tilted(answers):
     return [f"Its {one.what}, is {ends} µN. Beyond a tilt of {limit}°, a longer side of its area hardly holds more."]
 
 
-def _biased(answers, potential):
+def _at_voltage(answers, potential):
     """Effect of a voltage on a touching device, and on its dielectric."""
     if AT_VOLTAGE not in answers:
         return []
@@ -192,13 +196,13 @@ def _biased(answers, potential):
     ends = list(dict.fromkeys(end for end, value in ((_low(one), one.low), (_high(one), one.high)) if value == value))
     said = [f"{on} {what} {' to '.join(ends)} {unit}."]
     if FREEING in answers:
-        said.append(_released(answers[FREEING]))
+        said.append(_release_voltage(answers[FREEING]))
     if field.high > BREAKDOWN:
         said.append(f"The field in its dielectric, {_high(field)} V/nm, is above 1 V/nm, where thin oxides break down.")
     return said
 
 
-def _released(one):
+def _release_voltage(one):
     """Voltage below which the spring of a stopper frees it."""
     fraction = one.what.rpartition("frees ")[2]
     if not max(one.low, one.high) > 0:
@@ -288,16 +292,16 @@ def _high(answer: Answer) -> str:
 
 
 @styled
-def figure(datasets: Mapping[str, xr.Dataset]) -> Figure:
+def figure(life: Mapping[str, xr.Dataset]) -> Figure:
     """Limits of the lives of devices on one axis: lengths of beams, or forces of stoppers, a panel for each device."""
-    rows = {name: _rows(dataset) for name, dataset in datasets.items()}
+    rows = {name: _rows(dataset) for name, dataset in life.items()}
     height = _AROUND + _ROW * max(map(len, rows.values()))
     made, columns, lines = columns_of_panels(len(rows), 1, at_most_double(1.6 * SINGLE), height)
     for panel, (name, answers) in zip(columns[:, 0], rows.items(), strict=True):
-        _bars(panel, answers, float(datasets[name].length))
+        _bars(panel, answers, float(life[name].length), len(rows))
     letter_lines(lines, list(rows))
     entries = [Line2D([], [], color=colour, linewidth=4, label=name) for name, colour in _COLOURS.items()]
-    made.legend(handles=entries, loc="outside upper center", ncols=4)
+    legend_outside(made, (entries, list(_COLOURS)), "upper", 4)
     return made
 
 
@@ -307,19 +311,23 @@ def _rows(dataset):
     return [one for one in answers_of(dataset) if one.unit == unit and np.isfinite(one.high)]
 
 
-def _bars(panel: Axes, answers, length):
-    """One bar for each answer from its lower to its upper bound, and the length of a beam."""
+def _bars(panel: Axes, answers, length, count):
+    """One bar for each answer from its lower to its upper bound, and the length of a beam. A figure has some panels."""
     factor, unit = _UNITS[answers[0].unit]
+    grid, figure = panel.get_gridspec(), panel.figure
+    longest = int(_FILLED * figure.get_figwidth() / grid.ncols * 72 / (_SIZE * _CHARACTER))
     for row, one in enumerate(reversed(answers)):
         low, high = factor * (one.high if np.isnan(one.low) else one.low), factor * one.high
         panel.plot([low, high], [row, row], color=_COLOURS[one.question], linewidth=4, solid_capstyle="butt")
         panel.plot([low, high], [row, row], "|", color=_COLOURS[one.question], markersize=8)
-        text = one.what.partition(":")[0]
-        panel.annotate(text, (0.02, row + 0.2), xycoords=("axes fraction", "data"), fontsize=6, path_effects=OUTLINED)
+        text = textwrap.fill(one.what.partition(":")[0], longest)
+        place = {"xycoords": ("axes fraction", "data"), "va": "bottom", "linespacing": 1}
+        panel.annotate(text, (0.02, row + 0.15), **place, fontsize=_SIZE, path_effects=OUTLINED)
     if np.isfinite(length):
         panel.axvline(factor * length, color="0.4", linestyle=":", linewidth=0.8)
     what = "length" if unit == "µm" else "force"
-    panel.set(xlabel=f"{what} [{unit}]", xlim=(0, 1.05 * panel.dataLim.x1), ylim=(-0.5, len(answers) - 0.3), yticks=[])
+    label = f"{what} [{unit}]" + ", axes differ" * (count > 1)
+    panel.set(xlabel=label, xlim=(0, 1.05 * panel.dataLim.x1), ylim=(-0.5, len(answers) - 0.1), yticks=[])
 
 
 #: What table and figure declare alike.
@@ -333,14 +341,14 @@ STAGES = (
     table_stage(
         "life",
         "what brings devices into contact, holds and frees them",
-        compute=lambda data: table(data["life"]),
+        compute=table,
         **_OF_ALL,
     ),
     figure_stage(
         "life",
         "what limits the life of devices, on one axis",
         "Devices",
-        compute=lambda data: figure(data["life"]),
+        compute=figure,
         **_OF_ALL,
     ),
 )

@@ -8,6 +8,7 @@ import xarray as xr
 from stiction.devices.risk import one_in
 from stiction.report.format import UM, airs
 from stiction.stages.devices.budget import budget_of
+from stiction.stages.devices.safe_lengths import chosen_share
 
 
 def sentences(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> list[str]:
@@ -25,14 +26,14 @@ def sentences(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, 
     return [_sentence(humidity, one, _total(humidity, budgets)) for humidity, one in worst_first]
 
 
-def measured(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> list[str]:
+def effect_of_measurements(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> list[str]:
     """Effect of the measurements on P(stuck) at the length of a device, in each of its airs where it is known."""
     said = []
     for humidity, one in safe_lengths.items():
         total = _total(humidity, budgets)
         if "length_of_device" in one and total:
             held = one.isel(shape=-1)
-            low, high = _shifted(held, float(held.length_of_device), total)
+            low, high = _stuck_if_shifted(held, float(held.length_of_device), total)
             said.append(
                 f"With the measurements one standard uncertainty off, {100 * total:.2g} % of the length, "
                 f"{100 * low:.3g} to {100 * high:.3g} % of devices of {float(held.length_of_device) / UM:g} µm stick "
@@ -56,23 +57,24 @@ def _sentence(humidity, held, total):
     what = f"{100 * stuck:.3g} % ({band} with 95 % confidence{surfaces})"
     if length > reach:
         what = f"between {band} (devices were simulated up to {reach / UM:.0f} µm; longer ones may all stick)"
-    share = float(held.share[held.sizes["share"] // 2])
+    share = chosen_share(held)
     safe = f"{float(held.safe_length.sel(share=share)) / UM:.0f} µm are safe for {one_in(share)}"
-    return f"Of devices of {length / UM:g} µm, {what} stick {airs([humidity])}; {safe}.{_measured(held, length, total)}"
+    left = _remaining_uncertainty(held, length, total)
+    return f"Of devices of {length / UM:g} µm, {what} stick {airs([humidity])}; {safe}.{left}"
 
 
-def _measured(held: xr.Dataset, length: float, total: float) -> str:
+def _remaining_uncertainty(held: xr.Dataset, length: float, total: float) -> str:
     """Uncertainty of P(stuck) left by the measurements: stuck lengths change by a relative amount ``total``."""
     if total == 0:
         return ""
-    low, high = _shifted(held, length, total)
+    low, high = _stuck_if_shifted(held, length, total)
     return (
         f" With the measurements one standard uncertainty off, {100 * total:.2g} % of the length, it is "
         f"{100 * low:.3g} to {100 * high:.3g} %."
     )
 
 
-def _shifted(held, length, total):
+def _stuck_if_shifted(held, length, total):
     """P(stuck) at a length [m] if stuck lengths are longer or shorter by a relative amount."""
     at: Sequence[float] = length / np.array([1 + total, max(1 - total, 0.01)])
     return np.interp(at, held.length.values, held.stuck.values, left=0.0)

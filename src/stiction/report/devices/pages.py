@@ -31,8 +31,8 @@ from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.process import section as process_section
 from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
-from stiction.report.style import STYLE
-from stiction.report.surfaces.words import described
+from stiction.report.style import STYLE, on_a_page
+from stiction.report.surfaces.words import surface_in_words
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import provenance
@@ -112,15 +112,16 @@ def beam_page(
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     sections += _sure(name, budgets, errors)
     of_shortest = sentences.shortest_budgets(safe_lengths, budgets)
-    decided = tables_budget.decided(of_shortest.values(), section.get("assumed", ()))
+    decided = tables_budget.first_to_measure(of_shortest.values(), section.get("assumed", ()))
     few, more = sentences.few_sentences(safe_lengths), _rough_enough(roughness)
     answer = [*own_length.sentences(safe_lengths, of_shortest), *few]
     answer += [sentences.build_sentence(safe_lengths, budgets), *decided, *more]
     sections += _test_beam_sections(name, test_beams)
-    built, of_model = _built(test_beams), model_errors.sentences(name, errors)
+    built, of_model = _test_beam_sentence(test_beams), model_errors.sentences(name, errors)
     predicted = sentences.prediction_sentences(safe_lengths)
     answer += [*built, *(sentences.safe_sentence(*case) for case in safe_lengths.items()), *of_model, *predicted]
-    more = [*own_length.measured(safe_lengths, of_shortest), *few, *more, *built, *of_model[1:], *predicted]
+    effects = own_length.effect_of_measurements(safe_lengths, of_shortest)
+    more = [*effects, *few, *more, *built, *of_model[1:], *predicted]
     sections += _how_rough(name, roughness)
     listed = pair_warnings.with_numbers(warnings)
     listed += [] if test_beams is None else tables_test_beams.warnings(test_beams)
@@ -155,8 +156,12 @@ def stopper_page(
     table = tables_budget.stoppers({name: stopper}, {name: []}, errors).cells.drop(columns=["device"])
     sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: stopper}, {}))]
     sections += [*_sure(name, budgets, errors), *_how_rough(name, roughness)]
-    decided = tables_budget.decided(budgets.values(), section.get("assumed", ()))
-    rough, built, of_model = _rough_enough(roughness), _built(test_beams), model_errors.sentences(name, errors)
+    decided = tables_budget.first_to_measure(budgets.values(), section.get("assumed", ()))
+    rough, built, of_model = (
+        _rough_enough(roughness),
+        _test_beam_sentence(test_beams),
+        model_errors.sentences(name, errors),
+    )
     answer = [sentences.verdict(stopper), *decided, *rough, *built]
     sections += _test_beam_sections(name, test_beams)
     listed = [*warnings, *([] if test_beams is None else tables_test_beams.warnings(test_beams))]
@@ -204,7 +209,7 @@ def _facts_of(section):
         facts[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
     name = "relative humidities" if len(section["humidities"]) > 1 else "relative humidity"
     facts[name] = ", ".join(map(humidity_text, section["humidities"]))
-    return facts | _asked(section)
+    return facts | _requirement(section)
 
 
 def _with_force(section):
@@ -212,7 +217,7 @@ def _with_force(section):
     return section if kind_of(section).is_beam else section | {"restoring_force_uN": restoring_force(section)}
 
 
-def _asked(section):
+def _requirement(section):
     """Requirement of a device and its range of roughness, by name, or nothing without a requirement."""
     if "requirement" not in section:
         return {}
@@ -235,7 +240,7 @@ def _sure(name, budgets, errors):
         return []
     cases = {(name, *key): dataset for key, dataset in budgets.items()}
     said = [
-        f"{f'Relative humidity {humidity:g}' if humidity else 'Dry air'}: {tables_budget.advised(budget)}"
+        f"{f'Relative humidity {humidity:g}' if humidity else 'Dry air'}: {tables_budget.what_to_measure(budget)}"
         for (humidity, *_), budget in budgets.items()
     ]
     said += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
@@ -243,9 +248,9 @@ def _sure(name, budgets, errors):
     return [Section("Uncertainty, and what should be measured better", said, cells, drawn, _MISSING_EFFECTS)]
 
 
-def _built(update):
+def _test_beam_sentence(update):
     """Sentence on the test beams of a device, if it has some."""
-    return [] if update is None else [tables_test_beams.built(update)]
+    return [] if update is None else [tables_test_beams.sizes_to_build(update)]
 
 
 def _test_beam_sections(name, update):
@@ -253,11 +258,11 @@ def _test_beam_sections(name, update):
     if update is None:
         return []
     said = [
-        tables_test_beams.explained(update),
+        tables_test_beams.agreement(update),
         *tables_test_beams.combinations(update),
-        tables_test_beams.advised(update),
+        tables_test_beams.beams_to_add(update),
     ]
-    said += [tables_test_beams.again(update), *tables_test_beams.stuck(update)]
+    said += [tables_test_beams.again(update), *tables_test_beams.stuck_sentences(update)]
     cells = tables_test_beams.test_beams({name: update}).cells.drop(columns="device")
     return [Section("What the test beams say", said, cells, figures_test_beams.test_beams(update))]
 
@@ -295,7 +300,7 @@ def _inputs(plan, at):
     """Inputs of the page of a device."""
     devices, section = plan.devices, plan.config["devices"][at.device]
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
-    budgets = budgets_of(plan, at.device) if at.device in devices.budgeted else {}
+    budgets = budgets_of(plan, at.device) if at.device in devices.with_budget else {}
     own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
     own |= {"life": f"devices/life/{at.device}"} | model_errors.error_inputs(plan, at.device)
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
@@ -306,7 +311,7 @@ def _inputs(plan, at):
         tilted = {"tilted": f"devices/tilted/{at.device}"} if "tilt_deg" in section else {}
         biased = {"biased": f"devices/at_voltage/{at.device}"} if is_biased(plan, at.device) else {}
         return own | {"stopper": f"devices/stoppers/{at.device}"} | tilted | biased
-    charts = devices.chart_cases(at.device) if at.device in devices.charted else []
+    charts = devices.chart_cases(at.device) if at.device in devices.with_chart else []
     return own | {
         "safe_lengths": {key[1]: name for key, name in by_case("devices/safe_lengths", cases).items()},
         "charts": {key[1]: name for key, name in by_case("devices/chart", charts).items()},
@@ -320,11 +325,11 @@ def _settings(plan, at):
     names = {f"surface of the {part}": pair[part] for part in ("beam", "substrate")}
     materials = [material_of(plan.config, name) for name in names.values()]
     surfaces = {
-        part: f"{name}: {described(plan.config['surfaces'][name], material)}"
+        part: f"{name}: {surface_in_words(plan.config['surfaces'][name], material)}"
         for (part, name), material in zip(names.items(), materials, strict=True)
     }
     not_modelled = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
-    assumed = plan.devices.assumed(at.device)
+    assumed = plan.devices.assumed_inputs(at.device)
     measured = [name for name in names.values() if is_measured(plan.config["surfaces"][name])]
     known = {"assumed": assumed, "measured": measured}
     if plan.devices.kind(at.device).has_tip and is_biased(plan, at.device):
@@ -332,22 +337,23 @@ def _settings(plan, at):
     return section | {"surfaces": surfaces} | not_modelled | {key: some for key, some in known.items() if some}
 
 
+@on_a_page()
 def _page(data, at, settings):
     """Page of a device."""
     warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
     more = {name: data.get(name) for name in ("test_beams", "errors", "roughness")}
     if "stopper" in data:
-        views = [explorer.of_stopper(settings, data["stopper"], budgets)]
+        views = explorer.views_of_stopper(settings, data["stopper"], budgets)
         if "tilted" in data:
-            views.append(explorer.of_tilted(at.device, settings, data["tilted"], data["stopper"]))
+            views.append(explorer.tilted_view(at.device, settings, data["tilted"], data["stopper"]))
         if "biased" in data:
-            views.append(voltage_views.of_stopper(at.device, settings, data["biased"]))
+            views.append(voltage_views.stopper_view(at.device, settings, data["biased"]))
         page = stopper_page(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
     else:
         lengths, charts = data["safe_lengths"], data["charts"]
-        views = [explorer.of_beam(at.device, settings, lengths, charts, budgets)]
+        views = explorer.views_of_beam(at.device, settings, lengths, charts, budgets)
         if "young_modulus_GPa" in settings:
-            views.append(voltage_views.of_beam(at.device, settings, lengths))
+            views.append(voltage_views.beam_view(at.device, settings, lengths))
         page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
     views += curve_views.views(at.device, settings, data)
     drawing = device_drawing(_with_force(settings)).svg
@@ -375,7 +381,7 @@ def _save(page, paths):
     Their record is no input of the page, so that a run with nothing else to do keeps page and date.
     """
     record = Path(paths["html"]).parents[1] / "provenance.json"
-    study = differing(provenance.recorded(record)[-1]["config"], paper())
+    study = differing(provenance.recorded_runs(record)[-1]["config"], paper())
     explorer = page.explorer and page.explorer | {"study": {key: study[key] for key in study if key != "devices"}}
     save_text(replace(page, made=provenance.last_run(record), explorer=explorer).html, paths["html"])
     save_text("".join(f"{sentence}\n" for sentence in page.lines), paths["answer"])

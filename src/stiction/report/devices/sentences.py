@@ -9,6 +9,7 @@ from stiction.devices.risk import Basis, one_in, samples_for
 from stiction.report.format import UM, UN, airs, with_error
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import EITHER, S_SHAPE
+from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
 
 
@@ -34,7 +35,7 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     """
     least, total, length = length_to_build(safe_lengths, budgets)
     totals = [budget_of(budget).total for budget in shortest_budgets(safe_lengths, budgets).values()]
-    few = one_in(chosen(_any(safe_lengths)))
+    few = one_in(chosen_share(_any(safe_lengths)))
     sentence = (
         f"Build it no longer than {length / UM:.0f} µm: then at most {few} sticks "
         f"{airs(safe_lengths)} (95 % confidence)."
@@ -59,17 +60,12 @@ def _any(safe_lengths):
 
 def safe_lengths_of(dataset: xr.Dataset) -> xr.DataArray:
     """Safe lengths for the chosen share, by shape [m]."""
-    return dataset.safe_length.sel(share=chosen(dataset))
+    return dataset.safe_length.sel(share=chosen_share(dataset))
 
 
 def _safe(dataset):
     """Safe length for the chosen share, however the device is held [m]."""
     return safe_lengths_of(dataset).min()
-
-
-def chosen(dataset: xr.Dataset) -> float:
-    """Fraction of stuck devices for lengths in sentences: the middle one [-]."""
-    return float(dataset.share[dataset.sizes["share"] // 2])
 
 
 def shortest_budgets(
@@ -120,7 +116,7 @@ def _verdict_of_few(stopper):
 
 def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
     """Safe lengths of a device at one humidity in words, for the middle fraction."""
-    share = chosen(dataset)
+    share = chosen_share(dataset)
     lengths = dataset.safe_length.sel(share=share) / UM
     shortest, longest = float(lengths.min()), float(lengths.max())
     air, but = _at(humidity), f"at most {one_in(share)}"
@@ -136,7 +132,7 @@ def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
 def prediction_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
     """Prediction interval of the shortest length held by the beam, for the middle fraction, or nothing without one."""
     held = {
-        humidity: one.sel(shape=S_SHAPE, share=chosen(one))
+        humidity: one.sel(shape=S_SHAPE, share=chosen_share(one))
         for humidity, one in safe_lengths.items()
         if "prediction_low" in one
     }
@@ -162,12 +158,12 @@ def few_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
 
 def _few_stick(dataset):
     """Whether the safe length of the chosen fraction is as long as the simulated devices, or as on flat surfaces."""
-    return dataset.basis.sel(share=chosen(dataset)).values[-1] in (Basis.LONGEST, Basis.FLAT)
+    return dataset.basis.sel(share=chosen_share(dataset)).values[-1] in (Basis.LONGEST, Basis.FLAT)
 
 
 def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
     """Largest fraction of stuck devices at one humidity, in words, if so few stick that no smaller one is known."""
-    held, number, share = dataset.isel(shape=-1), int(dataset.beams), chosen(dataset)
+    held, number, share = dataset.isel(shape=-1), int(dataset.beams), chosen_share(dataset)
     shortest, most, reach = float(held.shortest), float(held.most_stuck), float(held.reach)
     none = f"shorter than {shortest / UM:.0f} µm " if np.isfinite(shortest) else ""
     sentence = (

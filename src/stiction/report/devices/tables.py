@@ -285,10 +285,10 @@ STAGES = (
     table_stage(
         "chart",
         "safe length against relative humidity",
-        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.charted)},
-        settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.charted)},
+        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.with_chart)},
+        settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.with_chart)},
         compute=lambda data, settings: chart(data["charts"], device_warnings.read(data["warnings"]).curves, **settings),
-        jobs=lambda plan: [{}] if plan.devices.charted else [],
+        jobs=lambda plan: [{}] if plan.devices.with_chart else [],
         targets=("devices",),
     ),
 )

@@ -13,8 +13,8 @@ from stiction.devices.risk import quantiles, sampled_bound, samples_for
 from stiction.life import holding
 from stiction.report.devices.explorer import View, alone, humidity_axis, share_axis, size_axis
 from stiction.report.devices.grid import Axis, Grid
-from stiction.report.devices.sentences import chosen
 from stiction.report.format import UM
+from stiction.stages.devices.safe_lengths import chosen_share
 
 #: Voltage that frees a stopper which sticks without one, in a scale of logarithms [V].
 _NEVER = float(np.finfo(float).tiny)
@@ -28,7 +28,7 @@ def _offset(section):
     return offset, BREAKDOWN * to_si(section["dielectric"]["thickness_nm"], "nm") - offset
 
 
-def of_stopper(name: str, section: Mapping[str, Any], biased: xr.Dataset) -> View:
+def stopper_view(name: str, section: Mapping[str, Any], biased: xr.Dataset) -> View:
     """View of a stopper over the voltage that is on: its section, dataset of stage stoppers_at_voltage.
 
     The voltage is that without the offset, which counts against the stopper, and below the breakdown of the dielectric.
@@ -64,7 +64,7 @@ def of_stopper(name: str, section: Mapping[str, Any], biased: xr.Dataset) -> Vie
     return View("voltage", grid, words)
 
 
-def of_beam(name: str, section: Mapping[str, Any], safe_lengths: Mapping[float, xr.Dataset]) -> View:
+def beam_view(name: str, section: Mapping[str, Any], safe_lengths: Mapping[float, xr.Dataset]) -> View:
     """View of a cantilever over the voltage that is on, whose surfaces count as flat and in contact.
 
     Its lengths are the bound *at least* of stage life: the closed form of `stiction.life.holding`, for an arc. The
@@ -80,7 +80,7 @@ def of_beam(name: str, section: Mapping[str, Any], safe_lengths: Mapping[float, 
         np.array([holding.length_at_voltage(lengths.values, beam, energy, holding.ARC) for energy in added]) / UM
         for lengths in (joined.safe_length, joined["quantile"])
     )
-    key, share = f"devices.{name}", chosen(next(iter(safe_lengths.values())))
+    key, share = f"devices.{name}", chosen_share(next(iter(safe_lengths.values())))
     worst = int(np.argmin(safe[0].min(axis=-1)))
     reason = f"beyond {limit:g} V the dielectric breaks down; {key}.dielectric changes this"
     start = min(abs(section.get("voltage_V", 0.0)), volts[-1])

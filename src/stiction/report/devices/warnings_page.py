@@ -25,7 +25,7 @@ STAGES = (
         files={"markdown": "devices/warnings.md"},
         inputs=lambda plan, at: {
             "warnings": device_warnings.files_of(*plan.devices.sections),
-            "test_beams": by_name("devices/test_beams/rerun", plan.devices.tested),
+            "test_beams": by_name("devices/test_beams/rerun", plan.devices.with_test_beams),
         },
         settings=lambda plan, at: {"not_modelled": device_warnings.not_modelled(plan, *plan.devices.sections)},
         compute=lambda data, settings: page(device_warnings.read(data["warnings"]), data["test_beams"], **settings),

@@ -25,20 +25,22 @@ def change(error: xr.Dataset | None, factor: str = "length_factor") -> dict[str,
     }
 
 
-def marked(change: float, error: float, interpolated: bool) -> str:
+def marked_change(change: float, error: float, interpolated: bool) -> str:
     """Change ± standard error as text, with a mark if it is interpolated.
 
     Examples
     --------
-    >>> marked(5.33, 0.11, True), marked(2.322, 0.042, False), marked(float("nan"), float("nan"), True)
-    ('+5.33 ± 0.11 *', '+2.322 ± 0.042', '–')
+    >>> marked_change(5.33, 0.11, True), marked_change(2.322, 0.042, False)
+    ('+5.33 ± 0.11 *', '+2.322 ± 0.042')
+    >>> marked_change(float("nan"), float("nan"), True)
+    '–'
     """
     text = signed(change, error)
     return f"{text} *" if interpolated and text != MISSING else text
 
 
 #: Column for reading.
-COLUMN = {"model error [%]": (marked, "model_error_percent", "model_error_se_percent", "interpolated")}
+COLUMN = {"model error [%]": (marked_change, "model_error_percent", "model_error_se_percent", "interpolated")}
 
 
 def caption(errors: Mapping[Any, xr.Dataset]) -> str:

@@ -11,7 +11,7 @@ from stiction.analysis import variants as comparison
 from stiction.plan.names import CORRECTED, Outcome, by_case, by_outcome
 from stiction.report import published
 from stiction.report.format import UM, as_published, percent, signed, with_error
-from stiction.report.model_error.column import change, marked
+from stiction.report.model_error.column import change, marked_change
 from stiction.report.published import value
 from stiction.report.style import (
     MODELS,
@@ -102,7 +102,7 @@ def table(*data) -> Table:
 
 _COLUMNS = PAIR | {
     "ē full / summits": (with_error, "energy_ratio", "energy_ratio_se"),
-    "model error of l_s [%]": (marked, "model_error_percent", "model_error_se_percent", "interpolated"),
+    "model error of l_s [%]": (marked_change, "model_error_percent", "model_error_se_percent", "interpolated"),
     "beams [%]": (signed, "beams_change_percent", "beams_change_se_percent"),
     "l_s [µm]": (".1f", "crack_length_um"),
     "l_s, full contact [µm]": (".1f", "full_contact_um"),
@@ -176,7 +176,7 @@ def _stage(kind, shows, draw, **declared):
         },
         settings=lambda plan, at: {"of_paper": plan.paper.pairs},
         compute=lambda data, settings: draw(
-            data["errors"], data["beams"], published.compared(data, settings), data["variants"]
+            data["errors"], data["beams"], published.published_rows(data, settings), data["variants"]
         ),
         study="full_contact",
         targets=("model_error", "figures", "study_figures"),

@@ -18,6 +18,7 @@ from stiction.report.style import (
     figure_stage,
     handles,
     humidity_colours,
+    legend_outside,
     letter,
     panels,
     plain_log,
@@ -40,7 +41,7 @@ _POINTS = 101
 
 
 @styled
-def devices(curve: xr.Dataset, recommended: xr.Dataset, who: str) -> Figure:
+def devices(curve: xr.Dataset, recommended: xr.Dataset, device: str) -> Figure:
     """Estimate of a device over a process variable, with its 95 % band, the required value and the best setting.
 
     A panel for each end state. Grey: the settings that suffice at all humidities and against all end states.
@@ -48,7 +49,7 @@ def devices(curve: xr.Dataset, recommended: xr.Dataset, who: str) -> Figure:
     shapes = list(map(str, curve["shape"].values))
     figure, axes = panels(1, len(shapes), (min(DOUBLE, 1.3 * SINGLE * len(shapes)), 3.0))
     own, along = ("restoring force", "force needed [µN]") if shapes == [FORCE] else ("required length", "length [µm]")
-    one, unit = recommended.sel(who=who), process.unit_of(curve.variable)
+    one, unit = recommended.sel(who=device), process.unit_of(curve.variable)
     for panel, shape in zip(axes[0], shapes, strict=True):
         for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
             _band(panel, curve.sel(humidity=humidity, shape=shape), colour)
@@ -65,7 +66,7 @@ def devices(curve: xr.Dataset, recommended: xr.Dataset, who: str) -> Figure:
         panel.set_xlabel(f"{process.words_of(curve.variable)} [{unit}]")
     axes[0, 0].set_ylabel(f"{along}, p = {float(curve.share):g}")
     letter(axes, [END_STATES[shape].by for shape in shapes])
-    figure.legend(*handles(*axes[0]), loc="outside lower center", ncols=2 * len(shapes))
+    legend_outside(figure, handles(*axes[0]), "lower", 2 * len(shapes))
     return figure
 
 
@@ -79,13 +80,13 @@ def _band(panel, line, colour):
 
 
 @styled
-def laws(dataset: xr.Dataset) -> Figure:
+def laws(law: xr.Dataset) -> Figure:
     """Quantities of a surface over a process variable: settings with their errors, and the law with its 95 % band."""
-    law, names = law_of(dataset), list(map(str, dataset["quantity"].values))
+    fitted, names = law_of(law), list(map(str, law["quantity"].values))
     figure, columns, _ = columns_of_panels(len(names), 1, lambda count: min(DOUBLE, 2.4 * count), 2.2)
-    values = np.linspace(*law.ends, _POINTS)
-    curves = plain(law.at(values), law.covariance_at(values), names)
-    points = plain(dataset.measured.values, dataset.errors.values, names)
+    values = np.linspace(*fitted.ends, _POINTS)
+    curves = plain(fitted.at(values), fitted.covariance_at(values), names)
+    points = plain(law.measured.values, law.errors.values, names)
     for k, (name, (panel, *_)) in enumerate(zip(names, columns, strict=True)):
         words, shown = _SHOWN[name]
         low, line, high = (shown(curves[0][:, k] + INTERVAL * sign * curves[1][:, k]) for sign in (-1, 0, 1))
@@ -93,11 +94,11 @@ def laws(dataset: xr.Dataset) -> Figure:
         panel.fill_between(values, low, high, color="0.85", linewidth=0, label="95 % band of the law")
         panel.plot(values, line, color="black", label="law")
         panel.errorbar(
-            dataset.setting.values, at, yerr=[at - below, above - at], fmt="o", markersize=3, label="settings, 95 %"
+            law.setting.values, at, yerr=[at - below, above - at], fmt="o", markersize=3, label="settings, 95 %"
         )
-        panel.set_xlabel(f"{process.words_of(dataset.variable)} [{process.unit_of(dataset.variable)}]")
+        panel.set_xlabel(f"{process.words_of(law.variable)} [{process.unit_of(law.variable)}]")
         panel.set_ylabel(words)
-    figure.legend(*handles(columns[0][0]), loc="outside lower center", ncols=3)
+    legend_outside(figure, handles(columns[0][0]), "lower", 3)
     return figure
 
 
@@ -135,7 +136,7 @@ def process_map(found: xr.Dataset, pairs: xr.Dataset) -> Figure:
     for scale, variable in ((panel.set_xlabel, "variable"), (panel.set_ylabel, "second_variable")):
         name = found.attrs[variable]
         scale(f"{process.words_of(name)} [{process.unit_of(name)}]")
-    figure.legend(*handles(panel), loc="outside lower center", ncols=2)
+    legend_outside(figure, handles(panel), "lower", 2)
     return figure
 
 
@@ -153,8 +154,8 @@ STAGES = (
             "curve": f"process/curves/{at.device}",
             "recommended": f"process/settings/{process.variable_of(plan.config, at.device)}",
         },
-        compute=lambda data, at: devices(data["curve"], data["recommended"], at.device),
-        jobs=lambda plan: _jobs(plan.devices.processed, "device"),
+        compute=devices,
+        jobs=lambda plan: _jobs(plan.devices.over_process, "device"),
         targets=("devices",),
     ),
     figure_stage(
@@ -162,8 +163,8 @@ STAGES = (
         "surface over the variable of process {process}",
         "Devices",
         inputs=lambda plan, at: {"law": f"process/laws/{at.process}"},
-        compute=lambda data: laws(data["law"]),
-        jobs=lambda plan: _jobs(process.used(plan.config), "process"),
+        compute=laws,
+        jobs=lambda plan: _jobs(process.used_processes(plan.config), "process"),
         targets=("devices",),
     ),
     figure_stage(

@@ -12,14 +12,14 @@ from stiction.plan.names import by_name
 from stiction.report.process import tables
 from stiction.report.table import Table, table_stage, with_list
 from stiction.stages.process.law import law_inputs
-from stiction.stages.process.maps import of_processes
+from stiction.stages.process.maps import settings_of_processes
 
 # Sentences
 
 
 def answers(pairs: xr.Dataset) -> list[str]:
     """Sentences on the sufficient pairs of settings for a device, and on the best pair."""
-    first, second = of_processes(pairs)
+    first, second = settings_of_processes(pairs)
     if np.isnan(pairs.best.values).any():
         return [briefly(pairs)]
     said = [briefly(pairs), *(_at_settings(pairs, first, second) if second.sufficient.size else [])]
@@ -31,7 +31,7 @@ def answers(pairs: xr.Dataset) -> list[str]:
 
 def briefly(pairs: xr.Dataset) -> str:
     """Range of the second process with sufficient settings of the first one, and the best pair, in a sentence."""
-    first, second = of_processes(pairs)
+    first, second = settings_of_processes(pairs)
     names = f"the {_words(first)} and the {_words(second)}"
     if np.isnan(pairs.best.values).any():
         return f"Pairs of {names} that suffice are not known: not all could be computed."
@@ -53,7 +53,7 @@ def _at_settings(pairs, first, second):
     for value in pairs.second_settings.values:
         ranges = sufficient(pairs["value"].values, pairs.safe.sel(second=value).values)
         enough = " or ".join(_range(first, *ends) for ends in ranges)
-        where = f"Where the {_words(second)} is {tables.shown(second, value)} {tables.unit_of(second)}"
+        where = f"Where the {_words(second)} is {tables.setting_text(second, value)} {tables.unit_of(second)}"
         yield (
             f"{where}, {'an' if _words(first)[0] in 'aeiou' else 'a'} {_words(first)} of {enough} suffices."
             if ranges
@@ -68,7 +68,7 @@ def _words(view):
 
 def _range(view, low, high):
     """Range of settings as text."""
-    return f"{tables.shown(view, low)} to {tables.shown(view, high)} {tables.unit_of(view)}"
+    return f"{tables.setting_text(view, low)} to {tables.setting_text(view, high)} {tables.unit_of(view)}"
 
 
 def _best(view):

@@ -17,7 +17,7 @@ CHANGE = "What to change"
 
 def inputs(plan: Any, device: str) -> dict[str, Any]:
     """Names of the datasets of the process of a device, none without one."""
-    named = process.of_device(plan.config, device)
+    named = process.processes_of(plan.config, device)
     if not named:
         return {}
     if process.is_mapped(plan.config, device):
@@ -38,24 +38,26 @@ def with_process(page: Page, device: str, data: Mapping[str, Any]) -> Page:
     laws, (verdict, *reasons) = data["process_laws"], page.answer
     if "process_map" in data:
         own, answer = (
-            _of_map(device, data["process_map"], data["process_pairs"], laws),
+            _map_answers(device, data["process_map"], data["process_pairs"], laws),
             maps.briefly(data["process_pairs"]),
         )
     else:
         own = _section(device, data["process"], data["process_settings"], laws)
         answer = tables.briefly(data["process_settings"], device)
     pictures = [Section(f"Law of {law.surface}", (), None, figures.laws(law)) for law in laws]
-    summary = page.summary and replace(page.summary, points=_advised(page.summary.points, answer))
+    summary = page.summary
+    if summary and not page.is_forbidden:
+        summary = replace(summary, points=_with_advice(summary.points, answer))
     sections = [*page.sections, own, *pictures]
     return replace(page, summary=summary, answer=[verdict, answer, *reasons], sections=sections)
 
 
-def _advised(points, answer):
+def _with_advice(points, answer):
     """Points of a first screen, with the settings of the process as a change to consider."""
     return points | {CHANGE: " ".join(filter(None, [points.get(CHANGE, ""), answer]))}
 
 
-def _of_map(device, found, pairs, laws):
+def _map_answers(device, found, pairs, laws):
     """Answers about a device over two processes, with table and figure."""
     cells = maps.table({device: found}, {}, {device: laws}).cells.drop(columns="device")
     said = [*maps.answers(pairs), *maps.notes(found, laws)]

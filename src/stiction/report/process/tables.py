@@ -9,7 +9,7 @@ import xarray as xr
 from stiction.config.surfaces import process
 from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
-from stiction.report.format import UM, with_error
+from stiction.report.format import UM, with_band, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.process.recommended import ALL, variables
@@ -43,7 +43,10 @@ def _sufficient(one, who, unit):
         return f"{_subject(who, 'Settings')} of the {words} that suffice are not known: too few could be computed."
     share = "the allowed share of every device" if who == ALL else one_in(float(one.share))
     most = at(one, float(one.best), float(one.best_error))
-    ranges = [f"{shown(one, low)} to {shown(one, high)} {unit}" for low, high in _pairs(*one.sufficient.values.T)]
+    ranges = [
+        f"{setting_text(one, low)} to {setting_text(one, high)} {unit}"
+        for low, high in _pairs(*one.sufficient.values.T)
+    ]
     if not ranges:
         settings = f"{_subject(who, 'No setting')} of the {words} from {value[0]:g} to {value[-1]:g} {unit}"
         return f"{settings} is sure to leave at most {share} stuck; the best is {most}."
@@ -59,10 +62,10 @@ def _subject(who, begins):
 
 def at(one: xr.Dataset, value: float, error: float) -> str:
     """Setting with its error, if it has one."""
-    return f"{with_error(value, error) if error > 0 else shown(one, value)} {unit_of(one)}"
+    return f"{with_error(value, error) if error > 0 else setting_text(one, value)} {unit_of(one)}"
 
 
-def shown(dataset: xr.Dataset, value: float) -> str:
+def setting_text(dataset: xr.Dataset, value: float) -> str:
     """Setting to a hundredth of the range of all, or finer by less than a digit."""
     decimals = max(0, -math.floor(math.log10(np.ptp(dataset.value.values) / 100)))
     return f"{round(float(value), decimals):.10g}"
@@ -81,7 +84,9 @@ def best(one: xr.Dataset) -> list[str]:
         side = "below" if low == first else "above"
         return [f"The best setting is the end of the measured range: measure settings {side} {low:g} {unit}."]
     said = (
-        [f"The best setting lies between {shown(one, low)} and {shown(one, high)} {unit} (95 %)."] if low < high else []
+        [f"The best setting lies between {setting_text(one, low)} and {setting_text(one, high)} {unit} (95 %)."]
+        if low < high
+        else []
     )
     ends = [f"{end:g} {unit}" for end, near in ((first, low == first), (last, high == last)) if near]
     if ends:
@@ -100,9 +105,8 @@ def following(one: xr.Dataset, unit: str) -> list[str]:
     ]
     errors = f"from {float(one.next_before):.2g} to {float(one.next_after):.2g} {unit}"
     when = "again" if bool(one.next_again) else "next"
-    return [
-        f"Measure {shown(one, one.next)} {unit} {when}: this is expected to shrink the error of {subject} {errors}."
-    ]
+    place = f"{setting_text(one, one.next)} {unit}"
+    return [f"Measure {place} {when}: this is expected to shrink the error of {subject} {errors}."]
 
 
 def notes(curve: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
@@ -113,7 +117,7 @@ def notes(curve: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
         for humidity in curve.humidity.values:
             for value in curve.value.values:
                 if sentence := str(curve[name].sel(humidity=humidity, value=value).values):
-                    places.setdefault(sentence.rstrip("."), []).append(f"{shown(curve, value)} {unit_of(curve)}")
+                    places.setdefault(sentence.rstrip("."), []).append(f"{setting_text(curve, value)} {unit_of(curve)}")
         words = process.words_of(curve.variable)
         said += [
             f"{begins} the {words} is {', '.join(dict.fromkeys(at))}: {sentence}." for sentence, at in places.items()
@@ -178,11 +182,6 @@ def rows(device: str, curve: xr.Dataset) -> Iterator[dict]:
                 )
 
 
-def _stuck(stuck, low, high):
-    """P(stuck) with its band."""
-    return "–" if np.isnan(stuck) else f"{stuck:.3g} ({low:.3g} to {high:.3g})"
-
-
 COLUMNS = DEVICE | {
     "held by": (str, "held_by"),
     "variable": (str, "variable"),
@@ -195,14 +194,14 @@ COLUMNS = DEVICE | {
     "of simulation": (".2g", "simulation_se"),
     "of the law": (".2g", "law_se"),
     "of the model": (".2g", "model_se"),
-    "P(stuck) [%]": (_stuck, "stuck_percent", "stuck_low_percent", "stuck_high_percent"),
+    "P(stuck) [%]": (with_band, "stuck_percent", "stuck_low_percent", "stuck_high_percent"),
 }
 
 
 def _inputs(plan, _at):
     """Curves, recommended settings and laws of all devices over a process."""
-    devices = plan.devices.processed
-    laws = {name: [f"process/laws/{one}" for one in process.of_device(plan.config, name)] for name in devices}
+    devices = plan.devices.over_process
+    laws = {name: [f"process/laws/{one}" for one in process.processes_of(plan.config, name)] for name in devices}
     own = {f"laws_{name}": named for name, named in laws.items()}
     settings = [f"process/settings/{variable}" for variable in variables(plan)]
     return {"curves": by_name("process/curves", devices), "recommended": settings} | own
@@ -216,7 +215,7 @@ STAGES = (
         compute=lambda data: table(
             data["curves"], data["recommended"], {name: data[f"laws_{name}"] for name in data["curves"]}
         ),
-        jobs=lambda plan: [{}] if plan.devices.processed else [],
+        jobs=lambda plan: [{}] if plan.devices.over_process else [],
         targets=("devices",),
     ),
 )

@@ -9,7 +9,7 @@ from stiction.config.cases import air
 from stiction.config.kinds import ROUGHNESSES
 from stiction.devices.roughness import margins
 from stiction.report.format import TO_UM
-from stiction.report.roughness.tables import in_unit, labelled
+from stiction.report.roughness.tables import in_unit, quantity_with_unit
 from stiction.report.style import (
     DOUBLE,
     INTERVAL,
@@ -17,6 +17,7 @@ from stiction.report.style import (
     figure_stage,
     handles,
     humidity_colours,
+    legend_outside,
     letter,
     panels,
     plain_log,
@@ -52,7 +53,7 @@ def roughness(dataset: xr.Dataset) -> Figure:
         _axis(panel.xaxis, panel.set_xscale, curve)
     axes[0, 0].set_ylabel(f"{along}, p = {float(curve.share):g}")
     letter(axes, [END_STATES[shape].by for shape in shapes])
-    figure.legend(*handles(*axes[0]), loc="outside lower center", ncols=2 * len(shapes))
+    legend_outside(figure, handles(*axes[0]), "lower", 2 * len(shapes))
     return figure
 
 
@@ -121,7 +122,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
 def _axis(axis, scale, data, dimension="roughness"):
     """Scale and label of a varied quantity. A skewness has its kurtosis in brackets at every computed value."""
     key = "key" if dimension == "roughness" else "other_key"
-    axis.set_label_text(labelled(data, key))
+    axis.set_label_text(quantity_with_unit(data, key))
     if ROUGHNESSES[data.attrs[key]].logarithmic:
         scale("log")
         plain_log(axis)
@@ -131,7 +132,7 @@ def _axis(axis, scale, data, dimension="roughness"):
             f"{at:.3g}\n({kurtosis:.3g})" for at, kurtosis in zip(along[dimension].values, along.values, strict=True)
         ]
         axis.set_ticks(along[dimension].values, texts)
-        axis.set_label_text(f"{labelled(data, key)} (kurtosis)")
+        axis.set_label_text(f"{quantity_with_unit(data, key)} (kurtosis)")
 
 
 def _stage(name, shows, draw, devices):
@@ -148,11 +149,13 @@ def _stage(name, shows, draw, devices):
 
 
 STAGES = (
-    _stage("roughness", "how rough the surfaces of {device} must be", roughness, lambda plan: plan.devices.roughened),
+    _stage(
+        "roughness", "how rough the surfaces of {device} must be", roughness, lambda plan: plan.devices.over_roughness
+    ),
     _stage(
         "roughness_map",
         "how rough the surfaces of {device} must be, over two quantities",
         roughness_map,
-        lambda plan: plan.devices.mapped,
+        lambda plan: plan.devices.over_two_quantities,
     ),
 )

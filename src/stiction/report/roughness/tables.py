@@ -10,7 +10,7 @@ from stiction.config.kinds import ROUGHNESSES
 from stiction.config.units import from_si, without_unit
 from stiction.devices.risk import VERIFIED, one_in, samples_for
 from stiction.plan.names import by_name
-from stiction.report.format import UM, airs, with_error
+from stiction.report.format import UM, airs, with_band, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import FORCE
@@ -58,12 +58,12 @@ def name_of(dataset: xr.Dataset, key: str = "key") -> str:
     return f"{ROUGHNESSES[dataset.attrs[key]].words} of {dataset.attrs['surface']}"
 
 
-def labelled(dataset: xr.Dataset, key: str = "key") -> str:
+def quantity_with_unit(dataset: xr.Dataset, key: str = "key") -> str:
     """Varied quantity with its unit, for axes and tables.
 
     Examples
     --------
-    >>> labelled(xr.Dataset(attrs={"key": "rms_nm", "surface": "B2"}))
+    >>> quantity_with_unit(xr.Dataset(attrs={"key": "rms_nm", "surface": "B2"}))
     'rms of B2 [nm]'
     """
     return f"{name_of(dataset, key)} [{_unit(dataset, key).strip() or '–'}]"
@@ -75,7 +75,7 @@ def answers(dataset: xr.Dataset) -> list[str]:
     Those of a map are about each of its curves.
     """
     said = [_at_other(curve) + sentence for curve in curves_of(dataset) for sentence in _answers(curve)]
-    return said + extrapolated(dataset)
+    return said + note_on_extrapolation(dataset)
 
 
 def _answers(curve):
@@ -88,10 +88,12 @@ def _answers(curve):
 def briefly(dataset: xr.Dataset) -> list[str]:
     """Places of sufficient roughness, one sentence for each humidity and end state, of a map at its given value."""
     curves = [curve for curve in curves_of(dataset) if not _is_changed(curve)]
-    return [f"{_enough(curve, *subject)}." for curve in curves for subject in _subjects(curve)] + extrapolated(dataset)
+    return [f"{_enough(curve, *subject)}." for curve in curves for subject in _subjects(curve)] + note_on_extrapolation(
+        dataset
+    )
 
 
-def extrapolated(dataset: xr.Dataset) -> list[str]:
+def note_on_extrapolation(dataset: xr.Dataset) -> list[str]:
     """Note on an extrapolated fraction, beyond the bound from the devices and beyond verification."""
     share, samples = float(dataset.share), int(dataset.samples)
     if share >= VERIFIED or samples >= samples_for(share):
@@ -112,11 +114,11 @@ def _at_other(curve):
     if "other" not in curve.coords:
         return ""
     key, given = "other_key", "" if _is_changed(curve) else ", as given"
-    value = f"{_shown(curve, curve.other, key)}{_unit(curve, key)}{_peaked(curve)}"
+    value = f"{_value_text(curve, curve.other, key)}{_unit(curve, key)}{_kurtosis_column(curve)}"
     return f"Where the {name_of(curve, key)} is {value}{given}: "
 
 
-def _peaked(curve):
+def _kurtosis_column(curve):
     """Kurtosis of a curve of a map along the skewness, nothing for others."""
     if curve.attrs["other_key"] != "skewness":
         return ""
@@ -135,7 +137,7 @@ def _answer(curve, humidity, shape):
         for row in _rows(curve, "crossing", humidity, shape)
     ]
     exactly = f"; exactly {_share(curve)} sticks at {' and at '.join(places)}" if places else ""
-    more = _worst(curve, humidity, shape) + _given(curve, humidity, shape)
+    more = _worst(curve, humidity, shape) + _stuck_as_given(curve, humidity, shape)
     return f"{_enough(curve, humidity, shape)}{exactly}. {more}"
 
 
@@ -175,18 +177,18 @@ def _worst(curve, humidity, shape):
     apart = [forces[most] - forces[end] > DIFFERENT * np.hypot(errors[most], errors[end]) for end in (0, -1)]
     if not all(apart):
         return ""
-    place = f"{_shown(curve, known.roughness[most])}{_unit(curve)}"
+    place = f"{_value_text(curve, known.roughness[most])}{_unit(curve)}"
     return f"The worst {name_of(curve)} is inside this range, near {place}: less and more of it hold less. "
 
 
-def _given(curve, humidity, shape):
+def _stuck_as_given(curve, humidity, shape):
     """P(stuck) on the surfaces as they are given, if it is known."""
     given = curve.sel(humidity=humidity, shape=shape, roughness=float(curve.given))
     stuck, low, high = (100 * given.stuck.values).tolist()
     where = f"At the given {name_of(curve)}" if _is_changed(curve) else "On the surfaces as they are given"
     if np.isnan(stuck):
         return f"{where}, it is not computed."
-    place = f"{_shown(curve, float(curve.given))}{_unit(curve)}"
+    place = f"{_value_text(curve, float(curve.given))}{_unit(curve)}"
     return f"{where}, at {place}, {stuck:.3g} % ({low:.3g} to {high:.3g} %) stick."
 
 
@@ -197,14 +199,14 @@ def _rows(curve, dimension, humidity, shape):
     return [curve.isel({dimension: k}) for k in np.flatnonzero(own)]
 
 
-def _shown(dataset, value, key="key"):
+def _value_text(dataset, value, key="key"):
     """Value of a varied quantity as text."""
     return f"{in_unit(dataset, float(value), key):.3g}"
 
 
 def _range(dataset, low, high):
     """Range of the varied quantity as text."""
-    return f"{_shown(dataset, low)} to {_shown(dataset, high)}{_unit(dataset)}"
+    return f"{_value_text(dataset, low)} to {_value_text(dataset, high)}{_unit(dataset)}"
 
 
 def _share(dataset):
@@ -218,7 +220,7 @@ def _notes(curve, name, begins):
     for humidity in curve.humidity.values:
         for value in curve.roughness.values:
             if said := str(curve[name].sel(humidity=humidity, roughness=value).values):
-                at = f"{_shown(curve, value)}{_unit(curve)} ({air(humidity)})"
+                at = f"{_value_text(curve, value)}{_unit(curve)} ({air(humidity)})"
                 places.setdefault(said.rstrip("."), []).append(at)
     return [f"{begins} the {name_of(curve)} is {', '.join(at)}: {said}." for said, at in places.items()]
 
@@ -262,7 +264,10 @@ def _points(device, curve):
     """Numbers of one curve of a device."""
     other = {}
     if "other" in curve.coords:
-        other = {"other": labelled(curve, "other_key"), "other_value": float(in_unit(curve, curve.other, "other_key"))}
+        other = {
+            "other": quantity_with_unit(curve, "other_key"),
+            "other_value": float(in_unit(curve, curve.other, "other_key")),
+        }
     for humidity in curve.humidity.values:
         for shape in map(str, curve["shape"].values):
             for value in curve.roughness.values:
@@ -273,7 +278,7 @@ def _points(device, curve):
                         "device": device,
                         "relative_humidity": float(humidity),
                         "held_by": END_STATES[shape].by,
-                        "varied": labelled(curve),
+                        "varied": quantity_with_unit(curve),
                         "value": float(in_unit(curve, value)),
                         "share": float(curve.share),
                         "unit": _required_unit(curve),
@@ -289,11 +294,6 @@ def _points(device, curve):
                     | other
                     | ({KURTOSIS: float(point[KURTOSIS])} if KURTOSIS in curve else {})
                 )
-
-
-def _stuck(stuck, low, high):
-    """P(stuck) with its band."""
-    return "–" if np.isnan(stuck) else f"{stuck:.3g} ({low:.3g} to {high:.3g})"
 
 
 def _second(name, value):
@@ -317,7 +317,7 @@ _COLUMNS = DEVICE | {
     "safe": (".4g", "safe"),
     "estimate": (with_error, "estimate", "estimate_se"),
     "required": ("g", "required"),
-    "P(stuck) [%]": (_stuck, "stuck_percent", "stuck_low_percent", "stuck_high_percent"),
+    "P(stuck) [%]": (with_band, "stuck_percent", "stuck_low_percent", "stuck_high_percent"),
     "devices": (str, "devices"),
 }
 
@@ -326,9 +326,9 @@ STAGES = (
     table_stage(
         "roughness",
         "how rough a surface must be",
-        inputs=lambda plan, at: {"roughness": by_name("devices/roughness", plan.devices.roughened)},
+        inputs=lambda plan, at: {"roughness": by_name("devices/roughness", plan.devices.over_roughness)},
         compute=lambda data: roughness(data["roughness"]),
-        jobs=lambda plan: [{}] if plan.devices.roughened else [],
+        jobs=lambda plan: [{}] if plan.devices.over_roughness else [],
         targets=("devices",),
     ),
 )

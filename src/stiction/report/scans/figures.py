@@ -28,7 +28,7 @@ _LINE, _LINE_HEIGHT, _PANELS = 150, 0.125, 5.92
 
 
 @styled
-def surface_sheet(name: str, estimate: xr.Dataset, spectrum: xr.Dataset | None) -> Figure:
+def surface_sheet(surface: str, estimate: xr.Dataset, spectrum: xr.Dataset | None = None) -> Figure:
     """Sheet of one measured surface: the measured quantities, their errors, and the model drawn from them.
 
     The spectrum, of which the flags are shown, is that of a surface that is simulated.
@@ -40,7 +40,7 @@ def surface_sheet(name: str, estimate: xr.Dataset, spectrum: xr.Dataset | None) 
     _spectrum(axes[1, 0], estimate)
     _summits(axes[1, 1], estimate)
     letter(axes, ["levelled heights", "density of the heights", "spectrum", "summits at the pixels of the scans"])
-    figure.suptitle(_title(name, estimate), x=0.01, ha="left", fontsize=8)
+    figure.suptitle(_title(surface, estimate), x=0.01, ha="left", fontsize=8)
     figure.supxlabel("\n".join(lines), x=0.01, ha="left", fontsize=7, parse_math=False)
     return figure
 
@@ -191,9 +191,9 @@ STAGES = (
         "Surfaces (Sec. II)",
         name="surface_sheet",
         inputs=lambda plan, at: {
-            stage: f"{stage}/{at.surface}" for stage in ("estimate", *["spectrum"] * plan.simulated(at.surface))
+            stage: f"{stage}/{at.surface}" for stage in ("estimate", *["spectrum"] * plan.is_drawn(at.surface))
         },
-        compute=lambda data, at: surface_sheet(at.surface, data["estimate"], data.get("spectrum")),
+        compute=surface_sheet,
         jobs=lambda plan: [{"surface": name} for name in plan.scans.surfaces],
         targets=("figures", "measured", "scans"),
     ),

@@ -51,7 +51,7 @@ def _scans(name, estimate, maps):
     for dataset, moments in zip(maps, estimate.scan_moments.values, strict=True):
         scan = stage_scan.scan_of(dataset)
         # The variance of a mean is inverse to the area.
-        scans = sum(count * (frame.area / scan.frame.area) for count, frame in stage_estimate.counted(estimate))
+        scans = sum(count * (frame.area / scan.frame.area) for count, frame in stage_estimate.counted_frames(estimate))
         errors = np.sqrt(np.diag(estimate.covariance) * scans)
         rms = np.exp(moments[0]) / NM
         row = {"surface": name, "file": scan.name, "channel": str(dataset.channel.item())}
@@ -137,7 +137,7 @@ STAGES = (
         "scans of the measured surfaces",
         inputs=lambda plan, at: {
             "estimates": by_name("estimate", plan.scans.surfaces),
-            "spectra": by_name("spectrum", filter(plan.simulated, plan.scans.surfaces)),
+            "spectra": by_name("spectrum", filter(plan.is_drawn, plan.scans.surfaces)),
             "scans": {(name, k): f"scan/{name}_{k}" for name in plan.scans.surfaces for k in plan.scans.files(name)},
         },
         compute=lambda data: scans(

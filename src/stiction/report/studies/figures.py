@@ -114,24 +114,24 @@ def _beside(panel, text, place):
 
 
 @styled
-def summit_stresses(datasets: Mapping[str, xr.Dataset]) -> Figure:
+def summit_stresses(studies: Mapping[str, xr.Dataset]) -> Figure:
     """Figure 16: largest stress of the touching summits, by pair."""
-    figure, axes, lines = columns_of_panels(len(datasets), 1, at_most_double(SINGLE), 2.6, sharey=True)
+    figure, axes, lines = columns_of_panels(len(studies), 1, at_most_double(SINGLE), 2.6, sharey=True)
     axes = axes[:, 0]
-    onsets = [TO_GPA * ONSET * float(dataset.hardness) for dataset in datasets.values()]
+    onsets = [TO_GPA * ONSET * float(dataset.hardness) for dataset in studies.values()]
     top = max(
-        [1.15 * max(onsets), *(1.05 * TO_GPA * stress for data in datasets.values() for stress in data.stress.values)]
+        [1.15 * max(onsets), *(1.05 * TO_GPA * stress for data in studies.values() for stress in data.stress.values)]
     )
     counts = LogNorm(vmin=_FAINTEST)
-    cells = [_cells(panel, dataset, counts, top) for panel, dataset in zip(axes, datasets.values(), strict=True)]
+    cells = [_cells(panel, dataset, counts, top) for panel, dataset in zip(axes, studies.values(), strict=True)]
     # A bar from 1 to 1 has no length.
     counts.vmax = max([2, *(count for mesh in cells for count in mesh.get_array())])
-    for panel, dataset, onset in zip(axes, datasets.values(), onsets, strict=True):
+    for panel, dataset, onset in zip(axes, studies.values(), onsets, strict=True):
         panel.axhline(onset, color="C3", linestyle="--")
         place, style = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "path_effects": OUTLINED}
         panel.annotate(r"$0.6\,\sigma_H$", (0.95, onset), (0, 2), place, "offset points", **style)
         panel.text(0.95, 0.04, _share(dataset), transform=panel.transAxes, ha="right", path_effects=OUTLINED)
-    names = [rf"pair {pair}, $\bar d$ = {TO_NM * float(dataset.separation):g} nm" for pair, dataset in datasets.items()]
+    names = [rf"pair {pair}, $\bar d$ = {TO_NM * float(dataset.separation):g} nm" for pair, dataset in studies.items()]
     letter(axes, names)
     for line in lines:
         line[0, 0].set_ylabel(r"largest stress $\sigma_{\max}$ [GPa]")
@@ -455,7 +455,7 @@ def _curve(panel, humidity, change, error, style):
 
 def _sensitivities(data, settings):
     """Sensitivities to the moments, and the published ones."""
-    stated = published.compared(data, settings)
+    stated = published.published_rows(data, settings)
     stated = stated[stated.pair.isin(settings["pairs"]) & stated.moment.isin(settings["moments"])]
     places = zip(stated.pair, stated.moment, stated.relative_humidity, strict=True)
     return sensitivities(data["studies"], dict(zip(places, stated.slope, strict=True)))
@@ -466,7 +466,7 @@ def _variants(data, settings):
     known = by_pair(data["studies"])
     pairs, names = (dict.fromkeys(parts) for parts in zip(*known, strict=True))
     whole = {(pair, name): known.get((pair, name), known[pair, "base"]) for pair in pairs for name in names}
-    return variants(whole, published.compared(data, settings))
+    return variants(whole, published.published_rows(data, settings))
 
 
 def _study(name, shows, **declared):
@@ -501,7 +501,7 @@ STAGES = (
         "stress of the touching summits",
         study="plasticity",
         inputs=lambda plan, at: {"studies": by_name("studies/plasticity", plan.pressed_pairs)},
-        compute=lambda data: summit_stresses(data["studies"]),
+        compute=summit_stresses,
         jobs=lambda plan: [{}] if plan.pressed_pairs else [],
     ),
     _study(

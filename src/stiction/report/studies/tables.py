@@ -92,7 +92,7 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
     """
     frame = pd.DataFrame([row for key in datasets for row in _rows(key, datasets, published)])
     groups = dict(list(frame.groupby(["pair", "variant"], sort=False)))
-    removed = {key: _removed(group, groups[key[0], "base"]) for key, group in groups.items()}
+    removed = {key: _removed_fraction(group, groups[key[0], "base"]) for key, group in groups.items()}
     for k, column in enumerate(("removed_percent", "removed_se_percent")):
         frame[column] = [100 * removed[key][k] for key in zip(frame.pair, frame.variant, strict=True)]
     cells = [_summary(key, group) for key, group in frame.groupby(["pair", "variant"], sort=False)]
@@ -113,7 +113,7 @@ def _rows(key, datasets, published):
             column: value(published, column, pair=pair, relative_humidity=humidity) for column in ("ng", "experiment")
         }
         row = {"pair": pair, "variant": name, "relative_humidity": humidity}
-        yield row | _effect(case, base) | _compared(case, published=known["ng"], experiment=known["experiment"])
+        yield row | _effect(case, base) | _deviations(case, published=known["ng"], experiment=known["experiment"])
 
 
 def _effect(case, base):
@@ -138,7 +138,7 @@ def _effect(case, base):
     }
 
 
-def _compared(case, **references):
+def _deviations(case, **references):
     """Deviations of a case from the published and the measured crack length [µm]."""
     length = comparison.mean_crack_length(case)[0] / UM
     row = {}
@@ -163,7 +163,7 @@ def _summary(key, group):
     return row | {"removed [%]": MISSING if base else removed}
 
 
-def _removed(group, base):
+def _removed_fraction(group, base):
     """Fraction of the mean square deviation from the published length removed by a variant, with its error [-]."""
     known = (group.published_um.notna() & group.crack_length_um.notna()).values & base.crack_length_um.notna().values
     if not known.any() or group is base:
@@ -193,7 +193,7 @@ STAGES = (
             "published": published.file("sensitivity"),
         },
         settings=lambda plan, at: {"of_paper": plan.paper.pairs},
-        compute=lambda data, settings: sensitivity(data["studies"], published.compared(data, settings)),
+        compute=lambda data, settings: sensitivity(data["studies"], published.published_rows(data, settings)),
         study="sensitivity",
         targets=("figures", "study_figures"),
     ),
@@ -205,7 +205,7 @@ STAGES = (
             "published": published.file("table_3"),
         },
         settings=lambda plan, at: {"of_paper": plan.paper.pairs},
-        compute=lambda data, settings: variants(by_pair(data["studies"]), published.compared(data, settings)),
+        compute=lambda data, settings: variants(by_pair(data["studies"]), published.published_rows(data, settings)),
         study="variants",
         targets=("figures", "study_figures"),
     ),

@@ -9,7 +9,7 @@ import xarray as xr
 
 from stiction.models import MOMENT_KEYS, SUMMIT_KEYS, SURFACE_MODELS
 from stiction.plan.names import by_model, by_name
-from stiction.plan.stage import chosen
+from stiction.plan.stage import subsection
 from stiction.report import published
 from stiction.report.format import NM, PER_UM2, UM, percent, signed, with_error
 from stiction.report.published import rows, value
@@ -166,13 +166,13 @@ def _table_1(data, settings):
     """Simulated, published and measured statistics."""
     substitutions = {name: substitution(heights) for name, heights in data["heights"].items()}
     measured = settings["measured"] | {name: estimate.statistics(one) for name, one in data["estimates"].items()}
-    return table_1(data["characters"], measured, published.compared(data, settings), substitutions)
+    return table_1(data["characters"], measured, published.published_rows(data, settings), substitutions)
 
 
-def _measured(plan):
+def _measured_statistics(plan):
     """Measured statistics of all surfaces without scans."""
     keys = (*MOMENT_KEYS, *SUMMIT_KEYS)
-    return {name: chosen(plan.config["surfaces"][name], keys) for name in plan.described}
+    return {name: subsection(plan.config["surfaces"][name], keys) for name in plan.surfaces_by_numbers}
 
 
 STAGES = (
@@ -180,12 +180,12 @@ STAGES = (
         "table_1",
         "statistics of the surfaces",
         inputs=lambda plan, at: {
-            "estimates": by_name("estimate", plan.estimated),
+            "estimates": by_name("estimate", plan.surfaces_with_scans),
             "heights": by_name("heights", plan.surfaces),
             "characters": by_model("character", plan.surfaces, SURFACE_MODELS[::-1]),
             "published": published.file("table_1"),
         },
-        settings=lambda plan, at: {"measured": _measured(plan), "of_paper": plan.paper.surfaces},
+        settings=lambda plan, at: {"measured": _measured_statistics(plan), "of_paper": plan.paper.surfaces},
         compute=_table_1,
         targets=("tables",),
     ),
@@ -202,7 +202,7 @@ STAGES = (
             "of_paper": plan.paper.surfaces,
         },
         compute=lambda data, settings: table_2(
-            data["identifications"], data["spectra"], published.compared(data, settings), settings["sources"]
+            data["identifications"], data["spectra"], published.published_rows(data, settings), settings["sources"]
         ),
         jobs=lambda plan: [{}] if plan.with_summits else [],
         targets=("tables",),

@@ -14,24 +14,24 @@ _OF_SURFACES = {
 _OF_MATERIALS = {"contact_angle_deg": ("contact angle", "°"), "coating_nm": ("coating", " nm")}
 
 
-def described(surface: Mapping, material: Mapping) -> str:
+def surface_in_words(surface: Mapping, material: Mapping) -> str:
     """Surface of the configuration by its numbers, or by its scans, and by its material.
 
     Examples
     --------
-    >>> described({"rms_nm": 3.4, "skewness": -0.76, "kurtosis": 3.9}, {})
+    >>> surface_in_words({"rms_nm": 3.4, "skewness": -0.76, "kurtosis": 3.9}, {})
     'rms 3.4 nm, skewness -0.76, kurtosis 3.9'
-    >>> described({"rms_nm": 3.4, "material": "FDTS"}, {"contact_angle_deg": 110, "coating_nm": 1.2})
+    >>> surface_in_words({"rms_nm": 3.4, "material": "FDTS"}, {"contact_angle_deg": 110, "coating_nm": 1.2})
     'rms 3.4 nm, FDTS, contact angle 110°, coating 1.2 nm'
     """
-    stated = _stated(surface, _OF_SURFACES)
+    stated = _numbers_in_words(surface, _OF_SURFACES)
     if "scans" in surface:
         files = len(surface["scans"]["files"])
         stated.append(f"described by {files} {'scan' if files == 1 else 'scans'}")
     stated += [surface["material"]] if "material" in surface else []
-    return ", ".join(stated + _stated(material, _OF_MATERIALS))
+    return ", ".join(stated + _numbers_in_words(material, _OF_MATERIALS))
 
 
-def _stated(section, words):
+def _numbers_in_words(section, words):
     """Numbers of a section, in words."""
     return [f"{name} {section[key]:g}{unit}" for key, (name, unit) in words.items() if key in section]

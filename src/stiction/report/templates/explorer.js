@@ -93,6 +93,8 @@ function opened(number) {
     return Math.exp(monotone(known.get("share"), at(grid.safe, state), score(state.share)));
   }
 
+  const noiseAt = state => Math.exp(monotone(known.get("share"), at(grid.noise, state, grid.axes.slice(1)), score(state.share)));
+
   function levelsOf(state) {
     const found = at(grid.quantiles, state);
     const keep = found.map(Number.isFinite);
@@ -137,7 +139,11 @@ function opened(number) {
     return [-1, 1].map(sign => (share + part / 2 + sign * half) / (1 + part));
   }
 
+  /** P(stuck) at a size and the other values of the state: as in the tables if they have it. */
   function stuckAt(size, [levels, scores]) {
+    const here = {...state, [grid.size.key]: size};
+    const counted = grid.counted.find(([at]) => Object.entries(at).every(([key, value]) => here[key] === value));
+    if (counted) return {share: counted[1], low: counted[2], high: counted[3], beyond: 0};
     if (!levels.length) return {share: NaN, low: NaN, high: NaN, beyond: 0};
     const place = Math.log(size), sign = grid.falls ? -1 : 1;
     const share = probability(sign * line(levels, scores, place));
@@ -246,8 +252,11 @@ function opened(number) {
   let shown;
 
   function answer() {
-    for (const [name, content] of Object.entries((grid.lines ? textsOfCurve : texts)())) shown[name].textContent = content;
+    for (const [name, content] of Object.entries(answersOf())) shown[name].textContent = content;
   }
+
+  /** Texts of the answers; the warning instead of all of them, if there is one. */
+  const answersOf = data.forbidden ? () => ({forbidden: data.forbidden}) : grid.lines ? textsOfCurve : texts;
 
   function textsOfCurve() {
     const {words} = data, [quantity] = grid.axes, [[margin, ...ends], [size, ...band]] = sizes(state);
@@ -278,7 +287,7 @@ function opened(number) {
 
   // Charts
 
-  const [WIDTH, HEIGHT, LEFT, BOTTOM, TOP, RIGHT] = [520, 320, 58, 46, 12, 12];
+  const [WIDTH, HEIGHT, LEFT, BOTTOM, TOP, RIGHT] = [400, 280, 58, 46, 12, 12];
 
   function ticks(low, high) {
     const rough = (high - low) / 6, power = 10 ** Math.floor(Math.log10(rough));
@@ -380,19 +389,24 @@ function opened(number) {
     return [() => sizeChart(size.start), () => stuck()];
   }
 
-  const allSafe = (grid.safe ?? []).flat(Infinity).filter(value => value !== null);
+  const all = values => (values ?? []).flat(Infinity).filter(value => value !== null);
+  const allSafe = all(grid.safe);
 
   function safeChart(parent, axis) {
     const ends = [axis.values[0], axis.values[axis.values.length - 1]], unit = grid.size.unit;
-    const top = 1.05 * Math.max(...allSafe);
+    const top = 1.05 * Math.max(...allSafe) * (1 + Math.max(0, ...all(grid.noise)));
     const chart = axesOf(parent, `${data.words.safe} against ${axis.label}`, ends, [0, top], [nameOf(axis), `${data.words.safe} [${unit}]`]);
+    const noise = () => axis === grid.axes[0] ? noiseAt(state) : NaN, ragged = make(chart.svg, "path", {class: "band"});
     const curve = make(chart.svg, "path", {class: "curve"}), marks = axis.values.map(() => make(chart.svg, "circle", {r: 3, class: "mark"}));
     const dot = make(chart.svg, "circle", {r: 6, class: "here"});
     const safe = value => safeSize({...state, [axis.key]: value});
-    const describe = value => `At ${valueText(axis, value)}: ${data.words.bound} ${text(safe(value), DIGITS)} ${unit}. Small dots: computed.`;
+    const describe = value => `At ${valueText(axis, value)}: ${data.words.bound} ${text(safe(value), DIGITS)} ${unit}. Small dots: computed.${Number.isFinite(noise()) ? ` Band: error between them, ± ${text(100 * noise(), 2)} %.` : ""}`;
     const caption = hover(chart, ends, value => describe(nearest(axis, value)), () => state[axis.key]);
     return () => {
-      if (axis.between) curve.setAttribute("d", path(spread(...ends).map(value => [chart.x(value), chart.y(safe(value))])));
+      const points = axis.between ? spread(...ends).map(value => [value, safe(value)]) : [];
+      const along = factor => points.map(([value, one]) => [chart.x(value), chart.y(factor * one)]);
+      curve.setAttribute("d", path(along(1)));
+      ragged.setAttribute("d", Number.isFinite(noise()) ? path([...along(1 - noise()), ...along(1 + noise()).reverse()]) : "");
       axis.values.forEach((value, k) => {
         marks[k].setAttribute("cx", chart.x(value));
         marks[k].setAttribute("cy", chart.y(safe(value)));
@@ -453,14 +467,14 @@ function opened(number) {
   const panel = make(root, "div", {class: "controls"});
   for (const axis of controls) control(panel, axis);
   const answers = make(panel, "div", {class: "answers", "aria-live": "polite"});
-  shown = Object.fromEntries((grid.lines ? ["enough", "size", "stuck", "margin"] : ["stuck", "safe", "budget"]).map(name => [name, make(answers, "p", {"data-answer": name})]));
+  shown = Object.fromEntries((data.forbidden ? ["forbidden"] : grid.lines ? ["enough", "size", "stuck", "margin"] : ["stuck", "safe", "budget"]).map(name => [name, make(answers, "p", {"data-answer": name})]));
   const buttons = make(panel, "p"), copy = make(buttons, "button", {type: "button"}, "Copy as YAML");
   const reset = make(buttons, "button", {type: "button"}, "Back to this device");
   const status = make(panel, "p", {class: "note", role: "status"});
   const place = make(panel, "textarea", {readonly: "", rows: 8, "aria-label": "study as YAML", hidden: ""});
   copy.addEventListener("click", () => copied(place, status));
   const figures = make(root, "div", {class: "charts"}), moving = grid.axes.filter(axis => axis.values.length > 1 && allSafe.length);
-  const charts = grid.lines ? curveCharts(figures) : [stuckChart(figures), ...moving.slice(0, 1).map(axis => safeChart(figures, axis))];
+  const charts = data.forbidden ? [] : grid.lines ? curveCharts(figures) : [stuckChart(figures), ...moving.slice(0, 1).map(axis => safeChart(figures, axis))];
   let state, refused;
   const start = () => { [state, refused] = fromAddress(); refresh(refused); };
   reset.addEventListener("click", () => { state = Object.fromEntries(controls.map(axis => [axis.key, axis.start])); refresh({}); });

@@ -5,7 +5,17 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.report.format import TO_UM
-from stiction.report.style import DOUBLE, INTERVAL, figure_stage, humidity_axis, letter, panels, places, styled
+from stiction.report.style import (
+    DOUBLE,
+    INTERVAL,
+    figure_stage,
+    humidity_axis,
+    legend_outside,
+    letter,
+    panels,
+    places,
+    styled,
+)
 
 #: Colours before and after the measurement.
 _BEFORE, _AFTER = "0.6", "#0072B2"
@@ -20,6 +30,8 @@ _LEFT, _RIGHT = {"xytext": (-4, -3), "ha": "right", "va": "top"}, {"xytext": (4,
 _ALONE, _NEXT = 0.01, 0.3
 #: Share of an axis as wide as the figure that the numbers of the counts in dry air need on their left.
 _ROOM = 0.1
+#: Share of an axis above its data, for the number of the longest counted beams.
+_HEAD = 0.12
 
 
 @styled
@@ -39,7 +51,7 @@ def test_beams(update: xr.Dataset) -> Figure:
     axes[0, 0].set_ylabel("crack length [µm]")
     _inputs(axes[0, -1], uncertain)
     letter(axes, [*arrays, "inputs"])
-    figure.legend(handles=list(shared.values()), loc="outside lower center", ncols=3)
+    legend_outside(figure, (list(shared.values()), list(shared)), "lower", 3)
     return figure
 
 
@@ -82,7 +94,7 @@ def _lengths(panel, data, room):
         side = _LEFT if place[0] in on_the_left else _RIGHT
         panel.annotate(f"{int(at.stuck)} of {int(at.counted)}", place, textcoords="offset points", **side)
         entries += [mark] if k == 0 else []
-    panel.set(xlabel="relative humidity [–]", ylim=(0, None))
+    panel.set(xlabel="relative humidity [–]", ylim=(0, (1 + _HEAD) * panel.dataLim.y1))
     if 0 in data.humidity_of_count:
         left, right = panel.get_xlim()
         panel.set_xlim(min(left, (placed[0] - room * right) / (1 - room)), right)
@@ -120,7 +132,7 @@ STAGES = (
         "Devices",
         inputs=lambda plan, at: {"test_beams": f"devices/test_beams/{at.device}"},
         compute=lambda data: test_beams(data["test_beams"]),
-        jobs=lambda plan: [{"device": name} for name in plan.devices.tested],
+        jobs=lambda plan: [{"device": name} for name in plan.devices.with_test_beams],
         targets=("devices",),
     ),
 )

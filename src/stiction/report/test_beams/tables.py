@@ -61,7 +61,7 @@ def combinations(update: xr.Dataset) -> list[str]:
     return sentences or ["The test beams determine no combination of the inputs twice as well as before."]
 
 
-def advised(update: xr.Dataset) -> str:
+def beams_to_add(update: xr.Dataset) -> str:
     """Most useful further test beams, at the least known result of the device."""
     if update.result_after.isnull().all():
         return f"Which further test beams would help is not known: {_FEW}."
@@ -77,7 +77,7 @@ def advised(update: xr.Dataset) -> str:
     )
 
 
-def explained(update: xr.Dataset) -> str:
+def agreement(update: xr.Dataset) -> str:
     """Agreement of the data with the model."""
     left_out = f"Left out are {update.attrs['left_out']}: {_FEW}." if update.attrs["left_out"] else ""
     if not update.sizes["datum"]:
@@ -91,7 +91,7 @@ def explained(update: xr.Dataset) -> str:
     )
 
 
-def built(update: xr.Dataset) -> str:
+def sizes_to_build(update: xr.Dataset) -> str:
     """Length or force to build before and after the measurement, for the middle fraction.
 
     As `stiction.report.devices.sentences.build_sentence`: the least safe length, less twice the largest uncertainty of
@@ -104,7 +104,7 @@ def built(update: xr.Dataset) -> str:
         return f"{none}. {contradiction(update)}"
     if update.result_after.isnull().any():
         return f"{none}: {_FEW}."
-    (before, after), *others = (_built(update, response) for response in sorted(responses, key=_WEAKEST.index))
+    (before, after), *others = (_size_to_build(update, response) for response in sorted(responses, key=_WEAKEST.index))
     if FORCE in responses:
         return (
             f"With the test beams, give it a restoring force of at least {after:.3g} µN, without them {before:.3g} µN; "
@@ -113,11 +113,12 @@ def built(update: xr.Dataset) -> str:
     alone = "".join(
         f"; if its tip cannot touch, {one:.0f} µm with them and {other:.0f} µm without" for other, one in others
     )
-    held = "" if _show_errors_of_tips(update) else " for devices that cracks along the beam hold"
+    beyond = "" if _show_errors_of_tips(update) else ", but not where tips or the middle of a bridge hold"
     margin = _margin(update, "lengths", 2.3)
     return (
         f"With the test beams, build it no longer than {after:.0f} µm, without them {before:.0f} µm{alone}. "
-        f"{margin[0].upper()}{margin[1:]} is subtracted, with that of the model{held}.{_beyond_cracks(update)}"
+        f"{margin[0].upper()}{margin[1:]} is subtracted. It includes the error of the model{beyond}."
+        f"{_beyond_cracks(update)}"
     )
 
 
@@ -147,7 +148,7 @@ def _beyond_cracks(update):
     return f"{shown}: tips are taken to adhere as much more."
 
 
-def _built(update, response):
+def _size_to_build(update, response):
     """Lengths, or forces, to build before and after the measurement for one shape of adhesion [µm, µN]."""
     share = update.share.values[update.sizes["share"] // 2]
     chosen = update.isel(result=np.flatnonzero(update.response.values == response))
@@ -183,7 +184,7 @@ def _change(result):
     return f"{result['again'].values}: {rerun} % (linear {linear} %)"
 
 
-def stuck(update: xr.Dataset) -> list[str]:
+def stuck_sentences(update: xr.Dataset) -> list[str]:
     """P(stuck) before and after the measurement at every humidity, averaged over the uncertainty of the inputs.
 
     Nothing, where nothing explains the test beams.
@@ -221,11 +222,11 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
         f"{device}: {sentence}"
         for device, update in datasets.items()
         for sentence in [
-            explained(update),
+            agreement(update),
             *combinations(update),
-            advised(update),
+            beams_to_add(update),
             again(update),
-            *stuck(update),
+            *stuck_sentences(update),
             *warnings(update),
         ]
     ]
@@ -319,7 +320,7 @@ def _number(value, deviation):
     return with_error(value, deviation) if deviation > 0 else number(value, ".1f" if abs(value) >= 1 else ".2g")
 
 
-def _measured(value, error):
+def _datum_text(value, error):
     """Count, or a mean with its standard error."""
     return number(value, "g") if np.isnan(error) else with_error(value, error)
 
@@ -328,7 +329,7 @@ _COLUMNS = DEVICE | {
     "what": (lambda part, name: f"{name}: {part}", "part", "name"),
     "before": (_number, "before", "before_std"),
     "after": (_number, "after", "after_std"),
-    "measured": (_measured, "measured", "measured_se"),
+    "measured": (_datum_text, "measured", "measured_se"),
 }
 
 
@@ -337,7 +338,7 @@ _COLUMNS = DEVICE | {
 
 def warnings(update: xr.Dataset) -> list[str]:
     """Contradictions of the test beams, and predictions beyond them, in sentences with numbers."""
-    return [*_contradictions(update), *_moved(update), *_nonlinear(update), *_extrapolated(update)]
+    return [*_contradictions(update), *_moved_inputs(update), *_nonlinear(update), *_beyond_test_beams(update)]
 
 
 def _contradictions(update):
@@ -369,7 +370,7 @@ def contradiction(update: xr.Dataset) -> str:
     )
 
 
-def _moved(update):
+def _moved_inputs(update):
     """Inputs, and rests of the model, with errors beyond their standard deviations."""
     known = update.isel(input=np.flatnonzero(update.prior_deviation.values > 0))
     for name, score in zip(known.input.values, (known["shift"] / known.prior_deviation).values, strict=True):
@@ -396,7 +397,7 @@ def _nonlinear(update):
         )
 
 
-def _extrapolated(update):
+def _beyond_test_beams(update):
     """Conditions of the device beyond those of its test beams, if any of these say something."""
     if not update.sizes["datum"]:
         return
@@ -437,9 +438,9 @@ STAGES = (
     table_stage(
         "test_beams",
         "what test beams say about devices",
-        inputs=lambda plan, at: {"test_beams": by_name("devices/test_beams/rerun", plan.devices.tested)},
+        inputs=lambda plan, at: {"test_beams": by_name("devices/test_beams/rerun", plan.devices.with_test_beams)},
         compute=lambda data: test_beams(data["test_beams"]),
-        jobs=lambda plan: [{}] if plan.devices.tested else [],
+        jobs=lambda plan: [{}] if plan.devices.with_test_beams else [],
         targets=("devices",),
     ),
 )

@@ -26,7 +26,7 @@ def compute(chaos: xr.Dataset, case: Case, settings: Settings, threads: int = 1)
     parallel, does not affect the results.
     """
     model = chaos_model(chaos)
-    columns = releases.released(model, case, settings, threads, shapes=_KEPT)
+    columns = releases.release_beams(model, case, settings, threads, shapes=_KEPT)
     elements = columns["deflection"].shape[1] - 1
     dataset = layout(columns, replace(cantilever(settings, case.pair), elements=elements).nodes)
     if not settings.refined:

@@ -17,7 +17,7 @@ from stiction.plan.stage import Stage, select
 from stiction.run.atomic import save_text
 from stiction.run.markdown import literal
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
-from stiction.stages.beams.releases import ended, stuck_lengths
+from stiction.stages.beams.releases import ends_as, stuck_lengths
 from stiction.stages.surfaces import surface_flags
 
 #: Warnings by their subject, such as ``pair b, RH 0.67, G``.
@@ -39,8 +39,8 @@ class OfPairs(Cantilevers):
 
 def beam_warnings(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
     """Warnings about the beams of a case of the main line: dataset of stage beams, length of the strips [m]."""
-    s_shaped = ended(beams, "S-shape")
-    warnings = [limits.arcs_of_elements(float(ended(beams, "arc").mean()), strip)]
+    s_shaped = ends_as(beams, "S-shape")
+    warnings = [limits.arcs_of_elements(float(ends_as(beams, "arc").mean()), strip)]
     if "longest_strip" in beams:
         warnings.append(limits.long_strips(strip, float(beams.longest_strip)))
     if s_shaped.any():
@@ -51,7 +51,7 @@ def beam_warnings(beams: xr.Dataset, nominal: Beam, strip: float) -> list[str]:
             limits.stubby_beam(mean, nominal.thickness),
             limits.wide_beam(nominal.gap, nominal.width, nominal.thickness, mean),
         ]
-    return limits.given(*warnings)
+    return limits.triggered(*warnings)
 
 
 def contact_warnings(
@@ -81,7 +81,7 @@ def main_line_warnings(
     Each pair has the names of its materials, each with the properties that are stated.
     """
     warnings = {
-        f"pair {pair}": limits.given(
+        f"pair {pair}": limits.triggered(
             _without_water(pair, beams, settings.water[pair]),
             *contact_warnings(plastic_contact(plasticity, pair), materials[pair], remedy=remedy),
         )
@@ -89,7 +89,7 @@ def main_line_warnings(
     }
     for (pair, humidity, model), dataset in beams.items():
         nominal = cantilever(settings, pair)
-        film = limits.given(limits.thin_film(settings.water[pair].film(humidity)[0]))
+        film = limits.triggered(limits.thin_film(settings.water[pair].film(humidity)[0]))
         warnings[f"pair {pair}, {air(humidity)}, {model}"] = film + beam_warnings(
             dataset, nominal, settings.sampling.strip_length
         )
@@ -186,7 +186,7 @@ STAGES = (
             "plasticity_runs": "plasticity" in plan.studies,
             "not_modelled": plan.air.not_modelled((case.pair, case.humidity) for case in plan.cases),
             "surfaces": {pair: plan.scans.sides(pair) for pair in plan.pairs},
-            "assumed": plan.assumed(*plan.pairs),
+            "assumed": plan.assumptions(*plan.pairs),
         },
         compute=_warnings,
         save=lambda page, paths: save_text(page, paths["markdown"]),

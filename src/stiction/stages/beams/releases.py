@@ -53,7 +53,7 @@ def without_scatter(settings: OnStrips, samples: int) -> Settings:
     return Settings(**common, samples=samples, scatter=0)
 
 
-def released(model: ChaosModel, case: Case, settings: Settings, threads: int = 1, shapes: int = 0) -> dict:
+def release_beams(model: ChaosModel, case: Case, settings: Settings, threads: int = 1, shapes: int = 0) -> dict:
     """Release beams of a case on force laws drawn from a chaos model. Arrays of `stiction.beam.montecarlo.columns`."""
     return released_on(partial(draw_laws, model), case, settings, _streams(settings, case), threads, shapes)
 
@@ -93,24 +93,24 @@ def _on_uniform_ground(beam, energy, scatter, sample, rng):
 
 
 def longest_strip(model: ChaosModel, case: Case, settings: OnStrips) -> float:
-    """Longest strip for the cracks of a case, on the laws of the mesh of `released` [m]."""
+    """Longest strip for the cracks of a case, on the laws of the mesh of `release_beams` [m]."""
     laws = draw_laws(model, _LAWS, _streams(settings, case)("mesh"))
     return longest(cantilever(settings, case.pair), laws)[0]
 
 
-def ended(beams: xr.Dataset, state: str) -> np.ndarray:
+def ends_as(beams: xr.Dataset, state: str) -> np.ndarray:
     """Mark the beams of a dataset by their final state, ``S-shape``, ``arc`` or ``free``, (n,) bool."""
     return beams.state.values == STATES.index(state)
 
 
 def stuck_lengths(beams: xr.Dataset) -> np.ndarray:
     """Crack lengths of the S-shaped beams of a dataset (m,) [m]. Those of others have no meaning."""
-    return beams.crack_length.values[ended(beams, "S-shape")]
+    return beams.crack_length.values[ends_as(beams, "S-shape")]
 
 
 def stuck_energies(beams: xr.Dataset) -> np.ndarray:
     """Apparent adhesion energies Γ, Eq. (13), of the S-shaped beams of stage beams (m,) [J m⁻²]."""
-    return beams.adhesion_energy.values[ended(beams, "S-shape")]
+    return beams.adhesion_energy.values[ends_as(beams, "S-shape")]
 
 
 def sections(plan: Any, case: Case) -> dict[str, Any]:

@@ -30,7 +30,7 @@ def compute(contact: xr.Dataset, case: Case, settings: Settings) -> xr.Dataset:
     vectors, limit = curves.vectors(first(contact, settings.samples), case.humidity, settings.water)
     model = fit(vectors, limit, settings.chaos.order, settings.chaos.dimension_tolerance)
     beams = releases.without_scatter(settings, settings.beam.samples)
-    return layout([case.humidity], [vectors[:, 0]], [releases.released(model, case, beams)])
+    return layout([case.humidity], [vectors[:, 0]], [releases.release_beams(model, case, beams)])
 
 
 def layout(humidities: Sequence[float], energies: Sequence, beams: Sequence[dict]) -> xr.Dataset:
@@ -61,7 +61,7 @@ def cases_of(dataset: xr.Dataset) -> Iterator[tuple[float, Variant]]:
     """Yield every case of the dataset: relative humidity [-] and the results under the variant."""
     for k, humidity in enumerate(dataset.humidity.values):
         chosen = dataset.isel(humidity=k)
-        stuck = releases.ended(chosen, "S-shape")
+        stuck = releases.ends_as(chosen, "S-shape")
         yield float(humidity), Variant(chosen.adhesion_energy.values, chosen.crack_length.values, stuck)
 
 
@@ -96,7 +96,8 @@ STAGES = (
         settings=_settings,
         kind=Settings,
         first=lambda settings: {"sample": slice(settings.samples)},
-        compute=lambda data, at, settings: compute(data["contact"], at.case, corrections.corrected(settings, data)),
+        complete=corrections.with_correction,
+        compute=compute,
         message="Crack lengths of {case} under variant {variant}.",
     ),
 )

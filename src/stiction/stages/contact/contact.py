@@ -51,7 +51,7 @@ def compute_each(
     return [tip_dataset(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
 
 
-def drawn(data: Mapping[str, Any], pair: str, settings: Settings) -> xr.Dataset:
+def from_surfaces(data: Mapping[str, Any], pair: str, settings: Settings) -> xr.Dataset:
     """Compute from the datasets of both surfaces by stage."""
     return compute(both(data), pair, "NG", settings)
 
@@ -94,7 +94,7 @@ def drawn_chunk(data: Mapping[str, Any], at: Any, settings: Settings) -> xr.Data
     return compute(both(data), at.pair, at.model, settings, samples)
 
 
-def joined(chunks: Iterable[xr.Dataset], settings: Settings) -> xr.Dataset:
+def join_chunks(chunks: Iterable[xr.Dataset], settings: Settings) -> xr.Dataset:
     """Join the contact of all samples from the chunks in their order. Of an iterator, one chunk is held at a time.
 
     Raises

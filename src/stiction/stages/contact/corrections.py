@@ -39,7 +39,7 @@ def errors_of_pairs(plan: Any) -> dict[str, str]:
     return {pair: study_of("studies/model_error", pair, plan.air.water(pair)) for pair in plan.humid_pairs}
 
 
-def corrected(settings: S, data: Mapping[str, Any]) -> S:
+def with_correction(settings: S, data: Mapping[str, Any]) -> S:
     """Settings of a stage with the correction from its inputs."""
     if "model_error" not in data:
         return settings

@@ -14,7 +14,7 @@ from stiction.analysis.plasticity import ONSET
 from stiction.contact import elements, forcelaw, solids
 from stiction.contact.environment import Water
 from stiction.contact.halfspace import HalfSpace
-from stiction.devices.materials import ELASTIC
+from stiction.devices.properties import ELASTIC
 from stiction.plan.stage import At, Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import contact, pairs
@@ -151,7 +151,7 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
 
     They are the lowest, the middle and the highest one at which water condenses, that of its figures among them.
     """
-    humid = sorted(filter(None, plan.air.of_full_contact(at.pair))) if plan.air.is_wetted(at.pair) else []
+    humid = sorted(filter(None, plan.air.humidities_of_full_contact(at.pair))) if plan.air.is_wetted(at.pair) else []
     chosen = dict.fromkeys(humid[k] for k in (0, (len(humid) - 1) // 2, -1)) if humid else ()
     study = {"humidities": list(chosen), "strips": plan.config["studies"]["full_contact"]["samples"]}
     seen = plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None)
@@ -161,7 +161,7 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
 def _settings_across(plan, at):
     """Settings with attraction across gaps, also in dry air if the pair has any."""
     touching = settings_of(plan, at)
-    dry = [] if all(plan.air.of_full_contact(at.pair)) and plan.air.is_wetted(at.pair) else [0.0]
+    dry = [] if all(plan.air.humidities_of_full_contact(at.pair)) and plan.air.is_wetted(at.pair) else [0.0]
     return touching | {"water": plan.air.across_gaps(at.pair), "humidities": dry + touching["humidities"]}
 
 

@@ -81,10 +81,10 @@ def equivalent_surface(
     """Sum of two surfaces from their (heights, spectrum) datasets, the beam's first."""
     grid = settings.sampling.strips(settings.beam.width)
     beam, substrate = (rough_surface(heights, spectrum, model, grid) for heights, spectrum in surfaces)
-    return EquivalentSurface(beam, substrate, *_discretised(settings.contact))
+    return EquivalentSurface(beam, substrate, *_discretisation(settings.contact))
 
 
-def _discretised(contact):
+def _discretisation(contact):
     """Step of the distances, every n-th point, and the definition of an asperity."""
     return contact.distance_step, contact.every, Definition(contact.asperity)
 
@@ -104,7 +104,9 @@ def surface_pairs(
     build = partial(SurfacePair, asperity=solid)
     if settings.tilt:
         build = partial(TiltedPair, asperity=solid, tilt=settings.tilt)
-    return [build(*(built[id(one)] for one in surfaces), *_discretised(settings.contact)) for surfaces in alternatives]
+    return [
+        build(*(built[id(one)] for one in surfaces), *_discretisation(settings.contact)) for surfaces in alternatives
+    ]
 
 
 def streams_of_sides(seed: int, pair: str) -> Callable[[int], tuple[np.random.Generator, ...]]:

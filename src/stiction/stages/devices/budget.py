@@ -24,12 +24,12 @@ from stiction.devices import arcs
 from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.stoppers import pull_off_force
 from stiction.devices.tail import FEWEST, TAIL, fit_tail
-from stiction.plan.stage import At, Stage, chosen
+from stiction.plan.stage import At, Stage, subsection
 from stiction.progress import progress
 from stiction.stages.contact import curves
 from stiction.stages.contact.changes.patches import TIPS
 from stiction.stages.contact.contact import first
-from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.corrections import with_correction
 from stiction.stages.contact.error_notes import explain_errors
 from stiction.stages.devices.contact_names import contacts_of_budget, contacts_of_tip_budget
 from stiction.stages.devices.opening import (
@@ -184,15 +184,17 @@ def tip_responses(states: Sequence[State], share: float) -> Responses:
         (curves.tip_forces(state.contact, state.humidity, state.water), state.device.beam) for state in states
     ]
     lengths = [arcs.longest_free(*forces, beam) for forces, beam in forces_and_beams]
-    return Responses(np.array(lengths), partial(_held, share=share), compared=partial(_held_of_slopes, share=share))
+    return Responses(
+        np.array(lengths), partial(_stuck_length, share=share), compared=partial(_held_of_slopes, share=share)
+    )
 
 
 def _held_of_slopes(lengths, share):
-    """As `_held`, from the part of the tips for slopes, or from as many as a fit needs."""
-    return _held(lengths, share, max(_OF_SLOPES, (FEWEST + 0.5) / len(lengths)))
+    """As `_stuck_length`, from the part of the tips for slopes, or from as many as a fit needs."""
+    return _stuck_length(lengths, share, max(_OF_SLOPES, (FEWEST + 0.5) / len(lengths)))
 
 
-def _held(lengths, share, part=TAIL):
+def _stuck_length(lengths, share, part=TAIL):
     """Length with a fraction stuck, infinite if too few stick. Small fractions take the fit of the shortest part."""
     known = np.isfinite(lengths)
     if share > TAIL:
@@ -213,7 +215,7 @@ def beam_responses(states: Sequence[State], mesh: Beam, strips: int, number: int
     def lengths(state, laws):
         """Crack lengths in a state on force laws [m]."""
         part = replace(state.device.beam, length=mesh.length, elements=mesh.elements)
-        return arrests(state.device, (part, strips), partial(_picked, laws), number, address)
+        return arrests(state.device, (part, strips), partial(_resampled_laws, laws), number, address)
 
     values = np.array([lengths(state, of_state) for state, of_state in zip(states, laws, strict=True)])
     # Some lengths may not be known. If most are not, the median is infinite, and no slope is known.
@@ -229,7 +231,7 @@ def shared_laws(parametrised: Sequence[tuple[np.ndarray, float]]) -> list[np.nda
     return [forcelaw.coefficients(vectors[lawful], limit) for vectors, limit in parametrised]
 
 
-def _picked(laws, number, rng):
+def _resampled_laws(laws, number, rng):
     """Laws drawn with replacement."""
     return laws[rng.integers(len(laws), size=number)]
 
@@ -349,15 +351,15 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     section = plan.config["devices"][name]
     pair = plan.contact_of_device(at.case)
     own = {"uncertainty": section.get("uncertainty", {}), "humidity": at.case.humidity}
-    own |= chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.materials.beam_modulus(pair)
+    own |= subsection(plan.config["solid"], ["young_modulus_GPa"]) | plan.materials.beam_modulus(pair)
     if "hamaker_constant" in devices.uncertain_solids(name):
         own |= {"hamaker_constant_zJ": plan.air.beam_hamaker_constant(pair), "alike": plan.materials.alike(pair)}
     if devices.kind(name).is_beam:
         own |= {"device": section_of_beam(plan, name, pair), "beams": plan.config["design"]["budget_beams"]}
     else:
-        own |= chosen(section, ["contact_um"])
+        own |= subsection(section, ["contact_um"])
     own |= {"seed": plan.config["seed"], "water": plan.air_of_devices.water(pair), "surfaces": plan.sides(pair)}
-    known = {surface: one.section for surface, one in devices.known(name).items() if one.quantities}
+    known = {surface: one.section for surface, one in devices.surface_errors(name).items() if one.quantities}
     own |= {"known": known} if known else {}
     quantities = list(map(list, devices.quantities(name)))
     return _with_choices(
@@ -381,9 +383,9 @@ def settings_of_tips(plan: Any, at: At, share: float | None = None) -> dict[str,
     return _with_choices(plan, pair, settings, plan.variants.choices_of_solids(pair))
 
 
-def _computed(data, settings):
+def _budget_of_job(data, settings):
     """Budget from the contacts with less and with more of every input, and those under other choices of the model."""
-    wanted = corrected(budget_settings(settings["budget"]), data)
+    wanted = with_correction(budget_settings(settings["budget"]), data)
     described = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     shifted = {key: (less, data["more"][key]) for key, less in data["less"].items()}
     solids = {name: (less, data["solids_more"][name]) for name, less in data["solids_less"].items()}
@@ -418,7 +420,7 @@ BUDGET = Stage.writing(
     "devices/budget/{case}",
     inputs=lambda plan, at: _inputs(plan, at.case.device) | contacts_of_budget(plan, at.case),
     settings=settings_of,
-    compute=_computed,
+    compute=_budget_of_job,
     message="Budget of {case}.",
     cluster=True,
 )
@@ -441,7 +443,7 @@ def _inputs_of_test_beams(contacts):
 
     def inputs(plan, at):
         """Inputs of an array, as of a device."""
-        plan, name = plan.of_test_beams, at.case.device
+        plan, name = plan.with_test_beams, at.case.device
         return _inputs(plan, name) | contacts(plan, at.case) | {"choices": {}}
 
     return inputs
@@ -455,7 +457,7 @@ STAGES = (
         inputs=lambda plan, at: _inputs(plan, at.case.device) | contacts_of_tip_budget(plan, at.case),
         settings=settings_of_tips,
         memory=lambda plan: _memory_of_tips(
-            plan, plan, [name for name in plan.devices.budgeted if name in plan.devices.with_tips]
+            plan, plan, [name for name in plan.devices.with_budget if name in plan.devices.with_tips]
         ),
         label="budget",
         message="Budget of the tips of {case}.",
@@ -464,7 +466,7 @@ STAGES = (
         "test_beam_budget",
         OF_ARRAYS + "/{case}",
         inputs=_inputs_of_test_beams(contacts_of_budget),
-        settings=lambda plan, at: _with_choices(plan, "", settings_of(plan.of_test_beams, at), []),
+        settings=lambda plan, at: _with_choices(plan, "", settings_of(plan.with_test_beams, at), []),
         label="budget",
         message="Budget of test beams {case}.",
     ),
@@ -472,8 +474,8 @@ STAGES = (
         "test_beam_tip_budget",
         OF_ARRAYS + "/{case}_tip",
         inputs=_inputs_of_test_beams(contacts_of_tip_budget),
-        settings=lambda plan, at: _with_choices(plan, "", settings_of_tips(plan.of_test_beams, at, HALF), []),
-        memory=lambda plan: _memory_of_tips(plan, plan.of_test_beams, test_beams.counted(plan.config)),
+        settings=lambda plan, at: _with_choices(plan, "", settings_of_tips(plan.with_test_beams, at, HALF), []),
+        memory=lambda plan: _memory_of_tips(plan, plan.with_test_beams, test_beams.counts_as_devices(plan.config)),
         label="budget",
         message="Budget of the tips of test beams {case}.",
     ),

@@ -16,7 +16,7 @@ from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.chart import checked_power_law, error_between
 from stiction.plan.names import by_case
-from stiction.plan.stage import Stage, chosen, select
+from stiction.plan.stage import Stage, select, subsection
 from stiction.stages.devices import sticking
 from stiction.stages.devices.contact_names import tips_of
 from stiction.stages.devices.ground import ground_from, ground_inputs
@@ -50,21 +50,21 @@ class Filled:
 _UNKNOWN = (lambda thickness, _gap: np.full(len(thickness), np.nan)), 0.0
 
 
-def compute(ground: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
+def compute(ground: xr.Dataset, settings: Settings, tips: xr.Dataset | None = None) -> xr.Dataset:
     """Safe lengths and quantiles of all thicknesses and gaps. Inputs as in the stages cracks and safe_lengths."""
     met = sticking.with_tips(ground_from(ground, settings), tips, settings.humidity, settings.water)
 
     def by_elements(thickness, gap):
         """Safe lengths of beams of one size and their quantiles (shapes, shares and scores) [m]."""
         device = _resized(settings, thickness, gap)
-        beams = sticking.released(device, met, settings)
-        known = sticking.known(device, settings.water, settings.humidity, beams.reach)
+        beams = sticking.release_beams(device, met, settings)
+        known = sticking.lengths_without_samples(device, settings.water, settings.humidity, beams.reach)
         safe = sticking.by_shape(beams, settings, known)
         of_shares = [[one.length for one in of_shape] for of_shape in safe.values()]
         return np.hstack([of_shares, [risk.quantiles(values, beams.reach) for values in beams.lengths.values()]])
 
     chart = filled(settings.thicknesses, settings.gaps, by_elements)
-    longest = [settings.device.opening.longest_strip(device, met.laws) for device in _designed(settings)]
+    longest = [settings.device.opening.longest_strip(device, met.laws) for device in _beams_of_chart(settings)]
     return layout(chart, float(ground.rms), longest, settings)
 
 
@@ -73,7 +73,7 @@ def _resized(settings, thickness, gap):
     return replace(settings.device, thickness=float(thickness), gap=float(gap))
 
 
-def _designed(settings):
+def _beams_of_chart(settings):
     """Beams of all sizes, in the order of `filled`."""
     return [_resized(settings, *size) for size in product(settings.thicknesses, settings.gaps)]
 
@@ -136,7 +136,9 @@ def layout(filled: Filled, rms: float, longest_strips: Sequence[float], settings
     grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
     shapes, shares = list(settings.device.opening.shapes), len(settings.shares)
     lengths = filled.lengths.reshape(*grid, len(shapes), -1)
-    limits = [sticking.flooded_lengths(device, settings.water, settings.humidity) for device in _designed(settings)]
+    limits = [
+        sticking.flooded_lengths(device, settings.water, settings.humidity) for device in _beams_of_chart(settings)
+    ]
     metres, none = {"units": "m"}, {"units": "1"}
     return xr.Dataset(
         {
@@ -164,7 +166,7 @@ def layout(filled: Filled, rms: float, longest_strips: Sequence[float], settings
 def _settings(plan, at):
     """Settings of the cracks and the safe lengths, for all thicknesses and gaps of the chart of a device."""
     section = plan.config["devices"][at.case.device]
-    sizes = {"gaps_um": [section["gap_um"]]} | chosen(section["chart"], ("thicknesses_um", "gaps_um"))
+    sizes = {"gaps_um": [section["gap_um"]]} | subsection(section["chart"], ("thicknesses_um", "gaps_um"))
     return select(Settings, settings_of_beam(plan, at.case) | sizes)
 
 
@@ -192,7 +194,7 @@ def largest_error_between(whole: xr.Dataset) -> float:
 
 def charts(plan: Any) -> dict[str, dict]:
     """Datasets of all charts by device and humidity, as inputs of a stage."""
-    cases = [case for name in plan.devices.charted for case in plan.devices.chart_cases(name)]
+    cases = [case for name in plan.devices.with_chart for case in plan.devices.chart_cases(name)]
     return {"charts": by_case("devices/chart", cases)}
 
 
@@ -203,7 +205,7 @@ STAGES = (
         inputs=lambda plan, at: ground_inputs(plan, at.case) | tips_of(plan, at.case),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, settings: compute(data["ground"], data.get("tips"), settings),
+        compute=compute,
         message="Chart of {case}.",
         cluster=True,
         minutes=120,

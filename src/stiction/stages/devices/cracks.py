@@ -17,7 +17,7 @@ from stiction.devices.sampling import SampledSurfaces
 from stiction.plan.stage import Stage, select
 from stiction.stages.devices.ground import ground_from, ground_inputs
 from stiction.stages.devices.opening import BEAMS, DesignedBeam, ground_of, settings_of_beam
-from stiction.stages.devices.sticking import Released, released
+from stiction.stages.devices.sticking import Released, release_beams
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Settings:
 def compute(ground: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Release long beams on the force laws of a ground."""
     device, met = settings.device, ground_from(ground, settings)
-    dataset = layout(released(device, met, settings), ground_of(device, met.laws)[0], met.laws, float(ground.rms))
+    dataset = layout(release_beams(device, met, settings), ground_of(device, met.laws)[0], met.laws, float(ground.rms))
     return dataset.assign(
         longest_strip=((), device.opening.longest_strip(device, met.laws), {"units": "m"}),
         share_flat=ground.share_flat,

@@ -67,7 +67,7 @@ def beam_warnings(
     sentence at a humidity, but not in dry air.
     """
     shortest = safe_lengths.safe_length.min("share")
-    without = limits.given(
+    without = limits.triggered(
         limits.no_water(float(safe_lengths.film), humidity), limits.flat_patches(float(safe_lengths.share_flat))
     )
     return {
@@ -84,7 +84,7 @@ def _accuracy_warnings(safe_lengths, of):
         return []
     one = safe_lengths.sel(share=chosen_share(safe_lengths))
     parts = [float(one[name] / one.estimate) for name in ("beams_error", "surfaces_error")]
-    return limits.given(limits.missed_accuracy(*parts, of.accuracy.length))
+    return limits.triggered(limits.missed_accuracy(*parts, of.accuracy.length))
 
 
 def chart_warnings(
@@ -120,7 +120,7 @@ def _length_warnings(length, dataset, of, plastic, thinnest=None):
     device = of.device
     sizes = device.gap, device.width, device.thickness, length / device.opening.arms
     is_bridge = device.opening.arms == 2
-    return limits.beam_warnings(*sizes, float(dataset.film), float(dataset.rms)) + limits.given(
+    return limits.beam_warnings(*sizes, float(dataset.film), float(dataset.rms)) + limits.triggered(
         limits.long_strips(device.strip, float(dataset.longest_strip), is_bridge),
         limits.thin_film(thinnest or float(dataset.film)),
         limits.stretched_bridge(device.gap, device.thickness) if is_bridge else None,
@@ -146,7 +146,7 @@ class OfDevices(NamedTuple):
 
 def stopper_warnings(of: OfStopper, plastic: Plastic = NOT_STUDIED, share_flat: float = 0.0) -> list[str]:
     """Warnings about a stopper with a fraction of flat patches [-]. Other parameters as of `beam_warnings`."""
-    return limits.given(
+    return limits.triggered(
         *_water_warnings(of), limits.flat_patches(share_flat), *contact_warnings(plastic, of.materials, limits.STRONGER)
     )
 
@@ -188,7 +188,7 @@ def gap_warnings(changes: Mapping[tuple[float, str], tuple[float, float]], shape
     """Warning about the effect of attraction across gaps on adhesion in a shape, from `left_out_changes`."""
     response = ARC if shape == EITHER else shape
     of_shape = {humidity: change for (humidity, of), change in changes.items() if of == response}
-    return limits.given(limits.without_gaps(of_shape, shorter=shape != FORCE))
+    return limits.triggered(limits.without_gaps(of_shape, shorter=shape != FORCE))
 
 
 def left_out_gaps(plan: Any, device: str) -> dict[str, str]:
@@ -202,12 +202,12 @@ def _inputs(plan, at):
     """Inputs of the warnings about a device."""
     devices, section = plan.devices, plan.config["devices"][at.device]
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]] if at.device in devices.beams else []
-    charts = devices.chart_cases(at.device) if at.device in devices.charted else []
+    charts = devices.chart_cases(at.device) if at.device in devices.with_chart else []
     limited = {
         "lengths": by_case("devices/safe_lengths", cases),
         "stoppers": by_name("devices/stoppers", [at.device] if at.device in devices.stoppers else []),
         "charts": by_case("devices/chart", charts),
-        "plasticity": by_name("studies/plasticity", devices.pressed(at.device)),
+        "plasticity": by_name("studies/plasticity", devices.pairs_of_plasticity(at.device)),
     }
     return limited | left_out_gaps(plan, at.device) | surface_flags.inputs(plan, section["pair"])
 
@@ -216,7 +216,7 @@ def _settings(plan, at):
     """Device, its pair and the stated properties of its materials."""
     section = plan.config["devices"][at.device]
     own = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
-    said = plan.assumed(section["pair"]).get(section["pair"])
+    said = plan.assumptions(section["pair"]).get(section["pair"])
     assumed = {"assumed": said} if said else {}
     if plan.devices.kind(at.device).is_beam:
         return assumed | {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}

@@ -14,7 +14,7 @@ from stiction.contact.environment import Water
 from stiction.plan.stage import At, Stage, select
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import surface_rms
-from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices.contact_names import contact_of, corrections_of
 from stiction.stages.devices.opening import settings_of_beam
 from stiction.stages.devices.sticking import BeamSettings, Ground, Laws, fitted_laws, ground_of_laws
@@ -98,7 +98,8 @@ STAGES = (
         inputs=_inputs,
         settings=_settings,
         kind=Settings,
-        compute=lambda data, settings: compute(data["contact"], corrected(settings, data)),
+        complete=with_correction,
+        compute=compute,
         message="Force laws of {case}, strips of {length} x {width} nm.",
     ),
 )

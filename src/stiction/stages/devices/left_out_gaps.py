@@ -15,7 +15,7 @@ from stiction.config.cases import case_id
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.plan.stage import At, Stage
-from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices.budget import AnyBudget, budget_settings, effect, settings_of, settings_of_tips
 from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
 
@@ -55,9 +55,9 @@ def _settings(plan, at):
     return {"budgets": [{key: value for key, value in one.items() if key != "waters"} for one in own], "water": across}
 
 
-def _computed(data: Mapping[str, Any], settings: Mapping[str, Any]) -> xr.Dataset:
+def _changes(data: Mapping[str, Any], settings: Mapping[str, Any]) -> xr.Dataset:
     """Changes of every place of adhesion of a device."""
-    budgets = [corrected(budget_settings(budget), data) for budget in settings["budgets"]]
+    budgets = [with_correction(budget_settings(budget), data) for budget in settings["budgets"]]
     return compute(data["contacts"], budgets, [in_si(Water, settings["water"])] * len(budgets))
 
 
@@ -69,7 +69,7 @@ STAGES = (
             {"contacts": [contact for contact, _ in _parts(plan, at.device)]} | corrections_of(plan, at.device)
         ),
         settings=_settings,
-        compute=_computed,
+        compute=_changes,
         message="What attraction across gaps would change of device {device}.",
     ),
 )

@@ -34,7 +34,7 @@ from stiction.devices.bridges import (
     middle_zone,
 )
 from stiction.life import holding
-from stiction.plan.stage import chosen, select
+from stiction.plan.stage import select, subsection
 from stiction.streams import stream
 
 #: End states in which a beam may stick: cracks stop on the way, or the tip holds as well, or the middle of a bridge.
@@ -86,7 +86,7 @@ class Seeded(Protocol):
     device: DesignedBeam
 
 
-def fitted(vectors: np.ndarray, limit: float, chaos: Truncation) -> ChaosModel:
+def fit_chaos(vectors: np.ndarray, limit: float, chaos: Truncation) -> ChaosModel:
     """Chaos model of the force laws of some samples (m, 4)."""
     return fit(vectors, limit, chaos.order, chaos.dimension_tolerance)
 
@@ -96,7 +96,7 @@ def addresses(settings: Seeded) -> Callable:
     return partial(stream, settings.seed, "devices", settings.device.pair)
 
 
-def _unresolved(device, laws):
+def _long_beam(device, laws):
     """Long beam with the elements of the paper."""
     part = device.beam
     parts = int(np.ceil(LONG * arrest_length(forcelaw.energy(laws).mean(), part) / part.length))
@@ -112,7 +112,7 @@ def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
     ValueError
         If the strips are too long for the force laws (n, 4).
     """
-    beam, points = _unresolved(device, laws)
+    beam, points = _long_beam(device, laws)
     return resolved(beam, points, laws), points
 
 
@@ -206,7 +206,7 @@ BEAMS = {
         length="crack_length",
         words="infinite if not S-shaped",
         resolved=long_beam,
-        longest_strip=lambda device, laws: longest(_unresolved(device, laws)[0], laws)[0],
+        longest_strip=lambda device, laws: longest(_long_beam(device, laws)[0], laws)[0],
         arrests=_crack_lengths,
         tried=lambda beam, *_: beam.length,
         contribution=forcelaw.energy,
@@ -253,6 +253,6 @@ def at_voltage(plan: Any, device: str, settings: dict[str, Any]) -> dict[str, An
 def section_of_beam(plan: Any, name: str, contact: str | None = None) -> dict[str, Any]:
     """Kind, pair and dimensions of a beam, length of its strips, and its solids in the air of a contact."""
     section = plan.config["devices"][name]
-    modulus = chosen(plan.config["solid"], ["young_modulus_GPa"]) | plan.materials.beam_modulus(section["pair"])
+    modulus = subsection(plan.config["solid"], ["young_modulus_GPa"]) | plan.materials.beam_modulus(section["pair"])
     solids = {"hamaker_constant_zJ": plan.air.hamaker_constant(contact or section["pair"])}
     return select(DesignedBeam, section | modulus | solids, strip_um=plan.devices.strip(name))

@@ -11,15 +11,15 @@ from stiction.devices import arcs, risk
 from stiction.devices.risk import Known, SafeLength
 from stiction.estimates import mean_with_error
 from stiction.life.freeing import probability_for
-from stiction.plan.stage import Stage, chosen, select
+from stiction.plan.stage import Stage, select, subsection
 from stiction.stages.contact import curves
-from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.corrections import with_correction
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices import cracks as stage_cracks
 from stiction.stages.devices import prediction
 from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
 from stiction.stages.devices.opening import DesignedBeam, at_voltage, settings_of_beam
-from stiction.stages.devices.sticking import Released, by_shape, known
+from stiction.stages.devices.sticking import Released, by_shape, lengths_without_samples
 
 #: Points along the axis of the lengths.
 _POINTS = 300
@@ -37,13 +37,13 @@ class Settings:
     length: float | None = None  #: of the device, at which P(stuck) is stated [m]
 
 
-def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> xr.Dataset:
+def compute(cracks: xr.Dataset, settings: Settings, tips: xr.Dataset | None = None) -> xr.Dataset:
     """P(stuck) and safe lengths. Each beam has one of the tips, and a bridge has none."""
     device, held = settings.device, None
     if tips is not None:
         held = arcs.longest_free(*curves.tip_forces(tips, settings.humidity, settings.water), device.beam)
     beams = stage_cracks.beams_of(cracks, device, held)
-    without_samples = known(device, settings.water, settings.humidity, beams.reach)
+    without_samples = lengths_without_samples(device, settings.water, settings.humidity, beams.reach)
     dataset = layout(beams.lengths, by_shape(beams, settings, without_samples), without_samples, settings).assign(
         cracks[["rms", "share_flat", "longest_strip"]]
     )
@@ -51,7 +51,7 @@ def compute(cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings) -> 
 
 
 def compute_at_voltage(
-    contact: xr.Dataset, cracks: xr.Dataset, tips: xr.Dataset | None, settings: Settings
+    contact: xr.Dataset, cracks: xr.Dataset, settings: Settings, tips: xr.Dataset | None = None
 ) -> xr.Dataset:
     """Safe lengths at a voltage, from the contact of the strips and the cracks without voltage, see `compute`.
 
@@ -65,7 +65,7 @@ def compute_at_voltage(
     moved = stage_cracks.with_lengths(cracks, lambda lengths: device.opening.at_voltage(lengths, *means, device.beam))
     added, error = mean_with_error(at[:, 0] - without[:, 0])
     energies = {"voltage_energy": ((), added, {"units": "J m-2"}), "voltage_error": ((), error, {"units": "J m-2"})}
-    return compute(moved, tips, settings).assign(energies)
+    return compute(moved, settings, tips).assign(energies)
 
 
 def at_length(beams: Released, length: float) -> dict[str, tuple]:
@@ -165,10 +165,10 @@ _SAFE_LENGTHS = Stage.writing(
     "devices/safe_lengths/{case}",
     inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, at.case),
     settings=lambda plan, at: select(
-        Settings, settings_of_beam(plan, at.case) | chosen(plan.config["devices"][at.case.device], ["length_um"])
+        Settings, settings_of_beam(plan, at.case) | subsection(plan.config["devices"][at.case.device], ["length_um"])
     ),
     kind=Settings,
-    compute=lambda data, settings: compute(data["cracks"], data.get("tips"), settings),
+    compute=compute,
     message="Safe lengths of {case}.",
 )
 STAGES = (
@@ -176,7 +176,7 @@ STAGES = (
         _SAFE_LENGTHS,
         inputs=lambda plan, at: _SAFE_LENGTHS.inputs(plan, at) | prediction.inputs(plan, at.case),
         compute=lambda data, settings: prediction.with_intervals(
-            compute(data["cracks"], data.get("tips"), settings), data, settings
+            compute(data["cracks"], settings, data.get("tips")), data, settings
         ),
     ),
     replace(
@@ -196,9 +196,8 @@ STAGES = (
         ),
         settings=lambda plan, at: select(Settings, at_voltage(plan, at.case.device, settings_of_beam(plan, at.case))),
         kind=Settings,
-        compute=lambda data, settings: compute_at_voltage(
-            data["contact"], data["cracks"], data.get("tips"), corrected(settings, data)
-        ),
+        complete=with_correction,
+        compute=compute_at_voltage,
         message="Safe lengths of {case} at its voltage.",
     ),
 )

@@ -90,7 +90,7 @@ def fitted_laws(contact: xr.Dataset, humidity: float, settings: LawSettings, sid
     """Force laws at a relative humidity, from the contact of strips with these sides [m]."""
     with on_patch(*sides):
         vectors, limit = curves.vectors(contact, humidity, settings.water)
-    model = opening.fitted(vectors, limit, settings.chaos)
+    model = opening.fit_chaos(vectors, limit, settings.chaos)
     return Laws(model, forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit))
 
 
@@ -114,7 +114,7 @@ def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settin
     return with_tips(ground_of_laws(laws, settings), tips, humidity, settings.water)
 
 
-def released(device: DesignedBeam, met: Ground, settings: BeamSettings) -> Released:
+def release_beams(device: DesignedBeam, met: Ground, settings: BeamSettings) -> Released:
     """Released beams of a device, or of one of another thickness and gap, on its ground."""
     part = opening.ground_of(device, met.laws)
     address, draw = opening.addresses(settings), partial(draw_laws, met.model)
@@ -159,7 +159,7 @@ def sticking_lengths(
     return dict(zip(device.opening.shapes, (alone, risk.with_arcs(alone, held)), strict=True))
 
 
-def known(device: DesignedBeam, water: Water, humidity: float, reach: float) -> dict[str, Known]:
+def lengths_without_samples(device: DesignedBeam, water: Water, humidity: float, reach: float) -> dict[str, Known]:
     """Known lengths of a device without samples, by shape, with the reach of the simulation [m].
 
     No surfaces hold a bridge up to the length of `flooded_lengths`, but a single tip may hold a shorter beam.

@@ -16,7 +16,7 @@ from stiction.devices.stoppers import pull_off_force, safe_forces, stuck_patches
 from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
-from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.corrections import with_correction
 from stiction.stages.contact.curves import energies, freeing_potentials, pull_offs, share_flat, tilted_forces
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices.contact_names import contact_of, corrections_of, dimples_of, tilted_of
@@ -109,7 +109,7 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
 def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) -> xr.Dataset:
     """Dataset of a tilted stopper: forces (tilts, n_rh, m) [N], and slopes at the transition to a wedge (n_rh,) [-]."""
     newton, none, over = {"units": "N"}, {"units": "1"}, ("tilt", "humidity")
-    stuck = [[_stuck(row, settings.restoring_force) for row in rows] for rows in pull_off]
+    stuck = [[_stuck_with_band(row, settings.restoring_force) for row in rows] for rows in pull_off]
     safe, bases = zip(*(_safe(rows, settings.seed) for rows in pull_off), strict=True)
     mean, error = mean_with_error(np.moveaxis(pull_off, -1, 0))
     return xr.Dataset(
@@ -177,8 +177,8 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
     """
     newton, none = {"units": "N"}, {"units": "1"}
     worst, worst_error = _worst(axis, along)
-    stuck = np.array([_stuck(row, settings.restoring_force) for row in along]).T
-    stuck_chosen = np.array([_stuck(row, settings.restoring_force) for row in chosen]).T
+    stuck = np.array([_stuck_with_band(row, settings.restoring_force) for row in along]).T
+    stuck_chosen = np.array([_stuck_with_band(row, settings.restoring_force) for row in chosen]).T
     (safe, basis), (safe_along, _) = (_safe(rows, settings.seed) for rows in (chosen, along))
     mean, error = mean_with_error(along.T)
     return xr.Dataset(
@@ -221,7 +221,7 @@ def _worst(axis, along):
     return worst, float(np.hypot(scatter, np.diff(axis[humid])[0] / np.sqrt(12)))
 
 
-def _stuck(pull_off, force):
+def _stuck_with_band(pull_off, force):
     """P(stuck) at one restoring force and the ends of its band, (3,) [-]."""
     return [float(part[0]) for part in stuck_patches(pull_off, np.array([force]))]
 
@@ -289,7 +289,8 @@ _STOPPERS = Stage.writing(
     inputs=_inputs,
     settings=_settings,
     kind=Settings,
-    compute=lambda data, settings: compute(data["contact"], corrected(settings, data), data.get("dry")),
+    complete=with_correction,
+    compute=compute,
     message="Pull-off force of stopper {device}.",
 )
 
@@ -318,7 +319,8 @@ STAGES = (
         inputs=lambda plan, at: {"contact": dimples_of(plan, at.case)} | corrections_of(plan, at.case.device),
         settings=_settings_of_dimples,
         kind=Dimples,
-        compute=lambda data, settings: compute_dimples(data["contact"], corrected(settings, data)),
+        complete=with_correction,
+        compute=compute_dimples,
         message="Pull-off force of the dimples of {case}.",
     ),
     replace(
@@ -328,7 +330,7 @@ STAGES = (
         inputs=_inputs_tilted,
         settings=lambda plan, at: _settings(plan, at) | {"slopes": plan.devices.slopes(at.device)},
         kind=Tilted,
-        compute=lambda data, settings: compute_tilted(data, corrected(settings, data)),
+        compute=compute_tilted,
         message="Pull-off force of tilted stopper {device}.",
     ),
     replace(
@@ -336,7 +338,7 @@ STAGES = (
         name="stoppers_at_voltage",
         files={"dataset": "devices/at_voltage/{device}"},
         settings=lambda plan, at: at_voltage(plan, at.device, _settings(plan, at)),
-        compute=lambda data, settings: compute_at_voltage(data["contact"], corrected(settings, data), data.get("dry")),
+        compute=compute_at_voltage,
         message="Pull-off force of stopper {device} at its voltage.",
     ),
 )

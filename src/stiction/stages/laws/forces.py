@@ -106,7 +106,8 @@ STAGES = (
         ),
         settings=lambda plan, at: select(Settings, plan.at(at.case)),
         kind=Settings,
-        compute=lambda data, settings: compute(data["contact"], corrections.corrected(settings, data)),
+        complete=corrections.with_correction,
+        compute=compute,
         message="Force curves of {case}, {model} (Sec. III-B1).",
     ),
 )

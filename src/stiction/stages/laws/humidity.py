@@ -62,7 +62,8 @@ STAGES = (
         ),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, settings: compute(data["contact"], corrections.corrected(settings, data)),
+        complete=corrections.with_correction,
+        compute=compute,
         message="Adhesion energy of {model} surfaces of pair {pair} against relative humidity.",
     ),
 )

@@ -9,7 +9,7 @@ import xarray as xr
 
 from stiction.analysis import convergence
 from stiction.chaos import density
-from stiction.chaos import model as chaos
+from stiction.chaos.model import truncated
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.laws.forces import vectors
@@ -29,7 +29,7 @@ class Settings:
     case: str
 
 
-def compute(forces: xr.Dataset, model: xr.Dataset, settings: Settings) -> xr.Dataset:
+def compute(forces: xr.Dataset, chaos: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Draw from the model truncated at each order. Compare the marginals with the kernel density and the samples.
 
     Returns
@@ -37,7 +37,7 @@ def compute(forces: xr.Dataset, model: xr.Dataset, settings: Settings) -> xr.Dat
     Dataset
         Marginals of η drawn with orders 1 ... N_d, and their Kolmogorov distances.
     """
-    fitted = chaos_model(model)
+    fitted = chaos_model(chaos)
     eta = fitted.coordinates.reduce(vectors(forces)[0])[:, : fitted.dimension]
     kernels = density.kernel_density(eta)
     targets = [convergence.kernel_distribution(centres, kernels.bandwidth) for centres in kernels.centres]
@@ -45,7 +45,7 @@ def compute(forces: xr.Dataset, model: xr.Dataset, settings: Settings) -> xr.Dat
     orders, densities, distances = range(1, fitted.order + 1), [], []
     for order in progress(orders, "orders"):
         xi = stream(settings.seed, "orders", settings.case).random((settings.draws, fitted.dimension))
-        drawn = chaos.truncated(fitted, order)(xi)
+        drawn = truncated(fitted, order)(xi)
         densities.append([histogram(column)[0] for column in drawn.T])
         to_kernels = [convergence.distance_to(column, target) for column, target in zip(drawn.T, targets, strict=True)]
         distances.append((to_kernels, list(map(convergence.distance_between, drawn.T, eta.T))))
@@ -99,7 +99,7 @@ STAGES = (
             Settings, plan.config, draws=plan.config["studies"]["orders"]["draws"], case=plan.figure_case
         ),
         kind=Settings,
-        compute=lambda data, settings: compute(data["forces"], data["chaos"], settings),
+        compute=compute,
         message="Convergence of the chaos model in the order of its polynomials (App. B).",
         cluster=True,
     ),

@@ -211,7 +211,7 @@ def _inputs(plan, at):
     }
 
 
-def _computed(data, settings):
+def _uncertainty(data, settings):
     """Uncertainty of a pair, with as many samples of the base as of the other evaluations."""
     base = first(data["base"], max(choice.sizes["sample"] for choice in data["choices"].values()))
     errors = errors_by_surface(data["slopes"], data["estimates"])
@@ -225,7 +225,7 @@ STAGES = (
         inputs=_inputs,
         settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
         kind=Settings,
-        compute=_computed,
+        compute=_uncertainty,
         message="Uncertainty of the adhesion of pair {pair} due to finite scans.",
     ),
 )

@@ -22,15 +22,15 @@ class Settings:
     humidities: tuple[float, ...]  #: [-]
 
 
-def compute(contacts: Mapping[str, Sequence[xr.Dataset]], settings: Settings) -> xr.Dataset:
+def compute(less: Mapping[str, xr.Dataset], more: Mapping[str, xr.Dataset], settings: Settings) -> xr.Dataset:
     """Slopes of ln ē by central differences.
 
-    Each quantity, a key of `stiction.analysis.shifts.STEPS`, has the contact with less and with more of it.
+    The contacts have less and more of a quantity, a key of `stiction.analysis.shifts.STEPS`.
     """
     with_errors = np.array(
-        [[_slope(*ends, h, settings.water) for h in settings.humidities] for ends in contacts.values()]
+        [[_slope(less[name], more[name], h, settings.water) for h in settings.humidities] for name in less]
     )
-    return layout(list(contacts), settings.humidities, *np.moveaxis(with_errors, -1, 0))
+    return layout(list(less), settings.humidities, *np.moveaxis(with_errors, -1, 0))
 
 
 def _slope(less, more, humidity, water):
@@ -80,9 +80,7 @@ STAGES = (
         inputs=_inputs,
         settings=lambda plan, at: select(Settings, plan.over_humidities(at.pair)),
         kind=Settings,
-        compute=lambda data, settings: compute(
-            {name: [less, data["more"][name]] for name, less in data["less"].items()}, settings
-        ),
+        compute=compute,
         message="Slopes of the adhesion of pair {pair} to the quantities of {surface}.",
     ),
 )

@@ -20,7 +20,7 @@ from stiction.devices.stoppers import pull_off_force
 from stiction.estimates import jackknife
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import curves
-from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
 
@@ -55,7 +55,7 @@ def _forces(contacts, settings):
 def _factors(contacts, tips, settings):
     """Factors of the lengths of a beam by end state, with their standard errors."""
     rows = [
-        [of_strips(one, at, settings.water), *([of_tips(tips[at], at, settings)] if at in tips else [])]
+        [factor_of_strips(one, at, settings.water), *([factor_of_tips(tips[at], at, settings)] if at in tips else [])]
         for at, one in contacts.items()
     ]
     none = {"units": "1", "long_name": "length of fast separation over that of slow separation"}
@@ -68,13 +68,13 @@ def _factors(contacts, tips, settings):
     }
 
 
-def of_strips(contact: xr.Dataset, humidity: float, water: Water) -> tuple[float, float]:
+def factor_of_strips(contact: xr.Dataset, humidity: float, water: Water) -> tuple[float, float]:
     """Factor of the length of a crack by the mean energies of strips, and its standard error [-]."""
     energies = (of(contact, humidity, water) for of in (curves.fast_energies, curves.energies))
     return _ratio(*energies, lambda means: (means[..., 1] / means[..., 0]) ** 0.25)
 
 
-def of_tips(tips: xr.Dataset, humidity: float, settings: Settings) -> tuple[float, float]:
+def factor_of_tips(tips: xr.Dataset, humidity: float, settings: Settings) -> tuple[float, float]:
     """Factor of the length that a tip holds, by the mean inverse lengths of all tips, and its standard error [-]."""
     slopes, slow = curves.tip_forces(tips, humidity, settings.water)
     fast = curves.fast_tip_forces(tips, humidity, settings.water)
@@ -130,7 +130,8 @@ STAGES = (
         inputs=_inputs,
         settings=_settings,
         kind=Settings,
-        compute=lambda data, settings: compute(data["contacts"], corrected(settings, data), data["tips"]),
+        complete=with_correction,
+        compute=compute,
         message="Fast separation of device {device}.",
     ),
 )

@@ -29,7 +29,7 @@ from stiction.stages.life.inputs import OfBeam, OfStopper
 from stiction.stages.life.lengths import least_safe, length_of
 from stiction.stages.life.separation import separation_inputs
 from stiction.stages.life.tilt import tilted_answers
-from stiction.stages.life.touch import beam_touched, dried, stopper_moved
+from stiction.stages.life.touch import beam_touched, lengths_after_drying, stopper_moved
 from stiction.stages.life.touchdowns import beam_after_touchdowns, stopper_after_touchdowns
 from stiction.stages.life.unknown import beam_unknown, stopper_unknown
 from stiction.stages.life.voltage import beam_at_voltage, stopper_at_voltage
@@ -60,7 +60,9 @@ def beam_answers(
         for humidity, (value, error, basis) in safe.items()
     ]
     answers += beam_touched(of, length) + beam_held(of, length) if 0 < length < np.inf else []
-    answers += [answer for name, liquid in of.liquids.items() for answer in dried(of, name, liquid.adhesion)]
+    answers += [
+        answer for name, liquid in of.liquids.items() for answer in lengths_after_drying(of, name, liquid.adhesion)
+    ]
     answers += beam_after_touchdowns(of, share, min(safe.values()), after) if after else []
     answers += separated_fast(lengths, separation) if separation is not None else []
     answers += beam_at_voltage(of, min(safe.values()), biased)

@@ -42,7 +42,7 @@ def beam_touched(of: OfBeam, length: float) -> list[Answer]:
     ]
 
 
-def dried(of: OfBeam, liquid: str, adhesion: float) -> list[Answer]:
+def lengths_after_drying(of: OfBeam, liquid: str, adhesion: float) -> list[Answer]:
     """Lengths of beams standing while a liquid dries, and releasing afterwards."""
     clamps = of.clamps
     each, error = of.number(lambda beam: drying.longest_standing_each(beam, clamps, adhesion), 1.0)

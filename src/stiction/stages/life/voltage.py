@@ -72,10 +72,10 @@ def stopper_at_voltage(stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | 
         sticking = [Answer("stuck_at_voltage", HOLD, what, *numbers, "1", "as without voltage", _SOURCE)]
     what, form = f"force that {of.potential:g} V add", "mean of rough patches (at least); ε₀ V² A / (2 D²) (at most)"
     added = Answer(AT_VOLTAGE, HOLD, what, min(low, flat), flat, error, "N", form, _SOURCE)
-    return [added, *sticking, _field(of), *_freed(stopper, of, biased)]
+    return [added, *sticking, _field(of), *_freeing_voltage(stopper, of, biased)]
 
 
-def _freed(stopper, of, biased):
+def _freeing_voltage(stopper, of, biased):
     """Voltage below which the spring frees all but a small fraction: of flats, and of rough patches if there are any.
 
     An offset adds to the voltage, so that the voltage is lower by as much.

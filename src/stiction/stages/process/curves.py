@@ -32,7 +32,7 @@ def compute(
 
     The error of the model is that of full elastic contact, if it is known.
     """
-    curve = joined(points, "value", model_error).assign(slopes=_slopes(points))
+    curve = join_points(points, "value", model_error).assign(slopes=_slopes(points))
     known, dims = [law_of(one) for one in laws], ("value", "humidity", "shape")
     of_law = np.full(curve.margin.shape, np.nan)
     for humidity, shape, one in curves_of(curve):
@@ -43,7 +43,7 @@ def compute(
     return curve.assign_attrs(variable=settings.variable, surface=" and ".join(settings.surfaces))
 
 
-def joined(points: Sequence[xr.Dataset], along: str, model_error: xr.Dataset | None) -> xr.Dataset:
+def join_points(points: Sequence[xr.Dataset], along: str, model_error: xr.Dataset | None) -> xr.Dataset:
     """Points along a dimension, without slopes, with their margins and the errors of simulation and model."""
     shared = ["required", "share", "samples"]
     over = [point.drop_vars([*shared, "roughness", "slopes"], errors="ignore").set_coords("value") for point in points]
@@ -52,7 +52,7 @@ def joined(points: Sequence[xr.Dataset], along: str, model_error: xr.Dataset | N
     margin, safe = (margins(curve[name].values, required, more_is_better) for name in ("estimate", "safe"))
     dims = (along, "humidity", "shape")
     # The bound of a safe value is one-sided: the errors of simulation alone leave it as it is.
-    parts = {"simulation": (margin - safe) / ndtri(CONFIDENCE), "model": _of_model(curve, model_error)}
+    parts = {"simulation": (margin - safe) / ndtri(CONFIDENCE), "model": _model_error(curve, model_error)}
     return curve.assign({"margin": (dims, margin)} | {f"{name}_error": (dims, one) for name, one in parts.items()})
 
 
@@ -83,7 +83,7 @@ def _slopes(points):
     return dims, filled.reshape(len(values), *found.shape[1:]), {"long_name": "of the margin by scaled quantities"}
 
 
-def _of_model(curve, model_error):
+def _model_error(curve, model_error):
     """Standard error of the margins due to the model: full elastic contact changes them, or errs itself if applied."""
     shape = curve.estimate.shape
     if model_error is None:
@@ -122,7 +122,7 @@ def inputs(plan: Any, at: Any) -> dict[str, Any]:
 
 def settings_of(plan: Any, at: Any) -> dict[str, Any]:
     """Processes of a device."""
-    named = process.of_device(plan.config, at.device)
+    named = process.processes_of(plan.config, at.device)
     sections = [plan.config["process"][name] for name in named]
     surfaces = [section["surface"] for section in sections]
     return {"variable": sections[0]["variable"], "processes": named, "surfaces": surfaces}
@@ -135,7 +135,7 @@ STAGES = (
         inputs=inputs,
         settings=settings_of,
         kind=Settings,
-        compute=lambda data, settings: compute(data["points"], data["laws"], settings, data.get("model_error")),
+        compute=compute,
         message="Device {device} over its process.",
     ),
 )

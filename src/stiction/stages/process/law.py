@@ -52,7 +52,7 @@ class Settings:
 
 def compute(estimates: Sequence[xr.Dataset], settings: Settings) -> xr.Dataset:
     """Law through the settings, with sentences on contradictions. There are no estimates of numbers."""
-    surfaces = [_measured(one) for one in estimates] or [
+    surfaces = [_measured_quantities(one) for one in estimates] or [
         (np.array(one["values"]), np.array(one["covariance"])) for one in settings.stated
     ]
     kept = [QUANTITIES.index(name) for name in settings.quantities]
@@ -63,7 +63,7 @@ def compute(estimates: Sequence[xr.Dataset], settings: Settings) -> xr.Dataset:
     return layout(law, measured, errors, settings)
 
 
-def _measured(estimate):
+def _measured_quantities(estimate):
     """Quantities of an estimated surface, and the covariance of their errors.
 
     ASSUME: the moments of the heights and the spectrum of scans err independently.
@@ -234,7 +234,7 @@ def _inputs(plan, at):
 
 def law_inputs(plan: Any, device: str) -> Mapping[str, list[str]]:
     """Names of the laws of the processes of a device."""
-    return {"laws": [f"process/laws/{name}" for name in process.of_device(plan.config, device)]}
+    return {"laws": [f"process/laws/{name}" for name in process.processes_of(plan.config, device)]}
 
 
 STAGES = (

@@ -10,7 +10,7 @@ from scipy.interpolate import RegularGridInterpolator
 from stiction.devices.process import PAIRS, Map, Pairs, law_error, recommended_pairs, unknown
 from stiction.devices.roughness import sufficient
 from stiction.plan.stage import Stage
-from stiction.stages.process.curves import Settings, inputs, joined, labels_of, settings_of
+from stiction.stages.process.curves import Settings, inputs, join_points, labels_of, settings_of
 from stiction.stages.process.law import law_inputs, law_of
 from stiction.streams import stream
 
@@ -24,7 +24,7 @@ def compute(
     """
     seconds, values = (np.unique([float(point[name]) for point in points]) for name in ("second", "value"))
     flat = [point.drop_vars("second") for point in points]
-    rows = [joined(flat[k : k + len(values)], "value", model_error) for k in range(0, len(flat), len(values))]
+    rows = [join_points(flat[k : k + len(values)], "value", model_error) for k in range(0, len(flat), len(values))]
     over = [name for name in rows[0].data_vars if "value" in rows[0][name].dims]
     found = xr.concat(rows, "second", data_vars=over, coords="minimal", compat="equals", join="exact")
     dims = ("second", "value", "humidity", "shape")
@@ -88,16 +88,16 @@ def layout(pairs: Pairs, found: xr.Dataset, settings: np.ndarray) -> xr.Dataset:
     )
 
 
-def of_processes(pairs: xr.Dataset) -> list[xr.Dataset]:
+def settings_of_processes(pairs: xr.Dataset) -> list[xr.Dataset]:
     """Settings of each process: all sufficient ones at some setting of the other process, and the best.
 
     Their variables are as in a dataset of `stiction.stages.process.recommended`.
     """
     axes = (("value", "second", "variable"), ("second", "value", "second_variable"))
-    return [_of_process(pairs, number, *names) for number, names in enumerate(axes)]
+    return [_settings_of_process(pairs, number, *names) for number, names in enumerate(axes)]
 
 
-def _of_process(pairs, number, own, other, variable):
+def _settings_of_process(pairs, number, own, other, variable):
     """Settings of one process."""
     ranges = sufficient(pairs[own].values, pairs.safe.max(other, skipna=False).values)
     named = ("best", "best_error", "best_interval", "next", "next_again", "next_after")
@@ -121,7 +121,7 @@ STAGES = (
         inputs=inputs,
         settings=settings_of,
         kind=Settings,
-        compute=lambda data, settings: compute(data["points"], data["laws"], settings, data.get("model_error")),
+        compute=compute,
         message="Device {device} over two processes.",
     ),
     Stage.writing(

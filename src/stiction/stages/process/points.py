@@ -20,7 +20,7 @@ from stiction.devices.tail import FEWEST, TAIL
 from stiction.plan.stage import Stage
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
-from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices.contact_names import corrections_of
 from stiction.stages.process.law import in_order, law_inputs, on_law
 from stiction.stages.roughness import curves
@@ -131,7 +131,7 @@ def _points(
     for number in range(len(changed)):
         at, tip = ({humid: some[number] for humid, some in of.items()} for of in (patches, tips))
         yield curves.compute(
-            {humid: one.assign(roughness=settings.value) for humid, one in at.items()}, tip, settings.device
+            {humid: one.assign(roughness=settings.value) for humid, one in at.items()}, settings.device, tip
         )
 
 
@@ -157,7 +157,7 @@ def _with_samples(settings):
 def values_of(plan: Any, device: str) -> list[float]:
     """Computed values of the variable, within the settings of all processes of a device."""
     known = plan.config["process"]
-    named = process.of_device(plan.config, device)
+    named = process.processes_of(plan.config, device)
     settings = [sorted(setting["value"] for setting in known[name]["settings"]) for name in named]
     low, high = max(one[0] for one in settings), min(one[-1] for one in settings)
     inside = {value for one in settings for value in one if low <= value <= high}
@@ -170,7 +170,7 @@ def axes_of(plan: Any, device: str) -> list[list[float]]:
         return [values_of(plan, device)]
     first, second = (
         sorted(setting["value"] for setting in plan.config["process"][name]["settings"])
-        for name in process.of_device(plan.config, device)
+        for name in process.processes_of(plan.config, device)
     )
     return [grid(first).tolist(), grid(second, SECOND).tolist()]
 
@@ -207,7 +207,7 @@ def _as_rough(plan, device, *at):
 
     It is preliminary: on straight lines through the logarithms at the settings.
     """
-    for name, value in zip(process.of_device(plan.config, device), at, strict=False):
+    for name, value in zip(process.processes_of(plan.config, device), at, strict=False):
         section, surfaces = plan.config["process"][name], plan.config["surfaces"]
         values = sorted(setting["value"] for setting in section["settings"])
         known = np.log([plan.devices.rms(one) for one in in_order(plan, name)])
@@ -229,7 +229,7 @@ STAGES = (
         ),
         settings=_settings,
         kind=Settings,
-        compute=lambda data, settings: compute(both(data), data["laws"], with_correction(settings, data)),
+        compute=lambda data, settings: compute(both(data), data["laws"], device_with_correction(settings, data)),
         message="Device {device} at value {number} of its process.",
         cluster=True,
         minutes=120,
@@ -237,6 +237,6 @@ STAGES = (
 )
 
 
-def with_correction(settings: Settings, data: Mapping[str, Any]) -> Settings:
+def device_with_correction(settings: Settings, data: Mapping[str, Any]) -> Settings:
     """Settings with the correction to full elastic contact from its input."""
-    return replace(settings, **{"beam" if settings.beam else "stopper": corrected(settings.device, data)})
+    return replace(settings, **{"beam" if settings.beam else "stopper": with_correction(settings.device, data)})

@@ -29,10 +29,14 @@ def compute(curves: Mapping[str, xr.Dataset], laws: Mapping[str, xr.Dataset], va
     found = {name: layout(_recommended(of, laws, variable, seed)) for name, of in groups.items()}
     who = xr.DataArray(list(found), dims="who", name="who")
     shares = [float(curves[name].share) if name in curves else np.nan for name in found]
-    return xr.concat(_of_one_size(found.values()), who).assign(share=("who", shares)).assign_attrs(variable=variable)
+    return (
+        xr.concat(_padded_to_one_size(found.values()), who)
+        .assign(share=("who", shares))
+        .assign_attrs(variable=variable)
+    )
 
 
-def _of_one_size(found):
+def _padded_to_one_size(found):
     """Datasets with as many ranges and crossings each: those missing are NaN."""
     sizes = {name: range(max(one.sizes[name] for one in found)) for name in ("range", "crossings")}
     return [one.assign_coords({name: range(one.sizes[name]) for name in sizes}).reindex(sizes) for one in found]
@@ -93,8 +97,8 @@ def devices_over(plan: Any, variable: str) -> list[str]:
     known = plan.config.get("process", {})
     return [
         name
-        for name in plan.devices.processed
-        if any(known[one]["variable"] == variable for one in process.of_device(plan.config, name))
+        for name in plan.devices.over_process
+        if any(known[one]["variable"] == variable for one in process.processes_of(plan.config, name))
     ]
 
 
@@ -109,7 +113,7 @@ def variables(plan: Any) -> list[str]:
 def _inputs(plan, at):
     """Curves of the devices over a variable, and the laws of their processes."""
     devices = devices_over(plan, at.variable)
-    named = dict.fromkeys(one for name in devices for one in process.of_device(plan.config, name))
+    named = dict.fromkeys(one for name in devices for one in process.processes_of(plan.config, name))
     return {"curves": by_name("process/curves", devices), "laws": by_name("process/laws", named)}
 
 

@@ -98,7 +98,7 @@ def roughness_of(contact: xr.Dataset) -> float:
     return float(contact.roughness)
 
 
-def varied(plan: Any, device: str) -> list[Varied]:
+def varied_quantities(plan: Any, device: str) -> list[Varied]:
     """Varied quantities of the surfaces of a device: along its curves and, for a map, from curve to curve."""
     section = plan.config["devices"][device]["roughness"]
     return [Varied(section["surface"], key, *section[key]) for key in ROUGHNESSES if key in section]
@@ -106,7 +106,7 @@ def varied(plan: Any, device: str) -> list[Varied]:
 
 def points_of(plan: Any, device: str) -> range:
     """Numbers of the points of a device, curve by curve."""
-    return range(POINTS * (CURVES if len(varied(plan, device)) > 1 else 1))
+    return range(POINTS * (CURVES if len(varied_quantities(plan, device)) > 1 else 1))
 
 
 def contacts_of(plan: Any, device: str, number: int) -> dict[str, dict[bool, str]]:
@@ -148,7 +148,7 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
     def settings(plan, at):
         """Settings of the contact of a point, with its values of the varied quantities."""
         pair = plan.config["devices"][at.device]["pair"]
-        what, *others = varied(plan, at.device)
+        what, *others = varied_quantities(plan, at.device)
         curve, point = divmod(int(at.number), POINTS)
         values = [(what, what.value(point)), *((other, other.value_of_curve(curve)) for other in others)]
         own = plan.config["surfaces"][what.surface]

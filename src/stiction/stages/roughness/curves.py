@@ -23,11 +23,11 @@ from stiction.devices.stoppers import safe_forces, stuck_patches
 from stiction.errors import NotConverged
 from stiction.plan.stage import Stage, select
 from stiction.rounding import is_equal
-from stiction.stages.contact.corrections import corrected
+from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices import sticking, stoppers
 from stiction.stages.devices.contact_names import corrections_of
 from stiction.stages.devices.opening import FORCE, DesignedBeam, section_of_beam
-from stiction.stages.roughness.contacts import POINTS, contacts_of, points_of, roughness_of, varied
+from stiction.stages.roughness.contacts import POINTS, contacts_of, points_of, roughness_of, varied_quantities
 
 #: Value of a second quantity of a point of a map, and that of the surface as it is given.
 OTHERS = ("other", "other_given")
@@ -78,8 +78,8 @@ class OfBeam:
     def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> tuple[list[Response], str]:
         """Safe lengths at a humidity by shape, and a sentence about strips that are too long."""
         met = sticking.ground(contact, tips, humidity, self)
-        beams = sticking.released(self.device, met, self)
-        known = sticking.known(self.device, self.water, humidity, beams.reach)
+        beams = sticking.release_beams(self.device, met, self)
+        known = sticking.lengths_without_samples(self.device, self.water, humidity, beams.reach)
         safe = sticking.by_shape(beams, self, known)
         flag = long_strips(
             self.device.strip, self.device.opening.longest_strip(self.device, met.laws), self.device.opening.arms == 2
@@ -119,24 +119,24 @@ class OfStopper:
         return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)], ""
 
 
-def point_settings(settings: dict[str, Any]) -> OfBeam | OfStopper:
-    """Settings of a point from those of a job: those of beams have their dimensions."""
-    return in_si(OfBeam if "device" in settings else OfStopper, settings)
+def point_settings(settings: dict[str, Any], data: Mapping[str, Any]) -> OfBeam | OfStopper:
+    """Settings of a point from those of a job and its inputs: those of beams have their dimensions."""
+    return with_correction(in_si(OfBeam if "device" in settings else OfStopper, settings), data)
 
 
 # Points
 
 
 def compute(
-    contacts: Mapping[bool, xr.Dataset], tips: Mapping[bool, xr.Dataset], settings: OfBeam | OfStopper
+    contact: Mapping[bool, xr.Dataset], settings: OfBeam | OfStopper, tips: Mapping[bool, xr.Dataset] | None = None
 ) -> xr.Dataset:
     """One point of the curve: lengths or forces at all humidities, or the reason against them.
 
-    The contacts are those of `stiction.stages.roughness.contacts`; there are none of tips of other devices.
+    The contacts are those of `stiction.stages.roughness.contacts` in humid and in dry air, of tips if there are any.
     """
     responses, flagged, refused = [], [], []
     for humidity in settings.humidities:
-        met, air = (contacts[humidity > 0], tips.get(humidity > 0)), settings.water.at(humidity)
+        met, air = (contact[humidity > 0], (tips or {}).get(humidity > 0)), settings.water.at(humidity)
         try:
             found, flag = replace(settings, water=air).responses(*met, humidity)
             reason = ""
@@ -147,10 +147,10 @@ def compute(
         responses.append(found)
         flagged.append(flag)
         refused.append(reason)
-    contact = next(iter(contacts.values()))
+    first = next(iter(contact.values()))
     said = {"flagged": ("humidity", flagged), "refused": ("humidity", refused)}
-    point = layout(responses, roughness_of(contact), contact.sizes["sample"], settings).assign(said)
-    return point.assign({name: contact[name] for name in (*OTHERS, KURTOSIS) if name in contact})
+    point = layout(responses, roughness_of(first), first.sizes["sample"], settings).assign(said)
+    return point.assign({name: first[name] for name in (*OTHERS, KURTOSIS) if name in first})
 
 
 def layout(
@@ -183,7 +183,7 @@ def layout(
 # Curves
 
 
-def joined(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Dataset:
+def join_points(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Dataset:
     """Curve of all points along the roughness, its crossings of the requirement, and its sufficient ranges.
 
     Parameters
@@ -218,7 +218,7 @@ def joined(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Dataset:
     return curve.assign(_rows("crossing", places, "place", "error") | _rows("range", ranges, "low", "high"))
 
 
-def mapped(points: Sequence[xr.Dataset], surface: str, key: str, other: str = "") -> xr.Dataset:
+def curve_or_map(points: Sequence[xr.Dataset], surface: str, key: str, other: str = "") -> xr.Dataset:
     """Curve of a device, or, over a second quantity ``other``, all curves along a dimension of this name.
 
     The first curve has the second quantity as it is given; others at the same value are left out.
@@ -226,7 +226,7 @@ def mapped(points: Sequence[xr.Dataset], surface: str, key: str, other: str = ""
     if "skewness" not in (key, other):
         points = [point.drop_vars(KURTOSIS, errors="ignore") for point in points]
     first, *more = [
-        joined([point.drop_vars(OTHERS, errors="ignore") for point in points[k : k + POINTS]], key, surface)
+        join_points([point.drop_vars(OTHERS, errors="ignore") for point in points[k : k + POINTS]], key, surface)
         for k in range(0, len(points), POINTS)
     ]
     if not more:
@@ -295,7 +295,7 @@ def settings_of(plan: Any, at: Any) -> dict[str, Any]:
 
 def _what(plan, device):
     """Varied quantities, and their surface."""
-    first, *others = varied(plan, device)
+    first, *others = varied_quantities(plan, device)
     return {"key": first.key, "surface": first.surface} | ({"other": others[0].key} if others else {})
 
 
@@ -306,9 +306,8 @@ STAGES = (
         # ASSUME: a correction to full elastic contact is that of the given surfaces at every roughness.
         inputs=lambda plan, at: contacts_of(plan, at.device, int(at.number)) | corrections_of(plan, at.device),
         settings=settings_of,
-        compute=lambda data, settings: compute(
-            data["contact"], data.get("tips", {}), corrected(point_settings(settings), data)
-        ),
+        complete=point_settings,
+        compute=compute,
         message="Device {device} at roughness {number}.",
         cluster=True,
         minutes=120,
@@ -320,7 +319,7 @@ STAGES = (
             "points": [f"devices/roughness/points/{at.device}_{number}" for number in points_of(plan, at.device)]
         },
         settings=lambda plan, at: _what(plan, at.device),
-        compute=lambda data, settings: mapped(data["points"], **settings),
+        compute=lambda data, settings: curve_or_map(data["points"], **settings),
         message="Roughness that device {device} needs.",
     ),
 )

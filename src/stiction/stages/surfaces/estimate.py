@@ -240,7 +240,7 @@ def frames(estimate: xr.Dataset) -> list[tuple[int, Frame]]:
     ]
 
 
-def counted(estimate: xr.Dataset) -> list[tuple[int, Frame]]:
+def counted_frames(estimate: xr.Dataset) -> list[tuple[int, Frame]]:
     """Frames counted for the moments."""
     return frames(estimate)[: int(estimate.counted)]
 

@@ -64,7 +64,7 @@ def layout(density: Density, moments: Settings, measured: Moments | None = None)
             "skewness": ((), moments.skewness, {"units": "1"}),
             "kurtosis": ((), moments.kurtosis, {"units": "1"}),
         }
-        | ({} if measured is None else _measured(measured)),
+        | ({} if measured is None else _measured_variables(measured)),
         coords=coordinates | {"height": ("height", z, {"units": "1"})},
     )
 
@@ -81,7 +81,7 @@ def _measured_form(density):
     return {"quantile": ("score", density.heights, name)}, {"score": ("score", density.scores, {"units": "1"})}
 
 
-def _measured(moments):
+def _measured_variables(moments):
     """Variables of the measured moments."""
     return {
         "measured_skewness": ((), moments.skewness, {"units": "1"}),

@@ -22,7 +22,7 @@ class Settings:
     source: Source = Source()
 
 
-def compute(path: str | Path, settings: Settings) -> xr.Dataset:
+def compute(file: str | Path, settings: Settings) -> xr.Dataset:
     """Read the heights of a file. A warning states the notes on its limits.
 
     Raises
@@ -30,10 +30,10 @@ def compute(path: str | Path, settings: Settings) -> xr.Dataset:
     ScanError
         If the file has no usable map of heights.
     """
-    file = reading.read(path, settings.source)
-    for note in file.notes:
+    found = reading.read(file, settings.source)
+    for note in found.notes:
         warnings.warn(note, stacklevel=2)
-    return layout(file)
+    return layout(found)
 
 
 def layout(file: ScanFile) -> xr.Dataset:
@@ -79,7 +79,7 @@ STAGES = (
         inputs=lambda plan, at: {"file": File(plan.scans.path(at.surface, at.number))},
         settings=lambda plan, at: plan.scans.scan(at.surface, at.number),
         kind=Settings,
-        compute=lambda data, settings: compute(data["file"], settings),
+        compute=compute,
         libraries=("SurfaceTopography",),
         message="Read scan {number} of surface {surface}.",
     ),

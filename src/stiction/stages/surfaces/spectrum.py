@@ -34,7 +34,7 @@ class Settings:
     identified: Use | None = None  #: what an identified spectrum is used for
 
 
-def compute(heights: xr.Dataset, identification: xr.Dataset | None, settings: Settings) -> xr.Dataset:
+def compute(heights: xr.Dataset, settings: Settings, identification: xr.Dataset | None = None) -> xr.Dataset:
     """Take the published or the identified parameters of Eq. (7) and invert the translation.
 
     Parameters
@@ -150,7 +150,7 @@ STAGES = (
         inputs=_inputs,
         settings=_settings,
         kind=Settings,
-        compute=lambda data, settings: compute(data["heights"], data.get("identification"), settings),
+        compute=compute,
         message="Spectrum of {surface} and of the underlying Gaussian field (Sec. II-B).",
     ),
 )

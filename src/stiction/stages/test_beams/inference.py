@@ -153,9 +153,9 @@ def compute(
     of_device = [Result(*key[:2], budget, settings.device) for key, budget in budgets.items()]
     inputs = common_inputs([*beams, *of_tips, *of_device])
     prior, responses = with_discrepancy(inputs, beams, [*of_tips, *of_device], settings.discrepancy)
-    lengths = measured(beams, responses, settings.crack_lengths)
-    counts = counted([*beams, *of_tips], responses, stuck, grounds, tips)
-    posterior = inference.given(prior, lengths, counts, stream(settings.seed, "test beams", "counts"))
+    lengths = length_data(beams, responses, settings.crack_lengths)
+    counts = count_data([*beams, *of_tips], responses, stuck, grounds, tips)
+    posterior = inference.update(prior, lengths, counts, stream(settings.seed, "test beams", "counts"))
     device, own = responses[len(of_arrays) :], len(inputs.names)
     if len(lengths.differences):
         device = with_errors_of_cracks(of_device, device, own)
@@ -217,7 +217,7 @@ def with_errors_of_cracks(results: Sequence[Result], responses: np.ndarray, own:
     return shared
 
 
-def measured(beams: Sequence[Result], responses: np.ndarray, crack_lengths: Mapping[str, CrackLengths]) -> Lengths:
+def length_data(beams: Sequence[Result], responses: np.ndarray, crack_lengths: Mapping[str, CrackLengths]) -> Lengths:
     """Measured mean crack lengths beside the computed ones.
 
     ASSUME: the crack lengths of single beams are independent; the error of a computed mean is negligible.
@@ -249,7 +249,7 @@ def known_counts(stuck: Mapping[str, Stuck], results: Sequence[Result]) -> dict[
     return kept
 
 
-def counted(
+def count_data(
     results: Sequence[Result],
     responses: np.ndarray,
     stuck: Mapping[str, Stuck],
@@ -571,7 +571,7 @@ def _settings(plan, at):
         data["crack_lengths"][name]["length_um"] = arrays[name]["length_um"]
     for name in data["stuck"]:
         wettest = case_id(name, max(data["stuck"][name]["humidity"]))
-        contact = plan.of_test_beams.contact_of_device(wettest)
+        contact = plan.with_test_beams.contact_of_device(wettest)
         data["stuck"][name]["water"] = plan.air_of_devices.water(contact)
     is_beam = plan.devices.kind(at.device).is_beam
     return (
@@ -580,12 +580,12 @@ def _settings(plan, at):
         | {
             "seed": plan.config["seed"],
             "discrepancy": plan.config["design"]["discrepancy"],
-            "arrays": {name: section_of_beam(plan.of_test_beams, name) for name in names},
+            "arrays": {name: section_of_beam(plan.with_test_beams, name) for name in names},
         }
     )
 
 
-def _predicted(plan, device):
+def _predicted_sizes(plan, device):
     """Safe lengths of a beam by humidity, or forces of a stopper."""
     if not plan.devices.kind(device).is_beam:
         return f"devices/stoppers/{device}"
@@ -595,7 +595,7 @@ def _predicted(plan, device):
 
 def _contacts(plan, device):
     """Contacts of the counted test beams of a device, and of their tips, as in `compute`."""
-    arrays, of_arrays = plan.config["test_beams"], plan.of_test_beams
+    arrays, of_arrays = plan.config["test_beams"], plan.with_test_beams
     cases = {
         (name, humidity > 0): case_id(name, humidity)
         for name in plan.config["devices"][device]["test_beams"]
@@ -615,7 +615,7 @@ STAGES = (
             {
                 "budgets": budgets_of(plan, at.device),
                 "test_beams": budgets_of_arrays(plan, at.device),
-                "predicted": _predicted(plan, at.device),
+                "predicted": _predicted_sizes(plan, at.device),
             }
             | _contacts(plan, at.device)
         ),

@@ -16,14 +16,14 @@ import xarray as xr
 from stiction.analysis.shifts import moved
 from stiction.config.cases import PairInAir, case_id
 from stiction.config.units import in_si
-from stiction.devices.materials import OF_CONTACT
+from stiction.devices.properties import OF_CONTACT
 from stiction.errors import NotConverged
 from stiction.plan.stage import At, Stage
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact.changes.patches import GROUND
 from stiction.stages.contact.changes.solids import with_property
 from stiction.stages.contact.contact import first
-from stiction.stages.contact.corrections import corrected, correction_inputs
+from stiction.stages.contact.corrections import correction_inputs, with_correction
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices import budget as stage_budget
 from stiction.stages.devices.budget import AnyBudget, budget_settings, budgets_of, budgets_of_arrays, effect
@@ -52,7 +52,7 @@ def compute(
     for (key, budget), patch, own in zip(budgets.items(), patches, settings, strict=True):
         result = Result(*key, budget, None)
         names.append(result.condition)
-        rows.append(compared(result, *contacts[patch], errors, own))
+        rows.append(change_of_response(result, *contacts[patch], errors, own))
     return with_reruns(update, names, rows)
 
 
@@ -61,7 +61,7 @@ def errors_of(update: xr.Dataset) -> dict[str, float]:
     return dict(zip(map(str, update.input.values), update["shift"].values.tolist(), strict=True))
 
 
-def compared(
+def change_of_response(
     result: Result, contact: xr.Dataset, moved_contact: xr.Dataset, errors: Mapping[str, float], settings: AnyBudget
 ) -> tuple[float, ...]:
     """Change of ln l, or ln F, by the errors of the inputs: linear and computed again, with standard errors [-].
@@ -109,7 +109,7 @@ def with_reruns(
 
 def _cases(plan, device):
     """Plan and case of all budgets of a device and its test beams, except tips, by their names and humidity."""
-    plans = (plan, budgets_of(plan, device)), (plan.of_test_beams, budgets_of_arrays(plan, device))
+    plans = (plan, budgets_of(plan, device)), (plan.with_test_beams, budgets_of_arrays(plan, device))
     return {key: (of, case_id(*key), name) for of, budgets in plans for key, name in budgets.items() if len(key) == 2}
 
 
@@ -149,13 +149,13 @@ def _settings_of_contact(plan, patch):
     return GROUND.settings(plan, At(**patch._asdict()), plan.samples_of_slopes)
 
 
-def _computed(data, settings):
+def _rerun(data, settings):
     """Contacts with the errors of the update, and all recomputed results, or the reason against them."""
     surfaces = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     update = data["updated"]
     errors, contacts, model_errors = errors_of(update), {}, data["model_errors"]
     wanted = [
-        corrected(budget_settings(own), {"model_error": model_errors[patch]} if patch in model_errors else {})
+        with_correction(budget_settings(own), {"model_error": model_errors[patch]} if patch in model_errors else {})
         for own, patch in zip(settings["budgets"], settings["patches"], strict=True)
     ]
     try:
@@ -173,7 +173,7 @@ STAGES = (
         "devices/test_beams/rerun/{device}",
         inputs=_inputs,
         settings=_settings,
-        compute=_computed,
+        compute=_rerun,
         message="Device {device} at the inputs that its test beams suggest.",
         cluster=True,
     ),

@@ -37,7 +37,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
     return [contact.assign(moment=value) for contact, (_, value) in zip(contacts, at, strict=True)]
 
 
-def drawn(data: Mapping[str, Any], pair: str, settings: Settings) -> list[xr.Dataset]:
+def from_surfaces(data: Mapping[str, Any], pair: str, settings: Settings) -> list[xr.Dataset]:
     """Compute from the datasets of both surfaces by stage."""
     return compute(both(data), pair, settings)
 
@@ -60,7 +60,7 @@ MOMENTS = Change(
     each=lambda plan: [f"{moment}_{shift}" for moment in plan.shifted_moments for shift in SHIFTS],
     settings=_with_moments,
     kind=Settings,
-    compute=drawn,
+    compute=from_surfaces,
     minutes=30,
     priority=1,
 )

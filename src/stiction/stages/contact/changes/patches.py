@@ -80,7 +80,7 @@ class Change:
     kind: type | None = Settings  #: dataclass of the settings
     #: By the plan, the wildcards, and a function that names the contact of the patch with another change.
     inputs: Callable[[Any, Any, Callable], Mapping[str, Names]] = lambda plan, at, named: surface_inputs(plan, at.pair)
-    compute: Callable[..., Any] = contact.drawn
+    compute: Callable[..., Any] = contact.from_surfaces
     each: Callable[[Any], Sequence[str]] | None = None  #: ends of the names of files that one job writes, by the plan
     end: str = ""  #: of the names of files
     subject: str = "Contact"  #: what is computed, in messages

@@ -46,7 +46,9 @@ def compute(
     return [contact.assign(difference=((), difference, {"units": "1"})) for contact in contacts]
 
 
-def drawn(data: Mapping[str, Any], pair: str, surface: str, quantity: str, settings: Settings) -> list[xr.Dataset]:
+def from_surfaces(
+    data: Mapping[str, Any], pair: str, surface: str, quantity: str, settings: Settings
+) -> list[xr.Dataset]:
     """Compute from the datasets of both surfaces by stage, and from the estimate if there is one."""
     return compute(both(data), pair, surface, quantity, settings, data.get("estimate"))
 
@@ -72,5 +74,5 @@ QUANTITY = Change(
     each=lambda plan: SHIFTS,
     inputs=_with_estimate,
     settings=lambda plan, at, place: place.settings(plan, at, plan.config["studies"]["slopes"]["samples"]),
-    compute=drawn,
+    compute=from_surfaces,
 )

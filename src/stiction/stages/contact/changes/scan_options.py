@@ -53,7 +53,7 @@ def compute(
     return stage_contact.compute(with_options, pair, "NG", settings)
 
 
-def drawn(data: Mapping[str, Any], pair: str, choice: str, settings: Settings) -> xr.Dataset:
+def from_surfaces(data: Mapping[str, Any], pair: str, choice: str, settings: Settings) -> xr.Dataset:
     """Compute from the datasets of both surfaces by stage and the estimates of the measured ones."""
     return compute(both(data), data["estimates"], pair, choice, settings)
 
@@ -105,5 +105,5 @@ SCAN_OPTION = Change(
     inputs=_with_estimates,
     settings=_with_sources,
     kind=Settings,
-    compute=drawn,
+    compute=from_surfaces,
 )

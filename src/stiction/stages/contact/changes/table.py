@@ -121,7 +121,7 @@ OF_PAIR = (
         streamed=True,
         settings=lambda plan, at: AS_IT_IS.settings(plan, at, STRIPS),
         kind=Settings,
-        compute=contact.joined,
+        compute=contact.join_chunks,
         message="Join the contact of {model} surfaces of pair {pair} (Sec. III-A).",
     ),
 )

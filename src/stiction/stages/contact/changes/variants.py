@@ -122,7 +122,7 @@ def _datasets(surface, spacing, identification):
     """Datasets of stages heights and spectrum of one surface."""
     heights = stage_heights.compute(stage_heights.Settings(surface.rms, surface.skewness, surface.kurtosis))
     psd = surface.published_psd if surface.psd == "published" else "identified"
-    return heights, stage_spectrum.compute(heights, identification, stage_spectrum.Settings(spacing, psd))
+    return heights, stage_spectrum.compute(heights, stage_spectrum.Settings(spacing, psd), identification)
 
 
 # Summits

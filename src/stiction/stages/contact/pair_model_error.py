@@ -56,7 +56,7 @@ def layout(
 
 def _settings(plan, at):
     """Humidities of a pair and of its figures; dry air alone if no water condenses."""
-    humidities = plan.air.of_full_contact(at.pair) if plan.air.is_wetted(at.pair) else [0.0]
+    humidities = plan.air.humidities_of_full_contact(at.pair) if plan.air.is_wetted(at.pair) else [0.0]
     return {"humidities": humidities} | ({"applied": True} if plan.variants.is_corrected() else {})
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from stiction.devices.materials import ELASTIC, OF_COATINGS, PROPERTIES, Step
+from stiction.devices.properties import ELASTIC, OF_COATINGS, PROPERTIES, Step
 
 
 @pytest.mark.parametrize("value", [0.3, 1e-19, 164e9])
