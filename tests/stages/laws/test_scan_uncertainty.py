@@ -246,7 +246,7 @@ def energies_of(beam, settings):
 
 @pytest.mark.slow
 def test_energies_from_single_scans_are_those_of_the_surface_within_the_known_error():
-    settings = small.settings_of(stage_contact, wide("contact/b_NG", 200))
+    settings = small.settings_of(stage_contact, wide("contact/b_NG", 100))
     true, spectrum = small.surfaces()[0][0], SURFACES["B2"].spectrum
     use = measured_spectrum.Settings("fitted", "cut", 10e-9, Use("Etched", 1.5e-6, 1e-6))
     ratios, by_spectrum = [], []
