@@ -3,8 +3,8 @@
 import pytest
 from drawn_devices import drawn, outcome
 
-#: Draws that are refused, whose jobs once failed, and others of each kind.
-REFUSED = [2]
+#: Draws that are refused, in humid and in dry air.
+REFUSED = [2, 84]
 #: Laws with d_max < 0, strips longer than they allow, ground that differs by tens of lengths 1/a, no beam that sticks,
 #: a chart of such beams, and a budget of which nothing is known.
 ANSWERED = [1, 3, 5, 51, 101, 102]
@@ -15,6 +15,7 @@ def test_what_the_model_does_not_hold_for_is_refused_in_one_sentence_before_the_
     found = outcome(drawn(number))
     assert found.startswith("refused ")
     assert found.count(", must ") == 1
+    assert ("water and" in found) == (drawn(number).humidity != "dry")
 
 
 @pytest.mark.slow

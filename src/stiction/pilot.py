@@ -252,8 +252,9 @@ def _too_long(use, length, error, samples):
 def _weak(use, humidities, weak):
     """Key and message of a patch with a sample too weak against the adhesion at the first of some humidities."""
     pull, repulsion = (f"{from_si(weak[key], 'MPa'):.3g} MPa" for key in ("pull", "repulsion"))
+    more, water = " and others" * (len(set(humidities)) > 1), "water and " * (humidities[0] > 0)
     resist = (
-        f"{in_air(humidities[0])}{' and others' * (len(set(humidities)) > 1)}, water and van der Waals forces pull "
+        f"{in_air(humidities[0])}{more}, {water}van der Waals forces pull "
         f"with up to {pull}, and the summits of sample {weak['sample']} of {weak['samples']} resist with {repulsion}"
     )
     if weak["together"]:

@@ -7,8 +7,10 @@ from configurations import ROOT, problems
 
 from stiction.config import memory
 from stiction.config.files import load, paper
+from stiction.config.keys import Keys, Relations
 from stiction.config.merging import merged
 from stiction.config.reading import read
+from stiction.config.relations import strips_fit_into_memory
 from stiction.config.surfaces.grid import completed, published_correlation
 
 #: Grid of the paper.
@@ -99,6 +101,43 @@ def test_variants_whose_fields_do_not_fit_into_memory_with_a_longer_margin_are_l
     wide = {"run": {"pairs": []}, "devices": {"C1": lever}, "beam": {"width_um": 30}}
     config = completed(merged(merged(BASE, b2(corner)), wide), {})
     assert config["studies"]["variants"]["spacing_nm"] == left
+
+
+LEVER = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
+
+
+@pytest.mark.parametrize(
+    "users", [{"run": {"pairs": ["b"]}}, {"run": {"pairs": []}}, {"run": {"pairs": ["b"]}, "beam": {"width_um": 40}}]
+)
+def test_waves_too_long_for_the_memory_are_refused_once_and_as_those_of_their_surface(users):
+    """The margin of pairs and devices follows from the waves. Nobody stated it, so that its refusal helps nobody."""
+    spectrum = b2(corner=0.05, cutoff=1.0)["surfaces"]["B2"]["published_psd"]
+    changes = {"surfaces": {"B2": {"published_psd": spectrum}}, "devices": {"C1": LEVER}}
+    found = [line for line in problems(completed(merged(merged(BASE, changes), users), {})) if "memory" in line]
+    assert len(found) == 1
+    assert found[0].startswith("surfaces.B2.published_psd.corner_rad_per_um is 0.05, must leave fields within 8 GB")
+    length = published_correlation(**spectrum)
+    assert f"heights correlate over {length:.3g} µm" in found[0]
+    wide = problems(merged(merged(BASE, users), {"run": {"pairs": []}, "devices": {"C1": LEVER | {"width_um": 9000}}}))
+    assert [line.split(" is ")[0] for line in wide] == ["devices.C1.width_um"], "a field too large without any wave"
+
+
+def test_waves_of_scans_too_long_for_the_memory_are_refused_as_those_of_their_files():
+    spectrum = b2()["surfaces"]["B2"]["published_psd"]
+    described = {"published_psd": spectrum, "correlation_um": 124.0}
+    config = merged(BASE, {"surfaces": {"B2": described}, "sampling": PAPER | {"margin_um": 124.5}})
+    ((path, text),) = strips(Keys(config, [], {"B2": ["scans/a.sur"]}))
+    assert path == ("surfaces", "B2", "scans", "files")
+    assert text.startswith("is ['a.sur'], which gives correlation_um = 124, must leave fields within 8 GB of memory")
+    short = merged(config, {"surfaces": {"B2": {"correlation_um": 2.0}}})
+    ((path, _),) = strips(Keys(short, [], {"B2": ["scans/a.sur"]}))
+    assert path == ("sampling", "spacing_nm"), "a stated margin"
+
+
+def strips(keys):
+    """Paths and messages of the problems of strips with the memory of a job."""
+    found = Relations([strips_fit_into_memory]).problems(keys)
+    return dict.fromkeys((problem.path, problem.message) for problem in found if problem.path[0] != "studies")
 
 
 def test_a_measured_surface_counts_up_to_the_end_of_its_spectrum():

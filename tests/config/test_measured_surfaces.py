@@ -142,7 +142,7 @@ def test_preliminary_numbers_are_those_of_the_scans(folder):
 
 def test_measured_surfaces_keep_their_material_and_make_devices_uncertain():
     found = {"rms_nm": 3.0, "end_rad_per_um": 125.0, "plateau_nm4": 500.0, "corner_rad_per_um": 30.0, "slope": -4.0}
-    found |= {"feasible": [-0.5, 3.5]}
+    found |= {"feasible": [-0.5, 3.5], "correlation_um": {"fitted": 0.3, "tabulated": 0.3}}
     devices = {name: {"kind": "stopper", "pair": name} for name in ("a", "b", "c")} | {"lost": {"pair": "d"}}
     devices["uncertain"] = {"pair": "a", "uncertainty": {"humidity": 0.01}}
     pairs = {"a": {"beam": "Etched"}, "b": {"beam": "B2", "substrate": "Etched"}}

@@ -63,9 +63,9 @@ WRONG_UNITS += [(1e9, 1e9), (1e6, 1e6), (1e3, 1e3), (1e-6, 1e-6), (1e-9, 1e-9)]
 @pytest.mark.parametrize(("vertical", "lateral"), WRONG_UNITS)
 def test_sizes_heights_and_slopes_in_a_wrong_unit_are_refused(vertical, lateral):
     size = tuple(lateral * length for length in SIZE)
-    assert refused(vertical * HEIGHTS, size).endswith(": its size or its heights are in another unit than is stated"), (
-        "20 nm between points"
-    )
+    coarse = 20e-9 * lateral > 10e-6  # 20 nm between points
+    cause = "it is too coarse for what touches, or its size is" if coarse else "its size or its heights are"
+    assert refused(vertical * HEIGHTS, size).endswith(f": {cause} in another unit than is stated")
 
 
 @pytest.mark.parametrize(

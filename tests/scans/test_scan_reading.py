@@ -384,9 +384,7 @@ def test_coordinates_are_compared_with_the_stated_size(tmp_path, size, scale, ag
 def test_a_size_that_no_microscope_scans_is_refused(tmp_path, width, unit):
     head = [f"# Width: {width} {unit}", f"# Height: {width} {unit}", "# Value units: nm"]
     (tmp_path / "scan.txt").write_text("\n".join([*head, *LINES, ""]), encoding="utf-8")
-    with pytest.raises(
-        ScanError, match=r"^files: scan.txt has .*, must be from .* are in another unit than is stated$"
-    ):
+    with pytest.raises(ScanError, match=r"^files: scan.txt has .*, must be from .* in another unit than is stated$"):
         read(tmp_path / "scan.txt")
 
 

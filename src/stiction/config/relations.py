@@ -5,6 +5,7 @@ problem for each entry that violates it; the message is the end of a sentence ab
 units of their keys.
 """
 
+import contextlib
 import functools
 import itertools
 import math
@@ -20,6 +21,7 @@ from stiction.config.keys import Keys, Relations
 from stiction.config.materials import hamaker_constants
 from stiction.config.meetings import above_zero, pair_meetings
 from stiction.config.messages import did_you_mean, duplicates, one_line
+from stiction.config.scans import MEASURED_CORRELATION
 from stiction.config.surfaces.grid import published_correlation, used_surfaces
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si
 from stiction.devices.properties import COATING, COATING_ATTRACTION
@@ -521,7 +523,7 @@ def strips_fit_into_memory(config):
     length, margin, width = (config[key] for key in given)
     grids = [key for key, _ in config.items("studies.variants.spacing_nm") if variants_of_pairs_run(config)]
     for key, spacing in config.valid(*grids, "sampling.spacing_nm"):
-        yield key, field_too_large(length + margin, width + margin, spacing), *given
+        yield from fields_too_large(config, key, (length + margin, width + margin), spacing, *given)
 
 
 @relation
@@ -537,6 +539,48 @@ def patches_fit_into_memory(config):
     """Require a patch to fit into the memory of a job."""
     side = config["identification.patch_um"]
     yield "identification.patch_um", field_too_large(side, side, config["sampling.spacing_nm"]), "sampling.spacing_nm"
+
+
+def fields_too_large(
+    config: Keys, key: str, sides: tuple[float, float], spacing: float, *given: str
+) -> Iterator[tuple[str, ...]]:
+    """Yield refusals of the field around a patch, margin included [µm, nm], if its memory exceeds the largest job's.
+
+    They are about the key of the patch, or about the surfaces whose correlation length alone makes the field too large.
+    """
+
+    def with_margin(margin):
+        """Refusal of the field with a margin [µm]."""
+        return field_too_large(*(side - config["sampling.margin_um"] + margin for side in sides), spacing)
+
+    if not (refusal := field_too_large(*sides, spacing)):
+        return
+    long = {} if with_margin(memory.GRID["margin_um"]) else _correlations(config)
+    long = {key: length for key, length in long.items() if with_margin(length)}
+    for of_surface, length in long.items():
+        yield of_surface, _TOO_LONG.format(length)
+    if not long:
+        yield key, refusal, *given
+
+
+def _correlations(config):
+    """Correlation lengths of the drawn surfaces with a decaying spectrum [µm], by the key behind each."""
+    found = {
+        f"surfaces.{name}.{MEASURED_CORRELATION}": length
+        for name, length in _drawn_surfaces(config, MEASURED_CORRELATION)
+    }
+    for name, psd in _drawn_surfaces(config, "published_psd"):
+        with contextlib.suppress(ValueError):
+            if name not in config.files:
+                found[f"surfaces.{name}.published_psd.corner_rad_per_um"] = published_correlation(**psd)
+    return found
+
+
+#: Refusal of a correlation length [µm].
+_TOO_LONG = (
+    f"must leave fields within {memory.LARGEST / MB_PER_GB:g} GB of memory: heights correlate over {{:.3g}} µm. What "
+    "touches is 20 nm to 5 µm wide: scan 5 to 20 µm with pixels of at most 20 nm, or state numbers of the surface"
+)
 
 
 def field_too_large(length: float, width: float, spacing: float) -> str | None:

@@ -19,7 +19,7 @@ from stiction.config.reading import is_stated
 from stiction.config.relations import (
     cases_have_unique_names,
     correlated,
-    field_too_large,
+    fields_too_large,
     off_grid,
     pairs_run,
     references_are_defined,
@@ -201,10 +201,10 @@ def devices_fit_into_memory(config):
         if set(kind_of(device).keys) <= set(device):
             refused = {}
             for key, sides, spacing in memory.fields_of(device, config["sampling"], config[others]):
-                if refusal := field_too_large(*sides, spacing):
-                    refused.setdefault(key, refusal)
-            for key, refusal in refused.items():
-                yield f"devices.{name}.{key}", refusal, *([] if "dimples" in key else [others])
+                given = [] if "dimples" in key else [others]
+                for found, *refusal in fields_too_large(config, f"devices.{name}.{key}", sides, spacing, *given):
+                    refused.setdefault(found, refusal)
+            yield from ((key, *refusal) for key, refusal in refused.items())
 
 
 @relation

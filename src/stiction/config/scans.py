@@ -31,6 +31,8 @@ from stiction.run.provenance import version_of
 _DEFAULTS = {"heights": "moments", "psd": "fitted", "beyond": "cut"}
 #: Range of the key ``rms_nm`` of other surfaces, which only a wrong unit exceeds [nm].
 _SMOOTHEST, _ROUGHEST = 1e-3, 1e3
+#: Key of the description of a measured surface: distance beyond the correlation of its heights [µm].
+MEASURED_CORRELATION = "correlation_um"
 #: Least kurtosis over 1 + skewness², which is 1 for surfaces of two heights and 1.5 for sinusoidal ones. ASSUME: the
 #: moments of scans with less may become impossible when the bias of levelling is removed.
 _OF_TWO_HEIGHTS = 1.1
@@ -377,4 +379,12 @@ def _by_numbers(entry, preliminary, spacing):
     else:
         shape = dict(zip(("skewness", "kurtosis"), preliminary["feasible"] or (), strict=False))
     material = {"material": entry["material"]} if "material" in entry else {}
-    return {"rms_nm": preliminary["rms_nm"], **shape, "psd": "published", "published_psd": psd, **material}
+    correlation = {MEASURED_CORRELATION: preliminary["correlation_um"][entry["psd"]]}
+    return {
+        "rms_nm": preliminary["rms_nm"],
+        **shape,
+        "psd": "published",
+        "published_psd": psd,
+        **material,
+        **correlation,
+    }

@@ -85,7 +85,9 @@ class Scan:
         ):
             if not least <= value <= largest:
                 reason = f"has {what.format(f'{value:.3g}')}, must be from {least:g} to {largest:g}"
-                raise ScanError(self.name, key, f"{reason}: its size or its heights are in another unit than is stated")
+                coarse = key == "size_um" and value > largest
+                cause = "it is too coarse for what touches, or its size is" if coarse else "its size or its heights are"
+                raise ScanError(self.name, key, f"{reason}: {cause} in another unit than is stated")
 
     def _rms_slope(self):
         """Rms slope between neighbours, with the tilt of the map [-]. NaN without neighbours."""
