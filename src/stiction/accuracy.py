@@ -185,11 +185,11 @@ class _Pilot:
         entries = [self.plan.config["surfaces"][name] for name in names]
         of_contacts = [self._settings(*one) for one in self._places(case)]
         share = _middle(self.plan.config["design"]["shares"])
-        return [self._of_beam(case), *of_contacts, entries, self.plan.config["character"], share]
+        return [self._beam_settings(case), *of_contacts, entries, self.plan.config["character"], share]
 
     def spreads(self, case: Case) -> list[tuple[float, float]]:
         """Slope and error of the surfaces of the lengths of each shape, none where too few beams stick."""
-        settings = in_si(_Settings, self._of_beam(case))
+        settings = in_si(_Settings, self._beam_settings(case))
         try:
             with without_progress():
                 contact, *tips = (self._contact(*one) for one in self._places(case))
@@ -199,7 +199,7 @@ class _Pilot:
         except (ValueError, ArithmeticError):  # which the jobs of the case state
             return []
 
-    def _of_beam(self, case):
+    def _beam_settings(self, case):
         """Settings of the beams of a case."""
         return select(_Settings, settings_of_beam(self.plan, case))
 

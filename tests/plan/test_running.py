@@ -46,7 +46,7 @@ def job(stage, inputs, structure, output, **more):
 
 
 def run(monkeypatch, stage, *described):
-    monkeypatch.setattr(running, "declared", lambda module: (stage,))
+    monkeypatch.setattr(running, "stages_of", lambda module: (stage,))
     running.run(job(stage, *described))
 
 
@@ -107,7 +107,7 @@ def test_a_caption_has_the_settings_of_its_job_and_what_the_figure_adds(files, t
     inputs = {"one": files["B2"], "caption": str(tmp_path / "sheet.rst")}
     described = job(stage, inputs, {"one": ["heights", None]}, {})
     described.output, described.wildcards = Outputs(txt=tmp_path / "sheet.txt"), {"surface": "B2"}
-    monkeypatch.setattr(running, "declared", lambda module: (stage,))
+    monkeypatch.setattr(running, "stages_of", lambda module: (stage,))
     running.run(described)
     assert (tmp_path / "sheet.txt").read_text() == "Sheet: B2\n\nTimes 10.\n\n(1) Too wet.\n"
 

@@ -193,7 +193,7 @@ def test_slopes_of_few_tips_have_no_bias_and_less_error_than_from_their_shortest
     drawn = [drawn_tips(seed) for seed in range(60)]
     found, of_end, of_middle = (
         np.array([log_slope(length(tips), *lengths, 1.0) for tips, lengths in drawn])
-        for length in (lambda tips: tips.of_slopes, lambda tips: tips.centre, lambda _: np.median)
+        for length in (lambda tips: tips.centre_of_slopes, lambda tips: tips.centre, lambda _: np.median)
     )
     scatter = found[:, 0].std()
     assert abs(found[:, 0].mean() - true) < 4 * scatter / np.sqrt(len(drawn))

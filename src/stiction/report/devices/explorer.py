@@ -48,7 +48,7 @@ class View:
 
 def content(name: str, section: Mapping[str, Any], views: Sequence[View]) -> dict:
     """Content of the controls of the page of a device."""
-    own = {key: value for key, value in section.items() if key in kind_of(section).known}
+    own = {key: value for key, value in section.items() if key in kind_of(section).allowed_keys}
     return {"name": name, "section": own, "views": [asdict(view) | {"grid": view.grid.json} for view in views]}
 
 

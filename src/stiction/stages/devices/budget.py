@@ -55,7 +55,7 @@ class Responses:
     compared: Callable[[np.ndarray], float] | None = None  #: stands for all where two states are compared; else centre
 
     @property
-    def of_slopes(self) -> Callable[[np.ndarray], float]:
+    def centre_of_slopes(self) -> Callable[[np.ndarray], float]:
         """The number that stands for all devices of a state beside another state."""
         return self.compared or self.centre
 
@@ -250,7 +250,7 @@ def slopes(inputs: Sequence[Input], respond: Respond) -> np.ndarray:
 
 def _slope(responses, step):
     """Slope between two states and its standard error, of the devices and of their common samples."""
-    value, own = log_slope(responses.of_slopes, *responses.values, step)
+    value, own = log_slope(responses.centre_of_slopes, *responses.values, step)
     if responses.shared is None:
         return value, own
     return value, np.hypot(own, log_slope(responses.length, *responses.shared, step)[1])
@@ -259,7 +259,7 @@ def _slope(responses, step):
 def effect(base: State, changed: State, respond: Respond) -> tuple[float, float]:
     """Relative change of the response by another choice of the model, with its standard error [-]."""
     responses = respond([base, changed])
-    return choice_effect(*map(responses.of_slopes, responses.values)), _slope(responses, 1.0)[1]
+    return choice_effect(*map(responses.centre_of_slopes, responses.values)), _slope(responses, 1.0)[1]
 
 
 def effect_if_known(base: State, changed: State, respond: Respond) -> tuple[float, float]:
