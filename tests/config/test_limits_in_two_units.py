@@ -23,7 +23,7 @@ RNG = np.random.default_rng(1)
 SPACINGS = [*np.arange(1, 1001) / 10, *np.geomspace(0.1, 1000, 500)]
 #: Numbers of a scan whose spectrum falls and ends far beyond every grid.
 SCANNED = {"rms_nm": 3.0, "feasible": [0.0, 3.0], "plateau_nm4": 1e4, "corner_rad_per_um": 1e-3, "slope": -4.0}
-SCANNED |= {"end_rad_per_um": 1e9}
+SCANNED |= {"end_rad_per_um": 1e9, "correlation_um": {"fitted": 0.1, "tabulated": 0.1}}
 
 
 def refusals(relation, **sections):
