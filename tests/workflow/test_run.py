@@ -174,10 +174,10 @@ def test_the_table_of_jobs_counts_each_job_once_and_no_job_of_the_smoke_run_besi
 def test_the_table_of_jobs_tells_budgets_of_tips_and_what_they_requested_from_those_of_beams(tmp_path):
     config = files.load(ROOT / "examples" / "devices.yaml")
     (tmp_path / "provenance.json").write_text(json.dumps([{"config": config}]))
-    for end, size in (("", 300), ("_tip", 1400)):
+    for end, size in (("", 300), ("_tip", 900)):
         log = tmp_path / "logs" / "devices" / "budget" / f"C1_rh067{end}.log"
         log.parent.mkdir(parents=True, exist_ok=True)
         log.write_text(f"took 9.0 s, {size} MB\n")
     found = {name: (used, requested) for name, *_, used, requested, _ in jobs.costs(tmp_path)}
     assert found["budget"] == (300, 800)
-    assert found["tip_budget"][0] == 1400 < found["tip_budget"][1] - 2 * 170
+    assert found["tip_budget"][0] == 900 < found["tip_budget"][1] - 2 * 170
