@@ -17,8 +17,10 @@ from stiction.devices import limits
 from stiction.report.devices import first_screen, pages, sentences
 from stiction.report.page import Page, Section, Summary
 from stiction.report.process.section import with_process
-from stiction.stages.devices.opening import EITHER, S_SHAPE
+from stiction.report.test_beams import tables as tables_test_beams
+from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE
 from stiction.stages.devices.stoppers import shares_stuck
+from stiction.stages.test_beams.inference import shape_of
 
 UNSAFE = limits.plastic_contact(0.5, 1e8)
 
@@ -108,7 +110,12 @@ def test_a_warning_of_the_unsafe_side_stands_in_place_of_the_number():
 @pytest.mark.parametrize(("p_value", "forbidden"), [(1e-5, True), (0.2, False)])
 def test_test_beams_that_nothing_explains_forbid_the_number(p_value, forbidden):
     update = xr.Dataset(
-        {"p_value": p_value, "updated_safe": (("share", "humidity"), np.full((3, 1), 1e-4))}, {"humidity": [0.67]}
+        {
+            "p_value": p_value,
+            "result_after": ("result", [np.nan]),
+            "updated_safe": (("share", "humidity"), np.full((3, 1), 1e-4)),
+        },
+        {"humidity": [0.67]},
     )
     for shown in (
         first_screen.beam_screen(CANTILEVER, {0.67: safe()}, {}, [], update),
@@ -116,6 +123,83 @@ def test_test_beams_that_nothing_explains_forbid_the_number(p_value, forbidden):
     ):
         assert (shown.sign == "Do not rely on a number") == forbidden
         assert ("rely neither on the update" in shown.answer) == forbidden
+
+
+def updated_by_tests(responses, sizes, updated, p_value=0.2):
+    """Update of two results by test beams, with sizes by share before and after it [m, N]."""
+    shapes = list(map(shape_of, responses))
+    before, shift, after = np.array([0.2, 0.1]), np.array([0.05, -0.02]), np.array([0.1, 0.04])
+    number = len(responses)
+    sized = {"safe": sizes, "updated_safe": updated}
+    return xr.Dataset(
+        {
+            "p_value": p_value,
+            "response": ("result", list(responses)),
+            "result_before": ("result", before[:number]),
+            "result_shift": ("result", shift[:number]),
+            "result_after": ("result", after[:number]),
+            "result_quantile": (("result", "score"), (shift[:, None] + np.outer(after, [-2, 0, 2]))[:number]),
+            "measured": ("datum", [np.nan]),
+            "stuck": ("count", []),
+            **{name: (("share", "shape", "humidity"), np.array(values)) for name, values in sized.items()},
+        },
+        {"share": [0.01, 0.001, 0.0001], "shape": shapes, "humidity": [0.67], "score": [-2, 0, 2]},
+    )
+
+
+def of_tested_beam(p_value=0.2):
+    sizes = 1e-6 * np.array([[[250.0], [600.0]], [[244.0], [590.0]], [[240.0], [580.0]]])
+    return updated_by_tests([ARC, S_SHAPE], sizes, 1.02 * sizes, p_value)
+
+
+def of_tested_stopper(p_value=0.2):
+    sizes = 1e-6 * np.array([[[30.0]], [[40.0]], [[50.0]]])
+    return updated_by_tests([FORCE], sizes, 0.9 * sizes, p_value)
+
+
+def screens_with(update_of_beam, update_of_stopper):
+    """First screens of a beam and of a stopper, with their test beams."""
+    budget = {(0.67,): BUDGETS["S1", 0.67]}
+    return (
+        first_screen.beam_screen(CANTILEVER, {0.67: safe()}, {}, [], update_of_beam),
+        first_screen.stopper_screen(STOPPER, STOPPERS["S1"], budget, [], update_of_stopper),
+    )
+
+
+def test_the_answer_of_a_device_with_test_beams_is_the_one_that_they_give():
+    beam, stopper = screens_with(of_tested_beam(), of_tested_stopper())
+    after, before = 1.02 * 244 * np.exp(-0.2), 244 * np.exp(-0.4)
+    assert beam.answer == f"Safe up to {after:.0f} µm."
+    assert beam.basis[-1].endswith(f"Without the test beams: {before:.0f} µm.")
+    after, before = 0.9 * 40 * np.exp(0.2), 40 * np.exp(0.4)
+    assert stopper.answer.startswith(f"At least {after:.3g} µN needed; ")
+    assert stopper.basis[-1].endswith(f"Without the test beams: {before:.3g} µN.")
+
+
+@pytest.mark.parametrize("update", [of_tested_beam, of_tested_stopper])
+def test_every_place_states_the_answer_with_test_beams(update):
+    (number,) = re.findall(r"(\d+ µ[mN])\.$", tables_test_beams.beside_numbers(update()))
+    assert number in tables_test_beams.sizes_to_build(update())
+    screens = screens_with(of_tested_beam(), of_tested_stopper())
+    assert number in screens[update is of_tested_stopper].answer
+    assert tables_test_beams.beside_numbers(update(p_value=1e-5)) is None
+    assert tables_test_beams.beside_numbers(None) is None
+
+
+def test_no_sentence_of_a_page_with_test_beams_states_the_answer_without_them(monkeypatch):
+    monkeypatch.setattr(pages, "_test_beam_sections", lambda name, update: [])
+    monkeypatch.setattr(tables_test_beams, "warnings", lambda update: [])
+    lengths = {0.67: safe()}
+    warned = {("C1", 0.67, str(shape)): [] for shape in lengths[0.67]["shape"].values}
+    with_them = pages.beam_page("C1", CANTILEVER, lengths, {}, {}, warned, of_tested_beam())
+    without = pages.beam_page("C1", CANTILEVER, lengths, {}, {}, warned)
+    own = sentences.build_sentence(lengths, {})
+    assert own in without.lines
+    assert own not in with_them.lines
+    assert with_them.lines[1] == tables_test_beams.sizes_to_build(of_tested_beam())
+    stopped = pages.stopper_page("S1", STOPPER, STOPPERS["S1"], {}, [], of_tested_stopper())
+    assert sentences.verdict(STOPPERS["S1"]) not in stopped.lines
+    assert tables_test_beams.sizes_to_build(of_tested_stopper()) in stopped.lines
 
 
 TIPS = {(0.67, "tip"): BUDGETS["C1", 0.67, "tip"]}

@@ -15,7 +15,7 @@ from stiction.report.budget.tables import percentage
 from stiction.report.devices import sentences
 from stiction.report.format import MISSING, UM, UN, airs, humidity_text, number, with_error
 from stiction.report.page import FORBIDDEN, Summary
-from stiction.report.test_beams.tables import contradiction, is_reliable
+from stiction.report.test_beams.tables import contradiction, is_reliable, updated_size
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import EITHER, S_SHAPE
@@ -38,9 +38,11 @@ def beam_screen(
     """First screen of a cantilever or bridge.
 
     Section of the configuration, humidity to the dataset of stage safe_lengths, budgets as on its page, all warnings
-    and, if there are test beams, the dataset of stage test_beams_rerun.
+    and, if there are test beams, the dataset of stage test_beams_rerun, whose length then is the answer.
     """
     least, total, safe = sentences.length_to_build(safe_lengths, budgets)
+    updated = updated_size(test_beams)
+    safe = updated[1] * UM if updated else safe
     humidity, worst = min(safe_lengths.items(), key=lambda case: float(_middle_lengths(case[1]).safe_length.min()))
     point = _middle_lengths(worst).isel(shape=-1)
     verdict = _verdict(section.get("length_um"), safe / UM, safe_lengths)
@@ -52,9 +54,7 @@ def beam_screen(
         f"Estimate {where}: {estimate} µm (standard error of the simulation)."
         if np.isfinite(point.estimate)
         else f"{where[0].upper()}{where[1:]}, too few beams stick for an estimate.",
-        f"Subtracted for the measurements: {100 * (1 - safe / least):.2g} %, twice their standard uncertainty."
-        if total
-        else "Nothing is subtracted for the measurements.",
+        _by_test_beams(updated, "µm", ".0f") if updated else _subtracted(total, safe / least),
     ]
     points = {
         "What decides": " ".join(_decides_beam(humidity, worst, budgets, section)),
@@ -63,6 +63,21 @@ def beam_screen(
     }
     summary = Summary(*verdict, basis, points, _table_of_beam(safe_lengths, test_beams))
     return _unless_forbidden(summary, warnings, test_beams)
+
+
+def _subtracted(total, left):
+    """What is left of the safe length for an uncertainty of the measurements."""
+    if not total:
+        return "Nothing is subtracted for the measurements."
+    return f"Subtracted for the measurements: {100 * (1 - left):.2g} %, twice their standard uncertainty."
+
+
+def _by_test_beams(updated, unit, form):
+    """What the answer from test beams contains, and the answer without them."""
+    return (
+        "By the test beams, with twice the uncertainty of the inputs and of the model, as far as they show it. Without "
+        f"the test beams: {number(updated[0], form)} {unit}."
+    )
 
 
 def _air(humidity):
@@ -173,6 +188,8 @@ def stopper_screen(
     force, share = float(stopper.restoring_force), sentences.bounded_share(stopper)
     humidity, *stuck = max(shares_stuck(stopper), key=lambda row: row[3])
     needed = np.nan if share is None else float(stopper.safe_force.sel(part="safe", share=share).max(skipna=False))
+    updated = None if share is None else updated_size(test_beams)
+    needed = updated[1] * UN if updated else needed
     own = f"with {force / UN:g} µN, {_stuck_with_band(*stuck)} {in_air(humidity)}"
     if share is None:
         verdict = "open", "Not known", f"There are too few patches to bound a force; {own}."
@@ -183,7 +200,7 @@ def stopper_screen(
     basis = [
         f"At most {one_in(share)} sticks {airs(stopper.humidity.values)}, with 95 % confidence." if share else "",
         f"From {stopper.sizes['sample']} simulated patches at each humidity.",
-        "No margin for the measurements is added.",
+        _by_test_beams(updated, "µN", ".3g") if updated else "No margin for the measurements is added.",
     ]
     change = f"A restoring force of at least {needed / UN:.3g} µN." if force < needed else "Nothing in these airs."
     points = {

@@ -115,11 +115,12 @@ def beam_page(
     decided = tables_budget.first_to_measure(of_shortest.values(), section.get("assumed", ()))
     few, more = sentences.few_sentences(safe_lengths), _rough_enough(roughness)
     answer = [*own_length.sentences(safe_lengths, of_shortest), *few]
-    answer += [sentences.build_sentence(safe_lengths, budgets), *decided, *more]
-    sections += _test_beam_sections(name, test_beams)
     built, of_model = _test_beam_sentence(test_beams), model_errors.sentences(name, errors)
+    alone = [] if tables_test_beams.updated_size(test_beams) else [sentences.build_sentence(safe_lengths, budgets)]
+    answer += [*alone, *built, *decided, *more]
+    sections += _test_beam_sections(name, test_beams)
     predicted = sentences.prediction_sentences(safe_lengths)
-    answer += [*built, *(sentences.safe_sentence(*case) for case in safe_lengths.items()), *of_model, *predicted]
+    answer += [*(sentences.safe_sentence(*case) for case in safe_lengths.items()), *of_model, *predicted]
     effects = own_length.effect_of_measurements(safe_lengths, of_shortest)
     more = [*effects, *few, *more, *built, *of_model[1:], *predicted]
     sections += _how_rough(name, roughness)
@@ -162,7 +163,8 @@ def stopper_page(
         _test_beam_sentence(test_beams),
         model_errors.sentences(name, errors),
     )
-    answer = [sentences.verdict(stopper), *decided, *rough, *built]
+    alone = [] if tables_test_beams.updated_size(test_beams) else [sentences.verdict(stopper)]
+    answer = [*alone, *built, *decided, *rough]
     sections += _test_beam_sections(name, test_beams)
     listed = [*warnings, *([] if test_beams is None else tables_test_beams.warnings(test_beams))]
     answer += [sentences.stuck_sentence(*row, force=float(stopper.restoring_force)) for row in shares_stuck(stopper)]
@@ -356,6 +358,8 @@ def _page(data, at, settings):
             views.append(voltage_views.beam_view(at.device, settings, lengths))
         page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
     views += curve_views.views(at.device, settings, data)
+    if tested := tables_test_beams.beside_numbers(data.get("test_beams")):
+        views = [replace(view, words={**view.words, "tested": tested}) for view in views]
     drawing = device_drawing(_with_force(settings)).svg
     page = process_section.with_process(with_life(page, at.device, data["life"]), at.device, data)
     return replace(

@@ -265,7 +265,7 @@ function opened(number) {
     const unknown = Number.isFinite(margin) ? "beyond a factor of 1000 of the required one" : "not computed here";
     const safe = grid.lines.safe ? `; ${text(grid.size.start * Math.exp((grid.falls ? -1 : 1) * onLine("safe", state)), DIGITS)} ${grid.size.unit} with 95 % confidence` : "";
     return {
-      enough: `${at}: ${suffices(state) ? words.yes : words.no}`,
+      enough: `${at}: ${suffices(state) ? words.yes : words.no}${words.tested ? `. ${words.tested}` : ""}`,
       size: `${words.size}: ${beyond || !Number.isFinite(margin) ? unknown : `${text(size, DIGITS)} ${grid.size.unit} (${between(band)} ${grid.size.unit})${safe}`}`,
       stuck: `${words.stick}: ${stuckText(stuckOn(state))}`,
       margin: `Margin, ln(${grid.falls ? "restoring force / force needed" : "length / required length"}): ${beyond || !Number.isFinite(margin) ? unknown : `${text(margin, DIGITS)} (${between(ends)})`}`,
@@ -279,7 +279,7 @@ function opened(number) {
     return {
       stuck: `${words.stick}: ${stuckText(stuckAt(state[grid.size.key], levels))}`,
       safe: `${words.safe} for ${oneIn(state.share)}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : words.none ?? `not known from ${grid.samples} devices`}`,
-      budget: less
+      budget: words.tested ? words.tested : less
         ? `Measurements leave ${text(100 * less.total, 2)} %, most of it ${less.most}: ${Number.isFinite(build) && words.build ? `build ${words.build} ${text(build, DIGITS)} ${unit}` : "no margin is added for them"}`
         : `Margin for the measurements: not computed ${data.margin ? "at this humidity" : content.views.some(view => view.margin) ? "in this view" : "without stated uncertainties"}`,
     };

@@ -122,6 +122,27 @@ def sizes_to_build(update: xr.Dataset) -> str:
     )
 
 
+def updated_size(update: xr.Dataset | None) -> tuple[float, float] | None:
+    """Length or force to build before and after the measurement [µm, µN], as `sizes_to_build`, if one is stated."""
+    if update is None or not is_reliable(update) or update.result_after.isnull().any():
+        return None
+    weakest = min(map(str, update.response.values), key=_WEAKEST.index)
+    before, after = _size_to_build(update, weakest)
+    return float(before), float(after)
+
+
+def beside_numbers(update: xr.Dataset | None) -> str | None:
+    """Answer with test beams, for a place whose numbers are without them, if one is stated."""
+    if not (updated := updated_size(update)):
+        return None
+    with_them = (
+        f"it needs at least {updated[1]:.3g} µN"
+        if FORCE in update.response.values
+        else f"build it no longer than {updated[1]:.0f} µm"
+    )
+    return f"These numbers are without the test beams. With them, {with_them}."
+
+
 def _margin(update, of, percent):
     """Difference between the mean and the given number. After counts, the uncertainty is not normal."""
     margin = f"twice the uncertainty of the {of}"
