@@ -204,7 +204,7 @@ def test_the_ranges_that_suffice_and_the_required_value_are_marked(views, page, 
     go_to(browser, list(views).index(name), start)
     count = "return document.querySelectorAll(arguments[0]).length"
     assert browser.run(count, ".charts figure") == 2
-    assert browser.run(count, ".charts rect.enough") == 2 * len(grid._chosen(grid.ranges, start))
+    assert browser.run(count, ".charts rect.enough") == 2 * len(grid._selection(grid.ranges, start))
     assert browser.run(count, ".charts line.safe") == 1
     assert browser.run(count, ".charts circle.best") == (name == "process")
     for width in (1440, 768, 390):
