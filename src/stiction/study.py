@@ -119,7 +119,7 @@ class PairStudy:
     def chaos(self, humidity: float | str) -> xr.Dataset:
         """Chaos model of the force laws at a relative humidity (App. B). Dataset of stage chaos.
 
-        `stiction.stages.laws.chaos.chaos_model` returns the model itself, which draws force laws.
+        `stiction.stages.laws.stored_model.chaos_model` returns the model itself, which draws force laws.
         """
         return self.results[f"chaos/{case_id(self.name, humidity)}_{self.model}"]
 

@@ -76,7 +76,7 @@ def test_the_stages_of_a_device_find_the_lengths_of_110_000(results):
     job = results.graph.job("devices/safe_lengths/C1_rh067")
     cracks, no_attraction = results["devices/cracks/C1_rh067"], (np.array([0.01, 0.1]), np.zeros((BEAMS, 2)))
     with patch.object(curves, "tip_forces", lambda *_: no_attraction):
-        found = safe_lengths.compute(cracks, xr.Dataset(), job.stage.converted(job.settings)).sel(shape="S-shape")
+        found = safe_lengths.compute(cracks, job.stage.converted(job.settings), xr.Dataset()).sel(shape="S-shape")
     for share, (length, low, high) in BRUTE_FORCE.items():
         one = found.sel(share=share)
         held = risk.HOLD * 3.4e-6
