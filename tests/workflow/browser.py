@@ -91,6 +91,18 @@ class Browser:
         """Click an element, which must be visible."""
         self.send("POST", f"/element/{element}/click")
 
+    def touch(self, element, start, end):
+        """Put a finger on a part of the width of an element, move it to another part, and lift it."""
+        where = "const e = arguments[0]; e.scrollIntoView({block: 'center'}); const r = e.getBoundingClientRect();"
+        left, middle, width = self.run(f"{where} return [r.left, r.top + r.height / 2, r.width]", {_ELEMENT: element})
+        first, last = (
+            {"type": "pointerMove", "duration": 50, "x": round(left + part * width), "y": round(middle)}
+            for part in (start, end)
+        )
+        steps = [first, {"type": "pointerDown", "button": 0}, last, {"type": "pointerUp", "button": 0}]
+        finger = {"type": "pointer", "id": "finger", "parameters": {"pointerType": "touch"}, "actions": steps}
+        self.send("POST", "/actions", actions=[finger])
+
     def inside(self, css, script):
         """Result of JavaScript inside a frame."""
         (frame,) = self.find(css)

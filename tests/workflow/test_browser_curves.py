@@ -223,6 +223,23 @@ def test_a_checker_of_accessibility_finds_nothing_on_a_curve_but_a_control_witho
     assert [rule for rule, *_ in browser.violations()] == ["label"]
 
 
+def test_a_finger_moves_a_control_and_takes_it_back(views, page, browser):
+    browser.resize(390, 844)
+    browser.open(page)
+    grid = views["process"].grid
+    go_to(browser, list(views).index("process"), grid.start)
+    (control,), (back,) = browser.find("#control-etch_time_s"), browser.find("#explorer button:nth-of-type(2)")
+    value = "return parseFloat(document.querySelector('#control-etch_time_s').ariaValueText)"
+    answer = "return document.querySelector('[data-answer=enough]').textContent"
+    before = browser.run(answer)
+    browser.touch(control, 0.5, 0.9)
+    assert browser.run(value) > grid.start["etch_time_s"]
+    assert browser.run(answer) != before
+    browser.click(back)
+    assert browser.wait(lambda: browser.run(answer) == before, 2)
+    browser.resize(1440)
+
+
 @pytest.mark.parametrize("name", ["process", "roughness", "voltage"])
 def test_the_study_of_a_curve_is_one_that_a_run_takes(views, page, browser, tmp_path, capsys, name):
     browser.open(page)
