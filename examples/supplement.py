@@ -17,8 +17,8 @@ from stiction.beam.energy import arrest_length
 from stiction.config.units import in_si
 from stiction.contact.asperity import reduced_modulus
 from stiction.contact.environment import Water
+from stiction.contact.materials import Solid
 from stiction.contact.meniscus import film, flooded_energy
-from stiction.contact.solids import Solid
 from stiction.plan.graph import Results
 from stiction.plan.plan import Plan
 from stiction.report.format import TO_MJ, TO_UM

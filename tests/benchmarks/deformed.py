@@ -15,7 +15,7 @@ from stiction.config.cases import air
 from stiction.config.files import load
 from stiction.config.units import in_si
 from stiction.contact import elements, forcelaw
-from stiction.devices.properties import ELASTIC
+from stiction.contact.materials import ELASTIC
 from stiction.estimates import mean_with_error
 from stiction.plan.graph import Results
 from stiction.plan.plan import Plan

@@ -13,8 +13,9 @@ from stiction.contact import elements, gaps
 from stiction.contact.elements import GAPS, Adhesion, equilibrium, separation
 from stiction.contact.environment import Gaps, Water, flooded_law
 from stiction.contact.halfspace import HalfSpace
+from stiction.contact.materials import Solid
 from stiction.contact.pair import bearing_area
-from stiction.contact.solids import Solid, attraction_between
+from stiction.contact.solids import attraction_between
 from stiction.contact.vanderwaals import attraction
 
 NM = 1e-9

@@ -10,8 +10,8 @@ from stiction.constants import HAMAKER_CONSTANT, HARDNESS
 from stiction.contact.asperity import HertzAsperity, MaugisTable, reduced_modulus
 from stiction.contact.environment import Gaps
 from stiction.contact.gaps import FlatAttraction
+from stiction.contact.materials import Solid
 from stiction.contact.solids import (
-    Solid,
     asperity_between,
     attraction_between,
     composite_modulus,

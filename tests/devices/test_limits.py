@@ -5,8 +5,8 @@ import pytest
 from beams import PAPER
 
 from stiction.constants import WATER_MOLECULE
+from stiction.contact.materials import OF_COATINGS, PROPERTIES
 from stiction.devices import limits
-from stiction.devices.properties import OF_COATINGS, PROPERTIES
 
 UM, NM = 1e-6, 1e-9
 

@@ -11,7 +11,7 @@ from plans import job_settings
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.units import in_si
-from stiction.devices.properties import OF_CONTACT
+from stiction.contact.materials import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.plan.devices import DevicePlan, patch
 from stiction.plan.graph import Graph, Job, stages

@@ -19,7 +19,7 @@ from stiction.config.cases import Case, case_id
 from stiction.contact.asperity import reduced_modulus
 from stiction.contact.environment import Water
 from stiction.contact.forcelaw import admissible, coefficients, energy, pressure
-from stiction.contact.solids import Solid
+from stiction.contact.materials import Solid
 from stiction.stages.beams import mesh, resampling, variant_beams
 from stiction.stages.beams.cantilevers import cantilever
 from stiction.stages.contact import contact as stage_contact

@@ -14,7 +14,7 @@ import yaml
 
 from stiction.command import front_page
 from stiction.config.kinds import kind_of
-from stiction.config.materials import material_of
+from stiction.config.materials import Materials
 from stiction.config.merging import differing
 from stiction.config.reading import paper
 from stiction.models import SIDES
@@ -138,11 +138,12 @@ def _subjects_of(sentence: str) -> list[str]:
 def _surfaces(results: Path, config: Mapping) -> Iterator[dict[str, Any]]:
     """Surfaces of the run: measured ones with their sheet and flags, others by their numbers."""
     flags = [flag.partition(": ") for flag in front_page.list_items(_text(results / "tables" / "scans.md"))]
+    materials = Materials(config)
     for name in _surfaces_of_run(config):
         section, sheet = config["surfaces"][name], f"figures/surface_sheet_{name}.png"
         yield {
             "name": name,
-            "described": surface_in_words(section, material_of(config, name)),
+            "described": surface_in_words(section, materials.of_surface(name)),
             "flags": [flag for surface, _, flag in flags if surface == name],
             "sheet": sheet if (results / sheet).exists() else "",
         }

@@ -1,14 +1,26 @@
-"""Materials of the surfaces of a configuration: their stated properties, and Hamaker constants."""
+"""Materials of a configuration: stated properties of the material of a surface, and those of both surfaces of a pair.
 
+The properties themselves are in `stiction.contact.materials`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
+from stiction.config.cases import PairInAir
 from stiction.config.units import from_si
-from stiction.constants import HAMAKER_CONSTANT
+from stiction.constants import DENSITY, HAMAKER_CONSTANT
+from stiction.contact.materials import COATING, ELASTIC, OF_COATINGS, PROPERTIES, Solid
+from stiction.models import SIDES
+
+#: ASSUME: a solid is polysilicon if its Young's modulus differs from that of the paper by no more than this share.
+_POLYSILICON = 0.1
+_MODULUS = PROPERTIES["modulus"].key
 
 
-def material_of(config: dict[str, Any], surface: str) -> dict[str, Any]:
-    """Stated properties of the material of a surface."""
-    return config.get("materials", {}).get(config["surfaces"][surface].get("material"), {})
+def material_of(materials: dict, surface: dict) -> dict[str, Any]:
+    """Stated properties of the material of a surface, from section ``materials`` and the section of the surface."""
+    return materials.get(surface.get("material"), {})
 
 
 def hamaker_constants(material: dict) -> dict[str, float]:
@@ -27,3 +39,65 @@ def hamaker_constant(material: dict, medium: str) -> float:
     """
     constants = hamaker_constants(material)
     return constants.get(medium, constants["dry"])
+
+
+@dataclass(frozen=True)
+class Materials:
+    """Materials of the surfaces of a configuration. A pair may be named by its contact in some air."""
+
+    config: dict  #: complete and valid
+
+    def of_surface(self, surface: str) -> dict[str, Any]:
+        """Stated properties of the material of a surface."""
+        return material_of(self.config.get("materials", {}), self.config["surfaces"][surface])
+
+    def sides(self, pair: str) -> list[str]:
+        """Names of the surfaces of a pair, the beam's first."""
+        return [self.config["pairs"][PairInAir(pair).pair][side] for side in SIDES]
+
+    def of_pair(self, pair: str) -> list[dict]:
+        """Stated properties of the materials of both surfaces of a pair."""
+        return list(map(self.of_surface, self.sides(pair)))
+
+    def settings(self, pair: str, properties: Sequence[str], solid: dict | None = None) -> dict[str, dict]:
+        """Some properties of the materials of a pair by side. Empty if those of section solid and polysilicon hold.
+
+        What a material does not state is taken from section ``solid``, by default that of the configuration.
+        """
+        own = [{key: material[key] for key in properties if key in material} for material in self.of_pair(pair)]
+        if not any(own):
+            return {}
+        others = solid or self.config["solid"]
+        return {"materials": {side: others | material for side, material in zip(SIDES, own, strict=True)}}
+
+    def alike(self, pair: str) -> list[str]:
+        """Sides of a pair with the material of the beam."""
+        bodies = self.settings(pair, ELASTIC).get("materials", {})
+        return [side for side in SIDES if bodies.get(side) == bodies.get("beam")]
+
+    def in_words(self, pair: str) -> list:
+        """Names of the materials of a pair, each with its stated properties in words. Section solid if it is one."""
+        named, solid = self.config.get("materials", {}), self.config["solid"]
+        words = {entry.key: entry.words for entry in PROPERTIES.values()} | OF_COATINGS
+        if abs(solid[_MODULUS] / from_si(Solid.young_modulus, "GPa") - 1) > _POLYSILICON:
+            named = named | {"the solid": solid}
+        surfaces = self.config["surfaces"]
+        used = dict.fromkeys(surfaces[surface].get("material", "the solid") for surface in self.sides(pair))
+        return [
+            [name, [words[key] for key, value in named[name].items() if key in words and (key != COATING or value)]]
+            for name in used
+            if name in named
+        ]
+
+    def stated_modulus(self, pair: str) -> dict[str, float]:
+        """Young's modulus of the beam of a pair by its key if its material states one, otherwise empty."""
+        material = self.of_pair(pair)[0]
+        return {_MODULUS: material[_MODULUS]} if _MODULUS in material else {}
+
+    def modulus(self, pair: str) -> dict[str, float]:
+        """Young's modulus of the beam of a pair by its key: of its material, or of section solid."""
+        return {_MODULUS: self.config["solid"][_MODULUS]} | self.stated_modulus(pair)
+
+    def density(self, pair: str) -> float:
+        """Density of the beam of a pair: of its material, or polysilicon's [kg m⁻³]."""
+        return self.of_pair(pair)[0].get("density_kg_per_m3", DENSITY)

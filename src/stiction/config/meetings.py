@@ -11,10 +11,11 @@ import numpy as np
 from stiction.config.cases import TOO_LITTLE
 from stiction.config.keys import Keys, Relations
 from stiction.config.kinds import KINDS
+from stiction.config.materials import material_of
 from stiction.config.units import NM_PER_UM, from_si, to_si
+from stiction.contact.materials import COATING
 from stiction.contact.meniscus import dry_air, is_wetted, meniscus_height
 from stiction.devices import limits
-from stiction.devices.properties import COATING
 from stiction.models import SIDES
 from stiction.rounding import is_at_most
 
@@ -54,7 +55,7 @@ class Meeting:
     def materials(self) -> list[dict]:
         """Stated properties of the material of each surface. Empty for the solid of both bodies."""
         sections = [self.config["surfaces"].get(name, {}) for name in self.surfaces]
-        return [self.config["materials"].get(section.get("material"), {}) for section in sections]
+        return [material_of(self.config["materials"], section) for section in sections]
 
     def wetting(self, more: float = 0) -> tuple[float, ...]:
         """Contact angles [rad], empty without surfaces or without water. Other relations report these.

@@ -24,7 +24,7 @@ from stiction.config.messages import did_you_mean, duplicates, one_line
 from stiction.config.scans import MEASURED_CORRELATION
 from stiction.config.surfaces.grid import published_correlation, used_surfaces
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si
-from stiction.devices.properties import COATING, COATING_ATTRACTION
+from stiction.contact.materials import COATING, COATING_ATTRACTION
 from stiction.errors import NotConverged
 from stiction.models import SIDES
 from stiction.rounding import is_at_most, is_multiple

@@ -12,7 +12,7 @@ from stiction.config import memory
 from stiction.config.cases import in_air
 from stiction.config.keys import Relations
 from stiction.config.kinds import KEYS, KINDS, KNOWN, ROUGHNESSES, kind_of
-from stiction.config.materials import hamaker_constant
+from stiction.config.materials import hamaker_constant, material_of
 from stiction.config.meetings import TEMPERATURE, above_zero, device_meeting, sides_of, surfaces_of
 from stiction.config.messages import duplicates
 from stiction.config.reading import is_stated
@@ -28,7 +28,7 @@ from stiction.config.relations import (
     without_density,
 )
 from stiction.config.test_beams import DATA, shared_uncertainty
-from stiction.devices.properties import COATING_ATTRACTION, OF_CONTACT
+from stiction.contact.materials import COATING_ATTRACTION, OF_CONTACT
 from stiction.rounding import is_at_most
 from stiction.surface.feasible import largest_kurtosis
 
@@ -316,7 +316,7 @@ def uncertainties_are_those_of_the_kind(config):
 def _material(config, name):
     """Properties of the material of the beam or stopper of a device."""
     beam, _ = surfaces_of(config["devices"][name]["pair"], config)
-    return config["solid"] | config["materials"].get(config["surfaces"].get(beam, {}).get("material"), {})
+    return config["solid"] | material_of(config["materials"], config["surfaces"].get(beam, {}))
 
 
 def _sides(config, name):

@@ -24,8 +24,9 @@ import numpy as np
 
 from stiction.contact import forcelaw, gaps, vanderwaals
 from stiction.contact.correction import Correction
+from stiction.contact.materials import Solid
 from stiction.contact.meniscus import film
-from stiction.contact.solids import Solid, attraction_between, interfaces
+from stiction.contact.solids import attraction_between, interfaces
 from stiction.contact.voltage import Capacitor
 from stiction.models import SIDES
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 
 from stiction.beam.foundation import ACCURACY, LONGER, TOO_EARLY
 from stiction.constants import WATER_MOLECULE
-from stiction.devices.properties import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
+from stiction.contact.materials import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
 
 #: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.
 PLASTIC = 0.02

@@ -12,14 +12,14 @@ from stiction.beam.cantilever import Beam
 from stiction.config import test_beams
 from stiction.config.cases import PairInAir, case_id
 from stiction.config.kinds import ROUGHNESSES, Kind, kind_of
-from stiction.config.materials import material_of
+from stiction.config.materials import Materials
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
 from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, uncertain
 from stiction.config.units import NM_PER_UM, from_si, to_si
+from stiction.contact.materials import OF_CONTACT
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
-from stiction.devices.properties import OF_CONTACT
 from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.plan.stage import subsection
 
@@ -219,9 +219,9 @@ class DevicePlan:
 
     def _saturated_slope(self, device, thickness, gap):
         """Slope of the tip of a beam [µm] at its shortest length of adhesion in saturated, perfectly wetting air."""
-        solid = self.config["solid"] | material_of(self.config, self.config["pairs"][device["pair"]]["beam"])
+        modulus = Materials(self.config).modulus(device["pair"])
         sizes = to_si(device["width_um"], "um"), to_si(thickness, "um")
-        beam = Beam(1.0, *sizes, to_si(solid["young_modulus_GPa"], "GPa"), to_si(gap, "um"), 1)
+        beam = Beam(1.0, *sizes, to_si(modulus["young_modulus_GPa"], "GPa"), to_si(gap, "um"), 1)
         return tip_slope(arc_length(flooded_energy(self.config["water"]["temperature_K"]), beam), beam.gap)
 
     def _reach(self, device):

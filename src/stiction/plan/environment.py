@@ -9,14 +9,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from stiction.config.cases import TOO_LITTLE, PairInAir
-from stiction.config.materials import hamaker_constant, hamaker_constants
+from stiction.config.materials import Materials, hamaker_constant, hamaker_constants
 from stiction.config.units import to_si
+from stiction.contact.materials import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.contact.meniscus import is_wetted, require_humidity
 from stiction.contact.vanderwaals import combined
 from stiction.devices import limits
-from stiction.devices.properties import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.models import SIDES
-from stiction.plan.materials import PairMaterials
 from stiction.plan.paper import is_pair
 from stiction.plan.stage import subsection
 
@@ -44,7 +43,7 @@ class Air:
 
     @property
     def _materials(self):
-        return PairMaterials(self.config)
+        return Materials(self.config)
 
     def contact(self, pair: str, humidity: float) -> PairInAir:
         """Contact of a pair at a humidity. Without condensation, it is the contact in dry air.
@@ -118,7 +117,7 @@ class Air:
 
     def _contact_angles(self, pair):
         """Contact angles on both surfaces of a pair [°]."""
-        return [material.get("contact_angle_deg", 0) for material in self._materials.properties_of(pair)]
+        return [material.get("contact_angle_deg", 0) for material in self._materials.of_pair(pair)]
 
     def _gaps(self, pair, config):
         """Attraction across the gaps between the solids of a pair, if there is any."""
@@ -127,7 +126,7 @@ class Air:
             return {}
         constants = {medium: self._hamaker_constant(pair, medium) for medium in (summits, "dry")}
         retarded = {"wavelength_nm": across["wavelength_nm"]} if across["retarded"] else {}
-        stated = self._materials.properties_of(pair)
+        stated = self._materials.of_pair(pair)
         spacer = sum(material.get(COATING, 0) for material in stated)
         coated = {"spacer_nm": spacer} if spacer else {}
         if any(COATING_ATTRACTION in material for material in stated):
@@ -137,7 +136,7 @@ class Air:
 
     def _hamaker_constant(self, pair, medium):
         """Hamaker constant of the two bodies of a pair through a medium [zJ]."""
-        return combined(*(hamaker_constants(material)[medium] for material in self._materials.properties_of(pair)))
+        return combined(*(hamaker_constants(material)[medium] for material in self._materials.of_pair(pair)))
 
     def hamaker_constant(self, contact: str) -> float:
         """Hamaker constant of the two bodies of a contact, zero without van der Waals forces [zJ]."""
@@ -146,4 +145,4 @@ class Air:
 
     def beam_hamaker_constant(self, pair: str) -> float:
         """Hamaker constant of two bodies like the beam of a pair, through the medium between the solids [zJ]."""
-        return hamaker_constant(self._materials.properties_of(pair)[0], self.config["van_der_waals"])
+        return hamaker_constant(self._materials.of_pair(pair)[0], self.config["van_der_waals"])

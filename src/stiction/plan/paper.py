@@ -89,8 +89,8 @@ class PaperCase:
 
     def _has_modulus(self, pair):
         """Whether the beam of a pair has the Young's modulus of the paper."""
-        solid = self.config["solid"] | self.plan.materials.beam_modulus(pair)
-        return _same(solid, paper()["solid"], only=["young_modulus_GPa"])
+        modulus = self.plan.materials.modulus(pair)
+        return _same(modulus, paper()["solid"], only=list(modulus))
 
     def _has_heights(self, surface):
         """Whether a surface has the moments of the paper, and its published spectrum or its summits."""

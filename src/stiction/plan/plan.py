@@ -10,16 +10,16 @@ from functools import cached_property
 from typing import Any
 
 from stiction.config.cases import IN_HUMID_AIR, Case, PairInAir, case_id
+from stiction.config.materials import Materials
 from stiction.config.merging import values
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
 from stiction.config.surfaces.knowledge import sentences
 from stiction.config.test_beams import as_cantilevers
-from stiction.devices.properties import ELASTIC
+from stiction.contact.materials import ELASTIC
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SURFACE_MODELS
 from stiction.plan.devices import DevicePlan
 from stiction.plan.environment import Air
-from stiction.plan.materials import PairMaterials
 from stiction.plan.paper import SUMMITS, PaperCase
 from stiction.plan.scans import Scans
 from stiction.plan.stage import subsection
@@ -39,9 +39,9 @@ class Plan:
         return DevicePlan(self.config)
 
     @cached_property
-    def materials(self) -> PairMaterials:
-        """Materials of the pairs."""
-        return PairMaterials(self.config)
+    def materials(self) -> Materials:
+        """Materials of surfaces and pairs."""
+        return Materials(self.config)
 
     @cached_property
     def air(self) -> Air:
@@ -79,7 +79,7 @@ class Plan:
         return self.config["run"]["pairs"]
 
     def sides(self, pair: str) -> list[str]:
-        """Sides of a pair, see `stiction.plan.materials.PairMaterials.sides`."""
+        """Sides of a pair, see `stiction.config.materials.Materials.sides`."""
         return self.materials.sides(pair)
 
     def contact(self, case: Case) -> PairInAir:

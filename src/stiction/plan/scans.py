@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from stiction.config.materials import Materials
 from stiction.config.scans import digest, evaluation, is_measured, source
-from stiction.plan.materials import PairMaterials
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Scans:
 
     def sides(self, pair: str) -> list[str]:
         """Surfaces of a pair described by scans, each once."""
-        return [name for name in dict.fromkeys(PairMaterials(self.config).sides(pair)) if name in self.surfaces]
+        return [name for name in dict.fromkeys(Materials(self.config).sides(pair)) if name in self.surfaces]
 
     def files(self, surface: str) -> dict[str, str]:
         """Files of the scans of a surface, by number. None if it is described by numbers."""

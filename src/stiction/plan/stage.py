@@ -18,7 +18,7 @@ from typing import Any, get_args, get_origin, get_type_hints
 
 from stiction.config.cases import CASE, PAIR_IN_AIR, Case, PairInAir
 from stiction.config.units import in_si, without_unit
-from stiction.devices.properties import OF_CONTACT
+from stiction.contact.materials import OF_CONTACT
 from stiction.models import (
     ALTERNATIVES_OF_SCANS,
     BEAM_MODELS,

@@ -7,7 +7,7 @@ from typing import Any
 
 from stiction.config.cases import Case, PairInAir, case_id
 from stiction.config.merging import merged
-from stiction.devices.properties import ELASTIC
+from stiction.contact.materials import ELASTIC
 from stiction.models import SIDES
 from stiction.plan.names import CORRECTED
 from stiction.plan.paper import MOMENTS

@@ -7,7 +7,7 @@ import small
 from numpy.testing import assert_array_equal
 from plans import job_settings
 
-from stiction.contact.solids import Solid
+from stiction.contact.materials import Solid
 from stiction.stages.contact import full_contact, pressing
 
 SETTINGS = small.settings_of(pressing, job_settings(small.PLAN, "studies/pressing/b"))

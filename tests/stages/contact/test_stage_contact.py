@@ -12,8 +12,8 @@ from scipy.stats import norm
 
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.environment import Gaps, Water
+from stiction.contact.materials import Solid
 from stiction.contact.pair import DistanceGrid
-from stiction.contact.solids import Solid
 from stiction.models import SIDES
 from stiction.stages.contact import contact
 from stiction.stages.contact.curves import energies

@@ -10,8 +10,8 @@ from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
+from stiction.contact.materials import OF_CONTACT
 from stiction.devices.budget import Budget
-from stiction.devices.properties import OF_CONTACT
 from stiction.estimates import jackknife
 from stiction.models import MOMENT_QUANTITIES
 from stiction.plan.plan import Plan

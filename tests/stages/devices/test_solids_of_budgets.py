@@ -12,7 +12,7 @@ from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
-from stiction.devices.properties import OF_CONTACT
+from stiction.contact.materials import OF_CONTACT
 from stiction.plan.plan import Plan
 from stiction.stages.contact import contact, curves
 from stiction.stages.devices import budget

@@ -11,7 +11,6 @@ import yaml
 
 from stiction.config.cases import DRY, case_id
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of, restoring_force
-from stiction.config.materials import material_of
 from stiction.config.merging import differing
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured
@@ -325,7 +324,7 @@ def _settings(plan, at):
     section = plan.config["devices"][at.device]
     pair = plan.config["pairs"][section["pair"]]
     names = {f"surface of the {part}": pair[part] for part in ("beam", "substrate")}
-    materials = [material_of(plan.config, name) for name in names.values()]
+    materials = list(map(plan.materials.of_surface, names.values()))
     surfaces = {
         part: f"{name}: {surface_in_words(plan.config['surfaces'][name], material)}"
         for (part, name), material in zip(names.items(), materials, strict=True)

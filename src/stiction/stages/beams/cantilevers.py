@@ -70,6 +70,6 @@ def strips_along(beam: Dimensions, sampling: StripLength) -> int:
 def sections(plan: Any, *pairs: str) -> dict[str, Any]:
     """Sections of the configuration for `cantilever`, the nominal beams of pairs."""
     sizes = select(Dimensions, plan.config["beam"])
-    gaps = {pair: select(Gap, plan.config["pairs"][pair] | plan.materials.beam_modulus(pair)) for pair in pairs}
+    gaps = {pair: select(Gap, plan.config["pairs"][pair] | plan.materials.stated_modulus(pair)) for pair in pairs}
     del sizes["samples"]  # the number of beams does not affect a nominal beam
     return {"solid": select(Stiffness, plan.config["solid"]), "beam": sizes, "pairs": gaps}

@@ -14,7 +14,7 @@ from stiction.analysis.plasticity import ONSET
 from stiction.contact import elements, forcelaw, solids
 from stiction.contact.environment import Water
 from stiction.contact.halfspace import HalfSpace
-from stiction.devices.properties import ELASTIC
+from stiction.contact.materials import ELASTIC
 from stiction.plan.stage import At, Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import contact, pairs

@@ -13,8 +13,9 @@ import xarray as xr
 
 from stiction.config.cases import PairInAir
 from stiction.contact.asperity import Asperity
+from stiction.contact.materials import Solid
 from stiction.contact.pair import Definition, EquivalentSurface, SurfacePair
-from stiction.contact.solids import Solid, asperity_between
+from stiction.contact.solids import asperity_between
 from stiction.contact.tilted import Tilt, TiltedPair
 from stiction.models import SIDES
 from stiction.stages.surfaces.rough_surfaces import Sampling, Width, rough_surface

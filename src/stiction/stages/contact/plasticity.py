@@ -10,7 +10,7 @@ from stiction.analysis import plasticity
 from stiction.constants import HARDNESS
 from stiction.contact import solids
 from stiction.contact.asperity import hertz_force, hertz_maximum_stress
-from stiction.devices.properties import ELASTIC
+from stiction.contact.materials import ELASTIC
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import pairs

@@ -351,7 +351,7 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     section = plan.config["devices"][name]
     pair = plan.contact_of_device(at.case)
     own = {"uncertainty": section.get("uncertainty", {}), "humidity": at.case.humidity}
-    own |= subsection(plan.config["solid"], ["young_modulus_GPa"]) | plan.materials.beam_modulus(pair)
+    own |= plan.materials.modulus(pair)
     if "hamaker_constant" in devices.uncertain_solids(name):
         own |= {"hamaker_constant_zJ": plan.air.beam_hamaker_constant(pair), "alike": plan.materials.alike(pair)}
     if devices.kind(name).is_beam:

@@ -34,7 +34,7 @@ from stiction.devices.bridges import (
     middle_zone,
 )
 from stiction.life import holding
-from stiction.plan.stage import select, subsection
+from stiction.plan.stage import select
 from stiction.streams import stream
 
 #: End states in which a beam may stick: cracks stop on the way, or the tip holds as well, or the middle of a bridge.
@@ -253,6 +253,6 @@ def at_voltage(plan: Any, device: str, settings: dict[str, Any]) -> dict[str, An
 def section_of_beam(plan: Any, name: str, contact: str | None = None) -> dict[str, Any]:
     """Kind, pair and dimensions of a beam, length of its strips, and its solids in the air of a contact."""
     section = plan.config["devices"][name]
-    modulus = subsection(plan.config["solid"], ["young_modulus_GPa"]) | plan.materials.beam_modulus(section["pair"])
     solids = {"hamaker_constant_zJ": plan.air.hamaker_constant(contact or section["pair"])}
-    return select(DesignedBeam, section | modulus | solids, strip_um=plan.devices.strip(name))
+    solids |= plan.materials.modulus(section["pair"])
+    return select(DesignedBeam, section | solids, strip_um=plan.devices.strip(name))

@@ -3,7 +3,7 @@
 Dimensions and properties of the solids are changed by steps of their own: a crack jumps from strip to strip, so that
 larger steps have smaller errors. Stress, air and contact angles are changed by their standard uncertainty, those that
 cannot be below zero in one direction only. A new input is an entry of ``OF_BEAMS`` or ``OF_AIR``, or a property of
-`stiction.devices.properties`.
+`stiction.contact.materials`.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -17,7 +17,7 @@ from scipy.linalg import block_diag
 
 from stiction.config.units import without_unit
 from stiction.contact.environment import Water
-from stiction.devices.properties import OF_CONTACT, Step
+from stiction.contact.materials import OF_CONTACT, Step
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.scans import moments
 from stiction.stages.contact.changes.quantities import difference
@@ -188,7 +188,7 @@ def uncertain(
 
     The state has the stated values of all inputs. There are contacts with less and with more of each quantity of a
     surface, by both, and of each uncertain property of the solids, by its step in
-    `stiction.devices.properties.PROPERTIES`; ``known`` is what is known of the quantities of each surface.
+    `stiction.contact.materials.PROPERTIES`; ``known`` is what is known of the quantities of each surface.
     """
     stated = settings.uncertainty
     blocks = [surface_block(state, name, shifted, measured) for name, measured in known.items()]

@@ -13,9 +13,8 @@ import xarray as xr
 
 from stiction.config.cases import case_id, in_air
 from stiction.config.kinds import restoring_force
-from stiction.config.materials import material_of
 from stiction.config.units import from_si, in_si
-from stiction.constants import DENSITY, LIQUIDS
+from stiction.constants import LIQUIDS
 from stiction.contact.voltage import BREAKDOWN, Capacitor
 from stiction.devices.risk import one_in
 from stiction.plan.stage import Stage, select
@@ -142,11 +141,12 @@ def _settings(plan, at):
     section = plan.config["devices"][at.device]
     if not plan.devices.kind(at.device).is_beam:
         return {"stopper": select(OfStopper, section, restoring_force_uN=restoring_force(section))}
-    material = material_of(plan.config, plan.config["pairs"][section["pair"]]["beam"])
-    density = material.get("density_kg_per_m3", DENSITY)
     known = {name: {"surface_tension_mN_per_m": from_si(tension, "mN_per_m")} for name, tension in LIQUIDS.items()}
     own = {"uncertainty": {}} | section | {"device": section_of_beam(plan, at.device)}
-    own |= {"density_kg_per_m3": density, "liquids": known | plan.config.get("liquids", {})}
+    own |= {
+        "density_kg_per_m3": plan.materials.density(section["pair"]),
+        "liquids": known | plan.config.get("liquids", {}),
+    }
     return {"beam": select(OfBeam, own)}
 
 

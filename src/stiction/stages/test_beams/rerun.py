@@ -16,7 +16,7 @@ import xarray as xr
 from stiction.analysis.shifts import moved
 from stiction.config.cases import PairInAir, case_id
 from stiction.config.units import in_si
-from stiction.devices.properties import OF_CONTACT
+from stiction.contact.materials import OF_CONTACT
 from stiction.errors import NotConverged
 from stiction.plan.stage import At, Stage
 from stiction.stages.contact import contact as stage_contact

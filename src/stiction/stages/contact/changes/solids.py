@@ -7,13 +7,13 @@ from collections.abc import Callable
 from typing import Any
 
 from stiction.config.materials import hamaker_constants
-from stiction.devices.properties import OF_CONTACT
+from stiction.contact.materials import OF_CONTACT
 from stiction.models import SHIFTS, SIDES
 from stiction.stages.contact.changes.patches import Change
 
 
 def less_or_more(settings: dict[str, Any], name: str, shift: str) -> dict[str, Any]:
-    """Settings of a contact with less or more of a property, a key of `stiction.devices.properties.OF_CONTACT`."""
+    """Settings of a contact with less or more of a property, a key of `stiction.contact.materials.OF_CONTACT`."""
     return with_property(settings, name, lambda value: OF_CONTACT[name].step.ends(value)[SHIFTS.index(shift)])
 
 

@@ -13,6 +13,7 @@ import xarray as xr
 
 from stiction.config.merging import merged
 from stiction.config.units import in_si
+from stiction.contact.materials import Solid
 from stiction.contact.pair import (
     DistanceGrid,
     EquivalentSurface,
@@ -21,7 +22,6 @@ from stiction.contact.pair import (
     contacts_of_samples,
     solid_pressure,
 )
-from stiction.contact.solids import Solid
 from stiction.progress import progress
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact.changes.patches import Change

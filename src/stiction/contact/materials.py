@@ -1,8 +1,53 @@
-"""Properties of the material of a device: their names, and the step for the slope of a budget."""
+"""Materials: a solid body, its properties by name, and the steps of their slopes in a budget.
 
-from dataclasses import dataclass
+What a configuration states of materials is in `stiction.config.materials`, two bodies in contact in
+`stiction.contact.solids`.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+
+from stiction.constants import HAMAKER_CONSTANT, HARDNESS
+
+
+@dataclass(frozen=True)
+class Solid:
+    """Material of one body. Polysilicon unless stated otherwise."""
+
+    young_modulus: float = 164e9  #: E [Pa]
+    poisson_ratio: float = 0.23  #: ν [-]
+    hardness: float = HARDNESS  #: σ_H [Pa]
+    #: Hamaker constant of two bodies of this material through each medium [J]
+    hamaker_constant: Mapping[str, float] = field(default_factory=lambda: dict(HAMAKER_CONSTANT))
+    contact_angle: float = 0.0  #: of water θ on the body, or on its coating [rad]
+    coating: float = 0.0  #: thickness of its coating [m]
+    #: Hamaker constant of two thick coatings through each medium [J]; without it, coatings attract as the medium does
+    coating_hamaker_constant: Mapping[str, float] = field(default_factory=dict)
+
+    def __post_init__(self):
+        constants = {f"Hamaker constant ({medium})": value for medium, value in self.hamaker_constant.items()}
+        positive = {"Young's modulus": self.young_modulus, "hardness": self.hardness} | constants
+        for name, value in positive.items():
+            if not (value > 0 and np.isfinite(value)):
+                raise ValueError(f"{name} of a solid must be positive, got {value}")
+        if not -1 < self.poisson_ratio <= 0.5:
+            raise ValueError(f"Poisson's ratio of a solid must be in (-1, 0.5], got {self.poisson_ratio}")
+        if not 0 <= self.contact_angle <= np.pi:
+            raise ValueError(f"the contact angle of a solid must be in [0, π] rad, got {self.contact_angle}")
+        if not 0 <= self.coating < np.inf:
+            raise ValueError(f"the coating of a solid must not be thinner than nothing, got {self.coating} m")
+        for medium, value in self.coating_hamaker_constant.items():
+            if not 0 <= value <= self.hamaker_constant[medium]:
+                raise ValueError(
+                    f"the Hamaker constant of a coating ({medium}) must be from 0 to that of its solid, got {value} J"
+                )
+
+    def attracting(self, factor: float) -> "Solid":
+        """Solid with a factor of its Hamaker constants. Those of its coating stay."""
+        scaled = {medium: factor * constant for medium, constant in self.hamaker_constant.items()}
+        return replace(self, hamaker_constant=scaled)
 
 
 @dataclass(frozen=True)

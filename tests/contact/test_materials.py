@@ -1,10 +1,13 @@
-"""Properties of materials: steps of their slopes, and what limits and slopes take from the table."""
+"""Properties of materials: their table and the solid body, steps of their slopes, and what limits and slopes take."""
+
+from dataclasses import fields
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from stiction.devices.properties import ELASTIC, OF_COATINGS, PROPERTIES, Step
+from stiction.config.units import without_unit
+from stiction.contact.materials import ELASTIC, OF_COATINGS, PROPERTIES, Solid, Step
 
 
 @pytest.mark.parametrize("value", [0.3, 1e-19, 164e9])
@@ -29,3 +32,8 @@ def test_contact_depends_on_elasticity_and_attraction_and_neither_on_hardness_no
 
 def test_a_property_named_after_someone_has_no_article():
     assert [one.group for one in PROPERTIES.values()][:3] == ["Young's modulus", "Poisson's ratio", "the hardness"]
+
+
+def test_a_solid_has_the_properties_of_the_table_and_no_other():
+    keys = [*(entry.key for entry in PROPERTIES.values()), *OF_COATINGS]
+    assert [field.name for field in fields(Solid)] == list(map(without_unit, keys))
