@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from stiction.chaos.model import Truncation
-from stiction.config.cases import Case, in_air
+from stiction.config.cases import Air, Case
 from stiction.config.merging import merged
 from stiction.config.reading import is_stated
 from stiction.config.scans import preliminary_estimates, with_preliminary_estimates
@@ -64,7 +64,7 @@ class Numbers:
         worst = max(self.errors, key=self.errors.get, default=None)
         if worst is None or self.errors[worst] <= self.accuracy:
             return f"{words}."
-        missed = f"{self.errors[worst]:.2g} for {worst.device} {in_air(worst.humidity)}"
+        missed = f"{self.errors[worst]:.2g} for {worst.device} {Air(worst.humidity).where}"
         return f"{words}; it is missed: with these numbers, the error is about {missed}."
 
 

@@ -24,7 +24,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.resolution import longest
-from stiction.config.cases import case_id, in_air
+from stiction.config.cases import Air, case_id
 from stiction.config.messages import Problem, dotted, one_line
 from stiction.config.relations import field_too_large
 from stiction.config.scans import is_measured, with_preliminary_estimates
@@ -71,9 +71,8 @@ class Use:
     longest_strip: Callable[[np.ndarray], float] | None = None  #: on force laws (n, 4) [m]; none for a stopper
     strip: tuple = ()  #: key that a refusal of its strips is about
     thickness: float | None = None  #: of its beam, if this key is its thickness [µm]
-    of_devices: bool = (
-        True  #: or of a pair that runs, whose solids may attract each other less, see `stiction.plan.environment.Air`
-    )
+    #: Or of a pair that runs, whose solids may attract each other less, see `stiction.plan.environment.Environment`.
+    of_devices: bool = True
 
 
 def problems(
@@ -224,7 +223,7 @@ def _refusals(use: Use, samples: Callable, preliminary: bool) -> Iterator[tuple[
     length, error, at = min(strips, default=(np.inf, 0.0, None))
     doubt = _PRELIMINARY if preliminary else 1
     if use.patch.length > doubt * (length + _CERTAIN * error):
-        yield use.strip, _too_long(use, length, error, f"{in_air(at[1])} {len(shown[at]['laws'])} samples")
+        yield use.strip, _too_long(use, length, error, f"{Air(at[1]).where} {len(shown[at]['laws'])} samples")
 
 
 def _longest(use, laws):
@@ -254,7 +253,7 @@ def _weak(use, humidities, weak):
     pull, repulsion = (f"{from_si(weak[key], 'MPa'):.3g} MPa" for key in ("pull", "repulsion"))
     more, water = " and others" * (len(set(humidities)) > 1), "water and " * (humidities[0] > 0)
     resist = (
-        f"{in_air(humidities[0])}{more}, {water}van der Waals forces pull "
+        f"{Air(humidities[0]).where}{more}, {water}van der Waals forces pull "
         f"with up to {pull}, and the summits of sample {weak['sample']} of {weak['samples']} resist with {repulsion}"
     )
     if weak["together"]:

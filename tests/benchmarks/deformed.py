@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from stiction.beam.energy import CRACK_LENGTH_POWER
-from stiction.config.cases import air
+from stiction.config.cases import Air
 from stiction.config.files import load
 from stiction.config.units import in_si
 from stiction.contact import elements, forcelaw
@@ -53,7 +53,7 @@ def row(pair, humidity, strips):
     columns = (summits, all_summits - summits, full, all_full - full)
     return [
         pair,
-        air(humidity),
+        Air(humidity).words,
         *(with_error(*(TO_MJ * np.array(mean_with_error(one)))) for one in columns),
         with_error(*parts),
         with_error(*whole),

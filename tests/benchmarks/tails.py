@@ -20,7 +20,7 @@ from scipy.integrate import cumulative_trapezoid
 from stiction.beam import equilibrium, release
 from stiction.beam.energy import arrest_length
 from stiction.beam.resolution import resolved
-from stiction.config.cases import air
+from stiction.config.cases import Air
 from stiction.config.files import load
 from stiction.config.units import in_si, to_si
 from stiction.contact import forcelaw
@@ -246,7 +246,7 @@ def row(pair, humidity, reach, beams, samples):
     energies = vectors[:, 0]
     return [
         pair,
-        air(humidity),
+        Air(humidity).words,
         reach,
         str(beams),
         *(with_error(*mean_with_error(TO_MJ * one)) for one in (energies, alone)),

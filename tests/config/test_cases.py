@@ -43,6 +43,8 @@ def test_the_case_of_dry_air_has_the_humidity_zero_and_the_name_of_its_contact(n
     assert PairInAir.in_dry_air(name).pair == PairInAir(name).pair == name
     assert re.fullmatch(PAIR_IN_AIR, PairInAir.in_dry_air(name))
     assert re.fullmatch(CASE, PairInAir.in_dry_air(name))
+    for contact in (PairInAir(name), PairInAir.in_dry_air(name)):
+        assert (contact.pair, contact.pair + contact.ending) == (name, contact)
 
 
 def test_the_word_dry_stands_for_the_number_zero_where_a_humidity_stands_and_nowhere_else():

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from stiction.config.cases import Case, in_air
+from stiction.config.cases import Air, Case
 from stiction.config.units import from_si
 from stiction.devices.risk import one_in
 from stiction.run import storage
@@ -32,6 +32,6 @@ def first_answer(log: str, folder: Path) -> str:
     known = f" (estimate {estimate:.0f} ± {error:.2g} µm)" if np.isfinite(error) else ""
     case = Case(path.name)
     return (
-        f"First safe length: {case.device} {in_air(case.humidity)} can be {length:.0f} µm long{known} if at most "
+        f"First safe length: {case.device} {Air(case.humidity).where} can be {length:.0f} µm long{known} if at most "
         f"{one_in(float(found.share))} may stick. The run goes on."
     )

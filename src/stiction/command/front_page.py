@@ -12,7 +12,7 @@ from typing import Any
 
 import yaml
 
-from stiction.config.cases import air
+from stiction.config.cases import Air
 from stiction.config.merging import differing
 from stiction.config.reading import paper
 from stiction.report.format import with_error
@@ -98,7 +98,7 @@ def cracks(pair: str, rows: Sequence[Mapping[str, str]], length: float) -> str:
 
 def _ends(row):
     """End states of the beams at one humidity."""
-    where = air(float(row["relative_humidity"]))
+    where = Air(float(row["relative_humidity"])).words
     stuck, arcs = (float(row[f"share_{state}"]) for state in ("s_shape", "arc"))
     if not row["crack_length_um"]:
         return f"{where}: {100 * arcs:.2g} % are held by their tip alone, the others come free"

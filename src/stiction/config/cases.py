@@ -1,16 +1,17 @@
-"""Names of cases, used in file names, and the word ``dry`` for air without condensation of water.
+"""Air of cases: its words, its names in files, and the word ``dry`` for air without condensation of water.
 
 Dry air has the humidity 0 in the code. It has no water at all, which is not a film that becomes thinner and thinner.
 """
 
 import re
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cache
 from numbers import Real
 from typing import Any
 
-#: Word for the humidity of dry air in configurations, and the end of the names of its cases and contacts.
-DRY, _OF_DRY = "dry", "_dry"
+#: Word for the humidity of dry air in configurations, and the medium of attraction in it.
+DRY = "dry"
 #: Pattern of a case in paths: name of the pair, two to four decimals of the relative humidity, or dry.
 CASE = "[A-Za-z][A-Za-z0-9]*_(?:rh0[0-9]{2,4}|dry)"
 #: Pattern of a `PairInAir` in paths.
@@ -27,8 +28,51 @@ _LEVELS = 5
 NAMEABLE = "have at most 4 decimals, because the names of files contain them"
 
 
+@dataclass(frozen=True)
+class Air:
+    """Air of a relative humidity, in words and in names of files.
+
+    Examples
+    --------
+    >>> humid, dry = Air(0.67), Air(0.0)
+    >>> humid.words, humid.where, humid.ending, humid.medium
+    ('RH 0.67', 'at RH 0.67', '_rh067', None)
+    >>> dry.words, dry.where, dry.ending, dry.medium
+    ('dry', 'in dry air', '_dry', 'dry')
+    """
+
+    humidity: float  #: 0 in dry air [-]
+
+    @property
+    def words(self) -> str:
+        """Humidity, or dry."""
+        return f"RH {self.humidity:g}" if self.humidity else DRY
+
+    @property
+    def where(self) -> str:
+        """Place in this air, as a part of a sentence."""
+        return f"at {self.words}" if self.humidity else "in dry air"
+
+    @property
+    def ending(self) -> str | None:
+        """End of the names of cases in it, with two to four decimals. ``None`` if four are not exact."""
+        if not self.humidity:
+            return f"_{DRY}"
+        texts = (f"{self.humidity:.{places}f}" for places in (2, 3, 4))
+        return next((f"_rh{text.replace('.', '')}" for text in texts if float(text) == self.humidity), None)
+
+    @property
+    def medium(self) -> str | None:
+        """Medium of the attraction between summits, if not the configuration's."""
+        return None if self.humidity else DRY
+
+
+#: Dry air, whose contacts have names of their own.
+DRY_AIR = Air(0.0)
+
+
 class PairInAir(str):
-    """Name of the contact of a pair: the pair's, or another in air with other summits.
+    """Name of the contact of a pair: the pair's in any humid air, or another in dry air, with other summits.
 
     Examples
     --------
@@ -40,17 +84,22 @@ class PairInAir(str):
     @classmethod
     def in_dry_air(cls, pair: str) -> "PairInAir":
         """Contact of a pair in dry air. Its summits attract each other through air."""
-        return cls(pair + _OF_DRY)
+        return cls(pair + DRY_AIR.ending)
 
     @property
     def pair(self) -> str:
         """Name of the pair."""
-        return self.removesuffix(_OF_DRY)
+        return self.removesuffix(DRY_AIR.ending)
+
+    @property
+    def ending(self) -> str:
+        """End of the name, empty in humid air."""
+        return self.removeprefix(self.pair)
 
     @property
     def medium(self) -> str | None:
         """Medium of the attraction between its summits, if not the configuration's."""
-        return DRY if self.endswith(_OF_DRY) else None
+        return DRY_AIR.medium if self.ending else None
 
 
 class Case(str):
@@ -80,7 +129,7 @@ class Case(str):
 @cache
 def _parts(case):
     """Pair and humidity of a case, the inverse of `case_id`. A plan asks for them ten times for each job."""
-    pair, _, digits = case.removesuffix(_OF_DRY).partition("_rh0")
+    pair, _, digits = case.removesuffix(DRY_AIR.ending).partition("_rh0")
     valid = re.fullmatch(CASE, case)
     humidity = float(f"0.{digits or 0}") if valid else 0.0
     if not valid or case_id(pair, humidity) != case:
@@ -104,12 +153,10 @@ def case_id(pair: str, humidity: float | str) -> Case:
     ('b_rh067', 'b_rh060', 'b_rh0675', 'b_dry', 'b_dry')
     """
     humidity = in_numbers(humidity)
-    if humidity == 0:
-        return Case(pair + _OF_DRY)
-    text = decimals(humidity) if isinstance(humidity, Real) else None
-    if not (text and 0 < humidity < 1):
+    ending = Air(humidity).ending if isinstance(humidity, Real) and 0 <= humidity < 1 else None
+    if ending is None:
         raise ValueError(f"humidity {humidity} of pair {pair} must be dry, or above 0, below 1 and {NAMEABLE}")
-    return Case(f"{pair}_rh{text.replace('.', '')}")
+    return Case(pair + ending)
 
 
 def in_numbers(value: Any, key: str = "humidity", levels: int = _LEVELS) -> Any:
@@ -144,31 +191,3 @@ def in_words(value: Any, path: Sequence[str | int]) -> Any:
     if isinstance(value, list):
         return [in_words(one, path) for one in value]
     return DRY if type(value) is float and value == 0 else value
-
-
-def air(humidity: float) -> str:
-    """Relative humidity [-] in words, of a case in dry air as well.
-
-    Examples
-    --------
-    >>> air(0.67), air(0.0)
-    ('RH 0.67', 'dry')
-    """
-    return f"RH {humidity:g}" if humidity else DRY
-
-
-def in_air(humidity: float) -> str:
-    """Place in air, as a part of a sentence. Parameter as of `air`.
-
-    Examples
-    --------
-    >>> in_air(0.67), in_air(0.0)
-    ('at RH 0.67', 'in dry air')
-    """
-    return f"at {air(humidity)}" if humidity else "in dry air"
-
-
-def decimals(humidity: float) -> str | None:
-    """Humidity with two to four decimals as text, or ``None`` if four decimals are not exact."""
-    texts = (f"{humidity:.{places}f}" for places in (2, 3, 4))
-    return next((text for text in texts if float(text) == humidity), None)

@@ -16,7 +16,7 @@ import numpy as np
 import yaml
 
 from stiction.config import memory
-from stiction.config.cases import DRY, IN_HUMID_AIR, NAMEABLE, decimals
+from stiction.config.cases import DRY, IN_HUMID_AIR, NAMEABLE, Air
 from stiction.config.keys import Keys, Relations
 from stiction.config.materials import hamaker_constants
 from stiction.config.meetings import above_zero, pair_meetings
@@ -125,7 +125,7 @@ def cases_have_unique_names(config, section="pairs"):
 
 def without_unique_names(humidities: list[float]) -> str | None:
     """Refusal of humidities without a name of their cases, or with the same."""
-    nameless = [humidity for humidity in humidities if not decimals(humidity)]
+    nameless = [humidity for humidity in humidities if not Air(humidity).ending]
     if nameless:
         return f"must {NAMEABLE}; {nameless[0]} has more"
     return repeated(humidities)
@@ -140,7 +140,7 @@ def repeated(humidities: list[float]) -> str | None:
 @relation
 def humidity_of_the_figures_has_a_name(config):
     """Require a humidity of the figures valid in the name of a case."""
-    if not decimals(config["figures.humidity"]):
+    if not Air(config["figures.humidity"]).ending:
         yield "figures.humidity", f"must {NAMEABLE}"
 
 

@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from stiction.config import memory
-from stiction.config.cases import in_air
+from stiction.config.cases import Air
 from stiction.config.keys import Relations
 from stiction.config.kinds import KEYS, KINDS, KNOWN, ROUGHNESSES, kind_of
 from stiction.config.materials import hamaker_constant, material_of
@@ -520,5 +520,5 @@ def beams_are_counted_once(config):
     """Require each group of beams to be counted once."""
     for name, data in config.entries("test_beams", "stuck"):
         for length, humidity in duplicates((datum["length_um"], datum["humidity"]) for datum in data):
-            group = f"beams of {length:g} µm {in_air(humidity)}"
+            group = f"beams of {length:g} µm {Air(humidity).where}"
             yield f"test_beams.{name}.stuck", f"must count each length at a humidity once: {group} are listed twice"

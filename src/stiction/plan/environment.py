@@ -21,7 +21,7 @@ from stiction.plan.stage import subsection
 
 
 @dataclass(frozen=True)
-class Air:
+class Environment:
     """Contacts of the pairs at the humidities of a configuration, and the forces in them."""
 
     config: dict  #: complete and valid

@@ -19,7 +19,7 @@ from stiction.config.test_beams import as_cantilevers
 from stiction.contact.materials import ELASTIC
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SURFACE_MODELS
 from stiction.plan.devices import DevicePlan
-from stiction.plan.environment import Air
+from stiction.plan.environment import Environment
 from stiction.plan.paper import SUMMITS, PaperCase
 from stiction.plan.scans import Scans
 from stiction.plan.stage import subsection
@@ -44,14 +44,14 @@ class Plan:
         return Materials(self.config)
 
     @cached_property
-    def air(self) -> Air:
+    def air(self) -> Environment:
         """Air around the pairs."""
-        return Air(self.config)
+        return Environment(self.config)
 
     @cached_property
-    def air_of_devices(self) -> Air:
+    def air_of_devices(self) -> Environment:
         """Air around devices, and around test beams."""
-        return Air(self.config, of_devices=True)
+        return Environment(self.config, of_devices=True)
 
     @cached_property
     def scans(self) -> Scans:

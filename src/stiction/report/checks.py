@@ -20,7 +20,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.beam.equilibrium import allowed_imbalance
 from stiction.beam.foundation import ACCURACY
-from stiction.config.cases import air, case_id
+from stiction.config.cases import Air, case_id
 from stiction.config.units import in_si
 from stiction.contact.environment import Water, flooded_law
 from stiction.contact.forcelaw import admissible, coefficients, energy
@@ -339,7 +339,7 @@ def trend_checks(
     for pair, humidity, model in forces:
         if model == "NG" and pair in skewed:
             models = (forces[pair, humidity, which] for which in SURFACE_MODELS)
-            yield skewness_increases_adhesion(f"{pair}, {air(humidity)}", *models)
+            yield skewness_increases_adhesion(f"{pair}, {Air(humidity).words}", *models)
 
 
 def beam_checks(
@@ -375,7 +375,7 @@ def resampling_checks(
 
 def _case(pair, humidity, model):
     """Case as text."""
-    return f"{pair} {model}, {air(humidity)}"
+    return f"{pair} {model}, {Air(humidity).words}"
 
 
 def table(checks: Iterable[Check]) -> pd.DataFrame:

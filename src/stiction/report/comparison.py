@@ -6,7 +6,7 @@ from typing import NamedTuple
 import pandas as pd
 from matplotlib.figure import Figure
 
-from stiction.config.cases import air
+from stiction.config.cases import Air
 from stiction.config.merging import values
 from stiction.plan.stage import File
 from stiction.report.format import number, with_error
@@ -108,7 +108,7 @@ def comparison_figure(
         for k, (humidity, line) in enumerate(part.groupby("relative_humidity")):
             at, error = line.sort_values("value"), source.numbers[1]
             style = {"color": f"C{k}", "linestyle": dashes(k), "marker": marker(k), "capsize": 2}
-            panel.errorbar(at.value, at[source.numbers[0]], at[error], label=air(humidity), **style)
+            panel.errorbar(at.value, at[source.numbers[0]], at[error], label=Air(humidity).words, **style)
         panel.set_xlabel(", ".join(keys))
         if len(keys) > 1:
             panel.set_xticks(range(len(copies)), [", ".join(f"{value:g}" for value in copy) for copy in copies])

@@ -4,7 +4,7 @@ from collections.abc import Collection
 
 import numpy as np
 
-from stiction.config.cases import DRY
+from stiction.config.cases import DRY, DRY_AIR
 
 #: Units in SI, for tables: the stored number is a quantity divided by its unit; a product may differ in the last bit.
 NM, UM, UN, PER_UM2 = 1e-9, 1e-6, 1e-6, 1e12
@@ -62,7 +62,7 @@ def airs(humidities: Collection[float]) -> str:
     ('in dry air and at relative humidities of 0.45, 0.67', 'at a relative humidity of 0.67', 'in dry air')
     """
     humid = [f"{humidity:g}" for humidity in humidities if humidity > 0]
-    dry = ["in dry air"] if len(humid) < len(humidities) else []
+    dry = [DRY_AIR.where] if len(humid) < len(humidities) else []
     wet = f"{'relative humidities' if len(humid) > 1 else 'a relative humidity'} of {', '.join(humid)}"
     return " and ".join(dry + [f"at {wet}"] * bool(humid))
 

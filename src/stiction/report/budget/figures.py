@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from stiction.config.cases import air
+from stiction.config.cases import Air
 from stiction.devices.risk import stuck_share
 from stiction.plan.names import by_name
 from stiction.report.budget.tables import SCATTER, TOTAL, choice_label, response_text
@@ -72,7 +72,7 @@ def _stuck_over_force(panel, dataset):
         forces = TO_UN * dataset.pull_off.sel(humidity=humidity).values
         at = np.sort(forces)
         share, low, high = stuck_share(-at, -forces)
-        panel.plot(at, share, color=colour, linestyle=dashes(k), label=air(humidity))
+        panel.plot(at, share, color=colour, linestyle=dashes(k), label=Air(humidity).words)
         panel.fill_between(at, low, high, color=colour, alpha=0.2, linewidth=0)
     panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
     panel.set(yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
@@ -145,7 +145,7 @@ def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
         if count > 1:
             line[1].set_xlabel("change [%]")
     letter(list(titles), list(titles.values()))
-    marks = [Patch(color=colour, label=air(humidity)) for humidity, colour in colours.items()]
+    marks = [Patch(color=colour, label=Air(humidity).words) for humidity, colour in colours.items()]
     legend_outside(figure, (marks, [mark.get_label() for mark in marks]), "lower", 8)
     return figure
 

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.config.cases import air
+from stiction.config.cases import Air
 from stiction.devices.budget import advice, ranked
 from stiction.devices.risk import Basis
 from stiction.estimates import mean_with_error
@@ -189,7 +189,7 @@ def budget(budgets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset]
         ]
     )
     sentences = [
-        f"{device}, {air(humidity)}: {what_to_measure(one)}" for (device, humidity, *_), one in budgets.items()
+        f"{device}, {Air(humidity).words}: {what_to_measure(one)}" for (device, humidity, *_), one in budgets.items()
     ]
     omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in budgets.items()}
     caption = with_list(

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stiction.config.cases import air
+from stiction.config.cases import Air
 from stiction.devices.chart import FEWEST_HUMIDITIES, between, error_between
 from stiction.plan.names import by_case
 from stiction.report.format import TO_UM
@@ -72,7 +72,7 @@ def risk(datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tup
         named = []
         for humidity, dataset in cases.items():
             _shares(panel, dataset, colours[humidity])
-            label = f"{air(humidity)}{_at_length(dataset)}{_marks(numbers, name, humidity)}"
+            label = f"{Air(humidity).words}{_at_length(dataset)}{_marks(numbers, name, humidity)}"
             named.append(Line2D([], [], color=colours[humidity], linewidth=3, label=label))
         legend_below(panel, named)
         _own_length(panel, dataset)

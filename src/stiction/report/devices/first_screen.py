@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.config.cases import air, in_air
+from stiction.config.cases import Air
 from stiction.devices import limits
 from stiction.devices.risk import one_in
 from stiction.report.budget import tables as tables_budget
@@ -47,7 +47,7 @@ def beam_screen(
     point = _middle_lengths(worst).isel(shape=-1)
     verdict = _verdict(section.get("length_um"), safe / UM, safe_lengths)
     estimate = with_error(float(point.estimate) / UM, float(np.hypot(point.beams_error, _finite(point))) / UM)
-    where = in_air(humidity) + ", the worst" * (len(safe_lengths) > 1)
+    where = Air(humidity).where + ", the worst" * (len(safe_lengths) > 1)
     basis = [
         f"At most {one_in(float(point.share))} sticks {airs(safe_lengths)}, with 95 % confidence, from "
         f"{int(worst.beams)} simulated beams at each humidity.",
@@ -82,7 +82,7 @@ def _by_test_beams(updated, unit, form):
 
 def _air(humidity):
     """Air, for the beginning of a sentence."""
-    return air(humidity) if humidity else "Dry air"
+    return Air(humidity).words if humidity else "Dry air"
 
 
 def _middle_lengths(dataset):
@@ -107,7 +107,7 @@ def _verdict(length, safe, safe_lengths):
         sign = "good", "Safe"
     else:
         sign = ("bad", "Too long") if low > float(_middle_lengths(worst).share) else ("open", "Not shown to be safe")
-    return *sign, f"{answer}; your {length:g} µm: {_stuck_with_band(stuck, low, high)} {in_air(humidity)}."
+    return *sign, f"{answer}; your {length:g} µm: {_stuck_with_band(stuck, low, high)} {Air(humidity).where}."
 
 
 def _stuck_with_band(stuck, low, high):
@@ -190,7 +190,7 @@ def stopper_screen(
     needed = np.nan if share is None else float(stopper.safe_force.sel(part="safe", share=share).max(skipna=False))
     updated = None if share is None else updated_size(test_beams)
     needed = updated[1] * UN if updated else needed
-    own = f"with {force / UN:g} µN, {_stuck_with_band(*stuck)} {in_air(humidity)}"
+    own = f"with {force / UN:g} µN, {_stuck_with_band(*stuck)} {Air(humidity).where}"
     if share is None:
         verdict = "open", "Not known", f"There are too few patches to bound a force; {own}."
     else:

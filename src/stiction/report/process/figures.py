@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
-from stiction.config.cases import air
+from stiction.config.cases import Air
 from stiction.config.surfaces import process
 from stiction.report.format import TO_NM, TO_UM
 from stiction.report.style import (
@@ -76,7 +76,7 @@ def _band(panel, line, colour):
     x, estimate = line.value.values, TO_UM * line.estimate.values
     factor = np.exp(INTERVAL * error)
     panel.fill_between(x, estimate / factor, estimate * factor, color=colour, alpha=0.2, linewidth=0)
-    panel.plot(x, estimate, ".-", color=colour, label=f"{air(float(line.humidity))}, estimate and 95 % band")
+    panel.plot(x, estimate, ".-", color=colour, label=f"{Air(float(line.humidity)).words}, estimate and 95 % band")
 
 
 @styled

@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
-from stiction.config.cases import air
+from stiction.config.cases import Air
 from stiction.config.kinds import ROUGHNESSES
 from stiction.devices.roughness import margins
 from stiction.report.format import TO_UM
@@ -62,7 +62,7 @@ def _curve(panel, line, colour):
     x, estimate = in_unit(line, line.roughness.values), TO_UM * line.estimate.values
     reach = INTERVAL * TO_UM * line.error.values
     panel.fill_between(x, estimate - reach, estimate + reach, color=colour, alpha=0.2, linewidth=0)
-    panel.plot(x, estimate, ".-", color=colour, label=f"{air(float(line.humidity))}, estimate and 95 % band")
+    panel.plot(x, estimate, ".-", color=colour, label=f"{Air(float(line.humidity)).words}, estimate and 95 % band")
     panel.plot(x, TO_UM * line.safe.values, "_", color=colour, markersize=8, label="safe, 95 % confidence")
     if np.isfinite(line.bound.values).any():
         state = END_STATES[str(line["shape"].values)]
@@ -115,7 +115,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
             panel.plot(in_unit(data, float(data.given)), in_unit(data, float(data.other_given), "other_key"), "k+")
             _axis(panel.xaxis, panel.set_xscale, data)
             _axis(panel.yaxis, panel.set_yscale, data, "other")
-            panel.set_title(f"{END_STATES[shape].by}, {air(humidity)}")
+            panel.set_title(f"{END_STATES[shape].by}, {Air(humidity).words}")
     return figure
 
 

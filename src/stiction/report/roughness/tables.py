@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import air
+from stiction.config.cases import Air
 from stiction.config.kinds import ROUGHNESSES
 from stiction.config.units import from_si, without_unit
 from stiction.devices.risk import VERIFIED, one_in, samples_for
@@ -220,7 +220,7 @@ def _notes(curve, name, begins):
     for humidity in curve.humidity.values:
         for value in curve.roughness.values:
             if said := str(curve[name].sel(humidity=humidity, roughness=value).values):
-                at = f"{_value_text(curve, value)}{_unit(curve)} ({air(humidity)})"
+                at = f"{_value_text(curve, value)}{_unit(curve)} ({Air(humidity).words})"
                 places.setdefault(said.rstrip("."), []).append(at)
     return [f"{begins} the {name_of(curve)} is {', '.join(at)}: {said}." for said, at in places.items()]
 

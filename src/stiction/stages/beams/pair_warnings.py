@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.config.cases import air
+from stiction.config.cases import Air
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.devices import limits
@@ -90,7 +90,7 @@ def main_line_warnings(
     for (pair, humidity, model), dataset in beams.items():
         nominal = cantilever(settings, pair)
         film = limits.triggered(limits.thin_film(settings.water[pair].film(humidity)[0]))
-        warnings[f"pair {pair}, {air(humidity)}, {model}"] = film + beam_warnings(
+        warnings[f"pair {pair}, {Air(humidity).words}, {model}"] = film + beam_warnings(
             dataset, nominal, settings.sampling.strip_length
         )
     return warnings
@@ -109,7 +109,7 @@ def film_warnings(cases: Collection[tuple[str, float, str]], water: Mapping[str,
     """
     by_subject = {f"Pair {pair}": _without_water(pair, cases, film) for pair, film in water.items()}
     for pair, humidity, _ in cases:
-        by_subject[f"Pair {pair}, {air(humidity)}"] = limits.thin_film(water[pair].film(humidity)[0])
+        by_subject[f"Pair {pair}, {Air(humidity).words}"] = limits.thin_film(water[pair].film(humidity)[0])
     return [f"{subject}: {sentence}" for subject, sentence in by_subject.items() if sentence]
 
 

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from stiction.config.cases import air, case_id
+from stiction.config.cases import Air, case_id
 from stiction.config.units import from_si, in_si
 from stiction.contact.environment import Water
 from stiction.devices import limits
@@ -163,7 +163,7 @@ def read(files: Mapping[str, str]) -> OfDevices:
 def subjects(warnings: OfDevices) -> Warnings:
     """Warnings about devices by their subjects in words."""
     by_subject = {
-        f"{name}, {air(humidity)}, held by the {END_STATES[shape].by}": sentences
+        f"{name}, {Air(humidity).words}, held by the {END_STATES[shape].by}": sentences
         for (name, humidity, shape), sentences in warnings.lengths.items()
     }
     for (name, thickness, gap, shape), sentences in warnings.curves.items():

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import in_air
+from stiction.config.cases import Air
 from stiction.constants import VACUUM_PERMITTIVITY
 from stiction.devices.stoppers import stuck_patches
 from stiction.estimates import mean_with_error
@@ -38,7 +38,7 @@ def dimple_answers(of: OfBeam, dimples: Mapping[float, xr.Dataset]) -> list[Answ
     worst = max(means, key=means.get)
     mean, error = means[worst]
     form = f"sum of {of.dimples.number} largest attractions x area"
-    what = f"mean force on {'each of ' if len(of.dimples.at) > 1 else ''}its {rows} {in_air(worst)}"
+    what = f"mean force on {'each of ' if len(of.dimples.at) > 1 else ''}its {rows} {Air(worst).where}"
     on_rows, sticking = states(of.beam(of.length), of.clamps, of.dimples.at), []
     for humidity, held in forces.items():
         stuck = holds(on_rows, way, held).astype(float)
@@ -46,7 +46,7 @@ def dimple_answers(of: OfBeam, dimples: Mapping[float, xr.Dataset]) -> list[Answ
             Answer(
                 f"{ON_DIMPLES}_{humidity:g}",
                 STICK,
-                f"probability of sticking on its {rows} {in_air(humidity)}",
+                f"probability of sticking on its {rows} {Air(humidity).where}",
                 *(float(end[0]) for end in stuck_patches(stuck, np.array([0.5]))[1:]),
                 *(np.nan, "1", "fraction of random rows, 95 %", "stage dimples"),
             )

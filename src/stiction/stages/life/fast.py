@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import in_air
+from stiction.config.cases import Air
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.life.answers import FAST, FREE, Answer
 from stiction.stages.life.lengths import length_and_error
@@ -24,7 +24,7 @@ def separated_fast(lengths: Mapping[float, xr.Dataset], separation: xr.Dataset) 
             factor, error = _factor(separation, humidity, shape)
             slow.append(length)
             shorter = length * factor if factor else 0.0
-            fast.append((shorter, float(np.hypot(spread * factor, length * error)), factor, in_air(humidity)))
+            fast.append((shorter, float(np.hypot(spread * factor, length * error)), factor, Air(humidity).where))
     shorter, error, factor, air = min(fast)
     form = f"L x {factor:.3g} {air}, by (e / e_V)^(1/4) of strips or lengths of tips (at least); slow (at most)"
     what = "safe length if it separates faster than water evaporates"

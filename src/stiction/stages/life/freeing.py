@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.energy import apparent_adhesion_energy
-from stiction.config.cases import in_air
+from stiction.config.cases import Air
 from stiction.devices.risk import Basis, one_in
 from stiction.devices.stoppers import safe_force
 from stiction.life import freeing
@@ -52,7 +52,7 @@ def stopper_freed(stopper: xr.Dataset, of: OfStopper, separation: xr.Dataset | N
     force, error = float(at.sel(part="safe")), float(at.sel(part="error"))
     fast = [] if separation is None else [safe_force(row, min(bounded))[0] for row in separation.pull_off.values]
     most = max([force, *fast]) if np.isfinite(fast).all() else np.nan
-    but = f"all but {one_in(min(bounded))}, {in_air(float(at.humidity))}"
+    but = f"all but {one_in(min(bounded))}, {Air(float(at.humidity)).where}"
     source, bound = "stages stoppers and separation", "faster than water evaporates, in any of its air (at most)"
     form = f"quantile of the pull-off force, 95 %; {bound}"
     answers = [Answer(RESTORING, FREE, f"restoring force that frees {but}", force, most, error, "N", form, source)]

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import case_id, in_air
+from stiction.config.cases import Air, case_id
 from stiction.config.kinds import restoring_force
 from stiction.config.units import from_si, in_si
 from stiction.constants import LIQUIDS
@@ -52,7 +52,7 @@ def beam_answers(
         Answer(
             f"safe_length_{humidity:g}",
             STICK,
-            f"safe length {in_air(humidity)}: at most {one_in(share)} sticks after one touchdown",
+            f"safe length {Air(humidity).where}: at most {one_in(share)} sticks after one touchdown",
             *(value, value, error),
             *("m", f"bound of random beams, 95 %, {basis}", "stage safe_lengths"),
         )
@@ -78,12 +78,12 @@ def stopper_answers(
     """Answers about a stopper from the datasets of its pull-off forces: as it is, at its voltage, tilted, and fast."""
     worst = int(stopper.mean_along.argmax("axis"))
     mean, error = (float(stopper[name][worst]) for name in ("mean_along", "mean_along_error"))
-    where = in_air(round(float(stopper.worst_humidity), 2))
+    where = Air(round(float(stopper.worst_humidity), 2)).where
     answers = [
         Answer(
             f"stuck_{float(humidity):g}",
             STICK,
-            f"probability of sticking {in_air(float(humidity))}",
+            f"probability of sticking {Air(float(humidity)).where}",
             *map(float, stopper.stuck.sel(humidity=humidity, bound=["low", "high"])),
             *(np.nan, "1", "fraction of random patches, 95 %", "stage stoppers"),
         )

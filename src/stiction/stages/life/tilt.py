@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import in_air
+from stiction.config.cases import Air
 from stiction.config.units import from_si
 from stiction.devices.risk import Basis, one_in
 from stiction.stages.life.answers import FREE, HOLD, STICK, TILTED, WEDGE, Answer
@@ -21,7 +21,7 @@ def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
         Answer(
             f"stuck_tilted_{float(humidity):g}",
             STICK,
-            f"probability of sticking {by}, {in_air(float(humidity))}",
+            f"probability of sticking {by}, {Air(float(humidity)).where}",
             float(tilted.stuck.sel(humidity=humidity, bound="low").min()),
             float(tilted.stuck.sel(humidity=humidity, bound="high").max()),
             *(np.nan, "1", f"{each}fraction of random patches, 95 %", _SOURCE),
@@ -29,7 +29,7 @@ def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
         for humidity in tilted.humidity.values
     ]
     most = tilted.isel(humidity=int(tilted["mean"].max("tilt").argmax("humidity")))
-    low, high, air = int(most["mean"].argmin("tilt")), float(most["mean"].max()), in_air(float(most.humidity))
+    low, high, air = int(most["mean"].argmin("tilt")), float(most["mean"].max()), Air(float(most.humidity)).where
     numbers = float(most["mean"][low]), high, float(most.mean_error[low])
     answers.append(Answer(TILTED, HOLD, f"mean pull-off force {by}, {air}", *numbers, "N", form, _SOURCE))
     what, form = "tilt beyond which a longer first side hardly holds more", "e / (f_max a), parallel patches"

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import in_air
+from stiction.config.cases import Air
 from stiction.config.units import from_si
 from stiction.devices.risk import Basis, one_in, sampled_bound
 from stiction.estimates import mean_with_error
@@ -67,7 +67,7 @@ def stopper_at_voltage(stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | 
         gained = [mean_with_error(row) for row in (biased.pull_off - stopper.pull_off).values]
         low, error = max(gained)
         worst = biased.isel(humidity=int(biased.stuck.sel(bound="estimate").argmax("humidity")))
-        what = f"probability of sticking while {of.potential:g} V are on, {in_air(float(worst.humidity))}"
+        what = f"probability of sticking while {of.potential:g} V are on, {Air(float(worst.humidity)).where}"
         numbers = *map(float, worst.stuck.sel(bound=["low", "high"])), np.nan
         sticking = [Answer("stuck_at_voltage", HOLD, what, *numbers, "1", "as without voltage", _SOURCE)]
     what, form = f"force that {of.potential:g} V add", "mean of rough patches (at least); ε₀ V² A / (2 D²) (at most)"

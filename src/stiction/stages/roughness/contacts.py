@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.shifts import value_of, with_value
-from stiction.config.cases import PairInAir
+from stiction.config.cases import DRY_AIR, PairInAir
 from stiction.config.kinds import ROUGHNESSES
 from stiction.config.merging import merged
 from stiction.config.units import without_unit
@@ -117,7 +117,7 @@ def contacts_of(plan: Any, device: str, number: int) -> dict[str, dict[bool, str
     section = plan.config["devices"][device]
     folders = {"contact": FOLDER} | ({"tips": f"{FOLDER}/tips"} if plan.devices.kind(device).has_tip else {})
     airs = {humidity > 0: plan.air_of_devices.contact(section["pair"], humidity) for humidity in section["humidities"]}
-    names = {is_humid: f"{device}{pair.removeprefix(pair.pair)}_{number}" for is_humid, pair in airs.items()}
+    names = {is_humid: f"{device}{pair.ending}_{number}" for is_humid, pair in airs.items()}
     return {
         kind: {is_humid: f"{folder}/roughness/{name}" for is_humid, name in names.items()}
         for kind, folder in folders.items()
@@ -142,7 +142,7 @@ def tip_settings(plan: Any, pair: str, device: str) -> dict[str, Any]:
     return TIPS.settings(plan, At(**tips._asdict()), plan.config["design"]["beams"])
 
 
-def _stage(name, folder, contact, words, in_air=PairInAir):
+def _stage(name, folder, contact, words, ending=""):
     """Stage of one contact of a point. ``contact`` gives its settings by plan, pair in its air and device."""
 
     def settings(plan, at):
@@ -155,7 +155,7 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
         surface = {one.key: value for one, value in values if value is not None and one.key in own}
         if surface:  # on which the reach of tips depends
             plan = replace(plan, config=merged(plan.config, {"surfaces": {what.surface: surface}}))
-        settings = {"contact": contact(plan, in_air(pair), at.device), "pair": pair}
+        settings = {"contact": contact(plan, PairInAir(pair + ending), at.device), "pair": pair}
         settings |= {"surface": what.surface, "quantity": without_unit(what.key)} | what.named("value", values[0][1])
         for other, value in values[1:] if curve else ():
             settings |= {"other": without_unit(other.key)} | other.named("other_value", value)
@@ -163,7 +163,7 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
 
     return Stage.writing(
         name,
-        f"{folder}/roughness/{{device}}{in_air('')}_{{number}}",
+        f"{folder}/roughness/{{device}}{ending}_{{number}}",
         inputs=lambda plan, at: surface_inputs(plan, plan.config["devices"][at.device]["pair"]),
         settings=settings,
         kind=Settings,
@@ -179,6 +179,6 @@ def _stage(name, folder, contact, words, in_air=PairInAir):
 STAGES = (
     _stage("roughness_contact", FOLDER, patch_settings, "the patch"),
     _stage("roughness_tip_contact", f"{FOLDER}/tips", tip_settings, "the tips"),
-    _stage("roughness_dry_contact", FOLDER, patch_settings, "the patch, in dry air,", PairInAir.in_dry_air),
-    _stage("roughness_dry_tip_contact", f"{FOLDER}/tips", tip_settings, "the tips, in dry air,", PairInAir.in_dry_air),
+    _stage("roughness_dry_contact", FOLDER, patch_settings, "the patch, in dry air,", DRY_AIR.ending),
+    _stage("roughness_dry_tip_contact", f"{FOLDER}/tips", tip_settings, "the tips, in dry air,", DRY_AIR.ending),
 )

@@ -15,7 +15,7 @@ from scipy.special import ndtr, ndtri
 
 from stiction.beam.energy import CRACK_LENGTH_POWER, arrest_length
 from stiction.beam.foundation import foundation_length
-from stiction.config.cases import air, case_id
+from stiction.config.cases import Air, case_id
 from stiction.config.test_beams import humidities
 from stiction.contact.environment import Water
 from stiction.devices import arcs, inference, risk
@@ -125,7 +125,7 @@ class Result(NamedTuple):
     @property
     def condition(self) -> str:
         """Condition of one common rest of the model."""
-        return f"{self.owner}, {air(self.humidity)}{', arc' if self.response == ARC else ''}"
+        return f"{self.owner}, {Air(self.humidity).words}{', arc' if self.response == ARC else ''}"
 
 
 def compute(
