@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from stiction.plan import memory
+from stiction.plan.cost import USUAL_MINUTES
 from stiction.plan.graph import stages
 from stiction.plan.plan import Plan
 from stiction.plan.stage import WILDCARDS, expression
@@ -19,8 +20,8 @@ def rules(results):
     config = json.loads((results / "provenance.json").read_text(encoding="utf-8"))[-1]["config"]
     plan, usual = Plan(config), memory.job_memory(config)
     for name, (stage, _) in sorted(stages().items()):
-        least = stage.memory(plan) if stage.memory else 0.0
-        yield name, expression(stage.log, WILDCARDS), max(usual, round(least)), stage.minutes
+        least = stage.running.memory(plan) if stage.running.memory else 0.0
+        yield name, expression(stage.log, WILDCARDS), max(usual, round(least)), stage.running.minutes or USUAL_MINUTES
 
 
 def costs(results):

@@ -137,7 +137,7 @@ def test_no_two_of_the_inputs_and_wildcards_of_a_job_have_the_same_name():
 def test_the_code_of_a_stage_has_all_that_its_jobs_run_and_no_declaration():
     for name, (stage, _) in stages().items():
         code = fingerprint(PACKAGE.parent / f"{stage.code.replace('.', '/')}.py")
-        run = {part.__module__ for part in (stage.compute, stage.save, stage.first, stage.kind) if part}
+        run = {part.__module__ for part in (stage.compute, stage.save, stage.running.first, stage.kind) if part}
         assert run - {"builtins"} <= code.keys(), name
         assert stage.code not in SILENT, name
 

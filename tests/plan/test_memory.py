@@ -10,10 +10,10 @@ from configurations import PAPER, ROOT, changed
 from stiction.config import files
 from stiction.config.memory import USUAL, field_memory, tip_memory
 from stiction.plan import memory
+from stiction.plan.cost import USUAL_MINUTES
 from stiction.plan.devices import DevicePlan
 from stiction.plan.graph import stages
 from stiction.plan.plan import Plan
-from stiction.plan.stage import Stage
 
 DRAWING = """
 import sys
@@ -56,7 +56,7 @@ def test_the_paper_needs_no_more_than_the_usual_memory_and_time_of_the_profiles(
     assert memory.job_memory(PAPER) == USUAL
     for profile in ("default", "slurm"):
         settings = yaml.safe_load((ROOT / "profiles" / profile / "config.yaml").read_text(encoding="utf-8"))
-        assert {f"mem_mb={USUAL}", f"runtime={Stage.minutes}"} <= set(settings["default-resources"])
+        assert {f"mem_mb={USUAL}", f"runtime={USUAL_MINUTES}"} <= set(settings["default-resources"])
 
 
 @pytest.mark.parametrize(
@@ -148,7 +148,7 @@ def test_contacts_of_tips_take_at_most_the_estimated_memory_and_at_least_a_quart
 def test_budgets_of_tips_reserve_the_memory_of_all_their_tips_under_every_input():
     def reserved(*overlays):
         plan = Plan(files.load(ROOT / "examples" / "devices.yaml", *overlays))
-        return [stages()[name][0].memory(plan) for name in ("tip_budget", "test_beam_tip_budget")]
+        return [stages()[name][0].running.memory(plan) for name in ("tip_budget", "test_beam_tip_budget")]
 
     array = {"pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
     array |= {"stuck": [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]}

@@ -45,7 +45,7 @@ def test_a_study_of_many_devices_is_submitted_as_few_jobs_of_one_core_each(tmp_p
     environment = os.environ | {"PYTHONPATH": str(ROOT / "src")}
     done = subprocess.run([*map(str, words), "--", "devices"], env=environment, text=True, capture_output=True)
     lines = [line.partition(" ")[2] for line in done.stdout.splitlines() if line.startswith("JOB")]
-    on_cluster = {name for name, (stage, _) in stages().items() if stage.cluster}
+    on_cluster = {name for name, (stage, _) in stages().items() if stage.running.minutes}
     jobs = [(Counter(rules), resources) for rules, resources in map(json.loads, lines)]
     submitted = [(rules, resources) for rules, resources in jobs if rules.keys() & on_cluster]
     cracks = [(rules.total(), said) for rules, said in submitted if "cracks" in rules]
@@ -62,7 +62,7 @@ def test_grouped_rules_are_submitted_and_every_group_has_a_size():
     grouped = dict(entry.split("=") for entry in profile["groups"])
     sizes = dict(entry.split("=") for entry in profile["group-components"])
     assert {"cracks", "beams"} <= grouped.keys()
-    assert all(stages()[name][0].cluster for name in grouped)
+    assert all(stages()[name][0].running.minutes for name in grouped)
     assert set(grouped.values()) == sizes.keys()
     assert profile["cores"] == 1, "the jobs of a group run one after the other"
 

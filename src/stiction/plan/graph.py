@@ -157,7 +157,7 @@ class Results:
         job = self.graph.job(file)
         result = job.compute(self.inputs(job))
         datasets = dict(zip(job.names, result, strict=True)) if job.stage.each else {file: result}
-        if not job.stage.temporary:
+        if not job.stage.running.temporary:
             self._known.update(datasets)
         return datasets[file]
 

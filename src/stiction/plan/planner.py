@@ -12,6 +12,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from stiction.plan.cost import USUAL_MINUTES
 from stiction.plan.plan import Plan
 from stiction.plan.stage import WILDCARDS, At, expression
 from stiction.run.fingerprint import PACKAGE, fingerprint
@@ -80,11 +81,15 @@ class Planner:
         """Rule of one stage."""
         from stiction.plan.graph import constraints
 
-        taken = ("name", "targets", "temporary", "cluster", "minutes", "priority", "libraries")
-        return {key: getattr(stage, key) for key in taken} | {
+        running = stage.running
+        return {key: getattr(stage, key) for key in ("name", "targets", "libraries")} | {
             "module": module,
             "code": stage.code,
-            "memory": stage.memory(self.plan) if stage.memory else 0,
+            "cluster": running.minutes is not None,
+            "minutes": running.minutes or USUAL_MINUTES,
+            "memory": running.memory(self.plan) if running.memory else 0,
+            "priority": running.priority,
+            "temporary": running.temporary,
             "dataset": stage.save is None,
             "files": {key: path_of(stage, name) for key, name in stage.patterns(self.plan).items()},
             "wanted": [

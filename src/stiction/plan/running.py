@@ -15,7 +15,7 @@ def run(job: Any) -> None:
     (stage,) = (stage for stage in stages_of(job.params.module) if stage.name == job.rule)
     stated = job.params.settings
     settings = stage.converted(stated)
-    part = stage.first(settings) if stage.first else {}
+    part = stage.running.first(settings) if stage.running.first else {}
     data = {name: _load_input(job.input.get(name, []), *how, part, stage) for name, how in job.params.inputs.items()}
     result = stage.result(data, At(**job.wildcards), settings)
     if stage.save is not None:
@@ -52,5 +52,5 @@ def _load_input(paths: Any, label: str | None, keys: Any, part: dict, stage: Sta
     if keys is None:
         return next(read)
     if keys is True:
-        return read if stage.streamed else list(read)
+        return read if stage.running.streamed else list(read)
     return {tuple(key) if isinstance(key, list) else key: value for key, value in zip(keys, read, strict=True)}

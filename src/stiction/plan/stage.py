@@ -27,7 +27,6 @@ from stiction.models import (
     SHIFTS,
     SPECTRUM_QUANTITIES,
 )
-from stiction.plan.cost import USUAL_MINUTES
 
 #: Folders whose modules may declare stages.
 FOLDERS = ("stages", "report")
@@ -131,6 +130,18 @@ class Shown:
 
 
 @dataclass(frozen=True, kw_only=True)
+class Running:
+    """How the jobs of a stage run. Results do not depend on it."""
+
+    minutes: int | None = None  #: longest run time of a job, if it is worth a job of its own on a cluster
+    memory: Callable[[Any], float] | None = None  #: of a job that needs more than its fields, by the plan [MB]
+    priority: int = 0  #: jobs of a higher priority start first
+    first: Callable[[Any], dict] | None = None  #: part of the inputs to read, by the settings
+    streamed: bool = False  #: whether inputs in an order are loaded one at a time
+    temporary: bool = False  #: whether the files are deleted once they have been read
+
+
+@dataclass(frozen=True, kw_only=True)
 class Stage:
     """Stage of the workflow: files written and read by its jobs, and their computation.
 
@@ -155,14 +166,8 @@ class Stage:
     targets: tuple[str, ...] = ()  #: targets of the workflow that want its files
     study: str = ""  #: study without which its targets do not want its files
     shown: Shown | None = None  #: how the report shows one of the files
-    first: Callable[[Any], dict] | None = None  #: part of the inputs to read, by the settings
-    streamed: bool = False  #: whether inputs in an order are loaded one at a time
     libraries: tuple[str, ...] = ()  #: those whose versions count as code of the stage
-    temporary: bool = False  #: whether the files are deleted once they have been read
-    cluster: bool = False  #: whether a job is worth a job of its own on a cluster
-    minutes: int = USUAL_MINUTES  #: longest run time of such a job
-    memory: Callable[[Any], float] | None = None  #: of a job that needs more than its fields, by the plan [MB]
-    priority: int = 0  #: jobs of a higher priority start first
+    running: Running = Running()
 
     @property
     def stage(self) -> str:
@@ -176,7 +181,7 @@ class Stage:
 
     def on(self, name: str, file: str, **changed: Any) -> "Stage":
         """Same stage for another dataset, on a patch of a device, say."""
-        return replace(self, name=name, files={"dataset": file}, minutes=120, **changed)
+        return replace(self, name=name, files={"dataset": file}, **changed)
 
     @property
     def log(self) -> str:

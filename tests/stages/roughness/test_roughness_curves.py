@@ -155,7 +155,7 @@ def test_water_alone_holds_smooth_stoppers_by_its_tension_and_rough_ones_less():
 
 
 def test_contacts_of_a_curve_are_deleted_once_they_have_been_read():
-    assert all(stage.temporary for stage in contacts.STAGES)
+    assert all(stage.running.temporary for stage in contacts.STAGES)
 
 
 def test_a_share_that_needs_more_stoppers_than_were_drawn_has_them():

@@ -7,7 +7,7 @@ import xarray as xr
 
 from stiction.config.cases import Case
 from stiction.models import surface_model
-from stiction.plan.stage import Stage
+from stiction.plan.stage import Running, Stage
 from stiction.stages.beams import releases
 from stiction.stages.beams.cantilevers import cantilever
 from stiction.stages.laws.stored_model import chaos_model
@@ -70,6 +70,6 @@ STAGES = (
         kind=Settings,
         compute=compute,
         message="Release the beams of {case}, {model} (Sec. III-C).",
-        cluster=True,
+        running=Running(minutes=10),
     ),
 )

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.chaos.model import resample_laws
-from stiction.plan.stage import Stage
+from stiction.plan.stage import Running, Stage
 from stiction.stages.beams import releases
 from stiction.stages.laws.forces import vectors
 from stiction.streams import stream
@@ -50,6 +50,6 @@ STAGES = (
         kind=Settings,
         compute=compute,
         message="Release the beams of {case} on force laws resampled from the contact samples (App. B).",
-        cluster=True,
+        running=Running(minutes=10),
     ),
 )

@@ -10,7 +10,7 @@ from stiction.analysis.variants import Variant
 from stiction.chaos.model import Truncation, fit
 from stiction.config.cases import Case
 from stiction.contact.environment import Water
-from stiction.plan.stage import Stage
+from stiction.plan.stage import Running, Stage
 from stiction.stages.beams import releases
 from stiction.stages.contact import corrections, curves
 from stiction.stages.contact.contact import first
@@ -95,7 +95,7 @@ STAGES = (
         inputs=_inputs,
         settings=_settings,
         kind=Settings,
-        first=lambda settings: {"sample": slice(settings.samples)},
+        running=Running(first=lambda settings: {"sample": slice(settings.samples)}),
         complete=corrections.with_correction,
         compute=compute,
         message="Crack lengths of {case} under variant {variant}.",

@@ -19,7 +19,7 @@ from stiction.contact.pair import Definition, EquivalentSurface
 from stiction.contact.pair import solid_pressure as pressure_of_spheres
 from stiction.contact.regions import Strip, alone, solid_pressure
 from stiction.contact.vanderwaals import DugdaleAttraction
-from stiction.plan.stage import At, Stage
+from stiction.plan.stage import At, Running, Stage
 from stiction.progress import progress
 from stiction.stages.contact.changes import variants
 from stiction.stages.contact.pairs import bodies, streams_of_sides
@@ -180,7 +180,6 @@ STAGES = (
         settings=_settings,
         compute=_compute,
         message="Readings of an asperity, pair {pair}.",
-        cluster=True,
-        minutes=60,
+        running=Running(minutes=60),
     ),
 )

@@ -15,7 +15,7 @@ from stiction.contact import elements, forcelaw, solids
 from stiction.contact.environment import Water
 from stiction.contact.halfspace import HalfSpace
 from stiction.contact.materials import ELASTIC
-from stiction.plan.stage import At, Stage, select
+from stiction.plan.stage import At, Running, Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import contact, pairs
 from stiction.stages.contact.curves import force_curves
@@ -175,8 +175,7 @@ def _stage(name, folder, settings, forces):
         kind=Settings,
         compute=lambda data, at, settings: compute(both(data), at.pair, settings),
         message=f"Full elastic contact of pair {{pair}}{forces}, beside the sum over summits.",
-        cluster=True,
-        minutes=30,
+        running=Running(minutes=30),
     )
 
 

@@ -11,7 +11,7 @@ from stiction.constants import HARDNESS
 from stiction.contact import solids
 from stiction.contact.asperity import hertz_force, hertz_maximum_stress
 from stiction.contact.materials import ELASTIC
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import Running, Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import pairs
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
@@ -91,6 +91,6 @@ STAGES = (
         kind=Settings,
         compute=lambda data, at, settings: compute(both(data), at.pair, settings),
         message="Stress of the touching summits of pair {pair} (App. A).",
-        cluster=True,
+        running=Running(minutes=10),
     ),
 )

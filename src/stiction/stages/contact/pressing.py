@@ -10,7 +10,7 @@ from stiction.config.units import from_si
 from stiction.contact import solids
 from stiction.contact.elements import Adhesion, State, at_rest, equilibrium
 from stiction.contact.halfspace import HalfSpace
-from stiction.plan.stage import Stage
+from stiction.plan.stage import Running, Stage
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.pairs import bodies
 from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
@@ -135,7 +135,6 @@ STAGES = (
         kind=Settings,
         compute=lambda data, at, settings: compute(both(data), at.pair, settings),
         message="Pair {pair} after its surfaces were pressed together.",
-        cluster=True,
-        minutes=60,
+        running=Running(minutes=60),
     ),
 )

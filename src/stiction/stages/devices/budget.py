@@ -24,7 +24,7 @@ from stiction.devices import arcs
 from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.stoppers import pull_off_force
 from stiction.devices.tail import FEWEST, TAIL, fit_tail
-from stiction.plan.stage import At, Stage, subsection
+from stiction.plan.stage import At, Running, Stage, subsection
 from stiction.progress import progress
 from stiction.stages.contact import curves
 from stiction.stages.contact.changes.patches import TIPS
@@ -422,7 +422,7 @@ BUDGET = Stage.writing(
     settings=settings_of,
     compute=_budget_of_job,
     message="Budget of {case}.",
-    cluster=True,
+    running=Running(minutes=120),
 )
 
 
@@ -456,8 +456,11 @@ STAGES = (
         "devices/budget/{case}_tip",
         inputs=lambda plan, at: _inputs(plan, at.case.device) | contacts_of_tip_budget(plan, at.case),
         settings=settings_of_tips,
-        memory=lambda plan: _memory_of_tips(
-            plan, plan, [name for name in plan.devices.with_budget if name in plan.devices.with_tips]
+        running=Running(
+            minutes=120,
+            memory=lambda plan: _memory_of_tips(
+                plan, plan, [name for name in plan.devices.with_budget if name in plan.devices.with_tips]
+            ),
         ),
         label="budget",
         message="Budget of the tips of {case}.",
@@ -475,7 +478,10 @@ STAGES = (
         OF_ARRAYS + "/{case}_tip",
         inputs=_inputs_of_test_beams(contacts_of_tip_budget),
         settings=lambda plan, at: _with_choices(plan, "", settings_of_tips(plan.with_test_beams, at, HALF), []),
-        memory=lambda plan: _memory_of_tips(plan, plan.with_test_beams, test_beams.counts_as_devices(plan.config)),
+        running=Running(
+            minutes=120,
+            memory=lambda plan: _memory_of_tips(plan, plan.with_test_beams, test_beams.counts_as_devices(plan.config)),
+        ),
         label="budget",
         message="Budget of the tips of test beams {case}.",
     ),

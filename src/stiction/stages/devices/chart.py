@@ -16,7 +16,7 @@ from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.chart import checked_power_law, error_between
 from stiction.plan.names import by_case
-from stiction.plan.stage import Stage, select, subsection
+from stiction.plan.stage import Running, Stage, select, subsection
 from stiction.stages.devices import sticking
 from stiction.stages.devices.contact_names import tips_of
 from stiction.stages.devices.ground import ground_from, ground_inputs
@@ -207,7 +207,6 @@ STAGES = (
         kind=Settings,
         compute=compute,
         message="Chart of {case}.",
-        cluster=True,
-        minutes=120,
+        running=Running(minutes=120),
     ),
 )

@@ -14,7 +14,7 @@ import xarray as xr
 from stiction.beam.cantilever import Beam
 from stiction.contact import forcelaw
 from stiction.devices.sampling import SampledSurfaces
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import Running, Stage, select
 from stiction.stages.devices.ground import ground_from, ground_inputs
 from stiction.stages.devices.opening import BEAMS, DesignedBeam, ground_of, settings_of_beam
 from stiction.stages.devices.sticking import Released, release_beams
@@ -101,7 +101,6 @@ STAGES = (
         kind=Settings,
         compute=compute,
         message="Release long beams of {case}.",
-        cluster=True,
-        minutes=120,
+        running=Running(minutes=120),
     ),
 )

@@ -10,7 +10,7 @@ import xarray as xr
 from stiction.analysis import convergence
 from stiction.chaos import density
 from stiction.chaos.model import truncated
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import Running, Stage, select
 from stiction.progress import progress
 from stiction.stages.laws.forces import vectors
 from stiction.stages.laws.stored_model import chaos_model
@@ -101,6 +101,6 @@ STAGES = (
         kind=Settings,
         compute=compute,
         message="Convergence of the chaos model in the order of its polynomials (App. B).",
-        cluster=True,
+        running=Running(minutes=10),
     ),
 )

@@ -17,7 +17,7 @@ from stiction.analysis.shifts import Description, bracketed
 from stiction.config.surfaces import process
 from stiction.devices.roughness import LARGEST, margins
 from stiction.devices.tail import FEWEST, TAIL
-from stiction.plan.stage import Stage
+from stiction.plan.stage import Running, Stage
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
 from stiction.stages.contact.corrections import with_correction
@@ -231,8 +231,7 @@ STAGES = (
         kind=Settings,
         compute=lambda data, settings: compute(both(data), data["laws"], device_with_correction(settings, data)),
         message="Device {device} at value {number} of its process.",
-        cluster=True,
-        minutes=120,
+        running=Running(minutes=120),
     ),
 )
 

@@ -16,7 +16,7 @@ from stiction.config.kinds import ROUGHNESSES
 from stiction.config.merging import merged
 from stiction.config.units import without_unit
 from stiction.devices.risk import VERIFIED, samples_for
-from stiction.plan.stage import At, Stage
+from stiction.plan.stage import At, Running, Stage
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import GROUND, TIPS
@@ -170,9 +170,7 @@ def _stage(name, folder, contact, words, ending=""):
         compute=lambda data, settings: compute(both(data), settings),
         label="contact",
         message=f"Contact of {words} of {{device}}, roughness {{number}}.",
-        temporary=True,
-        cluster=True,
-        minutes=120,
+        running=Running(minutes=120, temporary=True),
     )
 
 

@@ -21,7 +21,7 @@ from stiction.devices.limits import long_strips
 from stiction.devices.roughness import crossings, margins, sufficient
 from stiction.devices.stoppers import safe_forces, stuck_patches
 from stiction.errors import NotConverged
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import Running, Stage, select
 from stiction.rounding import is_equal
 from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices import sticking, stoppers
@@ -309,8 +309,7 @@ STAGES = (
         complete=point_settings,
         compute=compute,
         message="Device {device} at roughness {number}.",
-        cluster=True,
-        minutes=120,
+        running=Running(minutes=120),
     ),
     Stage.writing(
         "roughness",

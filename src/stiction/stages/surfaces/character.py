@@ -8,7 +8,7 @@ import xarray as xr
 
 from stiction.estimates import jackknife
 from stiction.models import FIELD
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import Running, Stage, select
 from stiction.progress import progress
 from stiction.scans.moments import central_moments
 from stiction.stages.surfaces.rough_surfaces import Sampling, Width, rough_surface
@@ -138,6 +138,6 @@ STAGES = (
         kind=Settings,
         compute=compute,
         message="Statistics of simulated {model} surfaces {surface} (Table I).",
-        cluster=True,
+        running=Running(minutes=10),
     ),
 )

@@ -10,7 +10,7 @@ import xarray as xr
 from stiction.analysis.shifts import ORDERS
 from stiction.config.units import from_si
 from stiction.models import MODE_QUANTITIES
-from stiction.plan.stage import Stage
+from stiction.plan.stage import Running, Stage
 from stiction.scans import estimate as evaluation
 from stiction.scans import periodogram as spectra
 from stiction.scans import whittle
@@ -307,6 +307,6 @@ STAGES = (
         kind=Settings,
         compute=compute,
         message="Estimate surface {surface} from its scans.",
-        cluster=True,
+        running=Running(minutes=10),
     ),
 )

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import xarray as xr
 
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import Running, Stage, select
 from stiction.stages.surfaces import parameters
 from stiction.stages.surfaces.heights import density, moments
 from stiction.streams import stream
@@ -92,6 +92,6 @@ STAGES = (
         kind=Settings,
         compute=compute,
         message="Identify the spectrum of {surface} from its summits (Sec. II-C).",
-        cluster=True,
+        running=Running(minutes=10),
     ),
 )

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.models import FIELD
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import Running, Stage, select
 from stiction.progress import progress
 from stiction.stages.surfaces import parameters
 from stiction.stages.surfaces.heights import density
@@ -89,6 +89,6 @@ STAGES = (
         kind=Settings,
         compute=compute,
         message="Iterative spectrum of {surface}, for comparison with the closed form (Fig. 4).",
-        cluster=True,
+        running=Running(minutes=10),
     ),
 )

@@ -18,7 +18,7 @@ from stiction.config.cases import PairInAir, case_id
 from stiction.config.units import in_si
 from stiction.contact.materials import OF_CONTACT
 from stiction.errors import NotConverged
-from stiction.plan.stage import At, Stage
+from stiction.plan.stage import At, Running, Stage
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact.changes.patches import GROUND
 from stiction.stages.contact.changes.solids import with_property
@@ -175,6 +175,6 @@ STAGES = (
         settings=_settings,
         compute=_rerun,
         message="Device {device} at the inputs that its test beams suggest.",
-        cluster=True,
+        running=Running(minutes=10),
     ),
 )

@@ -11,6 +11,7 @@ import xarray as xr
 
 from stiction.analysis.sensitivity import shifted
 from stiction.models import SHIFTS
+from stiction.plan.stage import Running
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import Change
@@ -61,6 +62,5 @@ MOMENTS = Change(
     settings=_with_moments,
     kind=Settings,
     compute=from_surfaces,
-    minutes=30,
-    priority=1,
+    running=Running(minutes=30, priority=1),
 )

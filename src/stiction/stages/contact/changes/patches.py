@@ -7,7 +7,7 @@ from typing import Any
 from stiction.config.merging import merged
 from stiction.config.units import NM_PER_UM
 from stiction.plan.devices import OF_TIPS, Patch
-from stiction.plan.stage import Names, select
+from stiction.plan.stage import Names, Running, select
 from stiction.stages.contact import contact
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.surfaces.rough_surfaces import surface_inputs
@@ -86,6 +86,4 @@ class Change:
     subject: str = "Contact"  #: what is computed, in messages
     words: str = ""  #: change in messages, after the patch
     label: str = "contact"  #: name in the labels of the datasets
-    cluster: bool = True  #: whether a job is worth one of its own on a cluster
-    minutes: int = 10  #: longest run time of such a job, for strips
-    priority: int = 0
+    running: Running = Running(minutes=10)  #: on strips; larger patches take longer

@@ -5,7 +5,9 @@ module, with the function that computes it. All contacts of a patch have the sam
 differences are those of the changes.
 """
 
-from stiction.plan.stage import Stage
+from dataclasses import replace
+
+from stiction.plan.stage import Running, Stage
 from stiction.stages.contact import contact
 from stiction.stages.contact.changes.moments import MOMENTS
 from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS, Change, Place
@@ -76,6 +78,8 @@ def _stage(change, place):
         return change.inputs(plan, at, lambda other, **different: file_of(other, place, **vars(at) | different))
 
     rule, _ = TABLE[change][place]
+    takes_longer = place is not STRIPS and change.running.minutes
+    running = replace(change.running, minutes=120) if takes_longer else change.running
     message = f"{change.subject} of pair {{pair}}{place.words} {change.words}"
     return Stage.writing(
         rule,
@@ -87,9 +91,7 @@ def _stage(change, place):
         each=change.each,
         label=change.label,
         message=message.rstrip(" ,") + ".",
-        cluster=change.cluster,
-        minutes=change.minutes if place is STRIPS else 120,
-        priority=change.priority,
+        running=running,
     )
 
 
@@ -110,18 +112,16 @@ OF_PAIR = (
         compute=contact.drawn_chunk,
         label="contact",
         message="Contact of {model} surfaces of pair {pair}, chunk {chunk} of {number}.",
-        temporary=True,
-        cluster=True,
-        minutes=30,
+        running=Running(minutes=30, temporary=True),
     ),
     Stage.writing(
         "contact",
         "contact/{pair}_{model}",
         inputs=_chunks,
-        streamed=True,
         settings=lambda plan, at: AS_IT_IS.settings(plan, at, STRIPS),
         kind=Settings,
         compute=contact.join_chunks,
+        running=Running(streamed=True),
         message="Join the contact of {model} surfaces of pair {pair} (Sec. III-A).",
     ),
 )

@@ -22,6 +22,7 @@ from stiction.contact.pair import (
     contacts_of_samples,
     solid_pressure,
 )
+from stiction.plan.stage import Running
 from stiction.progress import progress
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact.changes.patches import Change
@@ -242,7 +243,7 @@ SUMMITS = Change(
     kind=None,
     compute=summits_of_job,
     label="variant_summits",
-    minutes=30,
+    running=Running(minutes=30),
 )
 
 
@@ -259,7 +260,7 @@ VARIANT = Change(
     settings=lambda plan, at, place: plan.variants.solids(at.pair, at.variant),
     kind=Solids,
     compute=contact_of,
-    cluster=False,
+    running=Running(),
 )
 #: A variant of the model whose asperities are islands.
 VARIANT_OF_ISLANDS = Change(
@@ -272,5 +273,5 @@ VARIANT_OF_ISLANDS = Change(
     ),
     kind=None,
     compute=contact_of_islands,
-    minutes=30,
+    running=Running(minutes=30),
 )
