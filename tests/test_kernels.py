@@ -236,7 +236,7 @@ def test_a_kernel_is_compiled_where_nothing_can_be_kept(monkeypatch):
 def test_sources_of_a_kernel_are_the_imports_in_its_syntax_tree():
     for path in PACKAGE.rglob("*.py"):
         names = [name for node in ast.walk(ast.parse(path.read_bytes())) for name in fingerprint.imports_of(node)]
-        assert kernels._read(path)[1] >= {file for name in names for file in fingerprint.files_of(name)}, path
+        assert kernels._read(path)[1] >= {file for name in names for file in fingerprint.files_of(name).values()}, path
 
 
 def test_every_kernel_of_the_package_has_the_decorator():

@@ -16,9 +16,9 @@ def package(tmp_path, monkeypatch):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_text(text)
     monkeypatch.setattr(fingerprint, "PACKAGE", tmp_path)
-    fingerprint.files_of.cache_clear()
+    fingerprint._modules.cache_clear()
     yield tmp_path
-    fingerprint.files_of.cache_clear()
+    fingerprint._modules.cache_clear()
 
 
 def of_script(package):

@@ -1,6 +1,7 @@
 """Snakemake, started in this process with the workflow of this package."""
 
 import contextlib
+import gc
 import importlib.util
 import os
 import signal
@@ -68,6 +69,7 @@ def snakemake(arguments: Sequence[str], directory: Path, quiet: bool, progress: 
     tuple of int and bool
         Exit status of Snakemake, and whether Ctrl-C or SIGTERM stopped it.
     """
+    gc.set_threshold(1_000_000)  # as the Snakefile does for a plan: nearly all objects of an import remain as well
     from snakemake import cli
 
     if not is_writable(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser()):

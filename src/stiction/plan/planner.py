@@ -40,7 +40,7 @@ class Planner:
     @cached_property
     def _determined_by(self):
         """Hash of all sources of the jobs: code, configuration and files of scans."""
-        files = sorted(file for kind in ("*.py", "*.yaml") for file in PACKAGE.rglob(kind))
+        files = (file for kind in ("*.py", "*.yaml") for file in PACKAGE.rglob(kind))
         code = {str(file.relative_to(PACKAGE)): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
         scans = [Path(file) for surface in self.plan.scans.surfaces for file in self.plan.scans.files(surface).values()]
         states = [(str(file), file.stat().st_mtime_ns, file.stat().st_size) for file in scans]

@@ -68,7 +68,7 @@ def _read(path, _modified, remember):
     """Hash of one file, and names and files of its imported modules of the package."""
     text = path.read_bytes()
     hashed, names = remember([_this_module(), hashlib.sha256(text).hexdigest()], lambda: _parsed(text))
-    modules = {_name(module): module for name in names for module in files_of(name)}
+    modules = {place: file for name in names for place, file in files_of(name).items()}
     return hashed, [(name, module) for name, module in modules.items() if name not in SILENT]
 
 
@@ -107,9 +107,12 @@ def imports_of(node: ast.AST) -> list[str]:
     return []
 
 
+def files_of(name: str) -> dict[str, Path]:
+    """Files of the package behind a full name, by module: a module, or the module with the definition of an object."""
+    return {place: _modules()[place] for place in (name, name.rpartition(".")[0]) if place in _modules()}
+
+
 @cache
-def files_of(name: str) -> list[Path]:
-    """Files of the package behind a full name: a module, or the module with the definition of an object."""
-    parts = name.split(".")
-    paths = [PACKAGE.joinpath(*parts[1:end]).with_suffix(".py") for end in (None, -1)]
-    return [path for path in paths if path != PACKAGE.with_suffix(".py") and path.is_file()]
+def _modules():
+    """Files of all modules of the package, by name."""
+    return {_name(path): path for path in PACKAGE.rglob("*.py") if path.name != "__init__.py"}

@@ -6,7 +6,7 @@ from another run, or a table cut off by a full disk, would be used silently.
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from functools import partial
+from functools import cache, partial
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -31,6 +31,7 @@ def foreign(
     tuple of str
         File; and a clause about its content and what this run needs.
     """
+    expected = cache(expected)  # many datasets depend on the same ones
     for path in map(Path, paths):
         if (settings := expected(path.as_posix())) is not None:
             reason = _difference(path, settings, expected, remember)
@@ -62,6 +63,8 @@ def _state(path):
 
 def _first(stored, wanted, path=()):
     """First different key of two sections, with both values, empty if they agree."""
+    if stored == wanted:
+        return ""
     if isinstance(stored, dict) and isinstance(wanted, dict):
         keys = sorted({*stored, *wanted})
         return next(filter(None, (_first(stored.get(key), wanted.get(key), (*path, key)) for key in keys)), "")
