@@ -75,6 +75,7 @@ def test_poorly_wetted_surfaces_can_run():
 
 #: Without a bound by flat surfaces in contact, every sample must resist the adhesion.
 TOUCHING = "attraction: {reach: touching}"
+DRY = "attraction: {reach: all}\npairs: {b: {humidities: [dry]}}\nfigures: {humidity: dry}"
 WEAK, FEW = "surfaces rough enough and a solid stiff enough", "so many summits that every sample resists the adhesion"
 CHART = "chart: {thicknesses_um: [0.2, 3], gaps_um: [10, 20], humidities: [0.5, 0.9]}"
 REFUSALS = [
@@ -87,6 +88,11 @@ REFUSALS = [
         f"surfaces: {{B2: {{rms_nm: 0.3}}}}\n{TOUCHING}",
         "run.pairs[0] is 'b'",
         "or choose other humidities in pairs.b.humidities",
+    ),
+    (
+        f"surfaces: {{B2: {{rms_nm: 0.3}}}}\n{DRY}",
+        "run.pairs[0] is 'b'",
+        f"{WEAK}: in dry air, van der Waals forces pull with up to ",
     ),
     ("surfaces: {B2: {rms_nm: 0.2, psd: identified}}", "run.pairs[0]", "(preliminary, given surfaces.B2.psd = 'identi"),
     ("solid: {young_modulus_GPa: 0.1}", "run.pairs[0] is 'b'", "the summits of sample 0 of"),
@@ -149,6 +155,21 @@ def test_what_the_jobs_would_refuse_is_refused_by_name(overlay, key, words):
     assert f"{key.split(' is')[0]} is " in line
     assert ", must " in line
     assert words in line
+
+
+@pytest.mark.parametrize(
+    ("humidities", "weak", "advice"),
+    [
+        ([0.44, 0.67], [0.44], "young_modulus_GPa, or choose only 0.67 in pairs.b.humidities"),
+        ([0.0, 0.67], [0.67], "young_modulus_GPa, or choose only dry in pairs.b.humidities"),
+        ([0.0, 0.67], [0.0, 0.67], "young_modulus_GPa, or choose other humidities in pairs.b.humidities"),
+        ([0.0], [0.0], "young_modulus_GPa"),
+    ],
+)
+def test_other_humidities_are_advised_where_a_study_has_humid_air(humidities, weak, advice):
+    use = pilot.Use(Patch("b", 1500, 30000), ("NG",), humidities, (), (), ("pairs", "b", "humidities"))
+    _, message = pilot._weak(use, weak, {"pull": 1e6, "repulsion": 0, "sample": 0, "samples": 5, "together": 0})
+    assert message.endswith(f"; increase the roughness or {advice}")
 
 
 @pytest.fixture(scope="module")

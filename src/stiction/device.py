@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from stiction.accuracy import decided
-from stiction.config.cases import DRY, case_id, in_numbers
+from stiction.config.cases import Air, case_id, in_numbers
 from stiction.config.kinds import KEYS, KINDS, Kind, kind_of
 from stiction.config.units import in_si
 from stiction.plan.devices import DevicePlan
@@ -131,7 +131,7 @@ class Device:
             KEYS[key][0]: f"{' x '.join(f'{one:g}' for one in some)} {KEYS[key][1]}" for key, some in numbers.items()
         }
         pair = " on ".join(self._plan.sides(section["pair"]))
-        humidities = ", ".join(f"{humidity:g}" if humidity else DRY for humidity in section["humidities"])
+        humidities = ", ".join(Air(humidity).name for humidity in section["humidities"])
         return sizes | {"surfaces": f"{pair}, pair {section['pair']}", "relative humidity": humidities}
 
     def __repr__(self):

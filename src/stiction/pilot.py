@@ -263,11 +263,14 @@ def _weak(use, humidities, weak):
             f"{length:g} x {width:g} µm of pair {use.patch.pair}; as far as these samples show, {weak['together']} "
             "times the area would do"
         )
-    others = [f"{humidity:g}" for humidity in use.humidities if humidity not in humidities]
+    others = [Air(humidity).name for humidity in use.humidities if humidity not in humidities]
     choose = f"only {', '.join(others)}" if others else "other humidities"
+    humid = any(use.humidities)  # a study of dry air has no humidity to choose
     return use.pair, (
-        f"must have surfaces rough enough and a solid stiff enough for its humidities: {resist} where the mean planes "
-        f"meet; increase the roughness or young_modulus_GPa, or choose {choose} in {dotted(use.air)}"
+        f"must have surfaces rough enough and a solid stiff enough{' for its humidities' * humid}: {resist} where the "
+        "mean planes meet; increase the roughness or young_modulus_GPa"
+        + f", or choose {choose} in {dotted(use.air)}"
+        * humid
     )
 
 

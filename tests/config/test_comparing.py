@@ -1,6 +1,8 @@
 """Values of one key side by side: every copy has the settings of the configuration with this single value."""
 
 import json
+import math
+import re
 
 import pytest
 import yaml
@@ -139,6 +141,25 @@ def test_a_key_of_no_entry_is_refused_with_the_names_of_entries(path, entries):
 def test_what_is_no_list_of_different_values_is_refused(compare):
     with pytest.raises(ConfigError, match="^compare"):
         load(BASE, {"compare": compare})
+
+
+#: What a list of compared values may not be, and how the refusal of the list or of the value says so.
+FEW = "must be a list with at least 2 entries: different values"
+WRONG = [
+    (5, f"is 5, {FEW}.*; several values are wanted, as in \\[3, 5, 7\\]$"),
+    (None, f"is None, {FEW}.*; there is no value after the key$"),
+    ([], f"is \\[\\], {FEW}.*\\[unit of the key\\]$"),
+    ([3], f"is \\[3\\], {FEW}.*\\[unit of the key\\]$"),
+    *(([3, value], "must be a number") for value in ("a", None, True, [4], math.nan)),
+]
+
+
+@pytest.mark.parametrize(("listed", "refusal"), WRONG)
+def test_a_list_that_is_refused_is_the_only_problem_and_says_what_to_write(listed, refusal):
+    with pytest.raises(ConfigError) as refused:
+        load(BASE, {"compare": {"surfaces.B2.rms_nm": listed}})
+    (problem,) = str(refused.value).splitlines()
+    assert re.match(rf"compare\.'surfaces\.B2\.rms_nm'(\[1\])? .*{refusal}", problem)
 
 
 def test_without_the_section_nothing_changes():

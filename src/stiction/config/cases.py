@@ -35,18 +35,23 @@ class Air:
     Examples
     --------
     >>> humid, dry = Air(0.67), Air(0.0)
-    >>> humid.words, humid.where, humid.ending, humid.medium
-    ('RH 0.67', 'at RH 0.67', '_rh067', None)
-    >>> dry.words, dry.where, dry.ending, dry.medium
-    ('dry', 'in dry air', '_dry', 'dry')
+    >>> humid.name, humid.words, humid.where, humid.ending, humid.medium
+    ('0.67', 'RH 0.67', 'at RH 0.67', '_rh067', None)
+    >>> dry.name, dry.words, dry.where, dry.ending, dry.medium
+    ('dry', 'dry', 'in dry air', '_dry', 'dry')
     """
 
     humidity: float  #: 0 in dry air [-]
 
     @property
+    def name(self) -> str:
+        """Humidity as configurations state it."""
+        return f"{self.humidity:g}" if self.humidity else DRY
+
+    @property
     def words(self) -> str:
-        """Humidity, or dry."""
-        return f"RH {self.humidity:g}" if self.humidity else DRY
+        """Name in figures and tables, and before a comma."""
+        return f"RH {self.name}" if self.humidity else self.name
 
     @property
     def where(self) -> str:

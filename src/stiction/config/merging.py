@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from itertools import chain
 from typing import Any
 
-from stiction.config.messages import ConfigError
+from stiction.config.messages import ConfigError, is_number
 from stiction.config.units import without_unit
 
 #: Sections whose entries may be copied, each after those that it names, and the keys by which it names these.
@@ -80,9 +80,12 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
         If a key does not describe an entry of one of the sections whose entries are copied, or if an entry has the name
         of a copy.
     """
-    if not _is_valid(config.get("compare")):
+    compare = config.get("compare")
+    if not (isinstance(compare, dict) and all(isinstance(path, str) for path in compare)):
         return config
     paths = [_parts_of_path(config, path) for path, _ in _compared_keys(config)]
+    if not all(map(_is_listed, compare.values())):
+        return config
     copied, stated, ends = _users_of(config, *((section, name) for section, name, _ in paths)), config, values(config)
     for end, numbers in ends.items():
         config = _with_copies(config, copied, end)
@@ -126,13 +129,9 @@ def _parts_of_path(config, path):
     raise ConfigError(f"compare.{path} is no key of an entry that exists, must be {listed}")
 
 
-def _is_valid(compare):
-    """Whether section ``compare`` is well formed enough to expand."""
-    return (
-        isinstance(compare, dict)
-        and all(isinstance(path, str) for path in compare)
-        and all(isinstance(listed, list) for listed in compare.values())
-    )
+def _is_listed(values):
+    """Whether compared values are several numbers."""
+    return isinstance(values, list) and len(values) > 1 and all(map(is_number, values))
 
 
 def _section(config, *place):

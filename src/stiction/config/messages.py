@@ -56,14 +56,14 @@ def schema_problems(config: object, schema: dict) -> list[Problem]:
         return [Problem((), f"cannot be printed ({reason}): must contain short numbers and few levels of nesting")]
 
 
-def _is_number(_, value):
+def is_number(value: object) -> bool:
     """Whether a value is a finite real number. Truth values, NaN and infinities are not."""
     return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) < 1e300
 
 
-def _is_integer(_, value):
+def _is_integer(value):
     """Whether a value is written as a whole number: 5000 is, 5000.0 is not."""
-    return _is_number(_, value) and isinstance(value, int)
+    return is_number(value) and isinstance(value, int)
 
 
 @cache
@@ -71,7 +71,9 @@ def _strict():
     """Class of the validator. Its library is imported here because a plan of a known configuration does not need it."""
     from jsonschema import Draft202012Validator, validators
 
-    types = Draft202012Validator.TYPE_CHECKER.redefine_many({"number": _is_number, "integer": _is_integer})
+    types = Draft202012Validator.TYPE_CHECKER.redefine_many(
+        {"number": lambda _, value: is_number(value), "integer": lambda _, value: _is_integer(value)}
+    )
     return validators.extend(Draft202012Validator, type_checker=types)
 
 
@@ -128,8 +130,8 @@ def _allowed_values(entry):
         words.append(f"with the keys {', '.join(entry['properties'])}")
     if "maxItems" in entry:
         words.append(f"with {number_of_items(entry)} entries")
-    elif "minItems" in entry or "minProperties" in entry:
-        words.append("with at least one entry")
+    elif least := entry.get("minItems", entry.get("minProperties")):
+        words.append("with at least one entry" if least == 1 else f"with at least {least} entries")
     return f"{' '.join(filter(None, words))}: {description(entry)}"
 
 
@@ -211,10 +213,10 @@ def _advice(entry, text, sentence="write {}"):
 
 
 def _list_hint(value, entry):
-    """Advice to write one value, or keys without values, as a list of the least length, or an example of both ends."""
+    """Advice to write one value, or keys without values, as a list of the least length, or an example of several."""
     for example in entry.get("examples", ()):
-        if "maxItems" in entry and len(set(example)) > 1:
-            return f"; both ends are wanted, as in {example}"
+        if entry.get("minItems", 1) > 1 and len(set(example)) > 1:
+            return f"; {'both ends' if 'maxItems' in entry else 'several values'} are wanted, as in {example}"
     keys = isinstance(value, dict) and not any(value.values())
     items = list(value) if keys else [value] * entry.get("minItems", 1)
     if not _accepts(entry, items):
@@ -235,7 +237,7 @@ def _unit_of(path):
 def _unit_hint(path, value, entry):
     """Advice on a number in SI units: its value in the unit of the key."""
     unit = _unit_of(path)
-    if not unit or not _is_number(None, value):
+    if not unit or not is_number(value):
         return ""
     return _advice(entry, f"{from_si(value, unit):.12g}", f"write {{}} if {value:g} is in {_IN_SI[unit]}")
 
@@ -248,7 +250,7 @@ _WRITTEN = re.compile(r"([-+]?\d+(?:[.,]\d*)?)(?:[eE]([-+]?\d{1,2}))?\s*([^\W\d]
 
 def _percent_hint(value, entry):
     """Advice on a fraction in percent: its value as a fraction."""
-    if not _is_number(None, value) or value <= 1 or "as a fraction of 1" not in entry["description"]:
+    if not is_number(value) or value <= 1 or "as a fraction of 1" not in entry["description"]:
         return ""
     return _advice(entry, f"{value / 100:.12g}")
 

@@ -4,7 +4,7 @@ from collections.abc import Collection
 
 import numpy as np
 
-from stiction.config.cases import DRY, DRY_AIR
+from stiction.config.cases import DRY_AIR
 
 #: Units in SI, for tables: the stored number is a quantity divided by its unit; a product may differ in the last bit.
 NM, UM, UN, PER_UM2 = 1e-9, 1e-6, 1e-6, 1e12
@@ -50,7 +50,7 @@ def humidity_text(value: float) -> str:
     >>> humidity_text(0.67), humidity_text(0.0), humidity_text(float("nan"))
     ('0.67', 'dry', '–')
     """
-    return number(value, "g") if value else DRY
+    return number(value, "g") if value else DRY_AIR.name
 
 
 def airs(humidities: Collection[float]) -> str:
