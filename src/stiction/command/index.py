@@ -143,7 +143,7 @@ def _surfaces(results: Path, config: Mapping) -> Iterator[dict[str, Any]]:
         section, sheet = config["surfaces"][name], f"figures/surface_sheet_{name}.png"
         yield {
             "name": name,
-            "described": surface_in_words(section, materials.of_surface(name)),
+            "described": surface_in_words(section, materials.stated(name)),
             "flags": [flag for surface, _, flag in flags if surface == name],
             "sheet": sheet if (results / sheet).exists() else "",
         }

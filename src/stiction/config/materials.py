@@ -47,7 +47,7 @@ class Materials:
 
     config: dict  #: complete and valid
 
-    def of_surface(self, surface: str) -> dict[str, Any]:
+    def stated(self, surface: str) -> dict[str, Any]:
         """Stated properties of the material of a surface."""
         return material_of(self.config.get("materials", {}), self.config["surfaces"][surface])
 
@@ -55,16 +55,16 @@ class Materials:
         """Names of the surfaces of a pair, the beam's first."""
         return [self.config["pairs"][PairInAir(pair).pair][side] for side in SIDES]
 
-    def of_pair(self, pair: str) -> list[dict]:
+    def bodies(self, pair: str) -> list[dict]:
         """Stated properties of the materials of both surfaces of a pair."""
-        return list(map(self.of_surface, self.sides(pair)))
+        return list(map(self.stated, self.sides(pair)))
 
     def settings(self, pair: str, properties: Sequence[str], solid: dict | None = None) -> dict[str, dict]:
         """Some properties of the materials of a pair by side. Empty if those of section solid and polysilicon hold.
 
         What a material does not state is taken from section ``solid``, by default that of the configuration.
         """
-        own = [{key: material[key] for key in properties if key in material} for material in self.of_pair(pair)]
+        own = [{key: material[key] for key in properties if key in material} for material in self.bodies(pair)]
         if not any(own):
             return {}
         others = solid or self.config["solid"]
@@ -91,7 +91,7 @@ class Materials:
 
     def stated_modulus(self, pair: str) -> dict[str, float]:
         """Young's modulus of the beam of a pair by its key if its material states one, otherwise empty."""
-        material = self.of_pair(pair)[0]
+        material = self.bodies(pair)[0]
         return {_MODULUS: material[_MODULUS]} if _MODULUS in material else {}
 
     def modulus(self, pair: str) -> dict[str, float]:
@@ -100,4 +100,4 @@ class Materials:
 
     def density(self, pair: str) -> float:
         """Density of the beam of a pair: of its material, or polysilicon's [kg m⁻³]."""
-        return self.of_pair(pair)[0].get("density_kg_per_m3", DENSITY)
+        return self.bodies(pair)[0].get("density_kg_per_m3", DENSITY)

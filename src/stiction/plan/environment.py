@@ -117,7 +117,7 @@ class Environment:
 
     def _contact_angles(self, pair):
         """Contact angles on both surfaces of a pair [°]."""
-        return [material.get("contact_angle_deg", 0) for material in self._materials.of_pair(pair)]
+        return [material.get("contact_angle_deg", 0) for material in self._materials.bodies(pair)]
 
     def _gaps(self, pair, config):
         """Attraction across the gaps between the solids of a pair, if there is any."""
@@ -126,7 +126,7 @@ class Environment:
             return {}
         constants = {medium: self._hamaker_constant(pair, medium) for medium in (summits, "dry")}
         retarded = {"wavelength_nm": across["wavelength_nm"]} if across["retarded"] else {}
-        stated = self._materials.of_pair(pair)
+        stated = self._materials.bodies(pair)
         spacer = sum(material.get(COATING, 0) for material in stated)
         coated = {"spacer_nm": spacer} if spacer else {}
         if any(COATING_ATTRACTION in material for material in stated):
@@ -136,7 +136,7 @@ class Environment:
 
     def _hamaker_constant(self, pair, medium):
         """Hamaker constant of the two bodies of a pair through a medium [zJ]."""
-        return combined(*(hamaker_constants(material)[medium] for material in self._materials.of_pair(pair)))
+        return combined(*(hamaker_constants(material)[medium] for material in self._materials.bodies(pair)))
 
     def hamaker_constant(self, contact: str) -> float:
         """Hamaker constant of the two bodies of a contact, zero without van der Waals forces [zJ]."""
@@ -145,4 +145,4 @@ class Environment:
 
     def beam_hamaker_constant(self, pair: str) -> float:
         """Hamaker constant of two bodies like the beam of a pair, through the medium between the solids [zJ]."""
-        return hamaker_constant(self._materials.of_pair(pair)[0], self.config["van_der_waals"])
+        return hamaker_constant(self._materials.bodies(pair)[0], self.config["van_der_waals"])

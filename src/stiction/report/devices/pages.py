@@ -324,7 +324,7 @@ def _settings(plan, at):
     section = plan.config["devices"][at.device]
     pair = plan.config["pairs"][section["pair"]]
     names = {f"surface of the {part}": pair[part] for part in ("beam", "substrate")}
-    materials = list(map(plan.materials.of_surface, names.values()))
+    materials = list(map(plan.materials.stated, names.values()))
     surfaces = {
         part: f"{name}: {surface_in_words(plan.config['surfaces'][name], material)}"
         for (part, name), material in zip(names.items(), materials, strict=True)
