@@ -80,6 +80,15 @@ def test_lengths_far_below_that_on_the_mean_move_with_the_scatter_and_infinite_o
     assert np.isnan(stated[2])
 
 
+def test_a_statistic_that_only_some_samples_leave_finite_has_no_error():
+    # Before, it had an infinite one, which no table could show: two of 200 bridges stuck, just within the reach.
+    surfaces = SampledSurfaces(2.0, np.diag([1e-4, 1e-4]))
+    for infinite in (lambda length: length < 2, lambda length: length > 2, lambda length: length > 0):
+        stated = surfaces.error(lambda move, infinite=infinite: np.array([np.inf if infinite(move(2.0)) else 1.0, 1.0]))
+        assert np.isnan(stated[0])
+        assert stated[1] == 0
+
+
 def test_samples_that_are_all_equal_leave_no_error():
     found = cantilever(np.repeat(laws(1), 30, axis=0) * np.array([1 + 1e-12 * np.arange(30)]).T)
     assert np.all(np.abs(found.covariance[0]) < 1e-20)

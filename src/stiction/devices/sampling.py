@@ -37,7 +37,7 @@ class SampledSurfaces:
     covariance: np.ndarray  #: of ln l₀ and ln s (2, 2)
 
     def error(self, statistic: Callable[[Move], np.ndarray]) -> np.ndarray:
-        """Standard error of a statistic of lengths, of any shape; NaN where it is not finite.
+        """Standard error of a statistic of lengths, of any shape; NaN where a move leaves it infinite.
 
         ``statistic(move)`` has the statistic of all lengths after a `Move`.
         """
@@ -45,7 +45,8 @@ class SampledSurfaces:
         steps = (directions * np.sqrt(np.maximum(variances, 0.0))).T
         with np.errstate(invalid="ignore"):
             effects = [(statistic(self._move(*step)) - statistic(self._move(*-step))) / 2 for step in steps]
-        return np.sqrt(np.sum(np.square(effects), axis=0))
+        variance = np.sum(np.square(effects), axis=0)
+        return np.sqrt(np.where(np.isfinite(variance), variance, np.nan))
 
     def _move(self, of_mean, of_scatter):
         """Move with errors of ln l₀ and ln s."""
