@@ -354,14 +354,35 @@ SPECIAL += [{"threads": 2}, {"resources": {"tmpdir": "/elsewhere"}}, {"resources
 
 def test_only_scripts_with_the_surroundings_of_the_server_are_forked():
     folder = snakemake_patches.tempfile.gettempdir()
-    server = SimpleNamespace(environment=snakemake_patches.environment(1, folder))
     plain = PLAIN | {"threads": 1, "resources": {"tmpdir": folder}}
-    assert snakemake_patches._plain(SimpleNamespace(**plain), server)
+    assert snakemake_patches._plain(SimpleNamespace(**plain))
     for special in SPECIAL:
-        assert not snakemake_patches._plain(SimpleNamespace(**plain | special), server), special
+        assert not snakemake_patches._plain(SimpleNamespace(**plain | special)), special
     for name in plain:  # about which Snakemake may no longer tell
         without = {other: value for other, value in plain.items() if other != name}
-        assert not snakemake_patches._plain(SimpleNamespace(**without), server), name
+        assert not snakemake_patches._plain(SimpleNamespace(**without)), name
+
+
+class Running:
+    """Server that runs all scripts."""
+
+    def __init__(self, environment):
+        self.environment = environment
+
+    def run(self, script):
+        return RAN.append(script)
+
+
+RAN = []
+
+
+def test_jobs_are_forked_although_a_library_sets_a_variable_during_the_run(monkeypatch):
+    monkeypatch.setattr(PythonScript, "execute_script", lambda self, fname, edit=False: pytest.fail("a new process"))
+    monkeypatch.setattr(snakemake_patches, "Server", Running)
+    assert snakemake_patches.fork_jobs()
+    monkeypatch.setenv("SET_BY_A_LIBRARY", "1")
+    PythonScript.execute_script(SimpleNamespace(**PLAIN, threads=1, resources={}), "job.py")
+    assert RAN == ["job.py"]
 
 
 def test_a_server_starts_without_a_module_that_a_library_no_longer_has(monkeypatch):

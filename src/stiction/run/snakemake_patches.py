@@ -57,7 +57,7 @@ def fork_jobs() -> bool:
 
     def execute_script(job, fname, edit=False):
         """Run the script of a job as a fork, or as Snakemake does."""
-        if _plain(job, server):
+        if _plain(job):
             try:
                 return _run(server, fname)
             except BrokenPipeError:
@@ -85,15 +85,16 @@ def _run(server, script):
 SPECIAL = ("container_img", "conda_env", "env_modules", "shadow_dir", "bench_record")
 
 
-def _plain(script, server):
+def _plain(script):
     """Whether Snakemake would start a script with the interpreter and the environment of the server.
 
-    Not if Snakemake no longer says what this depends on.
+    Not if Snakemake no longer says what this depends on. Variables that a library sets in this process when it is
+    imported during the run, as netCDF4 does, are not those of the run.
     """
     if not {*SPECIAL, "threads", "resources"} <= set(dir(script)):
         return False
     folder = script.resources.get("tmpdir", tempfile.gettempdir())
-    alike = environment(script.threads, folder) == server.environment
+    alike = (script.threads, folder) == (1, tempfile.gettempdir())
     special = [getattr(script, name) for name in SPECIAL]
     return alike and not any(special) and not script.resources.get("shell_exec")
 
