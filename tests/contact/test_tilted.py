@@ -111,6 +111,20 @@ def test_force_and_wet_area_are_sums_over_summits_and_points(edge):
 
 
 @EDGES
+def test_bearing_areas_are_the_sums_of_the_weights_of_all_higher_points(edge):
+    found, heights = pair(edge), rough(3)
+    grid, (_, bearing) = found.distances, found.contact(heights)
+    weights = np.ones((len(heights), 1))
+    weights[0] = tilted.first_weight(edge)
+    for slope, areas in zip(SLOPES, bearing, strict=True):
+        lowered = slope * SPACING * np.arange(len(heights))[:, None] - found.depth
+        steps = np.floor((heights - lowered) * (1 / STEP))
+        for k in range(0, areas.size, 7):
+            higher = np.sum(weights * (steps >= k - grid.below))
+            assert areas[k] == higher / (weights.sum() * heights.shape[1])
+
+
+@EDGES
 def test_forces_do_not_depend_on_the_level_of_the_surface_nor_on_its_direction_across_the_beam(edge):
     heights = rough(2)
     expected = forces(pair(edge), heights)

@@ -78,7 +78,7 @@ class TiltedPair(SurfacePair):
             At ``distances.bearing`` [-].
         """
         grid, square, first = self.distances, self.tilt.edge == Edge.SQUARE, first_weight(self.tilt.edge)
-        upright = summits_by_row(heights, self.spacing, 0.0)
+        upright, highest = summits_by_row(heights, self.spacing, 0.0), float(heights.max())
         solid, bearing = [], []
         for slope in self.tilt.slopes:
             rise = slope * self.spacing
@@ -90,7 +90,8 @@ class TiltedPair(SurfacePair):
             # ASSUME: no point at the sides of a strip is a summit, as in the contact without slope.
             area = self.length * (heights.shape[1] - 2) * self.spacing
             solid.append(solid_pressure(self.asperity, Summits(lowered, curvatures, area), grid))
-            bearing.append(tilted_bearing_area(heights, (rise, self.depth), first, grid.step, (grid.below, grid.above)))
+            level = rise, self.depth, highest
+            bearing.append(tilted_bearing_area(heights, level, first, grid.step, (grid.below, grid.above)))
         return np.array(solid), np.array(bearing)
 
 
@@ -153,25 +154,37 @@ def edge_maxima(heights: np.ndarray, spacing: float, rise: float) -> tuple[np.nd
 
 @kernel
 def tilted_bearing_area(
-    heights: np.ndarray, level: tuple[float, float], first: float, step: float, numbers: tuple[int, int]
+    heights: np.ndarray, level: tuple[float, float, float], first: float, step: float, numbers: tuple[int, int]
 ) -> np.ndarray:
     """Fraction of the area of a strip (n1, n2) [m] higher than each distance at its edge [-].
 
-    ``level``: by how much the strip falls per row, and the depth from which the distances are measured [m]. Its first
-    row has the weight ``first``. ``numbers`` are those of the distances, ``step * arange(-below, above)`` [m].
+    ``level``: by how much the strip falls per row, the depth from which the distances are measured, and its highest
+    point without slope [m]. Its first row has the weight ``first``. ``numbers`` are those of the distances,
+    ``step * arange(-below, above)`` [m].
     """
-    (below, above), (rise, depth) = numbers, level
-    count = np.zeros(below + above + 1)
-    inverse, highest = 1 / step, np.float64(heights.max())
+    (below, above), (rise, depth, highest) = numbers, level
+    cells = np.empty(heights.shape[1], np.int32)
+    of_edge, count = np.zeros(below + above + 1, np.int64), np.zeros(below + above + 1, np.int64)
     for i in range(heights.shape[0]):
-        lowered, weight = rise * i - depth, first if i == 0 else 1.0
+        lowered = rise * i - depth
         if highest - lowered < -below * step:  # this row and those behind it are lower than all distances
             break
-        for j in range(heights.shape[1]):
-            cell = int(np.floor((heights[i, j] - lowered) * inverse)) + below + 1
-            count[min(max(cell, 0), below + above)] += weight
+        _cells_below(heights[i], lowered, step, numbers, cells)
+        counted = count if i else of_edge
+        for cell in cells:
+            counted[np.uint32(cell)] += 1
     area, higher = np.zeros(below + above), 0.0
     for k in range(below + above, 0, -1):
-        higher += count[k]
+        higher += first * of_edge[k] + count[k]
         area[k - 1] = higher / ((heights.shape[0] - 1 + first) * heights.shape[1])
     return area
+
+
+@kernel
+def _cells_below(heights, lowered, step, numbers, cells):
+    """Number of distances not above each point of a row that is lowered [m]."""
+    (below, above), inverse = numbers, 1 / step
+    lowest, highest = np.float64(-below - 1), np.float64(above - 1)
+    for j in range(heights.size):
+        cell = min(max(np.floor((heights[j] - lowered) * inverse), lowest), highest)
+        cells[j] = np.int32(cell) + np.int32(below + 1)
