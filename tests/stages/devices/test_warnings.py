@@ -452,7 +452,7 @@ def test_what_is_not_in_the_model_of_dry_devices_is_about_no_water():
     said = Graph(Plan(load({"devices": {"S1": dry}}))).job("devices/S1.html").settings["not_modelled"]
     assert "water" not in said
     assert "across gaps" not in said
-    assert "by an unknown amount; contact.model full includes it" in said
+    assert "the force 3.5 times too small; contact.model full includes it" in said
 
 
 @pytest.mark.parametrize(
