@@ -58,8 +58,7 @@ def faults(browser, report):
         browser.click(entry(browser, category))
         browser.wait(lambda: buttons(browser), 5)
         for k in range(len(buttons(browser))):
-            browser.click(buttons(browser)[k])
-            path = browser.wait(lambda unseen=hidden: opening(browser, unseen))
+            path = browser.wait(lambda k=k, unseen=hidden: clicked(browser, k, unseen))
             kind = kinds.get(path)
             if browser.wait(lambda kind=kind: opened(browser, kind)):
                 hidden.discard(path)
@@ -70,6 +69,12 @@ def faults(browser, report):
 def buttons(browser):
     """The button of each listed result that opens it."""
     return browser.find("#app tbody tr a:first-of-type")
+
+
+def clicked(browser, k, unseen):
+    """Path of the result that opens by a click on a button. A list that is drawn anew loses a click."""
+    browser.click(buttons(browser)[k])
+    return browser.wait(lambda: opening(browser, unseen), 5)
 
 
 def opening(browser, unseen):
