@@ -148,10 +148,7 @@ onsuccess:
 rule all:
     default_target: True
     input:
-        planner.wanted("tables"),
-        planner.wanted("figures"),
-        planner.wanted("devices"),
-        planner.wanted("all"),
+        map(planner.wanted, WHOLE),
     localrule: True
     message:
         "Tables, figures, checks, and what the configuration asks of devices."

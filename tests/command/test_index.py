@@ -104,6 +104,13 @@ def test_pairs_checks_warnings_provenance_and_changes_are_on_the_page(tmp_path):
     assert all(f"<dt>{name}</dt>" in page for name in sides)
 
 
+def test_failed_checks_are_named_where_no_verdict_was_written(tmp_path):
+    (tmp_path / "checks.csv").write_text('name,case,passed,message\nmass,"b, NG",True,kept\nlaw,c,False,broken\n')
+    of_run(tmp_path)
+    (tmp_path / "verdict.txt").unlink()
+    assert index.index(tmp_path, RULES).count("1 of 2 checks of the results failed. law: c: broken<") == 2
+
+
 def test_flags_are_beside_their_surface_and_its_sheet_is_linked(tmp_path):
     of_run(tmp_path)
     config = copy.deepcopy(paper()) | {"run": {"pairs": []}}

@@ -112,10 +112,12 @@ def test_the_first_failed_check_is_told(tmp_path):
     (tmp_path / "results" / "checks.csv").write_text(
         "name,case,passed,message\nenergy,b,True,fine\ncrack,b NG,False,5 off\ncrack,c,False,6 off\n"
     )
-    first, last = lines(heard(start(0, "verdict"), failure(0, "verdict")), Status.CHECKS, tmp_path)
+    fill(tmp_path / "results", "index.html")
+    first, counted, where = lines(heard(start(0, "verdict"), failure(0, "verdict")), Status.CHECKS, tmp_path)
     assert first == "crack: b NG: 5 off"
-    assert last.startswith("2 of 3 checks of the results failed: ")
-    assert last.endswith("results/checks.md")
+    assert counted.startswith("2 of 3 checks of the results failed: ")
+    assert counted.endswith("results/checks.md")
+    assert "results/index.html" in where
 
 
 def fill(results, *names):

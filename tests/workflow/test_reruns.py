@@ -176,11 +176,11 @@ MATRIX = [
     ("one humidity of a device", "devices: {C1: {humidities: [0.7, 0.9]}}",
      "tip_contact ground table_safe_lengths device_limits", (), "contact/b|cracks/C1_rh070|R1"),
     ("a device added", "devices: {C2: {kind: cantilever, pair: a, thickness_um: 3, gap_um: 20, width_um: 30, "
-     "humidities: [0.6]}}", "tip_contact ground table_safe_lengths device_limits", {"chart", "table_chart"}, "contact/[ab]_|tips/b_|C1|R1|beams"),
+     "humidities: [0.6]}}", "tip_contact ground table_safe_lengths device_limits verdict", {"chart", "table_chart"}, "contact/[ab]_|tips/b_|C1|R1|beams"),
     ("thickness of a device", "devices: {C1: {thickness_um: 3}}", "cracks safe_lengths chart", (), "contact|R1"),
     ("thicknesses of a chart", "devices: {C1: {chart: {thicknesses_um: [2.6]}}}", "tip_contact chart", (),
      "contact/b|R1|cracks"),
-    ("uncertainty of a device", "devices: {C1: {uncertainty: {gap_um: 1}}}", "", (), ""),
+    ("uncertainty of a device", "devices: {C1: {uncertainty: {gap_um: 1}}}", "verdict", (), ""),
     ("beams of devices", "design: {beams: 300}", "tip_contact cracks chart", (), "results/contact"),
     ("contact angle of a body", "materials: {Wet: {contact_angle_deg: 20}}\nsurfaces: {B2: {material: Wet}}",
      "full_contact pressed readings forces humidity sensitivity variant ground safe_lengths chart table_1 table_2 table_3 checks model_limits",

@@ -10,7 +10,7 @@ from snakemake.logging import logger
 from stiction.config import files, merging, messages, scans, test_beams
 from stiction.config.surfaces import process
 from stiction.plan import cost, memory
-from stiction.plan.planner import Planner
+from stiction.plan.planner import WHOLE, Planner
 from stiction.plan.stage import WILDCARDS
 from stiction.run import provenance, run_lock, snakemake_patches, stale_results
 from stiction.run.atomic import DataError, save_text
@@ -180,7 +180,7 @@ SCRIPT = code(BASE / "workflow" / "scripts" / "stage.py")
 
 def inputs_of(rule):
     """Input function of the rule of a stage."""
-    caption = caption_of(rule)
+    caption = caption_of(rule) | ({"before": ancient(planner.before_last)} if rule["last"] else {})
 
     def inputs(wildcards):
         files = planner.inputs(rule, dict(wildcards)) | caption

@@ -50,7 +50,7 @@ def write(results: Path, rules: Iterable[Mapping[str, Any]]) -> None:
 def write_for_last_run(results: Path) -> Path | None:
     """Write the index of a folder by the configuration of its last run, and name it. Nothing without a run.
 
-    Runs that failed or were stopped write no index.
+    Runs of which a job failed, or that were stopped, write no index themselves.
 
     Raises
     ------
@@ -72,7 +72,7 @@ def index(results: Path, rules: Iterable[Mapping[str, Any]]) -> str:
     """Page with the results of the last run of a folder."""
     runs = recorded_runs(results / "provenance.json")
     last, config, found = runs[-1], runs[-1]["config"], list(items(results, rules))
-    changes = differing(config, paper())
+    changes, checks = differing(config, paper()), list(csv.DictReader(_text(results / "checks.csv").splitlines()))
     return rendered(
         "index.html",
         title=front_page.subjects(config) or f"surfaces {', '.join(_surfaces_of_run(config))}",
@@ -82,13 +82,20 @@ def index(results: Path, rules: Iterable[Mapping[str, Any]]) -> str:
         surfaces=list(_surfaces(results, config)),
         figures=_by_category(item for item in found if item.shown.endswith(".png")),
         tables=[item for item in found if item.category == "Tables"],
-        verdict=_text(results / "verdict.txt").strip(),
-        checks=list(csv.DictReader(_text(results / "checks.csv").splitlines())),
+        verdict=_text(results / "verdict.txt").strip() or _failed(checks),
+        checks=checks,
         judged=bool(front_page.warning_pages(results, config)),
         warnings=list(front_page.warnings(results, config)),
         provenance=list(front_page.provenance(last, len(runs))),
         changes=yaml.safe_dump(changes, allow_unicode=True, sort_keys=False) if changes else "",
     )
+
+
+def _failed(checks):
+    """Sentences about checks of which some failed, as those of `stiction.report.checks.verdict`; empty without."""
+    failed = [f"{check['name']}: {check['case']}: {check['message']}" for check in checks if check["passed"] != "True"]
+    counted = f"{len(failed)} of {len(checks)} checks of the results failed. "
+    return counted + "; ".join(failed) if failed else ""
 
 
 def items(results: Path, rules: Iterable[Mapping[str, Any]]) -> Iterator[Item]:

@@ -61,6 +61,7 @@ def last_lines(
         yield f"stopped{after}; run the same command to continue"
     elif ended == Status.CHECKS:
         yield from _failed_checks(short_path(directory / "results"))
+        yield from where_to_look(short_path(directory / "results"), targets)
     elif run.failures:
         yield from _first_error(list(run.failures.values()), directory)
     elif ended != Status.DONE:

@@ -204,9 +204,10 @@ def _cost(config):
     from stiction.plan import cost, memory
     from stiction.plan.graph import Graph
     from stiction.plan.plan import Plan
+    from stiction.plan.planner import WHOLE
 
     preliminary, _ = preliminary_estimates(config)
-    jobs = Graph(Plan(config, preliminary)).needed("tables", "figures", "devices", "all")
+    jobs = Graph(Plan(config, preliminary)).needed(*WHOLE)
     return cost.in_words(sum(job.seconds for job in jobs), memory.job_memory(config))
 
 
@@ -223,6 +224,10 @@ def _run(arguments, *targets):
     dry = arguments.dry_run or bool({"-n", "--dry-run", "--dryrun"} & set(arguments.more))
     code, stopped = launch.snakemake(words, directory, quiet=not verbose, progress=not dry)
     ended = status(RUN, code, stopped)
+    if ended == Status.CHECKS:
+        from stiction.command import index  # takes longer than all other imports
+
+        index.write_for_last_run(directory / "results")
     printed = "" if verbose else launch.printed_last(directory)
     asked = ["compared_*"] * any("compare" in reading.read(file) for file in arguments.files)
     asked += [Path(word).stem for word in (*targets, *arguments.more)]

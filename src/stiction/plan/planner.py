@@ -20,6 +20,8 @@ from stiction.run.provenance import version_of
 
 #: Folder of all results, and ending of datasets.
 RESULTS, DATASET = "results/", ".nc"
+#: Targets of a whole run.
+WHOLE = ("tables", "figures", "devices", "all")
 
 
 class NotPlanned(ValueError):
@@ -89,6 +91,7 @@ class Planner:
             "minutes": running.minutes or USUAL_MINUTES,
             "memory": running.memory(self.plan) if running.memory else 0,
             "priority": running.priority,
+            "last": running.last,
             "temporary": running.temporary,
             "dataset": stage.save is None,
             "files": {key: path_of(stage, name) for key, name in stage.patterns(self.plan).items()},
@@ -104,6 +107,13 @@ class Planner:
     def wanted(self, target: str) -> list[str]:
         """Files wanted by a target of the workflow."""
         return [file for rule in self.rules if target in rule["targets"] for file in rule["wanted"]]
+
+    @cached_property
+    def before_last(self) -> list[str]:
+        """Files of a whole run for which the last jobs wait."""
+        return [
+            file for rule in self.rules if {*WHOLE} & {*rule["targets"]} and not rule["last"] for file in rule["wanted"]
+        ]
 
     def code(self, rule: Mapping[str, Any]) -> dict[str, str | None]:
         """Fingerprint of the module of the computation of a stage and of all its imports, and versions of libraries."""

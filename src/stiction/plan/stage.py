@@ -136,6 +136,9 @@ class Running:
     minutes: int | None = None  #: longest run time of a job, if it is worth a job of its own on a cluster
     memory: Callable[[Any], float] | None = None  #: of a job that needs more than its fields, by the plan [MB]
     priority: int = 0  #: jobs of a higher priority start first
+    last: bool = (
+        False  #: whether a job waits for all other files of a whole run; new ones repeat it, changed ones do not
+    )
     first: Callable[[Any], dict] | None = None  #: part of the inputs to read, by the settings
     streamed: bool = False  #: whether inputs in an order are loaded one at a time
     temporary: bool = False  #: whether the files are deleted once they have been read

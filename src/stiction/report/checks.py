@@ -29,7 +29,7 @@ from stiction.errors import NotConverged
 from stiction.estimates import jackknife, mean_with_error
 from stiction.models import MOMENT_KEYS, SURFACE_MODELS, surface_model
 from stiction.plan.names import Outcome, by_case, by_model, by_name, by_outcome
-from stiction.plan.stage import File, Stage, select, subsection
+from stiction.plan.stage import File, Running, Stage, select, subsection
 from stiction.report.format import TO_MJ, TO_NM, TO_UM, number, with_error
 from stiction.report.surfaces.tables import surface_statistics
 from stiction.run.atomic import save_text
@@ -497,7 +497,8 @@ STAGES = (
         inputs=lambda plan, at: {"checks": File("results/checks.csv")},
         compute=_verdict,
         save=lambda sentence, paths: save_text(f"{sentence}\n", paths["text"]),
-        message="Stop if a check has failed.",
+        message="Fail if a check has failed.",
         targets=("all",),
+        running=Running(last=True),
     ),
 )
