@@ -137,6 +137,15 @@ def test_a_key_of_no_entry_is_refused_with_the_names_of_entries(path, entries):
         load(BASE, {"compare": {path: [1, 2]}})
 
 
+@pytest.mark.parametrize("listed", [[1, 2], 5, None])
+def test_a_key_with_other_signs_is_refused_once_with_an_example(listed):
+    with pytest.raises(ConfigError) as refused:
+        load(BASE, {"compare": {"surfaces.B2.rms-nm": listed}})
+    lines = str(refused.value).splitlines()
+    assert sum("is no key, must be the section" in line and line.endswith("surfaces.B2.rms_nm") for line in lines) == 1
+    assert not [line for line in lines if "B2Rms" in line or "letters" in line]
+
+
 @pytest.mark.parametrize("compare", [[1], {}, {"surfaces.B2.rms_nm": [1]}, {"surfaces.B2.rms_nm": [2, 2]}])
 def test_what_is_no_list_of_different_values_is_refused(compare):
     with pytest.raises(ConfigError, match="^compare"):

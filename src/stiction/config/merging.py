@@ -5,6 +5,7 @@ on B2, and so on. Several keys change together, each copy with the values at one
 entries like any others: nothing else knows of the section but tables and figures.
 """
 
+import re
 from collections.abc import Mapping
 from itertools import chain
 from typing import Any
@@ -27,6 +28,9 @@ _NAMED = {
         "second_process": "process",
     },
 }
+
+#: Key below an entry.
+_KEY = re.compile(r"[A-Za-z0-9_]+([.][A-Za-z0-9_]+)*")
 
 
 def merged(base: Any, overlay: Any) -> Any:
@@ -84,7 +88,7 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
     if not (isinstance(compare, dict) and all(isinstance(path, str) for path in compare)):
         return config
     paths = [_parts_of_path(config, path) for path, _ in _compared_keys(config)]
-    if not all(map(_is_listed, compare.values())):
+    if not all(map(_is_listed, compare.values())) or not all(_KEY.fullmatch(keys) for _, _, keys in paths):
         return config
     copied, stated, ends = _users_of(config, *((section, name) for section, name, _ in paths)), config, values(config)
     for end, numbers in ends.items():

@@ -77,6 +77,10 @@ def _strict():
     return validators.extend(Draft202012Validator, type_checker=types)
 
 
+#: Keys of section compare.
+_COMPARED = "the section, the name of an entry and its key with dots between, such as surfaces.B2.rms_nm"
+
+
 def _also(path):
     """Other signs in names of a section."""
     return ", _ and -, not dry_ at the beginning" if path == ("surfaces",) else ""
@@ -86,6 +90,8 @@ def _problems_of(error, schema):
     """Problems for one error of jsonschema."""
     path, value = tuple(error.absolute_path), error.instance
     if "propertyNames" in error.absolute_schema_path:
+        if path == ("compare",):
+            return [Problem((*path, value), f"is no key, must be {_COMPARED}")]
         signs = f"letters and digits{_also(path)}, starting with a letter"
         return [Problem((*path, value), f"is not a valid name, must be {signs}{_name_hint(value)}")]
     if error.validator == "required":
