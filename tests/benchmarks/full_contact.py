@@ -13,8 +13,8 @@ for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 import numpy as np  # noqa: E402
 
 from stiction.config import files  # noqa: E402
-from stiction.contact.elements import separation  # noqa: E402
-from stiction.contact.halfspace import HalfSpace  # noqa: E402
+from stiction.contact.full.elements import separation  # noqa: E402
+from stiction.contact.full.halfspace import HalfSpace  # noqa: E402
 from stiction.plan.graph import Results  # noqa: E402
 from stiction.run.provenance import cpu_name  # noqa: E402
 from stiction.stages.contact import full_contact  # noqa: E402

@@ -25,8 +25,8 @@ from SurfaceTopography.Generation import fourier_synthesis  # noqa: E402
 from stiction.beam.release import released_beam  # noqa: E402
 from stiction.chaos.coordinates import principal_coordinates  # noqa: E402
 from stiction.chaos.density import conditional_quantiles, kernel_density  # noqa: E402
-from stiction.contact import elements  # noqa: E402
-from stiction.contact.halfspace import HalfSpace  # noqa: E402
+from stiction.contact.full import elements  # noqa: E402
+from stiction.contact.full.halfspace import HalfSpace  # noqa: E402
 from stiction.streams import stream  # noqa: E402
 from stiction.study import PairStudy  # noqa: E402
 

@@ -9,10 +9,11 @@ from numpy.testing import assert_allclose
 from test_elements import E, by_summits, rough, space_of
 
 from stiction.constants import HAMAKER_CONSTANT
-from stiction.contact import elements, gaps
-from stiction.contact.elements import GAPS, Adhesion, equilibrium, separation
+from stiction.contact import gaps
 from stiction.contact.environment import Gaps, Water, flooded_law
-from stiction.contact.halfspace import HalfSpace
+from stiction.contact.full import elements
+from stiction.contact.full.elements import GAPS, Adhesion, equilibrium, separation
+from stiction.contact.full.halfspace import HalfSpace
 from stiction.contact.materials import Solid
 from stiction.contact.pair import bearing_area
 from stiction.contact.solids import attraction_between

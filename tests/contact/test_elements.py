@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 from published import SPACING, SURFACES
 
-from stiction.contact import elements, forcelaw
+from stiction.contact import forcelaw
 from stiction.contact.asperity import MaugisTable, hertz_force, reduced_modulus
-from stiction.contact.elements import Adhesion, equilibrium, separation
-from stiction.contact.halfspace import HalfSpace
+from stiction.contact.full import elements
+from stiction.contact.full.elements import Adhesion, equilibrium, separation
+from stiction.contact.full.halfspace import HalfSpace
 from stiction.contact.meniscus import film
 from stiction.contact.pair import SurfacePair
 from stiction.contact.vanderwaals import attraction

@@ -3,7 +3,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from stiction.contact.halfspace import OWN_DISPLACEMENT, HalfSpace, love, periodic_waves
+from stiction.contact.full.halfspace import OWN_DISPLACEMENT, HalfSpace, love, periodic_waves
 
 MODULUS, SPACING = 86.6e9, 1e-8
 UNIT = SPACING / MODULUS

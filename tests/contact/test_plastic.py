@@ -7,8 +7,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.contact.asperity import hertz_force, hertz_maximum_stress, reduced_modulus
-from stiction.contact.elements import TOLERANCE, equilibrium
-from stiction.contact.halfspace import HalfSpace
+from stiction.contact.full.elements import TOLERANCE, equilibrium
+from stiction.contact.full.halfspace import HalfSpace
 
 E, NM = reduced_modulus(164e9, 0.23), 1e-9
 HARDNESS, RADIUS, SPACING, POINTS = 12.8e9, 100 * NM, 5 * NM, 60

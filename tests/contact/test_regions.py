@@ -10,8 +10,8 @@ from scipy.ndimage import label
 
 from stiction.contact import forcelaw
 from stiction.contact.asperity import MaugisTable, hertz_force, reduced_modulus
-from stiction.contact.elements import Adhesion
-from stiction.contact.halfspace import HalfSpace
+from stiction.contact.full.elements import Adhesion
+from stiction.contact.full.halfspace import HalfSpace
 from stiction.contact.meniscus import film
 from stiction.contact.pair import DistanceGrid, SurfacePair
 from stiction.contact.regions import BETWEEN, Strip, alone, solid_pressure, together

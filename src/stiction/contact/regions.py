@@ -3,8 +3,9 @@
 A region is a connected part of the surface that the flat touches at a distance, or may attract: within twice the reach
 of the attraction, because attracted elements rise and lift their neighbours. Its elements displace each other on an
 infinite half-space, and no elements of other regions. Compared with a sum over asperities, regions keep the
-shape to which a sphere would be fitted; compared with full elastic contact (`stiction.contact.elements`), they do not
-act on each other. As in the paper, the film of water acts on the undeformed surfaces and is not part of the pressure.
+shape to which a sphere would be fitted; compared with full elastic contact (`stiction.contact.full.elements`), they do
+not act on each other. As in the paper, the film of water acts on the undeformed surfaces and is not part of the
+pressure.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,8 +16,8 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from stiction.contact import forcelaw
-from stiction.contact.elements import Adhesion, State, equilibrium
-from stiction.contact.halfspace import HalfSpace, love
+from stiction.contact.full.elements import Adhesion, State, equilibrium
+from stiction.contact.full.halfspace import HalfSpace, love
 from stiction.contact.pair import DistanceGrid, bearing_area
 from stiction.kernels import kernel
 

@@ -9,8 +9,9 @@ import pytest
 from stiction.beam.cantilever import Beam
 from stiction.beam.montecarlo import Experiment, released_beams
 from stiction.config.files import load
-from stiction.contact import elements, forcelaw, solids
-from stiction.contact.halfspace import HalfSpace
+from stiction.contact import forcelaw, solids
+from stiction.contact.full import elements
+from stiction.contact.full.halfspace import HalfSpace
 from stiction.plan.graph import Results
 from stiction.stages.contact import contact
 from stiction.stages.contact.curves import force_curves

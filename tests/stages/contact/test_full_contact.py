@@ -12,8 +12,8 @@ from stiction.config.cases import case_id, in_numbers
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.units import in_si
-from stiction.contact import elements
 from stiction.contact.environment import Water
+from stiction.contact.full import elements
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.stages.contact import curves, full_contact

@@ -12,9 +12,9 @@ import xarray as xr
 from stiction.config.units import in_si
 from stiction.contact import solids
 from stiction.contact.asperity import Asperity
-from stiction.contact.elements import Adhesion
 from stiction.contact.environment import Water
-from stiction.contact.halfspace import HalfSpace
+from stiction.contact.full.elements import Adhesion
+from stiction.contact.full.halfspace import HalfSpace
 from stiction.contact.pair import Definition, EquivalentSurface
 from stiction.contact.pair import solid_pressure as pressure_of_spheres
 from stiction.contact.regions import Strip, alone, solid_pressure

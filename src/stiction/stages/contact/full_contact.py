@@ -11,9 +11,10 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.plasticity import ONSET
-from stiction.contact import elements, forcelaw, solids
+from stiction.contact import forcelaw, solids
 from stiction.contact.environment import Water
-from stiction.contact.halfspace import HalfSpace
+from stiction.contact.full import elements
+from stiction.contact.full.halfspace import HalfSpace
 from stiction.contact.materials import ELASTIC
 from stiction.plan.stage import At, Running, Stage, select
 from stiction.progress import progress

@@ -8,8 +8,8 @@ import xarray as xr
 
 from stiction.config.units import from_si
 from stiction.contact import solids
-from stiction.contact.elements import Adhesion, State, at_rest, equilibrium
-from stiction.contact.halfspace import HalfSpace
+from stiction.contact.full.elements import Adhesion, State, at_rest, equilibrium
+from stiction.contact.full.halfspace import HalfSpace
 from stiction.plan.stage import Running, Stage
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.pairs import bodies

@@ -2,7 +2,7 @@ r"""Full elastic contact of a rough strip, by boundary elements (not in the pape
 
 A second model of the contact of a pair, with which the sum over summits is compared: every element acts on every other,
 summits have their true shape, and the attraction of water and solids deforms the surfaces. With the pressure p >= 0 of
-the solids, the attraction q >= 0, and the displacement K of `stiction.contact.halfspace`,
+the solids, the attraction q >= 0, and the displacement K of `stiction.contact.full.halfspace`,
 
 .. math:: g = d - z + K (p - q) , \quad g \ge 0 , \quad p g = 0 , \quad q = q(g) , \quad f = \bar p - \bar q .
 
@@ -32,7 +32,7 @@ import numpy as np
 
 from stiction.contact.environment import Gaps
 from stiction.contact.forcelaw import extremum, limit_distance
-from stiction.contact.halfspace import OWN_DISPLACEMENT, HalfSpace
+from stiction.contact.full.halfspace import OWN_DISPLACEMENT, HalfSpace
 from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.errors import NotConverged
 from stiction.kernels import kernel

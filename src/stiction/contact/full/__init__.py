@@ -1,0 +1,1 @@
+"""Full elastic contact of a rough strip, a second model (not in the paper)."""
