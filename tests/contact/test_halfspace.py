@@ -82,3 +82,10 @@ def test_square_elements_are_stiffer_than_waves_of_the_grid_alone():
     wave = 2 * np.pi * np.hypot(np.fft.fftfreq(64)[:, None], np.fft.rfftfreq(64))
     wave[0, 0] = np.inf
     assert np.fft.irfft2(2 / wave)[0, 1] / exact == pytest.approx(1.06, abs=0.01)
+
+
+def test_tractions_of_displacements_are_the_pressures_without_their_mean():
+    space, pressure = HalfSpace((12, 15), SPACING, MODULUS), np.random.default_rng(3).normal(5e7, 1e8, (12, 15))
+    displacement = space.displacement(pressure.astype(np.float32)) + np.float32(3e-9)
+    np.testing.assert_allclose(space.traction(displacement), pressure - pressure.mean(), atol=1e-4 * 1e8)
+    assert space.traction(displacement).mean() == pytest.approx(0, abs=1e2)

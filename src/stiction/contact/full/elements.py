@@ -25,6 +25,7 @@ the flattened tops, and frictionless, and slopes are small. Where several states
 strip is in the one that it reaches during separation, from the state without force; that one begins without attraction.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -54,7 +55,7 @@ GAP_STEP = 0.02e-9
 #: Gaps of these tables [m], to where flats have 1e-5 of the work of flats that touch. ASSUME: no attraction beyond.
 GAPS = np.arange(0, 300e-9, GAP_STEP)
 #: Most turns of the attraction, displacements in each, and distances in the search for one state.
-TURNS, STEPS, STATES = 100, 1000, 40
+TURNS, STEPS, STATES = 40, 1000, 40
 _UNSETTLED = (
     "full elastic contact does not settle, with surfaces too smooth or a solid too soft for the grid: decrease "
     "sampling.spacing_nm"
@@ -115,7 +116,7 @@ class Adhesion:
         """
         work, end = gaps.work(GAPS, self.height), int(np.searchsorted(GAPS, self.reach + self.ramp / 2))
         line = work[end] + (work[end] - work[end + 1]) * (end - np.arange(end))
-        stress = self.stress + (work[0] - line[0]) / self._near(0.0)
+        stress = self.stress + (work[0] - line[0]) / self.reach
         return replace(self, stress=float(stress), work=np.concatenate([line, work[end:]]))
 
     @cached_property
@@ -129,18 +130,16 @@ class Adhesion:
         gaps = np.ravel(gap).astype(np.float32, copy=False)
         traction = _traction(gaps, *law)
         if self.work is not None:
-            _add_pull(traction, gaps, self._pull, np.float32(1 / GAP_STEP))
+            _add_table(traction, gaps, self._pull, np.float32(1 / GAP_STEP))
         return traction.reshape(np.shape(gap))
 
     def energy(self, gap: np.ndarray) -> np.ndarray:
-        """Energy w per area at gaps >= 0, negative [J m⁻²]."""
-        touching = -self.tension * np.clip(self.height - gap, 0, None) - self.stress * self._near(gap)
-        return touching if self.work is None else touching - np.interp(gap, GAPS, self.work)
-
-    def _near(self, gap):
-        """Work at gaps against a stress of 1 with the ramp at its end [m]."""
-        inside = np.clip(self.reach + self.ramp / 2 - gap, 0, None)
-        return np.where(inside < self.ramp, inside**2 / (2 * self.ramp), inside - self.ramp / 2)
+        """Energy w per area at gaps >= 0, of their shape, negative [J m⁻²]."""
+        gaps = np.ravel(gap).astype(float, copy=False)
+        work = _work(gaps, self.height, self.tension, self.stress, self.reach + self.ramp / 2, self.ramp)
+        if self.work is not None:
+            _add_table(work, gaps, self.work, 1 / GAP_STEP)
+        return -work.reshape(np.shape(gap))
 
 
 @dataclass(frozen=True)
@@ -231,16 +230,27 @@ def _traction(gap, height, tension, stress, end, ramp):
 
 
 @kernel
-def _add_pull(traction, gap, pull, per_gap):
-    """Add a table of the pull [Pa], equally spaced from the gap 0, linear in between, to the attraction at gaps (n,).
+def _work(gap, height, tension, stress, end, ramp):
+    """Work of `_traction` from gaps (n,) on [J m⁻²]."""
+    work = np.empty_like(gap)
+    for i in range(gap.size):
+        inside = _larger(end - gap[i], 0.0)
+        near = inside * inside / (2 * ramp) if inside < ramp else inside - ramp / 2
+        work[i] = tension * _larger(height - gap[i], 0.0) + stress * near
+    return work
 
-    Nodes ``per_gap`` [m⁻¹]. The pull is that of the first node at overlaps, and zero beyond the last.
+
+@kernel
+def _add_table(values, gap, table, per_gap):
+    """Add a table, equally spaced from the gap 0 and linear in between, to values at gaps (n,), all of one precision.
+
+    Nodes ``per_gap`` [m⁻¹]. The table is that of its first node at overlaps, and zero beyond its last.
     """
     for i in range(gap.size):
         place = _larger(gap[i] * per_gap, np.float32(0))
         node = np.int64(place)
-        if node < pull.size - 1:
-            traction[i] += pull[node] + (place - np.float32(node)) * (pull[node + 1] - pull[node])
+        if node < table.size - 1:
+            values[i] += table[node] + (place - np.float32(node)) * (table[node + 1] - table[node])
 
 
 @kernel
@@ -342,6 +352,10 @@ def _larger(first, second):
     return first if first > second else second
 
 
+#: State at a distance by elements, heights, distance, adhesion, a state before it, and how much coarser; `equilibrium`.
+Settle = Callable[..., State]
+
+
 @dataclass(frozen=True)
 class Separation:
     """Strip from the state without force to the largest attraction."""
@@ -353,7 +367,11 @@ class Separation:
 
 
 def separation(
-    space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, curve: tuple[np.ndarray, np.ndarray]
+    space: HalfSpace,
+    heights: np.ndarray,
+    adhesion: Adhesion,
+    curve: tuple[np.ndarray, np.ndarray],
+    settle: Settle | None = None,
 ) -> Separation:
     """Adhesion energy and largest attraction of a strip of heights z (n1, n2) float32 [m].
 
@@ -363,18 +381,22 @@ def separation(
         Distances and forces of another model, which lead to the distance without force [m], [Pa]. A third of the
         difference between its distances without force and of the largest attraction is the step between distances, and
         a third of that near the largest attraction.
+    settle : callable, optional
+        Solver of one state, by default `equilibrium`.
 
     Raises
     ------
+    NotConverged
+        If a state does not settle.
     ValueError
         If no distance without force is found, or no largest attraction.
     """
 
     def at(distance, before):
         """State at a distance [m], from a state before it."""
-        return equilibrium(space, heights, distance, adhesion, before)
+        return (settle or equilibrium)(space, heights, distance, adhesion, before)
 
-    closed, states = at_rest(space, heights, adhesion, curve)
+    closed, states = at_rest(space, heights, adhesion, curve, settle)
     (far, _), step = extremum(*curve), _step(curve)
     coarse, before = _beyond_extremum(at, closed, step, far)
     fine, _ = _beyond_extremum(at, before, step / 3, before.distance + step)
@@ -383,13 +405,17 @@ def separation(
 
 
 def at_rest(
-    space: HalfSpace, heights: np.ndarray, adhesion: Adhesion, curve: tuple[np.ndarray, np.ndarray]
+    space: HalfSpace,
+    heights: np.ndarray,
+    adhesion: Adhesion,
+    curve: tuple[np.ndarray, np.ndarray],
+    settle: Settle | None = None,
 ) -> tuple[State, int]:
     """State without force, with the adhesion energy, and the number of states. Parameters of `separation`."""
 
     def at(distance, before, coarser=1.0):
         """State at a distance [m], from a state before it, on a coarser tolerance."""
-        return equilibrium(space, heights, distance, adhesion, before, coarser=coarser)
+        return (settle or equilibrium)(space, heights, distance, adhesion, before, coarser=coarser)
 
     return _without_force(at, curve, lambda state: state.energy(heights, adhesion))
 

@@ -54,6 +54,20 @@ class HalfSpace:
         n1, n2 = self.shape
         return fft.irfft2(fft.rfft2(pressure, s=self._padded) * self._waves, s=self._padded)[:n1, :n2]
 
+    @cached_property
+    def _inverse(self):
+        """Inverse of the waves, float32 [Pa m⁻¹], 0 for the mean."""
+        waves = self._waves.copy()
+        waves[0, 0] = np.inf  # rounding leaves a little of the mean
+        return 1 / waves
+
+    def traction(self, displacement: np.ndarray) -> np.ndarray:
+        """Pressures of mean 0 that displace the elements of a periodic strip so, from their mean (n1, n2) float32 [Pa].
+
+        Displacements (n1, n2) float32 [m], of which the mean is left out.
+        """
+        return fft.irfft2(fft.rfft2(displacement) * self._inverse, s=self.shape)
+
 
 def love(i: np.ndarray, j: np.ndarray) -> np.ndarray:
     r"""Displacement of an infinite half-space at offsets from a square element of uniform pressure, in units of p Δ/E'.
