@@ -72,6 +72,13 @@ def titled(_app, docname, source):
         source[0] = f"---\norphan: true\n---\n\n# {title}\n\n{source[0]}"
 
 
+def without_sidebar(_app, pagename, _templatename, context, _doctree):
+    """Leave the list of all pages out of the pages of source code, which takes half of the time of a build."""
+    if pagename.startswith("_modules/"):
+        context["toctree"] = lambda **_options: ""
+
+
 def setup(app):
-    """Register `titled` with Sphinx."""
+    """Register `titled` with Sphinx, and `without_sidebar` before the theme asks for the list."""
     app.connect("source-read", titled)
+    app.connect("html-page-context", without_sidebar, priority=100)

@@ -56,7 +56,7 @@ def project(tmp_path):
         executable(tmp_path / name, (ROOT / name).read_text(encoding="utf-8"))
     for environment in (".venv", ".venv/newest"):
         executable(tmp_path / environment / "bin" / "python", PYTHON)
-        for tool in ("ruff", "snakefmt", "snakemake"):
+        for tool in ("ruff", "snakefmt", "snakemake", "stiction"):
             executable(tmp_path / environment / "bin" / tool, "#!/bin/sh\n")
         (tmp_path / environment / "ready").touch()
     executable(tmp_path / "bin" / "id", "#!/bin/sh\necho 1000\n")  # installs nothing
@@ -99,6 +99,16 @@ def test_a_part_that_fails_fails_the_whole_after_all_others(project, part):
     assert status == 1
     assert printed.splitlines()[-1] == f"FAILED: {part}"
     assert len(asked) == len(PARTS) + (part == "slow tests"), "which have a second try"
+
+
+def test_the_smoke_run_on_another_python_must_pass(project):
+    executable(project / ".venv" / "newest" / "bin" / "stiction", "#!/bin/sh\nexit 3\n")
+    status, printed, asked = run(project, [".ci/run"])
+    assert status == 1
+    assert printed.splitlines()[-1] == "FAILED: smoke run on Python 3.14.0"
+    assert len(asked) == len(PARTS)
+    ignoring = [PARTS["fast tests on Python 3.14.0"] in " ".join(call) for call in asked if "--ignore" in call]
+    assert ignoring == [True]
 
 
 @pytest.mark.parametrize("part", PARTS)

@@ -400,6 +400,7 @@ def test_citation_changelog_and_package_name_the_same_version():
 )
 def test_docs_build_without_a_warning_and_without_a_network(tmp_path):
     command = [sys.executable, "-m", "sphinx", "-W", "--keep-going", "-n", "-q", "-E", "-d", tmp_path / "tree"]
+    command += ["-D", "plot_gallery=0"]  # test_gallery.py runs the studies
     built = subprocess.run([*map(str, command), DOCS, tmp_path / "html"], capture_output=True, text=True, check=False)
     assert built.returncode == 0, built.stderr
     page = (tmp_path / "html" / "python.html").read_text(encoding="utf-8")
