@@ -27,8 +27,8 @@ from stiction.errors import NotConverged
 from stiction.kernels import kernel
 
 #: Largest mean rest of the gradient in the last step, over the attraction or the force. With a tenth of it, e changes
-#: by less than 0.1 % and f_max by 1 %; with four times as much, by 0.3 and 2 %.
-SETTLED = 5e-4
+#: by up to 0.4 % and f_max by 2 %.
+SETTLED = 1e-3
 #: Most steps of a descent, and halvings of one step.
 STEPS, HALVINGS = 3000, 30
 #: Energies of which a step must stay below the largest, by this share of the decrease that its gradient predicts.
