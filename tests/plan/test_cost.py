@@ -54,6 +54,8 @@ def test_the_time_of_beams_grows_with_their_number_and_sizes():
 def test_the_time_of_full_contact_grows_with_strips_and_humidities():
     one, many = (cost.job_cost({"strips": n, "humidities": [0.5] * m}, {}) - cost.PER_JOB for n, m in ((1, 1), (5, 3)))
     assert many == pytest.approx(15 * one, rel=1e-12)
+    dry = cost.job_cost({"strips": 5, "humidities": [0, 0.5]}, {}) - cost.PER_JOB
+    assert dry == pytest.approx(5 * (one + cost.PER_DRY_STRIP), rel=1e-12)
 
 
 def test_a_job_without_samples_and_beams_takes_the_time_of_any_job():

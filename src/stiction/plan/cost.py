@@ -13,8 +13,9 @@ from stiction.config.units import NM_PER_UM
 #: CPU time [s] of a job apart from the following, of one point of a field of a sample in contact, and of one beam, on
 #: one core of an AMD EPYC: 7 ms for 2.5 µm x 31 µm at 10 nm, and 0.24 s for 100 beams (docs/tables/bench.md).
 PER_JOB, PER_POINT, PER_BEAM = 0.7, 7e-3 / (250 * 3100), 2.4e-3
-#: The same of a strip of the paper in full elastic contact at one humidity (docs/tables/full_contact_times.md).
-PER_STRIP = 2.0
+#: The same of a strip of the paper in full elastic contact at one humidity (docs/tables/full_contact_times.md), and in
+#: dry air, where strips of surfaces like those of the paper take 2 s, and smooth ones up to 150 s.
+PER_STRIP, PER_DRY_STRIP = 2.0, 10.0
 #: Time that every job reserves [min], that of the profiles for rules without resources.
 USUAL_MINUTES = 10
 #: Units of time [s].
@@ -40,8 +41,8 @@ def job_cost(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets
     parts, sections = int(wildcards["number"]) if "chunk" in wildcards else 1, list(_sections(settings))
     contacts = sum(map(_contact_time, sections)) * datasets / parts
     full = (section for section in sections if section.keys() >= _FULL)
-    strips = sum(section["strips"] * len(section["humidities"]) for section in full)
-    return PER_JOB + contacts + PER_STRIP * strips + PER_BEAM * sum(map(_beams, sections))
+    strips = sum(section["strips"] * sum(map(_strip_time, section["humidities"])) for section in full)
+    return PER_JOB + contacts + strips + PER_BEAM * sum(map(_beams, sections))
 
 
 def minutes(seconds: float, longest: int) -> int:
@@ -77,6 +78,11 @@ def _contact_time(section):
     sides = (side + sampling["margin_um"] for side in (sampling["strip_length_um"], section["beam"]["width_um"]))
     length, width = (NM_PER_UM * side / sampling["spacing_nm"] for side in sides)
     return samples * length * width * PER_POINT
+
+
+def _strip_time(humidity):
+    """CPU time of a strip in full elastic contact [s]."""
+    return PER_STRIP if humidity else PER_DRY_STRIP
 
 
 def _beams(section):
