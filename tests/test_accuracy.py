@@ -13,15 +13,18 @@ from stiction import accuracy
 from stiction.config.cases import case_id
 from stiction.config.files import normalised
 from stiction.config.merging import merged
+from stiction.config.units import in_si
 from stiction.devices.numbers import MOST_BEAMS, Spread
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.run.disk_cache import DiskCache
+from stiction.stages.contact import curves
 
 C1 = "kind: cantilever, pair: b, thickness_um: 2.6, gap_um: 10, width_um: 4, humidities: [0.88]"
 R1 = "kind: bridge, pair: b, thickness_um: 2, gap_um: 2, width_um: 4, residual_stress_MPa: 50, humidities: [0.88]"
 S1 = "kind: stopper, pair: b, contact_um: [3, 3], restoring_force_uN: 1, humidities: [0.5]"
 SMALL = f"chaos: {{order: 2}}\ndesign: {{accuracy: {{length: 0.03}}}}\ndevices: {{C1: {{{C1}}}, S1: {{{S1}}}}}"
+PLAIN = f"chaos: {{order: 2}}\ndevices: {{C1: {{{C1}}}, S1: {{{S1}}}}}"
 SPREADS = {case_id("C1", 0.88): [Spread(0.03, 0.6), Spread(0.06, 0.1)]}
 
 
@@ -43,8 +46,10 @@ def settings(config, file):
     return Graph(Plan(config)).job(file).settings
 
 
-def test_without_an_accuracy_a_configuration_is_as_it_is():
-    config = configured(SMALL.replace("accuracy: {length: 0.03}", "beams: 400"))
+@pytest.mark.parametrize("overlay", ["contact: {samples: 400}", f"devices: {{S1: {{{S1}}}}}", "{}"])
+def test_a_configuration_with_nothing_to_decide_is_as_it_is(overlay):
+    devices = f"devices: {{C1: {{{C1}}}}}" if "samples" in overlay else "{}"
+    config = configured("chaos: {order: 2}", devices, overlay)
     assert accuracy.decided(config) is config
     assert accuracy.numbers(config, {}) is None
 
@@ -118,6 +123,60 @@ def test_what_the_pilot_expects_to_miss_is_said(of_pilot):
 def test_without_an_error_of_the_pilot_numbers_are_those_of_the_configuration(of_pilot):
     of_pilot({})
     assert accuracy.decided(configured(SMALL))["design"]["beams"] == PAPER["design"]["beams"]
+
+
+# Samples without an accuracy
+
+
+@pytest.fixture
+def with_error(monkeypatch):
+    """Numbers, and configuration with them, where a pilot shows an error of the mean length on one strip."""
+
+    def decide(error, *overlays):
+        monkeypatch.setattr(accuracy, "_mean_errors", lambda plan, *_: dict.fromkeys(plan.devices.cases, error))
+        config = configured(PLAIN, *overlays)
+        numbers = accuracy.numbers(config, {})
+        return numbers.samples, numbers.within(config)
+
+    return decide
+
+
+def test_without_an_accuracy_the_samples_of_grounds_follow_from_the_errors_of_mean_lengths(with_error):
+    samples, decided = with_error([0.08])
+    assert samples == {"b_1500x4000": 1000}
+    assert settings(decided, "devices/contact/b_1500x4000")["contact"]["samples"] == 1000
+    assert accuracy.decided(decided) is decided
+    plain, tips = configured(PLAIN), Plan(decided).devices.tips("C1").name
+    for file in ("devices/contact/b_3000x3000", "contact/b_NG", f"devices/contact/tips/{tips}"):
+        assert settings(decided, file) == settings(plain, file)
+
+
+@pytest.mark.parametrize("error", [[], [1.0]])
+def test_grounds_without_an_error_or_with_a_large_one_are_as_they_are(with_error, error):
+    samples, decided = with_error(error, "beam: {width_um: 4}")
+    assert samples == {}
+    assert Plan(decided).devices.has_strips_of_pair("C1")
+    assert not Plan(with_error([0.08], "beam: {width_um: 4}")[1]).devices.has_strips_of_pair("C1")  # control
+
+
+def test_ground_that_a_stopper_touches_as_well_is_as_it_is(with_error):
+    assert with_error([0.08], "devices: {S1: {contact_um: [1.5, 4]}}")[0] == {}
+
+
+def test_there_are_at_least_as_many_samples_as_changed_ones(with_error):
+    assert with_error([0.0], "chaos: {order: 12}")[0] == {"b_1500x4000": 500}
+    assert with_error([0.0], "studies: {slopes: {samples: 700}}")[0] == {"b_1500x4000": 1000}
+
+
+@pytest.mark.slow
+def test_the_error_of_the_mean_length_is_a_quarter_of_the_scatter_of_energies():
+    pilot = accuracy._Pilot.of(Plan(configured(PLAIN)))
+    (case,) = pilot.plan.devices.cases
+    ((error,), again) = pilot.mean_error(case), accuracy._Pilot.of(Plan(configured(PLAIN))).mean_error(case)
+    contact = pilot._contact(*pilot._places(case)[0])
+    energies = curves.energies(contact, case.humidity, in_si(accuracy._Settings, pilot._beam_settings(case)).water)
+    assert np.isclose(error, 0.25 * energies.std(ddof=1) / energies.mean(), rtol=0.02)
+    assert again == [error]
 
 
 # By a pilot

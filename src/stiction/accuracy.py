@@ -1,17 +1,19 @@
-"""Numbers of beams and of samples for the accuracy that a configuration asks of the lengths of devices.
+"""Numbers of beams and of samples for the errors of the lengths of devices.
 
 They are decided before any job, from the errors of a pilot: of each device at each humidity, on few samples of its
 ground and tips. Its random numbers are its own. The numbers are thus independent of the results, whose estimates and
 bounds are those of stated numbers; the same whatever the cores; and found in the settings of every dataset.
 
-The accuracy is that of the length of the middle share of stuck devices, of which pages speak. As in `stiction.pilot`,
-surfaces with a spectrum to be improved by the run are preliminary.
+An accuracy that a configuration asks for is that of the length of the middle share of stuck devices, of which pages
+speak. Without one, and without samples of the user's own, grounds of beams get as many samples as the mean length on
+their strips needs (`stiction.devices.numbers.strips_for_mean`), at most those of the configuration. As in
+`stiction.pilot`, surfaces with a spectrum to be improved by the run are preliminary.
 """
 
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -22,14 +24,17 @@ from stiction.config.merging import merged
 from stiction.config.reading import is_stated
 from stiction.config.scans import preliminary_estimates, with_preliminary_estimates
 from stiction.config.units import in_si
+from stiction.contact import forcelaw
 from stiction.contact.environment import Water
-from stiction.devices.numbers import Spread, beams_for, strips_for
+from stiction.devices.numbers import Spread, beams_for, strips_for, strips_for_mean
+from stiction.devices.sampling import sampled_surfaces
 from stiction.devices.tail import fit_tail
 from stiction.pilot import surface
-from stiction.plan.devices import Patch
+from stiction.plan.devices import DevicePlan, Patch
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At, select
 from stiction.progress import without_progress
+from stiction.stages.contact import curves
 from stiction.stages.contact.changes.patches import GROUND, TIPS, Place
 from stiction.stages.contact.contact import compute
 from stiction.stages.contact.pairs import Settings
@@ -47,9 +52,9 @@ _PART = 0.25
 
 @dataclass(frozen=True)
 class Numbers:
-    """Numbers of beams and of samples for an accuracy, and the errors to be expected of them."""
+    """Numbers of beams and of samples, and the errors to be expected of them."""
 
-    accuracy: float  #: relative standard error that is asked for [-]
+    accuracy: float | None  #: relative standard error that is asked for, if any [-]
     beams: int  #: of every device and humidity; as many tips
     samples: dict[str, int]  #: of the grounds of beams, by the name of the patch; none if they are stated
     errors: dict[Case, float]  #: largest of the lengths of each case [-]
@@ -60,6 +65,8 @@ class Numbers:
 
     def __str__(self):
         grounds = "".join(f", {number} samples of {name}" for name, number in self.samples.items())
+        if self.accuracy is None:
+            return f"Devices take {self.beams} beams{grounds}."
         words = f"An accuracy of {self.accuracy:.2g} takes {self.beams} beams{grounds}"
         worst = max(self.errors, key=self.errors.get, default=None)
         if worst is None or self.errors[worst] <= self.accuracy:
@@ -69,11 +76,10 @@ class Numbers:
 
 
 def decided(config: dict) -> dict:
-    """Complete configuration with the numbers for its accuracy, itself if it asks for none or has them."""
-    if "accuracy" not in config["design"] or "samples_of_patches" in config["design"]:
+    """Complete configuration with the numbers for the errors of its devices, itself if it leaves none open."""
+    if not DevicePlan(config).has_open_numbers:
         return config
-    found = numbers(config, preliminary_estimates(config)[0])
-    return found.within(config) if found else config
+    return numbers(config, preliminary_estimates(config)[0]).within(config)
 
 
 def numbers(
@@ -82,7 +88,7 @@ def numbers(
     code: object = None,
     remember: Callable = lambda _, compute: compute(),
 ) -> Numbers | None:
-    """Numbers for the accuracy of a configuration, none if it asks for none.
+    """Numbers for the errors of the devices of a configuration, none if it leaves none open.
 
     Stated numbers remain, and without beams those of the configuration. Cases have no part in them if too few of their
     beams stick for an error.
@@ -98,9 +104,15 @@ def numbers(
     remember : callable
         Keeps what the pilot showed, see `stiction.run.disk_cache.DiskCache`.
     """
-    plan, design = Plan(config, preliminary), config["design"]
-    if "accuracy" not in design:
-        return None
+    plan = Plan(config, preliminary)
+    if "accuracy" in config["design"]:
+        return _for_accuracy(plan, code, remember)
+    return _for_means(plan, code, remember) if plan.devices.has_open_numbers else None
+
+
+def _for_accuracy(plan, code, remember):
+    """Numbers for an accuracy."""
+    config, design = plan.config, plan.config["design"]
     spreads = _spreads(plan, code, remember)
     share, accuracy = _middle(design["shares"]), design["accuracy"]["length"]
     stated, beams = config["contact"]["samples"], design["beams"]
@@ -115,6 +127,22 @@ def numbers(
     strips = {case: samples.get(plan.devices.ground(case.device).name, stated) for case in spreads}
     errors = {case: max(one.error(beams, strips[case], share) for one in some) for case, some in spreads.items()}
     return Numbers(accuracy, beams, samples, errors)
+
+
+def _for_means(plan, code, remember):
+    """Numbers of samples that the mean lengths on the strips need, where they are fewer than by default.
+
+    A ground without an error in one of its cases keeps those of the configuration. ASSUME: 500 samples carry any order
+    of the chaos model, whose coefficients are projections of a kernel density: at order 12 on 500 samples of pair b at
+    RH 0.67, lengths of P(stuck) = 0.001 are 0.1 ± 0.2 % shorter than on 5000.
+    """
+    config, samples, fewest = plan.config, {}, plan.config["studies"]["slopes"]["samples"]
+    errors = _mean_errors(plan, code, remember)
+    for name, cases in _by_ground(plan, plan.devices.cases).items():
+        if all(errors[case] for case in cases):
+            number = strips_for_mean(max(errors[case][0] for case in cases), fewest)
+            samples |= {name: number} if number < config["contact"]["samples"] else {}
+    return Numbers(None, config["design"]["beams"], samples, {})
 
 
 def _middle(shares):
@@ -147,6 +175,15 @@ def _spreads(plan, code, remember):
         for case in plan.devices.cases
     }
     return {case: [Spread(*one) for one in some] for case, some in found.items() if some}
+
+
+def _mean_errors(plan, code, remember):
+    """Error of the length without scatter on one strip, by case, as a list without it where there is none."""
+    pilot = _Pilot.of(plan)
+    return {
+        case: remember([code, "mean", *pilot.mean_determined_by(case)], lambda case=case: pilot.mean_error(case))
+        for case in plan.devices.cases
+    }
 
 
 @dataclass(frozen=True)
@@ -198,6 +235,28 @@ class _Pilot:
             return spreads_of(beams, _middle(self.plan.config["design"]["shares"]), len(met.sampled))
         except (ValueError, ArithmeticError):  # which the jobs of the case state
             return []
+
+    def mean_determined_by(self, case: Case) -> list:
+        """Settings and surfaces on which the error of the length without scatter depends."""
+        names = self.plan.sides(self.plan.config["devices"][case.device]["pair"])
+        entries = [self.plan.config["surfaces"][name] for name in names]
+        of_contact = self._settings(*self._places(case)[0])
+        return [self._beam_settings(case), of_contact, entries, self.plan.config["character"]]
+
+    def mean_error(self, case: Case) -> list[float]:
+        """Relative error of the length without scatter on one strip [-], none where no strips have force laws."""
+        settings = in_si(_Settings, self._beam_settings(case))
+        try:
+            with without_progress():
+                contact = self._contact(*self._places(case)[0])
+                vectors, limit = curves.vectors(contact, case.humidity, settings.water)
+            laws = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
+            opening = settings.device.opening
+            on_mean = partial(opening.length_on_mean, beam=settings.device.beam)
+            covariance = sampled_surfaces(laws, opening.contribution, on_mean, uniform=1.0).covariance
+        except (ValueError, ArithmeticError):  # which the jobs of the case state
+            return []
+        return [float(np.sqrt(covariance[0, 0] * len(laws)))]
 
     def _beam_settings(self, case):
         """Settings of the beams of a case."""

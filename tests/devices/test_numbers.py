@@ -5,7 +5,16 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from stiction.devices.numbers import MOST_BEAMS, MOST_STRIPS, Spread, beams_for, quantile_errors, strips_for
+from stiction.devices.numbers import (
+    MEAN_ERROR,
+    MOST_BEAMS,
+    MOST_STRIPS,
+    Spread,
+    beams_for,
+    quantile_errors,
+    strips_for,
+    strips_for_mean,
+)
 from stiction.devices.risk import safe_length, samples_for
 
 spreads = st.lists(st.builds(Spread, st.floats(0.005, 0.2), st.floats(0, 0.5)), min_size=1, max_size=3)
@@ -50,6 +59,24 @@ def test_beams_that_are_all_equal_need_few_and_strips_that_differ_much_the_most(
     assert beams_for([Spread(0.0, 0.1)], 1e-3, 0.01, 300) == 200
     assert strips_for([Spread(0.0, 0.0)], 1e-3, 0.01, 200, 301) == 400
     assert strips_for([Spread(0.0, 9.0)], 1e-3, 0.01, 200, 300) == MOST_STRIPS
+
+
+@given(st.floats(0.01, 1), st.integers(5, 1800))
+def test_strips_for_a_mean_length_are_the_fewest_hundreds_that_leave_its_error(scatter, fewest):
+    error = 0.25 * scatter
+    strips = strips_for_mean(error, fewest)
+    assert strips % 500 == 0
+    assert 500 <= strips <= 5000
+    assert strips == 5000 or (strips >= fewest and error / strips**0.5 <= MEAN_ERROR * (1 + 1e-9))
+    assert strips == 500 or strips - 500 < fewest or error / (strips - 500) ** 0.5 > MEAN_ERROR
+    assert strips_for_mean(2 * error, fewest) >= strips
+
+
+def test_strips_for_a_mean_length_grow_with_the_square_of_the_scatter():
+    numbers = [strips_for_mean(0.25 * scatter, 300) for scatter in (0.3, 0.6, 0.75)]
+    assert numbers == [1000, 2500, 4000]
+    # Control: with the scatter itself, 0.6 would need twice as many as 0.3, not four times as many.
+    assert (0.25 * 0.6 / MEAN_ERROR) ** 2 > 2000
 
 
 @pytest.mark.parametrize("slope", [0.1, 0.2])

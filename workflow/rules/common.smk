@@ -10,6 +10,7 @@ from snakemake.logging import logger
 from stiction.config import files, merging, messages, scans, test_beams
 from stiction.config.surfaces import process
 from stiction.plan import cost, memory
+from stiction.plan.devices import DevicePlan
 from stiction.plan.planner import WHOLE, Planner
 from stiction.plan.stage import WILDCARDS
 from stiction.run import provenance, run_lock, snakemake_patches, stale_results
@@ -114,7 +115,7 @@ def refuse_what_samples_show():
 
 
 def decide_numbers():
-    """Add the numbers of beams and samples for the accuracy that the configuration asks for, and name them."""
+    """Add the numbers of beams and samples for the errors of the lengths of devices, and name them."""
     from stiction import accuracy
 
     refuse_what_samples_show()
@@ -126,7 +127,7 @@ def decide_numbers():
         config.update(numbers.within(config))
 
 
-if "accuracy" in config["design"] and "samples_of_patches" not in config["design"]:
+if DevicePlan(config).has_open_numbers:
     decide_numbers()
 remember_jobs = DiskCache(".snakemake/jobs.json")
 planner = Planner(config, preliminary, remember, remember_jobs)

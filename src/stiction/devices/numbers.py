@@ -6,8 +6,11 @@ The squared error of a length has two independent parts, of n beams and of N str
 
 with the slope s of the logarithm of the length over the normal score, the error c(n) of a quantile of normal numbers,
 and r by the delta method (`stiction.devices.sampling`). Each part may have a half, or what the other one leaves of it.
+
+Where no accuracy is asked for, the length without scatter alone decides the number of strips.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -23,6 +26,9 @@ from stiction.streams import stream
 MOST_BEAMS, MOST_STRIPS = 20_000, 10_000
 #: Numbers are multiples of these. 200 beams are the fewest with a fit of the shortest lengths.
 _BEAMS, _STRIPS = 200, 100
+#: Relative error of the length without scatter, and fewest and most strips for it, multiples of the fewest.
+#: ASSUME: half the error of the length of P(stuck) = 0.001 of 1000 beams of pair b at RH 0.67, which is 0.6 %.
+MEAN_ERROR, FEWEST_OF_MEAN, MOST_OF_MEAN = 0.003, 500, 5000
 #: Number of beams for which the error of a fit is simulated. Times the root of the number, it is nearly constant.
 _SIMULATED = 1000
 
@@ -73,6 +79,20 @@ def strips_for(spreads: Sequence[Spread], share: float, accuracy: float, beams: 
     error = quantile_errors(np.array([beams]), share)[0]
     needed = max((one.surfaces / _remaining_error(accuracy, one.slope * error)) ** 2 for one in spreads)
     return min(max(int(np.ceil(needed / _STRIPS)), -(-fewest // _STRIPS)) * _STRIPS, MOST_STRIPS)
+
+
+def strips_for_mean(error: float, fewest: int) -> int:
+    """Number of strips for the error `MEAN_ERROR` of a length without scatter, from its error on one strip [-].
+
+    At least `FEWEST_OF_MEAN` and this number, rounded up to a multiple, at most `MOST_OF_MEAN`.
+
+    Examples
+    --------
+    >>> strips_for_mean(0.25 * 0.24, 300), strips_for_mean(0.25 * 0.59, 300), strips_for_mean(0.25 * 0.24, 1820)
+    (500, 2500, 2000)
+    """
+    needed = max((error / MEAN_ERROR) ** 2, fewest, 1)
+    return min(math.ceil(needed / FEWEST_OF_MEAN) * FEWEST_OF_MEAN, MOST_OF_MEAN)
 
 
 def _remaining_error(accuracy, other):

@@ -13,7 +13,7 @@ from stiction.config import test_beams
 from stiction.config.cases import PairInAir, case_id
 from stiction.config.kinds import ROUGHNESSES, Kind, kind_of
 from stiction.config.materials import Materials
-from stiction.config.reading import paper
+from stiction.config.reading import is_stated, paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
 from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, uncertain
 from stiction.config.units import NM_PER_UM, from_si, to_si
@@ -135,8 +135,16 @@ class DevicePlan:
         return subsection(self.sections[device], ("voltage_V", "offset_V", "dielectric"))
 
     @property
+    def has_open_numbers(self) -> bool:
+        """Whether a pilot has to decide numbers of samples, and of beams for an accuracy, see `stiction.accuracy`."""
+        design = self.config["design"]
+        if "samples_of_patches" in design:
+            return False
+        return "accuracy" in design or bool(self.beams) and not is_stated(self.config, "contact", "samples")
+
+    @property
     def _samples_of_patches(self):
-        """Numbers of samples for the accuracy of lengths, by the name of the patch, see `stiction.accuracy`.
+        """Numbers of samples for the errors of lengths, by the name of the patch, see `stiction.accuracy`.
 
         Raises
         ------
@@ -156,9 +164,9 @@ class DevicePlan:
     def has_strips_of_pair(self, device: str) -> bool:
         """Whether a device sticks on the strips of its pair in the main line, and so shares their contact.
 
-        Devices whose samples follow from an accuracy have their own.
+        Devices whose samples follow from the errors of their lengths have their own.
         """
-        if self._samples_of_patches:
+        if self.ground(device).name in self._samples_of_patches:
             return False
         main = self.config["sampling"]["strip_length_um"], self.config["beam"]["width_um"]
         return self.ground(device) == patch(self.sections[device]["pair"], *main)
