@@ -178,12 +178,21 @@ def _spreads(plan, code, remember):
 
 
 def _mean_errors(plan, code, remember):
-    """Error of the length without scatter on one strip, by case, as a list without it where there is none."""
-    pilot = _Pilot.of(plan)
-    return {
-        case: remember([code, "mean", *pilot.mean_determined_by(case)], lambda case=case: pilot.mean_error(case))
-        for case in plan.devices.cases
-    }
+    """Error of the length without scatter on one strip, by case, as a list without it where there is none.
+
+    It is computed once for all cantilevers on a ground, whose lengths are one power of the energies.
+    """
+    pilot, found = _Pilot.of(plan), {}
+
+    def error(case):
+        """Error of a case, remembered."""
+        return remember([code, "mean", *pilot.mean_determined_by(case)], lambda: pilot.mean_error(case))
+
+    for case in plan.devices.cases:
+        own = None if plan.devices.kind(case.device).has_tip else case.device
+        ground = patch_of(plan, case), case.humidity, own
+        found[case] = found[ground] if ground in found else found.setdefault(ground, error(case))
+    return {case: found[case] for case in plan.devices.cases}
 
 
 @dataclass(frozen=True)
@@ -240,7 +249,7 @@ class _Pilot:
         """Settings and surfaces on which the error of the length without scatter depends."""
         names = self.plan.sides(self.plan.config["devices"][case.device]["pair"])
         entries = [self.plan.config["surfaces"][name] for name in names]
-        of_contact = self._settings(*self._places(case)[0])
+        of_contact = self._settings(GROUND, patch_of(self.plan, case))
         return [self._beam_settings(case), of_contact, entries, self.plan.config["character"]]
 
     def mean_error(self, case: Case) -> list[float]:
@@ -248,7 +257,7 @@ class _Pilot:
         settings = in_si(_Settings, self._beam_settings(case))
         try:
             with without_progress():
-                contact = self._contact(*self._places(case)[0])
+                contact = self._contact(GROUND, patch_of(self.plan, case))
                 vectors, limit = curves.vectors(contact, case.humidity, settings.water)
             laws = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
             opening = settings.device.opening

@@ -17,6 +17,7 @@ import yaml
 from conftest import ROOT
 from planner import Planner
 
+from stiction.accuracy import decided
 from stiction.config.files import normalised, paper
 from stiction.config.merging import merged
 from stiction.config.scans import resolve_scan_paths
@@ -141,7 +142,8 @@ MATRIX = [
     ("strips of Table I", "character: {strips: 50}", "character", (), "contact|forces"),
     ("spacing of Table I", "character: {spacing_nm: 10}", "identification character", (), "results/contact|forces"),
     ("patches of identification", "identification: {patches: 4}", "identification", (), "spectrum|_base"),
-    ("water", "water: {temperature_K: 310}", "full_contact pressed readings forces humidity sensitivity variant ground safe_lengths chart", (), "results/contact"),
+    # Water moves the scatter of energies, and with it the number of samples of devices.
+    ("water", "water: {temperature_K: 310}", "full_contact pressed readings forces humidity sensitivity variant device_contact ground safe_lengths chart", (), "results/contact"),
     ("adsorbed water", "water: {adsorbed_nm: 0.1}", "full_contact pressed readings forces humidity sensitivity variant ground safe_lengths chart", (), "results/contact"),
     ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (),
      "studies/(sensitivity/contact|plas|variants/(contact|summits))|psd_identified|tips"),
@@ -176,7 +178,7 @@ MATRIX = [
     ("one humidity of a device", "devices: {C1: {humidities: [0.7, 0.9]}}",
      "tip_contact ground table_safe_lengths device_limits", (), "contact/b|cracks/C1_rh070|R1"),
     ("a device added", "devices: {C2: {kind: cantilever, pair: a, thickness_um: 3, gap_um: 20, width_um: 30, "
-     "humidities: [0.6]}}", "tip_contact ground table_safe_lengths device_limits verdict", {"chart", "table_chart"}, "contact/[ab]_|tips/b_|C1|R1|beams"),
+     "humidities: [0.6]}}", "device_contact tip_contact ground table_safe_lengths device_limits verdict", {"chart", "table_chart"}, "results/contact/[ab]_|contact/b_|tips/b_|C1|R1|beams"),
     ("thickness of a device", "devices: {C1: {thickness_um: 3}}", "cracks safe_lengths chart", (), "contact|R1"),
     ("thicknesses of a chart", "devices: {C1: {chart: {thicknesses_um: [2.6]}}}", "tip_contact chart", (),
      "contact/b|R1|cracks"),
@@ -221,7 +223,7 @@ class Tree:
         self.small.write_text(config)
         named = yaml.safe_load(config)
         whole = process.with_surfaces(resolve_scan_paths(merged(paper(), named), named, scratch))
-        self.graph = Graph(Plan(normalised(whole)))
+        self.graph = Graph(Plan(decided(normalised(whole))))
         self.overlay = scratch / "overlay.yaml"
         self.planner = Planner(folder, scratch)
         with contextlib.chdir(folder):
