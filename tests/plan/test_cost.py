@@ -44,6 +44,18 @@ def test_the_time_of_contacts_grows_with_samples_points_and_datasets():
         assert cost.job_cost(settings, wildcards, datasets) - cost.PER_JOB == pytest.approx(factor * one, rel=1e-12)
 
 
+def test_the_time_of_tips_grows_with_their_slopes_and_the_reach_of_their_forces():
+    def extra(slopes, reach):
+        """Time of a tilted strip beyond that of one without slope [s]."""
+        tilt = {"slopes": [0.1] * slopes, "reach_nm": reach, "edge": "rounded"}
+        return cost.job_cost(SETTINGS | {"tilt": tilt}, {}) - cost.job_cost(SETTINGS, {})
+
+    assert extra(12, 100) == pytest.approx(12 * extra(1, 100), rel=1e-12)
+    assert extra(12, 300) - extra(12, 200) == pytest.approx(extra(12, 200) - extra(12, 100), rel=1e-12)
+    measured = 1000 * 12 * 6.9e-3 * (1.5 * 30) / (5.8 * 20)  # 35 nm rms, whose tips are longer
+    assert extra(12, 107.6) == pytest.approx(measured, rel=0.1)
+
+
 def test_the_time_of_beams_grows_with_their_number_and_sizes():
     one = cost.job_cost({"beams": 100}, {}) - cost.PER_JOB
     chart = {"beams": 100, "thicknesses_um": [2, 3], "gaps_um": [1, 2, 3]}
