@@ -20,6 +20,7 @@ from pathlib import Path
 import yaml
 
 import stiction
+from stiction.accuracy import decided
 
 ROOT = Path(__file__).parents[2]
 #: A cantilever of the paper, and a target of a run that states its safe length.
@@ -102,7 +103,7 @@ def of_step(source, number=2500):
     """As `measured`, of the plan that each job of a study of many devices makes on a cluster."""
     with tempfile.TemporaryDirectory() as folder:
         handed = Path(folder) / "configuration.json"
-        handed.write_text(json.dumps({"planned": [stiction.load(of_many(number)), {}]}), encoding="utf-8")
+        handed.write_text(json.dumps({"planned": [decided(stiction.load(of_many(number))), {}]}), encoding="utf-8")
         words = ["-m", "snakemake", "results/devices/cracks/D0_rh044.nc", "--snakefile", source / "Snakefile"]
         words += ["--directory", folder, "--configfile", handed, "--mode", "remote", "--cores", "1", "--nolock", "-n"]
         unit = loop()

@@ -182,10 +182,11 @@ SCRIPT = code(BASE / "workflow" / "scripts" / "stage.py")
 
 def inputs_of(rule):
     """Input function of the rule of a stage."""
-    caption = caption_of(rule) | ({"before": ancient(planner.before_last)} if rule["last"] else {})
+    caption = caption_of(rule)
 
     def inputs(wildcards):
         files = planner.inputs(rule, dict(wildcards)) | caption
+        files |= {"before": ancient(planner.before_last)} if rule["last"] else {}
         written = {file.format(**dict(wildcards)) for file in rule["files"].values()} if unusable() else set()
         return files | {"stale": STALE} if written & unusable().keys() else files
 
