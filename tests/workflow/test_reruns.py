@@ -69,7 +69,7 @@ READ_BY = {
     " device_contact tip_contact",
     "character": "table_1 checks",
     "contact_chunk": "contact",
-    "contact": "forces fit humidity variant ground safe_lengths sensitivity",
+    "contact": "forces fit humidity variant sensitivity",
     "forces": "fit chaos table_3 sample_sizes orders mesh resampling checks",
     "sensitivity_contact": "sensitivity",
     "variant_summits": "variant_contact",
@@ -136,13 +136,13 @@ MATRIX = [
      "tip_contact cracks safe_lengths chart", (), "variants/summits"),
     ("grid of surfaces", "sampling: {spacing_nm: 5}", "identification spectrum variant_summits readings", (), "heights"),
     ("length of strips", "sampling: {strip_length_um: 2.5}\ndevices: {R1: {thickness_um: 3}}",
-     "character contact_chunk beams resampling sensitivity_contact plasticity full_contact pressed variant_summits readings checks cracks "
+     "character contact_chunk beams resampling sensitivity_contact plasticity full_contact pressed variant_summits readings checks device_contact cracks "
      "safe_lengths chart", (),
      "heights|identification|spectrum|tips"),
     ("strips of Table I", "character: {strips: 50}", "character", (), "contact|forces"),
     ("spacing of Table I", "character: {spacing_nm: 10}", "identification character", (), "results/contact|forces"),
     ("patches of identification", "identification: {patches: 4}", "identification", (), "spectrum|_base"),
-    # Water moves the scatter of energies, and with it the number of samples of devices.
+    # Water and contact angles move the scatter of energies, and with it the number of samples of devices.
     ("water", "water: {temperature_K: 310}", "full_contact pressed readings forces humidity sensitivity variant device_contact ground safe_lengths chart", (), "results/contact"),
     ("adsorbed water", "water: {adsorbed_nm: 0.1}", "full_contact pressed readings forces humidity sensitivity variant ground safe_lengths chart", (), "results/contact"),
     ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact", (),
@@ -152,7 +152,7 @@ MATRIX = [
     ("chaos order", "chaos: {order: 6}", "chaos variant ground", (), "forces"),
     ("beam thickness", "beam: {thickness_um: 2.5}",
      "forces humidity sensitivity beams resampling mesh variant checks", (), "contact"),
-    ("beam width", "beam: {width_um: 24}", "character contact_chunk beams resampling mesh sensitivity_contact plasticity full_contact pressed variant_summits readings checks model_limits device_contact",
+    ("beam width", "beam: {width_um: 24}", "character contact_chunk beams resampling mesh sensitivity_contact plasticity full_contact pressed variant_summits readings checks model_limits",
      (), "heights|spectrum|tips|R1"),
     ("number of beams", "beam: {samples: 500}", "beams", (), "chaos|studies"),
     ("scatter of beams", "beam: {scatter: 0.03}", "beams", (), "chaos|studies|beams/.*_N?G.nc"),
@@ -185,7 +185,7 @@ MATRIX = [
     ("uncertainty of a device", "devices: {C1: {uncertainty: {gap_um: 1}}}", "verdict", (), ""),
     ("beams of devices", "design: {beams: 300}", "tip_contact cracks chart", (), "results/contact"),
     ("contact angle of a body", "materials: {Wet: {contact_angle_deg: 20}}\nsurfaces: {B2: {material: Wet}}",
-     "full_contact pressed readings forces humidity sensitivity variant ground safe_lengths chart table_1 table_2 table_3 checks model_limits",
+     "full_contact pressed readings forces humidity sensitivity variant device_contact ground safe_lengths chart table_1 table_2 table_3 checks model_limits",
      (), "results/contact/|/a_"),
     ("order of humidities", "pairs: {a: {humidities: [0.8, 0.6]}}", "", (), ""),
 ]  # fmt: skip
