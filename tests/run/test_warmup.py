@@ -11,7 +11,12 @@ import pytest
 from stiction.run import warmup
 
 #: Modules of studies that the paper does not need: the first of their jobs compile the kernels.
-OF_STUDIES = {"stiction.contact.full.elements", "stiction.contact.regions", "stiction.surface.islands"}
+OF_STUDIES = {
+    "stiction.contact.full.descent",
+    "stiction.contact.full.elements",
+    "stiction.contact.regions",
+    "stiction.surface.islands",
+}
 SOURCE = Path(__file__).parents[2] / "src"
 #: Prints the signatures of every kernel, and the kernels that it calls, after the warm-up and after a study as well.
 PROGRAM = """

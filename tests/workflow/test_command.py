@@ -120,14 +120,16 @@ def test_a_second_run_in_the_same_folder_is_refused_in_the_last_line(undisturbed
 
 
 @pytest.mark.slow
-def test_a_failed_check_has_a_status_of_its_own(smoke, tmp_path):
-    results = tmp_path / "results"
-    results.mkdir()
-    text = (smoke / "results" / "checks.csv").read_text()
+def test_a_failed_check_has_a_status_of_its_own_and_all_results_are_named(smoke, tmp_path):
+    results = copied(smoke, tmp_path / "run") / "results"
+    text = (results / "checks.csv").read_text()
     (results / "checks.csv").write_text(text.replace(",True,", ",False,", 1))
-    status, printed = stiction(tmp_path, "paper", "--", "results/verdict.txt", "--allowed-rules", "verdict")
+    status, printed = stiction(results.parent, "run", SMOKE, "--", "all", "--allowed-rules", "all", "verdict")
     assert status == 3
-    assert printed[-1] == f"1 of {len(text.splitlines()) - 1} checks of the results failed: results/checks.md"
+    counted = f"1 of {len(text.splitlines()) - 1} checks of the results failed: results/checks.md"
+    assert printed[-1] == "All results: results/index.html; stiction show opens it."
+    assert counted in printed
+    assert "checks of the results failed." in (results / "index.html").read_text()
 
 
 @pytest.mark.slow

@@ -29,9 +29,9 @@ process: {etch: {variable: etch_time_s, surface: B2, settings: SETTINGS}}
 """.replace("SETTINGS", SETTINGS)
 #: Rules of this test, and the rules that read their outputs, listed by hand.
 READ_BY = {
-    "heights": "identification spectrum contact_chunk device_contact tip_contact slope_contact solid_contact plasticity"
+    "heights": "identification spectrum device_contact tip_contact device_slope_contact solid_contact plasticity"
     " tip_solid_contact budget tip_slope_contact tip_choice_contact tip_budget process_point",
-    "spectrum": "contact_chunk device_contact tip_contact slope_contact solid_contact plasticity budget tip_slope_contact"
+    "spectrum": "device_contact tip_contact device_slope_contact solid_contact plasticity budget tip_slope_contact"
     " tip_solid_contact tip_choice_contact tip_budget process_point",
     "identification": "device_choice_summits",
     "contact_chunk": "contact",
@@ -111,7 +111,7 @@ MATRIX = [
      "C1|R1|contact|S1_rh070"),
     ("area of a stopper", "devices: {S1: {contact_um: [3, 2]}}", "device_contact solid_contact device_choice_summits",
      OF_BEAMS, "C1|R1|1500x"),
-    ("samples of slopes", "studies: {slopes: {samples: 200}}", "slope_contact solid_contact device_choice_summits process_point"
+    ("samples of slopes", "studies: {slopes: {samples: 200}}", "device_slope_contact solid_contact device_choice_summits process_point"
      " tip_slope_contact tip_solid_contact tip_choice_contact", (), "stoppers|chart|cracks"),
     ("beams of slopes", "design: {budget_beams: 100}", "budget", (), "S1|contact|chart|cracks|tip"),
     ("beams, each with a tip", "design: {beams: 900}", "cracks tip_contact chart", OF_STOPPERS,
@@ -119,7 +119,9 @@ MATRIX = [
     ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", "stoppers device_warnings", OF_BEAMS, "C1|R1|budget|contact"),
     ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
      "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
-    ("water", "water: {temperature_K: 310}", "ground safe_lengths chart stoppers budget tip_budget separation process_point", (), "contact"),
+    # It moves the scatter of energies, and with it the number of samples of C1.
+    ("water", "water: {temperature_K: 310}", "device_contact ground safe_lengths chart stoppers budget tip_budget separation process_point",
+     (), "results/contact|slopes|modulus|choices|tips"),
     ("adsorbed water", "water: {adsorbed_nm: 0.1}", "ground safe_lengths chart stoppers budget tip_budget separation process_point", (), "contact"),
     ("uncertainty of the adsorbed water", "devices: {C1: {uncertainty: {adsorbed_nm: 0.1}}}", "budget tip_budget", (),
      "R1|S1|contact|chart"),
@@ -127,7 +129,8 @@ MATRIX = [
      "contact"),
     ("skewness of a surface", "surfaces: {B2: {skewness: -0.7}}", "heights device_choice_summits process_law", (), "Sub1.nc"),
     ("skewness of another surface", "surfaces: {B1: {skewness: -0.7}}", "", (), ""),
-    ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact process_point", (), "slopes|modulus|choices|tip"),
+    # Stated ones let C1 share the strips of its pair.
+    ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact slope_contact process_point", (), "modulus|choices|tip"),
     ("chunks", "contact: {chunks: 2}", "", (), ""),
     ("edge of tips", "design: {tip_edge: square}", "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact", OF_STOPPERS,
      "cracks|S1|contact/b|budget/C1_rh070.nc"),
@@ -146,7 +149,7 @@ MATRIX = [
      "device_contact device_slope_contact solid_contact device_choice_summits chart tip_budget", OF_STOPPERS, "S1|R1|b_NG|tips"),
     ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "separation cracks safe_lengths", OF_STOPPERS | OF_CHARTS, "contact|C1|S1|chart"),
     ("Hamaker constant of a body", BODY + "{hamaker_constant_zJ: {water: 20, dry: 200}}}",
-     "contact_chunk device_contact tip_contact slope_contact solid_contact device_choice_contact plasticity"
+     "device_contact tip_contact device_slope_contact solid_contact device_choice_contact plasticity"
      " tip_slope_contact tip_solid_contact tip_choice_contact process_point", (), "heights|spectrum|summits"),
     ("number at a setting of a process", f"process: {{etch: {{settings: {SETTINGS.replace('rms_nm: 6', 'rms_nm: 7')}}}}}",
      "process_law", (), "C1|R1|S1|contact|stoppers|heights"),
