@@ -36,7 +36,7 @@ from stiction.plan.stage import At, select
 from stiction.progress import without_progress
 from stiction.stages.contact import curves
 from stiction.stages.contact.changes.patches import GROUND, TIPS, Place
-from stiction.stages.contact.contact import compute
+from stiction.stages.contact.contact import compute, with_correlation
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices.contact_names import patch_of, patch_of_tips
 from stiction.stages.devices.opening import DesignedBeam, settings_of_beam
@@ -241,7 +241,7 @@ class _Pilot:
                 contact, *tips = (self._contact(*one) for one in self._places(case))
                 met = ground(contact, tips[0] if tips else None, case.humidity, settings)
                 beams = release_beams(settings.device, met, settings)
-            return spreads_of(beams, _middle(self.plan.config["design"]["shares"]), len(met.sampled))
+            return spreads_of(beams, _middle(self.plan.config["design"]["shares"]), len(met.strips.sampled))
         except (ValueError, ArithmeticError):  # which the jobs of the case state
             return []
 
@@ -285,7 +285,8 @@ class _Pilot:
         if (place, patch) not in self.contacts:
             surfaces = [self.surfaces(name) for name in self.plan.sides(patch.pair)]
             settings = in_si(Settings, self._settings(place, patch))
-            self.contacts[place, patch] = compute(surfaces, patch.pair, "NG", settings)
+            contact = compute(surfaces, patch.pair, "NG", settings)
+            self.contacts[place, patch] = with_correlation(contact, [spectrum for _, spectrum in surfaces])
         return self.contacts[place, patch]
 
 

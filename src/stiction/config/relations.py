@@ -293,7 +293,8 @@ def other_grids_carry_an_identified_spectrum(config):
 def lengths_exceed_the_correlation(config):
     """Opposite edges of a strip, or of a patch to identify, are uncorrelated.
 
-    ASSUME: force laws of neighbouring strips are independent also where strips are shorter than the correlation length.
+    ASSUME: force laws of neighbouring strips are independent also where strips are shorter than the correlation length,
+    down to a third of it, see `stiction.devices.strips`.
     Strips of 1.5 x 30 µm on surfaces with one of 4.4 µm correlate by 0.02 ± 0.07, with one of 8.2 µm by 0.3, and those
     beyond the nearest by nothing; strips of 0.25 and 0.5 µm on pair b, for bridges, by less than 0.05.
     """

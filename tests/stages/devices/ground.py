@@ -17,7 +17,9 @@ from stiction.stages.contact import curves
 from stiction.stages.devices import cracks, ground, safe_lengths
 from stiction.stages.devices.opening import DesignedBeam
 from stiction.stages.devices.sticking import Released
+from stiction.stages.surfaces.parameters import variables
 from stiction.streams import stream
+from stiction.surface.spectrum import CutoffSelfAffine
 
 UM = 1e-6
 WATER = Water(300.0)
@@ -45,13 +47,18 @@ def contact():
 VECTORS = sampled_vectors(400, 0.24)
 
 
-def met(device=C1, vectors=VECTORS, limit=None):
-    """Dataset of stage ground on given vectors."""
+def spectra(corner=12e6):
+    """Datasets of the spectra of both surfaces of a pair."""
+    return [variables(CutoffSelfAffine(14380e-36, 0.3e-36, corner, 12 * corner))] * 2
+
+
+def met(device=C1, vectors=VECTORS, limit=None, corner=12e6):
+    """Dataset of stage ground on given vectors and surfaces with this corner of their spectrum."""
     limit = limit or 1.2 * vectors[:, 1].max()
     drawn = {"vectors": lambda *_: (vectors, limit), "share_flat": lambda *_: 0.0}
     with patch.multiple(curves, **drawn):
-        wanted = ground.Settings(Truncation(3, 0.001), WATER, 0.67, device.strip, device.width)
-        return ground.compute(contact(), wanted)
+        wanted = ground.Settings(Truncation(6, 0.001), WATER, 0.67, device.strip, device.width)
+        return ground.compute(contact(), spectra(corner), wanted)
 
 
 def computed(wanted, vectors, limit=None):
@@ -76,7 +83,9 @@ def lognormal_cracks(device=C1, number=400, spread=0.025, seed=1, surfaces=SURFA
     laws = forcelaw.coefficients(VECTORS[:50], 1.2 * VECTORS[:, 1].max())
     beam = Beam(1500 * UM, 30 * UM, 2.6 * UM, 164e9, 20 * UM, 200)
     beams = Released(device, found, np.inf, foundation_length(beam, laws), surfaces, None)
-    return cracks.layout(beams, beam, laws, RMS).assign(share_flat=0.0, longest_strip=device.strip)
+    return cracks.layout(beams, beam, laws, RMS).assign(
+        share_flat=0.0, longest_strip=device.strip, resampled=0, alike=1
+    )
 
 
 def wanted(device=C1, shares=(1e-2, 1e-3)):

@@ -123,7 +123,7 @@ def computed(device, thicknesses, gaps, tips=None, shares=(1e-2,)):
 
 def alone(device, wanted, tips=None):
     """Safe lengths of a device by shape and share, as in the stages cracks and safe_lengths."""
-    model = opening.fit_chaos(VECTORS, 1.2 * VECTORS[:, 1].max(), Truncation(3, 0.001))
+    model = opening.fit_chaos(VECTORS, 1.2 * VECTORS[:, 1].max(), Truncation(6, 0.001))
     address = opening.addresses(settings())
     laws = draw_laws(model, opening.LAWS, address("mesh"))
     ground = device.opening.resolved(device, laws)

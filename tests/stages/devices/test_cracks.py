@@ -23,7 +23,7 @@ def found():
 
 
 def test_cracks_are_those_of_long_beams_on_laws_of_the_chaos_model(found):
-    model = fit(VECTORS, 1.2 * VECTORS[:, 1].max(), 3, 0.001)
+    model = fit(VECTORS, 1.2 * VECTORS[:, 1].max(), 6, 0.001)
     address = partial(stream, 2021, "devices", "b")
     laws = draw_laws(model, opening.LAWS, address("mesh"))
     beam, points = opening.long_beam(C1, laws)
@@ -48,7 +48,7 @@ def test_the_errors_of_the_surfaces_are_those_of_the_lawful_samples(device):
 
 def test_bridges_are_those_that_their_middle_holds_on_laws_of_the_chaos_model():
     found = computed(settings(R1, beams=6), VECTORS)
-    model = fit(VECTORS, 1.2 * VECTORS[:, 1].max(), 3, 0.001)
+    model = fit(VECTORS, 1.2 * VECTORS[:, 1].max(), 6, 0.001)
     address = partial(stream, 2021, "devices", "b")
     zone, strips = bridges.middle_zone(R1.beam, R1.strip, draw_laws(model, opening.LAWS, address("mesh")))
     held = [bridges.held_length(zone, draw_laws(model, strips, address(k))) for k in range(6)]

@@ -2,18 +2,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ground import C1, R1, WATER, wanted
+from ground import C1, R1, VECTORS, WATER, met, settings, wanted
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy.special import ndtr
 
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.constants import HAMAKER_CONSTANT
+from stiction.contact import forcelaw
 from stiction.contact.environment import Gaps, Water, force_curves
 from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.devices import risk
 from stiction.devices.arcs import arc_length
 from stiction.devices.bridges import least_length
 from stiction.devices.risk import Known
-from stiction.stages.devices import sticking
+from stiction.stages.devices import ground, opening, sticking
 from stiction.stages.devices.opening import EITHER, MIDDLE, S_SHAPE
 from stiction.streams import stream
 
@@ -81,3 +83,66 @@ def test_there_is_one_safe_length_for_every_share():
     found = sticking.safe_lengths(lengths, replace(wanted(), shares=shares))
     expected = [risk.safe_length(lengths, share, stream(2021, "safe length")) for share in shares]
     assert repr(found) == repr(expected)  # an unknown error is NaN, which differs from itself
+
+
+# Strips that are not independent draws from a chaos model
+
+
+def with_rare_strips(vectors):
+    """Vectors of which a few hold many times the energy of the others, in the same distances."""
+    rare = vectors[:2].copy()
+    rare[:, :2] *= 40
+    return np.concatenate([vectors[2:], rare])
+
+
+def test_beams_draw_from_the_samples_where_the_chaos_model_lacks_rare_strips():
+    usual, rare = met(), met(vectors=with_rare_strips(VECTORS))
+    assert int(usual.resampled) == 0
+    assert int(rare.resampled) == rare.sizes["sample"] == len(VECTORS)
+    model, samples = (ground.ground_from(one, settings()).strips for one in (usual, rare))
+    drawn = model.draw(300, stream(1))
+    assert not set(drawn[:, 0]) & set(model.sampled[:, 0])
+    assert set(samples.draw(300, stream(1))[:, 0]) <= set(samples.sampled[:, 0])
+
+
+def test_rare_strips_stop_cracks_that_the_chaos_model_lets_pass():
+    found = ground.ground_from(met(vectors=with_rare_strips(VECTORS)), settings())
+    model = replace(found, strips=replace(found.strips, is_narrow=False))
+    lengths, without = (sticking.release_beams(C1, of, settings(beams=100)).arrested for of in (found, model))
+    assert np.quantile(lengths, 0.1) < 0.9 * np.quantile(without, 0.1)
+
+
+@pytest.mark.parametrize(("corner", "alike"), [(12e6, 1), (2.0e6, 1), (1.0e6, 6)])
+def test_strips_in_a_row_are_alike_where_heights_are_correlated_over_more_than_three(corner, alike):
+    dataset = met(corner=corner)
+    assert int(dataset.alike) == alike
+    laws = ground.ground_from(dataset, settings()).strips.draw(60, stream(2))
+    assert len(np.unique(laws[:, 0])) in ({60} if alike == 1 else {10, 11})
+
+
+def correlated(laws, rho):
+    """Draw of laws whose normal scores of the energy are an autoregressive process, with this correlation."""
+    ordered = laws[np.argsort(forcelaw.energy(laws))]
+
+    def draw(number, rng):
+        scores = rng.standard_normal(number)
+        for k in range(1, number):
+            scores[k] = rho * scores[k - 1] + (1 - rho**2) ** 0.5 * scores[k]
+        return ordered[np.minimum((ndtr(scores) * len(laws)).astype(int), len(laws) - 1)]
+
+    return draw
+
+
+@pytest.mark.parametrize("rho", [0.3, 0.01 ** (1 / 6)])
+def test_lengths_on_blocks_are_below_lengths_on_correlated_strips(rho):
+    """Correlation of neighbours as measured, where heights are correlated over 5.5 strips, and as of the heights."""
+    found, asked = ground.ground_from(met(corner=1.0e6), settings()), settings(beams=300)
+
+    def short(draw):
+        """Length of P(stuck) = 0.1."""
+        part = opening.ground_of(C1, found.laws)
+        return np.quantile(opening.arrests(C1, part, draw, asked.beams, opening.addresses(asked)), 0.1)
+
+    blocks, real, independent = map(short, (found.strips.draw, correlated(found.laws, rho), correlated(found.laws, 0)))
+    assert blocks < 0.99 * real
+    assert real < 1.01 * independent

@@ -307,6 +307,8 @@ def charted(longest, film=3e-9, longest_strip=1.5):
             "film": film,
             "rms": 3e-9,
             "longest_strip": (("thickness", "gap"), UM * np.array([[longest_strip], [2]])),
+            "resampled": 0,
+            "alike": 1,
         },
         coords={"thickness": [2 * UM, 3 * UM], "gap": [20 * UM], "shape": [S_SHAPE, EITHER], "share": [1e-2, 1e-3]},
     )

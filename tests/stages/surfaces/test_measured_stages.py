@@ -13,6 +13,7 @@ from published import SURFACES
 from written_scans import SIDE, scans_of, write
 
 from stiction.analysis.shifts import ORDERS
+from stiction.devices import limits
 from stiction.errors import ScanError
 from stiction.scans import estimate as evaluation
 from stiction.scans.histogram import histogram, histogram_errors
@@ -311,9 +312,11 @@ def test_strips_and_margins_within_the_correlation_length_are_named(psd, key, wo
 
 
 @pytest.mark.filterwarnings("ignore:surface Etched")
-def test_strips_of_which_many_are_correlated_are_named_as_unsafe():
+def test_strips_of_which_many_are_correlated_count_as_alike():
     (sentence,) = surface_flags.flags(spectrum_with(use=dataclasses.replace(USE, strip_length=0.05e-6)))
-    assert sentence.endswith("safe lengths too long: the unsafe side")
+    assert "such strips count as alike under devices, the safe side" in sentence
+    assert "more than three strips of 0.05 µm" in sentence
+    assert not limits.forbids(sentence)
 
 
 @pytest.mark.filterwarnings("ignore:surface Etched")

@@ -13,7 +13,9 @@ from stiction.contact.pair import DistanceGrid, contacts_of_samples
 from stiction.contact.tilted import TiltedPair
 from stiction.progress import progress
 from stiction.stages.contact.pairs import Settings, streams_of_sides, surface_pairs
+from stiction.stages.surfaces.parameters import spectrum_of
 from stiction.stages.surfaces.rough_surfaces import both
+from stiction.surface.spectrum import uncorrelated_beyond
 
 
 def compute(
@@ -128,6 +130,12 @@ def _grid(contact):
 def first(contact: xr.Dataset, samples: int) -> xr.Dataset:
     """Contact of the first samples alone."""
     return contact.isel(sample=slice(samples))
+
+
+def with_correlation(contact: xr.Dataset, spectra: Iterable[xr.Dataset]) -> xr.Dataset:
+    """Contact with the distance beyond which heights with these spectra are uncorrelated [m]."""
+    length = max(uncorrelated_beyond(spectrum_of(spectrum)) for spectrum in spectra)
+    return contact.assign(correlated=((), length, {"units": "m"}))
 
 
 def surface_rms(contact: xr.Dataset) -> float:

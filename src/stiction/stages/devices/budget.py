@@ -23,6 +23,7 @@ from stiction.contact import forcelaw
 from stiction.devices import arcs
 from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.stoppers import pull_off_force
+from stiction.devices.strips import resampled
 from stiction.devices.tail import FEWEST, TAIL, fit_tail
 from stiction.plan.stage import At, Running, Stage, subsection
 from stiction.progress import progress
@@ -209,13 +210,14 @@ def beam_responses(states: Sequence[State], mesh: Beam, strips: int, number: int
     k.
 
     ASSUME: for a cantilever, the two foundation lengths that hold its crack are left out, 1 % of the length.
+    ASSUME: neighbouring strips are independent, also on ground with blocks (`stiction.devices.strips`).
     """
     laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water) for state in states])
 
     def lengths(state, laws):
         """Crack lengths in a state on force laws [m]."""
         part = replace(state.device.beam, length=mesh.length, elements=mesh.elements)
-        return arrests(state.device, (part, strips), partial(_resampled_laws, laws), number, address)
+        return arrests(state.device, (part, strips), partial(resampled, laws), number, address)
 
     values = np.array([lengths(state, of_state) for state, of_state in zip(states, laws, strict=True)])
     # Some lengths may not be known. If most are not, the median is infinite, and no slope is known.
@@ -229,11 +231,6 @@ def shared_laws(parametrised: Sequence[tuple[np.ndarray, float]]) -> list[np.nda
     """Force laws of the samples lawful at every state, from vectors and f_limit of each, (m, 4) each."""
     lawful = np.logical_and.reduce([forcelaw.admissible(vectors, limit) for vectors, limit in parametrised])
     return [forcelaw.coefficients(vectors[lawful], limit) for vectors, limit in parametrised]
-
-
-def _resampled_laws(laws, number, rng):
-    """Laws drawn with replacement."""
-    return laws[rng.integers(len(laws), size=number)]
 
 
 # Slopes

@@ -44,6 +44,7 @@ class OfDevice:
     device: DesignedBeam
     accuracy: Accuracy | None = None  #: of its lengths
     materials: StatedProperties = ()  #: of its pair
+    learns: bool = False  #: whether it has test beams
 
 
 @dataclass(frozen=True)
@@ -99,6 +100,7 @@ def chart_warnings(
         along = [curve.sel(thickness=thickness, gap=gap, shape=shape) for curve in charts]
         shortest = min(along, key=lambda curve: float(curve.safe_length.min()))
         shortest = shortest.assign(longest_strip=min(curve.longest_strip for curve in along))
+        shortest = shortest.assign(resampled=max(curve.resampled for curve in along))
         of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
         length = float(shortest.safe_length.min())
         warnings[thickness, gap, shape] = _length_warnings(
@@ -122,6 +124,8 @@ def _length_warnings(length, dataset, of, plastic, thinnest=None):
     is_bridge = device.opening.arms == 2
     return limits.beam_warnings(*sizes, float(dataset.film), float(dataset.rms)) + limits.triggered(
         limits.long_strips(device.strip, float(dataset.longest_strip), is_bridge),
+        limits.resampled_strips(int(dataset.resampled)),
+        limits.alike_strips(int(dataset.alike), device.strip, of.learns),
         limits.thin_film(thinnest or float(dataset.film)),
         limits.stretched_bridge(device.gap, device.thickness) if is_bridge else None,
         *contact_warnings(plastic, of.materials),
@@ -216,6 +220,7 @@ def _settings(plan, at):
     """Device, its pair and the stated properties of its materials."""
     section = plan.config["devices"][at.device]
     own = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
+    own |= {"learns": True} if "test_beams" in section else {}
     said = plan.assumptions(section["pair"]).get(section["pair"])
     assumed = {"assumed": said} if said else {}
     if plan.devices.kind(at.device).is_beam:

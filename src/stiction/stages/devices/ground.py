@@ -3,6 +3,7 @@
 The chaos model of a ground is fitted once. Cracks and charts of devices of any thickness, gap and length draw from it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +14,7 @@ from stiction.config.cases import Case, case_id
 from stiction.contact.environment import Water
 from stiction.plan.stage import At, Stage, select
 from stiction.stages.contact import curves
-from stiction.stages.contact.contact import surface_rms
+from stiction.stages.contact.contact import surface_rms, with_correlation
 from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices.contact_names import contact_of, corrections_of
 from stiction.stages.devices.opening import settings_of_beam
@@ -32,9 +33,11 @@ class Settings:
     width: float  #: [m]
 
 
-def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Fit the force laws of a contact."""
-    laws = fitted_laws(contact, settings.humidity, settings, (settings.strip, settings.width))
+def compute(contact: xr.Dataset, spectra: Sequence[xr.Dataset], settings: Settings) -> xr.Dataset:
+    """Fit the force laws of a contact, with the spectra of its surfaces."""
+    laws = fitted_laws(
+        with_correlation(contact, spectra), settings.humidity, settings, (settings.strip, settings.width)
+    )
     share = curves.share_flat(contact, settings.humidity, settings.water)
     return layout(laws, surface_rms(contact), share)
 
@@ -47,6 +50,12 @@ def layout(laws: Laws, rms: float, share_flat: float) -> xr.Dataset:
             "sampled": (("sample", "parameter"), laws.sampled, {"units": "SI"}),
             "rms": ((), rms, {"units": "m"}),
             "share_flat": ((), share_flat, {"units": "1"}),
+            "resampled": (
+                (),
+                len(laws.sampled) * laws.is_narrow,
+                {"long_name": "samples that beams draw from, if any"},
+            ),
+            "alike": ((), laws.alike, {"long_name": "neighbouring strips with one law"}),
         },
         coords={"parameter": ["f_max", "d_max", "a_left", "a_right"]},
     )
@@ -54,7 +63,8 @@ def layout(laws: Laws, rms: float, share_flat: float) -> xr.Dataset:
 
 def ground_from(dataset: xr.Dataset, settings: BeamSettings) -> Ground:
     """Ground without tips from its dataset."""
-    return ground_of_laws(Laws(chaos_model(dataset), dataset.sampled.values), settings)
+    laws = Laws(chaos_model(dataset), dataset.sampled.values, bool(dataset.resampled), int(dataset.alike))
+    return ground_of_laws(laws, settings)
 
 
 def ground_inputs(plan: Any, case: Case) -> dict[str, str]:
@@ -79,9 +89,10 @@ def _case_on(plan, at):
 
 
 def _inputs(plan: Any, at: At) -> dict[str, str]:
-    """Contact of a ground, with its correction."""
+    """Contact of a ground, with the spectra of its surfaces and its correction."""
     case = _case_on(plan, at)
-    return {"contact": contact_of(plan, case)} | corrections_of(plan, case.device)
+    spectra = [f"spectrum/{name}" for name in plan.sides(plan.config["devices"][case.device]["pair"])]
+    return {"contact": contact_of(plan, case), "spectra": spectra} | corrections_of(plan, case.device)
 
 
 def _settings(plan: Any, at: At) -> dict[str, Any]:

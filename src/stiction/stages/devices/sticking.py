@@ -13,7 +13,7 @@ from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws
 from stiction.contact import forcelaw
 from stiction.contact.environment import Water, flooded_law
-from stiction.devices import arcs, bridges, risk
+from stiction.devices import arcs, bridges, risk, strips
 from stiction.devices.risk import NOTHING, Basis, Known, SafeLength
 from stiction.devices.sampling import Move, SampledSurfaces, sampled_surfaces
 from stiction.stages.contact import curves
@@ -52,16 +52,23 @@ class Laws:
     """Force laws of strips at one humidity."""
 
     model: ChaosModel
-    sampled: np.ndarray  #: those of the strips themselves (m, 4) [SI]
+    sampled: np.ndarray  #: force laws of the samples (m, 4) [SI]
+    is_narrow: bool  #: whether the model lacks mean or scatter of the samples, from which strips are then drawn
+    alike: int  #: number of neighbouring strips with one law
+
+    @property
+    def draw(self) -> strips.Draw:
+        """Draw of the force laws of strips in a row."""
+        source = partial(strips.resampled, self.sampled) if self.is_narrow else partial(draw_laws, self.model)
+        return strips.in_blocks(source, self.alike)
 
 
 @dataclass(frozen=True)
 class Ground:
     """Ground of beams of any thickness and gap at one humidity."""
 
-    model: ChaosModel  #: of the force laws of strips
-    laws: np.ndarray  #: sample of these (k, 4) [SI]
-    sampled: np.ndarray  #: force laws of the strips themselves (m, 4) [SI]
+    strips: Laws
+    laws: np.ndarray  #: sample of the force laws of strips (k, 4) [SI]
     tips: tuple[np.ndarray, np.ndarray] | None  #: slopes [-] and forces [N/m] of tips; none for a bridge
 
 
@@ -87,17 +94,22 @@ class Released:
 
 
 def fitted_laws(contact: xr.Dataset, humidity: float, settings: LawSettings, sides: tuple[float, float]) -> Laws:
-    """Force laws at a relative humidity, from the contact of strips with these sides [m]."""
+    """Force laws at a relative humidity, from the contact of strips with these sides [m].
+
+    The contact is from `stiction.stages.contact.contact.with_correlation`.
+    """
     with on_patch(*sides):
         vectors, limit = curves.vectors(contact, humidity, settings.water)
     model = opening.fit_chaos(vectors, limit, settings.chaos)
-    return Laws(model, forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit))
+    sampled = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
+    drawn = draw_laws(model, strips.DRAWS, stream(0, "narrow"))
+    is_narrow = strips.is_narrow(forcelaw.energy(drawn), forcelaw.energy(sampled))
+    return Laws(model, sampled, is_narrow, strips.alike(float(contact.correlated), sides[0]))
 
 
-def ground_of_laws(of: Laws, settings: BeamSettings) -> Ground:
+def ground_of_laws(laws: Laws, settings: BeamSettings) -> Ground:
     """Ground without tips, of the force laws of its strips."""
-    laws = draw_laws(of.model, opening.LAWS, opening.addresses(settings)("mesh"))
-    return Ground(of.model, laws, of.sampled, None)
+    return Ground(laws, replace(laws, alike=1).draw(opening.LAWS, opening.addresses(settings)("mesh")), None)
 
 
 def with_tips(met: Ground, tips: xr.Dataset | None, humidity: float, water: Water) -> Ground:
@@ -108,7 +120,7 @@ def with_tips(met: Ground, tips: xr.Dataset | None, humidity: float, water: Wate
 def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settings: Any) -> Ground:
     """Ground at a relative humidity, from the contact of the strips and of the tips, or ``None`` for a bridge.
 
-    The settings are `BeamSettings` and `LawSettings`.
+    The contact is as of `fitted_laws`, and the settings are `BeamSettings` and `LawSettings`.
     """
     laws = fitted_laws(contact, humidity, settings, (settings.device.strip, settings.device.width))
     return with_tips(ground_of_laws(laws, settings), tips, humidity, settings.water)
@@ -117,7 +129,7 @@ def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settin
 def release_beams(device: DesignedBeam, met: Ground, settings: BeamSettings) -> Released:
     """Released beams of a device, or of one of another thickness and gap, on its ground."""
     part = opening.ground_of(device, met.laws)
-    address, draw = opening.addresses(settings), partial(draw_laws, met.model)
+    address, draw, sampled = opening.addresses(settings), met.strips.draw, met.strips.sampled
     arrested = opening.arrests(device, part, draw, settings.beams, address)
     on_mean = partial(device.opening.length_on_mean, beam=device.beam)
     return Released(
@@ -125,9 +137,7 @@ def release_beams(device: DesignedBeam, met: Ground, settings: BeamSettings) -> 
         arrested,
         opening.reach(device, part, draw, arrested, address),
         foundation_length(device.beam, met.laws),
-        sampled_surfaces(
-            met.sampled, device.opening.contribution, on_mean, device.opening.uniform(part[0], met.sampled)
-        ),
+        sampled_surfaces(sampled, device.opening.contribution, on_mean, device.opening.uniform(part[0], sampled)),
         None if met.tips is None else arcs.longest_free(*met.tips, device.beam),
     )
 

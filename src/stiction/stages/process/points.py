@@ -137,7 +137,9 @@ def _points(
 
 def _contacts(alternatives, settings, of):
     """Contacts of one kind on alternative surfaces."""
-    return stage_contact.compute_each(alternatives, settings.pair, "NG", of)
+    contacts = stage_contact.compute_each(alternatives, settings.pair, "NG", of)
+    spectra = [[spectrum for _, spectrum in some] for some in alternatives]
+    return [stage_contact.with_correlation(*one) for one in zip(contacts, spectra, strict=True)]
 
 
 def _with_samples(settings):

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.config.units import from_si
+from stiction.devices.strips import alike
 from stiction.errors import NotConverged
 from stiction.plan.stage import Stage, select
 from stiction.rounding import is_at_most
@@ -49,24 +50,18 @@ def compute(estimate: xr.Dataset, heights: xr.Dataset, settings: Settings) -> xr
     return spectrum.assign(flags=((), "\n".join(limits)))
 
 
-#: Strips over which heights may be correlated while the adhesion of neighbours is not. Measured on strips of 1.5 µm:
-#: the correlation of ln e is zero within 0.07 if heights are over 2.9 of them, and 0.25 to 0.34 if they are over 5.5.
-_ALIKE = 3
-
-
 def _within_correlation(spectrum, use):
     """Sentences about strips and margins within the correlation length."""
     length = uncorrelated_beyond(spectrum)
     strip, margin, heights = (from_si(value, "um") for value in (use.strip_length, use.margin, length))
-    if use.strip_length <= length:
-        beyond = (
-            "; beyond three strips this makes the scatter of cracks too small (by up to 30 % at 5.5 strips), and safe "
-            "lengths too long: the unsafe side"
-        )
+    if alike(length, use.strip_length) > 1:
         yield (
-            f"heights are correlated over {heights:.2g} µm; strips of {strip:g} µm count as independent nevertheless"
-            f"{beyond * (length > _ALIKE * use.strip_length)}"
+            f"heights are correlated over {heights:.2g} µm, more than three strips of {strip:g} µm: such strips count "
+            "as alike under devices, the safe side, and as independent under the beams of pairs, whose cracks then "
+            "scatter up to 30 % too little (at 5.5 strips)"
         )
+    elif use.strip_length <= length:
+        yield f"heights are correlated over {heights:.2g} µm; strips of {strip:g} µm count as independent nevertheless"
     if use.margin <= length:
         yield (
             f"heights are correlated over {heights:.2g} µm, so that a margin of {margin:g} µm makes opposite edges of "
