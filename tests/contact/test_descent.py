@@ -11,7 +11,7 @@ from test_elements import NM, NONE, E, by_summits, other_model, rough, space_of
 
 from stiction.contact.full import descent, elements
 from stiction.contact.full.elements import Adhesion, separation
-from stiction.contact.full.halfspace import periodic_waves
+from stiction.contact.full.halfspace import SPRINGS, periodic_waves
 from stiction.contact.vanderwaals import attraction
 from stiction.errors import NotConverged
 from stiction.stages.contact.full_contact import InAir, separated
@@ -150,25 +150,44 @@ def test_a_rougher_strip_closes_only_under_a_force():
 
 def test_a_step_ends_at_the_nearest_gaps_of_the_mean():
     rng = np.random.default_rng(4)
-    gap, gradient, step, mean = rng.exponential(1.0, (20, 30)), rng.normal(0, 1, (20, 30)), 1.5, 1.2
-    for first in (-50.0, 0.0, 5.0):  # where the search for the shift begins changes nothing
-        way, slope = descent._way(gap, gradient, step, first, mean)
-        ahead = gap + way
-        assert ahead.mean() == pytest.approx(mean, rel=1e-8)
-        assert np.all(ahead >= 0)
-        shifts = gap - step * gradient - ahead
-        shift = shifts[ahead > 0].mean()
-        assert_allclose(shifts[ahead > 0], shift, atol=1e-9)
-        assert np.all(shifts[ahead == 0] <= shift)
-        assert slope == pytest.approx(np.mean(gradient * way))
+    gap, step, mean = rng.exponential(1.0, (20, 30)), 1.5, 1.2
+    down, gradient = rng.normal(0, 1, (2, 20, 30))
+    way, slope = descent._way(gap, down, step, gradient, mean)
+    ahead = gap + way
+    assert ahead.mean() == pytest.approx(mean, rel=1e-8)
+    assert np.all(ahead >= 0)
+    shifts = gap - step * down - ahead
+    shift = shifts[ahead > 0].mean()
+    assert_allclose(shifts[ahead > 0], shift, atol=1e-9)
+    assert np.all(shifts[ahead == 0] <= shift)
+    assert slope == pytest.approx(np.mean(gradient * way))
 
 
 def test_the_length_of_a_step_is_the_inverse_of_a_constant_curvature():
+    """A curvature of 4 that smoothing divides by 2."""
     rng = np.random.default_rng(5)
-    gap, after = rng.exponential(1.0, (2, 20, 30))
-    zero, gradient = np.zeros((20, 30)), rng.normal(0, 1, (20, 30))
-    assert descent._step(gap, after, gradient, gradient + 4 * (after - gap), zero) == pytest.approx(0.25)
-    assert descent._step(gap, after, gradient, zero, gradient - 4 * (after - gap)) == np.inf
+    moved, rest = rng.normal(0, 1, (2, 20, 30))
+    assert descent._step(moved, rest, rest / 2, rest + 4 * moved, (rest + 4 * moved) / 2) == pytest.approx(0.5)
+    assert descent._step(moved, rest, rest / 2, rest - 4 * moved, (rest - 4 * moved) / 2) == descent.FIRST
+    nearly_flat = rest + 0.01 * moved
+    assert descent._step(moved, rest, rest / 2, nearly_flat, nearly_flat / 2) == descent.LONGEST
+
+
+def test_only_elements_that_are_open_or_about_to_open_move():
+    gap = np.array([[1.0, 2.0, 0.0, 0.0]])
+    gradient = np.float32([[5.0, -1.0, 3.0, -9.0]])
+    free = descent._among_free(gradient, gap, gradient, 2.0)
+    assert_allclose(free, [[5 + 5 / 3, -1 + 5 / 3, 0, -9 + 5 / 3]], rtol=1e-6)
+
+
+def test_the_displacement_on_springs_is_that_of_the_half_space_and_of_the_springs_in_parallel():
+    pressure = np.random.default_rng(6).normal(0, 1e6, SOFT.shape).astype(np.float32)
+    moved = SOFT.displacement_on_springs(pressure)
+    springs = moved / (SPRINGS * SOFT.unit)
+    assert_allclose(SOFT.traction(moved) + springs, pressure, atol=1e-3 * np.abs(pressure).max())
+    assert moved.std() < SOFT.displacement(pressure).std()
+    even = np.full(SOFT.shape, 1e6, np.float32)
+    assert_allclose(SOFT.displacement_on_springs(even), SPRINGS * SOFT.unit * even, rtol=1e-5)
 
 
 def test_a_descent_without_enough_steps_is_refused(monkeypatch):
@@ -181,14 +200,41 @@ def test_a_descent_without_enough_steps_is_refused(monkeypatch):
 # In the study
 
 
-def test_the_study_descends_where_turns_do_not_settle_in_dry_air_alone():
+def test_the_study_descends_where_turns_do_not_settle():
     curve, z = led(0.6), smooth(0.6)
     by_study = separated(SOFT, z, InAir(dry(SOFT), curve, 0.0))
     assert by_study.adhesion_energy == found().adhesion_energy
-    humid = Adhesion.of((1.5 * NM, 6e7), attraction("water"), SOFT)
-    with pytest.raises((NotConverged, ValueError), match="full elastic contact"):
-        separated(SOFT, z, InAir(humid, curve, 0.0))
     settles = InAir(dry(SOFT), led(1.0), 0.0)
     assert (
         separated(SOFT, smooth(1.0), settles).closed.turns == separation(SOFT, smooth(1.0), *settles[:2]).closed.turns
     )
+
+
+# Under water
+
+
+def wet(space):
+    """Film of water of 1.5 nm, and solids that touch in it."""
+    return Adhesion.of((1.5 * NM, 6e7), attraction("water"), space)
+
+
+@pytest.mark.parametrize("rms", [1.0, 2.0])
+def test_under_a_film_descent_finds_the_states_of_turns_where_they_settle(rms):
+    z, curve = smooth(rms), led(rms)
+    turns = separation(SOFT, z, wet(SOFT), curve)
+    by_descent = separation(SOFT, z, wet(SOFT), curve, descent.equilibrium)
+    assert by_descent.adhesion_energy == pytest.approx(turns.adhesion_energy, rel=2e-3)
+    assert by_descent.pull_off == pytest.approx(turns.pull_off, rel=0.02)
+
+
+def test_under_a_film_a_smooth_strip_settles_where_turns_do_not():
+    z, curve = smooth(0.6), led(0.6)
+    with pytest.raises((NotConverged, ValueError), match="full elastic contact"):
+        separation(SOFT, z, wet(SOFT), curve)
+    found = separated(SOFT, z, InAir(wet(SOFT), curve, 0.0))
+    work = -float(wet(SOFT).energy(np.zeros(1))[0])
+    assert 0.4 < found.adhesion_energy / work < 1
+    state = found.closed
+    traction = SOFT.traction(state.gap - (np.float32(state.distance) - z))
+    left = np.abs(state.pressure - state.attraction - state.force - traction).mean()
+    assert left < 2 * descent.SETTLED * state.attraction.mean()

@@ -17,6 +17,8 @@ from scipy import fft
 
 #: Displacement of the centre of an element under its own pressure, in units of p Δ/E': 4 ln(1 + √2)/π.
 OWN_DISPLACEMENT = 4 / np.pi * np.log(1 + np.sqrt(2))
+#: Displacement of a spring under an element, in units of p Δ/E': that of the longest waves of strips.
+SPRINGS = 300.0
 #: Waves of a square element beyond the grid, in each direction. Those left out are 3e-4 of the displacement of an
 #: element under its own pressure.
 _ALIASES = 6
@@ -67,6 +69,18 @@ class HalfSpace:
         Displacements (n1, n2) float32 [m], of which the mean is left out.
         """
         return fft.irfft2(fft.rfft2(displacement) * self._inverse, s=self.shape)
+
+    @cached_property
+    def _on_springs(self):
+        """Waves of `displacement_on_springs`, float32 [m Pa⁻¹]."""
+        return (1 / (self._inverse + 1 / (SPRINGS * self.unit))).astype(np.float32)
+
+    def displacement_on_springs(self, pressure: np.ndarray) -> np.ndarray:
+        """Displacement of a periodic strip that stands on springs under all elements (n1, n2) float32 [m].
+
+        Pressures (n1, n2) float32 [Pa]. A spring alone is displaced by `SPRINGS` units.
+        """
+        return fft.irfft2(fft.rfft2(pressure) * self._on_springs, s=self.shape)
 
 
 def love(i: np.ndarray, j: np.ndarray) -> np.ndarray:

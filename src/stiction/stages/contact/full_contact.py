@@ -103,22 +103,20 @@ def _in_air(summits, humidity, water, attraction, space) -> Callable[[int], InAi
 
 
 def separated(space: HalfSpace, heights: np.ndarray, case: InAir) -> elements.Separation:
-    """Separate a strip of heights z (n1, n2) [m]: by descent where turns do not settle, in dry air.
+    """Separate a strip of heights z (n1, n2) [m]: by descent where turns do not settle.
 
-    Turns are ten times as fast where they settle. A film has no slope at its end, which descent needs.
+    On rough strips, turns are up to ten times as fast.
 
     Raises
     ------
     NotConverged
-        If neither settles, or turns do not and the air is humid.
+        If neither settles.
     ValueError
         If the strip does not come to rest.
     """
     try:
         return elements.separation(space, heights, case.adhesion, case.curve)
     except (NotConverged, ValueError):
-        if case.adhesion.height > 0:
-            raise
         return elements.separation(space, heights, case.adhesion, case.curve, descent.equilibrium)
 
 
