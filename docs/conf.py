@@ -2,7 +2,11 @@
 
 import shutil
 import sys
+from functools import cache
 from pathlib import Path
+from unittest.mock import patch
+
+from sphinx import addnodes
 
 DOCS = Path(__file__).parent
 sys.path[:0] = [str(DOCS / "_ext"), str(DOCS.parent / "src")]
@@ -72,13 +76,29 @@ def titled(_app, docname, source):
         source[0] = f"---\norphan: true\n---\n\n# {title}\n\n{source[0]}"
 
 
-def without_sidebar(_app, pagename, _templatename, context, _doctree):
-    """Leave the list of all pages out of the pages of source code, which takes half of the time of a build."""
-    if pagename.startswith("_modules/"):
-        context["toctree"] = lambda **_options: ""
+@cache
+def titles(env):
+    """Contents of each page without its headings and objects: its title and the pages that it lists."""
+    tocs = {name: toc.deepcopy() for name, toc in env.tocs.items()}
+    for entry in (entry for toc in tocs.values() for entry in toc.children if len(entry) > 1):
+        entry[1][:] = list(entry.findall(addnodes.toctree))
+        if not entry[1].children:
+            entry.pop(1)
+    return tocs
+
+
+def light_sidebar(app, pagename, _templatename, context, _doctree):
+    """Copy titles only for the list of all pages, which shows no more; pages of source code have no list."""
+    listed = context["toctree"]
+
+    def toctree(**options):
+        with patch.object(app.env, "tocs", titles(app.env)):
+            return listed(**options)
+
+    context["toctree"] = (lambda **_options: "") if pagename.startswith("_modules/") else toctree
 
 
 def setup(app):
-    """Register `titled` with Sphinx, and `without_sidebar` before the theme asks for the list."""
+    """Register `titled` with Sphinx, and `light_sidebar` before the theme asks for the list."""
     app.connect("source-read", titled)
-    app.connect("html-page-context", without_sidebar, priority=100)
+    app.connect("html-page-context", light_sidebar, priority=100)
