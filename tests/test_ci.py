@@ -19,10 +19,12 @@ PYTHON = """#!/usr/bin/env bash
 [ "$1" = -V ] && echo "Python 3.14.0"
 [ "$1" = -c ] && [[ "$0" == *.venv/* ]] && exit 1
 [ "$2" = pytest ] || exit 0
-{ printf '%s\\t' "$0" "$@"; echo; } >> asked
+call=$(printf '%s\\t' "$0" "$@")
+echo "$call" >> asked
 while read -r status words; do
   if [[ "$0 $*;" == *"$words"* ]]; then
     [ "$status" = hang ] && exec sleep 20
+    [ "$status" = meet ] && exec timeout 20 bash -c 'until grep -q newest asked; do sleep 0.1; done'
     [ "$status" = skip ] && echo "2 passed, 1 skipped in 0.10s" && exit
     exit "$status"
   fi
@@ -129,6 +131,23 @@ def test_a_part_that_cannot_run_here_is_named_last_with_the_reason(project, part
     assert not any(PARTS[part] in " ".join(call) for call in asked)
 
 
+def test_the_output_of_parts_that_run_beside_another_python_follows_in_one_piece(project):
+    status, printed, _ = run(project, [".ci/run"], f"meet {PARTS['tests with SLURM']}")
+    assert status == 0, "SLURM waits for the other Python"
+    heads = [line.removeprefix("== ") for line in printed.splitlines() if line.startswith("== ")]
+    order = ["fast tests on Python 3.14.0", "smoke run on Python 3.14.0", "tests with SLURM", "tests in a browser"]
+    assert [head for head in heads if head in order] == order
+
+
+def test_parts_that_run_beside_another_python_must_reach_their_end(project):
+    script = project / ".ci" / "run"
+    script.write_text(script.read_text().replace("waiting() {", "waiting() { kill -KILL $BASHPID;"))
+    status, printed, asked = run(project, [".ci/run"])
+    assert status == 1
+    assert printed.splitlines()[-1] == "FAILED: tests with SLURM and in a browser (ended early)"
+    assert len(asked) == len(PARTS) - len(NEEDED)
+
+
 def test_a_part_that_is_missing_fails_the_whole(project):
     makefile = project / "Makefile"
     makefile.write_text(makefile.read_text().replace("cluster", "other"))
@@ -137,12 +156,13 @@ def test_a_part_that_is_missing_fails_the_whole(project):
     assert printed.splitlines()[-1] == "FAILED: tests with SLURM"
 
 
-def test_a_part_that_is_cut_off_fails_the_whole(project):
+@pytest.mark.parametrize("part", ["tests with SLURM", "slow tests"])
+def test_a_part_that_is_cut_off_fails_the_whole(project, part):
     script = project / ".ci" / "run"
     script.write_text(re.sub("limit=[0-9]+", "limit=2", script.read_text()))
-    status, printed, _ = run(project, [".ci/run"], "hang -m slow")
+    status, printed, _ = run(project, [".ci/run"], f"hang {PARTS[part]}")
     assert status == 1
-    assert "FAILED: slow tests (cut off)" in printed
+    assert f"FAILED: {part} (cut off)" in printed
 
 
 @pytest.mark.parametrize(
