@@ -21,6 +21,7 @@ PYTHON = """#!/usr/bin/env bash
 [ "$2" = pytest ] || exit 0
 call=$(printf '%s\\t' "$0" "$@")
 echo "$call" >> asked
+echo "${SHARED_RUNS:-}" >> shared
 while read -r status words; do
   if [[ "$0 $*;" == *"$words"* ]]; then
     [ "$status" = hang ] && exec sleep 20
@@ -137,6 +138,13 @@ def test_the_output_of_parts_that_run_beside_another_python_follows_in_one_piece
     heads = [line.removeprefix("== ") for line in printed.splitlines() if line.startswith("== ")]
     order = ["fast tests on Python 3.14.0", "smoke run on Python 3.14.0", "tests with SLURM", "tests in a browser"]
     assert [head for head in heads if head in order] == order
+
+
+def test_all_parts_share_runs_in_a_folder_that_is_empty_before_and_gone_after(project):
+    run(project, [".ci/run"])
+    folders = {*(project / "shared").read_text().splitlines()}
+    assert len(folders) == 1
+    assert not Path(*folders).exists()
 
 
 def test_parts_that_run_beside_another_python_must_reach_their_end(project):

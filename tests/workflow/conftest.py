@@ -50,9 +50,13 @@ def snakemake(directory, *arguments, configs=(SMOKE,), cores=2, check=True):
 
 @pytest.fixture(scope="session")
 def shared(tmp_path_factory):
-    """Make a folder once for all processes of pytest-xdist: ``shared(name, fill)``; tests must not write into it."""
+    """Make a folder once: ``shared(name, fill)``; tests must not write into it.
+
+    All processes of pytest-xdist share it, and all of continuous integration, which names a place in ``SHARED_RUNS``.
+    """
     root = tmp_path_factory.getbasetemp()
     root = root.parent if "PYTEST_XDIST_WORKER" in os.environ else root
+    root = Path(os.environ.get("SHARED_RUNS", root))
 
     def folder(name, fill):
         path, filled = root / name, root / f"{name}.filled"

@@ -5,7 +5,7 @@ import re
 
 import pytest
 from browser import Browser, missing
-from conftest import ROOT, snakemake
+from conftest import ROOT, copied, snakemake
 
 from stiction.command.front_page import FRONT, front_page
 
@@ -36,14 +36,15 @@ LINES = "return Math.max(...[...document.querySelectorAll('td')].map(cell => cel
 
 
 @pytest.fixture(scope="module")
-def report(smoke):
+def report(smoke, tmp_path_factory):
     """Report of the smoke run, with its front page."""
-    (smoke / FRONT).write_text(front_page(smoke / "results"), encoding="utf-8")
+    run = copied(smoke, tmp_path_factory.mktemp("report") / "run")
+    (run / FRONT).write_text(front_page(run / "results"), encoding="utf-8")
     options = ["--report-stylesheet", STYLE, "--report-metadata", STYLE.with_name("guide.yaml")]
-    printed = snakemake(smoke, "--report", "results/report.html", *options).stdout
+    printed = snakemake(run, "--report", "results/report.html", *options).stdout
     assert "Warning" not in printed
     assert "ERROR" not in printed, "in a caption"
-    return smoke / "results" / "report.html"
+    return run / "results" / "report.html"
 
 
 def faults(browser, report):
