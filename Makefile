@@ -23,6 +23,7 @@
 #
 #   make test       format, lint and tests                   make test-all   the slow tests as well
 #   make test-slow  the slow tests alone; those that fail are run a second time
+#   make nightly    continuous integration and the tests that CONTRIBUTING.md names
 #   make format     format the code                          make mutants    break the code, name undetected errors
 #   make bench      time the stages                          make times      time the commands (half an hour)
 #   make peers      time the same work here and in public libraries
@@ -53,7 +54,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow lint format cluster mutants bench peers times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow nightly lint format cluster mutants bench peers times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -146,11 +147,14 @@ test-all: lint
 	$(BIN)/python -m pytest $(WORKERS) -m "not cluster" $(ARGS)
 
 # Those that fail are run again, alone, and must then pass. With status 1 of pytest all were run, with any other some were not.
-test-slow: SLOW := slow and not browser and not cluster
+test-slow: SLOW := slow and not browser and not cluster and not nightly
 test-slow: lint
 	$(BIN)/python -m stiction.run.warmup
 	$(BIN)/python -m pytest $(WORKERS) -m "$(SLOW)" --durations 30 $(ARGS) || \
 	  { [ $$? = 1 ] && $(BIN)/python -m pytest -m "$(SLOW)" --last-failed --last-failed-no-failures none; }
+
+nightly:
+	.ci/run nightly
 
 lint: $(VENV)/ready
 	$(BIN)/ruff format --check src tests workflow docs examples

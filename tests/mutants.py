@@ -40,7 +40,7 @@ PATIENCE = 4, 60
 #: Processes of tests start from one that has imported the libraries.
 PROCESSES = multiprocessing.get_context("forkserver")
 LIBRARIES = ["numba", "scipy.stats", "scipy.optimize", "scipy.signal", "xarray", "netCDF4", "matplotlib.pyplot"]
-FAST, SLOW = "not slow and not cluster and not browser", "slow and not cluster and not browser"
+FAST, SLOW = (f"{which} and not cluster and not browser" for which in ("not slow and not nightly", "(slow or nightly)"))
 
 #: Operators and the one that each is replaced by.
 OPERATORS = {ast.Add: ast.Sub, ast.Sub: ast.Add, ast.Mult: ast.Div, ast.Div: ast.Mult, ast.Pow: ast.Mult}

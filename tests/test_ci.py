@@ -86,14 +86,21 @@ def marks_of(asked):
     return [after for word, after in itertools.pairwise(arguments) if word == "-m"][-1]
 
 
-def test_every_test_is_in_a_part_of_continuous_integration(project):
-    status, printed, asked = run(project, [".ci/run"])
+@pytest.mark.parametrize(("words", "nightly"), [([".ci/run"], False), ([shutil.which("make"), "nightly"], True)])
+def test_every_test_is_in_a_part_of_continuous_integration_or_also_of_that_of_the_night(project, words, nightly):
+    status, printed, asked = run(project, words)
     assert status == 0
     assert "FAILED" not in printed
-    assert len(asked) == len(PARTS)
+    assert len(asked) == len(PARTS) + nightly
     for present in itertools.product([False, True], repeat=len(MARKS)):
         marks = dict(zip(MARKS, present, strict=True))
-        assert any(eval(marks_of(call), {}, marks) for call in asked), marks
+        assert nightly or marks["nightly"] or any(eval(marks_of(call), {}, marks) for call in asked), marks
+        assert not nightly or any(eval(marks_of(call), {}, marks) for call in asked), marks
+
+
+def test_contributors_read_which_files_have_tests_of_the_night_only():
+    nightly = {path.name for path in (ROOT / "tests").rglob("test_*.py") if f"mark.{'nightly'}" in path.read_text()}
+    assert nightly == set(re.findall(r"`(test_\w+\.py)`", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")))
 
 
 @pytest.mark.parametrize("part", PARTS)

@@ -1,8 +1,9 @@
 """Coverage of lengths after counts: how many drawn truths are inside the stated intervals of 95 %.
 
-``pytest -m slow --log-cli-level INFO tests/devices/test_coverage.py`` prints the numbers of docs/test-beams.md.
+``pytest -m "slow or nightly" --log-cli-level INFO tests/devices/test_coverage.py`` gives numbers of test-beams.md.
 """
 
+import itertools
 import logging
 
 import numpy as np
@@ -43,9 +44,13 @@ def drawn(rng, centres, beams):
     return truth, Counts(responses, np.exp(np.stack([lengths] * 2, axis=1)), scores, stuck, np.full(3, beams))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("beams", [10, 40])
-@pytest.mark.parametrize("held_by", CENTRES)
+@pytest.mark.parametrize(
+    ("held_by", "beams"),
+    [
+        pytest.param(*case, marks=pytest.mark.slow if case == ("both", 10) else pytest.mark.nightly)
+        for case in itertools.product(CENTRES, (10, 40))
+    ],
+)
 def test_intervals_of_95_percent_hold_95_percent_of_the_true_lengths(held_by, beams):
     by_deviation, by_quantiles, is_box = [], [], []
     for k in range(TRUTHS):

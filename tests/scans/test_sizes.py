@@ -117,7 +117,7 @@ def test_rings_of_several_spectra_are_in_order():
     np.testing.assert_array_equal(joined.weight, [4, 6, 8])
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_errors_cover_the_truth_as_often_as_they_say():
     found = [
         estimate((*drawn(6e-6, 4, 1, f"{k} "), *drawn(4e-6, 2, 1, f"{k} ")), SEED, model_scans=8) for k in range(40)

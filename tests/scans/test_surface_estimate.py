@@ -500,7 +500,7 @@ def test_particles_leave_the_measured_density():
     assert any("the measured density is used instead" in flag for flag in found.flags)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_errors_cover_the_truth_as_often_as_they_say():
     found = estimates(published("B2", SIDE, 64, "coverage"))
     deviation = np.array([(one.moments - truth("B2")) / one.errors for one in found])

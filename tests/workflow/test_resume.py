@@ -97,12 +97,18 @@ def test_a_run_killed_in_its_longest_stage_resumes_without_unlocking(undisturbed
     assert_resumed(tmp_path, undisturbed, [BEAMS], tiny)
 
 
-@pytest.mark.slow
-def test_a_run_interrupted_in_every_stage_gives_the_same_bytes(everything, tiny, tmp_path):
+@pytest.mark.parametrize(
+    "stages",
+    [
+        pytest.param(WRITERS, marks=pytest.mark.slow, id="every way of writing"),
+        pytest.param(STAGES, marks=pytest.mark.nightly, id="every stage"),
+    ],
+)
+def test_a_run_interrupted_in_many_stages_gives_the_same_bytes(everything, tiny, tmp_path, stages):
     moments, signals = cycle((0.0, 0.7, 1.4)), cycle((signal.SIGKILL, signal.SIGTERM))
-    for number, stage in enumerate(STAGES):
+    for stage in stages:
         # Results of earlier jobs, also of later stages: without them, the run does not end before its signal.
-        for path in (path for later in STAGES[number:] for path in files_of(later, tmp_path / "results")):
+        for path in (path for later in STAGES[STAGES.index(stage) :] for path in files_of(later, tmp_path / "results")):
             path.unlink()
         end_in_stage(stage, next(signals), tmp_path, ALL, tiny, next(moments) if stage != "checks" else 0.0)
         assert_only_whole_files(tmp_path, everything)

@@ -244,7 +244,7 @@ def energies_of(beam, settings):
     return np.array([curves.energies(contact, h, WANTED.water).mean() for h in HUMIDITIES])
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_energies_from_single_scans_are_those_of_the_surface_within_the_known_error():
     settings = small.settings_of(stage_contact, wide("contact/b_NG", 100))
     true, spectrum = small.surfaces()[0][0], SURFACES["B2"].spectrum
