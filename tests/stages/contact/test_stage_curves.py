@@ -1,15 +1,18 @@
 """Force curves from stored datasets."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.special import erfc
 
 from stiction.constants import HAMAKER_CONSTANT
+from stiction.contact.correction import Correction
 from stiction.contact.environment import Gaps, Water, flooded_law
 from stiction.contact.pair import DistanceGrid
 from stiction.contact.vanderwaals import attraction
 from stiction.stages.contact import contact
-from stiction.stages.contact.curves import energies, force_curves, pull_offs, tip_forces, vectors
+from stiction.stages.contact.curves import energies, fast_tip_forces, force_curves, pull_offs, tip_forces, vectors
 
 
 def test_force_at_a_humidity_is_solid_pressure_less_tension_on_the_wet_area():
@@ -52,6 +55,21 @@ def test_the_force_of_a_tip_is_the_largest_attraction_of_each_slope_on_the_strip
     np.testing.assert_array_equal(slopes, [0.05, 0.1])
     flat = [contact.layout(solid[:, k], bearing[:, k], grid, range(1)) for k in range(2)]
     np.testing.assert_allclose(forces[0], [3e-7 * pull_offs(one, 0.65, wet)[0] for one in flat], rtol=1e-6)
+
+
+@pytest.mark.parametrize(("energy", "pull_off", "factor"), [(3.0, 2.0, 3.0), (0.8, 1.3, 1.3), (0.7, 0.9, 1.0)], ids=str)
+def test_full_contact_changes_tips_by_the_larger_ratio_and_weakens_none(energy, pull_off, factor):
+    grid = DistanceGrid(0.5e-9, 10, 40)
+    bearing = np.tile(1 / (1 + np.exp(grid.bearing / 2e-9)), (1, 2, 1))
+    found, wet = tips(np.tile(np.exp(-grid.solid / 2e-9) * 1e8, (1, 2, 1)), bearing, grid), Water(300.0)
+    ratios = Correction(np.array([0.5, 0.8]), np.full(2, energy), np.full(2, pull_off))
+    for forces_of in (
+        lambda water: tip_forces(found, 0.65, water)[1],
+        lambda water: fast_tip_forces(found, 0.65, water),
+    ):
+        changed, summits = forces_of(replace(wet, correction=ratios)), forces_of(wet)
+        np.testing.assert_allclose(changed, factor * summits, rtol=1e-12)
+        assert np.all(summits > 0)
 
 
 def test_a_tip_that_no_solid_stops_is_pressed_to_its_mean_plane():

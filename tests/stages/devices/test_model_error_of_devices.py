@@ -71,12 +71,33 @@ def test_a_budget_has_a_row_of_the_model_that_is_no_part_of_its_total():
     assert others.equals(plain.frame)
 
 
+def test_tips_of_corrected_devices_have_the_correction_of_their_pair():
+    size = {"pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
+    chart = {"thicknesses_um": [2, 2.6], "humidities": [0.5, 0.8]}
+    devices = {
+        "C1": size | {"kind": "cantilever", "chart": chart},
+        "R1": size | {"kind": "bridge", "gap_um": 2, "residual_stress_MPa": 50},
+    }
+    full, summits = (Plan(load({"devices": devices, "contact": {"model": model}})) for model in ("full", "summits"))
+    for job in ("devices/safe_lengths/C1_rh067", "devices/chart/C1_rh067"):
+        assert Graph(full).job(job).inputs["model_error"] == "studies/model_error/across/b"
+        assert "model_error" not in Graph(summits).job(job).inputs
+    assert "model_error" not in Graph(full).job("devices/safe_lengths/R1_rh067").inputs
+
+
 def test_a_page_says_by_how_much_and_which_side_is_safe():
     (dry, wet) = (safe(), safe(longest=500e-6))
     given = {"C1": CANTILEVER | {"humidities": [0.44, 0.67]}}
     page = pages.beam_page("C1", given["C1"], {0.44: dry, 0.67: wet}, {}, {}, NONE, errors=ERRORS).html
     assert "would change the lengths held by the beam by +11.0 ± 1.0 % at a relative humidity of 0.44" in page
     assert "It is not known for what the tip holds." in page
+    applied = {"C1": ERRORS["C1"].assign(applied=True)}
+    corrected = pages.beam_page("C1", given["C1"], {0.44: dry, 0.67: wet}, {}, {}, NONE, errors=applied).html
+    assert (
+        "Tips count as changed by the larger ratio of energies and forces, and as no weaker: the safe side."
+        in corrected
+    )
+    assert "It is not known for what the tip holds." not in corrected
     assert "What is stated is on the safe side" in page
     stopper = pages.stopper_page("S1", STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, [], errors=ERRORS).html
     assert "the pull-off force by -30.0 ± 1.0 % at a relative humidity of 0.44" in stopper

@@ -22,6 +22,13 @@ def device_change(errors: Mapping[str, xr.Dataset] | None, device: str, humidity
     return change(error.sel(shape=shape, humidity=humidity) if known else None, "factor")
 
 
+#: What full contact does to tips, without and with a correction.
+_OF_TIPS = (
+    "It is not known for what the tip holds.",
+    "Tips count as changed by the larger ratio of energies and forces, and as no weaker: the safe side.",
+)
+
+
 def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]:
     """Changes of a device by full contact in words, and the safe side of them, none without errors."""
     if errors is None:
@@ -39,7 +46,7 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     if len(known) < len(rows):
         said.append(f"It is not known {airs([humidity for humidity in rows if humidity not in known])}.")
     if EITHER in error["shape"]:
-        said.append("It is not known for what the tip holds.")
+        said.append(_OF_TIPS[bool(error.applied)])
     said += [] if error.applied else [_safe_side(known, -1 if shape == FORCE else 1)]
     if error.across_gaps:
         return [*said, "Attraction across gaps is in both models."]

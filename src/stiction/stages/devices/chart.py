@@ -17,8 +17,9 @@ from stiction.devices import risk
 from stiction.devices.chart import checked_power_law, error_between
 from stiction.plan.names import by_case
 from stiction.plan.stage import Running, Stage, select, subsection
+from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices import sticking
-from stiction.stages.devices.contact_names import tips_of
+from stiction.stages.devices.contact_names import corrected_tips_of
 from stiction.stages.devices.ground import ground_from, ground_inputs
 from stiction.stages.devices.opening import DesignedBeam, settings_of_beam
 
@@ -202,9 +203,10 @@ STAGES = (
     Stage.writing(
         "chart",
         "devices/chart/{case}",
-        inputs=lambda plan, at: ground_inputs(plan, at.case) | tips_of(plan, at.case),
+        inputs=lambda plan, at: ground_inputs(plan, at.case) | corrected_tips_of(plan, at.case),
         settings=_settings,
         kind=Settings,
+        complete=with_correction,
         compute=compute,
         message="Chart of {case}.",
         running=Running(minutes=120),

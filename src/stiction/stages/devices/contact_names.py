@@ -43,6 +43,12 @@ def tips_of(plan: Any, case: Case) -> dict[str, str]:
     return {"tips": file_of(AS_IT_IS, TIPS, **patch_of_tips(plan, case)._asdict())}
 
 
+def corrected_tips_of(plan: Any, case: Case) -> dict[str, str]:
+    """Contact of the tips of a cantilever with its correction, none for a bridge, see `tips_of`."""
+    tips = tips_of(plan, case)
+    return tips | corrections_of(plan, case.device) if tips else {}
+
+
 def patch_of_tips(plan: Any, case: Case) -> Patch:
     """Patch of the tips of a cantilever, named as by `patch_of`."""
     return plan.devices.tips(case.device)._replace(pair=plan.contact_of_device(case))

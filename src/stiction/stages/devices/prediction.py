@@ -15,6 +15,7 @@ learn how far the model errs on its own surfaces, so that the paper's lengths sa
 """
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -57,11 +58,10 @@ def with_intervals(dataset: xr.Dataset, data: Mapping[str, Any], settings: Any) 
         return dataset
     reach = ACROSS_GAPS if settings.water.gaps else TOUCHING
     discrepancy, middle = learnt(pd.read_csv(data["paper"]), reach)
-    contact = first(data["contact"], _SAMPLES)
+    contact, on_summits = first(data["contact"], _SAMPLES), replace(settings.water, correction=None)
     with on_patch(settings.device.strip, settings.device.width), np.errstate(divide="ignore", invalid="ignore"):
         energies = [
-            curves.energies(contact, humidity, settings.water).mean(dtype=float)
-            for humidity in (settings.humidity, middle)
+            curves.energies(contact, humidity, on_summits).mean(dtype=float) for humidity in (settings.humidity, middle)
         ]
         place = _OF_ENERGY * float(np.log(np.divide(*energies)))
     return dataset.assign(intervals(dataset, discrepancy, place))

@@ -17,7 +17,7 @@ from stiction.stages.contact.corrections import with_correction
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices import cracks as stage_cracks
 from stiction.stages.devices import prediction
-from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
+from stiction.stages.devices.contact_names import contact_of, corrected_tips_of, corrections_of
 from stiction.stages.devices.opening import DesignedBeam, at_voltage, settings_of_beam
 from stiction.stages.devices.sticking import Released, by_shape, lengths_without_samples
 
@@ -163,11 +163,12 @@ def _for_touchdowns(plan, at):
 _SAFE_LENGTHS = Stage.writing(
     "safe_lengths",
     "devices/safe_lengths/{case}",
-    inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | tips_of(plan, at.case),
+    inputs=lambda plan, at: {"cracks": f"devices/cracks/{at.case}"} | corrected_tips_of(plan, at.case),
     settings=lambda plan, at: select(
         Settings, settings_of_beam(plan, at.case) | subsection(plan.config["devices"][at.case.device], ["length_um"])
     ),
     kind=Settings,
+    complete=with_correction,
     compute=compute,
     message="Safe lengths of {case}.",
 )
