@@ -220,8 +220,8 @@ def test_all_laws_of_a_corrected_pair_are_corrected_and_otherwise_none(name):
     assert Graph(plain).job(name).settings == Graph(FULL).job(name).settings
 
 
-def test_gaussian_surfaces_and_tips_are_not_corrected():
-    for name in ("forces/b_rh067_G", "devices/safe_lengths/C1_rh067", "fit/b_rh067_NG"):
+def test_gaussian_surfaces_and_errors_of_fits_are_not_corrected():
+    for name in ("forces/b_rh067_G", "fit/b_rh067_NG"):
         assert "model_error" not in Graph(FULL).job(name).inputs
 
 
