@@ -39,8 +39,8 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
     """Slopes of tips (s,) [-] and the largest attraction of each tip at each slope, per width of the beam (m, s) [N/m].
 
     Across gaps, the wedge below the stored heights attracts like a plane of its slope. ASSUME: full elastic contact
-    changes a tip by the larger of the ratios of e and of f_max on parallel strips, and does not weaken it: the safe
-    side. On tilted strips it is not computed.
+    changes a tip by the larger of the ratios of e and of f_max on parallel strips, and does not weaken it. On tilted
+    strips it is not computed.
 
     Raises
     ------
