@@ -104,7 +104,7 @@ def problems(
     guessed, by_key = _identified_spectra(config), {}
     for use in chain(_pairs(plan), _devices(plan, "devices"), _devices(plan.with_test_beams, "test_beams")):
         given = [guessed[name] for name in dict.fromkeys(plan.sides(use.patch.pair)) if name in guessed]
-        given += ["contact.model = 'full'"] * plan.variants.is_corrected()
+        given += ["full elastic contact"] * bool(plan.variants.corrected(use.patch.pair, use.humidities))
         for path, message in _refusals(use, samples, preliminary=bool(given)):
             end = f" (preliminary, given {', '.join(given)})" if given else ""
             value = one_line(reduce(getitem, path, config))

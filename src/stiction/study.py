@@ -90,7 +90,7 @@ class PairStudy:
         """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
         humidity = in_numbers(humidity)
         water = in_si(Water, self._plan.air.water(self._plan.air.contact(self.name, humidity)))
-        if named := corrections.correction_inputs(self._plan, self.name, model=self.model):
+        if named := corrections.corrections_of_laws(self._plan, self.name, [humidity], self.model):
             water = replace(water, correction=corrections.correction(self.results[named["model_error"]]))
         return curves.energies(self._contact_at(humidity), humidity, water)
 

@@ -45,7 +45,7 @@ GRAPH, SCHEMA = Graph(PLAN), schema()
 #: Stages of surfaces described by scans; `tests/workflow/test_from_scans.py` runs them.
 OF_SCANS = {"scan", "estimate", "heights_of_scans", "spectrum_of_scans", "choice_contact", "scan_uncertainty"}
 #: Contacts of curves of roughness in dry air; `tests/stages/roughness` runs them.
-OF_DRY_AIR = {"roughness_dry_contact", "roughness_dry_tip_contact"}
+OF_DRY_AIR = {"roughness_dry_contact", "roughness_dry_tip_contact", "full_contact_dry", "pair_model_error_dry"}
 
 
 def listed(names):

@@ -288,10 +288,13 @@ def test_attraction_across_gaps_is_a_variant_on_the_contact_of_the_base():
 
 def test_the_error_of_the_model_is_stated_where_its_study_is_named_and_nowhere_else():
     named = plan(run={"studies": ["variants", "full_contact"]})
-    assert not PAPER.states_model_error
+    at = "b", [0.67]
+    assert not PAPER.states_model_error(*at)
     assert "full_contact" not in PAPER.studies
-    assert named.states_model_error
-    assert plan(contact={"model": "full"}).states_model_error
+    assert named.states_model_error(*at)
+    assert plan(contact={"model": "full"}).states_model_error(*at)
+    assert PAPER.states_model_error("b", [0.0, 0.67]), "predictions in dry air are corrected"
+    assert not plan(contact={"model": "summits"}).states_model_error("b", [0.0, 0.67])
     assert [name for name in named.variants.changes if name not in PAPER.variants.changes] == ["contact_full"]
 
 
@@ -299,7 +302,7 @@ def test_full_elastic_contact_is_a_variant_on_the_contact_of_the_base():
     named = plan(run={"studies": ["full_contact"]})
     assert named.variants.contact_under("contact_full") == "base"
     assert ("b", "contact_full") in named.variants.pairs
-    assert [name for name in named.variants.changes if named.variants.is_corrected(name)] == ["contact_full"]
+    assert [name for name in named.variants.changes if named.variants.corrected("b", [0.67], name)] == ["contact_full"]
     assert named.variants.with_summits_of("b", "contact_full") == "base"
     assert named.variants.choices("b") == PAPER.variants.choices("b")
     corrected = plan(run={"studies": ["full_contact"]}, contact={"model": "full"})

@@ -15,7 +15,7 @@ def error(factor=1.1, interpolated=False, applied=False):
             "force_factor": 0.8,
             "force_factor_error": 0.02,
             "interpolated": interpolated,
-            "applied": applied,
+            "applied": ("humidity", [applied]),
         }
     )
 
@@ -35,6 +35,13 @@ def test_an_unknown_error_is_no_error_of_zero():
     assert column.marked_change(*found.values()) == "–"
 
 
-@pytest.mark.parametrize(("applied", "words"), [(True, "has changed"), (False, "would change")])
+@pytest.mark.parametrize(
+    ("applied", "words"),
+    [
+        ((True, True), "has changed what is stated, ±"),
+        ((False, False), "would change what is stated, ±"),
+        ((True, False), "has changed what is stated in dry air, and would change it in humid air, ±"),
+    ],
+)
 def test_the_caption_says_whether_it_is_in_the_prediction(applied, words):
-    assert words in column.caption({"b": error(applied=applied), "c": error()})
+    assert words in column.caption({str(k): error(applied=flag) for k, flag in enumerate(applied)})

@@ -37,7 +37,7 @@ class Correction:
     pull_off: np.ndarray  #: of the mean largest attractions f_max (h,) [-]
 
     def at(self, humidity: float) -> tuple[float, float]:
-        """Ratios of e and of f_max at a humidity, 0 for dry air.
+        """Ratios of e and of f_max at a humidity, 0 for dry air: 1 in humid air with ratios in dry air alone.
 
         Raises
         ------
@@ -45,6 +45,8 @@ class Correction:
             If the humidity is beyond those at which full contact was computed.
         """
         known = self.humidities[(self.humidities > 0) == (humidity > 0)]
+        if humidity > 0 and not known.size:
+            return 1.0, 1.0
         low, high = known.min(initial=1.0), known.max(initial=0.0)
         if not (is_at_most(low, humidity) and is_at_most(humidity, high)):
             where = f"at relative humidities from {low:g} to {high:g}" if known.size else "in other air alone"

@@ -70,13 +70,18 @@ class Environment:
         """Humidities of a pair with condensation of water: studies against humidity leave out dry air."""
         return [rh for rh in self.config["pairs"][pair]["humidities"] if rh > 0] if self.is_wetted(pair) else []
 
-    def humidities_of_full_contact(self, pair: str) -> list[float]:
-        """Humidities of a pair, and that of its figures if these show corrected laws beyond them."""
-        own, shown = self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
-        humid = [rh for rh in own if rh > 0]
-        within = shown in own or shown > 0 and humid and min(humid) <= shown <= max(humid)
-        corrected = self.config["contact"].get("model") == "full" and pair in self.config["run"]["pairs"]
-        return [*own, shown] if corrected and not within else own
+    def is_dry(self, pair: str, humidity: float) -> bool:
+        """Whether no water condenses between the surfaces of a pair at a humidity."""
+        return humidity == 0 or not self.is_wetted(pair)
+
+    def corrected(self, pair: str, humidities: Iterable[float], config: dict | None = None) -> list[float]:
+        """Those of some humidities at which predictions are corrected to full elastic contact.
+
+        ASSUME: by default those in dry air, where the sum over summits is on the unsafe side by up to a factor of 4.
+        Another configuration may be given, such as that of a variant.
+        """
+        model = (config or self.config)["contact"].get("model")
+        return [rh for rh in humidities if model == "full" or model is None and self.is_dry(pair, rh)]
 
     def not_modelled(self, cases: Iterable[tuple[str, float]]) -> str:
         """Sentence on the effects missing in the results of some cases, each a pair and a humidity."""
@@ -87,10 +92,9 @@ class Environment:
         left_out = [f"attraction of solids across gaps{of_some}"] * bool(touching)
         if self.config["van_der_waals"] == "none":
             left_out = ["van der Waals attraction of solids"]
-        wet = [humidity > 0 and self.is_wetted(pair) for pair, humidity in cases]
-        if self.config["contact"].get("model") != "full":
-            left_out += ["interaction of neighbouring summits", *([] if all(wet) else [limits.BENT])]
-        return limits.not_modelled(left_out, any(wet))
+        dry = {self.is_dry(*case) for case in cases if not self.corrected(case[0], case[1:])}
+        left_out += [limits.SUMMITS] * (False in dry) + [limits.BENT] * (True in dry)
+        return limits.not_modelled(left_out, not all(self.is_dry(*case) for case in cases))
 
     def around(self, contact: str, config: dict | None = None) -> dict[str, Any]:
         """Configuration with attraction of the summits of a contact through its own medium."""

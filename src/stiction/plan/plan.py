@@ -4,7 +4,7 @@ The rules of the workflow and the library use the same plan and therefore the sa
 they are needed, because a repeated plan takes what it needs of them from `stiction.run.disk_cache`.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -249,10 +249,24 @@ class Plan:
         needed |= dict.fromkeys(IN_HUMID_AIR, self.pairs)
         return [name for name in wanted if name not in needed or any(map(self.air.humid, needed[name]))]
 
+    def states_model_error(self, pair: str, humidities: Iterable[float]) -> bool:
+        """Whether the error of the model is stated beside predictions for a pair at some humidities."""
+        return self.has_humid_full_contact or bool(self.variants.corrected(pair, humidities))
+
     @property
-    def states_model_error(self) -> bool:
-        """Whether the error of the model is stated beside every prediction."""
-        return "full_contact" in self.studies or self.variants.is_corrected()
+    def has_humid_full_contact(self) -> bool:
+        """Whether full contact is computed in humid air, too: for its study, or to correct predictions."""
+        return "full_contact" in self.studies or self.config["contact"].get("model") == "full"
+
+    def humidities_of_full_contact(self, pair: str) -> list[float]:
+        """Humidities of a pair, that of its figures if these show corrected laws beyond them, its devices' dry air."""
+        own, shown = self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
+        humid = [rh for rh in own if rh > 0]
+        within = shown in own or shown > 0 and humid and min(humid) <= shown <= max(humid)
+        corrected = pair in self.pairs and self.variants.corrected(pair, [shown])
+        devices = [*self.devices.sections.values(), *as_cantilevers(self.config).values()]
+        dry = any(0 in section["humidities"] for section in devices if section["pair"] == pair)
+        return list(dict.fromkeys([*own, *([shown] if corrected and not within else []), *([0.0] if dry else [])]))
 
     @property
     def pressed_pairs(self) -> list[str]:

@@ -1,6 +1,6 @@
 """Variants of a configuration: one changed model choice each, left open by the paper."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -35,9 +35,10 @@ class Variants:
         """Configuration of the plan."""
         return self.plan.config
 
-    def is_corrected(self, variant: str = "base") -> bool:
-        """Whether predictions are corrected to full elastic contact."""
-        return (self.config["contact"] | self.changes[variant].get("contact", {})).get("model") == "full"
+    def corrected(self, pair: str, humidities: Iterable[float], variant: str = "base") -> list[float]:
+        """Those of some humidities at which predictions are corrected, see `Environment.corrected`."""
+        contact = self.config["contact"] | self.changes[variant].get("contact", {})
+        return self.plan.air.corrected(pair, humidities, {"contact": contact})
 
     @cached_property
     def finer_beams(self) -> dict[str, dict]:
@@ -129,7 +130,8 @@ class Variants:
         contact = self.solids(pair, variant)
         if "materials" in contact:  # of both sides, with all properties of section solid
             del contact["solid"]
-        after = self.water(pair, variant), self.finer_beams.get(variant), self.is_corrected(variant)
+        corrected = self.corrected(pair, self.plan.air.humid(PairInAir(pair).pair), variant)
+        after = self.water(pair, variant), self.finer_beams.get(variant), corrected
         return self._all_summits(pair, variant), contact, *after
 
     def choices(self, pair: str) -> list[str]:

@@ -15,7 +15,7 @@ from stiction.contact.vanderwaals import attraction
 from stiction.estimates import mean_with_error
 from stiction.plan.graph import Results
 from stiction.plan.plan import Plan
-from stiction.stages.contact import contact
+from stiction.stages.contact import contact, pair_model_error
 from stiction.stages.contact.curves import energies, pull_offs
 from stiction.stages.laws import forces
 from stiction.study import PairStudy
@@ -146,7 +146,8 @@ def test_humid_cases_are_as_without_dry_air():
 
 def test_a_case_in_dry_air_has_the_contact_in_dry_air():
     graph = Results.of(PLAN.config).graph
-    assert graph.job("forces/b_dry_NG").inputs == {"contact": "contact/b_dry_NG"}
+    corrected = {"model_error": "studies/model_error/dry/b"}
+    assert graph.job("forces/b_dry_NG").inputs == {"contact": "contact/b_dry_NG"} | corrected
     assert graph.job("forces/b_rh044_NG").inputs == {"contact": "contact/b_NG"}
     contacts = [graph.job(f"contact/{pair}_NG").settings for pair in ("b_dry", "b")]
     assert contacts[0] == contacts[1] | {"van_der_waals": "dry"}
@@ -172,8 +173,10 @@ def test_surfaces_that_water_does_not_wet_are_dry_at_any_humidity():
 def test_a_study_of_a_pair_takes_the_word_and_the_number(dry):
     study = PairStudy("b", "NG", Results.of(PLAN.config))
     study.results._known.update({"contact/b_dry_NG": dry})  # noqa: SLF001 - computed above
+    ratios = {"energy_ratio": ([1.5], [0.0]), "pull_off_ratio": ([2.0], [0.0])}
+    study.results._known["studies/model_error/dry/b"] = pair_model_error.layout(ratios, [0.0], [0.0], 6, [0.0])  # noqa: SLF001
     found = study.energies("dry")
-    assert_array_equal(found, energies(dry, 0.0, water_of("b_dry")))
+    assert_allclose(found, 1.5 * energies(dry, 0.0, water_of("b_dry")))
     assert_array_equal(found, study.energies(0))
     assert_array_equal(found, forces.energies(study.forces("dry")))
 

@@ -52,6 +52,8 @@ def plan_of(humidities):
 
 PLAN = plan_of(["dry", 0.67])
 SPECTRA = ["spectrum/B2", "spectrum/Sub1"]
+#: Correction to full elastic contact.
+FULL = {"model_error": "studies/model_error/dry/b"}
 
 
 # Names and settings
@@ -61,9 +63,12 @@ SPECTRA = ["spectrum/B2", "spectrum/Sub1"]
     ("job", "inputs"),
     [
         ("devices/cracks/C1_dry", {"ground": "devices/ground/b_dry_1500x6000"}),
-        ("devices/ground/b_dry_1500x6000", {"contact": "devices/contact/b_dry_1500x6000", "spectra": SPECTRA}),
+        ("devices/ground/b_dry_1500x6000", {"contact": "devices/contact/b_dry_1500x6000", "spectra": SPECTRA} | FULL),
         ("devices/ground/b_rh067_1500x6000", {"contact": "devices/contact/b_1500x6000", "spectra": SPECTRA}),
-        ("devices/stoppers/S1", {"contact": "devices/contact/b_1500x6000", "dry": "devices/contact/b_dry_1500x6000"}),
+        (
+            "devices/stoppers/S1",
+            {"contact": "devices/contact/b_1500x6000", "dry": "devices/contact/b_dry_1500x6000"} | FULL,
+        ),
     ],
 )
 def test_a_device_in_dry_air_sticks_on_the_contact_in_dry_air(job, inputs):
@@ -83,6 +88,7 @@ def test_tips_budgets_and_charts_have_contacts_in_dry_air_with_the_same_surfaces
         assert {file.replace("b_dry_", "b_") for file in files} - _files(humid.inputs) <= {
             "devices/cracks/C1_dry",
             "devices/ground/b_1500x6000",
+            *FULL.values(),
         }
 
 
@@ -143,7 +149,7 @@ def test_a_device_of_surfaces_that_water_does_not_wet_is_dry_at_any_humidity():
     }
     graph = Graph(Plan(load(SIZES, wax, {"devices": {"S1": STOPPER | {"humidities": [0.67]}}})))
     job = graph.job("devices/stoppers/S1")
-    assert job.inputs == {"contact": "devices/contact/b_dry_1500x6000"}
+    assert job.inputs == {"contact": "devices/contact/b_dry_1500x6000"} | FULL
     settings = job.stage.converted(job.settings)
     assert settings.water.gaps.summits == "dry"
     assert_array_equal(stoppers.axis_of(settings), [0.0])

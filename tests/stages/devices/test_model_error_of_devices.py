@@ -91,7 +91,7 @@ def test_a_page_says_by_how_much_and_which_side_is_safe():
     page = pages.beam_page("C1", given["C1"], {0.44: dry, 0.67: wet}, {}, {}, NONE, errors=ERRORS).html
     assert "would change the lengths held by the beam by +11.0 ± 1.0 % at a relative humidity of 0.44" in page
     assert "It is not known for what the tip holds." in page
-    applied = {"C1": ERRORS["C1"].assign(applied=True)}
+    applied = {"C1": ERRORS["C1"].assign(applied=("humidity", [True, True]))}
     corrected = pages.beam_page("C1", given["C1"], {0.44: dry, 0.67: wet}, {}, {}, NONE, errors=applied).html
     assert "Tips count as changed by the larger ratio of energies and forces, and as no weaker; full" in corrected
     assert "It is not known for what the tip holds." not in corrected
@@ -127,7 +127,7 @@ def test_longer_beams_and_smaller_forces_are_on_the_safe_side(shape, factor, sai
 def test_sentences_say_what_full_contact_leaves_out_and_whether_it_has_been_applied():
     plain, across, applied = (
         " ".join(model_errors.sentences("D", {"D": error((S_SHAPE,), [1.1, np.nan], **changed)}))
-        for changed in ({}, {"across_gaps": True}, {"applied": True})
+        for changed in ({}, {"across_gaps": True}, {"applied": (0.44, 0.67)})
     )
     assert "is in neither model" in plain
     assert "Attraction across gaps is in both models." in across
@@ -172,11 +172,61 @@ def test_where_no_water_condenses_a_device_has_the_error_of_dry_air_at_any_humid
     waxed |= {"run": {"pairs": ["b"], "studies": []}, "pairs": {"b": {"humidities": [0.6]}}}
     graph = Graph(Plan(load(DRY, waxed, {"contact": {"model": "full"}})))
     assert graph.job("studies/full_contact/across/b").settings["humidities"] == [0]
-    assert graph.job("studies/model_error/across/b").settings["humidities"] == [0]
+    of_pair = graph.job("studies/model_error/across/b")
+    assert of_pair.settings["humidities"] == of_pair.settings["applied"] == [0.6, 0.65, 0]
     study = full_contact.layout(np.tile([2.0, 1.5, 1, 1, 0, 0, 0, 0, 0], (3, 1, 1)), [0.0], 1e-8)
     found = graph.job("devices/model_error/S2").compute({"study": study})
     assert float(found.factor.sel(humidity=0.6)[0]) == pytest.approx(1.5)
-    assert not found.interpolated.any()
+    ratios = of_pair.compute({"study": study})
+    np.testing.assert_allclose(ratios.pull_off_ratio, [1.5, 1.5, 1.5])
+    for dataset in (found, ratios):
+        assert dataset.applied.all()
+        assert not dataset.interpolated.any()
+
+
+IN_BOTH = {
+    "pairs": {"b": {"humidities": [0.6]}},
+    "devices": {
+        "C1": {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30},
+        "S1": DRY["devices"]["S1"],
+    },
+}
+IN_BOTH["devices"]["C1"] |= {"humidities": ["dry", 0.6]}
+
+
+def test_devices_are_corrected_in_dry_air_alone_unless_the_model_is_stated():
+    """A device needs dry air of its own alone: its pair has none."""
+    graph = Graph(Plan(load(IN_BOTH)))
+    dry = {"model_error": "studies/model_error/dry/b"}
+    for job in ("devices/safe_lengths/C1_dry", "devices/ground/b_dry_1500x30000", "devices/stoppers/S1"):
+        assert dry.items() <= graph.job(job).inputs.items()
+    for job in ("devices/safe_lengths/C1_rh060", "devices/ground/b_rh060_1500x30000"):
+        assert "model_error" not in graph.job(job).inputs
+    assert graph.job("studies/full_contact/dry/b").settings["humidities"] == [0]
+    ratios = graph.job("studies/model_error/dry/b").settings
+    assert (ratios["humidities"], ratios["applied"]) == ([0.6, 0], [0])
+    summits = Graph(Plan(load(IN_BOTH, {"contact": {"model": "summits"}})))
+    assert "model_error" not in summits.job("devices/safe_lengths/C1_dry").inputs
+    assert "errors" not in summits.job("devices/C1.html").inputs
+
+
+def test_a_device_in_dry_and_in_humid_air_says_what_full_contact_has_changed_and_what_is_not_known():
+    graph = Graph(Plan(load(IN_BOTH)))
+    study = full_contact.layout(np.tile([2.0, 1.5, 1, 1, 0, 0, 0, 0, 0], (3, 1, 1)), [0.0], 1e-8)
+    found = graph.job("devices/model_error/C1").compute({"study": study})
+    assert found.applied.values.tolist() == [True, False]
+    said = " ".join(model_errors.sentences("C1", {"C1": found}))
+    assert "has changed the lengths held by the beam by -15.9" in said, "2 ** (-1/4) - 1"
+    assert "It is not known at a relative humidity of 0.6." in said
+    assert "would change" not in said
+
+
+def test_with_the_study_of_full_contact_dry_air_is_part_of_it():
+    graph = Graph(Plan(load(IN_BOTH, {"run": {"studies": ["full_contact"]}})))
+    assert graph.job("devices/safe_lengths/C1_dry").inputs["model_error"] == "studies/model_error/across/b"
+    assert "model_error" not in graph.job("devices/safe_lengths/C1_rh060").inputs
+    assert graph.job("studies/full_contact/across/b").settings["humidities"] == [0, 0.6]
+    assert graph.job("studies/model_error/across/b").settings["applied"] == [0]
 
 
 def test_without_errors_nothing_is_said():

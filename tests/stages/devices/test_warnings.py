@@ -454,20 +454,23 @@ def test_what_is_not_in_the_model_of_dry_devices_is_about_no_water():
     said = Graph(Plan(load({"devices": {"S1": dry}}))).job("devices/S1.html").settings["not_modelled"]
     assert "water" not in said
     assert "across gaps" not in said
-    assert "the force 3.5 times too small; contact.model full includes it" in said
+    assert "bending" not in said, "full elastic contact is the default there"
 
 
 @pytest.mark.parametrize(
-    ("model", "humidity", "bent"), [("summits", "dry", True), ("summits", 0.6, False), ("full", "dry", False)]
+    ("model", "humidity", "bent"),
+    [({"model": "summits"}, "dry", True), ({"model": "summits"}, 0.6, False), ({"model": "full"}, "dry", False)]
+    + [({}, "dry", False), ({}, 0.6, False)],
 )
 def test_devices_in_dry_air_say_that_summits_leave_out_the_bending_of_surfaces(model, humidity, bent):
     pair = {"mine": {"beam": "B2", "substrate": "Sub1", "gap_um": 20, "humidities": ["dry", 0.6]}}
     lever = {"kind": "cantilever", "pair": "mine", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
     devices = {"C1": lever | {"humidities": [humidity]}}
-    study = {"run": {"pairs": ["mine"]}, "figures": {"humidity": 0.6}, "contact": {"model": model}}
+    study = {"run": {"pairs": ["mine"]}, "figures": {"humidity": 0.6}, "contact": model}
     config = load(study | {"pairs": pair, "devices": devices})
     said = Graph(Plan(config)).job("devices/C1.html").settings["not_modelled"]
     assert (limits.BENT in said) == bent
+    assert (limits.SUMMITS in said) == (humidity != "dry")
 
 
 def test_what_pairs_leave_out_is_named_with_those_of_the_paper():

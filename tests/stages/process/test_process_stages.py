@@ -183,7 +183,7 @@ def test_the_error_of_the_model_is_its_change_or_if_applied_the_error_of_that(et
         {
             "factor": (("shape", "humidity"), [[0.8]]),
             "factor_error": (("shape", "humidity"), [[0.04]]),
-            "applied": ((), applied),
+            "applied": ("humidity", [applied]),
         },
         {"shape": ["force"], "humidity": [0.6]},
     )

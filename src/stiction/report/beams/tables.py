@@ -130,7 +130,7 @@ def _by_scans(row, relative):
 
 def _by_model(row, errors):
     """Error of the model of one case. For Gaussian heights it was not computed."""
-    known = row["model"] != "G"
+    known = row["model"] != "G" and row["pair"] in errors
     return beside.change(errors[row["pair"]].sel(humidity=row["relative_humidity"]) if known else None)
 
 

@@ -261,10 +261,11 @@ def _budget_rows(device, humidity, dataset):
 
 
 def _model_rows(device, humidity, dataset, errors):
-    """Row of the error of the model, if it is known."""
+    """Row of the error of the model, if it is stated."""
     response, _ = response_of(dataset)
     head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[response].by}
-    for error in filter(None, [model_errors.device_change(errors, device, humidity, response)]):
+    if device in (errors or {}):
+        error = model_errors.device_change(errors, device, humidity, response)
         effect = {"effect_percent": error["model_error_percent"], "effect_se_percent": error["model_error_se_percent"]}
         yield head | {"part": MODEL[error["interpolated"]], "name": "model error: full elastic contact"} | effect
 

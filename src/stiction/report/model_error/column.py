@@ -45,8 +45,9 @@ COLUMN = {"model error [%]": (marked_change, "model_error_percent", "model_error
 
 def caption(errors: Mapping[Any, xr.Dataset]) -> str:
     """Meaning of the column, from the datasets with the errors."""
-    applied = any(bool(error.applied) for error in errors.values())
-    does = "has changed what is stated" if applied else "would change what is stated"
+    applied = {bool(flag) for error in errors.values() for flag in error.applied}
+    does = "has changed what is stated" if True in applied else "would change what is stated"
+    does += " in dry air, and would change it in humid air" * (len(applied) > 1)
     return (
         f"Model error: by how much full elastic contact of the surfaces {does}, ± standard error over its strips; * "
         "interpolated between the humidities at which it was computed, with the error of the interpolation; – not "
@@ -56,4 +57,5 @@ def caption(errors: Mapping[Any, xr.Dataset]) -> str:
 
 def error_inputs(plan: Any) -> dict[str, Any]:
     """Errors of all pairs, as inputs of a stage, none unless they are wanted."""
-    return {"errors": errors_of_pairs(plan)} if plan.states_model_error else {}
+    errors = errors_of_pairs(plan)
+    return {"errors": errors} if errors else {}

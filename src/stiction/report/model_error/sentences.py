@@ -41,14 +41,16 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     known = {humidity: row for humidity, row in rows.items() if np.isfinite(row["model_error_percent"])}
     if not known:
         return [f"The model's error in the {what} is not known {airs(rows)}, beyond the humidities of the pair."]
-    by = [f"{_percent(row)} {airs([humidity])}" for humidity, row in known.items()]
-    does = "has changed" if error.applied else "would change"
-    said = [f"Full elastic contact of the surfaces {does} the {what} by {', '.join(by)}."]
+    applied = set(error.humidity.values[error.applied.values])
+    said, uncorrected = [], {humidity: row for humidity, row in known.items() if humidity not in applied}
+    for does, of in ("has changed", applied & known.keys()), ("would change", uncorrected):
+        by = [f"{_percent(known[humidity])} {airs([humidity])}" for humidity in sorted(of)]
+        said += [f"Full elastic contact of the surfaces {does} the {what} by {', '.join(by)}."] if by else []
     if len(known) < len(rows):
         said.append(f"It is not known {airs([humidity for humidity in rows if humidity not in known])}.")
     if EITHER in error["shape"]:
-        said.append(_OF_TIPS[bool(error.applied)])
-    said += [] if error.applied else [_safe_side(known, -1 if shape == FORCE else 1)]
+        said.append(_OF_TIPS[bool(applied)])
+    said += [_safe_side(uncorrected, -1 if shape == FORCE else 1)] if uncorrected else []
     if error.across_gaps:
         return [*said, "Attraction across gaps is in both models."]
     gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
@@ -75,5 +77,7 @@ def _safe_side(known, sign):
 
 
 def error_inputs(plan: Any, *devices: str) -> dict[str, Any]:
-    """Errors of some devices, as inputs of a stage, none unless they are wanted."""
-    return {"errors": by_name("devices/model_error", devices)} if plan.states_model_error else {}
+    """Errors of those of some devices for which they are stated, as inputs of a stage."""
+    sections = plan.config["devices"]
+    stated = [name for name in devices if plan.states_model_error(sections[name]["pair"], sections[name]["humidities"])]
+    return {"errors": by_name("devices/model_error", stated)} if stated else {}

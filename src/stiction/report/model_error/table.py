@@ -29,7 +29,7 @@ from stiction.report.style import (
 from stiction.report.table import PAIR, Table, table_stage
 from stiction.stages.beams.releases import stuck_lengths
 from stiction.stages.beams.variant_beams import cases_of
-from stiction.stages.contact.corrections import errors_of_pairs
+from stiction.stages.contact.corrections import in_all_air
 
 _CAPTION = (
     "Error of the model of the contact: adhesion energy ē of full elastic contact over that of the sum over summits, "
@@ -166,7 +166,9 @@ def _stage(kind, shows, draw, **declared):
         "model_error",
         shows,
         inputs=lambda plan, at: {
-            "errors": errors_of_pairs(plan),
+            "errors": {
+                pair: in_all_air("studies/model_error", pair, plan.air.water(pair)) for pair in plan.humid_pairs
+            },
             "beams": by_case("beams", plan.humid_cases, "_NG"),
             "published": published.file("table_3"),
             "variants": by_outcome(

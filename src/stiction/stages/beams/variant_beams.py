@@ -74,7 +74,7 @@ def _inputs(plan, at):
     other = f"studies/variants/{'islands' if plan.variants.has_islands(shared) else 'contact'}/{pair}_{shared}"
     of_main_line = shared == "base" and plan.variants.has_samples
     return {"contact": f"contact/{pair}_NG" if of_main_line else other} | corrections.correction_inputs(
-        plan, pair, at.variant
+        plan, pair, [at.case.humidity], at.variant
     )
 
 

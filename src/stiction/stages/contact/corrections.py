@@ -1,6 +1,6 @@
 """Correction of force laws to full elastic contact, for every stage with force laws from a contact."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any, TypeVar
 
@@ -12,31 +12,46 @@ S = TypeVar("S")
 
 
 def correction(error: xr.Dataset) -> Correction:
-    """Ratios of a pair from its dataset of stage pair_model_error."""
+    """Ratios of a pair that are applied, from its dataset of stage pair_model_error."""
+    error = error.isel(humidity=error.applied.values)
     return Correction(error.humidity.values, error.energy_ratio.values, error.pull_off_ratio.values)
 
 
-def study_of(folder: str, pair: str, water: Mapping[str, Any]) -> str:
+def in_all_air(folder: str, pair: str, water: Mapping[str, Any]) -> str:
     """Dataset of a pair in a folder of studies of full contact, with attraction across gaps if its water has any."""
     return f"{folder}/across/{pair}" if "gaps" in water else f"{folder}/{pair}"
 
 
-def correction_inputs(
-    plan: Any, pair: str, variant: str = "base", model: str = "NG", water: Mapping[str, Any] | None = None
-) -> dict[str, str]:
-    """Error of the model of a pair, as input of a stage with corrected force laws, otherwise none.
+def study_of(plan: Any, folder: str, pair: str, water: Mapping[str, Any]) -> str:
+    """Dataset as of `in_all_air`, or in dry air alone if full contact is not wanted in humid air."""
+    return in_all_air(folder, pair, water) if plan.has_humid_full_contact else f"{folder}/dry/{pair}"
 
-    The water is that of the laws, by default the one of the pair under the variant. Laws of Gaussian heights are not
-    corrected, for which full contact is not computed.
+
+def correction_inputs(
+    plan: Any,
+    pair: str,
+    humidities: Iterable[float],
+    variant: str = "base",
+    water: Mapping[str, Any] | None = None,
+) -> dict[str, str]:
+    """Error of the model of a pair, as input of a stage with corrected force laws at some humidities, otherwise none.
+
+    The water is that of the laws, by default the one of the pair under the variant.
     """
-    if not plan.variants.is_corrected(variant) or model != "NG":
+    if not plan.variants.corrected(pair, humidities, variant):
         return {}
-    return {"model_error": study_of("studies/model_error", pair, water or plan.variants.water(pair, variant))}
+    return {"model_error": study_of(plan, "studies/model_error", pair, water or plan.variants.water(pair, variant))}
+
+
+def corrections_of_laws(plan: Any, pair: str, humidities: Iterable[float], model: str) -> dict[str, str]:
+    """Those of the laws of a pair. Gaussian heights have none: full contact is not computed for them."""
+    return correction_inputs(plan, pair, humidities) if model == "NG" else {}
 
 
 def errors_of_pairs(plan: Any) -> dict[str, str]:
-    """Errors of the model of all pairs in the run with condensation of water, by pair."""
-    return {pair: study_of("studies/model_error", pair, plan.air.water(pair)) for pair in plan.humid_pairs}
+    """Errors of the model of all pairs in the run for which they are stated, by pair."""
+    stated = [pair for pair in plan.pairs if plan.states_model_error(pair, plan.config["pairs"][pair]["humidities"])]
+    return {pair: study_of(plan, "studies/model_error", pair, plan.air.water(pair)) for pair in stated}
 
 
 def with_correction(settings: S, data: Mapping[str, Any]) -> S:

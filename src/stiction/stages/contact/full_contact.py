@@ -171,7 +171,7 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
 
     They are the lowest, the middle and the highest one at which water condenses, that of its figures among them.
     """
-    humid = sorted(filter(None, plan.air.humidities_of_full_contact(at.pair))) if plan.air.is_wetted(at.pair) else []
+    humid = sorted(filter(None, plan.humidities_of_full_contact(at.pair))) if plan.air.is_wetted(at.pair) else []
     chosen = dict.fromkeys(humid[k] for k in (0, (len(humid) - 1) // 2, -1)) if humid else ()
     study = {"humidities": list(chosen), "strips": plan.config["studies"]["full_contact"]["samples"]}
     seen = plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None)
@@ -181,8 +181,9 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
 def _settings_across(plan, at):
     """Settings with attraction across gaps, also in dry air if the pair has any."""
     touching = settings_of(plan, at)
-    dry = [] if all(plan.air.humidities_of_full_contact(at.pair)) and plan.air.is_wetted(at.pair) else [0.0]
-    return touching | {"water": plan.air.across_gaps(at.pair), "humidities": dry + touching["humidities"]}
+    is_dry = any(plan.air.is_dry(at.pair, humidity) for humidity in plan.humidities_of_full_contact(at.pair))
+    humidities = [0.0] * is_dry + touching["humidities"]
+    return touching | {"water": plan.air.across_gaps(at.pair), "humidities": humidities}
 
 
 def _stage(name, folder, settings, forces):
@@ -202,4 +203,10 @@ def _stage(name, folder, settings, forces):
 STAGES = (
     _stage("full_contact", "studies/full_contact", settings_of, ""),
     _stage("full_contact_across", "studies/full_contact/across", _settings_across, " with attraction across gaps"),
+    _stage(
+        "full_contact_dry",
+        "studies/full_contact/dry",
+        lambda plan, at: _settings_across(plan, at) | {"humidities": [0.0]},
+        " in dry air",
+    ),
 )

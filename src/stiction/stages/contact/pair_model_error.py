@@ -13,10 +13,11 @@ from stiction.stages.contact import full_contact
 
 @dataclass(frozen=True)
 class Settings:
-    """Humidities for the error of the model, 0 for dry air."""
+    """Humidities for the error of the model, 0 for dry air, and those at which it is applied."""
 
     humidities: tuple[float, ...]  #: [-]
-    applied: bool = False  #: whether the predictions are corrected by it
+    applied: tuple[float, ...] = ()  #: those at which the predictions are corrected by it [-]
+    condenses: bool = True  #: whether water condenses between the surfaces; otherwise all air is dry
 
 
 def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
@@ -24,13 +25,14 @@ def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
     computed, *energies = full_contact.energies(study)
     _, *pull_offs = full_contact.pull_offs(study)
     at = np.sort(settings.humidities)
-    given = computed, at
+    airs = at * settings.condenses
+    given = computed, airs
     ratios = {
         "energy_ratio": mean_ratios(*energies, *given),
         "pull_off_ratio": mean_ratios(*pull_offs, *given),
         "length_factor": length_factors(*energies, *given),
     }
-    return layout(ratios, at, computed, study.sizes["sample"], settings.applied)
+    return layout(ratios, at, at[np.isin(airs, computed)], study.sizes["sample"], settings.applied)
 
 
 def layout(
@@ -38,26 +40,31 @@ def layout(
     at: np.ndarray,
     computed: Sequence[float],
     strips: int,
-    applied: bool = False,
+    applied: Sequence[float] = (),
 ) -> xr.Dataset:
     """Dataset of ratios and factors, by name, with their standard errors, (k,) each [-].
 
-    They are at increasing humidities; full contact was ``computed`` at some of them, on a number of strips. ``applied``
-    says whether the predictions are corrected.
+    They are at increasing humidities; full contact was ``computed`` at some of them, on a number of strips, and the
+    predictions are corrected at those ``applied``.
     """
     columns = {name: values for name, (values, _) in ratios.items()}
     columns |= {f"{name}_error": errors for name, (_, errors) in ratios.items()}
+    flags = {"interpolated": ~np.isin(at, computed), "applied": np.isin(at, applied)}
     return xr.Dataset(
         {name: ("humidity", values, {"units": "1"}) for name, values in columns.items()}
-        | {"interpolated": ("humidity", ~np.isin(at, computed)), "strips": ((), strips), "applied": ((), applied)},
+        | {name: ("humidity", flags) for name, flags in flags.items()}
+        | {"strips": ((), strips)},
         coords={"humidity": ("humidity", at, {"units": "1"})},
     )
 
 
 def _settings(plan, at):
     """Humidities of a pair and of its figures; dry air alone if no water condenses."""
-    humidities = plan.air.humidities_of_full_contact(at.pair) if plan.air.is_wetted(at.pair) else [0.0]
-    return {"humidities": humidities} | ({"applied": True} if plan.variants.is_corrected() else {})
+    humidities = plan.humidities_of_full_contact(at.pair)
+    dry = {} if plan.air.is_wetted(at.pair) else {"condenses": False}
+    airs = list(dict.fromkeys([*humidities, *([0.0] if dry else [])]))
+    applied = plan.variants.corrected(at.pair, airs)
+    return {"humidities": airs} | ({"applied": applied} if applied else {}) | dry
 
 
 def _stage(name, between, forces):
@@ -76,4 +83,5 @@ def _stage(name, between, forces):
 STAGES = (
     _stage("pair_model_error", "", ""),
     _stage("pair_model_error_across", "across/", " with attraction across gaps"),
+    _stage("pair_model_error_dry", "dry/", " in dry air"),
 )

@@ -46,7 +46,7 @@ def tips_of(plan: Any, case: Case) -> dict[str, str]:
 def corrected_tips_of(plan: Any, case: Case) -> dict[str, str]:
     """Contact of the tips of a cantilever with its correction, none for a bridge, see `tips_of`."""
     tips = tips_of(plan, case)
-    return tips | corrections_of(plan, case.device) if tips else {}
+    return tips | corrections_of(plan, case.device, case.humidity) if tips else {}
 
 
 def patch_of_tips(plan: Any, case: Case) -> Patch:
@@ -54,10 +54,11 @@ def patch_of_tips(plan: Any, case: Case) -> Patch:
     return plan.devices.tips(case.device)._replace(pair=plan.contact_of_device(case))
 
 
-def corrections_of(plan: Any, device: str) -> dict[str, str]:
-    """Corrections of the pair of a device, see `stiction.stages.contact.corrections.correction_inputs`."""
-    pair = plan.config["devices"][device]["pair"]
-    return correction_inputs(plan, pair, water=plan.air_of_devices.water(pair))
+def corrections_of(plan: Any, device: str, *humidities: float) -> dict[str, str]:
+    """Corrections of the pair of a device at some humidities, by default all of its own, see `correction_inputs`."""
+    section = plan.config["devices"][device]
+    pair, airs = section["pair"], humidities or section["humidities"]
+    return correction_inputs(plan, pair, airs, water=plan.air_of_devices.water(pair))
 
 
 def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:
@@ -67,7 +68,7 @@ def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:
     choices = plan.variants.choices_of_device(case)
     return {
         "contact": contact_of(plan, case),
-        **corrections_of(plan, device),
+        **corrections_of(plan, device, case.humidity),
         **_less_and_more(plan, device, patch, strips, GROUND),
         "choices": {name: file_of(VARIANT, GROUND, **patch._asdict(), variant=name) for name in choices},
     }

@@ -19,7 +19,7 @@ class Settings:
 
     humidities: tuple[float, ...]  #: [-]
     device: DesignedBeam | None = None  #: none for a stopper
-    applied: bool = False  #: whether the predictions are corrected
+    applied: tuple[float, ...] = ()  #: those at which the predictions are corrected [-]
     across_gaps: bool = False  #: whether solids attract each other across gaps, in both models
     condenses: bool = True  #: whether water condenses between the surfaces; otherwise all air is dry
 
@@ -72,7 +72,7 @@ def layout(
             "factor": (names, values, {"units": "1"}),
             "factor_error": (names, errors, {"units": "1"}),
             "interpolated": ("humidity", ~np.isin(settings.airs, computed)),
-            "applied": ((), settings.applied),
+            "applied": ("humidity", np.isin(settings.humidities, settings.applied)),
             "across_gaps": ((), settings.across_gaps),
         },
         coords={"shape": list(shapes), "humidity": ("humidity", list(settings.humidities), {"units": "1"})},
@@ -82,17 +82,18 @@ def layout(
 def _inputs(plan, at):
     """Study of the pair of a device, with the attraction across gaps that the device has."""
     pair = plan.config["devices"][at.device]["pair"]
-    return {"study": study_of("studies/full_contact", pair, plan.air_of_devices.water(pair))}
+    return {"study": study_of(plan, "studies/full_contact", pair, plan.air_of_devices.water(pair))}
 
 
 def _settings(plan, at):
     """Humidities of a device, and its dimensions."""
     section = plan.config["devices"][at.device]
     own = {"device": section_of_beam(plan, at.device)} if plan.devices.kind(at.device).is_beam else {}
-    applied = {"applied": True} if plan.variants.is_corrected() else {}
+    applied = plan.variants.corrected(section["pair"], section["humidities"])
     gaps = {"across_gaps": True} if "gaps" in plan.air_of_devices.water(section["pair"]) else {}
     dry = {} if plan.air_of_devices.is_wetted(section["pair"]) else {"condenses": False}
-    return select(Settings, {"humidities": section["humidities"]} | own | applied | gaps | dry)
+    said = {"humidities": section["humidities"]} | ({"applied": applied} if applied else {})
+    return select(Settings, said | own | gaps | dry)
 
 
 STAGES = (

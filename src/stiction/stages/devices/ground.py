@@ -92,7 +92,7 @@ def _inputs(plan: Any, at: At) -> dict[str, str]:
     """Contact of a ground, with the spectra of its surfaces and its correction."""
     case = _case_on(plan, at)
     spectra = [f"spectrum/{name}" for name in plan.sides(plan.config["devices"][case.device]["pair"])]
-    return {"contact": contact_of(plan, case), "spectra": spectra} | corrections_of(plan, case.device)
+    return {"contact": contact_of(plan, case), "spectra": spectra} | corrections_of(plan, case.device, case.humidity)
 
 
 def _settings(plan: Any, at: At) -> dict[str, Any]:

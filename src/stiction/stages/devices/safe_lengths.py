@@ -193,7 +193,7 @@ STAGES = (
         inputs=lambda plan, at: (
             _SAFE_LENGTHS.inputs(plan, at)
             | {"contact": contact_of(plan, at.case)}
-            | corrections_of(plan, at.case.device)
+            | corrections_of(plan, at.case.device, at.case.humidity)
         ),
         settings=lambda plan, at: select(Settings, at_voltage(plan, at.case.device, settings_of_beam(plan, at.case))),
         kind=Settings,

@@ -316,7 +316,9 @@ STAGES = (
     Stage.writing(
         "dimples",
         "devices/dimples/{case}",
-        inputs=lambda plan, at: {"contact": dimples_of(plan, at.case)} | corrections_of(plan, at.case.device),
+        inputs=lambda plan, at: (
+            {"contact": dimples_of(plan, at.case)} | corrections_of(plan, at.case.device, at.case.humidity)
+        ),
         settings=_settings_of_dimples,
         kind=Dimples,
         complete=with_correction,

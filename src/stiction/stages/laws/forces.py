@@ -102,7 +102,7 @@ STAGES = (
         "forces/{case}_{model}",
         inputs=lambda plan, at: (
             {"contact": f"contact/{plan.contact(at.case)}_{at.model}"}
-            | corrections.correction_inputs(plan, at.case.pair, model=at.model)
+            | corrections.corrections_of_laws(plan, at.case.pair, [at.case.humidity], at.model)
         ),
         settings=lambda plan, at: select(Settings, plan.at(at.case)),
         kind=Settings,

@@ -58,7 +58,8 @@ STAGES = (
         "humidity",
         "humidity/{pair}_{model}",
         inputs=lambda plan, at: (
-            {"contact": f"contact/{at.pair}_{at.model}"} | corrections.correction_inputs(plan, at.pair, model=at.model)
+            {"contact": f"contact/{at.pair}_{at.model}"}
+            | corrections.corrections_of_laws(plan, at.pair, plan.air.humid(at.pair), at.model)
         ),
         settings=_settings,
         kind=Settings,

@@ -90,7 +90,7 @@ def _model_error(curve, model_error):
         return np.zeros(shape)
     own = model_error.sel(humidity=curve.humidity, shape=curve["shape"]).transpose("humidity", "shape", ...)
     relative = own.factor_error / own.factor
-    change = 0.0 if bool(model_error.applied) else np.log(own.factor)
+    change = np.log(own.factor).where(~own.applied, 0.0)
     return np.broadcast_to(np.nan_to_num(np.hypot(change, relative).values), shape)
 
 
@@ -112,7 +112,9 @@ def curves_of(curve: xr.Dataset) -> Iterator[tuple[float, str, Curve]]:
 
 def inputs(plan: Any, at: Any) -> dict[str, Any]:
     """Points of a device and laws of its processes, and the error of the model if it is stated."""
-    errors = {"model_error": f"devices/model_error/{at.device}"} if plan.states_model_error else {}
+    section = plan.config["devices"][at.device]
+    is_stated = plan.states_model_error(section["pair"], section["humidities"])
+    errors = {"model_error": f"devices/model_error/{at.device}"} if is_stated else {}
     return (
         {"points": [f"process/points/{at.device}_{number}" for number in points_of(plan, at.device)]}
         | law_inputs(plan, at.device)

@@ -120,8 +120,12 @@ def _inputs(plan, at):
     sides = dict.fromkeys(side for patch in patches for side in plan.sides(patch.pair))
     pairs = {patch.name: PairInAir(patch.pair).pair for patch in patches}
     waters = {name: plan.air_of_devices.water(pair) for name, pair in pairs.items()}
+    airs = {
+        name: [case.humidity for of, case, _ in cases.values() if patch_of(of, case).name == name] for name in pairs
+    }
     ratios = {
-        name: correction_inputs(plan, pair, water=waters[name]).get("model_error") for name, pair in pairs.items()
+        name: correction_inputs(plan, pair, airs[name], water=waters[name]).get("model_error")
+        for name, pair in pairs.items()
     }
     return {
         "updated": f"devices/test_beams/{at.device}",
