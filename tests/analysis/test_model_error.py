@@ -2,7 +2,14 @@ import numpy as np
 import pytest
 from standard_errors import ALLOWED
 
-from stiction.analysis.model_error import factors, interpolation_error, length_factors, mean_ratios, rms_deviation
+from stiction.analysis.model_error import (
+    factors,
+    interpolation_error,
+    length_factors,
+    mean_ratios,
+    rms_deviation,
+    scatter_ratios,
+)
 
 HUMIDITIES = np.array([0.4, 0.6, 0.9])
 RATIOS = np.array([0.6, 0.9, 1.0])
@@ -30,6 +37,25 @@ def test_the_ratio_is_that_of_the_means_and_its_error_is_that_of_repeated_studie
     np.testing.assert_allclose(np.sqrt((errors**2).mean(axis=0)), scatter, rtol=0.15)
     full, summits = strips(20)
     assert np.all(np.abs(mean_ratios(full, summits, HUMIDITIES, HUMIDITIES)[0] - (full / summits).mean(axis=0)) > 1e-3)
+
+
+def test_ratios_of_the_scatter_are_the_powers_of_lognormal_values_with_the_error_of_repeated_studies():
+    powers = np.array([1.5, 1.0, 0.6])
+
+    def study(seed):
+        """Values by both models of 20 strips, whose logarithms have a correlation of 0.9."""
+        common, own = np.random.default_rng(seed).normal(size=(2, 20, 3))
+        return np.exp(0.4 * powers * (0.9 * common + np.sqrt(0.19) * own) - 8), np.exp(0.4 * common)
+
+    found = [scatter_ratios(*study(seed), HUMIDITIES, HUMIDITIES) for seed in range(400)]
+    ratios, errors = (np.array(each) for each in zip(*found, strict=True))
+    scatter = ratios.std(axis=0, ddof=1)
+    np.testing.assert_allclose(ratios.mean(axis=0), powers, atol=0.02)
+    np.testing.assert_allclose(np.sqrt((errors**2).mean(axis=0)), scatter, rtol=0.2)
+    full, summits = study(0)
+    same, none = scatter_ratios(3 * summits**1.5, summits, HUMIDITIES, HUMIDITIES)
+    np.testing.assert_allclose(same, 1.5)
+    np.testing.assert_allclose(none, 0, atol=1e-9)
 
 
 def test_crack_lengths_follow_the_fourth_root_of_the_ratio():

@@ -3,15 +3,21 @@ import pytest
 from vectors import F_LIMIT, VECTORS
 
 from stiction.contact import forcelaw
-from stiction.contact.correction import Correction, interpolated
+from stiction.contact.correction import NONE, Change, Correction, interpolated
 
 HUMIDITIES = np.array([0.44, 0.67, 0.92])
-CORRECTION = Correction(HUMIDITIES, np.array([0.64, 0.9, 1.0]), np.array([0.72, 0.95, 1.0]))
+ENERGY = np.array([0.64, 0.9, 1.0])
+CORRECTION = Correction(HUMIDITIES, Change(ENERGY), Change(np.array([0.72, 0.95, 1.0])))
+
+
+def ratios_at(given, humidity):
+    """Ratios of e and f_max at a humidity."""
+    return [change.ratio for change in given.at(humidity)]
 
 
 def corrected(vectors, humidity):
     """Vectors and threshold times the ratios of energy and force, as laws take them."""
-    energy, pull_off = CORRECTION.at(humidity)
+    energy, pull_off = ratios_at(CORRECTION, humidity)
     return vectors * [energy, pull_off, 1, 1], F_LIMIT * pull_off
 
 
@@ -33,13 +39,44 @@ def test_between_the_computed_humidities_ratios_are_geometric_means():
 
 def test_more_points_on_the_same_lines_change_no_correction():
     axis = np.linspace(0.44, 0.92, 7)
-    finer = Correction(axis, *np.array([CORRECTION.at(humidity) for humidity in axis]).T)
-    finer_at = [finer.at(humidity) for humidity in (0.44, 0.48, 0.6, 0.92)]
-    np.testing.assert_allclose(finer_at, [CORRECTION.at(humidity) for humidity in (0.44, 0.48, 0.6, 0.92)])
+    finer = Correction(axis, *map(Change, np.array([ratios_at(CORRECTION, humidity) for humidity in axis]).T))
+    finer_at = [ratios_at(finer, humidity) for humidity in (0.44, 0.48, 0.6, 0.92)]
+    np.testing.assert_allclose(finer_at, [ratios_at(CORRECTION, humidity) for humidity in (0.44, 0.48, 0.6, 0.92)])
 
 
 @pytest.mark.parametrize("humidity", [0.43, 0.93])
 def test_nothing_is_extrapolated(humidity):
-    assert np.isnan(interpolated(CORRECTION.energy, HUMIDITIES, humidity))
+    assert np.isnan(interpolated(ENERGY, HUMIDITIES, humidity))
     with pytest.raises(ValueError, match=f"from 0.44 to 0.92 and is not extrapolated to {humidity}"):
         CORRECTION.at(humidity)
+
+
+# Scatter
+
+
+@pytest.mark.parametrize("power", [1.0, 1.4, 2.0])
+def test_a_change_gives_samples_the_mean_and_the_scatter_of_full_contact(power):
+    summits = np.random.default_rng(1).lognormal(-8, 0.5, 4000)
+    full = Change(1.3, power).of(summits)(summits)
+    assert full.mean() == pytest.approx(1.3 * summits.mean())
+    assert np.log(full).std() == pytest.approx(power * np.log(summits).std())
+    assert np.all(np.argsort(full) == np.argsort(summits)), "the order of the samples stays"
+
+
+def test_a_change_holds_for_other_values_of_the_same_samples_and_for_endless_ones():
+    summits = np.array([1.0, 2.0, 4.0])
+    change = Change(1.3, 1.5).of(summits)
+    assert change(np.array([2.0]))[0] == change(summits)[1]
+    assert change(np.inf) == np.inf
+    np.testing.assert_array_equal(Change(1.3, 1.5).of(np.zeros(3))(np.zeros(3)), np.zeros(3))
+    assert NONE.of(summits)(summits) is summits
+
+
+def test_scatter_is_never_less_than_on_summits():
+    less = Correction(np.array([0.0]), Change(3.0, 0.4), Change(2.0, np.nan))
+    assert [change.power for change in less.at(0)] == [1, 1]
+
+
+def test_the_upper_end_of_a_ratio_is_as_far_as_its_error_says():
+    assert Change(2.0, 1.2, 0.1).at_most(0.95) == pytest.approx((2 * np.exp(0.1645), 1.2, 0.1, 0.0), rel=1e-3)
+    assert Change(2.0).at_most(0.95) == Change(2.0)

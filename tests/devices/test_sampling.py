@@ -73,6 +73,14 @@ def test_the_error_of_a_length_that_follows_mean_and_scatter_is_that_of_repeated
     assert repeated[2] > 1.5 * repeated[0]  # control: the mean alone does not explain it
 
 
+def test_errors_of_few_strips_in_full_contact_add_to_those_of_the_samples():
+    exact = SampledSurfaces(2.0, np.zeros((2, 2)))
+    lengths = np.array([2.0, 1.0])
+    stated = exact.with_errors(0.03, 0.1).error(lambda move: np.log(move(lengths)))
+    assert_allclose(stated, np.hypot(0.03, 0.1 * np.log(2.0 / lengths)), rtol=1e-9)
+    assert_allclose(exact.with_errors(0.03, 0.0).with_errors(0.04, 0.0).covariance[0, 0], 0.05**2)
+
+
 def test_lengths_far_below_that_on_the_mean_move_with_the_scatter_and_infinite_ones_stay():
     surfaces = SampledSurfaces(2.0, np.diag([0.0, 1e-4]))
     stated = surfaces.error(lambda move: move(np.array([2.0, 1.0, np.inf])))

@@ -68,6 +68,20 @@ def mean_ratios(
     return factors(lambda means: means, full, summits, humidities, at)
 
 
+def scatter_ratios(
+    full: np.ndarray, summits: np.ndarray, humidities: np.ndarray, at: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Ratio of the standard deviations of the logarithms of positive values. Otherwise as `mean_ratios`."""
+
+    def scatter(means):
+        """Standard deviations, from the means of the logarithms and of their squares."""
+        return np.sqrt(np.maximum(means[..., 1] - means[..., 0] ** 2, 0.0))
+
+    logarithms = (np.log(values / values.mean(axis=0)) for values in (full, summits))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return factors(scatter, *(np.stack([one, one**2], axis=-1) for one in logarithms), humidities, at)
+
+
 def length_factors(
     full: np.ndarray, summits: np.ndarray, humidities: np.ndarray, at: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:

@@ -1,8 +1,11 @@
-"""Correction of the sum over summits to full elastic contact: the ratios of both models, over the humidity."""
+"""Correction of the sum over summits to full elastic contact: changes between both models, over the humidity."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtri
 
 from stiction.rounding import is_at_most
 
@@ -24,20 +27,50 @@ def interpolated(ratios: np.ndarray, humidities: np.ndarray, at: float | np.ndar
     return found if humid.all() else np.where(np.equal(at, 0), ratios[~humid][0], found)
 
 
+class Change(NamedTuple):
+    r"""Change of a quantity of samples by full elastic contact, at one humidity or at several (h,).
+
+    A value x on summits becomes :math:`c x^b`. c follows from the ratio of both means, and the power b is the ratio of
+    both standard deviations of ln x. ASSUME: the order of the samples is the same, and b is at least 1, the safe side:
+    over 40 strips each of 3.4 and 6.8 nm rms in dry air, ln e of both models has a correlation of 0.91 and 0.95.
+    """
+
+    ratio: float | np.ndarray = 1.0  #: of the means [-]
+    power: float | np.ndarray = 1.0  #: b [-]
+    ratio_error: float | np.ndarray = 0.0  #: relative standard error of the ratio [-]
+    power_error: float | np.ndarray = 0.0  #: standard error of the power [-]
+
+    def of(self, summits: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+        """Change of values beside those of all samples on summits (m, ...)."""
+        if self == NONE:
+            return lambda values: values
+        mean, powered = (np.asarray(values.mean(axis=0)) for values in (summits, summits**self.power))
+        scale = self.ratio * np.divide(mean, powered, out=np.ones_like(mean), where=powered > 0)
+        return lambda values: scale * values**self.power
+
+    def at_most(self, confidence: float) -> "Change":
+        """Change with the upper end of the ratio at a one-sided confidence."""
+        return self._replace(ratio=self.ratio * np.exp(ndtri(confidence) * self.ratio_error))
+
+
+#: Without a correction.
+NONE = Change()
+
+
 @dataclass(frozen=True)
 class Correction:
-    """Ratios of full elastic contact to the sum over summits.
+    """Changes from the sum over summits to full elastic contact.
 
     Only the energy e and the largest attraction f_max are corrected: distances of both models are between different
     mean planes, those of the deformed surfaces and those of the undeformed ones, and have no common origin.
     """
 
     humidities: np.ndarray  #: increasing (h,), 0 for dry air [-]
-    energy: np.ndarray  #: of the mean energies e (h,) [-]
-    pull_off: np.ndarray  #: of the mean largest attractions f_max (h,) [-]
+    energy: Change  #: of the energies e (h,)
+    pull_off: Change  #: of the largest attractions f_max (h,)
 
-    def at(self, humidity: float) -> tuple[float, float]:
-        """Ratios of e and of f_max at a humidity, 0 for dry air: 1 in humid air with ratios in dry air alone.
+    def at(self, humidity: float) -> tuple[Change, Change]:
+        """Changes of e and of f_max at a humidity, 0 for dry air: none in humid air if dry air alone is corrected.
 
         Raises
         ------
@@ -46,7 +79,7 @@ class Correction:
         """
         known = self.humidities[(self.humidities > 0) == (humidity > 0)]
         if humidity > 0 and not known.size:
-            return 1.0, 1.0
+            return NONE, NONE
         low, high = known.min(initial=1.0), known.max(initial=0.0)
         if not (is_at_most(low, humidity) and is_at_most(humidity, high)):
             where = f"at relative humidities from {low:g} to {high:g}" if known.size else "in other air alone"
@@ -55,5 +88,10 @@ class Correction:
                 "humidities of the pair, or choose contact.model: summits"
             )
         within = np.clip(humidity, low, high)  # rounding can leave it a little outside
-        energy, pull_off = (interpolated(ratios, self.humidities, within) for ratios in (self.energy, self.pull_off))
-        return float(energy), float(pull_off)
+        return self._between(self.energy, within), self._between(self.pull_off, within)
+
+    def _between(self, changes, humidity):
+        """Change at a humidity within the computed ones."""
+        ratio, power, *errors = (np.broadcast_to(each, self.humidities.shape) for each in changes)
+        ratio, power = (float(interpolated(each, self.humidities, humidity)) for each in (ratio, power))
+        return Change(ratio, max(1.0, power), *(float(np.interp(humidity, self.humidities, one)) for one in errors))

@@ -23,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.contact import forcelaw, gaps, vanderwaals
-from stiction.contact.correction import Correction
+from stiction.contact.correction import NONE, Change, Correction
 from stiction.contact.materials import Solid
 from stiction.contact.meniscus import film
 from stiction.contact.solids import attraction_between, interfaces
@@ -95,13 +95,10 @@ class Water:
         work = self.gaps.work(gap, height) if self.gaps else 0.0
         return work + self.capacitor.work(gap) if self.capacitor else work
 
-    def ratios(self, humidity: float) -> tuple[float, float]:
-        """Ratios of full elastic contact to the sum over summits for e and f_max at a humidity [-].
-
-        They are 1 without a correction, and those of dry air without condensation.
-        """
+    def changes(self, humidity: float) -> tuple[Change, Change]:
+        """Changes of e and f_max by full elastic contact at a humidity: those of dry air without condensation."""
         if self.correction is None:
-            return 1.0, 1.0
+            return NONE, NONE
         return self.correction.at(humidity if self.film(humidity)[0] else 0.0)
 
     def film(self, humidity: float) -> tuple[float, float]:

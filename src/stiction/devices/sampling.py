@@ -16,7 +16,7 @@ samples have the same covariance of length and work, and of length and energy al
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -35,6 +35,10 @@ class SampledSurfaces:
 
     length: float  #: l₀ [m]
     covariance: np.ndarray  #: of ln l₀ and ln s (2, 2)
+
+    def with_errors(self, of_length: float, of_scatter: float) -> "SampledSurfaces":
+        """With further independent errors of ln l₀ and ln s: those of few strips in full elastic contact."""
+        return replace(self, covariance=self.covariance + np.diag(np.square([of_length, of_scatter])))
 
     def error(self, statistic: Callable[[Move], np.ndarray]) -> np.ndarray:
         """Standard error of a statistic of lengths, of any shape; NaN where a move leaves it infinite.

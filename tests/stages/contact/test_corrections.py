@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
 
 from stiction.config.files import load
-from stiction.contact.correction import Correction
+from stiction.contact.correction import NONE, Change, Correction
 from stiction.contact.environment import Water
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
@@ -25,7 +25,12 @@ WATER = Water(300.0)
 
 def corrected(energy, pull_off):
     """Water with the same ratios at all humidities."""
-    return replace(WATER, correction=Correction(np.array(HUMIDITIES), *(np.full(3, one) for one in (energy, pull_off))))
+    return replace(WATER, correction=Correction(np.array(HUMIDITIES), *map(Change, (energy, pull_off))))
+
+
+def ratios_at(given, humidity):
+    """Ratios of e and f_max of a correction at a humidity."""
+    return tuple(change.ratio for change in given.at(humidity))
 
 
 def study(energy=(0.6, 0.9, 1.0), pull_off=(0.7, 0.95, 1.0), strips=6):
@@ -58,6 +63,21 @@ def test_every_reader_of_the_curves_is_corrected_by_the_same_ratios():
     assert_array_equal(vectors, forces.vectors(of_stage)[0])
     assert limit == forces.vectors(of_stage)[1] == vectors[:, 1].max()
     assert_allclose(vectors, curves.vectors(*given, base)[0] * [0.7, 0.8, 1, 1])
+
+
+def test_samples_of_corrected_laws_scatter_as_full_contact_does_and_keep_their_order():
+    given = small.contact_of_pair(), small.HUMIDITY
+    wide = replace(WATER, correction=Correction(np.array(HUMIDITIES), Change(0.7, 1.3), Change(0.8, 1.2)))
+    (base, _), (vectors, limit) = (curves.vectors(*given, water) for water in (WATER, wide))
+    for k, (ratio, power) in enumerate([(0.7, 1.3), (0.8, 1.2)]):
+        assert_allclose(vectors[:, k].mean(), ratio * base[:, k].mean())
+        assert_allclose(np.log(vectors[:, k]).std(), power * np.log(base[:, k]).std())
+        assert_array_equal(np.argsort(vectors[:, k]), np.argsort(base[:, k]))
+    assert limit == pytest.approx(vectors[:, 1].max())
+    assert_allclose(curves.energies(*given, wide), vectors[:, 0])
+    assert_allclose(curves.pull_offs(*given, wide), vectors[:, 1])
+    fast = curves.fast_pull_offs(*given, wide)
+    assert np.all(fast >= vectors[:, 1] * (1 - 1e-9))
 
 
 def test_the_fit_of_the_curves_is_that_without_a_correction():
@@ -101,23 +121,24 @@ def test_cracks_on_corrected_laws_follow_the_fourth_root_of_the_energy(base):
 
 
 def test_dry_air_has_a_ratio_of_its_own_and_is_no_end_of_a_line():
-    given = Correction(np.array([0, 0.44, 0.92]), np.array([0.5, 0.6, 1.0]), np.array([0.4, 0.7, 0.9]))
-    assert given.at(0) == (0.5, 0.4)
-    assert given.at(0.44) == pytest.approx((0.6, 0.7))
+    ratios = Change(np.array([0.5, 0.6, 1.0])), Change(np.array([0.4, 0.7, 0.9]))
+    given = Correction(np.array([0, 0.44, 0.92]), *ratios)
+    assert ratios_at(given, 0) == pytest.approx((0.5, 0.4))
+    assert ratios_at(given, 0.44) == pytest.approx((0.6, 0.7))
     with pytest.raises(ValueError, match=r"from 0\.44 to 0\.92 and is not extrapolated to 0\.2"):
         given.at(0.2)
     with pytest.raises(ValueError, match="in other air alone and is not extrapolated to 0"):
-        Correction(*(np.array(of) for of in ([0.44, 0.92], [0.6, 1], [0.7, 1]))).at(0)
-    assert Correction(*(np.array(of) for of in ([0.0], [0.6], [0.7]))).at(0.5) == (1, 1), (
-        "by default, humid air has none"
+        Correction(np.array([0.44, 0.92]), Change(0.6), Change(0.7)).at(0)
+    assert Correction(np.array([0.0]), Change(0.6), Change(0.7)).at(0.5) == (NONE, NONE), (
+        "humid air has none by default"
     )
 
 
 def test_surfaces_without_condensation_have_the_ratios_of_dry_air_at_any_humidity():
-    given = Correction(np.array([0.0]), np.array([0.6]), np.array([0.7]))
+    given = Correction(np.array([0.0]), Change(0.6), Change(0.7))
     waxed = Water(300.0, contact_angles=(1.8, 1.8), correction=given)
-    assert waxed.ratios(0.5) == waxed.ratios(0.0) == (0.6, 0.7)
-    assert Water(300.0).ratios(0.5) == (1, 1)
+    assert waxed.changes(0.5) == waxed.changes(0.0) == (Change(0.6), Change(0.7))
+    assert Water(300.0).changes(0.5) == (NONE, NONE)
 
 
 def test_the_error_in_dry_air_is_that_of_its_strips_and_changes_no_humid_one():
@@ -148,7 +169,7 @@ def test_the_error_of_a_pair_is_interpolated_between_the_computed_humidities_and
     assert_allclose(error[[0, 2, 3]], 0, atol=1e-12)  # no scatter between strips
     assert 0.001 < error[1] < 0.05  # of the interpolation alone
     given = corrections.correction(found)
-    assert given.at(0.55) == pytest.approx((float(found.energy_ratio[2]), float(found.pull_off_ratio[2])))
+    assert ratios_at(given, 0.55) == pytest.approx((float(found.energy_ratio[2]), float(found.pull_off_ratio[2])))
 
 
 def of_device(device, **changed):

@@ -7,7 +7,7 @@ import pytest
 from scipy.special import erfc
 
 from stiction.constants import HAMAKER_CONSTANT
-from stiction.contact.correction import Correction
+from stiction.contact.correction import Change, Correction
 from stiction.contact.environment import Gaps, Water, flooded_law
 from stiction.contact.pair import DistanceGrid
 from stiction.contact.vanderwaals import attraction
@@ -62,7 +62,7 @@ def test_full_contact_changes_tips_by_the_larger_ratio_and_weakens_none(energy, 
     grid = DistanceGrid(0.5e-9, 10, 40)
     bearing = np.tile(1 / (1 + np.exp(grid.bearing / 2e-9)), (1, 2, 1))
     found, wet = tips(np.tile(np.exp(-grid.solid / 2e-9) * 1e8, (1, 2, 1)), bearing, grid), Water(300.0)
-    ratios = Correction(np.array([0.5, 0.8]), np.full(2, energy), np.full(2, pull_off))
+    ratios = Correction(np.array([0.5, 0.8]), Change(energy), Change(pull_off))
     for forces_of in (
         lambda water: tip_forces(found, 0.65, water)[1],
         lambda water: fast_tip_forces(found, 0.65, water),
@@ -70,6 +70,15 @@ def test_full_contact_changes_tips_by_the_larger_ratio_and_weakens_none(energy, 
         changed, summits = forces_of(replace(wet, correction=ratios)), forces_of(wet)
         np.testing.assert_allclose(changed, factor * summits, rtol=1e-12)
         assert np.all(summits > 0)
+
+
+def test_tips_have_the_upper_end_of_the_ratio_that_few_strips_show():
+    grid = DistanceGrid(0.5e-9, 10, 40)
+    bearing = np.tile(1 / (1 + np.exp(grid.bearing / 2e-9)), (1, 2, 1))
+    found, wet = tips(np.tile(np.exp(-grid.solid / 2e-9) * 1e8, (1, 2, 1)), bearing, grid), Water(300.0)
+    few = Correction(np.array([0.5, 0.8]), Change(2.0, ratio_error=0.1), Change(1.0, ratio_error=0.1))
+    changed, summits = (tip_forces(found, 0.65, water)[1] for water in (replace(wet, correction=few), wet))
+    np.testing.assert_allclose(changed, 2 * np.exp(1.6449 * 0.1) * summits, rtol=1e-4)
 
 
 def test_a_tip_that_no_solid_stops_is_pressed_to_its_mean_plane():

@@ -8,6 +8,7 @@ import small
 from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.config.files import load
+from stiction.contact.correction import Change, Correction
 from stiction.contact.environment import Water
 from stiction.devices.risk import samples_for
 from stiction.plan.graph import Graph
@@ -49,6 +50,27 @@ def test_a_device_humidity_and_the_same_point_of_the_axis_have_the_same_forces()
 def test_the_fine_axis_has_its_ends_and_a_point_at_every_percent():
     assert_allclose(stoppers.fine_axis(0.4, 0.98), np.arange(40, 99) / 100)
     assert_allclose(stoppers.fine_axis(0.9, 0.905), [0.9, 0.9025, 0.905])
+
+
+@pytest.mark.parametrize("error", [0.0, 0.1])
+def test_the_error_of_few_strips_in_full_contact_is_part_of_all_that_is_stated(error):
+    """Margins of independent errors add by their squares; the estimates stay."""
+    correction = Correction(np.array([0.4, 0.99]), Change(1.0), Change(1.0, ratio_error=error))
+    plain, changed = SETTINGS, replace(SETTINGS, water=replace(WATER, correction=correction))
+    forces, axis = np.arange(1, 401) / 100, np.linspace(0.5, 0.9, 21)
+    both = [stoppers.layout(one, np.stack([forces] * 2), axis, np.stack([forces] * 21)) for one in (plain, changed)]
+    safe, more = (one.safe_force.isel(humidity=0, share=0) for one in both)
+    assert_allclose(more.sel(part="estimate"), safe.sel(part="estimate"))
+    margins = [np.log(one.sel(part="safe") / one.sel(part="estimate")) for one in (safe, more)]
+    assert_allclose(margins[1], np.hypot(margins[0], 1.6449 * error), rtol=1e-4)
+    assert_allclose(both[1].mean_along_error, np.hypot(both[0].mean_along_error, error * both[0].mean_along))
+    at = {"restoring_force": 3.0}
+    bands = [
+        stoppers.layout(replace(one, **at), np.stack([forces] * 2), axis, np.stack([forces] * 21)).stuck.values[:, 0]
+        for one in (plain, changed)
+    ]
+    assert bands[0][0] == bands[1][0]
+    assert (bands[1][1] < bands[0][1], bands[1][2] > bands[0][2]) == (error > 0, error > 0)
 
 
 def test_the_share_stuck_is_that_of_patches_that_hold_more_than_the_restoring_force():

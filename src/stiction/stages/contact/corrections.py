@@ -6,15 +6,22 @@ from typing import Any, TypeVar
 
 import xarray as xr
 
-from stiction.contact.correction import Correction
+from stiction.contact.correction import Change, Correction
 
 S = TypeVar("S")
 
 
 def correction(error: xr.Dataset) -> Correction:
-    """Ratios of a pair that are applied, from its dataset of stage pair_model_error."""
+    """Changes of a pair that are applied, from its dataset of stage pair_model_error."""
     error = error.isel(humidity=error.applied.values)
-    return Correction(error.humidity.values, error.energy_ratio.values, error.pull_off_ratio.values)
+
+    def change(of):
+        """Change of a quantity, with relative errors."""
+        ratio, power = (error[f"{of}_{name}"].values for name in ("ratio", "power"))
+        errors = error[f"{of}_ratio_error"].values / ratio, error[f"{of}_power_error"].values
+        return Change(ratio, power, *errors)
+
+    return Correction(error.humidity.values, change("energy"), change("pull_off"))
 
 
 def in_all_air(folder: str, pair: str, water: Mapping[str, Any]) -> str:

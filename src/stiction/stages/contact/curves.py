@@ -12,6 +12,7 @@ from stiction.contact.environment import ForceCurves, Water
 from stiction.contact.forcelaw import extremum, resists
 from stiction.contact.separation import keep_volume
 from stiction.contact.voltage import freeing_potential
+from stiction.devices.risk import CONFIDENCE
 from stiction.stages.contact.contact import tables
 
 
@@ -23,24 +24,26 @@ def force_curves(contact: xr.Dataset, humidity: float, water: Water) -> ForceCur
 def parametrised(sampled: ForceCurves, humidity: float, water: Water) -> tuple[np.ndarray, float]:
     """Vectors v of Eq. (11) of force curves (m, 4) [SI] and f_limit [Pa], corrected to full elastic contact if wanted.
 
-    ASSUME: one ratio of e and one of f_max at a humidity hold for all samples, on strips and patches of any size.
+    ASSUME: one change of e and one of f_max at a humidity hold for all samples, on strips and patches of any size.
     """
     vectors, limit = forcelaw.parametrise(*sampled)
-    energy, pull_off = water.ratios(humidity)
-    return vectors * [energy, pull_off, 1, 1], limit * pull_off
+    changes = [change.of(vectors[:, k]) for k, change in enumerate(water.changes(humidity))]
+    changed = [change(vectors[:, k]) for k, change in enumerate(changes)]
+    return np.column_stack([*changed, vectors[:, 2:]]), float(changes[1](limit))
 
 
 def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
-    return forcelaw.adhesion_energies(*force_curves(contact, humidity, water)) * water.ratios(humidity)[0]
+    found = forcelaw.adhesion_energies(*force_curves(contact, humidity, water))
+    return water.changes(humidity)[0].of(found)(found)
 
 
 def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, np.ndarray]:
     """Slopes of tips (s,) [-] and the largest attraction of each tip at each slope, per width of the beam (m, s) [N/m].
 
     Across gaps, the wedge below the stored heights attracts like a plane of its slope. ASSUME: full elastic contact
-    changes a tip by the larger of the ratios of e and of f_max on parallel strips, and does not weaken it. On tilted
-    strips it is not computed.
+    changes tips as it changes e or f_max of parallel strips, whichever is more, at the 95 % upper end of its ratio, and
+    weakens none. On tilted strips it is not computed.
 
     Raises
     ------
@@ -49,7 +52,7 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
     """
     tips = _wedges(contact, humidity, water, endless=True)
     forces = forcelaw.largest_attractions(*tips) * float(contact.length)
-    return contact.slope.values, forces * max(1.0, *water.ratios(humidity))
+    return contact.slope.values, _changed_tips(forces, forces, humidity, water)
 
 
 def fast_tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
@@ -60,21 +63,28 @@ def fast_tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.nd
     slow = _wedges(contact, humidity, water, endless=True)
     solid, bearing, starts, step, layer = slow
     largest, force = forcelaw.largest_attractions(*slow).astype(float), np.empty(solid.shape[-1])
+    on_summits = largest.copy()
     distance = starts[0] + step * np.arange(force.size)
     for each in np.ndindex(largest.shape):
         forcelaw.apparent_force(solid[each], bearing[each], (*starts, starts[0]), step, *layer, force)
         fast = keep_volume(force, distance, bearing[each], starts[1], layer)
         largest[each] = np.inf if fast is None else max(largest[each], -fast[0].min())
-    return largest * float(contact.length) * max(1.0, *water.ratios(humidity))
+    return _changed_tips(largest, on_summits, humidity, water) * float(contact.length)
+
+
+def _changed_tips(forces, slow, humidity, water):
+    """Forces of tips under full elastic contact beside those of slow tips on summits, (m, s) each [N/m]."""
+    changes = (change.at_most(CONFIDENCE).of(slow) for change in water.changes(humidity))
+    return np.maximum.reduce([forces, *(change(forces) for change in changes)])
 
 
 def tilted_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Largest attraction of each tilted patch at each slope, per its width (m, s) [N/m]; errors as of `tip_forces`.
 
-    ASSUME: the ratio of the pull-off force on parallel patches to full elastic contact is that on tilted ones.
+    ASSUME: full elastic contact changes them as it changes the pull-off forces of parallel patches.
     """
     forces = forcelaw.largest_attractions(*_wedges(contact, humidity, water, endless=False)) * float(contact.length)
-    return forces * water.ratios(humidity)[1]
+    return water.changes(humidity)[1].of(forces)(forces)
 
 
 def _wedges(contact, humidity, water, endless):
@@ -96,9 +106,13 @@ def _wedges(contact, humidity, water, endless):
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Largest attraction f_max of all samples at a relative humidity (m,) [Pa]."""
-    sampled = force_curves(contact, humidity, water)
-    forces = forcelaw.pull_offs(*sampled[:3], sampled.flat)
-    return forces * water.ratios(humidity)[1]
+    forces = _pull_offs_of(force_curves(contact, humidity, water))
+    return water.changes(humidity)[1].of(forces)(forces)
+
+
+def _pull_offs_of(sampled):
+    """Largest attractions of all samples on summits (m,) [Pa]."""
+    return forcelaw.pull_offs(*sampled[:3], sampled.flat)
 
 
 def freeing_potentials(contact: xr.Dataset, humidity: float, water: Water, pull: float) -> np.ndarray:
@@ -108,14 +122,16 @@ def freeing_potentials(contact: xr.Dataset, humidity: float, water: Water, pull:
     """
     unit, (_, bearing, starts, step) = water.capacitor.per_volt, tables(contact)
     without = replace(water, capacitor=replace(unit, voltage=0.0))
-    distance, curve, samples, *_, flat = force_curves(contact, humidity, without)
+    sampled = force_curves(contact, humidity, without)
+    distance, curve, samples, *_, flat = sampled
     pressure, _ = gaps.gap_pressures(bearing, starts[1], distance, step, unit.work)
-    needed = pull / water.ratios(humidity)[1]
+    on_summits = _pull_offs_of(sampled)
+    pulls = pull * on_summits / water.changes(humidity)[1].of(on_summits)(on_summits)
     found = np.empty(samples)
     for k in range(samples):
         force, more = np.array(curve(k)), pressure[k].astype(float)
 
-        def excess(squared, force=force, more=more):
+        def excess(squared, force=force, more=more, needed=pulls[k]):
             """Largest attraction at a squared potential less the needed pull [Pa]."""
             at = force + squared * more
             largest = extremum(distance, at)[1] if resists(at) else flat[1] + squared * unit.largest_pressure
@@ -123,16 +139,16 @@ def freeing_potentials(contact: xr.Dataset, humidity: float, water: Water, pull:
 
         # Between points of the grid, the attraction is larger: a little less than this frees the sample.
         attracting = more < 0
-        highest = ((needed + force[attracting]) / -more[attracting]).min()
+        highest = ((pulls[k] + force[attracting]) / -more[attracting]).min()
         found[k] = freeing_potential(excess, (1 + 1e-9) * highest) if highest > 0 else 0.0
     return found
 
 
 def fast_pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Values of `pull_offs` in a separation faster than water evaporates, infinite without resistance of summits."""
-    _, fast = _separations(contact, humidity, water)
+    sampled, fast = _separations(contact, humidity, water)
     forces = np.array([np.inf if one is None else -one[0].min() for one in fast])
-    return forces * water.ratios(humidity)[1]
+    return water.changes(humidity)[1].of(_pull_offs_of(sampled))(forces)
 
 
 def fast_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
@@ -143,7 +159,7 @@ def fast_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndar
         np.inf if one is None else forcelaw.adhesion_energy(sampled.distance, one[0], beyond[k] + one[1])
         for k, one in enumerate(fast)
     ]
-    return np.array(energies) * water.ratios(humidity)[0]
+    return water.changes(humidity)[0].of(forcelaw.adhesion_energies(*sampled))(np.array(energies))
 
 
 def _separations(contact, humidity, water):

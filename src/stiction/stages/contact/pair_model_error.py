@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from stiction.analysis.model_error import length_factors, mean_ratios
+from stiction.analysis.model_error import length_factors, mean_ratios, scatter_ratios
 from stiction.plan.stage import Stage
 from stiction.stages.contact import full_contact
 
@@ -21,7 +21,7 @@ class Settings:
 
 
 def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Ratios of energies and of largest attractions, and the factor of crack lengths, each with its standard error."""
+    """Ratios and powers of energies and of largest attractions, and the factor of crack lengths, with their errors."""
     computed, *energies = full_contact.energies(study)
     _, *pull_offs = full_contact.pull_offs(study)
     at = np.sort(settings.humidities)
@@ -30,6 +30,8 @@ def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
     ratios = {
         "energy_ratio": mean_ratios(*energies, *given),
         "pull_off_ratio": mean_ratios(*pull_offs, *given),
+        "energy_power": scatter_ratios(*energies, *given),
+        "pull_off_power": scatter_ratios(*pull_offs, *given),
         "length_factor": length_factors(*energies, *given),
     }
     return layout(ratios, at, at[np.isin(airs, computed)], study.sizes["sample"], settings.applied)

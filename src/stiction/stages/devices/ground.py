@@ -11,6 +11,7 @@ import xarray as xr
 
 from stiction.chaos.model import Truncation
 from stiction.config.cases import Case, case_id
+from stiction.contact.correction import NONE, Change
 from stiction.contact.environment import Water
 from stiction.plan.stage import At, Stage, select
 from stiction.stages.contact import curves
@@ -56,14 +57,17 @@ def layout(laws: Laws, rms: float, share_flat: float) -> xr.Dataset:
                 {"long_name": "samples that beams draw from, if any"},
             ),
             "alike": ((), laws.alike, {"long_name": "neighbouring strips with one law"}),
-        },
+        }
+        | {f"change_{name}": ((), value) for name, value in laws.change._asdict().items() if laws.change != NONE},
         coords={"parameter": ["f_max", "d_max", "a_left", "a_right"]},
     )
 
 
 def ground_from(dataset: xr.Dataset, settings: BeamSettings) -> Ground:
     """Ground without tips from its dataset."""
-    laws = Laws(chaos_model(dataset), dataset.sampled.values, bool(dataset.resampled), int(dataset.alike))
+    change = {name: float(dataset[f"change_{name}"]) for name in Change._fields if f"change_{name}" in dataset}
+    sampled, is_narrow, alike = dataset.sampled.values, bool(dataset.resampled), int(dataset.alike)
+    laws = Laws(chaos_model(dataset), sampled, is_narrow, alike, Change(**change))
     return ground_of_laws(laws, settings)
 
 

@@ -12,6 +12,7 @@ from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws
 from stiction.contact import forcelaw
+from stiction.contact.correction import NONE, Change
 from stiction.contact.environment import Water, flooded_law
 from stiction.devices import arcs, bridges, risk, strips
 from stiction.devices.risk import NOTHING, Basis, Known, SafeLength
@@ -55,6 +56,8 @@ class Laws:
     sampled: np.ndarray  #: force laws of the samples (m, 4) [SI]
     is_narrow: bool  #: whether the model lacks mean or scatter of the samples, from which strips are then drawn
     alike: int  #: number of neighbouring strips with one law
+    #: Change of the energies by full elastic contact, in these laws, of which the errors matter.
+    change: Change = NONE
 
     @property
     def draw(self) -> strips.Draw:
@@ -104,7 +107,8 @@ def fitted_laws(contact: xr.Dataset, humidity: float, settings: LawSettings, sid
     sampled = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
     drawn = draw_laws(model, strips.DRAWS, stream(0, "narrow"))
     is_narrow = strips.is_narrow(forcelaw.energy(drawn), forcelaw.energy(sampled))
-    return Laws(model, sampled, is_narrow, strips.alike(float(contact.correlated), sides[0]))
+    alike = strips.alike(float(contact.correlated), sides[0])
+    return Laws(model, sampled, is_narrow, alike, settings.water.changes(humidity)[0])
 
 
 def ground_of_laws(laws: Laws, settings: BeamSettings) -> Ground:
@@ -132,14 +136,27 @@ def release_beams(device: DesignedBeam, met: Ground, settings: BeamSettings) -> 
     address, draw, sampled = opening.addresses(settings), met.strips.draw, met.strips.sampled
     arrested = opening.arrests(device, part, draw, settings.beams, address)
     on_mean = partial(device.opening.length_on_mean, beam=device.beam)
+    surfaces = sampled_surfaces(sampled, device.opening.contribution, on_mean, device.opening.uniform(part[0], sampled))
     return Released(
         device,
         arrested,
         opening.reach(device, part, draw, arrested, address),
         foundation_length(device.beam, met.laws),
-        sampled_surfaces(sampled, device.opening.contribution, on_mean, device.opening.uniform(part[0], sampled)),
+        surfaces.with_errors(*_errors_of_change(met.strips.change, sampled, device)),
         None if met.tips is None else arcs.longest_free(*met.tips, device.beam),
     )
+
+
+def _errors_of_change(change, sampled, device):
+    """Standard errors of ln l₀ and ln s of laws changed by full elastic contact, of which few strips are computed.
+
+    ASSUME: both are independent. The scatter s follows the power of the energy.
+    """
+    stronger = sampled * [1 + change.ratio_error, 1, 1, 1]
+    lengths = [
+        device.opening.length_on_mean(device.opening.contribution(laws), device.beam) for laws in (stronger, sampled)
+    ]
+    return np.log(lengths[0] / lengths[1]), change.power_error / change.power
 
 
 def flooded_lengths(device: DesignedBeam, water: Water, humidity: float) -> list[float]:

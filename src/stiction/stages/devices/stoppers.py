@@ -6,12 +6,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
+from scipy.special import ndtri
 
 from stiction.config.cases import case_id
 from stiction.config.kinds import restoring_force
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import is_wetted
-from stiction.devices.risk import SCORES, quantiles
+from stiction.devices.risk import CONFIDENCE, SCORES, quantiles
 from stiction.devices.stoppers import pull_off_force, safe_forces, stuck_patches, worst_humidity
 from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage, select
@@ -109,9 +110,14 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
 def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) -> xr.Dataset:
     """Dataset of a tilted stopper: forces (tilts, n_rh, m) [N], and slopes at the transition to a wedge (n_rh,) [-]."""
     newton, none, over = {"units": "N"}, {"units": "1"}, ("tilt", "humidity")
-    stuck = [[_stuck_with_band(row, settings.restoring_force) for row in rows] for rows in pull_off]
-    safe, bases = zip(*(_safe(rows, settings.seed) for rows in pull_off), strict=True)
+    errors = _errors_of_changes(settings, settings.humidities)
+    stuck = [
+        [_stuck_with_band(row, settings.restoring_force, of) for row, of in zip(rows, errors, strict=True)]
+        for rows in pull_off
+    ]
+    safe, bases = zip(*(_safe(rows, settings.seed, errors) for rows in pull_off), strict=True)
     mean, error = mean_with_error(np.moveaxis(pull_off, -1, 0))
+    error = np.hypot(error, mean * errors)
     return xr.Dataset(
         {
             "pull_off": ((*over, "sample"), pull_off, newton),
@@ -177,9 +183,12 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
     """
     newton, none = {"units": "N"}, {"units": "1"}
     worst, worst_error = _worst(axis, along)
-    stuck = np.array([_stuck_with_band(row, settings.restoring_force) for row in along]).T
-    stuck_chosen = np.array([_stuck_with_band(row, settings.restoring_force) for row in chosen]).T
-    (safe, basis), (safe_along, _) = (_safe(rows, settings.seed) for rows in (chosen, along))
+    both = [(rows, _errors_of_changes(settings, at)) for rows, at in ((chosen, settings.humidities), (along, axis))]
+    stuck_chosen, stuck = (
+        np.array([_stuck_with_band(row, settings.restoring_force, of) for row, of in zip(*one, strict=True)]).T
+        for one in both
+    )
+    (safe, basis), (safe_along, _) = (_safe(rows, settings.seed, errors) for rows, errors in both)
     mean, error = mean_with_error(along.T)
     return xr.Dataset(
         {
@@ -189,7 +198,7 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
             "basis": ("share", basis),
             "restoring_force": ((), settings.restoring_force, newton),
             "mean_along": ("axis", mean, newton),
-            "mean_along_error": ("axis", error, newton),
+            "mean_along_error": ("axis", np.hypot(error, mean * both[1][1]), newton),
             "quantile_along": (("probability", "axis"), np.quantile(along, PROBABILITIES, axis=1), newton),
             "stuck_along": (("bound", "axis"), stuck, none),
             "scored_along": (("axis", "score"), [quantiles(row) for row in along], newton),
@@ -221,9 +230,21 @@ def _worst(axis, along):
     return worst, float(np.hypot(scatter, np.diff(axis[humid])[0] / np.sqrt(12)))
 
 
-def _stuck_with_band(pull_off, force):
-    """P(stuck) at one restoring force and the ends of its band, (3,) [-]."""
-    return [float(part[0]) for part in stuck_patches(pull_off, np.array([force]))]
+def _errors_of_changes(settings, humidities):
+    """Relative standard errors of forces due to few strips in full elastic contact, at some humidities (h,) [-]."""
+    return np.array([settings.water.changes(humidity)[1].ratio_error for humidity in humidities])
+
+
+def _stuck_with_band(pull_off, force, error=0.0):
+    """P(stuck) at one restoring force and the ends of its band, (3,) [-].
+
+    The ends are those at forces that are smaller and larger by as much as their common relative error allows.
+    """
+    factor = np.exp(error * ndtri((1 + CONFIDENCE) / 2))
+    estimate, low, high = (
+        stuck_patches(pull_off, np.array([force]) * each)[k] for k, each in enumerate((1.0, factor, 1 / factor))
+    )
+    return [float(part[0]) for part in (estimate, low, high)]
 
 
 def numbers_of_fits(seed: int) -> np.random.Generator:
@@ -231,16 +252,20 @@ def numbers_of_fits(seed: int) -> np.random.Generator:
     return stream(seed, "safe force")
 
 
-def _safe(rows, seed):
+def _safe(rows, seed, errors):
     """Safe forces of rows of patches, their estimates and errors (3, rows, shares) [N], and the basis of each share.
 
-    NaN, resting on nothing, for shares for which there are too few patches.
+    ``errors`` are further relative ones of all forces of a row (rows,) [-]: margins of independent errors on a
+    logarithmic scale, of which the squares are added. NaN, resting on nothing, for shares with too few patches.
     """
     parts, bases = np.full((3, len(rows), len(SHARES)), np.nan), [""] * len(SHARES)
     for k, share in enumerate(SHARES):
         with suppress(ValueError):
             found = safe_forces(rows, share, numbers_of_fits(seed))
-            parts[..., k] = np.transpose([(one.force, one.estimate, one.error) for one in found])
+            force, estimate, error = np.transpose([(one.force, one.estimate, one.error) for one in found])
+            own = np.log(np.divide(force, estimate, out=np.ones(len(rows)), where=estimate > 0))
+            more = np.hypot(own, ndtri(CONFIDENCE) * errors) - own
+            parts[..., k] = force * np.exp(more), estimate, np.hypot(error, errors * estimate)
             bases[k] = str(found[0].basis)
     return parts, bases
 

@@ -1,7 +1,7 @@
 """Stage forces (Sec. III-B1): the force curves at one humidity and the vectors of their parameters."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -15,8 +15,8 @@ from stiction.stages.contact.curves import force_curves, parametrised
 #: Components of v, Eq. (11), and their units.
 COMPONENTS = ("adhesion_energy", "pull_off", "pull_off_distance", "limit_distance")
 _UNITS = ("J m-2", "Pa", "m", "m")
-#: By which e, and f_max and f_limit, are corrected to full elastic contact, in datasets in which they are.
-_RATIOS = ("energy_ratio", "pull_off_ratio")
+#: Components and f_limit on summits, in datasets of what is corrected to full elastic contact.
+_ON_SUMMITS = {name: f"summit_{name}" for name in ("adhesion_energy", "pull_off", "limit")}
 #: Number of curves stored for Fig. 12.
 _KEPT = 200
 
@@ -43,7 +43,9 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
     dataset = layout(vectors, limit, sampled.distance, kept)
     if settings.water.correction is None:
         return dataset
-    return dataset.assign(dict(zip(_RATIOS, settings.water.ratios(settings.humidity), strict=True)))
+    on_summits = replace(settings.water, correction=None)
+    plain = layout(*parametrised(sampled, settings.humidity, on_summits), sampled.distance, kept)
+    return dataset.assign({key: plain[name] for name, key in _ON_SUMMITS.items()})
 
 
 def layout(vectors: np.ndarray, limit: float, distance: np.ndarray, curves: Sequence[np.ndarray]) -> xr.Dataset:
@@ -72,11 +74,8 @@ def vectors(forces: xr.Dataset) -> tuple[np.ndarray, float]:
 
 def vectors_of_curves(forces: xr.Dataset) -> tuple[np.ndarray, float]:
     """Vectors of the curves themselves: of the sum over summits, without a correction to full elastic contact."""
-    sampled, limit = vectors(forces)
-    if _RATIOS[0] not in forces:
-        return sampled, limit
-    energy, pull_off = (float(forces[ratio]) for ratio in _RATIOS)
-    return sampled / [energy, pull_off, 1, 1], limit / pull_off
+    kept = {name: forces[key] for name, key in _ON_SUMMITS.items() if key in forces}
+    return vectors(forces.assign(kept))
 
 
 def energies(forces: xr.Dataset) -> np.ndarray:
