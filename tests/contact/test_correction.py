@@ -73,8 +73,11 @@ def test_a_change_holds_for_other_values_of_the_same_samples_and_for_endless_one
 
 
 def test_scatter_is_never_less_than_on_summits():
-    less = Correction(np.array([0.0]), Change(3.0, 0.4), Change(2.0, np.nan))
-    assert [change.power for change in less.at(0)] == [1, 1]
+    less = Correction(np.array([0.0]), Change(3.0, 0.4, 0.0, 0.1), Change(2.0, np.nan))
+    assert less.at(0) == (Change(3.0), Change(2.0))
+    nearly, more = Correction(np.array([0.0]), Change(3.0, 0.95, 0.0, 0.15), Change(3.0, 1.2, 0.0, 0.15)).at(0)
+    assert (nearly.power, nearly.power_error) == pytest.approx((1.0, 0.1))
+    assert (more.power, more.power_error) == (1.2, 0.15)
 
 
 def test_the_upper_end_of_a_ratio_is_as_far_as_its_error_says():

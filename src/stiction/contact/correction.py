@@ -91,7 +91,10 @@ class Correction:
         return self._between(self.energy, within), self._between(self.pull_off, within)
 
     def _between(self, changes, humidity):
-        """Change at a humidity within the computed ones."""
+        """Change at a humidity within the computed ones. A power below 1 errs only as far as it may be above."""
         ratio, power, *errors = (np.broadcast_to(each, self.humidities.shape) for each in changes)
         ratio, power = (float(interpolated(each, self.humidities, humidity)) for each in (ratio, power))
-        return Change(ratio, max(1.0, power), *(float(np.interp(humidity, self.humidities, one)) for one in errors))
+        of_ratio, of_power = (float(np.interp(humidity, self.humidities, one)) for one in errors)
+        if not power >= 1:
+            power, of_power = 1.0, max(0.0, power + of_power - 1)
+        return Change(ratio, power, of_ratio, of_power)
