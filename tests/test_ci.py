@@ -98,6 +98,13 @@ def test_every_test_is_in_a_part_of_continuous_integration_or_also_of_that_of_th
         assert not nightly or any(eval(marks_of(call), {}, marks) for call in asked), marks
 
 
+def test_every_test_in_a_browser_is_in_the_folder_that_its_part_collects():
+    files = {path for path in (ROOT / "tests").rglob("*.py") if f"mark.{'browser'}" in path.read_text(encoding="utf-8")}
+    folder = re.search(r"-m browser -rs (\S+)\"", (ROOT / ".ci" / "run").read_text(encoding="utf-8"))[1]
+    assert len(files) > 2
+    assert all(path.is_relative_to(ROOT / folder) for path in files)
+
+
 def test_contributors_read_which_files_have_tests_of_the_night_only():
     nightly = {path.name for path in (ROOT / "tests").rglob("test_*.py") if f"mark.{'nightly'}" in path.read_text()}
     assert nightly == set(re.findall(r"`(test_\w+\.py)`", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")))
