@@ -12,6 +12,7 @@ from unittest.mock import patch
 import pytest
 import yaml
 
+from stiction import accuracy
 from stiction.command.main import main
 from stiction.config.merging import merged
 from stiction.config.reading import paper
@@ -96,7 +97,8 @@ def accepts(folder):
         file.write_text(study if isinstance(study, str) else yaml.safe_dump(study), encoding="utf-8")
         return main(["check", str(file), "--directory", str(folder / "run")]) == 0
 
-    with patch.object(disk_cache, "DiskCache", lambda _: kept):
+    # No answer depends on the numbers of beams and samples, which a pilot of few samples decides as well.
+    with patch.object(disk_cache, "DiskCache", lambda _: kept), patch.object(accuracy, "PILOT", 40):
         yield accepts
 
 
