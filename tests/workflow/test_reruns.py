@@ -215,7 +215,8 @@ class Tree:
         for name in ("Snakefile", "config.yaml"):
             shutil.copy2(ROOT / name, folder)
         for name in ("workflow", "src", "profiles"):
-            shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+            # Compiled kernels come along.
+            shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("*.pyc", "*.egg-info"))
         (folder / ".gitignore").write_text(".gitignore\n.snakemake/\nresults/\n__pycache__/\n")
         for command in (["init", "-b", "main"], ["add", "."], ["commit", "-m", "all"]):
             self.git(*command)
