@@ -54,7 +54,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow nightly lint format cluster mutants bench peers times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow nightly lint libraries format cluster mutants bench peers times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -219,13 +219,21 @@ lock:
 clean:
 	rm -rf $(VENV)
 
+define LIBRARIES
+$(PYTHON) -m venv $(VENV)
+$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
+endef
+
+# Without the package: continuous integration installs those of another Python beside the first.
+libraries:
+	$(LIBRARIES)
+
 $(VENV)/ready: requirements.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "stiction needs Python 3.11 or newer; $(PYTHON) is $$($(PYTHON) --version 2>&1). Try: make PYTHON=python3.12"; exit 2; }
 	@$(PYTHON) -c 'import shutil, sys; sys.exit(sys.version_info >= (3, 14) and not any(map(shutil.which, ("cc", "gcc", "clang"))))' || \
 	  { echo "with Python 3.14 or newer a library of Snakemake (immutables) is compiled, which needs a C compiler (cc); $(PYTHON) is $$($(PYTHON) --version 2>&1). Install one, or try: make PYTHON=python3.13"; exit 2; }
-	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r requirements.lock
+	$(LIBRARIES)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
 	$(BIN)/python -m stiction.command.editor_schema
 	@touch $@

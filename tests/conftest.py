@@ -35,7 +35,7 @@ def pytest_collection_modifyitems(items):
     """Begin with the files that take longest, so that no process works alone at the end."""
     first = ["test_reruns.py", "test_run.py", "test_surface_estimate.py", "test_resume.py", "test_scan_uncertainty.py"]
     first += ["test_docs.py", "test_documented.py", "test_feasible.py", "test_messages.py"]
-    first += ["test_study.py", "test_device.py"]
+    first += ["test_study.py", "test_device.py", "test_wheel.py"]
     items.sort(key=lambda item: (item.path.name not in first, item.path.parent.name != "workflow"))
 
 

@@ -18,6 +18,7 @@ MARKS = [mark.partition(":")[0] for mark in SETTINGS["markers"]]
 PYTHON = """#!/usr/bin/env bash
 [ "$1" = -V ] && echo "Python 3.14.0"
 [ "$1" = -c ] && [[ "$0" == *.venv/* ]] && exit 1
+[ "$2" = pip ] && echo "$0" >> installed
 [ "$2" = pytest ] || exit 0
 call=$(printf '%s\\t' "$0" "$@")
 echo "$call" >> asked
@@ -25,7 +26,7 @@ echo "${SHARED_RUNS:-}" >> shared
 while read -r status words; do
   if [[ "$0 $*;" == *"$words"* ]]; then
     [ "$status" = hang ] && exec sleep 20
-    [ "$status" = meet ] && exec timeout 20 bash -c 'until grep -q newest asked; do sleep 0.1; done'
+    [ "$status" = meet ] && exec timeout 20 bash -c 'until grep -qs newest asked installed; do sleep 0.1; done'
     [ "$status" = skip ] && echo "2 passed, 1 skipped in 0.10s" && exit
     exit "$status"
   fi
@@ -98,6 +99,13 @@ def test_every_test_is_in_a_part_of_continuous_integration_or_also_of_that_of_th
         assert not nightly or any(eval(marks_of(call), {}, marks) for call in asked), marks
 
 
+def test_every_test_in_a_browser_is_in_the_folder_that_its_part_collects():
+    files = {path for path in (ROOT / "tests").rglob("*.py") if f"mark.{'browser'}" in path.read_text(encoding="utf-8")}
+    folder = re.search(r"-m browser -rs (\S+)\"", (ROOT / ".ci" / "run").read_text(encoding="utf-8"))[1]
+    assert len(files) > 2
+    assert all(path.is_relative_to(ROOT / folder) for path in files)
+
+
 def test_contributors_read_which_files_have_tests_of_the_night_only():
     nightly = {path.name for path in (ROOT / "tests").rglob("test_*.py") if f"mark.{'nightly'}" in path.read_text()}
     assert nightly == set(re.findall(r"`(test_\w+\.py)`", (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")))
@@ -145,6 +153,13 @@ def test_the_output_of_parts_that_run_beside_another_python_follows_in_one_piece
     heads = [line.removeprefix("== ") for line in printed.splitlines() if line.startswith("== ")]
     order = ["fast tests on Python 3.14.0", "smoke run on Python 3.14.0", "tests with SLURM", "tests in a browser"]
     assert [head for head in heads if head in order] == order
+
+
+def test_the_libraries_of_another_python_are_installed_beside_the_first_tests(project):
+    (project / ".venv" / "newest" / "ready").unlink()
+    status, _, asked = run(project, [".ci/run"], f"meet {PARTS['fast tests']}")
+    assert status == 0, "the first tests wait for these libraries"
+    assert len(asked) == len(PARTS)
 
 
 def test_all_parts_share_runs_in_a_folder_that_is_empty_before_and_gone_after(project):

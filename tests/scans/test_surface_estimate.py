@@ -411,7 +411,7 @@ def test_lines_that_jump_and_tilt_are_told_from_others_and_levelled():
 @pytest.mark.slow
 def test_lines_that_jump_and_tilt_change_neither_moments_nor_spectrum():
     scans, clean = large_scans(), of_large_scans()
-    jumping = estimates([disturbed(scan, stream(1, "lines", k)) for k, scan in enumerate(scans)], TILT)
+    jumping = estimates([disturbed(scan, stream(1, "lines", k)) for k, scan in enumerate(scans)], TILT, count=8)
 
     def change(of):
         return np.mean([of(one) - of(other) for one, other in zip(jumping, clean, strict=True)], axis=0)

@@ -16,8 +16,16 @@ import stiction.config.validation, stiction.run.snakemake_patches, stiction.run.
 from snakemake.executors.touch import Executor
 from stiction.config.files import load
 from stiction.plan.graph import stages
+from stiction.run.disk_cache import DiskCache
 from stiction.run.fingerprint import fingerprint
 
+class Keeping(DiskCache):
+    def save(self):
+        if self._path.name in ("pilot.json", "accuracy.json"):  # of samples, for a plan that returns to them
+            self._used = self._known | self._used
+        super().save()
+
+stiction.run.disk_cache.DiskCache = Keeping
 gc.disable()  # a plan is short, and its process ends with it
 load()  # what relations compute of the paper's numbers is kept
 Executor.SLEEPING_TIME = 0  # [s] for each job that is only touched; files touched in one tick count as up to date

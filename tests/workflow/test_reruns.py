@@ -207,6 +207,12 @@ LARGE = "results/contact/a_NG.nc"
 NOISE = np.frombuffer(np.random.default_rng(0).bytes(2_000_000), np.uint8)  # cannot be compressed
 
 
+def all_but_sources_and_kernels(folder, names):
+    """Names in a folder that its copy leaves out. Compiled kernels come along; other compiled files may be half-written."""
+    is_cache = Path(folder).name == "__pycache__"
+    return [name for name in names if name.endswith(".egg-info") or (is_cache and not name.endswith((".nbi", ".nbc")))]
+
+
 class Tree:
     """Copy of the source tree under git, with placeholder files for all results, which are up to date."""
 
@@ -215,7 +221,7 @@ class Tree:
         for name in ("Snakefile", "config.yaml"):
             shutil.copy2(ROOT / name, folder)
         for name in ("workflow", "src", "profiles"):
-            shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
+            shutil.copytree(ROOT / name, folder / name, ignore=all_but_sources_and_kernels)
         (folder / ".gitignore").write_text(".gitignore\n.snakemake/\nresults/\n__pycache__/\n")
         for command in (["init", "-b", "main"], ["add", "."], ["commit", "-m", "all"]):
             self.git(*command)
