@@ -77,7 +77,8 @@ def test_a_bridge_has_strips_of_its_own_width_and_no_tips():
     assert bridge.tips is None
     assert bridge.results.graph.job("devices/ground/b_rh088_500x4000").inputs == {
         "contact": "devices/contact/b_500x4000",
-        "spectra": ["spectrum/B2", "spectrum/Sub1"],
+        "heights": ["heights/B2", "heights/Sub1"],
+        "spectrum": ["spectrum/B2", "spectrum/Sub1"],
     }
     assert bridge.contact.sizes["sample"] == 40
 

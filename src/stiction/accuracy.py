@@ -36,8 +36,8 @@ from stiction.plan.stage import At, select
 from stiction.progress import without_progress
 from stiction.stages.contact import curves
 from stiction.stages.contact.changes.patches import GROUND, TIPS, Place
-from stiction.stages.contact.contact import compute, with_correlation
-from stiction.stages.contact.pairs import Settings
+from stiction.stages.contact.contact import compute, with_correlations
+from stiction.stages.contact.pairs import Settings, sides_of_strip
 from stiction.stages.devices.contact_names import patch_of, patch_of_tips
 from stiction.stages.devices.opening import DesignedBeam, settings_of_beam
 from stiction.stages.devices.sticking import Released, ground, release_beams
@@ -286,7 +286,7 @@ class _Pilot:
             surfaces = [self.surfaces(name) for name in self.plan.sides(patch.pair)]
             settings = in_si(Settings, self._settings(place, patch))
             contact = compute(surfaces, patch.pair, "NG", settings)
-            self.contacts[place, patch] = with_correlation(contact, [spectrum for _, spectrum in surfaces])
+            self.contacts[place, patch] = with_correlations(contact, surfaces, sides_of_strip(settings))
         return self.contacts[place, patch]
 
 

@@ -293,10 +293,9 @@ def other_grids_carry_an_identified_spectrum(config):
 def lengths_exceed_the_correlation(config):
     """Opposite edges of a strip, or of a patch to identify, are uncorrelated.
 
-    ASSUME: force laws of neighbouring strips are independent also where strips are shorter than the correlation length,
-    down to a third of it, see `stiction.devices.strips`.
-    Strips of 1.5 x 30 µm on surfaces with one of 4.4 µm correlate by 0.02 ± 0.07, with one of 8.2 µm by 0.3, and those
-    beyond the nearest by nothing; strips of 0.25 and 0.5 µm on pair b, for bridges, by less than 0.05.
+    Strips themselves may be shorter: under devices they then repeat laws, see `stiction.devices.strips`. ASSUME: under
+    the beams of pairs, their force laws are independent nevertheless. Laws of strips of 0.25 and 0.5 µm on pair b, for
+    bridges, correlate by less than 0.05.
     """
     lengths = {"sampling.margin_um": ("published_psd",)}
     if spectra_are_identified(config):

@@ -8,8 +8,8 @@ holds, at about half of the length at which the cracks meet. `held_lengths` find
 A state that is held this way is metastable, as an arc is; its barrier, of the order of 1e-12 J, is far above thermal
 energy.
 
-ASSUME: compression (buckling) and stretching of the bridge are left out; neighbouring strips are independent (measured
-on pair b: parameters of their laws correlate by less than 0.05, also for strips of 0.25 µm).
+ASSUME: compression (buckling) and stretching of the bridge are left out; neighbouring strips repeat laws only where
+long waves raise them together (on pair b, parameters of laws correlate by less than 0.05, also for strips of 0.25 µm).
 """
 
 from collections.abc import Callable

@@ -107,14 +107,15 @@ def resampled_strips(samples: int) -> str | None:
     )
 
 
-def alike_strips(alike: int, strip: float, learns: bool) -> str | None:
-    """Neighbouring strips with one law, 1 if they are independent, of a device that learns from test beams or not."""
-    if alike == 1:
+def repeated_strips(repetition: float, strip: float, learns: bool) -> str | None:
+    """Strips that repeat laws with a probability, 0 if they are independent, of a device with test beams or not."""
+    if repetition == 0:
         return None
     learnt = f" Test beams are computed in the same way and thus suggest too little adhesion: this is {UNSAFE}."
     return (
-        f"Heights are correlated over more than three strips of {strip * 1e6:.3g} µm: {alike} strips in a row count as "
-        "alike. Cracks then scatter more than on the surface, and lengths come out too short, the safe side."
+        f"Long waves raise or lower whole strips of {strip * 1e6:.3g} µm: a strip repeats the law of its neighbour "
+        f"with a probability of {repetition:.2g}, the correlation of mean heights. Adhesion is correlated less, so "
+        "lengths come out too short, the safe side."
         f"{learnt * learns}"
     )
 

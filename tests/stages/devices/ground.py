@@ -47,9 +47,11 @@ def contact():
 VECTORS = sampled_vectors(400, 0.24)
 
 
-def spectra(corner=12e6):
-    """Datasets of the spectra of both surfaces of a pair."""
-    return [variables(CutoffSelfAffine(14380e-36, 0.3e-36, corner, 12 * corner))] * 2
+def surfaces(corner=12e6):
+    """Datasets of both surfaces of a pair, by stage."""
+    heights = xr.Dataset({"rms": RMS, "skewness": 0.0, "kurtosis": 3.0})
+    spectrum = variables(CutoffSelfAffine(14380e-36, 0.3e-36, corner, 12 * corner))
+    return {"heights": [heights] * 2, "spectrum": [spectrum] * 2}
 
 
 def met(device=C1, vectors=VECTORS, limit=None, corner=12e6):
@@ -58,7 +60,7 @@ def met(device=C1, vectors=VECTORS, limit=None, corner=12e6):
     drawn = {"vectors": lambda *_: (vectors, limit), "share_flat": lambda *_: 0.0}
     with patch.multiple(curves, **drawn):
         wanted = ground.Settings(Truncation(6, 0.001), WATER, 0.67, device.strip, device.width)
-        return ground.compute(contact(), spectra(corner), wanted)
+        return ground.compute({"contact": contact()} | surfaces(corner), wanted)
 
 
 def computed(wanted, vectors, limit=None):
@@ -84,7 +86,7 @@ def lognormal_cracks(device=C1, number=400, spread=0.025, seed=1, surfaces=SURFA
     beam = Beam(1500 * UM, 30 * UM, 2.6 * UM, 164e9, 20 * UM, 200)
     beams = Released(device, found, np.inf, foundation_length(beam, laws), surfaces, None)
     return cracks.layout(beams, beam, laws, RMS).assign(
-        share_flat=0.0, longest_strip=device.strip, resampled=0, alike=1
+        share_flat=0.0, longest_strip=device.strip, resampled=0, repetition=0.0
     )
 
 

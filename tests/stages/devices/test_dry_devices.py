@@ -51,7 +51,7 @@ def plan_of(humidities):
 
 
 PLAN = plan_of(["dry", 0.67])
-SPECTRA = ["spectrum/B2", "spectrum/Sub1"]
+SURFACES = {stage: [f"{stage}/B2", f"{stage}/Sub1"] for stage in ("heights", "spectrum")}
 #: Correction to full elastic contact.
 FULL = {"model_error": "studies/model_error/dry/b"}
 
@@ -63,8 +63,8 @@ FULL = {"model_error": "studies/model_error/dry/b"}
     ("job", "inputs"),
     [
         ("devices/cracks/C1_dry", {"ground": "devices/ground/b_dry_1500x6000"}),
-        ("devices/ground/b_dry_1500x6000", {"contact": "devices/contact/b_dry_1500x6000", "spectra": SPECTRA} | FULL),
-        ("devices/ground/b_rh067_1500x6000", {"contact": "devices/contact/b_1500x6000", "spectra": SPECTRA}),
+        ("devices/ground/b_dry_1500x6000", {"contact": "devices/contact/b_dry_1500x6000", **SURFACES, **FULL}),
+        ("devices/ground/b_rh067_1500x6000", {"contact": "devices/contact/b_1500x6000", **SURFACES}),
         (
             "devices/stoppers/S1",
             {"contact": "devices/contact/b_1500x6000", "dry": "devices/contact/b_dry_1500x6000"} | FULL,

@@ -308,7 +308,7 @@ def charted(longest, film=3e-9, longest_strip=1.5):
             "rms": 3e-9,
             "longest_strip": (("thickness", "gap"), UM * np.array([[longest_strip], [2]])),
             "resampled": 0,
-            "alike": 1,
+            "repetition": 0.0,
         },
         coords={"thickness": [2 * UM, 3 * UM], "gap": [20 * UM], "shape": [S_SHAPE, EITHER], "share": [1e-2, 1e-3]},
     )

@@ -58,7 +58,7 @@ def test_the_curve_of_a_stopper_at_the_given_roughness_is_todays_result(stopper)
     given = found.sel(roughness=float(found.given))
     np.testing.assert_array_equal(given.stuck[:, 0], today.stuck.T)
     contact = stopper.results[f"devices/contact/roughness/S1_{POINTS - 1}"]
-    xr.testing.assert_identical(contact.drop_vars(["roughness", "kurtosis", "correlated"]), stopper.contact)
+    xr.testing.assert_identical(contact.drop_vars(["roughness", "kurtosis", "correlations"]), stopper.contact)
     assert float(found.given) == float(stopper.results["heights/B2"].rms)
 
 

@@ -312,10 +312,11 @@ def test_strips_and_margins_within_the_correlation_length_are_named(psd, key, wo
 
 
 @pytest.mark.filterwarnings("ignore:surface Etched")
-def test_strips_of_which_many_are_correlated_count_as_alike():
+def test_strips_that_long_waves_raise_as_a_whole_repeat_laws_under_devices():
     (sentence,) = surface_flags.flags(spectrum_with(use=dataclasses.replace(USE, strip_length=0.05e-6)))
-    assert "such strips count as alike under devices, the safe side" in sentence
-    assert "more than three strips of 0.05 µm" in sentence
+    assert "strips of 0.05 µm count as independent under the beams of pairs" in sentence
+    assert "under devices strips repeat the law of their neighbour" in sentence
+    assert sentence.endswith("the safe side")
     assert not limits.forbids(sentence)
 
 

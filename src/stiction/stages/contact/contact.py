@@ -3,6 +3,7 @@
 `stiction.stages.contact.changes.table` declares all stages with such a dataset.
 """
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -12,9 +13,12 @@ import xarray as xr
 from stiction.contact.pair import DistanceGrid, contacts_of_samples
 from stiction.contact.tilted import TiltedPair
 from stiction.progress import progress
+from stiction.rounding import is_at_most
 from stiction.stages.contact.pairs import Settings, streams_of_sides, surface_pairs
+from stiction.stages.surfaces.heights import moments
 from stiction.stages.surfaces.parameters import spectrum_of
 from stiction.stages.surfaces.rough_surfaces import both
+from stiction.surface.neighbours import mean_height_correlations
 from stiction.surface.spectrum import uncorrelated_beyond
 
 
@@ -132,10 +136,17 @@ def first(contact: xr.Dataset, samples: int) -> xr.Dataset:
     return contact.isel(sample=slice(samples))
 
 
-def with_correlation(contact: xr.Dataset, spectra: Iterable[xr.Dataset]) -> xr.Dataset:
-    """Contact with the distance beyond which heights with these spectra are uncorrelated [m]."""
-    length = max(uncorrelated_beyond(spectrum_of(spectrum)) for spectrum in spectra)
-    return contact.assign(correlated=((), length, {"units": "m"}))
+def with_correlations(
+    contact: xr.Dataset, surfaces: Iterable[tuple[xr.Dataset, xr.Dataset]], sides: tuple[float, float]
+) -> xr.Dataset:
+    """Contact with the correlations of the mean heights of its strips, none if they are longer than their correlation.
+
+    The surfaces are datasets (heights, spectrum), and strips have these sides [m].
+    """
+    described = [(spectrum_of(spectrum), moments(heights).rms) for heights, spectrum in surfaces]
+    reach = max(uncorrelated_beyond(spectrum) for spectrum, _ in described) / sides[0]
+    found = [] if is_at_most(reach, 1) else mean_height_correlations(described, sides, math.ceil(reach))
+    return contact.assign(correlations=("lag", found, {"units": "1"}))
 
 
 def surface_rms(contact: xr.Dataset) -> float:

@@ -66,6 +66,11 @@ class Settings:
     tilt: Tilt | None = None  #: of the tips of beams, with the step of their distances; none for surfaces without slope
 
 
+def sides_of_strip(settings: Surfaces) -> tuple[float, float]:
+    """Length along the beam and width of a strip [m]."""
+    return settings.sampling.strip_length, settings.beam.width
+
+
 def bodies(settings: Solids) -> tuple[Solid, Solid]:
     """Materials of beam and substrate: as stated by side, otherwise section ``solid``."""
     return tuple(settings.materials.get(side, settings.solid) for side in SIDES)

@@ -66,7 +66,7 @@ def compute(ground: xr.Dataset, settings: Settings, tips: xr.Dataset | None = No
 
     chart = filled(settings.thicknesses, settings.gaps, by_elements)
     longest = [settings.device.opening.longest_strip(device, met.laws) for device in _beams_of_chart(settings)]
-    return layout(chart, float(ground.rms), longest, settings).assign(ground[["resampled", "alike"]])
+    return layout(chart, float(ground.rms), longest, settings).assign(ground[["resampled", "repetition"]])
 
 
 def _resized(settings, thickness, gap):

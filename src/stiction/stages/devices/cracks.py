@@ -35,7 +35,7 @@ def compute(ground: xr.Dataset, settings: Settings) -> xr.Dataset:
     dataset = layout(release_beams(device, met, settings), ground_of(device, met.laws)[0], met.laws, float(ground.rms))
     return dataset.assign(
         longest_strip=((), device.opening.longest_strip(device, met.laws), {"units": "m"}),
-        **ground[["share_flat", "resampled", "alike"]],
+        **ground[["share_flat", "resampled", "repetition"]],
     )
 
 

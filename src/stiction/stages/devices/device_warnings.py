@@ -125,7 +125,7 @@ def _length_warnings(length, dataset, of, plastic, thinnest=None):
     return limits.beam_warnings(*sizes, float(dataset.film), float(dataset.rms)) + limits.triggered(
         limits.long_strips(device.strip, float(dataset.longest_strip), is_bridge),
         limits.resampled_strips(int(dataset.resampled)),
-        limits.alike_strips(int(dataset.alike), device.strip, of.learns),
+        limits.repeated_strips(float(dataset.repetition), device.strip, of.learns),
         limits.thin_film(thinnest or float(dataset.film)),
         limits.stretched_bridge(device.gap, device.thickness) if is_bridge else None,
         *contact_warnings(plastic, of.materials),

@@ -3,7 +3,7 @@
 The chaos model of a ground is fitted once. Cracks and charts of devices of any thickness, gap and length draw from it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -15,12 +15,13 @@ from stiction.contact.correction import NONE, Change
 from stiction.contact.environment import Water
 from stiction.plan.stage import At, Stage, select
 from stiction.stages.contact import curves
-from stiction.stages.contact.contact import surface_rms, with_correlation
+from stiction.stages.contact.contact import surface_rms, with_correlations
 from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices.contact_names import contact_of, corrections_of
 from stiction.stages.devices.opening import settings_of_beam
 from stiction.stages.devices.sticking import BeamSettings, Ground, Laws, fitted_laws, ground_of_laws
 from stiction.stages.laws.stored_model import chaos_model, model_variables
+from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
 
 @dataclass(frozen=True)
@@ -34,11 +35,10 @@ class Settings:
     width: float  #: [m]
 
 
-def compute(contact: xr.Dataset, spectra: Sequence[xr.Dataset], settings: Settings) -> xr.Dataset:
-    """Fit the force laws of a contact, with the spectra of its surfaces."""
-    laws = fitted_laws(
-        with_correlation(contact, spectra), settings.humidity, settings, (settings.strip, settings.width)
-    )
+def compute(data: Mapping[str, Any], settings: Settings) -> xr.Dataset:
+    """Fit the force laws of a contact, from its dataset and those of both surfaces by stage."""
+    contact, sides = data["contact"], (settings.strip, settings.width)
+    laws = fitted_laws(with_correlations(contact, both(data), sides), settings.humidity, settings, sides)
     share = curves.share_flat(contact, settings.humidity, settings.water)
     return layout(laws, surface_rms(contact), share)
 
@@ -56,7 +56,7 @@ def layout(laws: Laws, rms: float, share_flat: float) -> xr.Dataset:
                 len(laws.sampled) * laws.is_narrow,
                 {"long_name": "samples that beams draw from, if any"},
             ),
-            "alike": ((), laws.alike, {"long_name": "neighbouring strips with one law"}),
+            "repetition": ((), laws.repetition, {"long_name": "probability to repeat the law of a neighbour"}),
         }
         | {f"change_{name}": ((), value) for name, value in laws.change._asdict().items() if laws.change != NONE},
         coords={"parameter": ["f_max", "d_max", "a_left", "a_right"]},
@@ -66,8 +66,8 @@ def layout(laws: Laws, rms: float, share_flat: float) -> xr.Dataset:
 def ground_from(dataset: xr.Dataset, settings: BeamSettings) -> Ground:
     """Ground without tips from its dataset."""
     change = {name: float(dataset[f"change_{name}"]) for name in Change._fields if f"change_{name}" in dataset}
-    sampled, is_narrow, alike = dataset.sampled.values, bool(dataset.resampled), int(dataset.alike)
-    laws = Laws(chaos_model(dataset), sampled, is_narrow, alike, Change(**change))
+    of_strips = dataset.sampled.values, bool(dataset.resampled), float(dataset.repetition)
+    laws = Laws(chaos_model(dataset), *of_strips, Change(**change))
     return ground_of_laws(laws, settings)
 
 
@@ -93,10 +93,10 @@ def _case_on(plan, at):
 
 
 def _inputs(plan: Any, at: At) -> dict[str, str]:
-    """Contact of a ground, with the spectra of its surfaces and its correction."""
+    """Contact of a ground, with its surfaces and its correction."""
     case = _case_on(plan, at)
-    spectra = [f"spectrum/{name}" for name in plan.sides(plan.config["devices"][case.device]["pair"])]
-    return {"contact": contact_of(plan, case), "spectra": spectra} | corrections_of(plan, case.device, case.humidity)
+    surfaces = surface_inputs(plan, plan.config["devices"][case.device]["pair"])
+    return {"contact": contact_of(plan, case)} | surfaces | corrections_of(plan, case.device, case.humidity)
 
 
 def _settings(plan: Any, at: At) -> dict[str, Any]:

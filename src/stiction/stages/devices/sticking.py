@@ -55,15 +55,18 @@ class Laws:
     model: ChaosModel
     sampled: np.ndarray  #: force laws of the samples (m, 4) [SI]
     is_narrow: bool  #: whether the model lacks mean or scatter of the samples, from which strips are then drawn
-    alike: int  #: number of neighbouring strips with one law
+    repetition: float  #: probability that a strip repeats the law of its neighbour [-]
     #: Change of the energies by full elastic contact, in these laws, of which the errors matter.
     change: Change = NONE
 
     @property
     def draw(self) -> strips.Draw:
-        """Draw of the force laws of strips in a row."""
-        source = partial(strips.resampled, self.sampled) if self.is_narrow else partial(draw_laws, self.model)
-        return strips.in_blocks(source, self.alike)
+        """Draw of the force laws of independent strips."""
+        return partial(strips.resampled, self.sampled) if self.is_narrow else partial(draw_laws, self.model)
+
+    def in_row(self, device: DesignedBeam) -> strips.Draw:
+        """Draw of the force laws of strips in a row under a device."""
+        return strips.in_row(self.draw, self.repetition, device.opening.arms)
 
 
 @dataclass(frozen=True)
@@ -99,7 +102,7 @@ class Released:
 def fitted_laws(contact: xr.Dataset, humidity: float, settings: LawSettings, sides: tuple[float, float]) -> Laws:
     """Force laws at a relative humidity, from the contact of strips with these sides [m].
 
-    The contact is from `stiction.stages.contact.contact.with_correlation`.
+    The contact is from `stiction.stages.contact.contact.with_correlations`.
     """
     with on_patch(*sides):
         vectors, limit = curves.vectors(contact, humidity, settings.water)
@@ -107,13 +110,13 @@ def fitted_laws(contact: xr.Dataset, humidity: float, settings: LawSettings, sid
     sampled = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
     drawn = draw_laws(model, strips.DRAWS, stream(0, "narrow"))
     is_narrow = strips.is_narrow(forcelaw.energy(drawn), forcelaw.energy(sampled))
-    alike = strips.alike(float(contact.correlated), sides[0])
-    return Laws(model, sampled, is_narrow, alike, settings.water.changes(humidity)[0])
+    repetition = strips.repetition(contact.correlations.values)
+    return Laws(model, sampled, is_narrow, repetition, settings.water.changes(humidity)[0])
 
 
 def ground_of_laws(laws: Laws, settings: BeamSettings) -> Ground:
     """Ground without tips, of the force laws of its strips."""
-    return Ground(laws, replace(laws, alike=1).draw(opening.LAWS, opening.addresses(settings)("mesh")), None)
+    return Ground(laws, laws.draw(opening.LAWS, opening.addresses(settings)("mesh")), None)
 
 
 def with_tips(met: Ground, tips: xr.Dataset | None, humidity: float, water: Water) -> Ground:
@@ -133,7 +136,7 @@ def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settin
 def release_beams(device: DesignedBeam, met: Ground, settings: BeamSettings) -> Released:
     """Released beams of a device, or of one of another thickness and gap, on its ground."""
     part = opening.ground_of(device, met.laws)
-    address, draw, sampled = opening.addresses(settings), met.strips.draw, met.strips.sampled
+    address, draw, sampled = opening.addresses(settings), met.strips.in_row(device), met.strips.sampled
     arrested = opening.arrests(device, part, draw, settings.beams, address)
     on_mean = partial(device.opening.length_on_mean, beam=device.beam)
     surfaces = sampled_surfaces(sampled, device.opening.contribution, on_mean, device.opening.uniform(part[0], sampled))

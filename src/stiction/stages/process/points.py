@@ -138,8 +138,8 @@ def _points(
 def _contacts(alternatives, settings, of):
     """Contacts of one kind on alternative surfaces."""
     contacts = stage_contact.compute_each(alternatives, settings.pair, "NG", of)
-    spectra = [[spectrum for _, spectrum in some] for some in alternatives]
-    return [stage_contact.with_correlation(*one) for one in zip(contacts, spectra, strict=True)]
+    sides = pairs.sides_of_strip(of)
+    return [stage_contact.with_correlations(*one, sides) for one in zip(contacts, alternatives, strict=True)]
 
 
 def _with_samples(settings):

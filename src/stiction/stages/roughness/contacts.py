@@ -85,7 +85,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Setting
         drawn = drawn_as(changed, settings.contact.sampling.spacing)
         surfaces = [drawn if name == settings.surface else same for name, same in zip(names, surfaces, strict=True)]
     contact = stage_contact.compute(surfaces, settings.pair, "NG", settings.contact)
-    contact = stage_contact.with_correlation(contact, [spectrum for _, spectrum in surfaces])
+    contact = stage_contact.with_correlations(contact, surfaces, pairs.sides_of_strip(settings.contact))
     values = {"roughness": value_of(changed, settings.quantity), "kurtosis": changed.kurtosis}
     contact = contact.assign({name: float(value) for name, value in values.items()})
     if not settings.other:

@@ -1,5 +1,6 @@
 """Spectrum of a measured surface (Sec. II-B): the dataset of stage spectrum from stage estimate."""
 
+import math
 import warnings
 from dataclasses import dataclass
 
@@ -7,13 +8,14 @@ import numpy as np
 import xarray as xr
 
 from stiction.config.units import from_si
-from stiction.devices.strips import alike
+from stiction.devices.strips import repetition
 from stiction.errors import NotConverged
 from stiction.plan.stage import Stage, select
 from stiction.rounding import is_at_most
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import spectrum as stage_spectrum
 from stiction.stages.surfaces.spectrum import Use
+from stiction.surface.neighbours import mean_height_correlations
 from stiction.surface.spectrum import uncorrelated_beyond
 
 
@@ -54,14 +56,15 @@ def _within_correlation(spectrum, use):
     """Sentences about strips and margins within the correlation length."""
     length = uncorrelated_beyond(spectrum)
     strip, margin, heights = (from_si(value, "um") for value in (use.strip_length, use.margin, length))
-    if alike(length, use.strip_length) > 1:
-        yield (
-            f"heights are correlated over {heights:.2g} µm, more than three strips of {strip:g} µm: such strips count "
-            "as alike under devices, the safe side, and as independent under the beams of pairs, whose cracks then "
-            "scatter up to 30 % too little (at 5.5 strips)"
+    if use.strip_length <= length:
+        lags = math.ceil(length / use.strip_length)
+        repeated = repetition(mean_height_correlations([(spectrum, 1.0)], (use.strip_length, math.inf), lags))
+        yield f"heights are correlated over {heights:.2g} µm; strips of {strip:g} µm count as independent" + (
+            f" under the beams of pairs, whose lengths then come out up to 10 % too long, while under devices strips "
+            f"repeat the law of their neighbour with a probability of up to {repeated:.2g}, the safe side"
+            if repeated
+            else " nevertheless"
         )
-    elif use.strip_length <= length:
-        yield f"heights are correlated over {heights:.2g} µm; strips of {strip:g} µm count as independent nevertheless"
     if use.margin <= length:
         yield (
             f"heights are correlated over {heights:.2g} µm, so that a margin of {margin:g} µm makes opposite edges of "
