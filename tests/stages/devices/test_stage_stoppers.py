@@ -64,6 +64,7 @@ def test_the_error_of_few_strips_in_full_contact_is_part_of_all_that_is_stated(e
     margins = [np.log(one.sel(part="safe") / one.sel(part="estimate")) for one in (safe, more)]
     assert_allclose(margins[1], np.hypot(margins[0], 1.6449 * error), rtol=1e-4)
     assert_allclose(both[1].mean_along_error, np.hypot(both[0].mean_along_error, error * both[0].mean_along))
+    assert_allclose(both[1].full_contact_error, error)
     at = {"restoring_force": 3.0}
     bands = [
         stoppers.layout(replace(one, **at), np.stack([forces] * 2), axis, np.stack([forces] * 21)).stuck.values[:, 0]

@@ -94,7 +94,9 @@ def _stopper_rows(device, dataset):
     """Numbers of one stopper at each of its humidities and, in humid air, the largest along its fine axis."""
     for humidity, *stuck in shares_stuck(dataset):
         forces = dataset.pull_off.sel(humidity=humidity).values / UN
-        pull = *mean_with_error(forces), forces.std(ddof=1)
+        mean, error = mean_with_error(forces)
+        error = np.hypot(error, mean * float(dataset.full_contact_error.sel(humidity=humidity)))
+        pull = mean, error, forces.std(ddof=1)
         safe = dataset.safe_force.sel(humidity=humidity, part="safe")
         yield {"device": device, "relative_humidity": humidity} | _stopper(dataset, pull, stuck, safe)
     if not ends(dataset):

@@ -48,10 +48,11 @@ def caption(errors: Mapping[Any, xr.Dataset]) -> str:
     applied = {bool(flag) for error in errors.values() for flag in error.applied}
     does = "has changed what is stated" if True in applied else "would change what is stated"
     does += " in dry air, and would change it in humid air" * (len(applied) > 1)
+    own = " Where it has, bounds contain its standard error." * (True in applied)
     return (
         f"Model error: by how much full elastic contact of the surfaces {does}, ± standard error over its strips; * "
         "interpolated between the humidities at which it was computed, with the error of the interpolation; – not "
-        "known. It has one sign and is no random error: it is part of no standard error."
+        f"known. It has one sign and is no random error: it is part of no standard error.{own}"
     )
 
 

@@ -193,6 +193,7 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
     return xr.Dataset(
         {
             "pull_off": (("humidity", "sample"), chosen, newton),
+            "full_contact_error": ("humidity", both[0][1], none | {"long_name": "relative, of all forces"}),
             "stuck": (("bound", "humidity"), stuck_chosen, none | {"long_name": "P(stuck) and its 95 % band"}),
             "safe_force": (("part", "humidity", "share"), safe, newton),
             "basis": ("share", basis),
