@@ -10,6 +10,7 @@ import xarray as xr
 from legends import covering
 
 import stiction
+from stiction.contact.environment import Water
 from stiction.devices.process import unknown
 from stiction.plan.graph import Results
 from stiction.report.devices import pages
@@ -200,7 +201,7 @@ def test_the_error_of_the_model_is_its_change_or_if_applied_the_error_of_that(et
 
 def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_without_any():
     settings = points.OfStopper(
-        seed=1, water=None, humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
+        seed=1, water=Water(300.0), humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
     )
     none = points.curves.Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)
     said = {"flagged": ("humidity", [""]), "refused": ("humidity", ["too smooth"])}

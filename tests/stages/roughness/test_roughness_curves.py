@@ -1,5 +1,6 @@
 """Devices over the roughness of a surface: today's results at the given one, required values put back, limits."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 from unittest.mock import patch
 
@@ -9,6 +10,7 @@ import xarray as xr
 from legends import covering
 
 import stiction
+from stiction.contact.correction import Change, Correction
 from stiction.contact.environment import Water
 from stiction.devices.risk import Known
 from stiction.plan.graph import Graph, Results
@@ -181,10 +183,13 @@ def test_a_range_that_ends_at_the_given_roughness_has_it_once():
     np.testing.assert_array_equal(found.roughness, [1e-9, 2e-9, 3.4e-9 * (1 + 1e-15)])
 
 
-def point(rms, refused="", force=None, flagged=""):
+WATER = Water(300.0)
+
+
+def point(rms, refused="", force=None, flagged="", water=WATER):
     """Point of a curve of a stopper with the force 1e-6 (4 nm / rms)³, or with another one [N]."""
     settings = curves.OfStopper(
-        seed=1, water=None, humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
+        seed=1, water=water, humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
     )
     force = 1e-6 * (4e-9 / rms) ** 3 if force is None else force
     response = curves.Response(1.1 * force, force, 0.03 * force, np.nan, (0.1, 0.05, 0.15))
@@ -226,7 +231,7 @@ def test_none_and_all_of_a_range_are_answers(force, said):
 
 def test_a_beam_that_sticks_at_no_length_is_an_answer():
     device = SimpleNamespace(opening=SimpleNamespace(shapes=(S_SHAPE,)))
-    common = {"seed": 1, "chaos": None, "water": None, "humidities": (0.6,), "device": device, "beams": 100}
+    common = {"seed": 1, "chaos": None, "water": WATER, "humidities": (0.6,), "device": device, "beams": 100}
     beam = curves.OfBeam(**common, share=SHARE, length=1e-4)
     known, lengths = Known(2e-4, 5e-5, 5e-5), np.full(100, np.inf)
     never = beam._response(lengths, *sticking.safe_lengths(lengths, beam, known), known)
@@ -276,6 +281,20 @@ def test_what_is_less_accurate_is_named_with_its_place():
     points = [point(RANGE[0], flagged="Strips are long."), *map(point, RANGE[1:]), point(3.4e-9)]
     _, flag = tables_roughness.answers(curves.join_points(points, "rms_nm", "B2"))
     assert flag == "Where the rms of B2 is 1 nm (RH 0.6): Strips are long."
+
+
+def test_smoother_surfaces_than_those_of_full_contact_are_flagged_and_no_others():
+    """Their forces are corrected by the ratios of the given surface, which are too small for them."""
+    full = replace(WATER, correction=Correction(np.array([0.5, 0.8]), Change(1.2), Change(1.3)))
+    values = [*RANGE, 3.4e-9]
+    points = [point(value, flagged="Long." * (k == 0), water=full) for k, value in enumerate(values)]
+    flags = curves.join_points(points, "rms_nm", "B2").flagged.sel(humidity=0.6)
+    assert flags.values[0] == f"Long.; {curves.SMOOTHER}"
+    for flag, rms in zip(flags.values, flags.roughness.values, strict=True):
+        assert (curves.SMOOTHER in flag) == (rms < 3.4e-9)
+    for key, water in (("skewness", full), ("rms_nm", WATER)):
+        others = curves.join_points([point(value, water=water) for value in values], key, "B2")
+        assert not others.flagged.values.any()
 
 
 # Two quantities

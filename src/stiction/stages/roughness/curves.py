@@ -15,6 +15,7 @@ import xarray as xr
 from stiction.chaos.model import Truncation
 from stiction.config.kinds import ROUGHNESSES, restoring_force
 from stiction.config.units import in_si
+from stiction.contact.correction import NONE
 from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.limits import long_strips
@@ -33,6 +34,11 @@ from stiction.stages.roughness.contacts import POINTS, contacts_of, points_of, r
 OTHERS = ("other", "other_given")
 #: Kurtosis of a point, which curves and maps over the skewness have.
 KURTOSIS = "kurtosis"
+#: What is said of surfaces smoother than those on which full elastic contact was computed.
+SMOOTHER = (
+    "smoother surfaces than the given one change more in full elastic contact than is computed, which is the unsafe "
+    "side: give the smoothest surface of the range"
+)
 #: Dimensions of what is found on a curve.
 _TABLES = ("crossing", "range")
 
@@ -171,6 +177,7 @@ def layout(
             "samples": ((), samples if isinstance(settings, OfStopper) else settings.beams),
             "required": ((), required, note),
             "share": ((), settings.share, {"units": "1"}),
+            "corrected": ("humidity", [settings.water.changes(rh) != (NONE, NONE) for rh in settings.humidities]),
         },
         coords={
             "humidity": list(settings.humidities),
@@ -202,6 +209,7 @@ def join_points(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Data
     over = [point.drop_vars(shared).set_coords("roughness") for point in (*apart, given)]
     curve = xr.concat(over, "roughness").sortby("roughness")
     curve = curve.assign(given[shared]).assign(given=given.roughness).assign_attrs(key=key, surface=surface)
+    curve = curve.assign(flagged=_flags(curve, key)).drop_vars("corrected")
     logarithmic = ROUGHNESSES[key].logarithmic
     axis = np.log(curve.roughness.values) if logarithmic else curve.roughness.values
     places, ranges = [], []
@@ -216,6 +224,13 @@ def join_points(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Data
         places[:, 2], ranges[:, 2:] = np.exp(places[:, 2].astype(float)), np.exp(ranges[:, 2:].astype(float))
         places[:, 3] = places[:, 2] * places[:, 3]
     return curve.assign(_rows("crossing", places, "place", "error") | _rows("range", ranges, "low", "high"))
+
+
+def _flags(curve, key):
+    """Flags of a curve, also of surfaces smoother than those on which full elastic contact was computed."""
+    smoother = curve.corrected & (curve.roughness < curve.given) & (key == "rms_nm")
+    joined = np.vectorize(lambda *said: "; ".join(filter(None, said)), otypes=[object])
+    return xr.apply_ufunc(joined, curve.flagged, xr.where(smoother, SMOOTHER, ""))
 
 
 def curve_or_map(points: Sequence[xr.Dataset], surface: str, key: str, other: str = "") -> xr.Dataset:
