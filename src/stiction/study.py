@@ -91,7 +91,7 @@ class PairStudy:
         humidity = in_numbers(humidity)
         water = in_si(Water, self._plan.air.water(self._plan.air.contact(self.name, humidity)))
         if named := corrections.corrections_of_laws(self._plan, self.name, [humidity], self.model):
-            water = replace(water, correction=corrections.correction(self.results[named["model_error"]]))
+            water = replace(water, correction=corrections.applied(self.results[named["model_error"]]))
         return curves.energies(self._contact_at(humidity), humidity, water)
 
     def forces(self, humidity: float | str) -> xr.Dataset:

@@ -105,6 +105,18 @@ def shifted(base, energy, pull_off):
     return variant_beams.compute(small.contact_of_pair(), small.CASE, full), found
 
 
+def test_the_variant_of_full_contact_is_corrected_where_predictions_are_not():
+    """Ratios of a study are not applied to predictions, which stay on summits: the variant shows what they do."""
+    error = pair_model_error.compute(study(), pair_model_error.Settings(HUMIDITIES))
+    job = Graph(Plan(load({"run": {"studies": ["full_contact", "variants"]}}))).job(
+        "studies/variants/b_rh067_contact_full"
+    )
+    settings = job.stage.complete(job.stage.converted(job.settings), {"model_error": error})
+    assert settings.water.changes(0.67)[0].ratio == pytest.approx(0.9)
+    plain = corrections.with_correction(settings, {"model_error": error})
+    assert plain.water.changes(0.67) == (NONE, NONE)
+
+
 def test_ratios_of_one_leave_all_crack_lengths_as_they_are(base):
     full, found = shifted(base, 1, 1)
     assert full.equals(found)
@@ -168,7 +180,7 @@ def test_the_error_of_a_pair_is_interpolated_between_the_computed_humidities_and
     error = found.length_factor_error[1:]
     assert_allclose(error[[0, 2, 3]], 0, atol=1e-12)  # no scatter between strips
     assert 0.001 < error[1] < 0.05  # of the interpolation alone
-    given = corrections.correction(found)
+    given = corrections.applied(found)
     assert ratios_at(given, 0.55) == pytest.approx((float(found.energy_ratio[2]), float(found.pull_off_ratio[2])))
 
 

@@ -96,7 +96,7 @@ STAGES = (
         settings=_settings,
         kind=Settings,
         running=Running(first=lambda settings: {"sample": slice(settings.samples)}),
-        complete=corrections.with_correction,
+        complete=corrections.with_all_corrections,
         compute=compute,
         message="Crack lengths of {case} under variant {variant}.",
     ),

@@ -12,8 +12,7 @@ S = TypeVar("S")
 
 
 def correction(error: xr.Dataset) -> Correction:
-    """Changes of a pair that are applied, from its dataset of stage pair_model_error."""
-    error = error.isel(humidity=error.applied.values)
+    """Changes of a pair, from its dataset of stage pair_model_error."""
 
     def change(of):
         """Change of a quantity, with relative errors."""
@@ -61,8 +60,23 @@ def errors_of_pairs(plan: Any) -> dict[str, str]:
     return {pair: study_of(plan, "studies/model_error", pair, plan.air.water(pair)) for pair in stated}
 
 
+def applied(error: xr.Dataset) -> Correction:
+    """Those changes of a pair by which predictions are corrected."""
+    return correction(error.isel(humidity=error.applied.values))
+
+
 def with_correction(settings: S, data: Mapping[str, Any]) -> S:
-    """Settings of a stage with the correction from its inputs."""
+    """Settings of a stage with the correction from its inputs, where predictions are corrected."""
+    return _corrected(settings, data, applied)
+
+
+def with_all_corrections(settings: S, data: Mapping[str, Any]) -> S:
+    """Settings of a variant, corrected at all humidities of its inputs, also where predictions are not."""
+    return _corrected(settings, data, correction)
+
+
+def _corrected(settings, data, chosen):
+    """Settings with the correction that is chosen from the error of the model, if there is one."""
     if "model_error" not in data:
         return settings
-    return replace(settings, water=replace(settings.water, correction=correction(data["model_error"])))
+    return replace(settings, water=replace(settings.water, correction=chosen(data["model_error"])))
