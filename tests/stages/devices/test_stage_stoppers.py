@@ -52,6 +52,24 @@ def test_the_fine_axis_has_its_ends_and_a_point_at_every_percent():
     assert_allclose(stoppers.fine_axis(0.9, 0.905), [0.9, 0.9025, 0.905])
 
 
+def test_the_error_of_the_scatter_in_full_contact_moves_rare_forces_and_no_middle_one():
+    correction = Correction(np.array([0.4, 0.99]), Change(1.0), Change(1.0, 1.2, 0.0, 0.24))
+    wide = replace(SETTINGS, water=replace(WATER, correction=correction))
+    forces, axis = np.exp(0.5 * np.random.default_rng(1).normal(size=2000)), np.linspace(0.5, 0.9, 21)
+    both = [stoppers.layout(one, np.stack([forces] * 2), axis, np.stack([forces] * 21)) for one in (SETTINGS, wide)]
+    rare = both[0].safe_force.isel(humidity=0).sel(share=0.01)
+    margins = [
+        np.log(one.safe_force.isel(humidity=0).sel(share=0.01, part="safe") / rare.sel(part="estimate")) for one in both
+    ]
+    moved = 0.2 * np.log(rare.sel(part="estimate") / np.median(forces))
+    assert_allclose(margins[1], np.hypot(margins[0], 1.6449 * moved), rtol=1e-4)
+    assert_allclose(both[1].mean_along_error, both[0].mean_along_error)
+    middle = replace(wide, restoring_force=float(np.median(forces)))
+    same = stoppers.layout(middle, np.stack([forces] * 2), axis, np.stack([forces] * 21)).stuck.values[:, 0]
+    without = stoppers.layout(replace(middle, water=WATER), *([np.stack([forces] * 2), axis, np.stack([forces] * 21)]))
+    assert_array_equal(same, without.stuck.values[:, 0])
+
+
 @pytest.mark.parametrize("error", [0.0, 0.1])
 def test_the_error_of_few_strips_in_full_contact_is_part_of_all_that_is_stated(error):
     """Margins of independent errors add by their squares; the estimates stay."""

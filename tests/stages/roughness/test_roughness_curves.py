@@ -12,6 +12,7 @@ from legends import covering
 import stiction
 from stiction.contact.correction import Change, Correction
 from stiction.contact.environment import Water
+from stiction.devices import stoppers
 from stiction.devices.risk import Known
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
@@ -332,7 +333,7 @@ def test_every_other_curve_of_a_map_is_that_of_a_surface_with_this_second_quanti
     surface = FEW | {"surfaces": {"B2": {"skewness": skewness}}, "devices": {"S1": {"humidities": [0.6]}}}
     forces = stiction.Device("S1", Results.of(stiction.load(SECTIONS, surface))).forces().pull_off[0].values
     one = found.sel(other=skewness, roughness=float(found.given), humidity=0.6, shape="force")
-    (expected,) = curves.safe_forces(forces[None], SHARE, np.random.default_rng(0))  # sampled, not fitted
+    (expected,) = stoppers.safe_forces(forces[None], SHARE, np.random.default_rng(0))  # sampled, not fitted
     np.testing.assert_allclose(one.estimate, expected.estimate, rtol=1e-5)
 
 

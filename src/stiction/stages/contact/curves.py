@@ -8,6 +8,7 @@ import xarray as xr
 
 from stiction.config.units import from_si
 from stiction.contact import environment, forcelaw, gaps
+from stiction.contact.correction import NONE
 from stiction.contact.environment import ForceCurves, Water
 from stiction.contact.forcelaw import extremum, resists
 from stiction.contact.separation import keep_volume
@@ -125,8 +126,10 @@ def freeing_potentials(contact: xr.Dataset, humidity: float, water: Water, pull:
     sampled = force_curves(contact, humidity, without)
     distance, curve, samples, *_, flat = sampled
     pressure, _ = gaps.gap_pressures(bearing, starts[1], distance, step, unit.work)
-    on_summits = _pull_offs_of(sampled)
-    pulls = pull * on_summits / water.changes(humidity)[1].of(on_summits)(on_summits)
+    pulls, change = np.full(samples, pull), water.changes(humidity)[1]
+    if change != NONE:
+        on_summits = _pull_offs_of(sampled)
+        pulls *= on_summits / change.of(on_summits)(on_summits)
     found = np.empty(samples)
     for k in range(samples):
         force, more = np.array(curve(k)), pressure[k].astype(float)
@@ -148,7 +151,7 @@ def fast_pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.nda
     """Values of `pull_offs` in a separation faster than water evaporates, infinite without resistance of summits."""
     sampled, fast = _separations(contact, humidity, water)
     forces = np.array([np.inf if one is None else -one[0].min() for one in fast])
-    return water.changes(humidity)[1].of(_pull_offs_of(sampled))(forces)
+    return _fast(forces, water.changes(humidity)[1], lambda: _pull_offs_of(sampled))
 
 
 def fast_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
@@ -159,7 +162,12 @@ def fast_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndar
         np.inf if one is None else forcelaw.adhesion_energy(sampled.distance, one[0], beyond[k] + one[1])
         for k, one in enumerate(fast)
     ]
-    return water.changes(humidity)[0].of(forcelaw.adhesion_energies(*sampled))(np.array(energies))
+    return _fast(np.array(energies), water.changes(humidity)[0], lambda: forcelaw.adhesion_energies(*sampled))
+
+
+def _fast(values, change, slow):
+    """Values of a fast separation (m,), changed as those of a slow one, which ``slow`` computes."""
+    return values if change == NONE else change.of(slow())(values)
 
 
 def _separations(contact, humidity, water):

@@ -10,10 +10,11 @@ from scipy.special import ndtri
 
 from stiction.config.cases import case_id
 from stiction.config.kinds import restoring_force
+from stiction.contact.correction import NONE, Change
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import is_wetted
 from stiction.devices.risk import CONFIDENCE, SCORES, quantiles
-from stiction.devices.stoppers import pull_off_force, safe_forces, stuck_patches, worst_humidity
+from stiction.devices.stoppers import SafeForce, pull_off_force, safe_forces, stuck_patches, worst_humidity
 from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage, select
 from stiction.progress import progress
@@ -110,14 +111,14 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
 def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) -> xr.Dataset:
     """Dataset of a tilted stopper: forces (tilts, n_rh, m) [N], and slopes at the transition to a wedge (n_rh,) [-]."""
     newton, none, over = {"units": "N"}, {"units": "1"}, ("tilt", "humidity")
-    errors = _errors_of_changes(settings, settings.humidities)
+    changes = _changes(settings, settings.humidities)
     stuck = [
-        [_stuck_with_band(row, settings.restoring_force, of) for row, of in zip(rows, errors, strict=True)]
+        [stuck_with_band(row, settings.restoring_force, of) for row, of in zip(rows, changes, strict=True)]
         for rows in pull_off
     ]
-    safe, bases = zip(*(_safe(rows, settings.seed, errors) for rows in pull_off), strict=True)
+    safe, bases = zip(*(_safe(rows, settings.seed, changes) for rows in pull_off), strict=True)
     mean, error = mean_with_error(np.moveaxis(pull_off, -1, 0))
-    error = np.hypot(error, mean * errors)
+    error = np.hypot(error, mean * _ratio_errors(changes))
     return xr.Dataset(
         {
             "pull_off": ((*over, "sample"), pull_off, newton),
@@ -183,23 +184,27 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
     """
     newton, none = {"units": "N"}, {"units": "1"}
     worst, worst_error = _worst(axis, along)
-    both = [(rows, _errors_of_changes(settings, at)) for rows, at in ((chosen, settings.humidities), (along, axis))]
+    both = [(rows, _changes(settings, at)) for rows, at in ((chosen, settings.humidities), (along, axis))]
     stuck_chosen, stuck = (
-        np.array([_stuck_with_band(row, settings.restoring_force, of) for row, of in zip(*one, strict=True)]).T
+        np.array([stuck_with_band(row, settings.restoring_force, of) for row, of in zip(*one, strict=True)]).T
         for one in both
     )
-    (safe, basis), (safe_along, _) = (_safe(rows, settings.seed, errors) for rows, errors in both)
+    (safe, basis), (safe_along, _) = (_safe(rows, settings.seed, changes) for rows, changes in both)
     mean, error = mean_with_error(along.T)
     return xr.Dataset(
         {
             "pull_off": (("humidity", "sample"), chosen, newton),
-            "full_contact_error": ("humidity", both[0][1], none | {"long_name": "relative, of all forces"}),
+            "full_contact_error": (
+                "humidity",
+                _ratio_errors(both[0][1]),
+                none | {"long_name": "relative, of mean forces"},
+            ),
             "stuck": (("bound", "humidity"), stuck_chosen, none | {"long_name": "P(stuck) and its 95 % band"}),
             "safe_force": (("part", "humidity", "share"), safe, newton),
             "basis": ("share", basis),
             "restoring_force": ((), settings.restoring_force, newton),
             "mean_along": ("axis", mean, newton),
-            "mean_along_error": ("axis", np.hypot(error, mean * both[1][1]), newton),
+            "mean_along_error": ("axis", np.hypot(error, mean * _ratio_errors(both[1][1])), newton),
             "quantile_along": (("probability", "axis"), np.quantile(along, PROBABILITIES, axis=1), newton),
             "stuck_along": (("bound", "axis"), stuck, none),
             "scored_along": (("axis", "score"), [quantiles(row) for row in along], newton),
@@ -231,17 +236,32 @@ def _worst(axis, along):
     return worst, float(np.hypot(scatter, np.diff(axis[humid])[0] / np.sqrt(12)))
 
 
-def _errors_of_changes(settings, humidities):
-    """Relative standard errors of forces due to few strips in full elastic contact, at some humidities (h,) [-]."""
-    return np.array([settings.water.changes(humidity)[1].ratio_error for humidity in humidities])
+def _changes(settings, humidities):
+    """Changes of forces by full elastic contact at some humidities, of which few strips are computed."""
+    return [settings.water.changes(humidity)[1] for humidity in humidities]
 
 
-def _stuck_with_band(pull_off, force, error=0.0):
-    """P(stuck) at one restoring force and the ends of its band, (3,) [-].
+def _ratio_errors(changes):
+    """Relative standard errors of mean forces by them (h,) [-]."""
+    return np.array([change.ratio_error for change in changes])
+
+
+def _error_at(force, pull_off, change):
+    """Relative standard error of a force [N] of a distribution (m,) due to few strips in full contact [-].
+
+    That of the ratio moves all forces, that of the power those far from the median.
+    """
+    if change == NONE or force <= 0:
+        return 0.0
+    return float(np.hypot(change.ratio_error, np.log(force / np.median(pull_off)) * change.power_error / change.power))
+
+
+def stuck_with_band(pull_off: np.ndarray, force: float, change: Change) -> list[float]:
+    """P(stuck) of patches (n,) at one restoring force [N] and the ends of its band, (3,) [-].
 
     The ends are those at forces that are smaller and larger by as much as their common relative error allows.
     """
-    factor = np.exp(error * ndtri((1 + CONFIDENCE) / 2))
+    factor = np.exp(_error_at(force, pull_off, change) * ndtri((1 + CONFIDENCE) / 2))
     estimate, low, high = (
         stuck_patches(pull_off, np.array([force]) * each)[k] for k, each in enumerate((1.0, factor, 1 / factor))
     )
@@ -253,20 +273,36 @@ def numbers_of_fits(seed: int) -> np.random.Generator:
     return stream(seed, "safe force")
 
 
-def _safe(rows, seed, errors):
+def safe_forces_of(rows: np.ndarray, share: float, seed: int, changes: Sequence[Change]) -> list[SafeForce]:
+    """Safe force for a share from each row of forces (rows, n) [N], with the errors of their changes.
+
+    Margins of independent errors add by their squares on a logarithmic scale. Errors as of
+    `stiction.devices.stoppers.safe_forces`.
+    """
+    found = safe_forces(rows, share, numbers_of_fits(seed))
+    return [
+        _with_error(safe, _error_at(safe.estimate, row, change))
+        for safe, row, change in zip(found, rows, changes, strict=True)
+    ]
+
+
+def _with_error(safe, error):
+    """Safe force with a further relative error [-]."""
+    own = np.log(safe.force / safe.estimate) if safe.estimate > 0 else 0.0
+    more = np.hypot(own, ndtri(CONFIDENCE) * error) - own
+    return replace(safe, force=safe.force * np.exp(more), error=np.hypot(safe.error, error * safe.estimate))
+
+
+def _safe(rows, seed, changes):
     """Safe forces of rows of patches, their estimates and errors (3, rows, shares) [N], and the basis of each share.
 
-    ``errors`` are further relative ones of all forces of a row (rows,) [-]: margins of independent errors on a
-    logarithmic scale, of which the squares are added. NaN, resting on nothing, for shares with too few patches.
+    NaN, resting on nothing, for shares for which there are too few patches.
     """
     parts, bases = np.full((3, len(rows), len(SHARES)), np.nan), [""] * len(SHARES)
     for k, share in enumerate(SHARES):
         with suppress(ValueError):
-            found = safe_forces(rows, share, numbers_of_fits(seed))
-            force, estimate, error = np.transpose([(one.force, one.estimate, one.error) for one in found])
-            own = np.log(np.divide(force, estimate, out=np.ones(len(rows)), where=estimate > 0))
-            more = np.hypot(own, ndtri(CONFIDENCE) * errors) - own
-            parts[..., k] = force * np.exp(more), estimate, np.hypot(error, errors * estimate)
+            found = safe_forces_of(rows, share, seed, changes)
+            parts[..., k] = np.transpose([(one.force, one.estimate, one.error) for one in found])
             bases[k] = str(found[0].basis)
     return parts, bases
 

@@ -20,7 +20,6 @@ from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.limits import long_strips
 from stiction.devices.roughness import crossings, margins, sufficient
-from stiction.devices.stoppers import safe_forces, stuck_patches
 from stiction.errors import NotConverged
 from stiction.plan.stage import Running, Stage, select
 from stiction.rounding import is_equal
@@ -120,8 +119,9 @@ class OfStopper:
     def responses(self, contact: xr.Dataset, _tips: None, humidity: float) -> tuple[list[Response], str]:
         """Safe force at a humidity; nothing is to be said about strips."""
         forces = stoppers.forces(contact, humidity, self)
-        stuck = tuple(float(part[0]) for part in stuck_patches(forces, np.array([self.restoring_force])))
-        (safe,) = safe_forces(forces[None], self.share, stoppers.numbers_of_fits(self.seed))
+        change = self.water.changes(humidity)[1]
+        stuck = tuple(stoppers.stuck_with_band(forces, self.restoring_force, change))
+        (safe,) = stoppers.safe_forces_of(forces[None], self.share, self.seed, [change])
         return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)], ""
 
 
