@@ -36,7 +36,7 @@ class Variants:
         return self.plan.config
 
     def corrected(self, pair: str, humidities: Iterable[float], variant: str = "base") -> list[float]:
-        """Those of some humidities at which predictions are corrected, see `Environment.corrected`."""
+        """Humidities at which predictions are corrected, see `stiction.plan.environment.Environment.corrected`."""
         contact = self.config["contact"] | self.changes[variant].get("contact", {})
         return self.plan.air.corrected(pair, humidities, {"contact": contact})
 

@@ -101,8 +101,10 @@ def test_points_at_the_given_roughness_are_todays_results_in_dry_and_in_humid_ai
 def test_smooth_stoppers_in_dry_air_are_held_more_than_rough_ones_and_the_page_says_what_suffices(dry):
     found = stiction.Device("S1", dry).roughness()
     assert np.all(np.diff(found.estimate.sel(humidity=0, shape="force")) < 0)
-    first, second = tables_roughness.answers(found)
+    first, second, flag = tables_roughness.answers(found)
     assert first.startswith("For a restoring force of 0.2 µN, in dry air, ")
+    assert "(dry)" in flag
+    assert curves.SMOOTHER in flag
     assert "at a relative humidity of 0.6" in second
     figure = figures_roughness.roughness(found)
     assert "dry, estimate and 95 % band" in {text.get_text() for text in figure.legends[0].get_texts()}

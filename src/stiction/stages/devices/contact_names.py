@@ -55,7 +55,10 @@ def patch_of_tips(plan: Any, case: Case) -> Patch:
 
 
 def corrections_of(plan: Any, device: str, *humidities: float) -> dict[str, str]:
-    """Corrections of the pair of a device at some humidities, by default all of its own, see `correction_inputs`."""
+    """Corrections of the pair of a device at some humidities, by default all of its own.
+
+    See `stiction.stages.contact.corrections.correction_inputs`.
+    """
     section = plan.config["devices"][device]
     pair, airs = section["pair"], humidities or section["humidities"]
     return correction_inputs(plan, pair, airs, water=plan.air_of_devices.water(pair))
