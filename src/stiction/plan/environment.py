@@ -77,7 +77,7 @@ class Environment:
     def corrected(self, pair: str, humidities: Iterable[float], config: dict | None = None) -> list[float]:
         """Those of some humidities at which predictions are corrected to full elastic contact.
 
-        ASSUME: by default those in dry air, where the sum over summits is on the unsafe side by up to a factor of 4.
+        ASSUME: by default those in dry air, where the sum over summits is on the unsafe side by up to a factor of 3.5.
         Another configuration may be given, such as that of a variant.
         """
         model = (config or self.config)["contact"].get("model")

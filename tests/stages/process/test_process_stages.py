@@ -1,8 +1,9 @@
 """Processes through all stages: today's roughness at a setting, brute force at the best one, pages and Python."""
 
-import dataclasses
+import itertools
 import pickle
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import xarray as xr
 from legends import covering
 
 import stiction
+from stiction.contact.correction import Change, Correction
 from stiction.contact.environment import Water
 from stiction.devices.process import unknown
 from stiction.plan.graph import Results
@@ -17,6 +19,7 @@ from stiction.report.devices import pages
 from stiction.report.process import section, tables
 from stiction.report.style import png
 from stiction.stages.process import curves, law, points, recommended
+from stiction.stages.roughness import curves as roughness
 from stiction.stages.surfaces.descriptions import description
 
 SAMPLES, SHARE = 200, 0.05
@@ -72,6 +75,21 @@ def test_a_setting_alone_is_todays_roughness_at_its_value_bit_for_bit():
     np.testing.assert_array_equal(
         between.estimate, results["devices/roughness/points/Bump_3"].estimate
     )  # ln rms linear
+
+
+def test_settings_smoother_than_the_surfaces_of_full_contact_are_flagged_and_no_others():
+    """Their forces are corrected by the changes of the given surface, which are too small for them."""
+    results = Results.of(config(RMS, Bump=BUMP | {"process": "etch"}))
+    full = Correction(np.array([0.6]), Change(1.2), Change(1.3))
+    given = float(results["heights/B2"].rms)
+    for number, water in itertools.product((0, 6), (None, full)):
+        job = results.graph.job(f"process/points/Bump_{number}")
+        settings = job.stage.converted(job.settings | {"samples": 0})
+        stopper = replace(settings.stopper, water=replace(settings.stopper.water, correction=water))
+        found = job.stage.result(results.inputs(job), job.at, replace(settings, stopper=stopper))
+        smoother = {0: 2.0e-9, 6: 8.0e-9}[number] < given
+        assert smoother == (number == 0)
+        assert (roughness.SMOOTHER in str(found.flagged.values)) == (smoother and water is full)
 
 
 @pytest.mark.slow
@@ -224,8 +242,8 @@ ENDS = [(120.0, "above", 30.0), (30.0, "below", 120.0)]
 def _known(best, sufficient, following=np.nan, again=False, ends=(30, 120)):
     """Recommendation with a best setting that is certain."""
     values = np.linspace(*ends, 7)
-    found = dataclasses.replace(unknown(values), best=best, error=0.0, interval=(best, best), sufficient=sufficient)
-    found = dataclasses.replace(found, next=following, again=again, before=2.0, after=1.0, subject="range")
+    found = replace(unknown(values), best=best, error=0.0, interval=(best, best), sufficient=sufficient)
+    found = replace(found, next=following, again=again, before=2.0, after=1.0, subject="range")
     layout = recommended.layout(found).assign(share=SHARE).expand_dims(who=["Bump"])
     return layout.assign_attrs(variable="etch_time_s")
 

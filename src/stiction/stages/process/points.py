@@ -75,13 +75,15 @@ def compute(surfaces: Surfaces, laws: Sequence[xr.Dataset], settings: Settings) 
     The surfaces are datasets (heights, spectrum) of the pair, that of the beam first.
     """
     names = next(iter(settings.airs.values())).contact.surfaces
+    given = {name: description(*one) for name, one in zip(names, surfaces, strict=True)}
     made = {}
     second = settings.value if settings.second is None else settings.second
     for law, value in zip(laws, (settings.value, second), strict=False):
         surface = str(law.surface)
-        made[surface] = on_law(description(*surfaces[names.index(surface)]), law, value)
+        made[surface] = on_law(given[surface], law, value)
     (point,) = _points(surfaces, [made], settings)
-    points = point.assign(value=settings.value)
+    rms, rms_given = (np.hypot(*(each[name].rms for name in names)) for each in (given | made, given))
+    points = curves.flagged(point, bool(rms < rms_given)).assign(value=settings.value)
     if settings.second is not None:
         points = points.assign(second=second)
     if not settings.samples:
@@ -223,7 +225,7 @@ STAGES = (
     Stage.writing(
         "process_point",
         "process/points/{device}_{number}",
-        # ASSUME: a correction to full elastic contact is that of the given surfaces at every setting.
+        # ASSUME: a correction is that of the given surfaces at every setting; smoother ones are flagged.
         inputs=lambda plan, at: (
             surface_inputs(plan, plan.config["devices"][at.device]["pair"])
             | law_inputs(plan, at.device)

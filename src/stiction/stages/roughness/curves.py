@@ -209,7 +209,7 @@ def join_points(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Data
     over = [point.drop_vars(shared).set_coords("roughness") for point in (*apart, given)]
     curve = xr.concat(over, "roughness").sortby("roughness")
     curve = curve.assign(given[shared]).assign(given=given.roughness).assign_attrs(key=key, surface=surface)
-    curve = curve.assign(flagged=_flags(curve, key)).drop_vars("corrected")
+    curve = flagged(curve, (curve.roughness < curve.given) & (key == "rms_nm"))
     logarithmic = ROUGHNESSES[key].logarithmic
     axis = np.log(curve.roughness.values) if logarithmic else curve.roughness.values
     places, ranges = [], []
@@ -226,11 +226,11 @@ def join_points(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Data
     return curve.assign(_rows("crossing", places, "place", "error") | _rows("range", ranges, "low", "high"))
 
 
-def _flags(curve, key):
-    """Flags of a curve, also of surfaces smoother than those on which full elastic contact was computed."""
-    smoother = curve.corrected & (curve.roughness < curve.given) & (key == "rms_nm")
+def flagged(points: xr.Dataset, smoother: xr.DataArray | bool) -> xr.Dataset:
+    """Points with a flag where they are corrected, and ``smoother`` than where full elastic contact was computed."""
     joined = np.vectorize(lambda *said: "; ".join(filter(None, said)), otypes=[object])
-    return xr.apply_ufunc(joined, curve.flagged, xr.where(smoother, SMOOTHER, ""))
+    flags = xr.apply_ufunc(joined, points.flagged, xr.where(points.corrected & smoother, SMOOTHER, ""))
+    return points.assign(flagged=flags).drop_vars("corrected")
 
 
 def curve_or_map(points: Sequence[xr.Dataset], surface: str, key: str, other: str = "") -> xr.Dataset:
