@@ -56,7 +56,7 @@ def test_real_patches_hold_most_well_below_saturation_although_their_energy_keep
     assert energies[-1] < 2 * WATER_SURFACE_ENERGY
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_few_thousand_beams_of_pair_b_find_the_lengths_of_110_000(results):
     study = stiction.PairStudy("b", "NG", results)
     vectors, limit = forces.vectors(study.forces(0.67))

@@ -408,7 +408,7 @@ def test_lines_that_jump_and_tilt_are_told_from_others_and_levelled():
     assert of_b2().line_jump[0] < 1.2 * of_b2().line_jump[1]
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_lines_that_jump_and_tilt_change_neither_moments_nor_spectrum():
     scans, clean = large_scans(), of_large_scans()
     jumping = estimates([disturbed(scan, stream(1, "lines", k)) for k, scan in enumerate(scans)], TILT, count=8)

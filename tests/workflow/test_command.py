@@ -144,14 +144,13 @@ def test_the_end_of_a_whole_run_names_verdict_warnings_and_what_to_open(smoke, t
     assert index == "All results: results/index.html; stiction show opens it."
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("stage", "send", "number"),
     [
-        ("heights", os.killpg, signal.SIGINT),
-        ("contact", os.killpg, signal.SIGINT),
-        ("heights", os.kill, signal.SIGTERM),
-        ("contact", os.killpg, signal.SIGTERM),
+        pytest.param("contact", os.killpg, signal.SIGINT, marks=pytest.mark.slow),
+        pytest.param("heights", os.kill, signal.SIGTERM, marks=pytest.mark.slow),
+        pytest.param("heights", os.killpg, signal.SIGINT, marks=pytest.mark.nightly),
+        pytest.param("contact", os.killpg, signal.SIGTERM, marks=pytest.mark.nightly),
     ],
 )
 def test_a_run_that_is_stopped_says_how_to_continue_and_continuing_gives_the_same_bytes(

@@ -115,7 +115,7 @@ def test_a_run_interrupted_in_many_stages_gives_the_same_bytes(everything, tiny,
     assert_resumed(tmp_path, everything, ALL, tiny)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_full_disk_is_reported_whatever_is_written_and_leaves_no_partly_written_file(everything, tiny, tmp_path):
     on_small_disk = ["unshare", "--map-root-user", "--mount", "sh", "-c"]
     on_small_disk += [

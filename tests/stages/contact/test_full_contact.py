@@ -174,13 +174,12 @@ def test_dry_surfaces_have_less_than_humid_ones_in_both_models():
         assert np.all(dry[name] < humid[name])
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize(
     ("pair", "strips", "width", "between"),
     [
-        ("a", 2, 3, (0.5, 0.575, 0.65, 0.75, 0.80, 0.85)),
-        ("b", 6, 3, (0.5, 0.55, 0.61, 0.735, 0.80, 0.86)),
-        ("c", 8, 30, (0.65, 0.76, 0.80, 0.85)),
+        pytest.param("a", 2, 3, (0.5, 0.575, 0.65, 0.75, 0.80, 0.85), marks=pytest.mark.slow),
+        pytest.param("b", 6, 3, (0.5, 0.55, 0.61, 0.735, 0.80, 0.86), marks=pytest.mark.slow),
+        pytest.param("c", 8, 30, (0.65, 0.76, 0.80, 0.85), marks=pytest.mark.nightly),
     ],
 )
 def test_between_humidities_the_true_ratios_are_within_two_stated_errors(pair, strips, width, between):
