@@ -109,6 +109,7 @@ SECTIONS = {
     "contact": {"samples": 40},
     "studies": {
         "slopes": {"samples": 40},
+        "full_contact": {"samples": 3},
         "variants": dict.fromkeys(("van_der_waals", "psd", "every", "spacing_nm"), []),
     },
     "chaos": {"order": 2},
