@@ -100,8 +100,12 @@ def measured(name, source):
 
 
 def of_step(source, number=2500):
-    """As `measured`, of the plan that each job of a study of many devices makes on a cluster."""
+    """As `measured`, of the plan that each job of a study of many devices makes on a cluster, after that of its run."""
     with tempfile.TemporaryDirectory() as folder:
+        study = Path(folder) / "many.yaml"
+        study.write_text(yaml.safe_dump(of_many(number)), encoding="utf-8")
+        whole = ["-m", "stiction.command.main", "devices", study, "--directory", folder, "--", "-n", "--cores", "1"]
+        cpu_of(whole, source, folder)
         handed = Path(folder) / "configuration.json"
         handed.write_text(json.dumps({"planned": [decided(stiction.load(of_many(number))), {}]}), encoding="utf-8")
         words = ["-m", "snakemake", "results/devices/cracks/D0_rh044.nc", "--snakefile", source / "Snakefile"]
