@@ -62,6 +62,7 @@ CASES = [
     (limits.stubby_beam, (50 * UM, 2.6 * UM), "50 µm.*19.2 times", (52.1 * UM, 2.6 * UM)),
     (limits.wide_beam, (20 * UM, 500 * UM, 2.6 * UM, 700 * UM), "700 µm.*23.5", (20 * UM, 30 * UM, 2.6 * UM, 700 * UM)),
     (limits.resampled_strips, (500,), "from the 500 samples.*contact.samples", (0,)),
+    (limits.lengths_of_sizes, (0.004,), "err by 0.4% at sizes between these", (0.0,)),
     (limits.repeated_strips, (0.44, 1.5 * UM, False), "of 1.5 µm.* 0.44.* the safe side.$", (0, 1.5 * UM, False)),
     (limits.repeated_strips, (0.44, 1.5 * UM, True), "this is the unsafe side", (0, 1.5 * UM, True)),
     (limits.missed_accuracy, (0.03, 0.04, 0.02), "5 %, more than the 2 %.*more contact.samples", (0.01, 0.01, 0.02)),

@@ -46,6 +46,8 @@ GRAPH, SCHEMA = Graph(PLAN), schema()
 OF_SCANS = {"scan", "estimate", "heights_of_scans", "spectrum_of_scans", "choice_contact", "scan_uncertainty"}
 #: Contacts of curves of roughness in dry air; `tests/stages/roughness` runs them.
 OF_DRY_AIR = {"roughness_dry_contact", "roughness_dry_tip_contact", "full_contact_dry", "pair_model_error_dry"}
+#: Beams of a few sizes for many devices; `tests/stages/devices/test_cracks.py` runs them.
+OF_MANY = {"sizes"}
 
 
 def listed(names):
@@ -96,7 +98,7 @@ JOBS = reached()
 
 
 def test_every_stage_has_a_job():
-    assert {job.stage.name for job in JOBS.values()} | OF_SCANS | OF_DRY_AIR >= {
+    assert {job.stage.name for job in JOBS.values()} | OF_SCANS | OF_DRY_AIR | OF_MANY >= {
         name for name, (stage, _) in stages().items() if stage.save is None
     } - {"slopes"}
 

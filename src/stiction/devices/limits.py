@@ -107,6 +107,16 @@ def resampled_strips(samples: int) -> str | None:
     )
 
 
+def lengths_of_sizes(error: float) -> str | None:
+    """Lengths from those of a few sizes with an error, 0 if the device is simulated by itself."""
+    if error == 0:
+        return None
+    return (
+        f"Many devices are on this ground: lengths along the beam follow power laws through a few sizes. They err by "
+        f"{error:.1%} at sizes between these. Where they are too long, all lengths are shortened by it."
+    )
+
+
 def repeated_strips(repetition: float, strip: float, learns: bool) -> str | None:
     """Strips that repeat laws with a probability, 0 if they are independent, of a device with test beams or not."""
     if repetition == 0:

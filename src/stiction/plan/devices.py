@@ -20,6 +20,7 @@ from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.materials import OF_CONTACT
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
+from stiction.devices.sizes import MANY, ends_and_middle
 from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.plan.stage import subsection
 
@@ -129,6 +130,23 @@ class DevicePlan:
         """Patch of contact of a device: strips along a beam, or the whole area of a stopper."""
         section = self.sections[device]
         return patch(section["pair"], *self.kind(device).sides(section, self.config["sampling"]["strip_length_um"]))
+
+    @cached_property
+    def cantilevers_on(self) -> dict[tuple[Patch, float], list[str]]:
+        """Cantilevers on every patch of contact at a humidity."""
+        found = {}
+        for name in self.with_tips:
+            for humidity in self.sections[name]["humidities"]:
+                found.setdefault((self.ground(name), humidity), []).append(name)
+        return found
+
+    def sizes(self, device: str, humidity: float) -> dict[str, list[float]]:
+        """Thicknesses and gaps from which the lengths of a device follow, empty if it is simulated by itself."""
+        users = self.cantilevers_on.get((self.ground(device), humidity), ()) if self.kind(device).has_tip else ()
+        if len(users) < MANY:
+            return {}
+        axes = {"thicknesses_um": "thickness_um", "gaps_um": "gap_um"}
+        return {axis: ends_and_middle([self.sections[name][key] for name in users]) for axis, key in axes.items()}
 
     def capacitor(self, device: str) -> dict:
         """Voltage of a device and its dielectric, empty without a voltage."""

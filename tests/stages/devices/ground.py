@@ -86,7 +86,7 @@ def lognormal_cracks(device=C1, number=400, spread=0.025, seed=1, surfaces=SURFA
     beam = Beam(1500 * UM, 30 * UM, 2.6 * UM, 164e9, 20 * UM, 200)
     beams = Released(device, found, np.inf, foundation_length(beam, laws), surfaces, None)
     return cracks.layout(beams, beam, laws, RMS).assign(
-        share_flat=0.0, longest_strip=device.strip, resampled=0, repetition=0.0
+        share_flat=0.0, longest_strip=device.strip, resampled=0, repetition=0.0, size_error=0.0
     )
 
 

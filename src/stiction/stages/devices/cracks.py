@@ -1,21 +1,26 @@
 """Stage cracks: arrest of the cracks of long beams of a device at a humidity, and the error of few surfaces.
 
-Of a bridge, the stage finds the shortest length that its middle holds instead.
+Of a bridge, the stage finds the shortest length that its middle holds instead. Many cantilevers on one ground have the
+lengths of a few sizes, of stage sizes, and power laws between them (`stiction.devices.sizes`).
 A simulation of long beams gives P(stuck) at every length (`stiction.devices.risk`). The error due to the number of
 sampled surfaces follows from the samples (`stiction.devices.sampling`).
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import product
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
+from stiction.config.cases import Case, case_id
 from stiction.contact import forcelaw
 from stiction.devices.sampling import SampledSurfaces
-from stiction.plan.stage import Running, Stage, select
-from stiction.stages.devices.ground import ground_from, ground_inputs
+from stiction.devices.sizes import PowerLaws, fitted
+from stiction.plan.stage import At, Running, Stage, select
+from stiction.stages.devices.ground import ground_from, ground_inputs, name_of
 from stiction.stages.devices.opening import BEAMS, DesignedBeam, ground_of, settings_of_beam
 from stiction.stages.devices.sticking import Released, release_beams
 
@@ -27,16 +32,44 @@ class Settings:
     seed: int
     device: DesignedBeam
     beams: int  #: number of beams
+    by_sizes: bool = False  #: whether lengths follow those of a few sizes, if their power laws hold
 
 
-def compute(ground: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Release long beams on the force laws of a ground."""
+@dataclass(frozen=True)
+class OfSizes:
+    """Settings of the beams of a few sizes, without the ground."""
+
+    seed: int
+    device: DesignedBeam  #: one of them
+    beams: int
+    thicknesses: tuple[float, ...]  #: increasing [m]
+    gaps: tuple[float, ...]  #: increasing [m]
+
+
+def compute(ground: xr.Dataset, settings: Settings, of_sizes: xr.Dataset | None = None) -> xr.Dataset:
+    """Release long beams on the force laws of a ground, or take their lengths from those of a few sizes."""
     device, met = settings.device, ground_from(ground, settings)
-    dataset = layout(release_beams(device, met, settings), ground_of(device, met.laws)[0], met.laws, float(ground.rms))
+    laws = (
+        None if of_sizes is None else PowerLaws(of_sizes.powers.values, float(of_sizes.error), float(of_sizes.excess))
+    )
+    by_laws = laws is not None and laws.holds
+    beams = release_beams(device, met, settings, laws.lengths(device.thickness, device.gap) if by_laws else None)
+    dataset = layout(beams, ground_of(device, met.laws)[0], met.laws, float(ground.rms))
     return dataset.assign(
         longest_strip=((), device.opening.longest_strip(device, met.laws), {"units": "m"}),
+        size_error=((), laws.error if by_laws else 0.0, {"units": "1", "long_name": "error of power laws of the size"}),
         **ground[["share_flat", "resampled", "repetition"]],
     )
+
+
+def compute_sizes(ground: xr.Dataset, settings: OfSizes) -> xr.Dataset:
+    """Power laws of the lengths of beams on a ground, and their error. They are NaN if a length is not known."""
+    met = ground_from(ground, settings)
+    axes = settings.thicknesses, settings.gaps
+    devices = [replace(settings.device, thickness=thickness, gap=gap) for thickness, gap in product(*axes)]
+    laws = fitted(*axes, [release_beams(device, met, settings).arrested for device in devices])
+    errors = {name: ((), getattr(laws, name), {"units": "1"}) for name in ("error", "excess")}
+    return xr.Dataset({"powers": (("of", "device"), laws.powers)} | errors)
 
 
 def layout(beams: Released, part: Beam, laws: np.ndarray, rms: float) -> xr.Dataset:
@@ -92,15 +125,62 @@ def _name(cracks):
     return next(opening.length for opening in BEAMS.values() if opening.length in cracks)
 
 
+def _inputs(plan: Any, at: At) -> dict[str, str]:
+    """Ground of a device, and the power laws of its lengths where many devices are on it."""
+    sizes = {"of_sizes": f"devices/sizes/{name_of(plan, at.case)}"} if _sizes(plan, at.case) else {}
+    return ground_inputs(plan, at.case) | sizes
+
+
+def _sizes(plan, case):
+    """Sizes from which the lengths of a case follow, if there are any."""
+    return plan.devices.sizes(case.device, case.humidity)
+
+
+def _settings(plan: Any, at: At) -> dict[str, Any]:
+    """Settings of a device."""
+    by_sizes = {"by_sizes": True} if _sizes(plan, at.case) else {}
+    return select(Settings, settings_of_beam(plan, at.case) | by_sizes)
+
+
+def _case_of_sizes(plan, at):
+    """Case of the first cantilever on a ground.
+
+    Raises
+    ------
+    KeyError
+        If there is none.
+    """
+    ground = (at.case.pair, int(at.length), int(at.width))
+    return Case(case_id(plan.devices.cantilevers_on[ground, at.case.humidity][0], at.case.humidity))
+
+
+def _settings_of_sizes(plan: Any, at: At) -> dict[str, Any]:
+    """Settings of the sizes of all cantilevers on a ground."""
+    case = _case_of_sizes(plan, at)
+    sizes, settings = _sizes(plan, case), settings_of_beam(plan, case)
+    first = {"thickness_um": sizes["thicknesses_um"][0], "gap_um": sizes["gaps_um"][0]}
+    return select(OfSizes, settings | sizes | {"device": settings["device"] | first})
+
+
 STAGES = (
     Stage.writing(
         "cracks",
         "devices/cracks/{case}",
-        inputs=lambda plan, at: ground_inputs(plan, at.case),
-        settings=lambda plan, at: select(Settings, settings_of_beam(plan, at.case)),
+        inputs=_inputs,
+        settings=_settings,
         kind=Settings,
-        compute=compute,
+        compute=lambda data, settings: compute(data["ground"], settings, data.get("of_sizes")),
         message="Release long beams of {case}.",
+        running=Running(minutes=120),
+    ),
+    Stage.writing(
+        "sizes",
+        "devices/sizes/{case}_{length}x{width}",
+        inputs=lambda plan, at: ground_inputs(plan, _case_of_sizes(plan, at)),
+        settings=_settings_of_sizes,
+        kind=OfSizes,
+        compute=compute_sizes,
+        message="Release beams of a few sizes on {case}, strips of {length} x {width} nm.",
         running=Running(minutes=120),
     ),
 )

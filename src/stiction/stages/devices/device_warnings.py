@@ -69,7 +69,9 @@ def beam_warnings(
     """
     shortest = safe_lengths.safe_length.min("share")
     without = limits.triggered(
-        limits.no_water(float(safe_lengths.film), humidity), limits.flat_patches(float(safe_lengths.share_flat))
+        limits.no_water(float(safe_lengths.film), humidity),
+        limits.flat_patches(float(safe_lengths.share_flat)),
+        limits.lengths_of_sizes(float(safe_lengths.size_error)),
     )
     return {
         shape: without

@@ -71,10 +71,15 @@ def ground_from(dataset: xr.Dataset, settings: BeamSettings) -> Ground:
     return ground_of_laws(laws, settings)
 
 
+def name_of(plan: Any, case: Case) -> str:
+    """Name of the ground of a device at a humidity."""
+    size = plan.devices.ground(case.device)
+    return f"{case_id(size.pair, case.humidity)}_{size.length}x{size.width}"
+
+
 def ground_inputs(plan: Any, case: Case) -> dict[str, str]:
     """Ground of a device at a humidity, as input of a stage."""
-    size = plan.devices.ground(case.device)
-    return {"ground": f"devices/ground/{case_id(size.pair, case.humidity)}_{size.length}x{size.width}"}
+    return {"ground": f"devices/ground/{name_of(plan, case)}"}
 
 
 def _case_on(plan, at):

@@ -45,7 +45,7 @@ def compute(cracks: xr.Dataset, settings: Settings, tips: xr.Dataset | None = No
     beams = stage_cracks.beams_of(cracks, device, held)
     without_samples = lengths_without_samples(device, settings.water, settings.humidity, beams.reach)
     dataset = layout(beams.lengths, by_shape(beams, settings, without_samples), without_samples, settings).assign(
-        cracks[["rms", "share_flat", "longest_strip", "resampled", "repetition"]]
+        cracks[["rms", "share_flat", "longest_strip", "resampled", "repetition", "size_error"]]
     )
     return dataset if settings.length is None else dataset.assign(at_length(beams, settings.length))
 

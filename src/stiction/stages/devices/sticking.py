@@ -133,11 +133,17 @@ def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settin
     return with_tips(ground_of_laws(laws, settings), tips, humidity, settings.water)
 
 
-def release_beams(device: DesignedBeam, met: Ground, settings: BeamSettings) -> Released:
-    """Released beams of a device, or of one of another thickness and gap, on its ground."""
+def release_beams(
+    device: DesignedBeam, met: Ground, settings: BeamSettings, arrested: np.ndarray | None = None
+) -> Released:
+    """Released beams of a device, or of one of another thickness and gap, on its ground.
+
+    Where they are arrested may be known already (n,) [m].
+    """
     part = opening.ground_of(device, met.laws)
     address, draw, sampled = opening.addresses(settings), met.strips.in_row(device), met.strips.sampled
-    arrested = opening.arrests(device, part, draw, settings.beams, address)
+    if arrested is None:
+        arrested = opening.arrests(device, part, draw, settings.beams, address)
     on_mean = partial(device.opening.length_on_mean, beam=device.beam)
     surfaces = sampled_surfaces(sampled, device.opening.contribution, on_mean, device.opening.uniform(part[0], sampled))
     return Released(
