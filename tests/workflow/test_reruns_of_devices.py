@@ -35,10 +35,10 @@ READ_BY = {
     " tip_solid_contact tip_choice_contact tip_budget process_point",
     "identification": "device_choice_summits",
     "contact_chunk": "contact",
-    "contact": "ground safe_lengths budget separation",
-    "device_contact": "ground safe_lengths stoppers budget separation",
+    "contact": "ground safe_lengths budget fast_strips",
+    "device_contact": "ground safe_lengths stoppers budget separation fast_strips",
     "ground": "cracks chart",
-    "tip_contact": "safe_lengths chart tip_budget separation",
+    "tip_contact": "safe_lengths chart tip_budget fast_tips",
     "slope_contact": "budget",
     "device_slope_contact": "budget",
     "solid_contact": "budget",
@@ -52,6 +52,8 @@ READ_BY = {
     "safe_lengths": "table_safe_lengths figure_risk device_warnings device_page life",
     "touchdowns": "life",
     "separation": "life",
+    "fast_strips": "life",
+    "fast_tips": "life",
     "at_voltage": "life",
     "stoppers_at_voltage": "life",
     "dimples": "life",
@@ -120,12 +122,12 @@ MATRIX = [
     ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
      "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
     # It moves the scatter of energies, and with it the number of samples of C1.
-    ("water", "water: {temperature_K: 310}", "device_contact ground safe_lengths chart stoppers budget tip_budget separation process_point",
+    ("water", "water: {temperature_K: 310}", "device_contact ground safe_lengths chart stoppers budget tip_budget separation fast_strips fast_tips process_point",
      (), "results/contact|slopes|modulus|choices|tips"),
-    ("adsorbed water", "water: {adsorbed_nm: 0.1}", "ground safe_lengths chart stoppers budget tip_budget separation process_point", (), "contact"),
+    ("adsorbed water", "water: {adsorbed_nm: 0.1}", "ground safe_lengths chart stoppers budget tip_budget separation fast_strips fast_tips process_point", (), "contact"),
     ("uncertainty of the adsorbed water", "devices: {C1: {uncertainty: {adsorbed_nm: 0.1}}}", "budget tip_budget", (),
      "R1|S1|contact|chart"),
-    ("attraction across gaps", "attraction: {wavelength_nm: 90}", "ground safe_lengths chart stoppers budget tip_budget separation process_point", (),
+    ("attraction across gaps", "attraction: {wavelength_nm: 90}", "ground safe_lengths chart stoppers budget tip_budget separation fast_strips fast_tips process_point", (),
      "contact"),
     ("skewness of a surface", "surfaces: {B2: {skewness: -0.7}}", "heights device_choice_summits process_law", (), "Sub1.nc"),
     ("skewness of another surface", "surfaces: {B1: {skewness: -0.7}}", "", (), ""),
@@ -140,14 +142,14 @@ MATRIX = [
     ("humidities of a chart", "devices: {C1: {chart: {humidities: [0.6, 0.9]}}}",
      "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact ground", OF_STOPPERS | {"cracks"},
      "cracks|S1|R1|contact/b|contact/slopes"),
-    ("gap of a beam", "devices: {C1: {gap_um: 19}}", "separation cracks safe_lengths chart budget tip_budget", OF_STOPPERS, "contact|S1|R1"),
+    ("gap of a beam", "devices: {C1: {gap_um: 19}}", "cracks safe_lengths chart budget tip_budget", OF_STOPPERS, "contact|S1|R1"),
     ("width of a beam", "devices: {C1: {width_um: 24}}",
      "device_contact tip_contact device_slope_contact solid_contact device_choice_summits tip_slope_contact"
      " tip_solid_contact tip_choice_contact",
      OF_STOPPERS, "S1|R1|b_NG"),
     ("strips of a beam", "devices: {C1: {strip_um: 1.2}}",
      "device_contact device_slope_contact solid_contact device_choice_summits chart tip_budget", OF_STOPPERS, "S1|R1|b_NG|tips"),
-    ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "separation cracks safe_lengths", OF_STOPPERS | OF_CHARTS, "contact|C1|S1|chart"),
+    ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "cracks safe_lengths", OF_STOPPERS | OF_CHARTS, "contact|C1|S1|chart"),
     ("Hamaker constant of a body", BODY + "{hamaker_constant_zJ: {water: 20, dry: 200}}}",
      "device_contact tip_contact device_slope_contact solid_contact device_choice_contact plasticity"
      " tip_slope_contact tip_solid_contact tip_choice_contact process_point", (), "heights|spectrum|summits"),
@@ -187,7 +189,7 @@ LAYOUTS |= {
     "stages/devices/safe_lengths": {"safe_lengths"},
 }
 LAYOUTS |= {"stages/process/law": {"process_law"}, "stages/process/recommended": {"process_settings"}}
-LAYOUTS |= {"stages/life/answers": {"life"}, "stages/life/separation": {"separation"}}
+LAYOUTS |= {"stages/life/answers": {"life"}, "stages/life/separation": {"separation", "fast_strips", "fast_tips"}}
 
 
 def behind(rules):

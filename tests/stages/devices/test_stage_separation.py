@@ -19,7 +19,7 @@ from stiction.plan.plan import Plan
 from stiction.run import storage
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import curves
-from stiction.stages.devices.contact_names import contact_of
+from stiction.stages.devices.contact_names import contact_of, tips_of
 from stiction.stages.life import separation
 
 WATER = Water(300.0)
@@ -35,7 +35,7 @@ def contacts():
 
 
 def test_every_patch_holds_at_least_as_much_as_slowly(contacts):
-    found = separation.compute(contacts, separation.Settings(ACROSS, PATCH)).pull_off
+    found = separation.of_stopper(contacts, separation.OfStopper(ACROSS, PATCH)).pull_off
     for humidity in contacts:
         slow = curves.pull_offs(small.contact_of_pair(), humidity, ACROSS) * PATCH[0] * PATCH[1]
         ratio = found.sel(humidity=humidity).values / slow
@@ -43,9 +43,21 @@ def test_every_patch_holds_at_least_as_much_as_slowly(contacts):
         assert ratio.mean() > 1.01
 
 
+def fast_strips(contacts, water):
+    """Datasets of fast strips by humidity."""
+    return {
+        humidity: separation.of_strips(one, separation.InAir(water, humidity)) for humidity, one in contacts.items()
+    }
+
+
+def fast_tips(contact):
+    """Dataset of fast tips at RH 0.67."""
+    return separation.of_tips(contact, separation.InAir(WATER, 0.67))
+
+
 @pytest.mark.parametrize("water", [WATER, ACROSS])
 def test_strips_need_more_energy_so_that_beams_are_shorter_by_its_fourth_root(contacts, water):
-    found = separation.compute(contacts, separation.Settings(water, device=R1))
+    found = separation.of_beam(fast_strips(contacts, water), {}, R1)
     assert np.all(found.factor + 4 * found.factor_error < 1)
     fast, slow = (of(small.contact_of_pair(), 0.44, water) for of in (curves.fast_energies, curves.energies))
     assert np.all(fast > slow)
@@ -64,18 +76,17 @@ def wedges(resisting=3):
 
 
 def test_smooth_wedges_hold_as_long_beams_fast_as_slowly():
-    settings = separation.Settings(WATER, device=C1)
-    factor, error = separation.factor_of_tips(wedges(), 0.67, settings)
+    factor, error = separation.factor_of_tips(fast_tips(wedges()), C1)
     assert_allclose(factor, 1, rtol=1e-2)  # they rest up to one distance above the ground
     assert error < 1e-6
-    assert separation.factor_of_tips(wedges(2), 0.67, settings)[0] == 0
+    assert separation.factor_of_tips(fast_tips(wedges(2)), C1)[0] == 0
 
 
 def test_a_cantilever_has_factors_of_its_beam_and_of_its_tip():
-    wet = {0.67: small.contact_of_pair()}
-    found = separation.compute(wet, separation.Settings(WATER, device=C1), {0.67: wedges()})
+    strips = fast_strips({0.67: small.contact_of_pair()}, WATER)
+    found = separation.of_beam(strips, {0.67: fast_tips(wedges())}, C1)
     assert list(found["shape"].values) == ["S-shape", "S-shape or arc"]
-    assert_allclose(found.factor[0], [separation.factor_of_strips(wet[0.67], 0.67, WATER)[0], 1], rtol=1e-2)
+    assert_allclose(found.factor[0], [float(strips[0.67].factor), 1], rtol=1e-2)
 
 
 def test_what_fast_separation_needs_more_is_the_work_of_the_water_alone():
@@ -95,7 +106,7 @@ def test_the_error_of_a_factor_is_the_scatter_of_factors_on_other_strips():
     energies = np.array([of(contact, 0.44, WATER) for of in (curves.fast_energies, curves.energies)])
     again = [energies[:, rng.integers(20, size=20)].mean(axis=1) for _ in range(2000)]
     scatter = np.std([(slow / fast) ** 0.25 for fast, slow in again])
-    assert_allclose(separation.factor_of_strips(contact, 0.44, WATER)[1], scatter, rtol=0.2)
+    assert_allclose(fast_strips({0.44: contact}, WATER)[0.44].factor_error, scatter, rtol=0.2)
 
 
 def test_strips_that_no_summits_stop_have_no_bound():
@@ -103,29 +114,39 @@ def test_strips_that_no_summits_stop_have_no_bound():
     flat.solid_pressure[0] = 0.0
     assert np.isinf(curves.fast_pull_offs(flat, 0.67, ACROSS)[0])
     assert np.isfinite(curves.fast_pull_offs(flat, 0.67, ACROSS)[1:]).all()
-    factor, error = separation.factor_of_strips(flat, 0.67, ACROSS)
-    assert factor == 0
-    assert np.isnan(error)
+    found = fast_strips({0.67: flat}, ACROSS)[0.67]
+    assert found.factor == 0
+    assert np.isnan(found.factor_error)
 
 
 def test_only_humid_air_has_a_fast_separation_and_on_the_contact_of_the_device():
     coated = {"surfaces": dict.fromkeys(("B2", "Sub1"), {"material": "FDTS"}), "run": {"pairs": ["b"]}}
     for more, humid in (({}, [0.67]), (coated | {"materials": {"FDTS": {"contact_angle_deg": 110}}}, [])):
         graph = Graph(Plan(load({"devices": {"C1": BEAM, "S1": STOPPER}} | more)))
-        inputs = graph.job("devices/life/C1").inputs
-        assert ("separation" in inputs) == bool(humid)
-        if humid:
-            contacts = graph.job("devices/separation/C1").inputs["contacts"]
-            assert list(contacts) == humid
-            assert list(graph.job("devices/separation/C1").inputs["tips"]) == humid
-            assert not graph.job("devices/separation/S1").inputs["tips"]
-            assert contacts[0.67] == contact_of(graph.plan, Case("C1_rh067"))
+        inputs, case = graph.job("devices/life/C1").inputs, Case("C1_rh067")
+        for name, contact in (
+            ("fast_strips", contact_of(graph.plan, case)),
+            ("fast_tips", tips_of(graph.plan, case)["tips"]),
+        ):
+            assert list(inputs[name]) == humid
+            if humid:
+                assert graph.job(inputs[name][0.67]).inputs == {"contact": contact}
+        assert ("separation" in graph.job("devices/life/S1").inputs) == bool(humid)
+    assert list(graph.job("devices/separation/S1").inputs["contacts"]) == [0.44, 0.67] if humid else True
     dry = Graph(Plan(load({"devices": {"C1": BEAM | {"humidities": ["dry"]}}})))
-    assert "separation" not in dry.job("devices/life/C1").inputs
+    assert not dry.job("devices/life/C1").inputs["fast_strips"]
+
+
+def test_beams_of_all_sizes_share_their_strips_and_those_of_one_slope_their_tips():
+    thick, narrow = BEAM | {"thickness_um": 2.61}, BEAM | {"width_um": 20}
+    graph = Graph(Plan(load({"devices": {"C1": BEAM, "C2": thick, "C3": narrow}})))
+    first, second, third = (graph.job(f"devices/life/{name}").inputs for name in ("C1", "C2", "C3"))
+    for name in ("fast_strips", "fast_tips"):
+        assert first[name] == second[name] != third[name]
 
 
 def test_a_dataset_comes_back_from_its_file(contacts, tmp_path):
-    for settings in (separation.Settings(WATER, device=R1), separation.Settings(WATER, PATCH)):
-        found = separation.compute(contacts, settings)
+    of_stopper = separation.of_stopper(contacts, separation.OfStopper(WATER, PATCH))
+    for found in (of_stopper, fast_strips(contacts, WATER)[0.44], fast_tips(wedges())):
         storage.save(found, tmp_path / "one.nc", "separation", {})
         assert storage.load(tmp_path / "one.nc", "separation").equals(found)

@@ -82,7 +82,7 @@ def ground_inputs(plan: Any, case: Case) -> dict[str, str]:
     return {"ground": f"devices/ground/{name_of(plan, case)}"}
 
 
-def _case_on(plan, at):
+def case_on(plan: Any, at: At) -> Case:
     """Case of one of the devices on a ground.
 
     Raises
@@ -94,19 +94,19 @@ def _case_on(plan, at):
     users = [name for name in plan.devices.beams if plan.devices.ground(name) == size]
     if not users:
         raise KeyError(f"no device is on strips of {at.length} x {at.width} nm of pair {at.case.pair}")
-    return case_id(users[0], at.case.humidity)
+    return Case(case_id(users[0], at.case.humidity))
 
 
 def _inputs(plan: Any, at: At) -> dict[str, str]:
     """Contact of a ground, with its surfaces and its correction."""
-    case = _case_on(plan, at)
+    case = case_on(plan, at)
     surfaces = surface_inputs(plan, plan.config["devices"][case.device]["pair"])
     return {"contact": contact_of(plan, case)} | surfaces | corrections_of(plan, case.device, case.humidity)
 
 
 def _settings(plan: Any, at: At) -> dict[str, Any]:
     """Settings of the force laws, the same for all devices on a ground."""
-    case = _case_on(plan, at)
+    case = case_on(plan, at)
     sides = {"strip_um": plan.devices.strip(case.device), "width_um": plan.config["devices"][case.device]["width_um"]}
     return select(Settings, settings_of_beam(plan, case) | sides)
 

@@ -1,9 +1,9 @@
-"""Stage separation: what holds a device that separates faster than water evaporates, at its humidities with water.
+"""Stages of separation: what holds devices that separate faster than water evaporates, at humidities with water.
 
 For a stopper: the pull-off force of every patch, at least that of slow separation. For a beam: factors of its sticking
 lengths by end state. ASSUME: they are those of the means, (e / e_V)^(1/4) of the energies of strips, for beams and for
 the middle of bridges, and the mean inverse length of slow over that of fast separation for tips. For tips this is the
-safe side: those of pair b that hold the shortest beams gain least.
+safe side: those of pair b that hold the shortest beams gain least. Strips and tips are those of all beams on them.
 """
 
 from collections.abc import Mapping
@@ -13,75 +13,86 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import case_id
+from stiction.config.cases import Case, case_id
 from stiction.contact.environment import Water
 from stiction.devices import arcs
 from stiction.devices.stoppers import pull_off_force
 from stiction.estimates import jackknife
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import At, Stage, select
 from stiction.stages.contact import curves
 from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
-from stiction.stages.devices.opening import DesignedBeam, section_of_beam
+from stiction.stages.devices.ground import case_on, name_of
+from stiction.stages.devices.opening import DesignedBeam
 
 
 @dataclass(frozen=True)
-class Settings:
-    """Everything that a fast separation depends on apart from the contact."""
+class OfStopper:
+    """Everything that a fast separation of a stopper depends on apart from its contacts."""
 
     water: Water
-    contact: tuple[float, float] | None = None  #: sides of the patch of a stopper [m]; none for a beam
-    device: DesignedBeam | None = None  #: a beam; none for a stopper
+    contact: tuple[float, float]  #: sides of the patch [m]
 
 
-def compute(
-    contacts: Mapping[float, xr.Dataset], settings: Settings, tips: Mapping[float, xr.Dataset] | None = None
-) -> xr.Dataset:
-    """Pull-off forces of a stopper or factors of the lengths of a beam, from its contacts by humidity."""
-    found = _forces(contacts, settings) if settings.contact else _factors(contacts, tips or {}, settings)
-    return xr.Dataset(found, coords={"humidity": list(contacts)})
+@dataclass(frozen=True)
+class InAir:
+    """Everything that one of strips or of tips depends on apart from their contact."""
+
+    water: Water
+    humidity: float  #: [-]
 
 
-def _forces(contacts, settings):
-    """Pull-off forces of all patches of a stopper."""
+def of_stopper(contacts: Mapping[float, xr.Dataset], settings: OfStopper) -> xr.Dataset:
+    """Pull-off forces of all patches of a stopper, from its contacts by humidity."""
     area, water = settings.contact[0] * settings.contact[1], settings.water
     largest = [
         np.maximum(curves.fast_pull_offs(one, at, water), curves.pull_offs(one, at, water))
         for at, one in contacts.items()
     ]
-    return {"pull_off": (("humidity", "sample"), pull_off_force(np.array(largest), area), {"units": "N"})}
+    forces = (("humidity", "sample"), pull_off_force(np.array(largest), area), {"units": "N"})
+    return xr.Dataset({"pull_off": forces}, coords={"humidity": list(contacts)})
 
 
-def _factors(contacts, tips, settings):
-    """Factors of the lengths of a beam by end state, with their standard errors."""
-    rows = [
-        [factor_of_strips(one, at, settings.water), *([factor_of_tips(tips[at], at, settings)] if at in tips else [])]
-        for at, one in contacts.items()
-    ]
+def of_strips(contact: xr.Dataset, settings: InAir) -> xr.Dataset:
+    """Factor of the length of a crack by the mean energies of strips, and its standard error."""
+    energies = (of(contact, settings.humidity, settings.water) for of in (curves.fast_energies, curves.energies))
+    found = _ratio(*energies, lambda means: (means[..., 1] / means[..., 0]) ** 0.25)
     none = {"units": "1", "long_name": "length of fast separation over that of slow separation"}
+    return xr.Dataset(dict(zip(("factor", "factor_error"), (((), one, none) for one in found), strict=True)))
+
+
+def of_tips(contact: xr.Dataset, settings: InAir) -> xr.Dataset:
+    """Largest attractions P/w of tips over their slopes, in slow and in fast separation."""
+    slopes, slow = curves.tip_forces(contact, settings.humidity, settings.water)
+    fast = curves.fast_tip_forces(contact, settings.humidity, settings.water)
+    forces = {name: (("tip", "slope"), of, {"units": "N m-1"}) for name, of in (("slow", slow), ("fast", fast))}
+    return xr.Dataset(forces, coords={"slope": slopes})
+
+
+def of_beam(strips: Mapping[float, xr.Dataset], tips: Mapping[float, xr.Dataset], device: DesignedBeam) -> xr.Dataset:
+    """Factors of the lengths of a beam by end state with their errors, from its strips and tips by humidity."""
+    rows = [
+        [
+            (float(one.factor), float(one.factor_error)),
+            *([factor_of_tips(tips[humidity], device)] if humidity in tips else []),
+        ]
+        for humidity, one in strips.items()
+    ]
     values, errors = np.moveaxis(np.array(rows), -1, 0)
-    over = ("humidity", "shape")
-    return {
-        "factor": (over, values, none),
-        "factor_error": (over, errors, none),
-        "shape": [*settings.device.opening.shapes],
-    }
+    over, coords = ("humidity", "shape"), {"humidity": list(strips), "shape": [*device.opening.shapes]}
+    return xr.Dataset({"factor": (over, values), "factor_error": (over, errors)}, coords=coords)
 
 
-def factor_of_strips(contact: xr.Dataset, humidity: float, water: Water) -> tuple[float, float]:
-    """Factor of the length of a crack by the mean energies of strips, and its standard error [-]."""
-    energies = (of(contact, humidity, water) for of in (curves.fast_energies, curves.energies))
-    return _ratio(*energies, lambda means: (means[..., 1] / means[..., 0]) ** 0.25)
+def factor_of_tips(forces: xr.Dataset, device: DesignedBeam) -> tuple[float, float]:
+    """Factor of the length that a tip holds, by the mean inverse lengths of all tips, and its standard error [-].
 
-
-def factor_of_tips(tips: xr.Dataset, humidity: float, settings: Settings) -> tuple[float, float]:
-    """Factor of the length that a tip holds, by the mean inverse lengths of all tips, and its standard error [-]."""
-    slopes, slow = curves.tip_forces(tips, humidity, settings.water)
-    fast = curves.fast_tip_forces(tips, humidity, settings.water)
+    The forces are those of `of_tips`.
+    """
+    slow, fast = forces.slow.values, forces.fast.values
     stopped = np.isfinite(fast).all(axis=1)
     inverse = [
-        1 / arcs.longest_free(slopes, np.where(stopped[:, None], forces, slow), settings.device.beam)
-        for forces in (fast, slow)
+        1 / arcs.longest_free(forces.slope.values, np.where(stopped[:, None], one, slow), device.beam)
+        for one in (fast, slow)
     ]
     return _ratio(np.where(stopped, inverse[0], np.inf), inverse[1], lambda means: means[..., 1] / means[..., 0])
 
@@ -93,45 +104,105 @@ def _ratio(fast, slow, factor):
     return tuple(map(float, jackknife(factor, np.column_stack([fast, slow]))))
 
 
-def separation_inputs(plan: Any, device: str) -> dict[str, str]:
-    """Dataset of a device, as input of a stage; none if no water condenses in any of its airs."""
-    return {"separation": f"devices/separation/{device}"} if _wet(plan, device) else {}
+def separation_inputs(plan: Any, device: str) -> dict[str, Any]:
+    """Forces of a stopper, or strips and tips of a beam by humidity, as inputs of a stage; none without water."""
+    wet = _wet(plan, device)
+    if not plan.devices.kind(device).is_beam:
+        return {"separation": f"devices/separation/{device}"} if wet else {}
+    tips = wet if plan.devices.kind(device).has_tip else {}
+    return {
+        "fast_strips": {humidity: f"devices/fast_strips/{name_of(plan, case)}" for humidity, case in wet.items()},
+        "fast_tips": {humidity: f"devices/fast_tips/{_name_of_tips(plan, case)}" for humidity, case in tips.items()},
+    }
 
 
 def _wet(plan, device):
-    """Names of a device at those of its humidities at which water condenses, by humidity."""
+    """Cases of a device at those of its humidities at which water condenses, by humidity."""
     section = plan.config["devices"][device]
     humid = [humidity for humidity in section["humidities"] if humidity > 0]
     wetted = humid if plan.air_of_devices.is_wetted(section["pair"]) else []
-    return {humidity: case_id(device, humidity) for humidity in wetted}
+    return {humidity: Case(case_id(device, humidity)) for humidity in wetted}
 
 
-def _inputs(plan, at):
-    """Contacts of a device, and of its tips if it has any, by humidity."""
-    cases = _wet(plan, at.device)
-    tips = {humidity: name for humidity, case in cases.items() for name in tips_of(plan, case).values()}
-    contacts = {humidity: contact_of(plan, case) for humidity, case in cases.items()}
-    return {"contacts": contacts, "tips": tips} | corrections_of(plan, at.device)
+def _name_of_tips(plan, case):
+    """Name of the tips of a cantilever at a humidity."""
+    tips = plan.devices.tips(case.device)
+    return f"{case_id(tips.pair, case.humidity)}_{tips.length}x{tips.width}"
 
 
-def _settings(plan, at):
-    """Water around a device, and the patch of a stopper or the beam."""
+def _case_of_tips(plan, at):
+    """Case of one of the cantilevers with some tips.
+
+    Raises
+    ------
+    KeyError
+        If there is none.
+    """
+    patch = (at.case.pair, int(at.length), int(at.width))
+    for name in plan.devices.with_tips:
+        if plan.devices.tips(name) == patch:
+            return Case(case_id(name, at.case.humidity))
+    raise KeyError(f"no device has tips of {at.length} x {at.width} nm of pair {at.case.pair}")
+
+
+def _contacts_of_stopper(plan, at):
+    """Contacts of a stopper by humidity."""
+    contacts = {humidity: contact_of(plan, case) for humidity, case in _wet(plan, at.device).items()}
+    return {"contacts": contacts} | corrections_of(plan, at.device)
+
+
+def _settings_of_stopper(plan, at):
+    """Water around a stopper, and its patch."""
     section = plan.config["devices"][at.device]
-    water = {"water": plan.air_of_devices.water(section["pair"])}
-    if plan.devices.kind(at.device).is_beam:
-        return select(Settings, water | {"device": section_of_beam(plan, at.device)})
-    return select(Settings, section | water)
+    return select(OfStopper, section | {"water": plan.air_of_devices.water(section["pair"])})
+
+
+def _in_air(plan, at):
+    """Water around strips or tips."""
+    return {"water": plan.air_of_devices.water(at.case.pair), "humidity": at.case.humidity}
+
+
+def _contact_of_strips(plan: Any, at: At) -> dict[str, str]:
+    """Contact of strips, with its correction."""
+    case = case_on(plan, at)
+    return {"contact": contact_of(plan, case)} | corrections_of(plan, case.device, case.humidity)
+
+
+def _contact_of_tips(plan: Any, at: At) -> dict[str, str]:
+    """Contact of tips, with its correction."""
+    case = _case_of_tips(plan, at)
+    return {"contact": tips_of(plan, case)["tips"]} | corrections_of(plan, case.device, case.humidity)
 
 
 STAGES = (
     Stage.writing(
         "separation",
         "devices/separation/{device}",
-        inputs=_inputs,
-        settings=_settings,
-        kind=Settings,
+        inputs=_contacts_of_stopper,
+        settings=_settings_of_stopper,
+        kind=OfStopper,
         complete=with_correction,
-        compute=compute,
-        message="Fast separation of device {device}.",
+        compute=of_stopper,
+        message="Fast separation of stopper {device}.",
+    ),
+    Stage.writing(
+        "fast_strips",
+        "devices/fast_strips/{case}_{length}x{width}",
+        inputs=_contact_of_strips,
+        settings=_in_air,
+        kind=InAir,
+        complete=with_correction,
+        compute=of_strips,
+        message="Fast separation of {case}, strips of {length} x {width} nm.",
+    ),
+    Stage.writing(
+        "fast_tips",
+        "devices/fast_tips/{case}_{length}x{width}",
+        inputs=_contact_of_tips,
+        settings=_in_air,
+        kind=InAir,
+        complete=with_correction,
+        compute=of_tips,
+        message="Fast separation of tips of {case}, {length} x {width} nm.",
     ),
 )

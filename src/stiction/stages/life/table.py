@@ -26,7 +26,7 @@ from stiction.stages.life.fast import separated_fast
 from stiction.stages.life.freeing import beam_held, stopper_freed
 from stiction.stages.life.inputs import OfBeam, OfStopper
 from stiction.stages.life.lengths import least_safe, length_of
-from stiction.stages.life.separation import separation_inputs
+from stiction.stages.life.separation import of_beam, separation_inputs
 from stiction.stages.life.tilt import tilted_answers
 from stiction.stages.life.touch import beam_touched, lengths_after_drying, stopper_moved
 from stiction.stages.life.touchdowns import beam_after_touchdowns, stopper_after_touchdowns
@@ -104,7 +104,9 @@ def compute(data: Mapping[str, Any], settings: dict[str, Any]) -> xr.Dataset:
         own = (data.get(name) for name in ("biased", "tilted", "separation"))
         return layout(stopper_answers(data["stopper"], of, *own), of)
     of, lengths = in_si(OfBeam, settings["beam"]), data["lengths"]
-    answers = beam_answers(lengths, data.get("after", {}), of, data.get("biased"), data.get("separation"))
+    strips, tips = (data.get(name, {}) for name in ("fast_strips", "fast_tips"))
+    fast = of_beam(strips, tips, of.device) if strips else None
+    answers = beam_answers(lengths, data.get("after", {}), of, data.get("biased"), fast)
     answers += dimple_answers(of, data.get("dimples", {}))
     return layout(in_order(answers), of, length_of(lengths, of))
 
