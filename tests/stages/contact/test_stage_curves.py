@@ -12,7 +12,15 @@ from stiction.contact.environment import Gaps, Water, flooded_law
 from stiction.contact.pair import DistanceGrid
 from stiction.contact.vanderwaals import attraction
 from stiction.stages.contact import contact
-from stiction.stages.contact.curves import energies, fast_tip_forces, force_curves, pull_offs, tip_forces, vectors
+from stiction.stages.contact.curves import (
+    TIP_POWER,
+    energies,
+    fast_tip_forces,
+    force_curves,
+    pull_offs,
+    tip_forces,
+    vectors,
+)
 
 
 def test_force_at_a_humidity_is_solid_pressure_less_tension_on_the_wet_area():
@@ -79,6 +87,20 @@ def test_tips_have_the_upper_end_of_the_ratio_that_few_strips_show():
     few = Correction(np.array([0.5, 0.8]), Change(2.0, ratio_error=0.1), Change(1.0, ratio_error=0.1))
     changed, summits = (tip_forces(found, 0.65, water)[1] for water in (replace(wet, correction=few), wet))
     np.testing.assert_allclose(changed, 2 * np.exp(1.6449 * 0.1) * summits, rtol=1e-4)
+
+
+@pytest.mark.parametrize("parallel", [1.0, 2.0])
+def test_tips_scatter_as_tilted_strips_do_whatever_parallel_strips_do(parallel):
+    grid = DistanceGrid(0.5e-9, 10, 40)
+    bearing = np.tile(1 / (1 + np.exp(grid.bearing / 2e-9)), (3, 2, 1))
+    solid = np.exp(-grid.solid / 2e-9) * 1e8 * np.array([0.8, 1.0, 1.1])[:, None, None] * np.ones((1, 2, 1))
+    found = contact.layout(solid, bearing, grid, range(3)).assign(length=3e-7).assign_coords(slope=[0.05, 0.1])
+    ratios = Correction(np.array([0.5, 0.8]), Change(3.0, parallel), Change(2.0, parallel))
+    wet = Water(300.0)
+    changed, summits = (tip_forces(found, 0.65, water)[1] for water in (replace(wet, correction=ratios), wet))
+    np.testing.assert_allclose(np.log(changed).std(axis=0), TIP_POWER * np.log(summits).std(axis=0), rtol=1e-6)
+    np.testing.assert_allclose(changed.mean(axis=0), 3 * summits.mean(axis=0), rtol=1e-6)
+    assert np.all(np.log(summits).std(axis=0) > 0.01)
 
 
 def test_a_tip_that_no_solid_stops_is_pressed_to_its_mean_plane():
