@@ -3,11 +3,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from beams import E_BAR, PAPER, scattered_laws
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.beam.energy import arrest_length
 from stiction.beam.release import released_beam
-from stiction.devices import chart
+from stiction.devices import chart, risk
 
 GRID = np.array([(t, h) for t in (1e-6, 3e-6, 6e-6) for h in (1e-6, 10e-6, 40e-6)]).T
 
@@ -114,3 +114,62 @@ def test_a_jump_between_humidities_is_stated_and_few_humidities_have_no_error():
 def test_both_ends_are_kept_by_the_check_whatever_the_number_of_humidities(number):
     axis = np.linspace(0.4, 0.9, number)
     assert chart.error_between(axis, np.exp(axis)) < 1e-3
+
+
+# Sizes between humidities
+
+
+def test_all_sizes_are_computed_at_the_driest_the_middle_and_the_wettest_humidity():
+    assert chart.of_sizes(list(AXIS)) == [AXIS[0], AXIS[4], AXIS[8]]
+    assert chart.of_sizes([0.4, 0.5]) == [0.4, 0.5]
+    assert chart.of_sizes([0.4]) == [0.4]
+
+
+#: Power of the thickness against humidity: 0.75 to 0.81 on the paper's pair b.
+POWERS = {
+    "saturated": lambda rh: 0.75 + 0.06 * np.exp(-6 * (rh - 0.44)),
+    "bent": lambda rh: 0.81 - 0.06 * ((rh - 0.44) / 0.51) ** 2,
+    "peak": lambda rh: 0.75 + 0.06 * np.exp(-(((rh - 0.7) / 0.2) ** 2)),
+}
+
+
+@pytest.mark.parametrize("power", POWERS.values(), ids=POWERS)
+def test_ratios_of_sizes_between_humidities_err_by_less_than_stated_and_than_those_of_one_humidity(power):
+    nodes, ratio = AXIS[[0, 4, 8]], np.log(4 / 2.6)
+    found, stated = zip(*(chart.parabola(nodes, ratio * power(nodes), at) for at in FINE), strict=True)
+    error = np.max(np.abs(found - ratio * power(FINE)))
+    assert error < min(stated) < np.ptp(ratio * power(FINE))
+    assert np.max(np.abs(ratio * (power(nodes[1]) - power(FINE)))) > 1.5 * error  # control: the power of one humidity
+    assert_allclose([chart.parabola(nodes, ratio * power(nodes), at)[0] for at in nodes], ratio * power(nodes))
+
+
+def test_a_jump_of_the_ratios_is_stated_and_what_is_not_known_remains_so():
+    ratios = np.array([[0.0, 0.3, np.nan], [0.0, 0.3, 0.2], [0.0, 0.5, 0.2]])
+    found, errors = chart.parabola(AXIS[[0, 4, 8]], ratios, 0.6)
+    assert found[0] == errors[0] == 0
+    assert errors[1] == pytest.approx(0.1)
+    assert np.isnan([found[2], errors[2]]).all()
+
+
+def drawn(median, scatter, power=1.0):
+    """Lengths of 4000 beams whose logarithms are bent above their median [m]."""
+    z = np.random.default_rng(3).standard_normal(4000)
+    return median * np.exp(scatter * (z + 0.3 * np.maximum(z, 0) ** 2)) ** power
+
+
+def test_lengths_follow_median_and_scatter_of_another_size_down_to_the_shortest():
+    own, true = drawn(6e-4, 0.05), drawn(8e-4, 0.05, 0.8)
+    spreads = [chart.spread_of(risk.quantiles(lengths), risk.SCORES) for lengths in (own, true)]
+    found = chart.rescaled(own, spreads[0], spreads[1] - spreads[0])
+    assert_allclose(found, true, rtol=2e-3)
+    wrong = own * np.exp(spreads[1][0] - spreads[0][0])  # control: the median alone
+    assert abs(wrong.min() / true.min() - 1) > 0.02
+
+
+def test_lengths_beyond_the_simulation_remain_so_and_many_of_them_leave_no_spread():
+    lengths = drawn(6e-4, 0.05)
+    few, many = (np.where(lengths > np.quantile(lengths, at), np.inf, lengths) for at in (0.8, 0.4))
+    spread = chart.spread_of(risk.quantiles(few), risk.SCORES)
+    assert_allclose(spread, chart.spread_of(risk.quantiles(lengths), risk.SCORES))
+    assert_array_equal(np.isinf(chart.rescaled(few, spread, np.array([0.2, 0.1]))), np.isinf(few))
+    assert np.isnan(chart.spread_of(risk.quantiles(many), risk.SCORES)).all()

@@ -5,6 +5,7 @@ adhesion is strongest, and a longer crack has more places to stop. The power law
 and used only as far as beams that were left out confirm it.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,8 @@ from stiction.rounding import is_at_most
 ALLOWED = 0.01
 #: Fewest humidities of which every second one can check a cubic between the others.
 FEWEST_HUMIDITIES = 5
+#: Humidities at which beams of all sizes are computed.
+OF_SIZES = 3
 
 
 @dataclass(frozen=True)
@@ -106,3 +109,53 @@ def error_between(humidities: np.ndarray, lengths: np.ndarray) -> float:
     kept = np.delete(np.arange(len(humidities)), left_out)
     found = between(humidities[kept], lengths[kept], humidities[left_out])
     return float(np.max(np.abs(found / lengths[left_out] - 1)))
+
+
+def of_sizes(humidities: Sequence[float]) -> list[float]:
+    """Driest, middle and wettest of increasing humidities of a chart, or all if they are no more [-].
+
+    Examples
+    --------
+    >>> of_sizes([0.44, 0.5, 0.6, 0.67, 0.8, 0.92, 0.95])
+    [0.44, 0.67, 0.95]
+    """
+    places = np.linspace(0, len(humidities) - 1, min(OF_SIZES, len(humidities)))
+    return [humidities[round(place)] for place in places]
+
+
+#: Normal scores at which the lengths of two sizes are compared: the median, and 1 of 700.
+SCORES = np.array([0.0, -3.0])
+#: Scores of the quantiles whose line is compared: fewer beams are below them, and more may not stick above.
+_FITTED = -2.0, 0.0
+
+
+def spread_of(quantiles: np.ndarray, scores: np.ndarray) -> np.ndarray:
+    """Logarithms of lengths at `SCORES`, (..., 2), by the line through those of the quantiles (..., scores) [m].
+
+    NaN where a quantile between the 2nd percentile and the median is not known.
+    """
+    used = (scores >= _FITTED[0]) & (scores <= _FITTED[1])
+    known, centred = np.log(quantiles[..., used]), scores[used] - scores[used].mean()
+    slope = known @ centred / (centred @ centred)
+    return known.mean(axis=-1, keepdims=True) + slope[..., None] * (SCORES - scores[used].mean())
+
+
+def parabola(humidities: Sequence[float], values: np.ndarray, at: float) -> tuple[np.ndarray, np.ndarray]:
+    """Values at a humidity, by a parabola through those at three others (3, ...), and their errors (...).
+
+    The error is that of a line between driest and wettest at the middle humidity, where the parabola has none.
+    """
+    dry, middle, wet = humidities
+    share = (middle - dry) / (wet - dry)
+    error = np.abs((1 - share) * values[0] + share * values[2] - values[1])
+    weights = [np.prod([(at - other) / (one - other) for other in humidities if other != one]) for one in humidities]
+    return np.tensordot(weights, values, axes=1), error
+
+
+def rescaled(lengths: np.ndarray, spread: np.ndarray, ratios: np.ndarray) -> np.ndarray:
+    """Lengths of beams of another size (n,) from those of one (n,) with this `spread_of` [m].
+
+    Ratios are the logarithms of those of both sizes at `SCORES` (2,) [-].
+    """
+    power = 1 + (ratios[1] - ratios[0]) / (spread[1] - spread[0])
+    return np.exp(spread[0] + ratios[0] + power * (np.log(lengths) - spread[0]))

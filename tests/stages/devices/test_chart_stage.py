@@ -10,6 +10,7 @@ from beams import E_BAR, PAPER
 from ground import C1, R1, RMS, UM, VECTORS, WATER, met, settings, smooth_tips
 from numpy.testing import assert_allclose
 
+from stiction import load
 from stiction.beam.energy import apparent_adhesion_energy, arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import Truncation, draw_laws
@@ -19,6 +20,8 @@ from stiction.contact.meniscus import meniscus_height
 from stiction.devices import arcs
 from stiction.devices.chart import ALLOWED
 from stiction.devices.sampling import sampled_surfaces
+from stiction.plan.plan import Plan
+from stiction.plan.stage import At
 from stiction.stages.contact import curves
 from stiction.stages.devices import chart, opening, sticking
 
@@ -173,3 +176,59 @@ def test_a_chart_states_its_humidity_film_and_roughness():
     assert float(found.humidity) == 0.67
     assert_allclose(found.film, meniscus_height(0.67, 300.0), rtol=1e-12)
     assert_allclose(found.rms, RMS, rtol=1e-3)
+
+
+# Sizes between humidities
+
+NODES = 0.44, 0.67, 0.95
+WANTED = chart.Settings(2021, WATER, 0.55, C1, 2000, (1e-2, 1e-3), (2e-6, 2.6e-6, 4e-6), (10e-6, 20e-6))
+
+
+def drawn(asked, power, device, ground, wanted):
+    """Released beams whose lengths have a power of the thickness by humidity. Thicker beams scatter less."""
+    asked.append((device.thickness, device.gap))
+    thicker = device.thickness / 2.6e-6
+    median = 7e-4 * (1 - wanted.humidity) ** 0.25 * thicker ** power(wanted.humidity) * (device.gap / 2e-5) ** 0.5
+    scores = np.random.default_rng(5).standard_normal(wanted.beams)
+    return sticking.released(device, ground, median * np.exp(0.04 * thicker**-0.3 * scores), np.inf)
+
+
+def between(power):
+    """Chart at the humidity between, that of all sizes by finite elements, and the sizes that the first asked for."""
+    tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(WANTED.beams))
+    asked, ground, dry = [], met(), xr.Dataset()
+    with (
+        patch.object(curves, "tip_forces", lambda *_: smooth_tips(tips)),
+        patch.object(sticking, "release_beams", partial(drawn, asked, power)),
+    ):
+        nodes = [chart.compute(ground, replace(WANTED, humidity=humidity), dry) for humidity in NODES]
+        true = chart.compute(ground, WANTED, dry)
+        asked.clear()
+        return chart.compute(ground, WANTED, dry, nodes), true, asked
+
+
+def test_between_humidities_one_size_is_released_and_the_others_follow_within_the_stated_error():
+    found, true, asked = between(lambda humidity: 0.81 - 0.05 * (humidity - 0.44))
+    assert asked == [(2.6e-6, 20e-6)]
+    assert found.by_elements.sum() == 1
+    assert float(found.power_law_error) < ALLOWED
+    for name in ("safe_length", "quantile"):
+        assert_allclose(found[name], true[name], rtol=float(found.power_law_error) + 1e-3)
+        assert_allclose(found[name][1, 1], true[name][1, 1], rtol=1e-12)
+
+
+def test_all_sizes_are_released_where_their_ratios_jump_between_humidities():
+    found, true, asked = between(lambda humidity: 0.75 + 0.1 * (humidity > 0.6))
+    assert len(asked) == found.by_elements.sum() == 6
+    assert_allclose(found.safe_length, true.safe_length, rtol=1e-12)
+
+
+def test_charts_between_humidities_read_those_of_all_sizes_and_dry_air_none():
+    device = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
+    device |= {"chart": {"thicknesses_um": [2, 4], "humidities": [0.44, 0.95]}, "humidities": ["dry", 0.67]}
+    plan = Plan(load({"devices": {"C1": device}}))
+    nodes = [f"devices/chart/C1_rh{end}" for end in ("044", "067", "095")]
+    cases = plan.devices.chart_cases("C1")
+    read = {case: chart.STAGES[0].inputs(plan, At(case=case)).get("all_sizes") for case in cases}
+    assert [case for case, names in read.items() if names is None] == ["C1_dry", "C1_rh044", "C1_rh067", "C1_rh095"]
+    assert all(names == nodes for names in read.values() if names)

@@ -46,7 +46,7 @@ _DRY_BOUND = (
 _CHART = (
     "Safe length of beams of the thicknesses and gaps of a chart against relative humidity: the largest length with at "
     "most a fraction p stuck, with a confidence of 95 %. From: finite elements, or a power "
-    "law between them, with its largest error at beams outside its fit."
+    "law between their sizes and humidities, with its largest error at beams outside its fit."
 )
 _CHART_BOUND = (
     "Bound: for a cantilever, the sticking length of flats in contact, with water in all gaps. For a bridge: no "

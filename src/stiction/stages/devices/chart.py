@@ -1,20 +1,32 @@
 """Stage chart: safe lengths of beams of other thicknesses and gaps than those of a device, at one humidity of an axis.
 
 Beams are computed by finite elements. Between the smallest and the largest thickness and gap, a power law is used if it
-predicts beams in the middle, to which it was not fitted, within 1 %.
+predicts beams in the middle, to which it was not fitted, within 1 %. Beams of all sizes are released at the driest, the
+middle and the wettest humidity. Between them those of one size are released, and the ratios to it are interpolated.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from stiction.beam.foundation import foundation_length
+from stiction.config.cases import case_id
 from stiction.contact.environment import Water
 from stiction.devices import risk
-from stiction.devices.chart import checked_power_law, error_between
+from stiction.devices.chart import (
+    ALLOWED,
+    checked_power_law,
+    error_between,
+    of_sizes,
+    parabola,
+    rescaled,
+    spread_of,
+)
 from stiction.plan.names import by_case
 from stiction.plan.stage import Running, Stage, select, subsection
 from stiction.stages.contact.corrections import with_correction
@@ -51,22 +63,36 @@ class Filled:
 _UNKNOWN = (lambda thickness, _gap: np.full(len(thickness), np.nan)), 0.0
 
 
-def compute(ground: xr.Dataset, settings: Settings, tips: xr.Dataset | None = None) -> xr.Dataset:
-    """Safe lengths and quantiles of all thicknesses and gaps. Inputs as in the stages cracks and safe_lengths."""
+def compute(
+    ground: xr.Dataset,
+    settings: Settings,
+    tips: xr.Dataset | None = None,
+    all_sizes: Sequence[xr.Dataset] = (),
+) -> xr.Dataset:
+    """Safe lengths and quantiles of all thicknesses and gaps. Inputs as in the stages cracks and safe_lengths.
+
+    ``all_sizes`` are charts at the humidities of `stiction.devices.chart.of_sizes`, if this one is between them.
+    """
     met = sticking.with_tips(ground_from(ground, settings), tips, settings.humidity, settings.water)
-
-    def by_elements(thickness, gap):
-        """Safe lengths of beams of one size and their quantiles (shapes, shares and scores) [m]."""
-        device = _resized(settings, thickness, gap)
-        beams = sticking.release_beams(device, met, settings)
-        known = sticking.lengths_without_samples(device, settings.water, settings.humidity, beams.reach)
-        safe = sticking.by_shape(beams, settings, known)
-        of_shares = [[one.length for one in of_shape] for of_shape in safe.values()]
-        return np.hstack([of_shares, [risk.quantiles(values, beams.reach) for values in beams.lengths.values()]])
-
-    chart = filled(settings.thicknesses, settings.gaps, by_elements)
+    chart = between(all_sizes, met, settings) if all_sizes else None
+    chart = chart or filled(
+        settings.thicknesses, settings.gaps, lambda *size: _lengths_of(_release(size, met, settings), settings)
+    )
     longest = [settings.device.opening.longest_strip(device, met.laws) for device in _beams_of_chart(settings)]
     return layout(chart, float(ground.rms), longest, settings).assign(ground[["resampled", "repetition"]])
+
+
+def _release(size, met, settings):
+    """Released beams of one size, a thickness and a gap [m]."""
+    return sticking.release_beams(_resized(settings, *size), met, settings)
+
+
+def _lengths_of(beams, settings):
+    """Safe lengths of beams and their quantiles (shapes, shares and scores) [m]."""
+    known = sticking.lengths_without_samples(beams.device, settings.water, settings.humidity, beams.reach)
+    safe = sticking.by_shape(beams, settings, known)
+    of_shares = [[one.length for one in of_shape] for of_shape in safe.values()]
+    return np.hstack([of_shares, [risk.quantiles(values, beams.reach) for values in beams.lengths.values()]])
 
 
 def _resized(settings, thickness, gap):
@@ -96,6 +122,51 @@ def filled(
         return Filled(np.array(lengths), corner | test, max(error for _, error in laws))
     lengths = [computed[k] if k in computed else by_elements(*size) for k, size in enumerate(sizes)]
     return Filled(np.array(lengths), np.full(len(sizes), True), 0.0)
+
+
+def between(charts: Sequence[xr.Dataset], met: sticking.Ground, settings: Settings) -> Filled | None:
+    """Lengths of beams of all sizes at a humidity between those of three charts. None if their ratios vary too much.
+
+    Beams of the size in the middle are released. Those of another size have the same order, and lengths whose median
+    and scatter keep an interpolated ratio to them. Tips are those of each size.
+    """
+    sizes, middle = list(product(settings.thicknesses, settings.gaps)), _middle(settings)
+    spreads = np.array([spread_of(_quantiles_of_beams(chart), risk.SCORES) for chart in charts])
+    ratios, errors = parabola(
+        [float(chart.humidity) for chart in charts], spreads - spreads[:, [middle]], settings.humidity
+    )
+    error = float(np.expm1(errors.max())) + max(float(chart.power_law_error) for chart in charts)
+    if not error <= ALLOWED:
+        return None
+    own = _release(sizes[middle], met, settings)
+    alone = next(iter(own.lengths.values()))
+    spread = spread_of(risk.quantiles(alone, own.reach), risk.SCORES)
+    if not np.isfinite(spread).all():
+        return None
+    rescale = [partial(rescaled, spread=spread, ratios=of_size) for of_size in ratios]
+    others = [_resized_beams(own, *one, met) for one in zip(sizes, rescale, strict=True)]
+    lengths = [_lengths_of(own if k == middle else beams, settings) for k, beams in enumerate(others)]
+    return Filled(np.array(lengths), np.arange(len(sizes)) == middle, error)
+
+
+def _middle(settings):
+    """Place of the size in the middle of both axes."""
+    grid = len(settings.thicknesses), len(settings.gaps)
+    return np.ravel_multi_index([number // 2 for number in grid], grid)
+
+
+def _quantiles_of_beams(chart):
+    """Quantiles of the lengths of a chart without tips (sizes, scores) [m]."""
+    quantiles = chart["quantile"].isel(shape=0).transpose("thickness", "gap", "score").values
+    return quantiles.reshape(-1, quantiles.shape[-1])
+
+
+def _resized_beams(own, size, rescale, met):
+    """Released beams of another size [m], from those of one and the function that changes their lengths."""
+    device = replace(own.device, thickness=float(size[0]), gap=float(size[1]))
+    hold = 0.0 if met.tips is None else risk.HOLD * foundation_length(device.beam, met.laws)
+    alone = next(iter(own.lengths.values()))
+    return sticking.released(device, met, rescale(alone) - hold, float(rescale(own.reach)))
 
 
 def corners_and_tests(thicknesses: int, gaps: int) -> tuple[np.ndarray, np.ndarray]:
@@ -171,6 +242,15 @@ def _settings(plan, at):
     return select(Settings, settings_of_beam(plan, at.case) | sizes)
 
 
+def _all_sizes(plan, case):
+    """Charts at the humidities with beams of all sizes, for one between them."""
+    axis = plan.devices.axis(case.device)
+    computed = of_sizes(axis)
+    if case.humidity in computed or case.humidity not in axis:
+        return {}
+    return {"all_sizes": [f"devices/chart/{case_id(case.device, humidity)}" for humidity in computed]}
+
+
 def axes(datasets: Mapping[tuple[str, float], xr.Dataset]) -> dict[str, xr.Dataset]:
     """Chart of each device along ``relative_humidity``, from its datasets by device and humidity."""
     devices = {}
@@ -203,7 +283,9 @@ STAGES = (
     Stage.writing(
         "chart",
         "devices/chart/{case}",
-        inputs=lambda plan, at: ground_inputs(plan, at.case) | corrected_tips_of(plan, at.case),
+        inputs=lambda plan, at: (
+            ground_inputs(plan, at.case) | corrected_tips_of(plan, at.case) | _all_sizes(plan, at.case)
+        ),
         settings=_settings,
         kind=Settings,
         complete=with_correction,

@@ -22,7 +22,7 @@ from stiction.devices.sizes import PowerLaws, fitted
 from stiction.plan.stage import At, Running, Stage, select
 from stiction.stages.devices.ground import ground_from, ground_inputs, name_of
 from stiction.stages.devices.opening import BEAMS, DesignedBeam, ground_of, settings_of_beam
-from stiction.stages.devices.sticking import Released, release_beams
+from stiction.stages.devices.sticking import Released, release_beams, released
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,10 @@ def compute(ground: xr.Dataset, settings: Settings, of_sizes: xr.Dataset | None 
         None if of_sizes is None else PowerLaws(of_sizes.powers.values, float(of_sizes.error), float(of_sizes.excess))
     )
     by_laws = laws is not None and laws.holds
-    beams = release_beams(device, met, settings, laws.lengths(device.thickness, device.gap) if by_laws else None)
+    if by_laws:  # which know all lengths
+        beams = released(device, met, laws.lengths(device.thickness, device.gap), np.inf)
+    else:
+        beams = release_beams(device, met, settings)
     dataset = layout(beams, ground_of(device, met.laws)[0], met.laws, float(ground.rms))
     return dataset.assign(
         longest_strip=((), device.opening.longest_strip(device, met.laws), {"units": "m"}),

@@ -133,23 +133,22 @@ def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settin
     return with_tips(ground_of_laws(laws, settings), tips, humidity, settings.water)
 
 
-def release_beams(
-    device: DesignedBeam, met: Ground, settings: BeamSettings, arrested: np.ndarray | None = None
-) -> Released:
-    """Released beams of a device, or of one of another thickness and gap, on its ground.
+def release_beams(device: DesignedBeam, met: Ground, settings: BeamSettings) -> Released:
+    """Released beams of a device, or of one of another thickness and gap, on its ground."""
+    part, address, draw = opening.ground_of(device, met.laws), opening.addresses(settings), met.strips.in_row(device)
+    arrested = opening.arrests(device, part, draw, settings.beams, address)
+    return released(device, met, arrested, opening.reach(device, part, draw, arrested, address))
 
-    Where they are arrested may be known already (n,) [m].
-    """
-    part = opening.ground_of(device, met.laws)
-    address, draw, sampled = opening.addresses(settings), met.strips.in_row(device), met.strips.sampled
-    if arrested is None:
-        arrested = opening.arrests(device, part, draw, settings.beams, address)
+
+def released(device: DesignedBeam, met: Ground, arrested: np.ndarray, reach: float) -> Released:
+    """Released beams of a device from their arrested lengths (n,) and the longest simulated one [m]."""
+    sampled, (part, _) = met.strips.sampled, opening.ground_of(device, met.laws)
     on_mean = partial(device.opening.length_on_mean, beam=device.beam)
-    surfaces = sampled_surfaces(sampled, device.opening.contribution, on_mean, device.opening.uniform(part[0], sampled))
+    surfaces = sampled_surfaces(sampled, device.opening.contribution, on_mean, device.opening.uniform(part, sampled))
     return Released(
         device,
         arrested,
-        opening.reach(device, part, draw, arrested, address),
+        reach,
         foundation_length(device.beam, met.laws),
         surfaces.with_errors(*_errors_of_change(met.strips.change, sampled, device)),
         None if met.tips is None else arcs.longest_free(*met.tips, device.beam),
