@@ -115,7 +115,7 @@ MATRIX = [
      OF_BEAMS, "C1|R1|1500x"),
     ("samples of slopes", "studies: {slopes: {samples: 200}}", "device_slope_contact solid_contact device_choice_summits process_point"
      " tip_slope_contact tip_solid_contact tip_choice_contact", (), "stoppers|chart|cracks"),
-    ("beams of slopes", "design: {budget_beams: 100}", "budget", (), "S1|contact|chart|cracks|tip"),
+    ("beams of slopes", "design: {budget_beams: 150}", "budget", (), "S1|contact|chart|cracks|tip"),
     ("beams, each with a tip", "design: {beams: 900}", "cracks tip_contact chart", OF_STOPPERS,
      "S1|budget/C1_rh070.nc"),
     ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", "stoppers device_warnings", OF_BEAMS, "C1|R1|budget|contact"),

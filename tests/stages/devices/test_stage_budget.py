@@ -21,7 +21,7 @@ from stiction.run import storage
 from stiction.stages.contact import curves
 from stiction.stages.devices import budget
 from stiction.stages.devices.budget import BeamBudget, PatchBudget, Responses, TipBudget
-from stiction.stages.devices.opening import ARC, FORCE, MIDDLE, S_SHAPE, DesignedBeam
+from stiction.stages.devices.opening import ARC, FORCE, MIDDLE, S_SHAPE, DesignedBeam, arrests
 from stiction.stages.devices.uncertain_inputs import Input, State, Uncertainty
 from stiction.streams import stream
 
@@ -32,7 +32,7 @@ C1 = DesignedBeam("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PA
 R1 = DesignedBeam("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 0.5e-6, residual_stress=50e6)
 #: Forces and energies are multiplied by what a test passes as contact.
 BASE = State(1.0, 0.67, WATER, C1, 9e-12)
-BEAMS = partial(budget.beam_responses, mesh=PAPER, strips=1000, number=100, address=lambda k: stream(1, k))
+BEAMS = partial(budget.beam_responses, mesh=(PAPER, 1000), number=100, address=lambda k: stream(1, k))
 COMMON = 1, WATER, 0.67, Uncertainty(), ("B2", "Sub1"), 164e9
 SETTINGS = BeamBudget(*COMMON, device=C1, beams=24)
 
@@ -104,6 +104,18 @@ def test_beams_at_several_states_meet_the_same_samples():
     assert np.median(np.abs(less / more - 1)) < 0.003 < 0.1 * less.std() / less.mean() + 0.003
 
 
+def test_a_state_is_released_once_if_it_has_the_same_laws_beside_others(monkeypatch):
+    released, stronger, weaker = [], replace(BASE, contact=1.2), replace(BASE, contact=0.8)
+    monkeypatch.setattr(budget, "arrests", lambda *all_of: released.append(all_of) or arrests(*all_of))
+    remembering = partial(BEAMS, number=20, known={})
+    found = [remembering([BASE, other]).values for other in (stronger, weaker, stronger)]
+    assert len(released) == 3
+    np.testing.assert_array_equal(found[0], found[2])
+    np.testing.assert_array_equal(found[1], partial(BEAMS, number=20)([BASE, weaker]).values)
+    assert len(released) == 5  # control: nothing is known without an earlier call
+    assert not np.array_equal(found[0][1], found[1][1])
+
+
 def test_only_samples_with_a_law_at_all_states_are_met():
     def drawn(spoilt):
         vectors = VECTORS.copy()
@@ -126,7 +138,7 @@ def test_the_error_of_a_slope_contains_that_of_the_samples_that_all_beams_share(
 def test_the_error_of_the_samples_moves_a_bridge_as_its_closed_form():
     states = [replace(BASE, device=R1, contact=factor) for factor in (np.exp(-0.1), np.exp(0.1))]
     zone, strips = middle_zone(R1.beam, R1.strip, budget.shared_laws([curves.vectors(1.0)])[0])
-    found = budget.beam_responses(states, mesh=zone, strips=strips, number=20, address=lambda k: stream(1, k))
+    found = budget.beam_responses(states, mesh=(zone, strips), number=20, address=lambda k: stream(1, k))
     noise = np.exp(np.random.default_rng(1).normal(size=(2, len(VECTORS), 1)))
     found = replace(found, shared=found.shared * noise)
     own, common = (log_slope(np.mean, *values, 0.2)[1] for values in (found.values, found.shared[..., 0]))

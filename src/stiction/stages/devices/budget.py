@@ -95,8 +95,8 @@ class BeamBudget(Settings):
     def responder(self, state: State) -> Respond:
         """How the devices respond: cracks of long beams."""
         laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water)])[0]
-        part, strips = ground_of(self.device, laws)
-        return partial(beam_responses, mesh=part, strips=strips, number=self.beams, address=addresses(self))
+        mesh = ground_of(self.device, laws)
+        return partial(beam_responses, mesh=mesh, number=self.beams, address=addresses(self), known={})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -203,21 +203,26 @@ def _stuck_length(lengths, share, part=TAIL):
     return fit_tail(lengths, part).length(share) if known.sum() >= FEWEST else np.inf
 
 
-def beam_responses(states: Sequence[State], mesh: Beam, strips: int, number: int, address: Callable) -> Responses:
+def beam_responses(
+    states: Sequence[State], mesh: tuple[Beam, int], number: int, address: Callable, known: dict | None = None
+) -> Responses:
     """Crack lengths, or lengths of held bridges, of the same beams at several states, on resampled force laws.
 
-    Finite elements resolve the ``mesh`` of all beams, with this number of strips; ``address(k)`` is the stream of beam
-    k.
+    Finite elements resolve the ``mesh`` of all beams, a part and its number of strips; ``address(k)`` is the stream of
+    beam k. Lengths that are ``known`` from an earlier call are not computed again.
 
     ASSUME: for a cantilever, the two foundation lengths that hold its crack are left out, 1 % of the length.
     ASSUME: neighbouring strips are independent, also on ground with blocks (`stiction.devices.strips`).
     """
     laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water) for state in states])
+    (of_mesh, strips), known = mesh, {} if known is None else known
 
     def lengths(state, laws):
         """Crack lengths in a state on force laws [m]."""
-        part = replace(state.device.beam, length=mesh.length, elements=mesh.elements)
-        return arrests(state.device, (part, strips), partial(resampled, laws), number, address)
+        if (key := (state.device, laws.tobytes())) not in known:
+            part = replace(state.device.beam, length=of_mesh.length, elements=of_mesh.elements)
+            known[key] = arrests(state.device, (part, strips), partial(resampled, laws), number, address)
+        return known[key]
 
     values = np.array([lengths(state, of_state) for state, of_state in zip(states, laws, strict=True)])
     # Some lengths may not be known. If most are not, the median is infinite, and no slope is known.
