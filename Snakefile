@@ -34,6 +34,7 @@ include: "workflow/rules/stages.smk"
 
 if is_main:
     remember.save()
+    remember_code.save()
 
 
 FRONT = Path(".snakemake/front.rst")  # front page of the report, if the command stiction report has written one

@@ -2,7 +2,8 @@
 
 import pytest
 
-from stiction.run.disk_cache import DiskCache
+from stiction.run import disk_cache
+from stiction.run.disk_cache import DiskCache, SharedCache
 from stiction.run.fingerprint import fingerprint
 
 
@@ -72,3 +73,13 @@ def test_fingerprints_are_the_same_with_and_without_memory_and_follow_the_conten
         assert found[-1] == found[-2] == fingerprint(script)
     assert found[0]["script.py"] != found[2]["script.py"]
     assert found[0]["stiction.streams"] == found[2]["stiction.streams"]
+
+
+def test_what_one_folder_knows_another_one_knows_and_so_does_another_machine(tmp_path, monkeypatch):
+    for machine, folder in (("one", "a"), ("one", "b"), ("two", "b"), ("two", "c")):
+        monkeypatch.setattr(disk_cache, "own_folder", lambda machine=machine: tmp_path / machine)
+        remember = SharedCache(tmp_path / folder / "kept.json")
+        assert remember("key", never if (machine, folder) != ("one", "a") else lambda: (1, 2)) == [1, 2]
+        remember.save()
+    monkeypatch.setattr(disk_cache, "own_folder", lambda: tmp_path / "three")
+    assert SharedCache(tmp_path / "d" / "kept.json")("key", lambda: "computed") == "computed"  # control

@@ -15,7 +15,7 @@ from stiction.plan.planner import WHOLE, Planner
 from stiction.plan.stage import WILDCARDS
 from stiction.run import provenance, run_lock, snakemake_patches, stale_results
 from stiction.run.atomic import DataError, save_text
-from stiction.run.disk_cache import DiskCache
+from stiction.run.disk_cache import DiskCache, SharedCache
 from stiction.run.fingerprint import PACKAGE, fingerprint
 
 
@@ -32,6 +32,7 @@ snakemake_patches.compare_without_pandas()
 snakemake_patches.look_for_scripts_once()
 snakemake_patches.remember_signatures()
 remember = DiskCache(".snakemake/planning.json")
+remember_code = SharedCache(".snakemake/code.json")
 is_main = snakemake_patches.is_main(workflow)
 if not is_main:
     snakemake_patches.keep_to_allotted_cores(workflow)
@@ -39,7 +40,7 @@ if not is_main:
 
 def code(file):
     """Fingerprint of a file, and of all modules of the package that it imports."""
-    return fingerprint(file, remember)
+    return fingerprint(file, remember_code)
 
 
 def validated():
@@ -131,7 +132,7 @@ def decide_numbers():
 if DevicePlan(config).has_open_numbers:
     decide_numbers()
 remember_jobs = DiskCache(".snakemake/jobs.json")
-planner = Planner(config, preliminary, remember, remember_jobs)
+planner = Planner(config, preliminary, remember_code, remember_jobs)
 
 if is_main:
     atexit.register(remember_jobs.save)

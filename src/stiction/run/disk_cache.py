@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from stiction.run.atomic import DataError, save_text
+from stiction.temporary import own_folder
 
 
 class DiskCache:
@@ -42,3 +43,26 @@ class DiskCache:
             with contextlib.suppress(OSError, DataError):
                 save_text(json.dumps(self._used), self._path)
             self._known = dict(self._used)
+
+
+class SharedCache(DiskCache):
+    """Results that are kept in a file, and in one of this user for all folders.
+
+    Other machines may not see the file of the user.
+    """
+
+    def __init__(self, path: str | Path):
+        """As `DiskCache`. The file of the user has the same name."""
+        super().__init__(path)
+        self._of_user = DiskCache(own_folder() / Path(path).name)
+
+    def __call__(self, determined_by: object, compute: Callable[[], Any]) -> Any:
+        """As `DiskCache`."""
+        own = super().__call__
+        value = self._of_user(determined_by, lambda: own(determined_by, compute))
+        return own(determined_by, lambda: value)
+
+    def save(self) -> None:
+        """As `DiskCache`."""
+        super().save()
+        self._of_user.save()
