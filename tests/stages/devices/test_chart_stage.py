@@ -184,23 +184,27 @@ NODES = 0.44, 0.67, 0.95
 WANTED = chart.Settings(2021, WATER, 0.55, C1, 1000, (1e-2, 1e-3), (2e-6, 2.6e-6, 4e-6), (20e-6,))
 
 
-def drawn(asked, power, device, ground, wanted):
-    """Released beams whose lengths have a power of the thickness by humidity. Thicker beams scatter less."""
+def drawn(asked, power, here, device, ground, wanted):
+    """Released beams whose lengths have a power of the thickness by humidity. Thicker beams scatter less.
+
+    Between, the scatter is ``here`` times as large.
+    """
     asked.append((device.thickness, device.gap))
     thicker = device.thickness / 2.6e-6
     median = 7e-4 * (1 - wanted.humidity) ** 0.25 * thicker ** power(wanted.humidity) * (device.gap / 2e-5) ** 0.5
-    scores = np.random.default_rng(5).standard_normal(wanted.beams)
-    return sticking.released(device, ground, median * np.exp(0.04 * thicker**-0.3 * scores), np.inf)
+    scores = 0.04 * thicker**-0.3 * np.random.default_rng(5).standard_normal(wanted.beams)
+    lengths = median * np.exp(scores if wanted.humidity != WANTED.humidity else here * scores)
+    return sticking.released(device, ground, lengths, np.inf)
 
 
-def between(power, device=C1):
+def between(power, device=C1, here=1.0):
     """Chart at the humidity between, that of all sizes by finite elements, and the sizes that the first asked for."""
     tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(WANTED.beams))
     asked, ground, wanted = [], met(device), replace(WANTED, device=device)
     contact = xr.Dataset() if device.opening.has_tip else None
     with (
         patch.object(curves, "tip_forces", lambda *_: smooth_tips(tips)),
-        patch.object(sticking, "release_beams", partial(drawn, asked, power)),
+        patch.object(sticking, "release_beams", partial(drawn, asked, power, here)),
     ):
         nodes = [chart.compute(ground, replace(wanted, humidity=humidity), contact) for humidity in NODES]
         true = chart.compute(ground, wanted, contact)
@@ -219,9 +223,11 @@ def test_between_humidities_one_size_is_released_and_the_others_follow_within_th
         assert_allclose(found[name][1], true[name][1], rtol=1e-12)
 
 
-def test_all_sizes_are_released_where_their_ratios_jump_between_humidities():
-    found, true, asked = between(lambda humidity: 0.75 + 0.1 * (humidity > 0.6))
-    assert len(asked) == found.by_elements.sum() == 3
+@pytest.mark.parametrize(("jump", "scatter"), [(0.1, 1.0), (0.0, 0.0)])
+def test_all_sizes_are_released_where_their_ratios_jump_or_all_beams_stick_at_one_length(jump, scatter):
+    found, true, asked = between(lambda humidity: 0.75 + jump * (humidity > 0.6), here=scatter)
+    assert {thickness for thickness, _ in asked} == {*WANTED.thicknesses}
+    assert found.by_elements.all()
     assert_allclose(found.safe_length, true.safe_length, rtol=1e-12)
 
 

@@ -141,7 +141,7 @@ def between(charts: Sequence[xr.Dataset], met: sticking.Ground, settings: Settin
     own = _release(sizes[middle], met, settings)
     alone = next(iter(own.lengths.values()))
     spread = spread_of(risk.quantiles(alone, own.reach), risk.SCORES)
-    if not np.isfinite(spread).all():
+    if not spread[0] - spread[1] > np.abs(np.diff(ratios)).max():  # too few stick, or all at the same length
         return None
     rescale = [partial(rescaled, spread=spread, ratios=of_size) for of_size in ratios]
     others = [_resized_beams(own, *one, met) for one in zip(sizes, rescale, strict=True)]
