@@ -17,8 +17,6 @@ import numpy as np
 from stiction.devices.tail import TAIL
 from stiction.rounding import is_at_most
 
-#: Number of devices on a ground from which on their lengths follow those of at most nine sizes.
-MANY = 20
 #: Largest relative error of power laws that are used. ASSUME: lengths for a share of 1e-3 are known to 1 to 3 %.
 ALLOWED = 0.02
 
@@ -52,25 +50,13 @@ def _errors(found, lengths):
     return [float(errors[: int(TAIL * errors.size) or 1].mean()), float(errors.mean())]
 
 
-def ends_and_middle(values: Sequence[float]) -> list[float]:
-    """Smallest, geometric middle and largest of some dimensions, or the only one.
-
-    Examples
-    --------
-    >>> ends_and_middle([4.0, 1.0, 3.0]), ends_and_middle([2.0, 2.0])
-    ([1.0, 2.0, 4.0], [2.0])
-    """
-    low, high = min(values), max(values)
-    return [low] if is_at_most(high, low) else [low, round(float(np.sqrt(low * high)), 6), high]
-
-
 def fitted(thicknesses: Sequence[float], gaps: Sequence[float], lengths: Sequence[np.ndarray]) -> PowerLaws:
     """Power laws through the corners of sizes, and their error at all others. They hold nowhere if a length is unknown.
 
     Parameters
     ----------
     thicknesses, gaps : sequence of float
-        As from `ends_and_middle` [m].
+        Smallest, middle and largest, or the only one [m].
     lengths : sequence of (n,) array
         Of beams of all sizes, the products of thicknesses and gaps in this order; infinite ones are unknown [m].
     """

@@ -1,6 +1,7 @@
 """Plan of the devices of a configuration: their cases, their strips of contact, the axes of their charts."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
@@ -20,9 +21,9 @@ from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.materials import OF_CONTACT
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
-from stiction.devices.sizes import MANY, ends_and_middle
 from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.plan.stage import subsection
+from stiction.rounding import is_at_most
 
 #: Steps of the distance for the contact of tips, in those of section contact. ASSUME: they suffice for the largest
 #: attraction, the vertex of a parabola: with four, lengths of pair b are 0.02 to 0.19 % longer than with one.
@@ -32,8 +33,22 @@ FAR = 100.0
 #: Tilts of a range at which a stopper is computed, its ends among them. ASSUME: none between them holds much more or
 #: less. The force on smooth surfaces falls with the tilt, so that the ends bound it.
 TILTS = 5
+#: Number of cantilevers on a ground from which on their lengths follow those of a few sizes (`stiction.devices.sizes`).
+MANY = 20
 #: Quantities of a surface by numbers, in the order of budgets.
 ALL_QUANTITIES = MOMENT_QUANTITIES + SPECTRUM_QUANTITIES
+
+
+def ends_and_middle(values: Sequence[float]) -> list[float]:
+    """Smallest, geometric middle and largest of some dimensions, or the only one.
+
+    Examples
+    --------
+    >>> ends_and_middle([4.0, 1.0, 3.0]), ends_and_middle([2.0, 2.0])
+    ([1.0, 2.0, 4.0], [2.0])
+    """
+    low, high = min(values), max(values)
+    return [low] if is_at_most(high, low) else [low, round(float(np.sqrt(low * high)), 6), high]
 
 
 class Patch(NamedTuple):

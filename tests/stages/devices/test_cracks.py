@@ -15,8 +15,8 @@ from stiction.chaos.model import draw_laws, fit
 from stiction.contact import forcelaw
 from stiction.devices import bridges
 from stiction.devices.sampling import sampled_surfaces
-from stiction.devices.sizes import MANY
 from stiction.plan.cost import PER_JOB, job_cost
+from stiction.plan.devices import MANY
 from stiction.plan.graph import Results
 from stiction.stages.devices import cracks, opening
 from stiction.streams import stream

@@ -71,8 +71,8 @@ def compute_sizes(ground: xr.Dataset, settings: OfSizes) -> xr.Dataset:
     axes = settings.thicknesses, settings.gaps
     devices = [replace(settings.device, thickness=thickness, gap=gap) for thickness, gap in product(*axes)]
     laws = fitted(*axes, [release_beams(device, met, settings).arrested for device in devices])
-    errors = {name: ((), getattr(laws, name), {"units": "1"}) for name in ("error", "excess")}
-    return xr.Dataset({"powers": (("of", "device"), laws.powers)} | errors)
+    powers = xr.Dataset({"powers": (("of", "device"), laws.powers)})
+    return powers.assign({name: ((), getattr(laws, name), {"units": "1"}) for name in ("error", "excess")})
 
 
 def layout(beams: Released, part: Beam, laws: np.ndarray, rms: float) -> xr.Dataset:
