@@ -75,10 +75,10 @@ READ_BY = {
 RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
 COMPUTING = set(READ_BY)
 #: Rules of one kind of device.
-OF_STOPPERS = {"stoppers", "table_stoppers", "figure_stoppers"}
+OF_STOPPERS = {"stoppers", "separation", "table_stoppers", "figure_stoppers"}
 SHOWN = {"table_safe_lengths", "figure_risk"}
 OF_CHARTS = {"chart", "table_chart", "figure_chart"}
-OF_BEAMS = {"ground", "cracks", "safe_lengths"} | SHOWN | OF_CHARTS
+OF_BEAMS = {"ground", "cracks", "safe_lengths", "fast_strips", "fast_tips"} | SHOWN | OF_CHARTS
 BODY = "surfaces: {B2: {material: Other}}\nmaterials: {Other: "
 
 #: Description of a change; overlay; rules that it affects directly, whose readers rerun as well; rules excepted because
@@ -123,7 +123,7 @@ MATRIX = [
      "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
     # It moves the scatter of energies, and with it the number of samples of C1.
     ("water", "water: {temperature_K: 310}", "device_contact ground safe_lengths chart stoppers budget tip_budget separation fast_strips fast_tips process_point",
-     (), "results/contact|slopes|modulus|choices|tips"),
+     (), "results/contact|slopes|modulus|choices|contact/tips"),
     ("adsorbed water", "water: {adsorbed_nm: 0.1}", "ground safe_lengths chart stoppers budget tip_budget separation fast_strips fast_tips process_point", (), "contact"),
     ("uncertainty of the adsorbed water", "devices: {C1: {uncertainty: {adsorbed_nm: 0.1}}}", "budget tip_budget", (),
      "R1|S1|contact|chart"),

@@ -97,8 +97,8 @@ def _strip_time(humidity):
 
 def _beams(section):
     """Number of beams in a section: of devices, of all sizes of a chart, or samples of a beam."""
-    if section.get("by_sizes"):  # of which another job has the lengths
-        return 0
+    if section.get("by_sizes"):  # of which another job has the lengths; one, because a job without beams is unknown
+        return 1
     sizes = math.prod(len(section.get(key, [0])) for key in ("thicknesses_um", "gaps_um"))
     has_elements = isinstance(section.get("beam"), Mapping) and "elements" in section["beam"]
     number = section.get("beams", section.get("samples") if has_elements else None)

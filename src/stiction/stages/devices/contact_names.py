@@ -1,10 +1,11 @@
-"""Names of the contacts used by the stages of devices."""
+"""Names of the contacts and grounds used by the stages of devices."""
 
 from typing import Any
 
-from stiction.config.cases import Case
+from stiction.config.cases import Case, case_id
 from stiction.models import SHIFTS
 from stiction.plan.devices import Patch, patch
+from stiction.plan.stage import At
 from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS
 from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
@@ -18,6 +19,27 @@ def contact_of(plan: Any, case: Case) -> str:
     if plan.devices.has_strips_of_pair(case.device):
         return f"contact/{plan.contact_of_device(case)}_NG"
     return file_of(AS_IT_IS, GROUND, **patch_of(plan, case)._asdict())
+
+
+def name_of_ground(plan: Any, case: Case) -> str:
+    """Name of the ground of a device at a humidity."""
+    size = plan.devices.ground(case.device)
+    return f"{case_id(size.pair, case.humidity)}_{size.length}x{size.width}"
+
+
+def case_on(plan: Any, at: At) -> Case:
+    """Case of one of the devices on a ground.
+
+    Raises
+    ------
+    KeyError
+        If no device is on it.
+    """
+    size = (at.case.pair, int(at.length), int(at.width))
+    users = [name for name in plan.devices.beams if plan.devices.ground(name) == size]
+    if not users:
+        raise KeyError(f"no device is on strips of {at.length} x {at.width} nm of pair {at.case.pair}")
+    return Case(case_id(users[0], at.case.humidity))
 
 
 def patch_of(plan: Any, case: Case) -> Patch:

@@ -20,7 +20,8 @@ from stiction.contact import forcelaw
 from stiction.devices.sampling import SampledSurfaces
 from stiction.devices.sizes import PowerLaws, fitted
 from stiction.plan.stage import At, Running, Stage, select
-from stiction.stages.devices.ground import ground_from, ground_inputs, name_of
+from stiction.stages.devices.contact_names import name_of_ground
+from stiction.stages.devices.ground import ground_from, ground_inputs
 from stiction.stages.devices.opening import BEAMS, DesignedBeam, ground_of, settings_of_beam
 from stiction.stages.devices.sticking import Released, release_beams, released
 
@@ -130,7 +131,7 @@ def _name(cracks):
 
 def _inputs(plan: Any, at: At) -> dict[str, str]:
     """Ground of a device, and the power laws of its lengths where many devices are on it."""
-    sizes = {"of_sizes": f"devices/sizes/{name_of(plan, at.case)}"} if _sizes(plan, at.case) else {}
+    sizes = {"of_sizes": f"devices/sizes/{name_of_ground(plan, at.case)}"} if _sizes(plan, at.case) else {}
     return ground_inputs(plan, at.case) | sizes
 
 

@@ -10,14 +10,14 @@ from typing import Any
 import xarray as xr
 
 from stiction.chaos.model import Truncation
-from stiction.config.cases import Case, case_id
+from stiction.config.cases import Case
 from stiction.contact.correction import NONE, Change
 from stiction.contact.environment import Water
 from stiction.plan.stage import At, Stage, select
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import surface_rms, with_correlations
 from stiction.stages.contact.corrections import with_correction
-from stiction.stages.devices.contact_names import contact_of, corrections_of
+from stiction.stages.devices.contact_names import case_on, contact_of, corrections_of, name_of_ground
 from stiction.stages.devices.opening import settings_of_beam
 from stiction.stages.devices.sticking import BeamSettings, Ground, Laws, fitted_laws, ground_of_laws
 from stiction.stages.laws.stored_model import chaos_model, model_variables
@@ -71,30 +71,9 @@ def ground_from(dataset: xr.Dataset, settings: BeamSettings) -> Ground:
     return ground_of_laws(laws, settings)
 
 
-def name_of(plan: Any, case: Case) -> str:
-    """Name of the ground of a device at a humidity."""
-    size = plan.devices.ground(case.device)
-    return f"{case_id(size.pair, case.humidity)}_{size.length}x{size.width}"
-
-
 def ground_inputs(plan: Any, case: Case) -> dict[str, str]:
     """Ground of a device at a humidity, as input of a stage."""
-    return {"ground": f"devices/ground/{name_of(plan, case)}"}
-
-
-def case_on(plan: Any, at: At) -> Case:
-    """Case of one of the devices on a ground.
-
-    Raises
-    ------
-    KeyError
-        If no device is on it.
-    """
-    size = (at.case.pair, int(at.length), int(at.width))
-    users = [name for name in plan.devices.beams if plan.devices.ground(name) == size]
-    if not users:
-        raise KeyError(f"no device is on strips of {at.length} x {at.width} nm of pair {at.case.pair}")
-    return Case(case_id(users[0], at.case.humidity))
+    return {"ground": f"devices/ground/{name_of_ground(plan, case)}"}
 
 
 def _inputs(plan: Any, at: At) -> dict[str, str]:

@@ -21,8 +21,7 @@ from stiction.estimates import jackknife
 from stiction.plan.stage import At, Stage, select
 from stiction.stages.contact import curves
 from stiction.stages.contact.corrections import with_correction
-from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
-from stiction.stages.devices.ground import case_on, name_of
+from stiction.stages.devices.contact_names import case_on, contact_of, corrections_of, name_of_ground, tips_of
 from stiction.stages.devices.opening import DesignedBeam
 
 
@@ -111,7 +110,9 @@ def separation_inputs(plan: Any, device: str) -> dict[str, Any]:
         return {"separation": f"devices/separation/{device}"} if wet else {}
     tips = wet if plan.devices.kind(device).has_tip else {}
     return {
-        "fast_strips": {humidity: f"devices/fast_strips/{name_of(plan, case)}" for humidity, case in wet.items()},
+        "fast_strips": {
+            humidity: f"devices/fast_strips/{name_of_ground(plan, case)}" for humidity, case in wet.items()
+        },
         "fast_tips": {humidity: f"devices/fast_tips/{_name_of_tips(plan, case)}" for humidity, case in tips.items()},
     }
 
