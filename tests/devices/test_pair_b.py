@@ -71,7 +71,7 @@ def test_a_few_thousand_beams_of_pair_b_find_the_lengths_of_110_000(results):
         assert found.length < high
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_stages_of_a_device_find_the_lengths_of_110_000(results):
     job = results.graph.job("devices/safe_lengths/C1_rh067")
     cracks, no_attraction = results["devices/cracks/C1_rh067"], (np.array([0.01, 0.1]), np.zeros((BEAMS, 2)))
