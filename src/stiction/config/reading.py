@@ -90,7 +90,8 @@ def text(path: str | Path) -> str:
 class _Strict(yaml.SafeLoader):
     """YAML loader without duplicate keys (PyYAML drops the first value) and numbers in base 60 or 8.
 
-    It also rejects texts and files so large that nothing else is sure to end, such as a message that shows a value.
+    It also rejects texts and files so large that nothing else is sure to end, such as a message that shows a value. The
+    loader in C is ten times as fast, and ends the process at a million open brackets.
     """
 
     def construct_document(self, node):

@@ -157,11 +157,17 @@ class DevicePlan:
 
     def sizes(self, device: str, humidity: float) -> dict[str, list[float]]:
         """Thicknesses and gaps from which the lengths of a device follow, empty if it is simulated by itself."""
-        users = self.cantilevers_on.get((self.ground(device), humidity), ()) if self.kind(device).has_tip else ()
-        if len(users) < MANY:
-            return {}
+        return self._sizes_on.get((self.ground(device), humidity), {}) if self.kind(device).has_tip else {}
+
+    @cached_property
+    def _sizes_on(self):
+        """Sizes on every patch of contact with `MANY` cantilevers at a humidity."""
         axes = {"thicknesses_um": "thickness_um", "gaps_um": "gap_um"}
-        return {axis: ends_and_middle([self.sections[name][key] for name in users]) for axis, key in axes.items()}
+        return {
+            ground: {axis: ends_and_middle([self.sections[name][key] for name in users]) for axis, key in axes.items()}
+            for ground, users in self.cantilevers_on.items()
+            if len(users) >= MANY
+        }
 
     def capacitor(self, device: str) -> dict:
         """Voltage of a device and its dielectric, empty without a voltage."""
