@@ -8,10 +8,14 @@ standard error.
 from collections.abc import Callable
 
 import numpy as np
+from scipy.special import ndtri
 
 from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.contact.correction import interpolated
 from stiction.estimates import jackknife
+
+#: Share of the strips that exceed what `error_of_largest` is about.
+RARE = 1e-3
 
 
 def factors(
@@ -80,6 +84,33 @@ def scatter_ratios(
     logarithms = (np.log(values / values.mean(axis=0)) for values in (full, summits))
     with np.errstate(divide="ignore", invalid="ignore"):
         return factors(scatter, *(np.stack([one, one**2], axis=-1) for one in logarithms), humidities, at)
+
+
+def error_of_largest(full: np.ndarray, summits: np.ndarray) -> np.ndarray:
+    r"""Relative standard error, by the strips, of the largest values after `stiction.contact.correction.Change`.
+
+    Values of the same strips by both models, (n, h) each; NaN if some are zero. ASSUME: those on summits are log-normal
+    with a known standard deviation s of the logarithm. The one that a share of `RARE` exceeds, z standard deviations
+    above the mean, becomes
+
+    .. math:: c \, x^b \propto r \exp(b s z - b^2 s^2 / 2) ,
+
+    with the ratio r of the means and the power b >= 1, the ratio of the standard deviations.
+    """
+    shape = (6, full.shape[1])
+
+    def largest(means):
+        """Logarithm of the changed value (h,) [-]."""
+        ratio, moments = means.reshape(shape)[:2], means.reshape(shape)[2:].reshape(2, 2, -1)
+        deviations = np.sqrt(np.maximum(moments[:, 1] - moments[:, 0] ** 2, 0.0))
+        exponent = scatter * np.maximum(deviations[0] / deviations[1], 1.0)
+        return np.log(ratio[0] / ratio[1]) - exponent * ndtri(RARE) - exponent**2 / 2
+
+    with np.errstate(divide="ignore", invalid="ignore"):
+        logarithms = [np.log(values / values.mean(axis=0)) for values in (full, summits)]
+        scatter = logarithms[1].std(axis=0)
+        columns = [full, summits, *(power for one in logarithms for power in (one, one**2))]
+        return jackknife(largest, np.stack(columns, axis=1).reshape(len(full), -1))[1]
 
 
 def length_factors(

@@ -48,6 +48,25 @@ def test_a_sample_does_not_depend_on_the_others():
     assert alone.equals(study().isel(sample=slice(1)))
 
 
+@pytest.mark.parametrize(("accuracy", "number"), [(0.0, 9), (np.inf, 3)])
+def test_strips_are_drawn_in_groups_until_the_accuracy_or_the_last_group(monkeypatch, accuracy, number):
+    monkeypatch.setattr(full_contact, "ACCURACY", accuracy)
+    air = replace(SETTINGS, humidities=(0.92,), strips=3, groups=3)
+    found = full_contact.compute(small.surfaces(), "b", air)
+    assert found.sizes["sample"] == number
+    assert found.isel(sample=slice(2)).equals(study().isel(sample=slice(2)).sel(humidity=[0.92]))
+
+
+def test_only_an_unstated_number_of_strips_in_dry_air_grows():
+    dry = {"pairs": {"b": {"humidities": ["dry"]}}, "run": {"pairs": ["b"]}, "attraction": {"reach": "all"}}
+
+    def groups(studies, file="dry/b"):
+        return job_settings(Plan(load(dry | studies)), f"studies/full_contact/{file}").get("groups", 1)
+
+    assert groups({}) == full_contact.MOST_GROUPS
+    assert groups({"studies": {"full_contact": {"samples": 30}}}) == groups({}, "across/b") == 1
+
+
 def test_both_models_agree_in_wet_air_and_not_in_dry_air():
     ratio = (study().adhesion_energy.mean("sample") / study().summit_energy.mean("sample")).values
     assert abs(ratio[2] - 1) < 0.05 < abs(ratio[0] - 1)
