@@ -533,7 +533,7 @@ def test_errors_by_tiles_cover_the_moments_of_heavy_tails_and_the_closed_form_do
         np.testing.assert_allclose(one.errors, np.maximum(one.closed_form_errors, one.tile_errors), rtol=1e-9)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_forms_of_the_density_are_told_apart_in_nine_of_ten_scans():
     cubic, maximum = (
         np.array([one.goodness[1] for one in found]) for found in (estimates(fleishman(10e-6, 10)), of_large_scans())

@@ -97,16 +97,10 @@ def test_a_run_killed_in_its_longest_stage_resumes_without_unlocking(undisturbed
     assert_resumed(tmp_path, undisturbed, [BEAMS], tiny)
 
 
-@pytest.mark.parametrize(
-    "stages",
-    [
-        pytest.param(WRITERS, marks=pytest.mark.slow, id="every way of writing"),
-        pytest.param(STAGES, marks=pytest.mark.nightly, id="every stage"),
-    ],
-)
-def test_a_run_interrupted_in_many_stages_gives_the_same_bytes(everything, tiny, tmp_path, stages):
+@pytest.mark.nightly
+def test_a_run_interrupted_in_every_stage_gives_the_same_bytes(everything, tiny, tmp_path):
     moments, signals = cycle((0.0, 0.7, 1.4)), cycle((signal.SIGKILL, signal.SIGTERM))
-    for stage in stages:
+    for stage in STAGES:
         # Results of earlier jobs, also of later stages: without them, the run does not end before its signal.
         for path in (path for later in STAGES[STAGES.index(stage) :] for path in files_of(later, tmp_path / "results")):
             path.unlink()
