@@ -287,5 +287,4 @@ UNKNOWN = [
 ]
 
 # Names that are not safe in file names and wildcards
-OF_SURFACES = ["B-1", "B_1"]  # names that only surfaces may have
-UNNAMEABLE = [*OF_SURFACES, "B.1", "1B", "B 1", "../B", "{B}", "", "ß", "B" * 33, "B\n", 1, 1.5, None, False]
+UNNAMEABLE = ["B.1", "1B", "B 1", "../B", "{B}", "", "ß", "B" * 33, "B\n", 1, 1.5, None, False]

@@ -12,10 +12,14 @@ from typing import Any
 
 #: Word for the humidity of dry air in configurations, and the medium of attraction in it.
 DRY = "dry"
-#: Pattern of a case in paths: name of the pair, two to four decimals of the relative humidity, or dry.
-CASE = "[A-Za-z][A-Za-z0-9]*_(?:rh0[0-9]{2,4}|dry)"
-#: Pattern of a `PairInAir` in paths.
-PAIR_IN_AIR = "[A-Za-z][A-Za-z0-9]*(?:_dry)?"
+#: Pattern of a name in paths. No ``_`` in it is followed by the excluded text, which follows names.
+_NAME = "[A-Za-z][A-Za-z0-9-]*(?:_(?!{})[A-Za-z0-9-]*)*"
+#: Pattern of the name of a device, or of an array of test beams, before air.
+BEFORE_AIR = _NAME.format("dry|rh0")
+#: Pattern of a case in paths: name of the pair or device, two to four decimals of the relative humidity, or dry.
+CASE = BEFORE_AIR + "_(?:rh0[0-9]{2,4}|dry)"
+#: Pattern of a `PairInAir` in paths, before air or the sides of a patch.
+PAIR_IN_AIR = _NAME.format("dry|rh0|[0-9]+x[0-9]") + "(?:_dry)?"
 #: Studies of pairs in humid air alone.
 IN_HUMID_AIR = ("full_contact", "asperities", "pressing", "variants")
 #: Why dry air is refused without attraction across gaps, as the end of a sentence.

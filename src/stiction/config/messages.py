@@ -81,19 +81,15 @@ def _strict():
 _COMPARED = "the section, the name of an entry and its key with dots between, such as surfaces.B2.rms_nm"
 
 
-def _also(path):
-    """Other signs in names of a section."""
-    return ", _ and -, not dry_ at the beginning" if path == ("surfaces",) else ""
-
-
 def _problems_of(error, schema):
     """Problems for one error of jsonschema."""
     path, value = tuple(error.absolute_path), error.instance
     if "propertyNames" in error.absolute_schema_path:
         if path == ("compare",):
             return [Problem((*path, value), f"is no key, must be {_COMPARED}")]
-        signs = f"letters and digits{_also(path)}, starting with a letter"
-        return [Problem((*path, value), f"is not a valid name, must be {signs}{_name_hint(value)}")]
+        allowed = _entry(schema, path)["propertyNames"]
+        hint = _name_hint(value, allowed["maxLength"])
+        return [Problem((*path, value), f"is not a valid name, must be {allowed['description']}{hint}")]
     if error.validator == "required":
         missing, *more = [key for key in error.validator_value if key not in value]
         as_well = f"; {' and '.join(more)} {'is' if len(more) == 1 else 'are'} missing as well" if more else ""
@@ -304,11 +300,11 @@ def _converted_hint(value, unit, path, entry):
     return _advice(entry, f"{from_si(to_si(value, unit), own):.12g}", f"write {{}}, the value in {own}")
 
 
-def _name_hint(name):
-    """Likely reason why YAML did not read a name as text."""
+def _name_hint(name, longest):
+    """Largest number of characters of a name, or likely reason why YAML did not read it as text."""
     if isinstance(name, bool):
         return "; YAML reads yes, no, on, off, true and false as truth values"
-    return ", at most 32 characters" if isinstance(name, str) else "; YAML read it as something other than text"
+    return f", at most {longest} characters" if isinstance(name, str) else "; YAML read it as something other than text"
 
 
 def dotted(path: tuple) -> str:
@@ -319,7 +315,7 @@ def dotted(path: tuple) -> str:
 
 def _plain(key):
     """Key as it is if it is a single word, otherwise its Python representation."""
-    return key if isinstance(key, str) and re.fullmatch(r"\w+", key) else one_line(key)
+    return key if isinstance(key, str) and re.fullmatch(r"[\w-]+", key) else one_line(key)
 
 
 def one_line(value: object) -> str:

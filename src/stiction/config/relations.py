@@ -123,6 +123,18 @@ def cases_have_unique_names(config, section="pairs"):
         yield f"{section}.{name}.humidities", without_unique_names(humidities)
 
 
+@relation
+def pairs_have_files_of_their_own(config):
+    """Require different names for the files about a pair and one of its surfaces."""
+    files = {}
+    for name, *surfaces in config.entries("pairs", *SIDES):
+        for side, surface in zip(SIDES, surfaces, strict=True):
+            other, key = files.setdefault(f"{name}_{surface}", (name, f"pairs.{name}.{side}"))
+            if other != name:
+                message = f"must have another name, or the pair: files of pair {other} would have the same names"
+                yield f"pairs.{name}.{side}", message, key
+
+
 def without_unique_names(humidities: list[float]) -> str | None:
     """Refusal of humidities without a name of their cases, or with the same."""
     nameless = [humidity for humidity in humidities if not Air(humidity).ending]

@@ -9,6 +9,7 @@ from typing import Any
 
 import xarray as xr
 
+from stiction.config.cases import DRY_AIR
 from stiction.plan import cost
 from stiction.plan.plan import Plan
 from stiction.plan.stage import FOLDERS, WILDCARDS, At, File, Names, Stage, expression, stages_of
@@ -124,10 +125,19 @@ class Graph:
 
 
 def constraints(stage: Stage, plan: Plan) -> dict[str, str]:
-    """Regular expressions of the wildcards of a stage."""
-    if stage.surfaces is None:
+    """Regular expressions of the wildcards of a stage.
+
+    Both names of a pair and its surface may contain ``_``. Where no more than ``_`` is between them, the sides of the
+    pair tell where its name ends.
+    """
+    if stage.surfaces:
+        surfaces = sorted(stage.surfaces(plan))
+    elif any("{pair}_{surface}" in file for file in stage.files.values()):
+        contacts = ((pair, air) for pair in plan.config["pairs"] for air in ("", DRY_AIR.ending))
+        surfaces = [f"(?<=/{pair}{air}_){side}" for pair, air in contacts for side in plan.sides(pair)]
+    else:
         return WILDCARDS
-    return WILDCARDS | {"surface": "|".join(sorted(stage.surfaces(plan))) or "(?!)"}
+    return WILDCARDS | {"surface": "|".join(surfaces) or "(?!)"}
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,15 @@ from stiction.config.cases import Case
 Outcome = tuple[str, float, str]
 #: Variant that corrects the base case to full elastic contact.
 CORRECTED = "contact_full"
+#: Key that a variant changes, and its section; the source of the spectrum is a key of each surface.
+CHANGED = {
+    **{"van_der_waals": None, "psd": None, "asperity": "contact", "every": "contact", "spacing_nm": "sampling"},
+    **{"poisson_ratio": "solid", "reach": "attraction", "adsorbed_nm": "water"},
+}
+#: Key of a variant with a finer mesh.
+FINER = "strips_per_element"
+#: Pattern of a variant in paths.
+VARIANT = f"base|{CORRECTED}|(?:{'|'.join((*CHANGED, FINER))})_[a-z0-9.-]+"
 
 
 def by_name(folder: str, names: Iterable[str], end: str = "") -> dict[str, str]:

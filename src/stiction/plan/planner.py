@@ -99,7 +99,7 @@ class Planner:
                 path_of(stage, name.format(**at)) for at in stage.wanted(self.plan) for name in stage.files.values()
             ],
             "log": f"{RESULTS}logs/{stage.log}.log",
-            "constraints": {"surface": constraints(stage, self.plan)["surface"]} if stage.surfaces else {},
+            "constraints": {key: one for key, one in constraints(stage, self.plan).items() if one != WILDCARDS[key]},
             "message": re.sub(r"{(\w+)}", r"{wildcards.\1}", stage.message),
             "shown": vars(stage.shown) if stage.shown else None,
         }

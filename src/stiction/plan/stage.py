@@ -16,7 +16,7 @@ from inspect import signature
 from types import SimpleNamespace
 from typing import Any, get_args, get_origin, get_type_hints
 
-from stiction.config.cases import CASE, PAIR_IN_AIR, Case, PairInAir
+from stiction.config.cases import BEFORE_AIR, CASE, PAIR_IN_AIR, Case, PairInAir
 from stiction.config.units import in_si, without_unit
 from stiction.contact.materials import OF_CONTACT
 from stiction.models import (
@@ -27,14 +27,15 @@ from stiction.models import (
     SHIFTS,
     SPECTRUM_QUANTITIES,
 )
+from stiction.plan.names import VARIANT
 
 #: Folders whose modules may declare stages.
 FOLDERS = ("stages", "report")
 #: Wildcards in the names of files, and the regular expression that each matches.
 WILDCARDS = {
     "surface": "[A-Za-z][A-Za-z0-9_-]*",
-    "device": "[A-Za-z][A-Za-z0-9]*",
-    "process": "[A-Za-z][A-Za-z0-9]*",
+    "device": f"(?!map_|law_){BEFORE_AIR}|map|law",  # process_map_C1 is the map of C1
+    "process": "[A-Za-z][A-Za-z0-9_-]*",
     "variable": "[A-Za-z][A-Za-z0-9_]*",
     "pair": PAIR_IN_AIR,
     "model": "|".join(BEAM_MODELS),
@@ -46,7 +47,7 @@ WILDCARDS = {
     "side": "|".join(SHIFTS),
     "solid_property": "|".join(OF_CONTACT),
     "choice": "|".join(ALTERNATIVES_OF_SCANS),
-    "variant": "base|[a-z_]+_[a-z0-9.-]+",
+    "variant": VARIANT,
     "length": "[0-9]+",
     "width": "[0-9]+",
 }

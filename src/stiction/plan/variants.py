@@ -9,15 +9,10 @@ from stiction.config.cases import Case, PairInAir, case_id
 from stiction.config.merging import merged
 from stiction.contact.materials import ELASTIC
 from stiction.models import SIDES
-from stiction.plan.names import CORRECTED
+from stiction.plan.names import CHANGED, CORRECTED, FINER
 from stiction.plan.paper import MOMENTS
 from stiction.plan.stage import subsection
 
-#: Key that a variant changes, and its section; the source of the spectrum is a key of each surface.
-_CHANGED = {
-    **{"van_der_waals": None, "psd": None, "asperity": "contact", "every": "contact", "spacing_nm": "sampling"},
-    **{"poisson_ratio": "solid", "reach": "attraction", "adsorbed_nm": "water"},
-}
 #: Sections of what is between the solids, which does not affect their contact.
 _BETWEEN = {"attraction", "water"}
 #: Sections of the solids, which do not affect the summits.
@@ -44,8 +39,8 @@ class Variants:
     def finer_beams(self) -> dict[str, dict]:
         """Changes of the variants with only a finer mesh. Surfaces and contact are the base's."""
         length, strip = self.config["beam"]["length_um"], self.config["sampling"]["strip_length_um"]
-        strips = self.config["studies"]["variants"]["strips_per_element"]
-        meshes = {f"strips_per_element_{n}": round(length / (strip * n)) for n in strips}
+        strips = self.config["studies"]["variants"][FINER]
+        meshes = {f"{FINER}_{n}": round(length / (strip * n)) for n in strips}
         same = self.config["beam"]["elements"]
         return {name: {"elements": elements} for name, elements in meshes.items() if elements != same}
 
@@ -55,7 +50,7 @@ class Variants:
         wanted = self.config["studies"]["variants"]
         changes = {
             f"{key}_{value}": {section: {key: value}} if section else {key: value}
-            for key, section in _CHANGED.items()
+            for key, section in CHANGED.items()
             for value in wanted.get(key, [])
         }
         full = {CORRECTED: {"contact": {"model": "full"}}} if "full_contact" in self.plan.studies else {}

@@ -168,7 +168,7 @@ def test_slopes_of_measured_heights_keep_their_form_but_for_a_mode(files, estima
     monkeypatch.setattr(stage_contact, "compute_each", lambda *given: asked.extend(given[0]) or [contact, contact])
     plan = plan_of(files, heights="measured")
     given = surfaces(plan, estimated)
-    settings = small.settings_of(quantities, job_settings(plan, "studies/slopes/contact/b_B2_rms_less"))
+    settings = small.settings_of(quantities, job_settings(plan, "studies/slopes/contact/b_Etched_rms_less"))
     _, found = quantities.compute(given, "b", "Etched", quantity, settings)
     changed, before = asked[1][0][0], given[0][0]
     u = np.array([-2.0, 0.0, 2.0])
@@ -189,7 +189,7 @@ def test_modes_of_a_surface_with_the_heights_of_its_moments_are_those_of_its_mea
     asked, contact = [], small.contact_of_pair()
     monkeypatch.setattr(stage_contact, "compute_each", lambda *given: asked.append(given[0]) or [contact, contact])
     for plan in (plan_of(files), plan_of(files, heights="measured")):
-        settings = small.settings_of(quantities, job_settings(plan, "studies/slopes/contact/b_B2_rms_less"))
+        settings = small.settings_of(quantities, job_settings(plan, "studies/slopes/contact/b_Etched_rms_less"))
         quantities.compute(surfaces(plan, estimated), "b", "Etched", "mode4", settings, estimated)
     for from_moments, from_measured in zip(*asked, strict=True):
         for ours, theirs in zip(from_moments[0], from_measured[0], strict=True):
