@@ -27,7 +27,7 @@ PLAN = Plan(
                 "sensitivity": {"samples": 4},
                 "slopes": {"samples": 20},
                 "plasticity": {"strips": 4},
-                "full_contact": {"samples": 2},
+                "full_contact": {"samples": 8},
                 "asperities": {"samples": 3, "shapes": 2},
                 "pressing": {"samples": 2, "steps": 2, "distance_nm": {"b": 4}},
                 "orders": {"draws": 2000},

@@ -11,6 +11,7 @@ WRONG_VALUES = [
     ("seed: -1", "seed", "-1", "at least 0"),
     ("surfaces: {B1: {rms_nm: 0}}", "surfaces.B1.rms_nm", "0", "at least 0.001 and at most 1000: standard deviation"),
     ("surfaces: {B1: {rms_nm: 1.7e+6}}", "surfaces.B1.rms_nm", "1700000.0", "[nm]"),
+    ("studies: {full_contact: {samples: 7}}", "studies.full_contact.samples", "7", "at least 8"),
     ("surfaces: {B2: {kurtosis: 0.9}}", "surfaces.B2.kurtosis", "0.9", "above 1"),
     ("pairs: {a: {humidities: [0.5, -0.1]}}", "pairs.a.humidities[1]", "-0.1", "at least 0 and below 1 or dry"),
     ("pairs: {a: {humidities: [Dry, 0.5]}}", "pairs.a.humidities[0]", "'Dry'", "at least 0 and below 1 or dry"),

@@ -165,7 +165,7 @@ MATRIX = [
     ("studies", "studies: {sensitivity: {step: 0.05}, plasticity: {strips: 50}, sample_shares: [0.1, 0.2], "
      "orders: {draws: 1000}, mesh: {strips_um: [7.5]}}",
      "sensitivity_contact plasticity sample_sizes orders mesh", (), "variants"),
-    ("study: full contact", "studies: {full_contact: {samples: 5}}", "full_contact", (), ""),
+    ("study: full contact", "studies: {full_contact: {samples: 9}}", "full_contact", (), ""),
     ("study: readings of an asperity", "studies: {asperities: {samples: 50}}", "readings", (), ""),
     ("study: pressing", "studies: {pressing: {steps: 3}}", "pressed", (), ""),
     ("study: how close one pair is pressed", "studies: {pressing: {distance_nm: {b: 3}}}", "pressed", (), "pressing/a"),

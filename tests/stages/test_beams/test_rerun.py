@@ -109,7 +109,6 @@ SECTIONS = {
     "contact": {"samples": 40},
     "studies": {
         "slopes": {"samples": 40},
-        "full_contact": {"samples": 3},
         "variants": dict.fromkeys(("van_der_waals", "psd", "every", "spacing_nm"), []),
     },
     "chaos": {"order": 2},
@@ -161,7 +160,9 @@ def test_test_beams_in_dry_air_are_computed_again_on_contacts_in_dry_air():
     dry = SECTIONS | {"attraction": {"reach": "all"}}
     dry |= {"devices": {"S1": STOPPER | {"humidities": ["dry"], "uncertainty": {"young_modulus_GPa": 40}}}}
     dry |= {"test_beams": {"T": ARRAY | {"length_um": 3000, "crack_lengths": measured}}}
-    device = stiction.Device("S1", Results.of(stiction.load(dry)))
+    config = stiction.load(dry)
+    config["studies"]["full_contact"]["samples"] = 3
+    device = stiction.Device("S1", Results.of(config))
     assert_as_computed_again(device.test_beams_again(), ["S1, dry", "T, dry"])
     job = device.results.graph.job("devices/test_beams/rerun/S1")
     assert {pair for pair, _ in job.settings["contacts"].values()} == {"b_dry"}
