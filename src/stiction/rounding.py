@@ -1,4 +1,4 @@
-"""Comparison of numbers up to rounding."""
+"""Comparison of numbers up to rounding, and numbers rounded for sentences."""
 
 import numpy as np
 
@@ -37,3 +37,15 @@ def is_equal(value: float, other: float, scale: float) -> bool:
     (True, True, False)
     """
     return bool(abs(value - other) <= _ROUNDING * scale)
+
+
+def in_percent(share: float) -> str:
+    """Share in percent for sentences: two digits, and all digits of the whole part from 99.5 on.
+
+    Examples
+    --------
+    >>> in_percent(0.02449), in_percent(0.997), in_percent(3.472)
+    ('2.4 %', '100 %', '347 %')
+    """
+    value = 100 * float(share)
+    return f"{value:.2g} %" if abs(value) < 99.5 else f"{value:.0f} %"

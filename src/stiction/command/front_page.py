@@ -17,6 +17,7 @@ from stiction.config.merging import differing
 from stiction.config.reading import paper
 from stiction.report.format import with_error
 from stiction.report.html import rendered
+from stiction.rounding import in_percent
 from stiction.run.markdown import plain
 from stiction.run.provenance import code_of, recorded_runs, start_of
 
@@ -101,7 +102,7 @@ def _ends(row):
     where = Air(float(row["relative_humidity"])).words
     stuck, arcs = (float(row[f"share_{state}"]) for state in ("s_shape", "arc"))
     if not row["crack_length_um"]:
-        return f"{where}: {100 * arcs:.2g} % are held by their tip alone, the others come free"
+        return f"{where}: {in_percent(arcs)} are held by their tip alone, the others come free"
     crack = with_error(float(row["crack_length_um"]), float(row["crack_length_std_um"]))
     return f"{where}: {100 * stuck:.3g} % stick behind a crack of {crack} µm"
 

@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from stiction.beam.foundation import ACCURACY, LONGER, TOO_EARLY
 from stiction.constants import WATER_MOLECULE
 from stiction.contact.materials import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
+from stiction.rounding import in_percent
 
 #: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.
 PLASTIC = 0.02
@@ -138,7 +139,7 @@ def missed_accuracy(of_beams: float, of_surfaces: float, asked: float) -> str | 
     if reached <= asked:
         return None
     return (
-        f"The standard error of this length is {100 * reached:.2g} %, more than the {100 * asked:.2g} % of "
+        f"The standard error of this length is {in_percent(reached)}, more than the {in_percent(asked)} of "
         f"design.accuracy.length: state more {max(known, key=known.get)} than this run has, or a larger error there."
     )
 
@@ -163,7 +164,7 @@ def plastic_contact(share: float, pressure: float, effect: str = SHORTER, remedy
     if share <= PLASTIC:
         return None
     return (
-        f"{100 * share:.2g} % of the area in contact is plastic, more than {100 * PLASTIC:.2g} %, when the surfaces "
+        f"{in_percent(share)} of the area in contact is plastic, more than {in_percent(PLASTIC)}, when the surfaces "
         f"are pressed together with {pressure / 1e6:.3g} MPa: {effect} than the elastic model predicts, which is the "
         "unsafe side. The study pressing says by how much, and from which pressure on."
     )
@@ -218,7 +219,7 @@ def flat_patches(share: float) -> str | None:
     if share == 0:
         return None
     return (
-        f"{100 * share:.2g} % of the patches of surface have too few summits to resist the adhesion. They count as "
+        f"{in_percent(share)} of the patches of surface have too few summits to resist the adhesion. They count as "
         "flat surfaces in contact, which hold more than any rough ones: the prediction is on the safe side."
     )
 

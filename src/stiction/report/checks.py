@@ -32,6 +32,7 @@ from stiction.plan.names import Outcome, by_case, by_model, by_name, by_outcome
 from stiction.plan.stage import File, Running, Stage, select, subsection
 from stiction.report.format import TO_MJ, TO_NM, TO_UM, number, with_error
 from stiction.report.surfaces.tables import surface_statistics
+from stiction.rounding import in_percent
 from stiction.run.atomic import save_text
 from stiction.run.markdown import literal
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
@@ -157,7 +158,7 @@ def identification_meets_targets(case: str, identification: xr.Dataset) -> Itera
     """Check radius and density of the summits of the identified spectrum against the measured ones."""
     for word, (off, error) in misfits(identification).items():
         allowed = MISFIT + ALLOWED * error
-        message = f"{word} off by {with_error(off, error, '+')} %, allowed ± {allowed:.2g} %"
+        message = f"{word} off by {with_error(off, error, '+')} %, allowed ± {in_percent(allowed / 100)}"
         yield Check("identified spectra have the measured summits", case, bool(abs(off) <= allowed), message)
 
 

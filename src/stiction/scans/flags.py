@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.special import chdtrc
 
+from stiction.rounding import in_percent
 from stiction.scans import periodogram as spectra
 from stiction.scans.inspection import FEWEST_WAVELENGTHS
 from stiction.scans.levelling import LEVELS
@@ -80,7 +81,7 @@ def _bowed(estimate):
 def _holes(estimate):
     inspection = estimate.inspection
     parts = [maps.part_in_words for maps in inspection.sizes if maps.part.shape != maps.frame.shape]
-    share = f"{100 * inspection.filled_share:.2g} % of the points"
+    share = f"{in_percent(inspection.filled_share)} of the points"
     if parts:
         return (
             f"{share} are undefined: moments are those of the others, and the spectrum is that of the largest part "
@@ -131,7 +132,9 @@ def _noise(estimate):
     noisy = [maps for maps in estimate.inspection.counted if np.any(_by_noise(maps) > _NOISE * estimate.errors)]
     if not noisy:
         return ""
-    levels = " and ".join(f"{_in_scans(maps, maps.floor)}, {_share(maps):.2g} % of their variance," for maps in noisy)
+    levels = " and ".join(
+        f"{_in_scans(maps, maps.floor)}, {in_percent(_share(maps))} of their variance," for maps in noisy
+    )
     return (
         f"white noise of {levels} is subtracted from rms, skewness, kurtosis and spectrum, not from heights: measured"
     )
@@ -154,8 +157,8 @@ def _in_scans(maps, floor):
 
 
 def _share(maps):
-    """Share of noise in the variance of scans [%]."""
-    return 100 * maps.noise**2 / np.exp(2 * maps.noisy_moments[0])
+    """Share of noise in the variance of scans [-]."""
+    return maps.noise**2 / np.exp(2 * maps.noisy_moments[0])
 
 
 def _by_noise(maps):

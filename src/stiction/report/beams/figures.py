@@ -32,6 +32,7 @@ from stiction.report.style import (
     places,
     styled,
 )
+from stiction.rounding import in_percent
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.beams.releases import ends_as, stuck_energies, stuck_lengths
 
@@ -291,7 +292,7 @@ def _labels(panel, released, model, weakest):
 
 def _percent(share):
     """Fraction below one as text, of two digits."""
-    return f"{100 * share:.2g} %" if share < 0.995 else "> 99 %"
+    return in_percent(share) if share < 0.995 else "> 99 %"
 
 
 def _adhesion_energies(data, settings):

@@ -30,6 +30,7 @@ from stiction.report.style import (
     shades,
     styled,
 )
+from stiction.rounding import in_percent
 from stiction.stages.beams.pair_warnings import numbered, with_numbers
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import axes, charts, largest_error_between
@@ -210,10 +211,10 @@ def _thicknesses(panel, whole, shape, marks, placed):
     panel.plot([], [], line, color="0.3", label=f"{state.legend}, p = {share:g}")
     panel.plot([], [], dotted, color="0.3", label=f"{state.legend}, flat surfaces")
     if np.isfinite(error := largest_error_between(whole.sel(share=share))):
-        label = f"cubic between, band ± {100 * error:.2g} %"
+        label = f"cubic between, band ± {in_percent(error)}"
         named.append(Line2D([], [], color="0.3", marker=".", linestyle="-", label=label))
     if not whole.by_elements.all():
-        label = f"by a power law, ± {100 * float(whole.power_law_error.max()):.2g} %"
+        label = f"by a power law, ± {in_percent(float(whole.power_law_error.max()))}"
         named.append(Line2D([], [], color="0.3", marker="o", fillstyle="none", linestyle="", label=label))
     return named
 

@@ -16,6 +16,7 @@ from stiction.report.devices import sentences
 from stiction.report.format import MISSING, UM, UN, airs, humidity_text, number, with_error
 from stiction.report.page import FORBIDDEN, Summary
 from stiction.report.test_beams.tables import contradiction, is_reliable, updated_size
+from stiction.rounding import in_percent
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import EITHER, S_SHAPE
@@ -69,7 +70,7 @@ def _subtracted(total, left):
     """What is left of the safe length for an uncertainty of the measurements."""
     if not total:
         return "Nothing is subtracted for the measurements."
-    return f"Subtracted for the measurements: {100 * (1 - left):.2g} %, twice their standard uncertainty."
+    return f"Subtracted for the measurements: {in_percent(1 - left)}, twice their standard uncertainty."
 
 
 def _by_test_beams(updated, unit, form):

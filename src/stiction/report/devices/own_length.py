@@ -7,6 +7,7 @@ import xarray as xr
 
 from stiction.devices.risk import one_in
 from stiction.report.format import UM, airs
+from stiction.rounding import in_percent
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.safe_lengths import chosen_share
 
@@ -35,7 +36,7 @@ def effect_of_measurements(safe_lengths: Mapping[float, xr.Dataset], budgets: Ma
             held = one.isel(shape=-1)
             low, high = _stuck_if_shifted(held, float(held.length_of_device), total)
             said.append(
-                f"With the measurements one standard uncertainty off, {100 * total:.2g} % of the length, "
+                f"With the measurements one standard uncertainty off, {in_percent(total)} of the length, "
                 f"{100 * low:.3g} to {100 * high:.3g} % of devices of {float(held.length_of_device) / UM:g} µm stick "
                 f"{airs([humidity])}."
             )
@@ -52,7 +53,7 @@ def _sentence(humidity, held, total):
     """P(stuck) at one humidity in words, with the safe length for the middle one of the shares."""
     length, (stuck, low, high) = float(held.length_of_device), map(float, held.stuck_at_length)
     error, reach = float(held.stuck_surfaces_error), float(held.reach)
-    surfaces = f", and ± {100 * error:.2g} % by the number of drawn surfaces" if error > 0 else ""
+    surfaces = f", and ± {in_percent(error)} by the number of drawn surfaces" if error > 0 else ""
     band = f"{100 * low:.3g} to {100 * high:.3g} %"
     what = f"{100 * stuck:.3g} % ({band} with 95 % confidence{surfaces})"
     if length > reach:
@@ -69,7 +70,7 @@ def _remaining_uncertainty(held: xr.Dataset, length: float, total: float) -> str
         return ""
     low, high = _stuck_if_shifted(held, length, total)
     return (
-        f" With the measurements one standard uncertainty off, {100 * total:.2g} % of the length, it is "
+        f" With the measurements one standard uncertainty off, {in_percent(total)} of the length, it is "
         f"{100 * low:.3g} to {100 * high:.3g} %."
     )
 

@@ -7,6 +7,7 @@ import xarray as xr
 
 from stiction.devices.risk import Basis, one_in, samples_for
 from stiction.report.format import UM, UN, airs, with_error
+from stiction.rounding import in_percent
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import EITHER, S_SHAPE
 from stiction.stages.devices.safe_lengths import chosen_share
@@ -46,7 +47,7 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
         sentence += " No uncertainty of the measurements is subtracted, because none is stated."
     if total == 0:
         return sentence
-    less = f"{100 * (1 - length / least):.2g} %"
+    less = in_percent(1 - length / least)
     return (
         f"{sentence} The shortest safe length, {least / UM:.0f} µm, is reduced by {less}, twice the uncertainty due to "
         "the measurements."
@@ -168,7 +169,7 @@ def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
     none = f"shorter than {shortest / UM:.0f} µm " if np.isfinite(shortest) else ""
     sentence = (
         f"{_at(humidity)}, hardly any device sticks: none of the {number} simulated ones {none}does, and at most "
-        f"{100 * most:.2g} % of those of {reach / UM:.0f} µm (95 % confidence, given the drawn surfaces)."
+        f"{in_percent(most)} of those of {reach / UM:.0f} µm (95 % confidence, given the drawn surfaces)."
     )
     if str(held.basis.sel(share=share).values) == Basis.LONGEST:
         return sentence

@@ -13,6 +13,7 @@ from stiction.report.format import MISSING, UM, error_alone, humidity_text, numb
 from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
+from stiction.rounding import in_percent
 from stiction.stages.beams.pair_warnings import numbered, with_numbers
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import axes, charts, largest_error_between
@@ -233,7 +234,7 @@ def _between(datasets):
     error = max(map(largest_error_between, axes(datasets).values()), key=np.nan_to_num)
     if np.isnan(error):
         return []
-    return [f"Between these humidities, a monotone cubic through the logarithms errs by at most {100 * error:.2g} %."]
+    return [f"Between these humidities, a monotone cubic through the logarithms errs by at most {in_percent(error)}."]
 
 
 def _beam(point):
@@ -259,7 +260,7 @@ def _beam_as_text(beam, lengths):
         "held by": beam["held_by"],
         "RH": humidity_text(beam["relative_humidity"]),
         **{f"p = {share:g} [µm]": number(length, ".1f") for share, length in lengths.items()},
-        "from": beam["from"] + ("" if np.isnan(error) else f", ± {error:.2g} %"),
+        "from": beam["from"] + ("" if np.isnan(error) else f", ± {in_percent(error / 100)}"),
         "bound [µm]": number(beam["bound_um"], ".1f"),
     }
 

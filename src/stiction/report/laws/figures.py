@@ -11,6 +11,7 @@ from stiction.contact import forcelaw
 from stiction.models import SURFACE_MODELS
 from stiction.report.format import TO_MJ, TO_MPA, TO_NM
 from stiction.report.style import DOUBLE, MODELS, SINGLE, figure_stage, letter, panels, styled
+from stiction.rounding import in_percent
 from stiction.stages.laws import forces as stage_forces
 from stiction.stages.laws.chaos import generated_laws
 
@@ -55,7 +56,7 @@ def fitted_curve(forces: xr.Dataset, fit: xr.Dataset) -> Figure:
     panel.set(xlabel=r"distance $\bar d$ [nm]", ylabel=r"force per area $\bar f$ [MPa]")
     _components(panel, vector, limit)
     error = 100 * float(fit.curve_error.sel(sample=k))
-    panel.legend(title=f"sample {k}, error {error:.2g} %", loc="upper right")
+    panel.legend(title=f"sample {k}, error {in_percent(error / 100)}", loc="upper right")
     return figure
 
 

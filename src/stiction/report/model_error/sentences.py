@@ -9,6 +9,7 @@ import xarray as xr
 from stiction.plan.names import by_name
 from stiction.report.format import airs, signed
 from stiction.report.model_error.column import change
+from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import EITHER, FORCE
 
@@ -73,7 +74,8 @@ def _safe_side(known, sign):
     if not unsafe:
         return "What is stated is on the safe side of it, or does not differ by more than twice its standard error."
     mend = "shorten the lengths" if sign > 0 else "raise the restoring force"
-    return f"What is stated is not on the safe side of it {airs(unsafe)}: {mend} by {max(unsafe.values()):.2g} %."
+    by = in_percent(max(unsafe.values()) / 100)
+    return f"What is stated is not on the safe side of it {airs(unsafe)}: {mend} by {by}."
 
 
 def error_inputs(plan: Any, *devices: str) -> dict[str, Any]:

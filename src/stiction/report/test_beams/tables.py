@@ -9,6 +9,7 @@ from stiction.devices import inference
 from stiction.plan.names import by_name
 from stiction.report.format import TO_UM, airs, number, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
+from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import ARC, FORCE, MIDDLE, S_SHAPE
 from stiction.stages.test_beams.inference import OWN, shape_of
@@ -66,9 +67,9 @@ def beams_to_add(update: xr.Dataset) -> str:
     if update.result_after.isnull().all():
         return f"Which further test beams would help is not known: {_FEW}."
     worst = int(np.nanargmax(update.result_after.values))
-    left = 100 * update.result_after_further.isel(result=worst)
+    left = update.result_after_further.isel(result=worst)
     best = int(np.nanargmin(left.isel(beams=0).values))
-    after = [f"{float(one):.2g} % with {int(one.beams)} beams" for one in left.isel(further=best)]
+    after = [f"{in_percent(one)} with {int(one.beams)} beams" for one in left.isel(further=best)]
     return (
         f"Further test beams would help most with the dimensions and in the air of {update.further.values[best]}, at "
         f"least {TO_UM * float(update.further_length[best]):.0f} µm long: the standard uncertainty of the result for "
@@ -221,16 +222,11 @@ def stuck_sentences(update: xr.Dataset) -> list[str]:
     for at in (one for one in every if np.isfinite(one.updated_stuck)):
         size = "at its restoring force" if shape == FORCE else f"of {TO_UM * float(at.safe):.0f} µm, the safe length,"
         sentences.append(
-            f"{airs([float(at.humidity)]).capitalize()}, {_percent(at.expected_stuck)} of the devices {size} are "
-            f"expected to stick without the test beams and {_percent(at.updated_stuck)} with them, averaged over the "
+            f"{airs([float(at.humidity)]).capitalize()}, {in_percent(at.expected_stuck)} of the devices {size} are "
+            f"expected to stick without the test beams and {in_percent(at.updated_stuck)} with them, averaged over the "
             "uncertainty of the inputs."
         )
     return sentences
-
-
-def _percent(share):
-    """Fraction for reading."""
-    return f"{100 * float(share):.2g} %"
 
 
 # Table
