@@ -1,4 +1,4 @@
-"""The first safe length of a run is said once, as soon as its job has ended."""
+"""The first answer of a run is said once, as soon as its job has ended."""
 
 import io
 
@@ -38,6 +38,16 @@ def test_a_length_is_said_with_its_errors_by_beams_and_surfaces_if_it_has_one(tm
     assert "± 4 µm" in first_answer(written(tmp_path / "beams"), tmp_path / "beams")
     unknown = first_answer(written(tmp_path / "none", "L1_dry", np.inf), tmp_path / "none")
     assert unknown.startswith("First safe length: L1 in dry air can be 267 µm long if at most 1 in 1000")
+
+
+def test_a_share_of_stoppers_is_said_with_its_band_in_the_air_where_most_stick(tmp_path):
+    path = tmp_path / "results" / "devices" / "stoppers" / "S1.nc"
+    path.parent.mkdir(parents=True)
+    stuck = [[0.1, 0.08, 0.12], [0.3, 0.281, 0.32]]
+    found = {"stuck": (("humidity", "end"), stuck), "restoring_force": 19e-6}
+    storage.save(xr.Dataset(found, {"humidity": [0.44, 0.67]}), path, "stoppers", {})
+    said = "First answer: of S1 with 19 µN, 30 % stick at RH 0.67 (28.1 to 32 % with 95 % confidence)."
+    assert first_answer("results/logs/devices/stoppers/S1.log", tmp_path) == f"{said} The run goes on."
 
 
 @pytest.mark.parametrize("stream", [io.StringIO, Terminal])

@@ -1,4 +1,4 @@
-"""First safe length of a run, said as soon as it exists while the run goes on."""
+"""First answer of a run, said as soon as it exists while the run goes on."""
 
 from pathlib import Path
 
@@ -9,15 +9,17 @@ from stiction.config.units import from_si
 from stiction.devices.risk import one_in
 from stiction.run import storage
 from stiction.stages.devices.safe_lengths import chosen_share
+from stiction.stages.devices.stoppers import shares_stuck
 
 #: Folder of the logs of datasets, and of the datasets.
 _LOGS, _RESULTS = "results/logs/", "results/"
 
 
 def first_answer(log: str, folder: Path) -> str:
-    """Safe length of a device at a humidity and its error in a sentence, from the log of its job in a folder of a run.
+    """Safe length of a device at a humidity, or share of a stopper that sticks, with its error in a sentence.
 
-    It is the one against all shapes, for the middle share of stuck devices.
+    From the log of its job in a folder of a run. The length is the one against all shapes, for the middle share of
+    stuck devices, and the humidity of a stopper the one where most stick.
 
     Raises
     ------
@@ -25,13 +27,29 @@ def first_answer(log: str, folder: Path) -> str:
         If the dataset of the job cannot be read.
     """
     path = folder / log.replace(_LOGS, _RESULTS, 1).removesuffix(".log")
-    dataset = storage.load(path.with_name(f"{path.name}.nc"), "safe_lengths")
+    said = {"safe_lengths": _length, "stoppers": _share}[stage := path.parent.name]
+    return f"{said(storage.load(path.with_name(f'{path.name}.nc'), stage), path.name)} The run goes on."
+
+
+def _length(dataset, name):
+    """Safe length of a case."""
     found = dataset.isel(shape=-1).sel(share=chosen_share(dataset))
     length, estimate = (from_si(float(found[name]), "um") for name in ("safe_length", "estimate"))
     error = from_si(float(np.hypot(found.beams_error, found.surfaces_error.fillna(0))), "um")
     known = f" (estimate {estimate:.0f} ± {error:.2g} µm)" if np.isfinite(error) else ""
-    case = Case(path.name)
+    case = Case(name)
     return (
         f"First safe length: {case.device} {Air(case.humidity).where} can be {length:.0f} µm long{known} if at most "
-        f"{one_in(float(found.share))} may stick. The run goes on."
+        f"{one_in(float(found.share))} may stick."
+    )
+
+
+def _share(dataset, name):
+    """Share of a stopper that sticks."""
+    humidity, *stuck = max(shares_stuck(dataset), key=lambda row: row[3])
+    stuck, low, high = (100 * share for share in stuck)
+    force = from_si(float(dataset.restoring_force), "uN")
+    return (
+        f"First answer: of {name} with {force:.3g} µN, {stuck:.3g} % stick {Air(humidity).where} ({low:.3g} to "
+        f"{high:.3g} % with 95 % confidence)."
     )

@@ -37,11 +37,12 @@ class Display:
             self._write(f"{_ABOVE}{line(self._run, time.time())[:width]}")
 
     def __call__(self, now: float) -> None:
-        """Write once the cost of budgets and the first safe length, and to a file now and then a line about the run."""
+        """Write once the cost of budgets and the first answer, and to a file now and then a line about the run."""
         if self._run.planned and not self._told:
             self._told = True
             self._say(*costs(self._run))
-        if not self._answered and (job := self._run.first.get("safe_lengths")):
+        answering = filter(None, map(self._run.first.get, ("safe_lengths", "stoppers")))
+        if not self._answered and (job := next(answering, None)):
             self._answered = True
             from stiction.command.first_answer import first_answer  # imports the physics
 

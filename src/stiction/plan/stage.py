@@ -136,7 +136,7 @@ class Running:
 
     minutes: int | None = None  #: longest run time of a job, if it is worth a job of its own on a cluster
     memory: Callable[[Any], float] | None = None  #: of a job that needs more than its fields, by the plan [MB]
-    priority: int = 0  #: jobs of a higher priority start first
+    priority: int = 0  #: jobs of a higher priority start first: 1 for answers, 2 for the longest job of the paper
     last: bool = (
         False  #: whether a job waits for all other files of a whole run; new ones repeat it, changed ones do not
     )

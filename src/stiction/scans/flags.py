@@ -236,7 +236,9 @@ def _lines_jump(estimate):
     slow, fast = estimate.line_jump
     if slow > _JUMP * fast:
         steps = f"{1e9 * slow:.2g} nm, against steps of {1e9 * fast:.2g} nm along a line"
-        return f"lines jump by {steps}; lines: offset levels them"
+        is_levelled = estimate.inspection.settings.levelling.lines != "none"
+        remedy = "lines: tilt or bow may level them" if is_levelled else "lines: offset levels them"
+        return f"lines jump by {steps}; {remedy}"
     return ""
 
 

@@ -18,6 +18,7 @@ from stiction.report.devices import first_screen, pages, sentences
 from stiction.report.page import Page, Section, Summary
 from stiction.report.process.section import with_process
 from stiction.report.test_beams import tables as tables_test_beams
+from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE
 from stiction.stages.devices.stoppers import shares_stuck
 from stiction.stages.test_beams.inference import shape_of
@@ -70,6 +71,21 @@ def test_the_uncertainty_of_the_measurements_shortens_the_answer_as_in_words():
     assert f"Build it no longer than {1e6 * metres:.0f} µm" in sentences.build_sentence(lengths, budgets)
     assert shown.points["What to measure"].startswith("Measure")
     assert "uncertainty" in first_screen.beam_screen(CANTILEVER, lengths, {}, []).points["What to measure"]
+
+
+@pytest.mark.parametrize("own", [None, 50.0, 400.0])
+def test_measurements_that_leave_a_length_too_uncertain_allow_no_length_to_build(own):
+    of_device = CANTILEVER | ({"length_um": own} if own else {})
+    lengths, known = {0.67: of_length(own * 1e-6) if own else safe()}, BUDGETS["C1", 0.67, "tip"]
+    budgets = {(0.67, "tip"): known.assign(covariance=known.covariance * (0.51 / budget_of(known).total) ** 2)}
+    shown = first_screen.beam_screen(of_device, lengths, budgets, [])
+    assert shown.answer.startswith(f"If the measurements were exact, {least(lengths[0.67]):.0f} µm would be safe.")
+    assert "uncertain by 51 %" in shown.answer
+    assert ("Your" in shown.answer) == bool(own)
+    assert shown.sign == ("Too long" if own == 400 else "Not known")
+    assert sentences.build_sentence(lengths, budgets) in shown.answer
+    smaller = {(0.67, "tip"): known.assign(covariance=known.covariance * (0.49 / budget_of(known).total) ** 2)}
+    assert first_screen.beam_screen(of_device, lengths, smaller, []).answer.startswith("Safe up to")
 
 
 def test_the_sizes_to_change_need_the_adhesion_energy_of_the_safe_length():

@@ -46,7 +46,10 @@ def beam_screen(
     safe = updated[1] * UM if updated else safe
     humidity, worst = min(safe_lengths.items(), key=lambda case: float(_middle_lengths(case[1]).safe_length.min()))
     point = _middle_lengths(worst).isel(shape=-1)
-    verdict = _verdict(section.get("length_um"), safe / UM, safe_lengths)
+    verdict, margin = _verdict(section.get("length_um"), safe / UM, safe_lengths), _subtracted(total, safe / least)
+    if not updated and not sentences.is_bounded(total):
+        verdict = _unbounded(verdict, sentences.unbounded_sentence(least, total))
+        margin, safe = _subtracted(0.0, 1.0), least
     estimate = with_error(float(point.estimate) / UM, float(np.hypot(point.beams_error, _finite(point))) / UM)
     where = Air(humidity).where + ", the worst" * (len(safe_lengths) > 1)
     basis = [
@@ -55,7 +58,7 @@ def beam_screen(
         f"Estimate {where}: {estimate} µm (standard error of the simulation)."
         if np.isfinite(point.estimate)
         else f"{where[0].upper()}{where[1:]}, too few beams stick for an estimate.",
-        _by_test_beams(updated, "µm", ".0f") if updated else _subtracted(total, safe / least),
+        _by_test_beams(updated, "µm", ".0f") if updated else margin,
     ]
     points = {
         "What decides": " ".join(_decides_beam(humidity, worst, budgets, section)),
@@ -109,6 +112,13 @@ def _verdict(length, safe, safe_lengths):
     else:
         sign = ("bad", "Too long") if low > float(_middle_lengths(worst).share) else ("open", "Not shown to be safe")
     return *sign, f"{answer}; your {length:g} µm: {_stuck_with_band(stuck, low, high)} {Air(humidity).where}."
+
+
+def _unbounded(verdict, sentence):
+    """Verdict with a sentence in place of the length to build. A length that is too long stays too long."""
+    tone, sign, answer = verdict
+    own = answer.partition("; ")[-1]
+    return *((tone, sign) if tone == "bad" else ("open", "Not known")), f"{sentence} {own[:1].upper()}{own[1:]}".strip()
 
 
 def _stuck_with_band(stuck, low, high):

@@ -24,6 +24,23 @@ def length_to_build(
     return least, total, float(np.exp(-2 * total)) * least
 
 
+def is_bounded(total: float) -> bool:
+    """Whether an uncertainty of the logarithm of a length allows a length to build.
+
+    ASSUME: above a half, where twice as much takes two thirds of the length, a budget that is linear does not say how
+    much to subtract.
+    """
+    return total <= 0.5
+
+
+def unbounded_sentence(least: float, total: float) -> str:
+    """Safe length [m] without a margin, where the uncertainty due to the measurements allows none."""
+    return (
+        f"If the measurements were exact, {least / UM:.0f} µm would be safe. They leave it uncertain by "
+        f"{in_percent(total)}, too much for a length to build: first measure better."
+    )
+
+
 def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> str:
     """Length to build for all humidities of a device, for the middle fraction.
 
@@ -37,6 +54,8 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
     least, total, length = length_to_build(safe_lengths, budgets)
     totals = [budget_of(budget).total for budget in shortest_budgets(safe_lengths, budgets).values()]
     few = one_in(chosen_share(_any(safe_lengths)))
+    if not is_bounded(total):
+        return unbounded_sentence(least, total)
     sentence = (
         f"Build it no longer than {length / UM:.0f} µm: then at most {few} sticks "
         f"{airs(safe_lengths)} (95 % confidence)."

@@ -218,7 +218,7 @@ def _stage(name, folder, settings, forces):
         kind=Settings,
         compute=lambda data, at, settings: compute(both(data), at.pair, settings),
         message=f"Full elastic contact of pair {{pair}}{forces}, beside the sum over summits.",
-        running=Running(minutes=120),
+        running=Running(minutes=120, priority=1),
     )
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.model_error import length_factors, mean_ratios, scatter_ratios
-from stiction.plan.stage import Stage
+from stiction.plan.stage import Running, Stage
 from stiction.stages.contact import full_contact
 
 
@@ -79,6 +79,7 @@ def _stage(name, between, forces):
         kind=Settings,
         compute=compute,
         message=f"Error of the model of the contact of pair {{pair}}{forces}.",
+        running=Running(priority=1),
     )
 
 

@@ -175,7 +175,7 @@ STAGES = (
         kind=Settings,
         compute=lambda data, settings: compute(data["ground"], settings, data.get("of_sizes")),
         message="Release long beams of {case}.",
-        running=Running(minutes=120),
+        running=Running(minutes=120, priority=1),
     ),
     Stage.writing(
         "sizes",
@@ -185,6 +185,6 @@ STAGES = (
         kind=OfSizes,
         compute=compute_sizes,
         message="Release beams of a few sizes on {case}, strips of {length} x {width} nm.",
-        running=Running(minutes=120),
+        running=Running(minutes=120, priority=1),
     ),
 )

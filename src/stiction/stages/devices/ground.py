@@ -13,7 +13,7 @@ from stiction.chaos.model import Truncation
 from stiction.config.cases import Case
 from stiction.contact.correction import NONE, Change
 from stiction.contact.environment import Water
-from stiction.plan.stage import At, Stage, select
+from stiction.plan.stage import At, Running, Stage, select
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import surface_rms, with_correlations
 from stiction.stages.contact.corrections import with_correction
@@ -100,5 +100,6 @@ STAGES = (
         complete=with_correction,
         compute=compute,
         message="Force laws of {case}, strips of {length} x {width} nm.",
+        running=Running(priority=1),
     ),
 )

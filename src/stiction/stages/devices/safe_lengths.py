@@ -11,7 +11,7 @@ from stiction.devices import arcs, risk
 from stiction.devices.risk import Known, SafeLength
 from stiction.estimates import mean_with_error
 from stiction.life.freeing import probability_for
-from stiction.plan.stage import Stage, select, subsection
+from stiction.plan.stage import Running, Stage, select, subsection
 from stiction.stages.contact import curves
 from stiction.stages.contact.corrections import with_correction
 from stiction.stages.contact.error_notes import on_patch
@@ -171,6 +171,7 @@ _SAFE_LENGTHS = Stage.writing(
     complete=with_correction,
     compute=compute,
     message="Safe lengths of {case}.",
+    running=Running(priority=1),
 )
 STAGES = (
     replace(

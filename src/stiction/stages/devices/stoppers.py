@@ -16,7 +16,7 @@ from stiction.contact.meniscus import is_wetted
 from stiction.devices.risk import CONFIDENCE, SCORES, quantiles
 from stiction.devices.stoppers import SafeForce, pull_off_force, safe_forces, stuck_patches, worst_humidity
 from stiction.estimates import mean_with_error
-from stiction.plan.stage import Stage, select
+from stiction.plan.stage import Running, Stage, select
 from stiction.progress import progress
 from stiction.stages.contact.corrections import with_correction
 from stiction.stages.contact.curves import energies, freeing_potentials, pull_offs, share_flat, tilted_forces
@@ -354,6 +354,7 @@ _STOPPERS = Stage.writing(
     complete=with_correction,
     compute=compute,
     message="Pull-off force of stopper {device}.",
+    running=Running(priority=1),
 )
 
 

@@ -62,5 +62,5 @@ MOMENTS = Change(
     settings=_with_moments,
     kind=Settings,
     compute=from_surfaces,
-    running=Running(minutes=30, priority=1),
+    running=Running(minutes=30, priority=2),
 )

@@ -19,7 +19,10 @@ from stiction.stages.contact.pairs import Settings
 from stiction.stages.surfaces.rough_surfaces import surface_inputs
 
 #: No change.
-AS_IT_IS = Change(settings=lambda plan, at, place: place.settings(plan, at, place.samples(plan, at)))
+AS_IT_IS = Change(
+    settings=lambda plan, at, place: place.settings(plan, at, place.samples(plan, at)),
+    running=Running(minutes=10, priority=1),
+)
 #: Rule and folder of each contact, by change and kind of patch. Strips as they are follow below.
 TABLE = {
     AS_IT_IS: {
@@ -112,7 +115,7 @@ OF_PAIR = (
         compute=contact.drawn_chunk,
         label="contact",
         message="Contact of {model} surfaces of pair {pair}, chunk {chunk} of {number}.",
-        running=Running(minutes=30, temporary=True),
+        running=Running(minutes=30, priority=1, temporary=True),
     ),
     Stage.writing(
         "contact",
@@ -121,7 +124,7 @@ OF_PAIR = (
         settings=lambda plan, at: AS_IT_IS.settings(plan, at, STRIPS),
         kind=Settings,
         compute=contact.join_chunks,
-        running=Running(streamed=True),
+        running=Running(priority=1, streamed=True),
         message="Join the contact of {model} surfaces of pair {pair} (Sec. III-A).",
     ),
 )
