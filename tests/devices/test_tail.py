@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
+from numpy.testing import assert_allclose, assert_array_equal
 from scipy.special import ndtr, ndtri
 from scipy.stats import beta
 from standard_errors import ALLOWED, errors_off
@@ -61,6 +61,21 @@ def test_a_sum_of_exponentials_draws_the_lowest_order_statistics():
         for level in (0.1, 0.5, 0.95):
             below = np.mean(drawn < np.quantile(simulated, level))
             assert abs(below - level) < 4 * np.sqrt(2 * level * (1 - level) / 3000)
+
+
+def test_errors_that_are_asked_for_again_are_the_same_and_the_generator_goes_on_behind_them():
+    shares = 1e-3, 1e-2, 1e-3
+    again, other = ([np.random.default_rng(seed) for _ in shares] for seed in (8, 9))
+    of_again, of_other = (
+        [tail.scaled_errors(400, share, rng) for share, rng in zip(shares, generators, strict=True)]
+        for generators in (again, other)
+    )
+    assert_array_equal(of_again[0], of_again[2])
+    for different in (of_again[1], of_other[0]):  # control
+        assert np.all(different != of_again[0])
+    following = {rng.random() for rng in again}
+    assert len(following) == 1
+    assert following != {np.random.default_rng(8).random()}  # control
 
 
 def test_simulated_errors_have_no_bias_within_the_fitted_part():

@@ -5,7 +5,9 @@ distribution, and only that, were lognormal. S-shapes, tips and bridges of the p
 a share of 1e-4 at least, as 110 000, 200 000 and 100 000 of them show.
 """
 
+import pickle
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from scipy.special import ndtri
@@ -70,10 +72,16 @@ def scaled_errors(
     distribution. They are simulated from the lowest order statistics of ``samples`` normal numbers, of which as many
     are ``fitted`` as by `normal_scores`.
     """
-    scores = normal_scores(samples, fitted)
+    intercepts, slopes, rng.bit_generator.state = _simulated_lines(samples, pickle.dumps(rng), repeats, fitted)
+    errors = intercepts + (slopes - 1) * ndtri(share)
+    return np.array([errors, errors / slopes])
+
+
+@lru_cache(maxsize=64)  # a device asks for the same lines for every share, shape and error of the surfaces
+def _simulated_lines(samples, generator, repeats, fitted):
+    """Intercepts and slopes of simulated lines from a pickled generator, and its state after them."""
+    rng, scores = pickle.loads(generator), normal_scores(samples, fitted)
     k = len(scores)
     sums = np.cumsum(rng.exponential(size=(repeats, k)), axis=1)
     rest = rng.gamma(samples + 1 - k, size=(repeats, 1))
-    intercepts, slopes = _lines(ndtri(sums / (sums[:, -1:] + rest)), scores)
-    errors = intercepts + (slopes - 1) * ndtri(share)
-    return np.array([errors, errors / slopes])
+    return *_lines(ndtri(sums / (sums[:, -1:] + rest)), scores), rng.bit_generator.state
