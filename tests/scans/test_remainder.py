@@ -137,7 +137,7 @@ def test_a_bow_of_one_and_a_half_rms_is_flagged_with_its_remedy():
     added = 1.5 * form.std()
     assert share_of_rms(flag) == pytest.approx(added / np.hypot(1, added), rel=0.15)
     assert flag.startswith("levelling leaves a bow")
-    assert flag.endswith("; level: quadratic removes it")
+    assert flag.endswith(", which counts as roughness, the unsafe side; level: quadratic removes it")
     assert not about_bows(estimate([bowed], 1, Settings(Levelling("quadratic")), model_scans=8))
     assert not about_bows(estimate([SCANS[0]], 1, model_scans=8))
     tilted = dataclasses.replace(SCANS[0], heights=SCANS[0].heights + B2.rms * X[:, None])

@@ -75,7 +75,8 @@ def _bowed(estimate):
         return ""
     size = left[-1].rms / np.exp(inspection.moments[0])
     shape = "tilt" if LEVELS[left[-1].level] == 1 else "bow"
-    return f"levelling leaves a {shape} of {size:.2g} rms (p {left[-1].likely:.1g}); level: {left[-1].level} removes it"
+    left_over = f"levelling leaves a {shape} of {size:.2g} rms (p {left[-1].likely:.1g})"
+    return f"{left_over}, which counts as roughness, the unsafe side; level: {left[-1].level} removes it"
 
 
 def _holes(estimate):
