@@ -76,6 +76,7 @@ def test_the_controls_of_a_beam_begin_with_its_length_to_build(name):
     total = view.margin.total if view.margin else 0.0
     assert bool(total) == bool(budgets)
     build = view.grid.safe_size(view.grid.start) * np.exp(-2 * total)
+    assert total <= view.words["largest"] == sentences.LARGEST
     assert f"{build:.0f}" == re.match(r"Safe up to (\d+) µm", answer)[1]
     assert stated(answer) == ([] if name != "length" else shown(view.grid))
     if total:

@@ -105,6 +105,7 @@ def beam_view(
         "safe": "Safe length",
         "stick": "Devices of this length that stick",
         "build": "no more than",
+        "largest": sentences.LARGEST,
         "bound": "safe",
     }
     return View("sizes and air", grid, words, _margin(sentences.shortest_budgets(safe_lengths, budgets)))

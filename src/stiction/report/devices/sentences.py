@@ -24,13 +24,14 @@ def length_to_build(
     return least, total, float(np.exp(-2 * total)) * least
 
 
-def is_bounded(total: float) -> bool:
-    """Whether an uncertainty of the logarithm of a length allows a length to build.
+#: Largest uncertainty of the logarithm of a length that allows a length to build. ASSUME: above it, where twice as much
+#: takes two thirds of the length, a budget that is linear does not say how much to subtract.
+LARGEST = 0.5
 
-    ASSUME: above a half, where twice as much takes two thirds of the length, a budget that is linear does not say how
-    much to subtract.
-    """
-    return total <= 0.5
+
+def is_bounded(total: float) -> bool:
+    """Whether an uncertainty of the logarithm of a length allows a length to build."""
+    return total <= LARGEST
 
 
 def unbounded_sentence(least: float, total: float) -> str:
