@@ -5,6 +5,7 @@ from standard_errors import ALLOWED
 
 from stiction.analysis.model_error import (
     RARE,
+    beside_more,
     error_of_largest,
     factors,
     interpolation_error,
@@ -112,6 +113,55 @@ def test_groups_drawn_until_an_accuracy_bias_bounds_little():
     assert np.mean(values > truth) < 0.6, (
         "control: without its error the value is too small in nearly half of the studies"
     )
+
+
+#: Share of the scatter on summits that full contact has, of e and of f_max, and what it has beside.
+OF_SMOOTH, BESIDE = np.array([0.4, 0.2]), 0.1
+
+
+def two_samples(seed, number=20, more=500):
+    """Energies and forces (n, 2) of strips by both models, log-normal, and of more strips on summits (N, 2)."""
+    rng = np.random.default_rng(seed)
+    common, own = rng.standard_normal((2, more, 2))
+    logarithms = 0.3 * (0.8 * common[:, ::-1] + 0.6 * common)
+    full = 2 * np.exp(logarithms * OF_SMOOTH + BESIDE * own)
+    return full[:number], np.exp(logarithms)[:number], np.exp(logarithms)
+
+
+def ratios_of(full, summits):
+    """Ratios of the means of both quantities, with their errors (2,) each."""
+    at_one = np.zeros(1)
+    return np.transpose([mean_ratios(full[:, [k]], summits[:, [k]], at_one, at_one) for k in range(2)], (1, 0, 2))[
+        ..., 0
+    ]
+
+
+def test_ratios_beside_more_strips_on_summits_have_the_error_of_repeated_studies_and_it_is_smaller():
+    found = np.array([ratios_of(*beside_more(*two_samples(seed))) for seed in range(400)])
+    plain = np.array([ratios_of(*two_samples(seed)[:2]) for seed in range(400)])
+    truth = 2 * np.exp(((0.3 * OF_SMOOTH) ** 2 + BESIDE**2 - 0.3**2) / 2)
+    (ratios, errors), scatter = np.moveaxis(found, 1, 0), found[:, 0].std(axis=0, ddof=1)
+    assert np.all(np.abs(ratios.mean(axis=0) - truth) < ALLOWED * scatter / 20 + 0.002 * truth)
+    stated = np.sqrt((errors**2).mean(axis=0)) / scatter
+    assert np.all((stated > 0.95) & (stated < 1.25)), "strips that are left out err to the safe side, by 14 % for 20"
+    assert np.all(scatter < 0.7 * plain[:, 0].std(axis=0, ddof=1)), "control: the ratio of 20 strips alone"
+
+
+def test_means_beside_more_strips_are_exact_where_full_contact_follows_from_summits():
+    _, summits, more = two_samples(0)
+    slopes = np.array([[2.0, 0.5], [-1.0, 3.0]])
+    moved = beside_more(4 + summits @ slopes, summits, more)
+    np.testing.assert_allclose([one.mean(axis=0) for one in moved], [4 + more.mean(axis=0) @ slopes, more.mean(axis=0)])
+
+
+def test_strips_beside_no_others_are_not_moved():
+    full, summits, _ = two_samples(0)
+    moved, same = beside_more(full, summits, summits)
+    np.testing.assert_allclose(same, summits)
+    np.testing.assert_allclose(moved.mean(axis=0), full.mean(axis=0))
+    np.testing.assert_allclose(moved, full, rtol=0.05)  # but for the freedom that the slopes take
+    few = beside_more(full[:3], summits[:3], summits)
+    np.testing.assert_array_equal(few, [full[:3], summits[:3]], "three strips leave nothing for an error")
 
 
 def test_crack_lengths_follow_the_fourth_root_of_the_ratio():

@@ -72,6 +72,28 @@ def mean_ratios(
     return factors(lambda means: means, full, summits, humidities, at)
 
 
+def beside_more(full: np.ndarray, summits: np.ndarray, more: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    r"""Values of strips by both models (n, k), moved to the mean of more strips on summits (N, k), N >= n.
+
+    The regression estimator of two samples (W. G. Cochran, Sampling Techniques, 1977, ch. 12). With the mean M of all
+    strips on summits, the n among them, and the slopes b of the linear regression of full contact F on the k columns S,
+
+    .. math:: S_i' = M + \sqrt{n / N} \, (S_i - \bar S) , \quad F_i' = \bar F + (S_i' - \bar S) b + r_i ,
+
+    so that both means have the errors and the correlation that they have over the two samples. The rest r_i is that of
+    strip i from a regression without it, centred. No more than k + 1 strips have no such rest, and are not moved.
+    """
+    (n, columns), mean, average = summits.shape, summits.mean(axis=0), full.mean(axis=0)
+    if n <= columns + 1:
+        return full, summits
+    off = summits - mean
+    inverse = np.linalg.pinv(off)
+    slopes, leverage = inverse @ (full - average), np.sum(off * inverse.T, axis=1, keepdims=True)
+    rest = (full - average - off @ slopes) / (1 - leverage * n / (n - 1))
+    moved = more.mean(axis=0) + np.sqrt(n / len(more)) * off
+    return average + (moved - mean) @ slopes + rest - rest.mean(axis=0), moved
+
+
 def scatter_ratios(
     full: np.ndarray, summits: np.ndarray, humidities: np.ndarray, at: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -86,11 +108,14 @@ def scatter_ratios(
         return factors(scatter, *(np.stack([one, one**2], axis=-1) for one in logarithms), humidities, at)
 
 
-def error_of_largest(full: np.ndarray, summits: np.ndarray) -> np.ndarray:
+def error_of_largest(
+    full: np.ndarray, summits: np.ndarray, moved: tuple[np.ndarray, np.ndarray] | None = None
+) -> np.ndarray:
     r"""Relative standard error, by the strips, of the largest values after `stiction.contact.correction.Change`.
 
-    Values of the same strips by both models, (n, h) each; NaN if some are zero. ASSUME: those on summits are log-normal
-    with a known standard deviation s of the logarithm. The one that a share of `RARE` exceeds, z standard deviations
+    Values of the same strips by both models, (n, h) each, and ``moved`` by `beside_more` if the ratio of the means is
+    that of moved ones; NaN if some are zero. ASSUME: those on summits are log-normal with a known standard deviation s
+    of the logarithm. The one that a share of `RARE` exceeds, z standard deviations
     above the mean, becomes
 
     .. math:: c \, x^b \propto r \exp(b s z - b^2 s^2 / 2) ,
@@ -109,7 +134,8 @@ def error_of_largest(full: np.ndarray, summits: np.ndarray) -> np.ndarray:
     with np.errstate(divide="ignore", invalid="ignore"):
         logarithms = [np.log(values / values.mean(axis=0)) for values in (full, summits)]
         scatter = logarithms[1].std(axis=0)
-        columns = [full, summits, *(power for one in logarithms for power in (one, one**2))]
+        means = (full, summits) if moved is None else moved
+        columns = [*means, *(power for one in logarithms for power in (one, one**2))]
         return jackknife(largest, np.stack(columns, axis=1).reshape(len(full), -1))[1]
 
 

@@ -16,14 +16,19 @@ from stiction.contact.environment import Water
 from stiction.contact.full import elements
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
-from stiction.stages.contact import curves, full_contact
+from stiction.stages.contact import curves, full_contact, pair_model_error
 from stiction.stages.contact.pairs import bodies
 from stiction.stages.laws import forces
 from stiction.stages.surfaces.rough_surfaces import both
 
 #: Configuration with fewer strips than a study must have.
 FEW = merged(small.PLAN.config, {"studies": {"full_contact": {"samples": 2}}})
+#: The same in dry air, with attraction across gaps.
+DRY = {"pairs": {"b": {"humidities": ["dry"]}}, "run": {"pairs": ["b"]}, "attraction": {"reach": "all"}}
 SETTINGS = small.settings_of(full_contact, job_settings(Plan(FEW), "studies/full_contact/b"))
+SETTINGS_IN_DRY_AIR = small.settings_of(
+    full_contact, job_settings(Plan(merged(FEW, in_numbers(DRY))), "studies/full_contact/dry/b") | {"most": 0}
+)
 
 
 @cache
@@ -50,23 +55,46 @@ def test_a_sample_does_not_depend_on_the_others():
     assert alone.equals(study().isel(sample=slice(1)))
 
 
-@pytest.mark.parametrize(("accuracy", "number"), [(0.0, 9), (np.inf, 3)])
-def test_strips_are_drawn_in_groups_until_the_accuracy_or_the_last_group(monkeypatch, accuracy, number):
-    monkeypatch.setattr(full_contact, "ACCURACY", accuracy)
-    air = replace(SETTINGS, humidities=(0.92,), strips=3, groups=3)
+@pytest.mark.parametrize(("of_ratios", "of_largest", "number"), [(0, np.inf, 9), (np.inf, 0, 9), (np.inf, np.inf, 4)])
+def test_strips_are_drawn_until_both_accuracies_or_the_most(monkeypatch, of_ratios, of_largest, number):
+    monkeypatch.setattr(full_contact, "OF_RATIOS", of_ratios)
+    monkeypatch.setattr(full_contact, "OF_LARGEST", of_largest)
+    air = replace(SETTINGS, humidities=(0.92,), strips=4, most=9)
     found = full_contact.compute(small.surfaces(), "b", air)
     assert found.sizes["sample"] == number
     assert found.isel(sample=slice(2)).equals(study().isel(sample=slice(2)).sel(humidity=[0.92]))
 
 
+def test_means_in_dry_air_are_those_beside_the_summits_of_more_strips():
+    few = replace(SETTINGS_IN_DRY_AIR, strips=6)
+    alone, beside = (full_contact.compute(small.surfaces(), "b", replace(few, on_summits=n)) for n in (0, 60))
+    assert beside.drop_vars("more").equals(alone)
+    assert_array_equal(beside.more[:6, 0], np.stack([alone.summit_energy, alone.summit_pull_off], axis=-1)[:, 0])
+    _, summits = full_contact.moved_models(beside)
+    np.testing.assert_allclose(summits.mean(axis=0), beside.more.mean("more_samples"))
+    assert_array_equal(full_contact.moved_models(alone)[1, ..., 0], alone.summit_energy)
+    air = pair_model_error.Settings((0.0,))
+    ratio, plain = (float(pair_model_error.compute(each, air).energy_ratio[0]) for each in (beside, alone))
+    full, summits = full_contact.moved_models(beside).mean(axis=1)[:, 0, 0]
+    assert ratio == pytest.approx(full / summits)
+    assert ratio != pytest.approx(plain, rel=1e-3)
+
+
+def test_strips_whose_summits_do_not_resist_are_not_among_the_more(monkeypatch):
+    wanted = replace(SETTINGS_IN_DRY_AIR, strips=2, on_summits=12)
+    all_resist = full_contact.compute(small.surfaces(), "b", wanted).more
+    weakest = all_resist[:, 0, 1].min()
+    monkeypatch.setattr(full_contact.forcelaw, "resists", lambda force: -force.min() > 1.0001 * float(weakest))
+    assert full_contact.compute(small.surfaces(), "b", wanted).sizes["more_samples"] == len(all_resist) - 1 == 11
+
+
 def test_only_an_unstated_number_of_strips_in_dry_air_grows():
-    dry = {"pairs": {"b": {"humidities": ["dry"]}}, "run": {"pairs": ["b"]}, "attraction": {"reach": "all"}}
 
-    def groups(studies, file="dry/b"):
-        return job_settings(Plan(load(dry | studies)), f"studies/full_contact/{file}").get("groups", 1)
+    def most(studies, file="dry/b"):
+        return job_settings(Plan(load(DRY | studies)), f"studies/full_contact/{file}").get("most", 0)
 
-    assert groups({}) == full_contact.MOST_GROUPS
-    assert groups({"studies": {"full_contact": {"samples": 30}}}) == groups({}, "across/b") == 1
+    assert most({}) == full_contact.MOST
+    assert most({"studies": {"full_contact": {"samples": 30}}}) == most({}, "across/b") == 0
 
 
 def test_both_models_agree_in_wet_air_and_not_in_dry_air():

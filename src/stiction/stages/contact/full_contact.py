@@ -2,17 +2,19 @@
 
 Both models have the same forces. Force laws without attraction across gaps are compared without it, others with it.
 
-In dry air, where predictions are corrected, strips are drawn in groups until their error counts little.
+In dry air, where predictions are corrected, strips are drawn until their error counts little, and the sum over summits
+of more strips says how far their means are from those of all.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from stiction.analysis.model_error import error_of_largest
+from stiction.analysis.model_error import beside_more, error_of_largest, mean_ratios
 from stiction.analysis.plasticity import ONSET
 from stiction.config.reading import is_stated
 from stiction.contact import forcelaw, solids
@@ -28,9 +30,13 @@ from stiction.stages.contact.curves import force_curves
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
 from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
-#: Relative standard error, by the strips, of the values that one in 1000 exceeds, at which no more strips are drawn.
-#: ASSUME: beyond this number of groups of strips, accuracy costs too much: a strip takes 0.4 to 14 s.
-ACCURACY, MOST_GROUPS = 0.1, 4
+#: Relative standard errors, by the strips, of the ratios of the means, and of the values that one in 1000 exceeds, at
+#: which no more strips are drawn.
+OF_RATIOS, OF_LARGEST = 0.03, 0.1
+#: ASSUME: beyond this number of strips, accuracy costs too much: one takes 0.4 to 14 s.
+MOST = 120
+#: Strips in dry air whose sum over summits is computed, 7 ms each.
+ON_SUMMITS = 500
 #: Variables of a sample at a humidity: unit and meaning.
 _VARIABLES = {
     "adhesion_energy": ("J m-2", "e under full elastic contact"),
@@ -52,11 +58,12 @@ class Settings(pairs.Settings):
     water: Water  #: with the attraction across gaps, if there is any
     humidities: tuple[float, ...]  #: [-]
     strips: int  #: number of pairs of strips: the first samples of stage contact
-    groups: int = 1  #: most groups of so many strips
+    most: int = 0  #: strips until which more are drawn, half as many at a time, while errors count
+    on_summits: int = 0  #: number of strips, these among them, whose sum over summits corrects means
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
-    """Separate every strip at every humidity, by both models of the contact, until `ACCURACY` or the last group.
+    """Separate every strip at every humidity, by both models, until they are accurate enough or the most strips.
 
     Raises
     ------
@@ -64,19 +71,26 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
         If the grid is too coarse, or a strip does not come to rest.
     """
     hardness = solids.softer_hardness(*bodies(settings))
-    rows, most = [], settings.groups * settings.strips
+    more = _on_summits(surfaces, pair, settings) if settings.on_summits else None
+    spacing = surface_pair(surfaces, "NG", settings).spacing
+    study_of = partial(layout, humidities=settings.humidities, spacing=spacing, more=more)
+    rows, most = [], max(settings.most, settings.strips)
+    tried = range(settings.strips, most, max(settings.strips // 2, 1))
     for space, heights, cases in strips(surfaces, pair, replace(settings, strips=most)):
         rows.append([_both_models((space, heights), case, hardness) for case in cases])
-        if len(rows) in range(settings.strips, most, settings.strips) and _are_enough(np.array(rows)):
+        if len(rows) in tried and _are_enough(study_of(np.array(rows))):
             break
-    return layout(np.array(rows), settings.humidities, surface_pair(surfaces, "NG", settings).spacing)
+    return study_of(np.array(rows))
 
 
-def _are_enough(values):
-    """Whether energies and largest attractions are known to `ACCURACY`, from variables (n, n_humidity, n_variables)."""
-    energy, pull_off, *summits = np.moveaxis(values[..., :4], -1, 0)
-    pairs = zip((energy, pull_off), summits, strict=True)
-    return all(np.all(error_of_largest(full, sums) <= ACCURACY) for full, sums in pairs)
+def _are_enough(study):
+    """Whether the energies and the largest attractions of a study are known to `OF_RATIOS` and `OF_LARGEST`."""
+    moved = np.moveaxis(moved_models(study), -1, 0)
+    for (at, *models), means in zip((energies(study), pull_offs(study)), moved, strict=True):
+        ratios, errors = mean_ratios(*means, at, at)
+        if np.any(errors > OF_RATIOS * ratios) or not np.all(error_of_largest(*models, means) <= OF_LARGEST):
+            return False
+    return True
 
 
 class InAir(NamedTuple):
@@ -86,28 +100,49 @@ class InAir(NamedTuple):
     curve: tuple[np.ndarray, np.ndarray]  #: distances [m] and forces [Pa]
     beyond: float  #: energy beyond the last distance [J m⁻²]
 
+    @property
+    def on_summits(self) -> tuple[float, float]:
+        """Energy e [J m⁻²] and largest attraction f_max [Pa] of the sum over summits."""
+        return forcelaw.adhesion_energy(*self.curve, self.beyond), forcelaw.extremum(*self.curve)[1]
+
 
 def strips(
     surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings
 ) -> Iterator[tuple[HalfSpace, np.ndarray, list[InAir]]]:
     """Strips one after the other: elements, heights z (n1, n2) [m], and what acts on them at each humidity."""
     drawn = surface_pair(surfaces, "NG", settings)
-    streams, materials = streams_of_sides(settings.seed, pair), bodies(settings)
+    streams = streams_of_sides(settings.seed, pair)
+    space, airs = _airs(surfaces, pair, settings, settings.strips)
+    for k in progress(range(settings.strips), "strips"):
+        yield space, drawn.draw(*streams(k)), [of_strip(k) for of_strip in airs]
+
+
+def _airs(surfaces, pair, settings, number):
+    """Elements of a strip, and at each humidity what acts on each of a number of strips."""
+    drawn, materials = surface_pair(surfaces, "NG", settings), bodies(settings)
     shape = tuple(len(range(0, points, drawn.every)) for points in drawn.beam.grid.shape)
     space = HalfSpace(shape, drawn.spacing, solids.composite_modulus(*materials))
     media = [settings.van_der_waals if settings.water.film(each)[0] else "dry" for each in settings.humidities]
     summits = {
-        medium: contact.compute(surfaces, pair, "NG", replace(settings, van_der_waals=medium), range(settings.strips))
+        medium: contact.compute(surfaces, pair, "NG", replace(settings, van_der_waals=medium), range(number))
         for medium in dict.fromkeys(media)
     }
-    airs = [
+    return space, [
         _in_air(
             summits[medium], humidity, settings.water.at(humidity), solids.attraction_between(*materials, medium), space
         )
         for medium, humidity in zip(media, settings.humidities, strict=True)
     ]
-    for k in progress(range(settings.strips), "strips"):
-        yield space, drawn.draw(*streams(k)), [of_strip(k) for of_strip in airs]
+
+
+def _on_summits(surfaces, pair, settings):
+    """Energies e [J m⁻²] and largest attractions f_max [Pa] of strips whose summits resist (N, n_humidity, 2)."""
+    number = max(settings.on_summits, settings.most, settings.strips)
+    _, airs = _airs(surfaces, pair, settings, number)
+    drawn = ([of_strip(k) for of_strip in airs] for k in range(number))
+    return np.array(
+        [[one.on_summits for one in each] for each in drawn if all(forcelaw.resists(one.curve[1]) for one in each)]
+    )
 
 
 def _in_air(summits, humidity, water, attraction, space) -> Callable[[int], InAir]:
@@ -142,11 +177,10 @@ def _both_models(strip, case, hardness):
     pressure = found.closed.pressure
     touching = pressure[pressure > 0] / hardness
     shares = [float((touching > level).sum() / max(touching.size, 1)) for level in (ONSET, 1)]
-    summits = forcelaw.adhesion_energy(*case.curve, case.beyond), forcelaw.extremum(*case.curve)[1]
     return [
         found.adhesion_energy,
         found.pull_off,
-        *summits,
+        *case.on_summits,
         touching.size / pressure.size,
         *shares,
         found.closed.residual,
@@ -154,15 +188,19 @@ def _both_models(strip, case, hardness):
     ]
 
 
-def layout(values: np.ndarray, humidities: Sequence[float], spacing: float) -> xr.Dataset:
+def layout(
+    values: np.ndarray, humidities: Sequence[float], spacing: float, more: np.ndarray | None = None
+) -> xr.Dataset:
     """Variables (n, n_humidity, n_variables) of every sample at every humidity, in the order of this module [SI].
 
-    Spacing of the elements [m].
+    Spacing of the elements [m], and energies and largest attractions of more samples on summits (N, n_humidity, 2).
     """
     columns = {
         name: (("sample", "humidity"), values[..., i], {"units": unit, "long_name": meaning})
         for i, (name, (unit, meaning)) in enumerate(_VARIABLES.items())
     }
+    if more is not None:
+        columns["more"] = ("more_samples", "humidity", "quantity"), more, {"units": "SI"}
     return xr.Dataset(
         columns | {"spacing": ((), spacing, {"units": "m"})},
         coords={
@@ -180,6 +218,19 @@ def energies(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 def pull_offs(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Humidities (h,) [-], and largest attractions f_max of full contact and of the sum over summits, (n, h) [Pa]."""
     return study.humidity.values, study.pull_off.values, study.summit_pull_off.values
+
+
+def moved_models(study: xr.Dataset) -> np.ndarray:
+    """Energies and largest attractions by both models, whose means are compared (2, n, n_humidity, 2) [J m⁻²], [Pa].
+
+    They are moved to the mean of more strips on summits, where those were computed.
+    """
+    names = ("adhesion_energy", "pull_off"), ("summit_energy", "summit_pull_off")
+    models = np.array([np.stack([study[name].values for name in of_model], axis=-1) for of_model in names])
+    if "more" not in study:
+        return models
+    of_humidities = zip(*np.moveaxis(models, 2, 1), study.more.transpose("humidity", ...).values, strict=True)
+    return np.stack([beside_more(*each) for each in of_humidities], axis=2)
 
 
 def settings_of(plan: Any, at: At) -> dict[str, Any]:
@@ -204,8 +255,8 @@ def _settings_across(plan, at):
 
 def _settings_in_dry_air(plan, at):
     """Settings with attraction across gaps in dry air alone. A number of strips that is not stated may grow."""
-    more = {} if is_stated(plan.config, "studies", "full_contact") else {"groups": MOST_GROUPS}
-    return _settings_across(plan, at) | {"humidities": [0.0]} | more
+    more = {} if is_stated(plan.config, "studies", "full_contact") else {"most": MOST}
+    return _settings_across(plan, at) | {"humidities": [0.0], "on_summits": ON_SUMMITS} | more
 
 
 def _stage(name, folder, settings, forces):

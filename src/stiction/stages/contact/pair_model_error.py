@@ -24,15 +24,16 @@ def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Ratios and powers of energies and of largest attractions, and the factor of crack lengths, with their errors."""
     computed, *energies = full_contact.energies(study)
     _, *pull_offs = full_contact.pull_offs(study)
+    of_energy, of_pull_off = np.moveaxis(full_contact.moved_models(study), -1, 0)
     at = np.sort(settings.humidities)
     airs = at * settings.condenses
     given = computed, airs
     ratios = {
-        "energy_ratio": mean_ratios(*energies, *given),
-        "pull_off_ratio": mean_ratios(*pull_offs, *given),
+        "energy_ratio": mean_ratios(*of_energy, *given),
+        "pull_off_ratio": mean_ratios(*of_pull_off, *given),
         "energy_power": scatter_ratios(*energies, *given),
         "pull_off_power": scatter_ratios(*pull_offs, *given),
-        "length_factor": length_factors(*energies, *given),
+        "length_factor": length_factors(*of_energy, *given),
     }
     return layout(ratios, at, at[np.isin(airs, computed)], study.sizes["sample"], settings.applied)
 

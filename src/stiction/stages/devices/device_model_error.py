@@ -47,9 +47,7 @@ def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.n
 
 def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
     """Factor of every length, or of the force, at the humidities of a device."""
-    computed, *energies = full_contact.energies(study)
-    _, *pull_offs = full_contact.pull_offs(study)
-    models = [np.stack(of_model, axis=-1) for of_model in zip(energies, pull_offs, strict=True)]
+    computed, models = study.humidity.values, full_contact.moved_models(study)
     device, at = settings.device, settings.airs
     shapes = device.opening.shapes if device else (FORCE,)
     of_shapes = [
