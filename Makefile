@@ -54,7 +54,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow nightly lint libraries format cluster mutants bench peers times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow nightly lint libraries format slurm cluster mutants bench peers times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -167,11 +167,13 @@ format: $(VENV)/ready
 	$(BIN)/ruff check --fix src tests workflow docs examples
 	$(BIN)/snakefmt Snakefile workflow
 
-# A SLURM cluster on this machine; the test is skipped, with the reason, if the daemons of SLURM are not installed.
-cluster: $(VENV)/ready
+slurm: $(VENV)/ready
 	-$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock "snakemake-executor-plugin-slurm>=2.8,<3"
+
+# A SLURM cluster on this machine; the test is skipped, with the reason, if the daemons of SLURM are not installed.
+cluster: slurm
 	$(BIN)/python -m stiction.run.warmup
-	$(BIN)/python -m pytest -m cluster -rs tests/workflow/test_slurm.py $(ARGS)
+	$(BIN)/python -m pytest -m "cluster and not nightly" -rs tests/workflow/test_slurm.py $(ARGS)
 
 # Makes one small error at a time in a copy of the code, and names those that no test detects.
 # ARGS: modules or folders such as devices.risk, --number 600, --seed 0, --list.

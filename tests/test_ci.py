@@ -17,7 +17,6 @@ MARKS = [mark.partition(":")[0] for mark in SETTINGS["markers"]]
 #: Stands for Python: notes what it is asked, and ends with the status of the first line whose words are part of that.
 PYTHON = """#!/usr/bin/env bash
 [ "$1" = -V ] && echo "Python 3.14.0"
-[ "$1" = -c ] && [[ "$0" == *.venv/* ]] && exit 1
 [ "$2" = pip ] && echo "$0" >> installed
 [ "$2" = pytest ] || exit 0
 call=$(printf '%s\\t' "$0" "$@")
@@ -27,6 +26,7 @@ while read -r status words; do
   if [[ "$0 $*;" == *"$words"* ]]; then
     [ "$status" = hang ] && exec sleep 20
     [ "$status" = meet ] && exec timeout 20 bash -c 'until grep -qs newest asked installed; do sleep 0.1; done'
+    [ "$status" = there ] && exec test -e .venv/newest/ready
     [ "$status" = skip ] && echo "2 passed, 1 skipped in 0.10s" && exit
     exit "$status"
   fi
@@ -36,7 +36,7 @@ WORKERS = ["--numprocesses", "auto", "--maxprocesses", "4", "--dist", "loadfile"
 #: Words of the call of each part, which ends with a semicolon.
 PARTS = {
     "fast tests": " ".join([".venv/bin/python -m pytest", *WORKERS]) + ";",
-    "tests with SLURM": "-m cluster",
+    "tests with SLURM": "-m cluster and not nightly",
     "tests in a browser": "-m browser",
     "fast tests on Python 3.14.0": "newest/bin/python -m pytest",
     "slow tests": "-m slow",
@@ -92,7 +92,7 @@ def test_every_test_is_in_a_part_of_continuous_integration_or_also_of_that_of_th
     status, printed, asked = run(project, words)
     assert status == 0
     assert "FAILED" not in printed
-    assert len(asked) == len(PARTS) + nightly
+    assert len(asked) == len(PARTS) + 2 * nightly
     for present in itertools.product([False, True], repeat=len(MARKS)):
         marks = dict(zip(MARKS, present, strict=True))
         assert nightly or marks["nightly"] or any(eval(marks_of(call), {}, marks) for call in asked), marks
@@ -125,8 +125,15 @@ def test_the_smoke_run_on_another_python_must_pass(project):
     assert status == 1
     assert printed.splitlines()[-1] == "FAILED: smoke run on Python 3.14.0"
     assert len(asked) == len(PARTS)
-    ignoring = [PARTS["fast tests on Python 3.14.0"] in " ".join(call) for call in asked if "--ignore" in call]
-    assert ignoring == [True]
+    ignored = [call[call.index("--ignore") :] for call in asked if "--ignore" in call]
+    assert ignored == [["--ignore", "tests/workflow", "--ignore", "tests/stages"]]
+
+
+def test_tests_of_the_stages_run_on_another_python_at_night(project):
+    _, _, asked = run(project, [".ci/run", "nightly"])
+    assert [".venv/newest" in call[0] for call in asked if call[-2:] == ["--no-loadscope-reorder", "tests/stages"]] == [
+        True
+    ]
 
 
 @pytest.mark.parametrize("part", PARTS)
@@ -147,18 +154,20 @@ def test_a_part_that_cannot_run_here_is_named_last_with_the_reason(project, part
     assert not any(PARTS[part] in " ".join(call) for call in asked)
 
 
-def test_the_output_of_parts_that_run_beside_another_python_follows_in_one_piece(project):
-    status, printed, _ = run(project, [".ci/run"], f"meet {PARTS['tests with SLURM']}")
-    assert status == 0, "SLURM waits for the other Python"
+@pytest.mark.parametrize("part", ["fast tests", "slow tests"])
+def test_the_output_of_parts_that_run_beside_the_first_and_the_slow_tests_follows_in_one_piece(project, part):
+    status, printed, _ = run(project, [".ci/run"], f"meet {PARTS[part]}")
+    assert status == 0, "these tests wait for the other Python"
     heads = [line.removeprefix("== ") for line in printed.splitlines() if line.startswith("== ")]
-    order = ["fast tests on Python 3.14.0", "smoke run on Python 3.14.0", "tests with SLURM", "tests in a browser"]
+    order = ["fast tests", "slow tests", "fast tests on Python 3.14.0", "smoke run on Python 3.14.0"]
+    order += ["tests with SLURM", "tests in a browser"]
     assert [head for head in heads if head in order] == order
 
 
-def test_the_libraries_of_another_python_are_installed_beside_the_first_tests(project):
+def test_environments_are_complete_before_tests_start(project):
     (project / ".venv" / "newest" / "ready").unlink()
-    status, _, asked = run(project, [".ci/run"], f"meet {PARTS['fast tests']}")
-    assert status == 0, "the first tests wait for these libraries"
+    status, _, asked = run(project, [".ci/run"], f"there {PARTS['fast tests']}")
+    assert status == 0, "the first tests look for both environments"
     assert len(asked) == len(PARTS)
 
 
@@ -169,13 +178,13 @@ def test_all_parts_share_runs_in_a_folder_that_is_empty_before_and_gone_after(pr
     assert not Path(*folders).exists()
 
 
-def test_parts_that_run_beside_another_python_must_reach_their_end(project):
+def test_parts_that_run_beside_others_must_reach_their_end(project):
     script = project / ".ci" / "run"
-    script.write_text(script.read_text().replace("waiting() {", "waiting() { kill -KILL $BASHPID;"))
+    script.write_text(script.read_text().replace("beside() {", "beside() { kill -KILL $BASHPID;"))
     status, printed, asked = run(project, [".ci/run"])
     assert status == 1
-    assert printed.splitlines()[-1] == "FAILED: tests with SLURM and in a browser (ended early)"
-    assert len(asked) == len(PARTS) - len(NEEDED)
+    assert printed.splitlines()[-1] == ("FAILED: tests on the newest Python, with SLURM and in a browser (ended early)")
+    assert len(asked) == 2
 
 
 def test_a_part_that_is_missing_fails_the_whole(project):

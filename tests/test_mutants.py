@@ -69,6 +69,7 @@ def test_the_data_of_a_drawing_are_changed():
     assert {mutant.old for mutant in mutants.mutants_of("f", b"ax.plot(x, 100 * y, lw=2)")} >= {"100 * y", "100"}
 
 
+@pytest.mark.slow
 def test_every_module_has_tests():
     rounds = {module: mutants.rounds(module) for module in mutants.modules()}
     assert not [module for module, found in rounds.items() if not found]

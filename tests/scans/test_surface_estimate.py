@@ -240,6 +240,7 @@ def test_a_scan_without_plateau_gives_a_smoother_surface_and_says_so():
     assert "files: tiny.spm cannot give a spectrum: 8 rings are needed" in refused([tiny])
 
 
+@pytest.mark.slow
 def test_scans_without_plateau_give_smoother_surfaces_than_they_are_parts_of():
     maps = [SURFACES["B2"].on(grid(SIDE)).draw(stream(1, "parts", k)).astype(float) for k in range(4)]
     corners = list(product(range(0, 436, 100), repeat=2))
@@ -460,7 +461,7 @@ def test_gaussian_scans_are_never_refused():
         np.testing.assert_allclose(density.quantile_of_normal(1.0), 1.0, atol=0.1)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_none_of_forty_gaussian_scans_is_refused_and_all_have_a_density_near_their_moments():
     settings = Settings()
     nearest = [nearest_density(inspect([scan], settings)) for scan in gaussian(SIDE, 40)]

@@ -240,8 +240,11 @@ def finished(run, folder, patience=2 * PATIENCE):
     return log
 
 
-def test_the_smoke_run_on_a_cluster_gives_the_bytes_of_a_local_run_even_if_a_job_is_cancelled(cluster, smoke, tmp_path):
-    run = cluster.snakemake(tmp_path, [SMOKE], targets=["all"])
+@pytest.mark.parametrize("target", ["table_3", pytest.param("all", marks=pytest.mark.nightly)])
+def test_the_smoke_run_on_a_cluster_gives_the_bytes_of_a_local_run_even_if_a_job_is_cancelled(
+    cluster, smoke, tmp_path, target
+):
+    run = cluster.snakemake(tmp_path, [SMOKE], targets=[target])
     cancelled = wait_for(lambda: [job for job, *_ in cluster.jobs("RUNNING")], "a job")[0]
     cluster.cancel(cancelled)
     log = finished(run, tmp_path, 8 * PATIENCE)
@@ -250,7 +253,9 @@ def test_the_smoke_run_on_a_cluster_gives_the_bytes_of_a_local_run_even_if_a_job
     ran = [rule for *_, rule in cluster.jobs("COMPLETED")]
     assert any("contact_chunk" in rule for rule in ran), "the chunks must have run on the cluster"
     assert sum("beams" in rule for rule in ran) == 1, "all beams are a group, which is submitted as one job"
-    assert datasets(tmp_path) == datasets(smoke)
+    found, expected = datasets(tmp_path), datasets(smoke)
+    assert found == {name: expected[name] for name in found}
+    assert len(found) == len(expected) if target == "all" else len(found) > 10
 
 
 def test_nothing_is_lost_when_snakemake_is_killed_and_started_again(cluster, configs, local, tmp_path):

@@ -48,7 +48,9 @@ def change(strips, length, width, draw=DRAW):
     """Change of the largest attraction of strips with a length [m] and a width [µm]."""
     results, job = study(width)
     settings = small.settings_of(full_contact, job.settings)
-    settings = replace(settings, strips=strips, sampling=replace(settings.sampling, strip_length=length))
+    settings = replace(
+        settings, strips=strips, most=0, on_summits=0, sampling=replace(settings.sampling, strip_length=length)
+    )
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(EquivalentSurface, "draw", draw)
         found = full_contact.compute(both(results.inputs(job)), "b", settings)
@@ -56,7 +58,7 @@ def change(strips, length, width, draw=DRAW):
     return Change(ratio, ratio_error=error / ratio)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_full_contact_changes_tips_with_a_rounded_edge_less_than_parallel_strips_and_does_change_them():
     slope = 0.026
     tips = change(10, np.sqrt(2 * RADIUS * DEPTH) + DEPTH / slope, 20, tip(slope))

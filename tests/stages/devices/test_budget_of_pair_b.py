@@ -23,7 +23,7 @@ from stiction.stages.devices import uncertain_inputs as inputs
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.44, 0.67]}
 C1 |= {"uncertainty": {"thickness_um": 0.05, "gap_um": 0.3, "young_modulus_GPa": 5, "scan_um": 10}}
 SOLIDS = {"young_modulus_GPa": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20}
-PLAN = Plan(load({"devices": {"C1": C1}, "contact": {"samples": 300}, "chaos": {"order": 4}}))
+PLAN = Plan(load({"devices": {"C1": C1}, "contact": {"samples": 200}, "chaos": {"order": 4}}))
 #: Slopes d ln l_s / dx by humidity, by central differences on 5000 samples of contact and 1000 beams; those of rms,
 #: dimensions and Young's modulus are logarithmic.
 KNOWN = {

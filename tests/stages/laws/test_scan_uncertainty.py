@@ -214,7 +214,7 @@ def predicted(errors):
     return found.error.sel(surface="B2").values
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_one_scan_of_b2_leaves_the_known_errors():
     surface = SURFACES["B2"]
     model = SurfaceModel(surface.density, surface.spectrum, 1e-6, surface.rms, Frame((500, 500), (1e-5, 1e-5)))
@@ -229,7 +229,7 @@ def test_one_scan_of_b2_leaves_the_known_errors():
     assert_allclose(found.change_error_scans[0], [0.41, 0.24, 0.04], rtol=0.3)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_errors_that_scans_predict_are_the_known_ones():
     of_scans = [predicted(scan_uncertainty.errors_of(found, QUANTITIES)) for found in estimates()]
     *_, by_spectrum, total = np.mean(of_scans, axis=0)

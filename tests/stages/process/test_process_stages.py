@@ -142,6 +142,7 @@ def test_the_margin_at_the_best_setting_is_that_of_other_samples_on_its_surface(
     assert abs(found - promised + 10 * error) > 3 * error  # control
 
 
+@pytest.mark.slow
 def test_the_band_has_all_errors_and_shrinks_with_those_of_the_settings(etched):
     curve = etched.margins("Bump")
     assert np.all(curve.law_error > 0)
@@ -153,6 +154,7 @@ def test_the_band_has_all_errors_and_shrinks_with_those_of_the_settings(etched):
     assert np.all(np.einsum("nqq->nq", known.covariance_at(known.settings)) < 1e-3)
 
 
+@pytest.mark.slow
 def test_what_serves_all_devices_serves_each_and_has_the_smallest_margin(etched):
     found = etched.settings()
     assert list(found.who.values) == ["Bump", "Small", recommended.ALL]

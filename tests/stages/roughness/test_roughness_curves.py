@@ -112,6 +112,7 @@ def test_smooth_stoppers_in_dry_air_are_held_more_than_rough_ones_and_the_page_s
     assert covering(figure) == []
 
 
+@pytest.mark.slow
 def test_surfaces_that_no_water_wets_are_held_at_any_humidity_as_in_dry_air():
     wax = {"materials": {"Wax": {"contact_angle_deg": 100}}}
     wax |= {"surfaces": dict.fromkeys(("B2", "Sub1"), {"material": "Wax"})}
