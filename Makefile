@@ -167,6 +167,7 @@ format: $(VENV)/ready
 	$(BIN)/ruff check --fix src tests workflow docs examples
 	$(BIN)/snakefmt Snakefile workflow
 
+# The plugin of Snakemake.
 slurm: $(VENV)/ready
 	-$(BIN)/python -m pip install --quiet --disable-pip-version-check -c requirements.lock "snakemake-executor-plugin-slurm>=2.8,<3"
 

@@ -147,6 +147,25 @@ def test_ratios_beside_more_strips_on_summits_have_the_error_of_repeated_studies
     assert np.all(scatter < 0.7 * plain[:, 0].std(axis=0, ddof=1)), "control: the ratio of 20 strips alone"
 
 
+@pytest.mark.parametrize(
+    ("power", "own"), [(1.3, 0.1), (1.0, 0.2), (0.6, 0.1)]
+)  # the first is the unsafe side of a line
+def test_bounds_beside_more_strips_hold_whether_full_contact_scatters_more_or_less(power, own):
+    truth = np.exp((power**2 - 1) * 0.5**2 / 2 + own**2 / 2)
+
+    def study(seed):
+        rng = np.random.default_rng(seed)
+        logarithms = 0.5 * rng.standard_normal((500, 2))
+        full = np.exp(power * logarithms + own * rng.standard_normal((500, 2)))
+        return ratios_of(*beside_more(full[:40], np.exp(logarithms)[:40], np.exp(logarithms)))[:, 0]
+
+    ratios, errors = np.transpose([study(seed) for seed in range(300)])
+    assert np.mean(ratios + 1.645 * errors > truth) > 0.86
+    assert np.mean(ratios > truth) < 0.6, (
+        "control: without its error the ratio is too small in nearly half of the studies"
+    )
+
+
 def test_means_beside_more_strips_are_exact_where_full_contact_follows_from_summits():
     _, summits, more = two_samples(0)
     slopes = np.array([[2.0, 0.5], [-1.0, 3.0]])
@@ -160,8 +179,9 @@ def test_strips_beside_no_others_are_not_moved():
     np.testing.assert_allclose(same, summits)
     np.testing.assert_allclose(moved.mean(axis=0), full.mean(axis=0))
     np.testing.assert_allclose(moved, full, rtol=0.05)  # but for the freedom that the slopes take
-    few = beside_more(full[:3], summits[:3], summits)
-    np.testing.assert_array_equal(few, [full[:3], summits[:3]], "three strips leave nothing for an error")
+    _, _, more = two_samples(0)
+    few = beside_more(full[:19], summits[:19], more)
+    np.testing.assert_array_equal(few, [full[:19], summits[:19]], "19 strips say too little about two slopes")
 
 
 def test_crack_lengths_follow_the_fourth_root_of_the_ratio():

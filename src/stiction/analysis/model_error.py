@@ -16,6 +16,9 @@ from stiction.estimates import jackknife
 
 #: Share of the strips that exceed what `error_of_largest` is about.
 RARE = 1e-3
+#: ASSUME: fewer strips for each slope of a regression say too little about it. With 4 in all its error was a hundred
+#: times that without it, or more (0.8 nm rms in dry air).
+STRIPS_PER_SLOPE = 10
 
 
 def factors(
@@ -81,10 +84,10 @@ def beside_more(full: np.ndarray, summits: np.ndarray, more: np.ndarray) -> tupl
     .. math:: S_i' = M + \sqrt{n / N} \, (S_i - \bar S) , \quad F_i' = \bar F + (S_i' - \bar S) b + r_i ,
 
     so that both means have the errors and the correlation that they have over the two samples. The rest r_i is that of
-    strip i from a regression without it, centred. No more than k + 1 strips have no such rest, and are not moved.
+    strip i from a regression without it, centred. Fewer than `STRIPS_PER_SLOPE` k strips are not moved.
     """
     (n, columns), mean, average = summits.shape, summits.mean(axis=0), full.mean(axis=0)
-    if n <= columns + 1:
+    if n < STRIPS_PER_SLOPE * columns:
         return full, summits
     off = summits - mean
     inverse = np.linalg.pinv(off)
@@ -115,8 +118,7 @@ def error_of_largest(
 
     Values of the same strips by both models, (n, h) each, and ``moved`` by `beside_more` if the ratio of the means is
     that of moved ones; NaN if some are zero. ASSUME: those on summits are log-normal with a known standard deviation s
-    of the logarithm. The one that a share of `RARE` exceeds, z standard deviations
-    above the mean, becomes
+    of the logarithm. The one that a share of `RARE` exceeds, z standard deviations above the mean, becomes
 
     .. math:: c \, x^b \propto r \exp(b s z - b^2 s^2 / 2) ,
 

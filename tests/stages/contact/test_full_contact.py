@@ -7,6 +7,7 @@ import small
 from numpy.testing import assert_array_equal
 from plans import job_settings
 
+from stiction.analysis import model_error
 from stiction.analysis.model_error import interpolation_error, mean_ratios
 from stiction.config.cases import case_id, in_numbers
 from stiction.config.files import load
@@ -65,7 +66,8 @@ def test_strips_are_drawn_until_both_accuracies_or_the_most(monkeypatch, of_rati
     assert found.isel(sample=slice(2)).equals(study().isel(sample=slice(2)).sel(humidity=[0.92]))
 
 
-def test_means_in_dry_air_are_those_beside_the_summits_of_more_strips():
+def test_means_in_dry_air_are_those_beside_the_summits_of_more_strips(monkeypatch):
+    monkeypatch.setattr(model_error, "STRIPS_PER_SLOPE", 3)
     few = replace(SETTINGS_IN_DRY_AIR, strips=6)
     alone, beside = (full_contact.compute(small.surfaces(), "b", replace(few, on_summits=n)) for n in (0, 60))
     assert beside.drop_vars("more").equals(alone)

@@ -59,11 +59,11 @@ class Settings(pairs.Settings):
     humidities: tuple[float, ...]  #: [-]
     strips: int  #: number of pairs of strips: the first samples of stage contact
     most: int = 0  #: strips until which more are drawn, half as many at a time, while errors count
-    on_summits: int = 0  #: number of strips, these among them, whose sum over summits corrects means
+    on_summits: int = 0  #: number of strips on summits, these among them, to whose mean the others are moved
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
-    """Separate every strip at every humidity, by both models, until they are accurate enough or the most strips.
+    """Separate every strip at every humidity, by both models, until `_are_enough` or the most strips are drawn.
 
     Raises
     ------
