@@ -1,8 +1,11 @@
 """Results that planning keeps between runs."""
 
+from types import SimpleNamespace
+
 import pytest
 
 from stiction.run import disk_cache
+from stiction.run import fingerprint as fingerprints
 from stiction.run.disk_cache import DiskCache, SharedCache
 from stiction.run.fingerprint import fingerprint
 
@@ -73,6 +76,18 @@ def test_fingerprints_are_the_same_with_and_without_memory_and_follow_the_conten
         assert found[-1] == found[-2] == fingerprint(script)
     assert found[0]["script.py"] != found[2]["script.py"]
     assert found[0]["stiction.streams"] == found[2]["stiction.streams"]
+
+
+def test_one_version_of_python_does_not_read_what_another_one_kept(tmp_path, monkeypatch):
+    script, found = tmp_path / "script.py", []
+    script.write_text("x = 1\n")
+    for tag, hashed in (("one", "a"), ("one", "read from the file"), ("two", "b")):
+        monkeypatch.setattr(fingerprints, "sys", SimpleNamespace(implementation=SimpleNamespace(cache_tag=tag)))
+        monkeypatch.setattr(fingerprints, "_parsed", lambda _, hashed=hashed: [hashed, []])
+        remember = DiskCache(tmp_path / "kept.json")
+        found.append(fingerprint(script, remember)["script.py"])
+        remember.save()
+    assert found == ["a", "a", "b"]
 
 
 def test_what_one_folder_knows_another_one_knows_and_so_does_another_machine(tmp_path, monkeypatch):

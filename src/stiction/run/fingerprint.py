@@ -6,6 +6,7 @@ directly or through other modules. This module uses only the standard library.
 
 import ast
 import hashlib
+import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -67,7 +68,8 @@ def _name(path):
 def _read(path, _modified, remember):
     """Hash of one file, and names and files of its imported modules of the package."""
     text = path.read_bytes()
-    hashed, names = remember([_this_module(), hashlib.sha256(text).hexdigest()], lambda: _parsed(text))
+    determined_by = [_this_module(), sys.implementation.cache_tag, hashlib.sha256(text).hexdigest()]
+    hashed, names = remember(determined_by, lambda: _parsed(text))
     modules = {place: file for name in names for place, file in files_of(name).items()}
     return hashed, [(name, module) for name, module in modules.items() if name not in SILENT]
 

@@ -63,7 +63,7 @@ class Settings(pairs.Settings):
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
-    """Separate every strip at every humidity, by both models, until `_are_enough` or the most strips are drawn.
+    """Separate every strip at every humidity, by both models, until their means are accurate or the most are drawn.
 
     Raises
     ------
