@@ -10,11 +10,11 @@
 #   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes),
 #                   in runs/devices/results/
 #   make model-error    Table III under full elastic contact, after make paper (3 minutes on two cores; takes CONFIG=... too)
-#   make sealed     devices in dry nitrogen, bare and coated (12 minutes on two cores), in runs/sealed/results/
+#   make sealed     devices in dry nitrogen, bare and coated (14 minutes on two cores), in runs/sealed/results/
 #   make attraction     Table III with attraction across gaps (3 minutes on two cores), in runs/attraction/results/
 #   make asperities     Table III with other readings of an asperity, after make paper (6 minutes on two cores)
 #   make print      the paper under the reading nearest to its printed Table III, beside the base case, after make paper
-#                   (12 minutes on two cores), in runs/print/ and runs/print-finer/
+#                   (14 minutes on two cores), in runs/print/ and runs/print-finer/
 #   make supplement     baseline, sizes and shares beside the paper's statements, after make paper (1 minute), in
 #                   runs/supplement/ and runs/experiments/
 #   make pressing       how much more a pair sticks after its surfaces were pressed (2 minutes on two cores)

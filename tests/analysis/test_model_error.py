@@ -13,6 +13,7 @@ from stiction.analysis.model_error import (
     mean_ratios,
     rms_deviation,
     scatter_ratios,
+    tip_ratios,
 )
 
 HUMIDITIES = np.array([0.4, 0.6, 0.9])
@@ -268,3 +269,35 @@ def test_the_rms_deviation_is_that_of_the_crack_lengths():
     assert shorter == pytest.approx(0, abs=1e-12)
     _, scattering = rms_deviation(others[::-1], others)
     assert scattering > 1e-3
+
+
+# Tips
+
+
+def drawn_tips(rng, number, power=1.4, ratios=(2.0, 0.7)):
+    """Log-normal attractions of tips at one humidity and two slopes, by both models, correlated."""
+    common = rng.normal(size=(number, 1, len(ratios)))
+    own = 0.6 * common + 0.8 * rng.normal(size=common.shape)
+    return [np.exp(s * x - s**2 / 2) * scale for s, x, scale in ((0.5 * power, own, ratios), (0.5, common, 1.0))]
+
+
+def test_ratios_of_tips_are_those_of_means_and_scatters_and_errors_those_of_repeated_studies():
+    rng = np.random.default_rng(5)
+    many = tip_ratios(*drawn_tips(rng, 40_000))
+    np.testing.assert_allclose(many.means, [[2.0, 0.7]], rtol=0.03)
+    np.testing.assert_allclose(many.powers, 1.4, rtol=0.05)
+    studies = [tip_ratios(*drawn_tips(rng, 40)) for _ in range(400)]
+    exponents = [0.5 * np.maximum(one.powers, 1) for one in studies]
+    largest = [np.log(one.means) - x * ndtri(RARE) - x**2 / 2 for one, x in zip(studies, exponents, strict=True)]
+    stated = np.mean([one.error for one in studies], axis=0)
+    np.testing.assert_allclose(stated / np.std(largest, axis=0), 1, atol=0.15)
+
+
+def test_a_tip_that_holds_next_to_nothing_changes_no_scatter_of_the_others():
+    full, summits = drawn_tips(np.random.default_rng(6), 60)
+    weak = full.copy()
+    weak[0] = 1e-4
+    np.testing.assert_allclose(tip_ratios(weak, summits).powers, tip_ratios(full, summits).powers, rtol=0.05)
+    dry = 2 * [np.zeros(1)]
+    of_logarithms = [scatter_ratios(each[..., 0], summits[..., 0], *dry)[0] for each in (weak, full)]
+    assert of_logarithms[0] > 1.3 * of_logarithms[1], "control"

@@ -18,8 +18,9 @@ from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import meniscus_height
+from stiction.contact.tilt import length_of_edge
 from stiction.plan import memory
-from stiction.plan.devices import DevicePlan
+from stiction.plan.devices import MOST_POINTS, DevicePlan
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.stages.beams import pair_warnings
@@ -398,16 +399,58 @@ def test_strips_equal_to_those_of_the_main_line_share_their_contact():
     assert devices.ground("C3").name == "b_1200x30000"
 
 
-def test_the_strip_of_a_tip_holds_the_wedge_of_the_flattest_beam_and_its_film():
+def test_the_strip_of_a_tip_holds_its_edge_the_wedge_of_the_flattest_beam_and_its_film():
     devices = DevicePlan(load({"devices": {"C1": C1, "C2": C1 | {"width_um": 20}, "C3": C1 | {"gap_um": 5}}}))
     for name in ("C1", "C2", "C3"):
         tips = devices.tips(name)
         tilt = devices.tilt(tips)
-        assert 0 <= tips.length * tilt["slopes"][0] - tilt["reach_nm"] < 10 * tilt["slopes"][0] + 0.1
+        flattest, steepest = tilt["slopes"][0], tilt["slopes"][-1]
+        before = 10 * round(length_of_edge(100, tilt["reach_nm"], steepest) / 10)  # on the grid
+        assert before >= 50
+        assert 0 <= (tips.length - before) * flattest - tilt["reach_nm"] < 10 * flattest + 0.1
         film = float(meniscus_height(max(C1["humidities"]), 300))
         assert 1e9 * film + 3 * np.hypot(3.4, 0.17) <= tilt["reach_nm"] < 1.2 * (1e9 * film + 10.3)
     assert devices.tips("C1") == devices.tips("C2")._replace(width=30000)
     assert devices.tips("C3").length > 1.5 * devices.tips("C1").length
+
+
+def test_a_square_edge_has_no_radius_and_a_rounder_edge_a_longer_strip():
+    rounder, square, sharp = (
+        DevicePlan(load({"devices": {"C1": C1}, "design": design}))
+        for design in ({"edge_radius_um": 1}, {"tip_edge": "square"}, {"edge_radius_um": 0})
+    )
+    radii = [plan.tilt(plan.tips("C1"))["radius_um"] for plan in (rounder, square, sharp)]
+    assert radii == [1, 0, 0]
+    assert rounder.tips("C1").length > square.tips("C1").length == sharp.tips("C1").length
+
+
+def test_all_tips_of_a_pair_have_the_slopes_of_both_ends_the_least_width_and_the_largest_reach():
+    wide = C1 | {"width_um": 50, "gap_um": 5, "humidities": [0.9]}
+    devices = DevicePlan(load({"devices": {"C1": C1, "C2": wide}}))
+    both = [devices.tilt(devices.tips(name)) for name in ("C1", "C2")]
+    found = devices.all_tips("b")
+    slopes = [slope for tilt in both for slope in tilt["slopes"]]
+    assert found["tilt"]["slopes"][::2] == [min(slopes), max(slopes)]
+    assert found["tilt"]["slopes"][1] == pytest.approx(np.sqrt(min(slopes) * max(slopes)), rel=1e-4)
+    assert found["tilt"]["reach_nm"] == max(tilt["reach_nm"] for tilt in both)
+    assert found["beam"] == {"width_um": min(C1["width_um"], 50)}
+    assert devices.has_tips("b")
+    assert not devices.has_tips("a")
+    with pytest.raises(KeyError, match="no device has tips on pair a"):
+        devices.all_tips("a")
+
+
+@pytest.mark.parametrize(
+    ("changed", "width"), [({}, 30), ({"sampling": {"spacing_nm": 2}}, None), ({"B2": 100}, None), ({"B2": 500}, 2)]
+)
+def test_strips_for_tips_have_a_bounded_number_of_points(changed, width):
+    rms = {"surfaces": {"B2": {"rms_nm": changed.pop("B2")}}} if "B2" in changed else {}
+    found = DevicePlan(load({"devices": {"C1": C1}} | rms | changed)).all_tips("b")
+    spacing = changed.get("sampling", {"spacing_nm": 10})["spacing_nm"] / 1000
+    tilt, of_strips = found["tilt"], found["beam"]["width_um"]
+    points = tilt["reach_nm"] / 1000 / tilt["slopes"][0] * of_strips / spacing**2
+    assert points <= 1.01 * MOST_POINTS or of_strips == 2
+    assert of_strips == (width or pytest.approx(of_strips * MOST_POINTS / points, rel=0.01))
 
 
 def test_tips_reach_into_adsorbed_films_as_well():

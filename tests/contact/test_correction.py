@@ -3,7 +3,7 @@ import pytest
 from vectors import F_LIMIT, VECTORS
 
 from stiction.contact import forcelaw
-from stiction.contact.correction import NONE, Change, Correction, interpolated
+from stiction.contact.correction import NONE, Change, Correction, TipChanges, interpolated
 
 HUMIDITIES = np.array([0.44, 0.67, 0.92])
 ENERGY = np.array([0.64, 0.9, 1.0])
@@ -83,3 +83,26 @@ def test_scatter_is_never_less_than_on_summits():
 def test_the_upper_end_of_a_ratio_is_as_far_as_its_error_says():
     assert Change(2.0, 1.2, 0.1).at_most(0.95) == pytest.approx((2 * np.exp(0.1645), 1.2, 0.1, 0.0), rel=1e-3)
     assert Change(2.0).at_most(0.95) == Change(2.0)
+
+
+# Tips
+
+
+def tips(*rows, powers=1.2):
+    """Correction in dry air and at 0.44, or at 0.44 alone, with the ratios of tips at slopes of 0.01, 0.02 and 0.08."""
+    change = Change(np.array(rows), np.full(len(rows), powers), np.full((len(rows), 3), 0.1))
+    air = Change(np.ones(len(rows)))
+    return Correction(np.array([0.0, 0.44])[-len(rows) :], air, air, TipChanges(np.array([0.01, 0.02, 0.08]), change))
+
+
+def test_ratios_of_tips_are_geometric_means_between_slopes_and_stay_beyond_them():
+    found = tips([3.0, 1.0, 0.5], [0.9, 0.8, 0.7]).of_tips(0.0, [0.005, 0.01, np.sqrt(2e-4), 0.02, 0.04, 0.2])
+    np.testing.assert_allclose([one.ratio for one in found], [3, 3, np.sqrt(3), 1, np.sqrt(0.5), 0.5])
+    assert {(one.power, round(one.ratio_error, 12)) for one in found} == {(1.2, 0.1)}
+    np.testing.assert_allclose(tips([0.9, 0.8, 0.7]).of_tips(0.44, [0.02])[0].ratio, 0.8)
+
+
+def test_tips_scatter_no_less_than_on_summits_and_are_not_extrapolated():
+    assert tips([1.0, 1.0, 1.0], powers=0.7).of_tips(0.44, [0.02])[0].power == 1
+    with pytest.raises(ValueError, match="is not extrapolated to 0.5"):
+        tips([1.0, 1.0, 1.0]).of_tips(0.5, [0.02])

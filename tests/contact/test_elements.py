@@ -350,3 +350,62 @@ def test_surfaces_too_smooth_to_resist_the_adhesion_are_refused():
     smooth = (1e-3 * rough()).astype(np.float32)
     with pytest.raises((ValueError, NotConverged), match="full elastic contact .* too smooth or .* too soft"):
         separation(space_of(), smooth, adhesion_at(0.9), other_model(0.05 * NM, 1 * NM))
+
+
+# Search for states
+
+
+def separated_by(law, curve, **far):
+    """Separation of a strip with a law of its force [Pa] over the distance and the state before it, led by a curve."""
+
+    def settle(_space, _heights, distance, _adhesion, before, **_coarser):
+        force = np.full((1, 1), law(distance, before), np.float32)
+        return elements.State(distance, force.clip(0), (-force).clip(0), np.full((1, 1), distance, np.float32), 1)
+
+    whole = SimpleNamespace(energy=lambda gap: np.full(gap.shape, -1e-2))
+    return separation(None, np.zeros((1, 1), np.float32), whole, curve, settle, **far)
+
+
+def curve_of(rest, width):
+    """Curve without force at a distance, and with the largest attraction of 1 MPa a width beyond it."""
+    distances = np.linspace(-2 * NM, 8 * NM, 1001)
+    x = (distances - rest) / width
+    return distances, 1e6 * np.where(x < 0, -5 * x, -x * np.exp(1 - x))
+
+
+def law_of(distances, forces):
+    """Law of linear pieces, at distances [nm]."""
+    return lambda distance, _before: np.interp(distance, np.array(distances) * NM, forces)
+
+
+def test_a_larger_attraction_beyond_the_first_one_is_found_if_it_is_sought():
+    led = curve_of(1 * NM, 0.3 * NM)
+    two = law_of([0, 1, 1.3, 1.31, 2, 2.5, 9], [3e6, 0, -1e6, -2e5, -2e5, -2e6, 0])
+    assert separated_by(two, led, end=3 * NM).pull_off == pytest.approx(2e6, rel=0.1)
+    assert separated_by(two, led).pull_off == pytest.approx(1e6, rel=0.1), "control: nobody seeks beyond"
+
+
+def test_a_touch_of_attraction_before_repulsion_is_not_the_largest_one():
+    led = curve_of(1 * NM, 0.3 * NM)
+    touch = law_of([0, 1, 1.3, 1.31, 2, 2.5, 9], [3e6, 0, -1e3, 2e5, 2e5, -2e6, 0])
+    assert separated_by(touch, led).pull_off == pytest.approx(2e6, rel=0.1)
+
+
+def test_rest_is_found_far_from_where_another_model_has_it_if_the_end_is_that_far():
+    law, led = law_of([0, 4, 4.3, 9], [4e6, 0, -1e6, 0]), curve_of(1 * NM, 0.1 * NM)
+    found = separated_by(law, led, end=5 * NM)
+    assert found.closed.force == pytest.approx(0, abs=2e5)
+    assert found.closed.distance == pytest.approx(4 * NM, abs=0.2 * NM)
+    assert found.pull_off == pytest.approx(1e6, rel=0.1)
+    with pytest.raises(ValueError, match="finds no distance at which the surfaces come to rest"):
+        separated_by(law, led)
+
+
+def test_the_attraction_of_coarse_steps_stays_where_finer_ones_jump_off_at_once():
+    led = curve_of(1 * NM, 0.3 * NM)
+
+    def jumping(distance, before):
+        is_beside = before is not None and 0 < distance - before.distance < 0.07 * NM  # a third of a step
+        return -1e3 if is_beside else np.interp(distance, *led)
+
+    assert separated_by(jumping, led).pull_off == pytest.approx(1e6, rel=0.1)

@@ -11,7 +11,8 @@ from stiction.contact import forcelaw, tilted
 from stiction.contact.asperity import HertzAsperity, MaugisTable, reduced_modulus
 from stiction.contact.meniscus import film, flooded_energy
 from stiction.contact.pair import SurfacePair
-from stiction.contact.tilted import Edge, Tilt, TiltedPair
+from stiction.contact.tilt import Edge, Tilt, length_of_edge
+from stiction.contact.tilted import TiltedPair
 from stiction.contact.vanderwaals import attraction
 from stiction.streams import stream
 from stiction.surface.field import StripGrid
@@ -23,9 +24,9 @@ STEP, REACH, SLOPES = 0.1e-9, 25e-9, (0.05, 0.1, 0.2)
 EDGES = pytest.mark.parametrize("edge", Edge)
 
 
-def pair(edge=Edge.ROUNDED, slopes=SLOPES, asperity=WATER):
-    surfaces = SURFACES["B2"].on(STRIP), SURFACES["Sub1"].on(STRIP)
-    return TiltedPair(*surfaces, STEP, asperity=asperity, tilt=Tilt(slopes, REACH, edge))
+def pair(edge=Edge.ROUNDED, slopes=SLOPES, asperity=WATER, radius=0.0, strip=STRIP):
+    surfaces = SURFACES["B2"].on(strip), SURFACES["Sub1"].on(strip)
+    return TiltedPair(*surfaces, STEP, asperity=asperity, tilt=Tilt(slopes, REACH, edge, radius))
 
 
 def rough(number=0):
@@ -67,6 +68,58 @@ def test_a_smooth_flooded_wedge_pulls_with_its_energy_over_its_slope(edge, humid
     # Rows count as a whole, and at the edge of the film as half of one at most.
     assert np.all(np.abs(pulls * slopes / flooded_energy(300.0) - 1) < SPACING / wedges)
     assert np.any(np.abs(pulls * slopes / flooded_energy(300.0) - 1) > 0.02 * SPACING / wedges)  # control: not exact
+
+
+@pytest.mark.parametrize("humidity", [0.67, 0.92])
+@pytest.mark.parametrize("radius", [0.1e-6, 1e-6])
+def test_a_smooth_flooded_tip_pulls_over_its_wedge_and_its_rounded_edge(radius, humidity):
+    slopes = np.array([0.05, 0.1])
+    strip = StripGrid(0.4e-6 + Tilt(slopes, REACH, radius=radius).before, 1.2e-6, SPACING, margin=0.2e-6)
+    found = pair(slopes=tuple(slopes), radius=radius, strip=strip)
+    pulls = forces(found, np.full(strip.shape, -found.depth, np.float32), humidity)
+    height, tension = film(humidity, 300.0)
+    wet = [height / slope - slope * radius / 2 + length_of_edge(radius, height, slope) for slope in slopes]
+    assert_allclose(pulls, tension * np.array(wet), atol=1.1 * SPACING * tension)  # of rows
+    assert np.all(pulls > 1.15 * tension * height / slopes)  # control: more than the wedge alone
+
+
+def test_a_rounded_edge_drops_as_a_circle_and_ends_at_the_reach():
+    radius, slopes = 2e-6, (0.05, 0.1)
+    tilt = Tilt(slopes, REACH, radius=radius)
+    along = np.linspace(-tilt.before, 0.3e-6, 400)
+    for slope, ends in zip(slopes, tilt.ends, strict=True):
+        circle = radius - np.sqrt(radius**2 - np.minimum(along, 0) ** 2)
+        drop = tilt.drop(slope, along)
+        assert_allclose(drop - slope**2 * radius / 2, slope * along + circle, atol=0.1 * REACH)
+        assert 0 <= drop.min() < 0.01 * REACH
+        end = -length_of_edge(radius, REACH, slope)
+        near = tilt.drop(slope, end + np.array([-1e-12, 0, 1e-12]))
+        assert_allclose(near[1], REACH, rtol=1e-9)
+        assert_allclose(ends, 1 / slope + 2e-12 / (near[0] - near[2]), rtol=1e-4)
+    assert tilt.before == length_of_edge(radius, REACH, 0.1)
+    assert Tilt(slopes, REACH).before == 0
+    assert_array_equal(Tilt(slopes, REACH).ends, 1 / np.array(slopes))
+
+
+def test_a_rounder_edge_holds_harder_by_the_water_before_the_wedge():
+    strip, means, radii = StripGrid(0.8e-6, 1.2e-6, SPACING, margin=0.2e-6), [], (0.0, 0.1e-6, 1e-6)
+    height, tension = film(0.9, 300.0)
+    for radius in radii:
+        found = pair(slopes=(0.1,), radius=radius, strip=strip)
+        drawn = (found.draw(stream(2021, "beam", k), stream(2021, "substrate", k)) for k in range(12))
+        means.append(np.mean([forces(found, heights, 0.9) for heights in drawn]))
+    of_edges = tension * np.array([length_of_edge(radius, height, 0.1) for radius in radii])
+    assert np.all(0.1 * np.diff(of_edges) < np.diff(means))
+    assert np.all(np.diff(means) < 2 * np.diff(of_edges))
+
+
+def test_a_steep_smooth_tip_is_held_by_the_water_around_its_round_edge_at_any_slope():
+    strip, radius = StripGrid(0.8e-6, 1.2e-6, SPACING, margin=0.2e-6), 1e-6
+    found = pair(slopes=(0.05, 0.2, 0.3), radius=radius, strip=strip)
+    pulls = forces(found, np.full(strip.shape, -found.depth, np.float32), 0.8)
+    height, tension = film(0.8, 300.0)
+    assert_allclose(pulls[1:], 2 * tension * np.sqrt(2 * radius * height), atol=2 * SPACING * tension)
+    assert pulls[0] > 1.1 * pulls[1], "control: the wedge counts at small slopes"
 
 
 def test_a_tip_whose_roughness_follows_its_slope_holds_harder_than_a_flooded_flat_one():

@@ -46,6 +46,7 @@ GRAPH, SCHEMA = Graph(PLAN), schema()
 OF_SCANS = {"scan", "estimate", "heights_of_scans", "spectrum_of_scans", "choice_contact", "scan_uncertainty"}
 #: Contacts of curves of roughness in dry air; `tests/stages/roughness` runs them.
 OF_DRY_AIR = {"roughness_dry_contact", "roughness_dry_tip_contact", "full_contact_dry", "pair_model_error_dry"}
+OF_DRY_AIR |= {"tips_in_full_contact_dry"}
 #: Beams of a few sizes for many devices; `tests/stages/devices/test_cracks.py` runs them.
 OF_MANY = {"sizes"}
 

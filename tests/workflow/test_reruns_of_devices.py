@@ -136,6 +136,8 @@ MATRIX = [
     ("chunks", "contact: {chunks: 2}", "", (), ""),
     ("edge of tips", "design: {tip_edge: square}", "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact", OF_STOPPERS,
      "cracks|S1|contact/b|budget/C1_rh070.nc"),
+    ("radius of the edge of tips", "design: {edge_radius_um: 0.5}", "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact",
+     OF_STOPPERS, "cracks|S1|contact/b|budget/C1_rh070.nc"),
     ("shares", "design: {shares: [0.02]}", "safe_lengths chart tip_budget", OF_STOPPERS, "cracks|S1|contact|budget/C1_rh070.nc"),
     ("points of charts", "design: {chart_points: 4}", "ground",
      OF_STOPPERS | {"cracks", "safe_lengths", "life", "table_life", "figure_life"}, "rh060|rh080|cracks|safe|S1|R1|contact"),

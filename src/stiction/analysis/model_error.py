@@ -6,6 +6,7 @@ standard error.
 """
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ndtri
@@ -139,6 +140,40 @@ def error_of_largest(
         means = (full, summits) if moved is None else moved
         columns = [*means, *(power for one in logarithms for power in (one, one**2))]
         return jackknife(largest, np.stack(columns, axis=1).reshape(len(full), -1))[1]
+
+
+class TipRatios(NamedTuple):
+    """Ratios of both models for tips at humidities and slopes, and their standard error by the strips."""
+
+    means: np.ndarray  #: ratios of the means (h, s) [-]
+    error: np.ndarray  #: relative, of what one tip in 1000 exceeds after the change (h, s) [-]
+    powers: np.ndarray  #: ratios of the standard deviations of the logarithms at all slopes (h,) [-]
+
+
+def tip_ratios(full: np.ndarray, summits: np.ndarray) -> TipRatios:
+    r"""Ratios of the largest attractions of tips in full contact and on summits (n, h, s), independent at each slope.
+
+    ASSUME: they are log-normal, with a variance of the logarithm from mean and variance of the forces,
+
+    .. math:: s^2 = \ln \frac{\overline{P^2}}{\bar P^2} ,
+
+    because tips that hold next to nothing, and matter to no beam, decide that of the logarithms. It is averaged over
+    the slopes. The error is as in `error_of_largest`.
+    """
+    shape, columns = full.shape[1:], np.stack([full, summits, full**2, summits**2], axis=1)
+
+    def ratios(means):
+        """Ratio of the means, logarithm of the changed value, and power, alike at all slopes (3, h, s) [-]."""
+        first, second = np.split(means.reshape(4, *shape), 2)
+        deviations = np.sqrt(np.log(second / first**2).mean(axis=-1, keepdims=True))
+        ratio, power = first[0] / first[1], deviations[0] / deviations[1]
+        exponent = scatter * np.maximum(power, 1.0)
+        largest = np.log(ratio) - exponent * ndtri(RARE) - exponent**2 / 2
+        return np.stack([ratio, largest, np.broadcast_to(power, shape)])
+
+    scatter = np.sqrt(np.log(np.mean(summits**2, axis=0) / summits.mean(axis=0) ** 2).mean(axis=-1, keepdims=True))
+    (means, _, powers), (_, error, _) = jackknife(ratios, columns.reshape(len(full), -1))
+    return TipRatios(means, error, powers[:, 0])
 
 
 def length_factors(

@@ -57,17 +57,38 @@ class Change(NamedTuple):
 NONE = Change()
 
 
+class TipChanges(NamedTuple):
+    """Changes of the largest attraction of tips by full elastic contact, over the slope.
+
+    ASSUME: between the slopes, the logarithm of the ratio is linear in that of the slope; beyond them it stays.
+    """
+
+    slopes: np.ndarray  #: increasing (s,) [-]
+    #: At the humidities of the correction: ratio and its error (h, s), and one power (h,). The error is that of what 1
+    #: in 1000 tips exceeds.
+    change: Change
+
+    def at(self, slope: float) -> Change:
+        """Change at a slope, at each humidity (h,)."""
+        place = np.interp(np.log(slope), np.log(self.slopes), np.arange(len(self.slopes)))
+        below = min(int(place), len(self.slopes) - 2)
+        parts, near = [below + 1 - place, place - below], np.s_[:, below : below + 2]
+        ratio, error = np.exp(np.log(self.change.ratio[near]) @ parts), self.change.ratio_error[near] @ parts
+        return Change(ratio, self.change.power, error)
+
+
 @dataclass(frozen=True)
 class Correction:
     """Changes from the sum over summits to full elastic contact.
 
-    Only the energy e and the largest attraction f_max are corrected: distances of both models are between different
-    mean planes, those of the deformed surfaces and those of the undeformed ones, and have no common origin.
+    Only the energy e and the largest attractions are corrected: distances of both models are between different mean
+    planes, those of the deformed surfaces and those of the undeformed ones, and have no common origin.
     """
 
     humidities: np.ndarray  #: increasing (h,), 0 for dry air [-]
     energy: Change  #: of the energies e (h,)
     pull_off: Change  #: of the largest attractions f_max (h,)
+    tips: TipChanges | None = None  #: of the largest attractions of tips, if any are on the pair
 
     def at(self, humidity: float) -> tuple[Change, Change]:
         """Changes of e and of f_max at a humidity, 0 for dry air: none in humid air if dry air alone is corrected.
@@ -77,9 +98,17 @@ class Correction:
         ValueError
             If the humidity is beyond those at which full contact was computed.
         """
+        return self._at(humidity, self.energy), self._at(humidity, self.pull_off)
+
+    def of_tips(self, humidity: float, slopes: np.ndarray) -> list[Change]:
+        """Changes of the largest attraction of tips at slopes (n,) [-]. Humidity and errors as of `at`."""
+        return [self._at(humidity, self.tips.at(slope)) for slope in slopes]
+
+    def _at(self, humidity, changes):
+        """Change at a humidity."""
         known = self.humidities[(self.humidities > 0) == (humidity > 0)]
         if humidity > 0 and not known.size:
-            return NONE, NONE
+            return NONE
         low, high = known.min(initial=1.0), known.max(initial=0.0)
         if not (is_at_most(low, humidity) and is_at_most(humidity, high)):
             where = f"at relative humidities from {low:g} to {high:g}" if known.size else "in other air alone"
@@ -87,8 +116,7 @@ class Correction:
                 f"full elastic contact was computed {where} and is not extrapolated to {humidity:g}: add it to the "
                 "humidities of the pair, or choose contact.model: summits"
             )
-        within = np.clip(humidity, low, high)  # rounding can leave it a little outside
-        return self._between(self.energy, within), self._between(self.pull_off, within)
+        return self._between(changes, np.clip(humidity, low, high))  # rounding can leave it a little outside
 
     def _between(self, changes, humidity):
         """Change at a humidity within the computed ones. A power below 1 errs only as far as it may be above."""

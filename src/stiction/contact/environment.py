@@ -101,6 +101,12 @@ class Water:
             return NONE, NONE
         return self.correction.at(humidity if self.film(humidity)[0] else 0.0)
 
+    def changes_of_tips(self, humidity: float, slopes: np.ndarray) -> list[Change]:
+        """Changes of the largest attraction of tips at slopes (s,) [-] by full elastic contact, as `changes`."""
+        if self.correction is None:
+            return [NONE] * len(slopes)
+        return self.correction.of_tips(humidity if self.film(humidity)[0] else 0.0, slopes)
+
     def film(self, humidity: float) -> tuple[float, float]:
         """Height h_C [m] and tension -ΔP [Pa] at a relative humidity, see `stiction.contact.meniscus.film`.
 

@@ -1,42 +1,26 @@
 r"""Contact of a strip of rough surface tilted about its edge: the tip of a beam (independent of humidity).
 
-A tip with the slope θ touches as a wedge. At the distance d between the mean planes at the edge, a point of height z at
-the distance x from the edge is as high as one of height z - θx on a strip without slope. The first row of grid points
-lies on the edge.
+A tip with the slope θ touches as a wedge. At the distance d between the mean planes where the edge is highest, a point
+of height z is as high as one of height z - u on a strip without slope, with the drop u of `stiction.contact.tilt`. The
+edge begins on a row of grid points.
 
-ASSUME: the edge is one of two, between which the truth lies. A rounded edge carries neither solids nor water, and the
-summits are those of the surface before it is tilted; this is the safe side. A square edge touches as well: the summits
-are the maxima of the tilted surface, and those on its edge are spheres of the curvature along it.
+ASSUME: the edge is one of two. A rounded one has the summits of the surface before it is tilted. With the radius 0, the
+row of points on it carries neither solids nor water. A square edge touches as well: the summits are the maxima of the
+tilted surface, and those on its edge are spheres of the curvature along it.
 """
 
 from dataclasses import dataclass, field
-from enum import StrEnum
 
 import numpy as np
 
 from stiction.contact.pair import DistanceGrid, Summits, SurfacePair, solid_pressure
+from stiction.contact.tilt import Edge, Tilt
 from stiction.kernels import kernel
 from stiction.surface.summits import mark_summits, mean_curvature
 
 #: Largest radius of a maximum of a square edge [m]. ASSUME: flatter ones, whose curvature the grid does not resolve,
 #: would attract without bound.
 LARGEST_RADIUS = 2e-6
-
-
-class Edge(StrEnum):
-    """Load of the edge of a tip."""
-
-    ROUNDED = "rounded"  #: nothing
-    SQUARE = "square"  #: forces of its own maxima
-
-
-@dataclass(frozen=True)
-class Tilt:
-    """Slopes of a strip and its edge."""
-
-    slopes: tuple[float, ...]  #: increasing [-]
-    reach: float  #: how far below the distances points count as wet: at least the height of the film [m]
-    edge: Edge = Edge.ROUNDED
 
 
 @dataclass(frozen=True)
@@ -81,18 +65,22 @@ class TiltedPair(SurfacePair):
         upright, highest = summits_by_row(heights, self.spacing, 0.0), float(heights.max())
         solid, bearing = [], []
         for slope in self.tilt.slopes:
-            rise = slope * self.spacing
-            rows, tops, curvatures = summits_by_row(heights, self.spacing, rise) if square else upright
-            lowered = tops - rise * rows + self.depth
+            fall, drop = slope * self.spacing, self.drop(slope, len(heights))
+            rows, tops, curvatures = summits_by_row(heights, self.spacing, fall) if square else upright
+            lowered = tops - drop[rows] + self.depth
             if square:
-                of_edge, along = edge_maxima(heights, self.spacing, rise)
+                of_edge, along = edge_maxima(heights, self.spacing, fall)
                 lowered, curvatures = np.append(lowered, of_edge + self.depth), np.append(curvatures, along)
             # ASSUME: no point at the sides of a strip is a summit, as in the contact without slope.
             area = self.length * (heights.shape[1] - 2) * self.spacing
             solid.append(solid_pressure(self.asperity, Summits(lowered, curvatures, area), grid))
-            level = rise, self.depth, highest
-            bearing.append(tilted_bearing_area(heights, level, first, grid.step, (grid.below, grid.above)))
+            level = self.depth, highest
+            bearing.append(tilted_bearing_area(heights, drop, level, first, (grid.step, grid.below, grid.above)))
         return np.array(solid), np.array(bearing)
+
+    def drop(self, slope: float, number: int) -> np.ndarray:
+        """Drop u of the rows of a strip at a slope (number,) [m]."""
+        return self.tilt.drop(slope, self.spacing * (np.arange(number) - round(self.tilt.before / self.spacing)))
 
 
 def first_weight(edge: Edge) -> float:
@@ -133,7 +121,7 @@ def summits_by_row(heights: np.ndarray, spacing: float, rise: float) -> tuple[np
     Each (m,) [-], [m], [m⁻¹]; the slope does not change the curvature. Edges have no summits.
     """
     inner = (heights.shape[0] - 2) * (heights.shape[1] - 2)
-    rows, tops, curvatures = np.empty(inner), np.empty(inner), np.empty(inner)
+    rows, tops, curvatures = np.empty(inner, np.int64), np.empty(inner), np.empty(inner)
     count = _collect(heights, spacing, rise, rows, tops, curvatures)
     return rows[:count].copy(), tops[:count].copy(), curvatures[:count].copy()
 
@@ -154,22 +142,22 @@ def edge_maxima(heights: np.ndarray, spacing: float, rise: float) -> tuple[np.nd
 
 @kernel
 def tilted_bearing_area(
-    heights: np.ndarray, level: tuple[float, float, float], first: float, step: float, numbers: tuple[int, int]
+    heights: np.ndarray, drop: np.ndarray, level: tuple[float, float], first: float, grid: tuple[float, int, int]
 ) -> np.ndarray:
     """Fraction of the area of a strip (n1, n2) [m] higher than each distance at its edge [-].
 
-    ``level``: by how much the strip falls per row, the depth from which the distances are measured, and its highest
-    point without slope [m]. Its first row has the weight ``first``. ``numbers`` are those of the distances,
-    ``step * arange(-below, above)`` [m].
+    Its rows are lower by their ``drop`` (n1,) than without slope [m]. ``level``: the depth from which the distances are
+    measured, and its highest point without slope [m]. Its first row has the weight ``first``. ``grid``: step and
+    numbers of the distances, ``step * arange(-below, above)`` [m].
     """
-    (below, above), (rise, depth, highest) = numbers, level
+    (step, below, above), (depth, highest) = grid, level
     cells = np.empty(heights.shape[1], np.int32)
     of_edge, count = np.zeros(below + above + 1, np.int64), np.zeros(below + above + 1, np.int64)
     for i in range(heights.shape[0]):
-        lowered = rise * i - depth
-        if highest - lowered < -below * step:  # this row and those behind it are lower than all distances
-            break
-        _cells_below(heights[i], lowered, step, numbers, cells)
+        lowered = drop[i] - depth
+        if highest - lowered < -below * step:  # lower than all distances
+            continue
+        _cells_below(heights[i], lowered, step, (below, above), cells)
         counted = count if i else of_edge
         for cell in cells:
             counted[np.uint32(cell)] += 1

@@ -19,6 +19,8 @@ PER_SLOPE, PER_REACH = 0.5e-9, 0.048e-9
 #: The same of a strip of the paper in full elastic contact at one humidity (docs/tables/full_contact_times.md), and in
 #: dry air, where strips of surfaces like those of the paper take 2 s, and smooth ones up to 150 s.
 PER_STRIP, PER_DRY_STRIP = 2.0, 10.0
+#: The same of a tip at one slope: 0.1 to 4 s.
+PER_TIP = 1.0
 #: Time that every job reserves [min], that of the profiles for rules without resources.
 USUAL_MINUTES = 10
 #: Units of time [s].
@@ -44,7 +46,7 @@ def job_cost(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets
     parts, sections = int(wildcards["number"]) if "chunk" in wildcards else 1, list(_sections(settings))
     contacts = sum(map(_contact_time, sections)) * datasets / parts
     full = (section for section in sections if section.keys() >= _FULL)
-    strips = sum(section["strips"] * sum(map(_strip_time, section["humidities"])) for section in full)
+    strips = sum(section["strips"] * _strip_time(section) for section in full)
     return PER_JOB + contacts + strips + PER_BEAM * sum(map(_beams, sections))
 
 
@@ -90,9 +92,12 @@ def _tilted_time(section):
     return area * len(tilt["slopes"]) * (PER_SLOPE + PER_REACH * tilt["reach_nm"])
 
 
-def _strip_time(humidity):
-    """CPU time of a strip in full elastic contact [s]."""
-    return PER_STRIP if humidity else PER_DRY_STRIP
+def _strip_time(section):
+    """CPU time of a strip in full elastic contact at all humidities, of a tip at all slopes [s]."""
+    humidities = section["humidities"]
+    if tilt := section.get("tilt"):
+        return PER_TIP * len(tilt["slopes"]) * len(humidities)
+    return sum(PER_STRIP if humidity else PER_DRY_STRIP for humidity in humidities)
 
 
 def _beams(section):

@@ -20,6 +20,7 @@ from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, un
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.materials import OF_CONTACT
 from stiction.contact.meniscus import flooded_energy, meniscus_height
+from stiction.contact.tilt import Edge, length_of_edge
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
 from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.plan.stage import subsection
@@ -35,6 +36,8 @@ FAR = 100.0
 TILTS = 5
 #: Number of cantilevers on a ground from which on their lengths follow those of a few sizes (`stiction.devices.sizes`).
 MANY = 20
+#: Points of a tip in full elastic contact, which then takes a few seconds: those of a width of 30 µm at 6.8 nm rms.
+MOST_POINTS = 640_000
 #: Quantities of a surface by numbers, in the order of budgets.
 ALL_QUANTITIES = MOMENT_QUANTITIES + SPECTRUM_QUANTITIES
 
@@ -233,9 +236,11 @@ class DevicePlan:
     # Tips of cantilevers
 
     def tips(self, device: str) -> Patch:
-        """Tilted strips at the tips of the beams of a device: as long as the wedge with the smallest slope."""
-        section, point = self.sections[device], self.config["sampling"]["spacing_nm"] * self.config["contact"]["every"]
-        points = math.ceil(self._reach(device) / self._slopes(device)[0] / point)
+        """Tilted strips at the tips of the beams of a device: the edge, and the wedge with the smallest slope."""
+        section, point = self.sections[device], self._point
+        reach, slopes = self._reach(device), self._slopes(device)
+        before = length_of_edge(self._edge_radius * NM_PER_UM, reach, slopes[-1])
+        points = math.ceil(reach / slopes[0] / point) + round(before / point)
         return patch(section["pair"], points * point / NM_PER_UM, section["width_um"])
 
     def tilt(self, tips: Patch) -> dict:
@@ -247,13 +252,64 @@ class DevicePlan:
             If no tip has these strips.
         """
         tips = tips._replace(pair=PairInAir(tips.pair).pair)
-        counted = DevicePlan(self.config | {"devices": test_beams.counts_as_devices(self.config)})
-        users = [(plan, name) for plan in (self, counted) for name in plan.with_tips if plan.tips(name) == tips]
+        users = [(plan, name) for plan, name in self._with_tips if plan.tips(name) == tips]
         if not users:
             raise KeyError(f"no device has tips on strips {tips.name}")
-        slopes = {float(slope) for plan, name in users for slope in plan._slopes(name)}
+        return self._tilt(users, sorted({float(slope) for plan, name in users for slope in plan._slopes(name)}))
+
+    def all_tips(self, pair: str) -> dict:
+        """Settings of strips for all tips on a pair: the least width, and the slopes at both ends and in the middle.
+
+        ASSUME: strips of more than `MOST_POINTS` may be narrower, down to 2 µm.
+
+        Raises
+        ------
+        KeyError
+            If no tip is on the pair.
+        """
+        users = [(plan, name) for plan, name in self._with_tips if plan.sections[name]["pair"] == pair]
+        if not users:
+            raise KeyError(f"no device has tips on pair {pair}")
+        ends = {float(plan._slopes(name)[k]) for plan, name in users for k in (0, -1)}
+        slopes = [min(ends), round(math.sqrt(min(ends) * max(ends)), 6), max(ends)]
+        tilt, width = self._tilt(users, slopes), min(plan.sections[name]["width_um"] for plan, name in users)
+        points = MOST_POINTS * self._point / (tilt["reach_nm"] / slopes[0])  # across the longest strip
+        affordable = max(2.0, points * self._point / NM_PER_UM)
+        return {"beam": {"width_um": min(width, round(affordable, 3))}, "tilt": tilt}
+
+    def has_tips(self, pair: str) -> bool:
+        """Whether any tip is on a pair."""
+        return any(plan.sections[name]["pair"] == pair for plan, name in self._with_tips)
+
+    @cached_property
+    def _with_tips(self):
+        """Plan and name of each device and of each counted test beam with a tip."""
+        counted = DevicePlan(self.config | {"devices": test_beams.counts_as_devices(self.config)})
+        return [(plan, name) for plan in (self, counted) for name in plan.with_tips]
+
+    def _tilt(self, users, slopes):
+        """Slopes of strips, and reach and edge of the tips of some devices."""
         reach = max(plan._reach(name) for plan, name in users)
-        return {"slopes": sorted(slopes), "reach_nm": reach, "edge": self.config["design"]["tip_edge"]}
+        edge = {"edge": self.config["design"]["tip_edge"], "radius_um": self._edge_radius}
+        return {"slopes": slopes, "reach_nm": reach} | edge
+
+    @property
+    def _point(self):
+        """Spacing of the grid of the contact [nm]."""
+        return self.config["sampling"]["spacing_nm"] * self.config["contact"]["every"]
+
+    @property
+    def _edge_radius(self):
+        """Radius of the edges of tips [µm], 0 for square ones."""
+        design = self.config["design"]
+        return design["edge_radius_um"] if design["tip_edge"] == Edge.ROUNDED else 0.0
+
+    @property
+    def edge_in_words(self) -> str:
+        """Edge of the tips for a reader."""
+        if radius := self._edge_radius:
+            return f"rounded, radius {radius:g} µm; rounder ones hold shorter beams"
+        return "square" if self.config["design"]["tip_edge"] == Edge.SQUARE else "sharp"
 
     def _slopes(self, device):
         """Slopes of the tips of a device and of the beams of its chart."""

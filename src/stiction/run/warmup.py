@@ -19,7 +19,8 @@ from stiction.chaos import model as chaos
 from stiction.contact import forcelaw, separation
 from stiction.contact.asperity import asperity, reduced_modulus
 from stiction.contact.pair import SurfacePair
-from stiction.contact.tilted import Tilt, TiltedPair
+from stiction.contact.tilt import Tilt
+from stiction.contact.tilted import TiltedPair
 from stiction.contact.vanderwaals import attraction
 from stiction.streams import stream
 from stiction.surface import maxent

@@ -7,13 +7,13 @@ import pytest
 from scipy.special import erfc
 
 from stiction.constants import HAMAKER_CONSTANT
-from stiction.contact.correction import Change, Correction
+from stiction.contact.correction import Change, Correction, TipChanges
 from stiction.contact.environment import Gaps, Water, flooded_law
 from stiction.contact.pair import DistanceGrid
+from stiction.contact.tilt import Tilt, length_of_edge
 from stiction.contact.vanderwaals import attraction
 from stiction.stages.contact import contact
 from stiction.stages.contact.curves import (
-    TIP_POWER,
     energies,
     fast_tip_forces,
     force_curves,
@@ -49,9 +49,16 @@ def test_contact_angles_lower_the_film_and_keep_the_tension():
 
 
 def tips(solid, bearing, grid):
-    """Dataset of the contact of one tip at slopes of 0.05 and 0.1, on a strip of 0.3 µm."""
-    dataset = contact.layout(solid, bearing, grid, range(1)).assign(length=3e-7)
-    return dataset.assign_coords(slope=[0.05, 0.1])
+    """Dataset of the contact of tips at slopes of 0.05 and 0.1, on a strip of 0.3 µm."""
+    dataset = contact.layout(solid, bearing, grid, range(len(solid))).assign(length=3e-7)
+    return dataset.assign_coords(slope=[0.05, 0.1]).assign(ends=("slope", [20.0, 10.0]))
+
+
+def changed_tips(ratios, power=1.0, error=0.0):
+    """Correction of tips with ratios at both slopes, and of nothing else."""
+    change = Change(np.tile(ratios, (2, 1)), np.full(2, power), np.full((2, 2), error))
+    tilted = TipChanges(np.array([0.05, 0.1]), change)
+    return Correction(np.array([0.5, 0.8]), Change(np.ones(2)), Change(np.ones(2)), tilted)
 
 
 def test_the_force_of_a_tip_is_the_largest_attraction_of_each_slope_on_the_strip():
@@ -65,18 +72,16 @@ def test_the_force_of_a_tip_is_the_largest_attraction_of_each_slope_on_the_strip
     np.testing.assert_allclose(forces[0], [3e-7 * pull_offs(one, 0.65, wet)[0] for one in flat], rtol=1e-6)
 
 
-@pytest.mark.parametrize(("energy", "pull_off", "factor"), [(3.0, 2.0, 3.0), (0.8, 1.3, 1.3), (0.7, 0.9, 1.0)], ids=str)
-def test_full_contact_changes_tips_by_the_larger_ratio_and_weakens_none(energy, pull_off, factor):
+def test_full_contact_changes_slow_and_fast_tips_by_the_ratio_of_each_slope():
     grid = DistanceGrid(0.5e-9, 10, 40)
     bearing = np.tile(1 / (1 + np.exp(grid.bearing / 2e-9)), (1, 2, 1))
     found, wet = tips(np.tile(np.exp(-grid.solid / 2e-9) * 1e8, (1, 2, 1)), bearing, grid), Water(300.0)
-    ratios = Correction(np.array([0.5, 0.8]), Change(energy), Change(pull_off))
     for forces_of in (
         lambda water: tip_forces(found, 0.65, water)[1],
         lambda water: fast_tip_forces(found, 0.65, water),
     ):
-        changed, summits = forces_of(replace(wet, correction=ratios)), forces_of(wet)
-        np.testing.assert_allclose(changed, factor * summits, rtol=1e-12)
+        changed, summits = forces_of(replace(wet, correction=changed_tips([3.0, 0.7]))), forces_of(wet)
+        np.testing.assert_allclose(changed, [3.0, 0.7] * summits, rtol=1e-12)
         assert np.all(summits > 0)
 
 
@@ -84,22 +89,20 @@ def test_tips_have_the_upper_end_of_the_ratio_that_few_strips_show():
     grid = DistanceGrid(0.5e-9, 10, 40)
     bearing = np.tile(1 / (1 + np.exp(grid.bearing / 2e-9)), (1, 2, 1))
     found, wet = tips(np.tile(np.exp(-grid.solid / 2e-9) * 1e8, (1, 2, 1)), bearing, grid), Water(300.0)
-    few = Correction(np.array([0.5, 0.8]), Change(2.0, ratio_error=0.1), Change(1.0, ratio_error=0.1))
+    few = changed_tips([2.0, 0.5], error=0.1)
     changed, summits = (tip_forces(found, 0.65, water)[1] for water in (replace(wet, correction=few), wet))
-    np.testing.assert_allclose(changed, 2 * np.exp(1.6449 * 0.1) * summits, rtol=1e-4)
+    np.testing.assert_allclose(changed, np.exp(1.6449 * 0.1) * summits * [2.0, 0.5], rtol=1e-4)
 
 
-@pytest.mark.parametrize("parallel", [1.0, 2.0])
-def test_tips_scatter_as_tilted_strips_do_whatever_parallel_strips_do(parallel):
+def test_tips_scatter_as_tilted_strips_do():
     grid = DistanceGrid(0.5e-9, 10, 40)
     bearing = np.tile(1 / (1 + np.exp(grid.bearing / 2e-9)), (3, 2, 1))
     solid = np.exp(-grid.solid / 2e-9) * 1e8 * np.array([0.8, 1.0, 1.1])[:, None, None] * np.ones((1, 2, 1))
-    found = contact.layout(solid, bearing, grid, range(3)).assign(length=3e-7).assign_coords(slope=[0.05, 0.1])
-    ratios = Correction(np.array([0.5, 0.8]), Change(3.0, parallel), Change(2.0, parallel))
-    wet = Water(300.0)
-    changed, summits = (tip_forces(found, 0.65, water)[1] for water in (replace(wet, correction=ratios), wet))
-    np.testing.assert_allclose(np.log(changed).std(axis=0), TIP_POWER * np.log(summits).std(axis=0), rtol=1e-6)
-    np.testing.assert_allclose(changed.mean(axis=0), 3 * summits.mean(axis=0), rtol=1e-6)
+    found, wet = tips(solid, bearing, grid), Water(300.0)
+    full = replace(wet, correction=changed_tips([3.0, 1.5], 1.4))
+    changed, summits = (tip_forces(found, 0.65, water)[1] for water in (full, wet))
+    np.testing.assert_allclose(np.log(changed).std(axis=0), 1.4 * np.log(summits).std(axis=0), rtol=1e-6)
+    np.testing.assert_allclose(changed.mean(axis=0), [3, 1.5] * summits.mean(axis=0), rtol=1e-6)
     assert np.all(np.log(summits).std(axis=0) > 0.01)
 
 
@@ -201,15 +204,23 @@ def test_no_sample_exceeds_the_energy_and_the_pull_off_of_flooded_flats_that_att
     assert most > flooded_law(0.6, Water(300.0), HAMAKER_CONSTANT["water"])[0]
 
 
-def test_a_tip_is_held_across_gaps_by_the_whole_wedge():
+@pytest.mark.parametrize("radius", [0.0, 0.1e-6, 1e-6])
+def test_a_tip_is_held_across_gaps_by_the_whole_wedge_and_its_edge(radius):
     """A smooth wedge of slope θ at a distance d has the force U(d) / θ per width, wherever its stored heights end."""
-    water, slopes, length, forces = Water(300.0, gaps=ACROSS), np.array([0.05, 0.1]), 1e-6, []
+    water, slopes, length, forces = Water(300.0, gaps=ACROSS), np.array([0.05, 0.1]), 2e-6, []
     for below in (100, 300):
         grid = DistanceGrid(0.01e-9, 5 * below, 500)
-        wedge = [np.clip(-grid.bearing / (slope * length), 0, 1) for slope in slopes]
+        depth = np.maximum(-grid.bearing, 0)
+        tip = [  # both ends of what is higher than a depth
+            np.maximum(depth / slope - slope * radius / 2, -slope * radius + np.sqrt(2 * radius * depth))
+            + [length_of_edge(radius, each, slope) for each in depth]
+            for slope in slopes
+        ]
         solid = 1e24 * np.maximum(3e-9 - grid.solid, 0) ** 2  # holds the tip 3 nm away, out of reach of the water
-        dataset = contact.layout(np.tile(solid, (1, 2, 1)), np.array([wedge]), grid, range(1))
-        dataset = dataset.assign(length=length).assign_coords(slope=slopes)
+        dataset = contact.layout(np.tile(solid, (1, 2, 1)), np.array([tip]) / length, grid, range(1))
+        ends = Tilt(tuple(slopes), -grid.bearing[0], radius=radius).ends
+        dataset = dataset.assign(length=length, ends=("slope", ends)).assign_coords(slope=slopes)
         forces.append(tip_forces(dataset, 0.6, water)[1][0])
-    np.testing.assert_allclose(forces, [ACROSS.work(3e-9, 0.0) / slopes] * 2, rtol=0.02)
-    np.testing.assert_allclose(forces[0], forces[1], rtol=1e-5)
+    if not radius:
+        np.testing.assert_allclose(forces, [ACROSS.work(3e-9, 0.0) / slopes] * 2, rtol=0.02)
+    np.testing.assert_allclose(forces[0], forces[1], rtol=1e-5 if not radius else 0.02)

@@ -58,9 +58,9 @@ def decided_studies(number):
     return np.transpose([lengths(10 + k, *numbers[k % len(numbers)]) for k in range(number)])
 
 
-# At three standard errors, 30 studies detect errors that are wrong by 39 %, and 100 detect those wrong by 21 %.
+# At three standard errors, 16 studies detect errors that are wrong by 53 %, and 100 detect those wrong by 21 %.
 @pytest.mark.parametrize(
-    "studies", [pytest.param(30, marks=pytest.mark.slow), pytest.param(100, marks=pytest.mark.nightly)]
+    "studies", [pytest.param(16, marks=pytest.mark.slow), pytest.param(100, marks=pytest.mark.nightly)]
 )
 def test_intervals_keep_their_confidence_where_a_pilot_decides_the_numbers(true, studies):
     _, estimates, _, of_beams, of_surfaces = decided_studies(studies)
@@ -72,7 +72,7 @@ def test_intervals_keep_their_confidence_where_a_pilot_decides_the_numbers(true,
 
 @pytest.mark.nightly
 def test_intervals_without_the_error_of_the_surfaces_are_too_short(true):
-    """Control of the test above, which 30 studies are too few for."""
+    """Control of the test above, which few studies are not enough for."""
     _, estimates, _, of_beams, _ = decided_studies(100)
     assert within(estimates, of_beams, true) < 0.68 - 2 * np.sqrt(0.68 * 0.32 / 100)
 

@@ -101,7 +101,11 @@ def test_a_patch_that_ends_has_no_wedge_below_it():
     solid = np.tile(1e6 * np.exp((3e-9 - grid.solid) / 0.3e-9), (1, 2, 1))
     bearing = np.clip(-grid.bearing / (slopes[:, None] * length), 0, 1)[None]
     parallel = contact.layout(solid[:, 0], bearing[:, 0], grid, range(1))
-    dataset = contact.layout(solid, bearing, grid, range(1)).assign(length=length).assign_coords(slope=slopes)
+    dataset = (
+        contact.layout(solid, bearing, grid, range(1))
+        .assign(length=length, ends=("slope", 1 / slopes))
+        .assign_coords(slope=slopes)
+    )
     forces = curves.tilted_forces(dataset, 0.0, water)[0]
     assert_allclose(forces, length * curves.pull_offs(parallel, 0.0, water)[0], rtol=1e-2)
     assert np.all(curves.tip_forces(dataset, 0.0, water)[1] > 2 * forces)

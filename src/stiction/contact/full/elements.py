@@ -28,6 +28,7 @@ strip is in the one that it reaches during separation, from the state without fo
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
+from operator import itemgetter
 
 import numpy as np
 
@@ -372,6 +373,7 @@ def separation(
     adhesion: Adhesion,
     curve: tuple[np.ndarray, np.ndarray],
     settle: Settle | None = None,
+    end: float = 0.0,
 ) -> Separation:
     """Adhesion energy and largest attraction of a strip of heights z (n1, n2) float32 [m].
 
@@ -383,6 +385,8 @@ def separation(
         a third of that near the largest attraction.
     settle : callable, optional
         Solver of one state, by default `equilibrium`.
+    end : float, optional
+        Distance up to which a larger attraction is sought [m], by default that of the largest attraction of ``curve``.
 
     Raises
     ------
@@ -396,12 +400,12 @@ def separation(
         """State at a distance [m], from a state before it."""
         return (settle or equilibrium)(space, heights, distance, adhesion, before)
 
-    closed, states = at_rest(space, heights, adhesion, curve, settle)
+    closed, states = at_rest(space, heights, adhesion, curve, settle, end)
     (far, _), step = extremum(*curve), _step(curve)
-    coarse, before = _beyond_extremum(at, closed, step, far)
+    coarse, before = _beyond_extremum(at, closed, step, max(far, end))
     fine, _ = _beyond_extremum(at, before, step / 3, before.distance + step)
-    _, pull_off = extremum(*np.transpose(fine))
-    return Separation(-closed.energy(heights, adhesion), pull_off, closed, states + len(coarse) + len(fine) - 2)
+    number = states + len(coarse) + len(fine) - 2
+    return Separation(-closed.energy(heights, adhesion), _largest_attraction(coarse, fine), closed, number)
 
 
 def at_rest(
@@ -410,6 +414,7 @@ def at_rest(
     adhesion: Adhesion,
     curve: tuple[np.ndarray, np.ndarray],
     settle: Settle | None = None,
+    end: float = 0.0,
 ) -> tuple[State, int]:
     """State without force, with the adhesion energy, and the number of states. Parameters of `separation`."""
 
@@ -417,7 +422,7 @@ def at_rest(
         """State at a distance [m], from a state before it, on a coarser tolerance."""
         return (settle or equilibrium)(space, heights, distance, adhesion, before, coarser=coarser)
 
-    return _without_force(at, curve, lambda state: state.energy(heights, adhesion))
+    return _without_force(at, curve, lambda state: state.energy(heights, adhesion), end)
 
 
 def _step(curve):
@@ -425,28 +430,41 @@ def _step(curve):
     return (extremum(*curve)[0] - limit_distance(*curve, 0.0)) / 3
 
 
+def _largest_attraction(coarse, fine):
+    """Largest attraction [Pa] of states in steps, and in finer steps from before it: distances and forces each.
+
+    ASSUME: where finer steps leave the states of the others at once, and attract less, these have the largest one.
+    """
+    if min(fine, key=itemgetter(1)) == fine[0]:
+        return -min(force for _, force in coarse)
+    return extremum(*np.transpose(fine))[1]
+
+
 def _beyond_extremum(at, state, step, end):
-    """Distances and forces, in steps, beyond the largest attraction and a distance. State a step before the former."""
+    """Distances and forces, in steps, beyond the largest attraction and a distance. State a step before the former.
+
+    Where the surfaces repel each other again, on their highest point, more attraction may follow.
+    """
     curve, before = [(state.distance, state.force)], state
-    lowest, falls = state.force, True
-    while falls or state.distance < end:
+    lowest, falls, most = state.force, True, _most(state, step, end)
+    while falls or state.force > 0 or state.distance < end:
         last, state = state, at(state.distance + step, state)
         falls = state.force < lowest  # not where a film floods everything and the force no longer changes
         if falls:
             lowest, before = state.force, last
         curve.append((state.distance, state.force))
-        _refuse_after(len(curve))
+        _refuse_after(len(curve), most)
     return curve, before
 
 
-def _without_force(at, curve, energy):
+def _without_force(at, curve, energy, end=0.0):
     """State without force, and number of states. ``at(distance, before, coarser)`` is a state after another.
 
     The curve of another model, shifted to the force of the first state, leads near it, steps to a change of sign, and
-    secants to a force too small to change the energy.
+    secants to a force too small to change the energy. More steps are taken if they lead to the ``end``.
     """
     state, number, step = at(limit_distance(*curve, 0.0), None, FIRST), 1, _step(curve)
-    ends = {state.force > 0: state}
+    ends, most = {state.force > 0: state}, _most(state, step, end)
     move = _shift(curve, state.force, step)
     while True:
         before, state, number = state, at(state.distance + move, state), number + 1
@@ -459,7 +477,7 @@ def _without_force(at, curve, energy):
             move = near.distance + width * near.force / drop - state.distance
         else:
             move = step if state.force > 0 else -step
-        _refuse_after(number)
+        _refuse_after(number, most)
 
 
 def _shift(curve, force, step):
@@ -472,8 +490,13 @@ def _shift(curve, force, step):
         return step  # no distance of the curve has this force
 
 
-def _refuse_after(states):
-    if states > STATES:
+def _most(state, step, end):
+    """Largest number of states from one that may be steps away from an end."""
+    return STATES + max(0, int((end - state.distance) / step))
+
+
+def _refuse_after(states, most):
+    if states > most:
         raise ValueError(
             "full elastic contact finds no distance at which the surfaces come to rest: they are too smooth or the "
             "solid is too soft to resist the adhesion"

@@ -208,6 +208,8 @@ def _facts_of(section):
         (name, unit), value = KEYS[key], stated[key]
         values = value if isinstance(value, list) else [value]
         facts[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
+    if "tip_edge" in section:
+        facts["edge of the tip"] = section["tip_edge"]
     name = "relative humidities" if len(section["humidities"]) > 1 else "relative humidity"
     facts[name] = ", ".join(map(humidity_text, section["humidities"]))
     return facts | _requirement(section)
@@ -333,6 +335,8 @@ def _settings(plan, at):
     assumed = plan.devices.assumed_inputs(at.device)
     measured = [name for name in names.values() if is_measured(plan.config["surfaces"][name])]
     known = {"assumed": assumed, "measured": measured}
+    if plan.devices.kind(at.device).has_tip:
+        known["tip_edge"] = plan.devices.edge_in_words
     if plan.devices.kind(at.device).has_tip and is_biased(plan, at.device):
         known["young_modulus_GPa"] = section_of_beam(plan, at.device)["young_modulus_GPa"]
     return section | {"surfaces": surfaces} | not_modelled | {key: some for key, some in known.items() if some}

@@ -26,8 +26,7 @@ def device_change(errors: Mapping[str, xr.Dataset] | None, device: str, humidity
 #: What full contact does to tips, without and with a correction.
 _OF_TIPS = (
     "It is not known for what the tip holds.",
-    "Tips count as changed by the larger ratio of energies and forces of parallel surfaces, at its 95 % upper end, and "
-    "as no weaker. They scatter more by a factor that tilted strips have shown in dry air.",
+    "Tips have changed as tilted strips with their edge do, at the upper end of what these show with 95 % confidence.",
 )
 
 

@@ -84,9 +84,10 @@ def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceG
 
 
 def tip_dataset(contact: xr.Dataset, pair: TiltedPair) -> xr.Dataset:
-    """Dataset of tips: with their slopes, and the reference length of pressures and areas along the strip."""
+    """Dataset of tips: with their slopes and ends, and the reference length of pressures and areas along the strip."""
     slopes = ("slope", list(pair.tilt.slopes), {"units": "1"})
-    return contact.assign(length=((), pair.length, {"units": "m"})).assign_coords(slope=slopes)
+    of_strips = {"length": ((), pair.length, {"units": "m"}), "ends": ("slope", pair.tilt.ends, {"units": "1"})}
+    return contact.assign(of_strips).assign_coords(slope=slopes)
 
 
 def chunk(samples: int, number: int, chunks: int) -> range:

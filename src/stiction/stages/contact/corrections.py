@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 import xarray as xr
 
-from stiction.contact.correction import Change, Correction
+from stiction.contact.correction import Change, Correction, TipChanges
 
 S = TypeVar("S")
 
@@ -20,7 +20,17 @@ def correction(error: xr.Dataset) -> Correction:
         errors = error[f"{of}_ratio_error"].values / ratio, error[f"{of}_power_error"].values
         return Change(ratio, power, *errors)
 
-    return Correction(error.humidity.values, change("energy"), change("pull_off"))
+    return Correction(error.humidity.values, change("energy"), change("pull_off"), _of_tips(error))
+
+
+def _of_tips(error):
+    """Changes of the tips of a pair, none without any."""
+    if "tip_ratio" not in error:
+        return None
+    ratio, power, of_largest = (
+        error[f"tip_{name}"].transpose("humidity", ...).values for name in ("ratio", "power", "error")
+    )
+    return TipChanges(error.slope.values, Change(ratio, power, of_largest))
 
 
 def in_all_air(folder: str, pair: str, water: Mapping[str, Any]) -> str:

@@ -16,11 +16,6 @@ from stiction.contact.voltage import freeing_potential
 from stiction.devices.risk import CONFIDENCE
 from stiction.stages.contact.contact import tables
 
-#: Power of the change of tips by full elastic contact. ASSUME: the largest of tilted strips on five pairs in dry air,
-#: that of 6.8 nm rms: ln P scatters 1.23 ± 0.08 times as much as on summits. Parallel strips do not say it: they have
-#: 1.0 ± 0.1 there, and 1.6 ± 0.3 at 3.4 nm, where tilted ones have 1.10 ± 0.05.
-TIP_POWER = 1.23
-
 
 def force_curves(contact: xr.Dataset, humidity: float, water: Water) -> ForceCurves:
     """Force curves at a relative humidity."""
@@ -47,10 +42,9 @@ def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
 def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, np.ndarray]:
     """Slopes of tips (s,) [-] and the largest attraction of each tip at each slope, per width of the beam (m, s) [N/m].
 
-    Across gaps, the wedge below the stored heights attracts like a plane of its slope. ASSUME: full elastic contact
-    changes the mean of tips as that of e or f_max of parallel strips, whichever is more, at the 95 % upper end of its
-    ratio, their scatter by `TIP_POWER`, and weakens none. With the same rounded edge in both models, tilted strips in
-    dry air have 0.8 to 1.0 of the ratio of f_max of parallel ones (docs/tables/model_error_checks.md).
+    Across gaps, wedge and edge below the stored heights attract like planes of their slopes. Full elastic contact
+    changes mean and scatter as it does for `stiction.stages.contact.tips_in_full_contact`. ASSUME: of the errors of
+    these changes, tips have the 95 % upper end.
 
     Raises
     ------
@@ -59,7 +53,7 @@ def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.n
     """
     tips = _wedges(contact, humidity, water, endless=True)
     forces = forcelaw.largest_attractions(*tips) * float(contact.length)
-    return contact.slope.values, _changed_tips(forces, forces, humidity, water)
+    return contact.slope.values, _changed_tips(forces, forces, contact, humidity, water)
 
 
 def fast_tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
@@ -69,20 +63,32 @@ def fast_tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.nd
     """
     slow = _wedges(contact, humidity, water, endless=True)
     solid, bearing, starts, step, layer = slow
-    largest, force = forcelaw.largest_attractions(*slow).astype(float), np.empty(solid.shape[-1])
-    on_summits = largest.copy()
-    distance = starts[0] + step * np.arange(force.size)
+    largest = forcelaw.largest_attractions(*slow).astype(float)
+    on_summits, distance = largest.copy(), _distances(starts, step, solid)
     for each in np.ndindex(largest.shape):
-        forcelaw.apparent_force(solid[each], bearing[each], (*starts, starts[0]), step, *layer, force)
+        force = _apparent(solid[each], bearing[each], starts, step, layer)
         fast = keep_volume(force, distance, bearing[each], starts[1], layer)
         largest[each] = np.inf if fast is None else max(largest[each], -fast[0].min())
-    return _changed_tips(largest, on_summits, humidity, water) * float(contact.length)
+    return _changed_tips(largest, on_summits, contact, humidity, water) * float(contact.length)
 
 
-def _changed_tips(forces, slow, humidity, water):
+def _distances(starts, step, solid):
+    """Distances of the forces of tips (n_d,) [m]."""
+    return starts[0] + step * np.arange(solid.shape[-1])
+
+
+def _apparent(solid, bearing, starts, step, layer):
+    """Force of one tip at one slope (n_d,) [Pa]."""
+    force = np.empty(solid.size)
+    forcelaw.apparent_force(solid, bearing, (*starts, starts[0]), step, *layer, force)
+    return force
+
+
+def _changed_tips(forces, slow, contact, humidity, water):
     """Forces of tips under full elastic contact beside those of slow tips on summits, (m, s) each [N/m]."""
-    bounds = (change.at_most(CONFIDENCE) for change in water.changes(humidity) if change != NONE)
-    return np.maximum.reduce([forces, *(bound._replace(power=TIP_POWER).of(slow)(forces) for bound in bounds)])
+    changes = water.changes_of_tips(humidity, contact.slope.values)
+    at_slopes = [change.at_most(CONFIDENCE).of(slow[:, k])(forces[:, k]) for k, change in enumerate(changes)]
+    return np.stack(at_slopes, axis=1)
 
 
 def tilted_forces(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
@@ -106,9 +112,15 @@ def _wedges(contact, humidity, water, endless):
     if water.reaches_across:
         work = partial(water.work_across, height=layer[0])
         pressure, _ = gaps.gap_pressures(bearing, starts[1], contact.distance.values, step, work)
-        rest = work(contact.distance.values + reach) / (contact.slope.values[:, None] * float(contact.length))
+        rest = work(contact.distance.values + reach) * contact.ends.values[:, None] / float(contact.length)
         solid = solid + pressure - endless * rest.astype(np.float32)
     return solid, bearing, starts, step, layer
+
+
+def curve_of_tip(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, np.ndarray]:
+    """Distances [m] and forces [Pa] of the first tip at its first slope, on a strip that ends (n_d,) each."""
+    solid, bearing, starts, step, layer = _wedges(contact, humidity, water, endless=False)
+    return _distances(starts, step, solid), _apparent(solid[0, 0], bearing[0, 0], starts, step, layer)
 
 
 def pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:

@@ -21,7 +21,8 @@ from stiction.contact import forcelaw, solids
 from stiction.contact.environment import Water
 from stiction.contact.full import descent, elements
 from stiction.contact.full.halfspace import HalfSpace
-from stiction.contact.materials import ELASTIC
+from stiction.contact.materials import ELASTIC, Solid
+from stiction.contact.pair import EquivalentSurface
 from stiction.errors import NotConverged
 from stiction.plan.stage import At, Running, Stage, select
 from stiction.progress import progress
@@ -119,20 +120,30 @@ def strips(
 
 def _airs(surfaces, pair, settings, number):
     """Elements of a strip, and at each humidity what acts on each of a number of strips."""
-    drawn, materials = surface_pair(surfaces, "NG", settings), bodies(settings)
-    shape = tuple(len(range(0, points, drawn.every)) for points in drawn.beam.grid.shape)
-    space = HalfSpace(shape, drawn.spacing, solids.composite_modulus(*materials))
-    media = [settings.van_der_waals if settings.water.film(each)[0] else "dry" for each in settings.humidities]
+    materials = bodies(settings)
+    space = elements_of(surface_pair(surfaces, "NG", settings), materials)
+    media = [medium(settings, humidity) for humidity in settings.humidities]
     summits = {
-        medium: contact.compute(surfaces, pair, "NG", replace(settings, van_der_waals=medium), range(number))
-        for medium in dict.fromkeys(media)
+        each: contact.compute(surfaces, pair, "NG", replace(settings, van_der_waals=each), range(number))
+        for each in dict.fromkeys(media)
     }
     return space, [
         _in_air(
-            summits[medium], humidity, settings.water.at(humidity), solids.attraction_between(*materials, medium), space
+            summits[each], humidity, settings.water.at(humidity), solids.attraction_between(*materials, each), space
         )
-        for medium, humidity in zip(media, settings.humidities, strict=True)
+        for each, humidity in zip(media, settings.humidities, strict=True)
     ]
+
+
+def elements_of(pair: EquivalentSurface, materials: tuple[Solid, Solid]) -> HalfSpace:
+    """Elements of the strips of a pair of bodies."""
+    shape = tuple(len(range(0, points, pair.every)) for points in pair.beam.grid.shape)
+    return HalfSpace(shape, pair.spacing, solids.composite_modulus(*materials))
+
+
+def medium(settings: Settings, humidity: float) -> str:
+    """Medium through which solids attract each other at a humidity."""
+    return settings.van_der_waals if settings.water.film(humidity)[0] else "dry"
 
 
 def _on_summits(surfaces, pair, settings):
@@ -153,8 +164,8 @@ def _in_air(summits, humidity, water, attraction, space) -> Callable[[int], InAi
     return lambda k: InAir(adhesion, (found.distance, found.curve(k)), float(beyond[k]))
 
 
-def separated(space: HalfSpace, heights: np.ndarray, case: InAir) -> elements.Separation:
-    """Separate a strip of heights z (n1, n2) [m]: by descent where turns do not settle.
+def separated(space: HalfSpace, heights: np.ndarray, case: InAir, end: float = 0.0) -> elements.Separation:
+    """Separate a strip of heights z (n1, n2) [m], at least up to a distance [m]: by descent where turns do not settle.
 
     On rough strips, turns are up to ten times as fast.
 
@@ -166,9 +177,9 @@ def separated(space: HalfSpace, heights: np.ndarray, case: InAir) -> elements.Se
         If the strip does not come to rest.
     """
     try:
-        return elements.separation(space, heights, case.adhesion, case.curve)
+        return elements.separation(space, heights, case.adhesion, case.curve, end=end)
     except (NotConverged, ValueError):
-        return elements.separation(space, heights, case.adhesion, case.curve, descent.equilibrium)
+        return elements.separation(space, heights, case.adhesion, case.curve, descent.equilibrium, end)
 
 
 def _both_models(strip, case, hardness):
@@ -245,7 +256,7 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     return select(Settings, seen | study | {"water": plan.air.without_gaps(at.pair)})
 
 
-def _settings_across(plan, at):
+def settings_across(plan: Any, at: At) -> dict[str, Any]:
     """Settings with attraction across gaps, also in dry air if the pair has any."""
     touching = settings_of(plan, at)
     is_dry = any(plan.air.is_dry(at.pair, humidity) for humidity in plan.humidities_of_full_contact(at.pair))
@@ -253,10 +264,10 @@ def _settings_across(plan, at):
     return touching | {"water": plan.air.across_gaps(at.pair), "humidities": humidities}
 
 
-def _settings_in_dry_air(plan, at):
+def settings_in_dry_air(plan: Any, at: At) -> dict[str, Any]:
     """Settings with attraction across gaps in dry air alone. A number of strips that is not stated may grow."""
     more = {} if is_stated(plan.config, "studies", "full_contact") else {"most": MOST}
-    return _settings_across(plan, at) | {"humidities": [0.0], "on_summits": ON_SUMMITS} | more
+    return settings_across(plan, at) | {"humidities": [0.0], "on_summits": ON_SUMMITS} | more
 
 
 def _stage(name, folder, settings, forces):
@@ -275,6 +286,6 @@ def _stage(name, folder, settings, forces):
 
 STAGES = (
     _stage("full_contact", "studies/full_contact", settings_of, ""),
-    _stage("full_contact_across", "studies/full_contact/across", _settings_across, " with attraction across gaps"),
-    _stage("full_contact_dry", "studies/full_contact/dry", _settings_in_dry_air, " in dry air"),
+    _stage("full_contact_across", "studies/full_contact/across", settings_across, " with attraction across gaps"),
+    _stage("full_contact_dry", "studies/full_contact/dry", settings_in_dry_air, " in dry air"),
 )

@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from stiction.analysis.model_error import length_factors, mean_ratios, scatter_ratios
+from stiction.analysis.model_error import interpolation_error, length_factors, mean_ratios, scatter_ratios, tip_ratios
+from stiction.contact.correction import interpolated
 from stiction.plan.stage import Running, Stage
-from stiction.stages.contact import full_contact
+from stiction.stages.contact import full_contact, tips_in_full_contact
 
 
 @dataclass(frozen=True)
@@ -20,8 +21,11 @@ class Settings:
     condenses: bool = True  #: whether water condenses between the surfaces; otherwise all air is dry
 
 
-def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Ratios and powers of energies and of largest attractions, and the factor of crack lengths, with their errors."""
+def compute(study: xr.Dataset, settings: Settings, tips: xr.Dataset | None = None) -> xr.Dataset:
+    """Ratios and powers of energies and of largest attractions, and the factor of crack lengths, with their errors.
+
+    Those of tips are among them, if any are on the pair.
+    """
     computed, *energies = full_contact.energies(study)
     _, *pull_offs = full_contact.pull_offs(study)
     of_energy, of_pull_off = np.moveaxis(full_contact.moved_models(study), -1, 0)
@@ -35,7 +39,22 @@ def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
         "pull_off_power": scatter_ratios(*pull_offs, *given),
         "length_factor": length_factors(*of_energy, *given),
     }
-    return layout(ratios, at, at[np.isin(airs, computed)], study.sizes["sample"], settings.applied)
+    found = layout(ratios, at, at[np.isin(airs, computed)], study.sizes["sample"], settings.applied)
+    return found if tips is None else found.assign(_of_tips(tips, given)).assign_coords(slope=tips.slope)
+
+
+def _of_tips(tips, given):
+    """Variables of the changes of tips at slopes: ratio, power, and error of what one tip in 1000 exceeds."""
+    found, (computed, airs) = tip_ratios(*tips_in_full_contact.models(tips)), given
+    between = [interpolation_error(np.log(one), *given) for one in found.means.T]
+    errors = [np.interp(airs, computed, one) for one in found.error.T]
+    ratios = [interpolated(one, *given) for one in found.means.T]
+    over = "humidity", "slope"
+    return {
+        "tip_ratio": (over, np.transpose(ratios), {"units": "1"}),
+        "tip_error": (over, np.hypot(errors, between).T, {"units": "1"}),
+        "tip_power": ("humidity", interpolated(found.powers, *given), {"units": "1"}),
+    }
 
 
 def layout(
@@ -70,12 +89,18 @@ def _settings(plan, at):
     return {"humidities": airs} | ({"applied": applied} if applied else {}) | dry
 
 
+def _inputs(plan, pair, between):
+    """Study of a pair, and that of its tips if it has any."""
+    tips = {"tips": f"studies/full_contact/tips/{between}{pair}"} if plan.devices.has_tips(pair) else {}
+    return {"study": f"studies/full_contact/{between}{pair}"} | tips
+
+
 def _stage(name, between, forces):
     """Stage of the ratios of a pair under some forces. ``between`` is the folder of the study under them."""
     return Stage.writing(
         name,
         f"studies/model_error/{between}{{pair}}",
-        inputs=lambda plan, at: {"study": f"studies/full_contact/{between}{at.pair}"},
+        inputs=lambda plan, at: _inputs(plan, at.pair, between),
         settings=_settings,
         kind=Settings,
         compute=compute,

@@ -16,7 +16,8 @@ from stiction.contact.asperity import Asperity
 from stiction.contact.materials import Solid
 from stiction.contact.pair import Definition, EquivalentSurface, SurfacePair
 from stiction.contact.solids import asperity_between
-from stiction.contact.tilted import Tilt, TiltedPair
+from stiction.contact.tilt import Tilt
+from stiction.contact.tilted import TiltedPair
 from stiction.models import SIDES
 from stiction.stages.surfaces.rough_surfaces import Sampling, Width, rough_surface
 from stiction.streams import stream
