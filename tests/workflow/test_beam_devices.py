@@ -97,7 +97,7 @@ def test_python_gives_the_numbers_of_the_workflow(finished):
 @pytest.mark.slow
 def test_a_device_uses_the_strips_of_its_pair_where_they_are_equal(finished):
     own = {path.name for path in (finished[0] / "results" / "devices" / "contact").rglob("*.nc")}
-    assert own == {"my-pair_2_500x6000.nc", "my-pair_2_870x30000.nc"}
+    assert own == {"my-pair_2_500x6000.nc", "my-pair_2_960x30000.nc"}
 
 
 @pytest.mark.slow

@@ -24,8 +24,8 @@ DEVICE = DesignedBeam("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
 BEAM = DEVICE.beam
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
 C1 |= {"humidities": [0.44, 0.67, 0.92]}
-#: Lengths that the tips of 1 in 100 and of 1 in 1000 beams hold, and their standard errors [µm]: 1696 tips with a
-#: rounded edge on strips of 0.3 µm, each solved by bisection over the length.
+#: Lengths that the tips of 1 in 100 and of 1 in 1000 beams hold, and their standard errors [µm]: 1696 tips with an
+#: edge that carries nothing on strips of 0.3 µm, each solved by bisection over the length.
 INDEPENDENT = {
     0.44: {1e-2: (302.7, 4.2), 1e-3: (263, 6)},
     0.67: {1e-2: (302.6, 2.5), 1e-3: (273, 4)},
@@ -34,7 +34,8 @@ INDEPENDENT = {
 
 
 def settings(number, edge="rounded"):
-    plan = Plan(load({"devices": {"C1": C1}, "design": {"beams": 200, "tip_edge": edge}}))
+    design = {"beams": 200, "tip_edge": edge, "edge_radius_um": 0}
+    plan = Plan(load({"devices": {"C1": C1}, "design": design}))
     plain = job_settings(
         plan,
         f"devices/contact/tips/{DevicePlan(plan.config).tips('C1').name}",
