@@ -420,7 +420,7 @@ def test_a_square_edge_has_no_radius_and_a_rounder_edge_a_longer_strip():
         for design in ({"edge_radius_um": 1}, {"tip_edge": "square"}, {"edge_radius_um": 0})
     )
     radii = [plan.tilt(plan.tips("C1"))["radius_um"] for plan in (rounder, square, sharp)]
-    assert radii == [1, 0, 0]
+    assert radii == [plan.edge_radius("C1") for plan in (rounder, square, sharp)] == [1, 0, 0]
     assert rounder.tips("C1").length > square.tips("C1").length == sharp.tips("C1").length
 
 

@@ -11,6 +11,7 @@ from scipy.optimize import brentq, minimize_scalar
 from stiction.beam.energy import arrest_length
 from stiction.beam.release import EndState, released_beam
 from stiction.contact import forcelaw
+from stiction.contact.tilt import Tilt
 from stiction.devices import arcs
 
 LAW = uniform_laws(1)[0]
@@ -115,6 +116,43 @@ def test_the_longest_arc_that_comes_free_balances_the_bending_of_the_beam(power,
     assert_allclose(arcs.tip_slope(length, PAPER.gap), slope, rtol=1e-9)
     bending = 3 * PAPER.bending_stiffness * PAPER.gap / length**3
     assert_allclose(arcs.bending_force(slope, PAPER) * PAPER.width, bending, rtol=1e-9)
+
+
+# Flats
+
+
+def attraction_of_smooth_tip(law, slope, radius, far):
+    """P/w of a smooth tip that touches, from its drop and f(u), by quadrature [N/m]."""
+    tilt = Tilt((slope,), far, radius=radius)
+    along = np.linspace(-tilt.before, far / slope, 400_001)
+    return np.trapezoid(law(tilt.drop(slope, along)), along)
+
+
+@pytest.mark.parametrize("radius", [0.0, 0.1e-6, 3e-6])
+@pytest.mark.parametrize("slope", [0.02, 0.1, 0.3])
+def test_no_attraction_of_an_energy_and_a_largest_value_holds_smooth_tips_harder(slope, radius):
+    reach, largest = 1.5e-9, 1e8
+    energy = reach * largest
+    bound = float(arcs.flat_force(slope, energy, largest, radius))
+    constant = attraction_of_smooth_tip(lambda u: largest * (u < reach), slope, radius, 1.1 * reach)
+    assert_allclose(constant, bound, rtol=1e-3)
+    decaying = attraction_of_smooth_tip(lambda u: largest * np.exp(-u / reach), slope, radius, 40 * reach)
+    assert decaying < 1.001 * bound
+    if radius:
+        assert decaying < 0.99 * bound, "control: it acts farther away"
+
+
+@given(st.floats(-8, -5), st.floats(-4, 0), st.floats(6, 9))
+def test_the_arc_of_flats_balances_wedge_and_edge(of_radius, of_energy, of_largest):
+    radius, energy, largest = 10.0 ** np.array([of_radius, of_energy, of_largest])
+
+    def excess(slope):
+        return arcs.bending_force(slope, PAPER) / arcs.flat_force(slope, energy, largest, radius) - 1
+
+    slope = brentq(excess, 1e-6, 1e3, xtol=1e-14)
+    found = arcs.tip_slope(arcs.flat_length(energy, largest, radius, PAPER), PAPER.gap)
+    assert (1 - 1e-9) * slope <= found < 1.005 * slope, "the safe side"
+    assert_allclose(arcs.flat_length(energy, largest, 0.0, PAPER), arcs.arc_length(energy, PAPER), rtol=1e-9)
 
 
 def test_of_several_balances_the_shortest_arc_counts():

@@ -22,6 +22,8 @@ from stiction.beam.cantilever import Beam
 #: Power with which the length that a tip holds falls with its attraction. ASSUME: that of an attraction P that is the
 #: same at all slopes, the safe end. On smooth surfaces P grows as 1/θ, and it is -1/4; rough ones are between.
 LENGTH_POWER = -1 / 3
+#: Slopes between which the force of smooth tips is interpolated.
+_STEPS = 65
 
 
 def tip_slope(length: float | np.ndarray, gap: float | np.ndarray) -> float | np.ndarray:
@@ -35,6 +37,42 @@ def arc_length(energy: float | np.ndarray, beam: Beam) -> float | np.ndarray:
     It is 2^(-1/2) = 0.7071 of the crack length of Eq. (13).
     """
     return (3 / 8 * beam.young_modulus * beam.thickness**3 * beam.gap**2 / energy) ** (1 / 4)
+
+
+def flat_force(slope: np.ndarray, energy: float, largest: float, radius: float) -> np.ndarray:
+    r"""Largest attraction of smooth tips with a rounded edge, an upper bound, any shape [N m⁻¹].
+
+    With the energy e and at most the attraction q,
+
+    .. math:: \frac P w = \frac e \theta + q \frac{\theta R}{2} + \sqrt{2 R e q}
+
+    over wedge and edge (`stiction.contact.tilt`), and :math:`2 \sqrt{2 R e q}` where the edge has dropped by e/q before
+    the wedge begins. These are exact for an attraction of q up to e/q. Any other one acts farther away, where tips are
+    steeper.
+
+    Parameters
+    ----------
+    slope : array
+        θ [-].
+    energy, largest : float
+        e [J m⁻²], q [Pa].
+    radius : float
+        R of the edge [m]; 0 leaves the wedge alone.
+    """
+    edge = np.sqrt(2 * radius * energy * largest)
+    on_wedge = slope**2 * radius / 2 < energy / largest
+    return np.where(on_wedge, energy / slope + largest * slope * radius / 2 + edge, 2 * edge)
+
+
+def flat_length(energy: float, largest: float, radius: float, beam: Beam) -> float:
+    """Longest releasing arc with a smooth tip that has a rounded edge, a lower bound [m]. Arguments as of `flat_force`.
+
+    Its slope is between those of a sharp edge, and of a tip that is held at all slopes as at that one.
+    """
+    sharp = tip_slope(arc_length(energy, beam), beam.gap)
+    steepest = (flat_force(sharp, energy, largest, radius) / bending_force(sharp, beam)) ** (1 / 3)
+    slopes = sharp * np.geomspace(1 / 2, 2 * steepest, _STEPS)
+    return float(longest_free(slopes, flat_force(slopes, energy, largest, radius)[np.newaxis], beam)[0])
 
 
 def longest_free(slopes: np.ndarray, forces: np.ndarray, beam: Beam) -> np.ndarray:

@@ -304,6 +304,10 @@ class DevicePlan:
         design = self.config["design"]
         return design["edge_radius_um"] if design["tip_edge"] == Edge.ROUNDED else 0.0
 
+    def edge_radius(self, device: str) -> float:
+        """Radius of the edge of the tip of a device [µm], 0 without one or for a square one."""
+        return self._edge_radius if device in self.with_tips else 0.0
+
     @property
     def edge_in_words(self) -> str:
         """Edge of the tips for a reader."""

@@ -119,7 +119,7 @@ def test_few_sizes_are_all_computed(count):
 
 
 def computed(device, thicknesses, gaps, tips=None, shares=(1e-2,)):
-    wanted = chart.Settings(2021, WATER, 0.67, device, 200, shares, thicknesses, gaps)
+    wanted = chart.Settings(2021, WATER, 0.67, device, 200, shares, thicknesses, gaps, 0.0)
     with patch.object(curves, "tip_forces", lambda *_: smooth_tips(tips)):
         return chart.compute(met(device), wanted, None if tips is None else xr.Dataset()), wanted
 
@@ -136,7 +136,7 @@ def alone(device, wanted, tips=None):
     opens, on_mean = device.opening, partial(device.opening.length_on_mean, beam=device.beam)
     surfaces = sampled_surfaces(sampled, opens.contribution, on_mean, opens.uniform(ground[0], sampled))
     beams = sticking.Released(device, lengths, np.inf, foundation_length(ground[0], laws), surfaces, held)
-    found = sticking.by_shape(beams, wanted, sticking.lengths_without_samples(device, WATER, 0.67, np.inf))
+    found = sticking.by_shape(beams, wanted, sticking.lengths_without_samples(wanted, np.inf))
     return [[one.length for one in row] for row in found.values()]
 
 
@@ -167,8 +167,8 @@ def test_limits_of_saturated_air_are_those_of_flooded_flats_by_shape():
     assert_allclose(flat, 2 * WATER_SURFACE_ENERGY, rtol=1e-12)
     tip, whole = (found.flooded_length.sel(shape=shape) for shape in (opening.EITHER, opening.S_SHAPE))
     assert_allclose(tip / whole, np.sqrt(0.5), rtol=1e-12)  # the peel number
-    bridge, _ = computed(R1, (2 * UM,), (2 * UM,))
-    assert_allclose(bridge.flooded_length[0, 0], sticking.flooded_lengths(R1, WATER, 0.67), rtol=1e-12)
+    bridge, asked = computed(R1, (2 * UM,), (2 * UM,))
+    assert_allclose(bridge.flooded_length[0, 0], sticking.flooded_lengths(asked), rtol=1e-12)
 
 
 def test_a_chart_states_its_humidity_film_and_roughness():
@@ -181,7 +181,7 @@ def test_a_chart_states_its_humidity_film_and_roughness():
 # Sizes between humidities
 
 NODES = 0.44, 0.67, 0.95
-WANTED = chart.Settings(2021, WATER, 0.55, C1, 1000, (1e-2, 1e-3), (2e-6, 2.6e-6, 4e-6), (20e-6,))
+WANTED = chart.Settings(2021, WATER, 0.55, C1, 1000, (1e-2, 1e-3), (2e-6, 2.6e-6, 4e-6), (20e-6,), 0.0)
 
 
 def drawn(asked, power, here, device, ground, wanted):

@@ -40,11 +40,11 @@ STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_forc
 def safe(kind="cantilever", longest=600e-6, reach=np.inf):
     """Safe lengths of 400 devices that stick between two thirds of a length and this length."""
     device = DesignedBeam(kind, "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
-    settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4))
+    settings = safe_lengths.Settings(1, Water(300.0), 0.67, device, (1e-2, 1e-3, 1e-4), 0.0)
     shapes = {device.opening.shapes[0]: np.linspace(2 / 3, 1, 400) * longest}
     if kind == "cantilever":
         shapes[EITHER] = 0.7 * shapes[S_SHAPE]
-    known = sticking.lengths_without_samples(device, settings.water, 0.67, reach)
+    known = sticking.lengths_without_samples(settings, reach)
     bounds = {shape: sticking.safe_lengths(values, settings, known[shape]) for shape, values in shapes.items()}
     return safe_lengths.layout(shapes, bounds, known, settings).assign(rms=3e-9, share_flat=0.0, longest_strip=1e-3)
 

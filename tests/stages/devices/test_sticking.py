@@ -9,10 +9,10 @@ from scipy.special import ndtr
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact import forcelaw
-from stiction.contact.environment import Gaps, Water, force_curves
+from stiction.contact.environment import Gaps, Water, flooded_law, force_curves
 from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.devices import risk
-from stiction.devices.arcs import arc_length
+from stiction.devices.arcs import arc_length, flat_length
 from stiction.devices.bridges import least_length
 from stiction.devices.risk import Known
 from stiction.stages.devices import ground, opening, sticking
@@ -32,49 +32,62 @@ def test_a_bridge_is_held_by_its_middle_and_has_no_tip():
     assert_array_equal(found[MIDDLE], [2e-4, 2.1e-4])
 
 
+def flooded_lengths(device, water=WATER, humidity=0.67, edge_radius=0.0):
+    asked = wanted(device, water=water, humidity=humidity, edge_radius=edge_radius)
+    return sticking.flooded_lengths(asked)
+
+
 def test_lengths_of_flats_are_those_of_their_water_and_their_solids_by_shape():
     energy = 0.072 * (1 + np.cos(1.0)) + DugdaleAttraction(1e-19).work_of_adhesion
-    alone, tip = sticking.flooded_lengths(replace(C1, hamaker_constant=1e-19), Water(300.0, (1.0, 0.0)), 0.67)
+    alone, tip = flooded_lengths(replace(C1, hamaker_constant=1e-19), Water(300.0, (1.0, 0.0)))
     assert_allclose(apparent_adhesion_energy(alone, C1.beam), energy, rtol=1e-9)
     assert_allclose(tip, arc_length(energy, C1.beam), rtol=1e-9)
+
+
+def test_the_edge_of_the_tip_shortens_the_arc_of_flats_alone():
+    sharp, round_edge = flooded_lengths(C1), flooded_lengths(C1, edge_radius=0.1e-6)
+    assert round_edge[0] == sharp[0]
+    law = flooded_law(0.67, WATER.at(0.67), C1.hamaker_constant)
+    assert_allclose(round_edge[1], flat_length(*law, 0.1e-6, C1.beam), rtol=1e-12)
+    assert round_edge[1] < 0.95 * sharp[1]
 
 
 def test_adsorbed_films_shorten_the_lengths_of_flooded_flats_by_their_work():
     wet = Water(300.0, adsorbed=0.5e-9)
     for humidity in (0.44, 0.9):
         energy = 2 * 0.072 + wet.film(humidity)[1] * 0.5e-9
-        alone, tip = sticking.flooded_lengths(replace(C1, hamaker_constant=0.0), wet, humidity)
+        alone, tip = flooded_lengths(replace(C1, hamaker_constant=0.0), wet, humidity)
         assert_allclose(apparent_adhesion_energy(alone, C1.beam), energy, rtol=1e-9)
         assert_allclose(tip, arc_length(energy, C1.beam), rtol=1e-9)
         flat = replace(R1, hamaker_constant=0.0)
-        assert sticking.flooded_lengths(flat, wet, humidity) < sticking.flooded_lengths(flat, WATER, humidity)
+        assert flooded_lengths(flat, wet, humidity) < flooded_lengths(flat, WATER, humidity)
 
 
 @pytest.mark.parametrize("humidity", [0.0, 0.44, 0.92])
 def test_flat_patches_stick_no_harder_than_flats_in_contact(humidity):
     air, bearing = Water(300.0, gaps=Gaps(HAMAKER_CONSTANT, "water", 100e-9)).at(humidity), np.array([[1.0, 0.0]])
     most = force_curves(np.zeros((1, 2)), bearing, (0.0, -2e-11), 5e-11, humidity, air).flat
-    alone, _ = sticking.flooded_lengths(C1, air, humidity)
+    alone, _ = flooded_lengths(C1, air, humidity)
     assert apparent_adhesion_energy(alone, C1.beam) >= (1 - 1e-9) * most[0]
 
 
 def test_the_bound_of_a_bridge_is_that_of_flooded_flats_in_contact_at_its_humidity():
     tension = 8.314462618 * 300 * -np.log(0.67) / 1.8e-5
-    (water,) = sticking.flooded_lengths(replace(R1, hamaker_constant=0.0), WATER, 0.67)
+    (water,) = flooded_lengths(replace(R1, hamaker_constant=0.0))
     assert_allclose(water, least_length(2 * 0.072, tension, R1.beam), rtol=1e-9)
-    dry, wet = (sticking.flooded_lengths(R1, WATER, humidity)[0] for humidity in (0.3, 0.99))
+    dry, wet = (flooded_lengths(R1, WATER, humidity)[0] for humidity in (0.3, 0.99))
     assert dry < wet < water  # solids in contact pull as well, and drier water harder
 
 
 def test_no_safe_length_of_a_bridge_is_below_its_bound_and_a_tip_has_none():
-    bound = sticking.lengths_without_samples(R1, WATER, 0.67, np.inf)[MIDDLE].safe
+    bound = sticking.lengths_without_samples(wanted(R1), np.inf)[MIDDLE].safe
     scattered = bound * np.exp(0.3 + 0.1 * np.random.default_rng(3).standard_normal(200))
     asked = replace(wanted(), shares=(1e-2, 1e-4))
     free, held = (sticking.safe_lengths(scattered, asked, Known(safe=least)) for least in (0.0, bound))
     assert free[1].length < bound
     assert [one.length for one in held] == [max(one.length, bound) for one in free]
     assert [one.estimate for one in held] == [one.estimate for one in free]
-    assert [one.safe for one in sticking.lengths_without_samples(C1, WATER, 0.67, np.inf).values()] == [0, 0]
+    assert [one.safe for one in sticking.lengths_without_samples(wanted(), np.inf).values()] == [0, 0]
 
 
 def test_there_is_one_safe_length_for_every_share():

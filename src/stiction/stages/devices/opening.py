@@ -242,6 +242,7 @@ def settings_of_beam(plan: Any, case: Case) -> dict[str, Any]:
     """Device at a humidity: force laws, dimensions and number of beams. More than any one stage needs."""
     pair = plan.contact_of_device(case)
     own = {"device": section_of_beam(plan, case.device, pair), "humidity": case.humidity}
+    own |= {"edge_radius_um": plan.devices.edge_radius(case.device)}
     return plan.seen_by(pair) | plan.config["design"] | own | {"water": plan.air_of_devices.water(pair)}
 
 

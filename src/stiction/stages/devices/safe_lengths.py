@@ -34,6 +34,7 @@ class Settings:
     humidity: float  #: [-]
     device: DesignedBeam
     shares: tuple[float, ...]  #: p [-]
+    edge_radius: float  #: of its tip, for the bound of flats [m]
     length: float | None = None  #: of the device, at which P(stuck) is stated [m]
 
 
@@ -43,7 +44,7 @@ def compute(cracks: xr.Dataset, settings: Settings, tips: xr.Dataset | None = No
     if tips is not None:
         held = arcs.longest_free(*curves.tip_forces(tips, settings.humidity, settings.water), device.beam)
     beams = stage_cracks.beams_of(cracks, device, held)
-    without_samples = lengths_without_samples(device, settings.water, settings.humidity, beams.reach)
+    without_samples = lengths_without_samples(settings, beams.reach)
     dataset = layout(beams.lengths, by_shape(beams, settings, without_samples), without_samples, settings).assign(
         cracks[["rms", "share_flat", "longest_strip", "resampled", "repetition", "size_error"]]
     )
