@@ -140,7 +140,7 @@ def test_contacts_of_a_budget_are_on_the_strips_of_the_device_and_choices_change
     every = {"van_der_waals": [], "psd": [], "every": [2], "spacing_nm": [], "poisson_ratio": []}
     graph = Graph(Plan(stiction.load(uncertain, {"devices": {"C1": strip}, "studies": {"variants": every}})))
     inputs = graph.job("devices/budget/C1_rh088").inputs
-    for name in (inputs["contact"], *inputs["less"].values(), *inputs["solids_less"].values()):
+    for name in (inputs["contact"], *inputs["less"].values(), *inputs["properties_less"].values()):
         assert graph.job(name).settings["sampling"]["strip_length_um"] == length
     ((name, contact),) = inputs["choices"].items()
     settings = graph.job(graph.job(contact).inputs["summits"]).settings

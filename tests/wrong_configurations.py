@@ -265,6 +265,12 @@ WRONG_RELATIONS = [
      "surfaces: {B2: {material: SAM}}\n" + UNCERTAIN + "hamaker_constant_zJ: 9}}}",
      "devices.C1.uncertainty.hamaker_constant_zJ", "9",
      "must be left out if the material states coating_hamaker_constant_zJ"),
+    (UNCERTAIN + "edge_radius_um: 0.1}}}", "devices.C1.uncertainty.edge_radius_um", "0.1",
+     "must be below the radius itself, 0.1 µm (given design.tip_edge = 'rounded', design.edge_radius_um = 0.1)"),
+    ("design: {tip_edge: square}\n" + UNCERTAIN + "edge_radius_um: 0.01}}}", "devices.C1.uncertainty.edge_radius_um",
+     "0.01", "must be left out, because a square edge has no radius"),
+    (f"devices: {{S1: {STOPPER[:-1]}, uncertainty: {{edge_radius_um: 0.01}}}}}}",
+     "devices.S1.uncertainty.edge_radius_um", "0.01", "a device of this kind has no tip (given devices.S1.kind"),
 ]  # fmt: skip
 
 

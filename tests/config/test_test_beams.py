@@ -195,7 +195,7 @@ def test_contacts_of_test_beams_and_device_are_the_same_and_drawn_once():
         graph.job(name).inputs for name in ("devices/budget/C1_rh067", "devices/test_beams/budget/first_rh067")
     )
     assert of_beams["contact"] == of_device["contact"]
-    for side in ("less", "more", "solids_less", "solids_more"):
+    for side in ("less", "more", "properties_less", "properties_more"):
         assert of_beams[side] == of_device[side] != {}
     assert of_beams["choices"] == {}
 

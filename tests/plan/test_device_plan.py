@@ -25,7 +25,7 @@ from stiction.stages.devices import uncertain_inputs as inputs
 SIZES = {"thickness_um": 2.6, "gap_um": 20, "width_um": 30}
 C1 = {"kind": "cantilever", "pair": "b", "humidities": [0.67]} | SIZES
 S1 = {"kind": "stopper", "pair": "b", "contact_um": [3, 2], "restoring_force_uN": 20, "humidities": [0.44, 0.9]}
-STATED = {"humidity": 0.01, "young_modulus_GPa": 5, "scan_um": 10}
+STATED = {"humidity": 0.01, "young_modulus_GPa": 5, "edge_radius_um": 0.03, "scan_um": 10}
 DEVICES = {"C1": C1 | {"uncertainty": STATED}, "C2": C1, "S1": S1 | {"uncertainty": {"humidity": 0.02}}}
 GLASS = {"young_modulus_GPa": 70, "poisson_ratio": 0.2, "contact_angle_deg": 20}
 
@@ -48,6 +48,7 @@ JOBS = [
     (budget.TipBudget, job_settings(PLAN, "devices/budget/C1_rh067_tip")["budget"]),
     *((contact.Settings, job_settings(PLAN, f"devices/contact/{name}/{PATCH}_more")) for name in OF_CONTACT),
     *((contact.Settings, job_settings(PLAN, f"devices/contact/tips/{name}/{TIP}_more")) for name in OF_CONTACT),
+    (contact.Settings, job_settings(PLAN, f"devices/contact/tips/edge/{TIP}_more")),
     (
         contact.Settings,
         job_settings(PLAN, f"devices/contact/tips/choices/{TIP}_van_der_waals_dry"),
@@ -130,7 +131,10 @@ def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_changed_tips_as_sam
     found = job_settings(PLAN, "devices/budget/C1_rh067_tip")
     of_beam = job_settings(PLAN, "devices/budget/C1_rh067")
     assert found["budget"].pop("share") == 1e-3
-    assert found["budget"] == {key: value for key, value in of_beam["budget"].items() if key != "beams"}
+    assert found["budget"].pop("edge_radius_um") == PLAN.config["design"]["edge_radius_um"]
+    both = of_beam["budget"] | {"uncertainty": STATED}  # the edge is one of tips alone
+    assert of_beam["budget"]["uncertainty"].keys() == STATED.keys() - {"edge_radius_um"}
+    assert found["budget"] == {key: value for key, value in both.items() if key != "beams"}
     assert (found["quantities"], found["choices"]) == (
         of_beam["quantities"],
         PLAN.variants.choices_of_solids("b"),
@@ -141,6 +145,16 @@ def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_changed_tips_as_sam
         tips, strips = (job_settings(PLAN, f"devices/contact/{folder}{name}/{TIP}_less") for folder in ("tips/", ""))
         assert tips["contact"]["samples"] == number
         assert tips == strips | {"contact": tips["contact"], "tilt": tips["tilt"]}
+
+
+def test_tips_with_another_edge_have_its_radius_and_the_points_and_samples_of_those_with_other_solids():
+    base = job_settings(PLAN, f"devices/contact/tips/poisson_ratio/{TIP}_less")["tilt"]
+    less, more = (job_settings(PLAN, f"devices/contact/tips/edge/{TIP}_{side}")["tilt"] for side in ("less", "more"))
+    assert (less.pop("radius_um"), more.pop("radius_um")) == pytest.approx((0.05, 0.15))
+    assert less.pop("room_um") == more.pop("room_um") == base.pop("radius_um") == 0.1
+    assert less == more == base
+    inputs = PLAN.devices.has_uncertain_edge("C1"), PLAN.devices.has_uncertain_edge("C2")
+    assert inputs == (True, False), "control"
 
 
 def test_the_contact_of_a_device_has_the_samples_of_a_pair_and_that_of_its_tips_one_for_each_beam():

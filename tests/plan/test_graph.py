@@ -32,7 +32,11 @@ COUNTS = [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]
 ISLANDS = {"variants": {"asperity": ["island"]}}
 #: Voltage, dimples and tilt, which the devices of the examples do not have.
 BIASED = {"voltage_V": 5, "dielectric": {"thickness_nm": 100, "permittivity": 3.9}}
-DIMPLED = {"length_um": 250, "dimples": {"number": 2, "at_um": [200], "height_um": 1, "contact_um": [2, 2]}}
+DIMPLED = {
+    "length_um": 250,
+    "uncertainty": {"edge_radius_um": 0.03},
+    "dimples": {"number": 2, "at_um": [200], "height_um": 1, "contact_um": [2, 2]},
+}
 #: Process of a device of the examples, which have none of their own but one of drawn scans.
 ETCHED = [{"value": value, "rms_nm": value / 20, "uncertainty": {"rms_nm": 0.1}} for value in (30, 60, 90)]
 ETCH = {"variable": "etch_time_s", "surface": "B2", "settings": ETCHED}

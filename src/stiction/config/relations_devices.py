@@ -29,6 +29,7 @@ from stiction.config.relations import (
 )
 from stiction.config.test_beams import DATA, shared_uncertainty
 from stiction.contact.materials import COATING_ATTRACTION, OF_CONTACT
+from stiction.contact.tilt import Edge
 from stiction.rounding import is_at_most
 from stiction.surface.feasible import largest_kurtosis
 
@@ -259,6 +260,22 @@ def uncertain_hamaker_constants_are_those_of_bare_solids(config):
         if deviation and COATING_ATTRACTION in _material(config, name):
             message = f"must be left out if the material states {COATING_ATTRACTION}"
             yield f"devices.{name}.{key}", message
+
+
+@relation
+def uncertain_edges_are_those_of_round_tips(config):
+    """Require a tip with a rounded edge for an uncertain radius, which stays positive below its value."""
+    key, given = "uncertainty.edge_radius_um", ("design.tip_edge", "design.edge_radius_um")
+    for name, deviation, kind in config.entries("devices", key, "kind"):
+        message, design = None, config["design"]
+        if deviation and not KINDS[kind].has_tip:
+            message, given = "must be left out, because a device of this kind has no tip", (f"devices.{name}.kind",)
+        elif deviation and design["tip_edge"] == Edge.SQUARE:
+            message = "must be left out, because a square edge has no radius"
+        elif deviation and deviation >= design["edge_radius_um"]:
+            message = f"must be below the radius itself, {design['edge_radius_um']:g} µm"
+        if message:
+            yield f"devices.{name}.{key}", message, *given
 
 
 @relation

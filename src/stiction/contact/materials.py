@@ -81,7 +81,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Property:
-    """Property of the material of one body."""
+    """Property of one body."""
 
     key: str  #: of the configuration, where materials and uncertainties have it
     words: str

@@ -12,6 +12,12 @@ from enum import StrEnum
 
 import numpy as np
 
+from stiction.contact.materials import Property, Step
+
+#: Radius of a rounded edge as an uncertain input. Slopes by steps of 0.2 and 0.5 are equal within their errors, and the
+#: larger step halves these.
+EDGE_RADIUS = Property("edge_radius_um", "radius of the edge", Step(0.5))
+
 
 class Edge(StrEnum):
     """Edge of a tip."""
@@ -28,11 +34,12 @@ class Tilt:
     reach: float  #: how far below the distances points count as wet: at least the height of the film [m]
     edge: Edge = Edge.ROUNDED
     radius: float = 0.0  #: R of a rounded edge; with 0, nothing is before x = 0 [m]
+    room: float | None = None  #: radius of an edge for which there is room before x = 0, by default R [m]
 
     @property
     def before(self) -> float:
-        """Length of the rounded edge [m]."""
-        return length_of_edge(self.radius, self.reach, self.slopes[-1])
+        """Length of the strip before x = 0 [m]."""
+        return length_of_edge(self.radius if self.room is None else self.room, self.reach, self.slopes[-1])
 
     def drop(self, slope: float, along: np.ndarray) -> np.ndarray:
         """Drop u of heights at distances x from the edge, below its highest line (n,) [m]."""

@@ -20,7 +20,7 @@ from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, un
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.materials import OF_CONTACT
 from stiction.contact.meniscus import flooded_energy, meniscus_height
-from stiction.contact.tilt import Edge, length_of_edge
+from stiction.contact.tilt import EDGE_RADIUS, Edge, length_of_edge
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
 from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.plan.stage import subsection
@@ -401,6 +401,10 @@ class DevicePlan:
         """Uncertain properties of the material of a device, keys of ``OF_CONTACT``."""
         stated = self.sections[device].get("uncertainty", {})
         return [name for name, entry in OF_CONTACT.items() if stated.get(entry.key)]
+
+    def has_uncertain_edge(self, device: str) -> bool:
+        """Whether the tip of a device has a rounded edge with an uncertain radius."""
+        return bool(self.edge_radius(device) and self.sections[device].get("uncertainty", {}).get(EDGE_RADIUS.key))
 
     def budgets(self, *devices: str) -> list[str]:
         """Budgets of devices, of all with an uncertain input by default: at each humidity, and those of tips."""

@@ -90,8 +90,13 @@ def lognormal_cracks(device=C1, number=400, spread=0.025, seed=1, surfaces=SURFA
     )
 
 
-def wanted(device=C1, shares=(1e-2, 1e-3), water=WATER, humidity=0.67, edge_radius=0.0):
-    return safe_lengths.Settings(2021, water, humidity, device, shares, edge_radius)
+def wanted(device=C1, shares=(1e-2, 1e-3)):
+    return safe_lengths.Settings(2021, WATER, 0.67, device, shares, 0.0)
+
+
+def flats(settings):
+    """Arguments of lengths of flats."""
+    return settings.device, settings.water, settings.humidity, settings.edge_radius
 
 
 def safe_without_tips(device=R1, **more):

@@ -77,11 +77,11 @@ def test_on_smooth_surfaces_lengths_are_those_of_the_sum_of_both_energies():
 
 def test_flooded_flats_are_held_by_the_voltage_as_well():
     for device in (C1, R1):
-        lengths = np.array([flooded_lengths(wanted(device, water=water)) for water in (WATER, at(0.0), at(5.0))])
+        lengths = np.array([flooded_lengths(device, water, 0.67, 0.0) for water in (WATER, at(0.0), at(5.0))])
         assert np.all(lengths[0] == lengths[1])
         assert np.all(lengths[2] < lengths[0])
-    wet = 3 / 8 * C1.young_modulus * C1.thickness**3 * C1.gap**2 / flooded_lengths(wanted(water=at(5.0)))[1] ** 4
-    dry = 3 / 8 * C1.young_modulus * C1.thickness**3 * C1.gap**2 / flooded_lengths(wanted())[1] ** 4
+    wet = 3 / 8 * C1.young_modulus * C1.thickness**3 * C1.gap**2 / flooded_lengths(C1, at(5.0), 0.67, 0.0)[1] ** 4
+    dry = 3 / 8 * C1.young_modulus * C1.thickness**3 * C1.gap**2 / flooded_lengths(C1, WATER, 0.67, 0.0)[1] ** 4
     assert_allclose(wet - dry, added(at(5.0)), rtol=1e-9)
 
 

@@ -136,7 +136,8 @@ def alone(device, wanted, tips=None):
     opens, on_mean = device.opening, partial(device.opening.length_on_mean, beam=device.beam)
     surfaces = sampled_surfaces(sampled, opens.contribution, on_mean, opens.uniform(ground[0], sampled))
     beams = sticking.Released(device, lengths, np.inf, foundation_length(ground[0], laws), surfaces, held)
-    found = sticking.by_shape(beams, wanted, sticking.lengths_without_samples(wanted, np.inf))
+    known = sticking.lengths_without_samples(device, *wanted.flats, np.inf)
+    found = sticking.by_shape(beams, wanted, known)
     return [[one.length for one in row] for row in found.values()]
 
 
@@ -168,7 +169,7 @@ def test_limits_of_saturated_air_are_those_of_flooded_flats_by_shape():
     tip, whole = (found.flooded_length.sel(shape=shape) for shape in (opening.EITHER, opening.S_SHAPE))
     assert_allclose(tip / whole, np.sqrt(0.5), rtol=1e-12)  # the peel number
     bridge, asked = computed(R1, (2 * UM,), (2 * UM,))
-    assert_allclose(bridge.flooded_length[0, 0], sticking.flooded_lengths(asked), rtol=1e-12)
+    assert_allclose(bridge.flooded_length[0, 0], sticking.flooded_lengths(R1, *asked.flats), rtol=1e-12)
 
 
 def test_a_chart_states_its_humidity_film_and_roughness():

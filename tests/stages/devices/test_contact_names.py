@@ -47,10 +47,10 @@ def test_tips_have_as_many_samples_as_beams_or_slopes_if_changed_and_a_tilt_and_
 def test_less_and_more_of_a_property_change_it_in_both_bodies_of_polysilicon_by_opposite_steps():
     solid = PLAN.config["solid"]["young_modulus_GPa"]
     less, more = (
-        job_settings(PLAN, contact_names.contacts_of_budget(PLAN, Case("C1_rh067"))[f"solids_{side}"]["modulus"])
+        job_settings(PLAN, contact_names.contacts_of_budget(PLAN, Case("C1_rh067"))[f"properties_{side}"]["modulus"])
         for side in ("less", "more")
     )
     assert less["solid"]["young_modulus_GPa"] + more["solid"]["young_modulus_GPa"] == pytest.approx(2 * solid)
     assert less["solid"]["young_modulus_GPa"] < solid
-    hamaker = contact_names.contacts_of_budget(PLAN, Case("C1_rh067"))["solids_less"]["hamaker_constant"]
+    hamaker = contact_names.contacts_of_budget(PLAN, Case("C1_rh067"))["properties_less"]["hamaker_constant"]
     assert job_settings(PLAN, hamaker)["materials"].keys() == set(SIDES)

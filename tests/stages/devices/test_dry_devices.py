@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import small
 import xarray as xr
-from ground import C1, R1, safe_with_tips, wanted
+from ground import C1, R1, safe_with_tips
 from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
 from test_device_outputs import charted
@@ -249,13 +249,13 @@ def humid_layout():
 
 def test_the_bound_of_a_dry_cantilever_is_that_of_flats_in_contact():
     work = attraction("dry").work_of_adhesion
-    found = flooded_lengths(wanted(C1, water=ACROSS, humidity=0.0))
+    found = flooded_lengths(C1, ACROSS.at(0.0), 0.0, 0.0)
     assert_allclose(found, [arrest_length(work, C1.beam), arc_length(work, C1.beam)], rtol=1e-12)
     for medium in ("dry", "water"):  # that of the air counts, also on a curve in both airs
         bridge = replace(R1, hamaker_constant=HAMAKER_CONSTANT[medium])
         law = flooded_law(0.0, ACROSS.at(0.0), HAMAKER_CONSTANT["dry"])
         assert_allclose(law[0], work, rtol=1e-12)
-        assert flooded_lengths(wanted(bridge, water=ACROSS, humidity=0.0)) == [least_length(*law, bridge.beam)]
+        assert flooded_lengths(bridge, ACROSS.at(0.0), 0.0, 0.0) == [least_length(*law, bridge.beam)]
 
 
 def test_a_budget_in_dry_air_has_no_inputs_of_the_air():

@@ -44,7 +44,7 @@ def safe(kind="cantilever", longest=600e-6, reach=np.inf):
     shapes = {device.opening.shapes[0]: np.linspace(2 / 3, 1, 400) * longest}
     if kind == "cantilever":
         shapes[EITHER] = 0.7 * shapes[S_SHAPE]
-    known = sticking.lengths_without_samples(settings, reach)
+    known = sticking.lengths_without_samples(device, settings.water, 0.67, 0.0, reach)
     bounds = {shape: sticking.safe_lengths(values, settings, known[shape]) for shape, values in shapes.items()}
     return safe_lengths.layout(shapes, bounds, known, settings).assign(rms=3e-9, share_flat=0.0, longest_strip=1e-3)
 

@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ground import C1, R1, VECTORS, WATER, met, settings, wanted
+from ground import C1, R1, VECTORS, WATER, flats, met, settings, wanted
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.special import ndtr
 
@@ -33,8 +33,7 @@ def test_a_bridge_is_held_by_its_middle_and_has_no_tip():
 
 
 def flooded_lengths(device, water=WATER, humidity=0.67, edge_radius=0.0):
-    asked = wanted(device, water=water, humidity=humidity, edge_radius=edge_radius)
-    return sticking.flooded_lengths(asked)
+    return sticking.flooded_lengths(device, water, humidity, edge_radius)
 
 
 def test_lengths_of_flats_are_those_of_their_water_and_their_solids_by_shape():
@@ -80,14 +79,14 @@ def test_the_bound_of_a_bridge_is_that_of_flooded_flats_in_contact_at_its_humidi
 
 
 def test_no_safe_length_of_a_bridge_is_below_its_bound_and_a_tip_has_none():
-    bound = sticking.lengths_without_samples(wanted(R1), np.inf)[MIDDLE].safe
+    bound = sticking.lengths_without_samples(*flats(wanted(R1)), np.inf)[MIDDLE].safe
     scattered = bound * np.exp(0.3 + 0.1 * np.random.default_rng(3).standard_normal(200))
     asked = replace(wanted(), shares=(1e-2, 1e-4))
     free, held = (sticking.safe_lengths(scattered, asked, Known(safe=least)) for least in (0.0, bound))
     assert free[1].length < bound
     assert [one.length for one in held] == [max(one.length, bound) for one in free]
     assert [one.estimate for one in held] == [one.estimate for one in free]
-    assert [one.safe for one in sticking.lengths_without_samples(wanted(), np.inf).values()] == [0, 0]
+    assert [one.safe for one in sticking.lengths_without_samples(*flats(wanted()), np.inf).values()] == [0, 0]
 
 
 def test_there_is_one_safe_length_for_every_share():

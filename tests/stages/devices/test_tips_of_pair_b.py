@@ -6,15 +6,18 @@ import numpy as np
 import pytest
 from plans import job_settings, surface_datasets
 
+from stiction.config.cases import case_id
 from stiction.config.files import load
 from stiction.config.units import in_si
 from stiction.contact import tilted
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import flooded_energy
 from stiction.devices import arcs, risk
+from stiction.models import SHIFTS
 from stiction.plan.devices import DevicePlan
 from stiction.plan.plan import Plan
 from stiction.stages.contact import contact, curves
+from stiction.stages.devices import budget
 from stiction.stages.devices.opening import DesignedBeam
 from stiction.stages.life import separation
 from stiction.streams import stream
@@ -33,8 +36,8 @@ INDEPENDENT = {
 }
 
 
-def settings(number, edge="rounded"):
-    design = {"beams": 200, "tip_edge": edge, "edge_radius_um": 0}
+def settings(number, edge="rounded", radius=0.0):
+    design = {"beams": 200, "tip_edge": edge, "edge_radius_um": radius}
     plan = Plan(load({"devices": {"C1": C1}, "design": design}))
     plain = job_settings(
         plan,
@@ -50,9 +53,9 @@ def drawn(plan, plain):
 
 
 @cache
-def tips(number, edge="rounded"):
-    """Contact of tips of pair b, 30 µm wide."""
-    return drawn(*settings(number, edge))
+def tips(number, edge="rounded", radius=0.0):
+    """Contact of tips of pair b, 30 µm wide, with a radius of the edge [µm]."""
+    return drawn(*settings(number, edge, radius))
 
 
 def held(found, humidity):
@@ -140,3 +143,24 @@ def test_tips_that_separate_fast_hold_shorter_beams_least_so_the_strongest(humid
     # The tips that hold the shortest beams gain least.
     ratios = [np.quantile(fast, share) / np.quantile(slow, share) for share in (0.02, 0.1)]
     assert min(ratios) > factor + 4 * error
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("humidity", [0.67, 0.92])
+def test_the_slope_of_the_edge_is_that_between_tips_with_a_sharper_and_a_rounder_one(humidity):
+    uncertain = {"devices": {"C1": C1 | {"uncertainty": {"edge_radius_um": 0.03}}}, "design": {"beams": 600}}
+    plan = Plan(load(uncertain, {"studies": {"slopes": {"samples": 600}}}))
+    name = plan.devices.tips("C1").name
+    changed = [drawn(plan, job_settings(plan, f"devices/contact/tips/edge/{name}_{side}")) for side in SHIFTS]
+    plain = job_settings(plan, f"devices/budget/{case_id('C1', humidity)}_tip")["budget"]
+    base = drawn(plan, job_settings(plan, f"devices/contact/tips/{name}"))
+    found = budget.compute(base, {}, {"edge_radius": tuple(changed)}, {}, {}, budget.budget_settings(plain))
+    # Other strips, as long as each edge needs, without common random numbers.
+    estimates = [risk.safe_length(held(tips(600, radius=radius), humidity), 1e-3, stream(0)) for radius in (0.05, 0.15)]
+    less, more = (np.log(one.estimate) for one in estimates)
+    errors = [one.error / one.estimate for one in estimates]
+    expected, error = (more - less) / np.log(3), np.hypot(*errors) / np.log(3)
+    assert found.input.values.tolist() == ["radius of the edge"]
+    assert abs(found.slope.item() - expected) < 3 * np.hypot(error, found.slope_error.item())
+    assert found.slope.item() < 0
+    assert np.sqrt(found.covariance.item()) == pytest.approx(0.3)

@@ -238,7 +238,7 @@ def test_none_and_all_of_a_range_are_answers(force, said):
 def test_a_beam_that_sticks_at_no_length_is_an_answer():
     device = SimpleNamespace(opening=SimpleNamespace(shapes=(S_SHAPE,)))
     common = {"seed": 1, "chaos": None, "water": WATER, "humidities": (0.6,), "device": device, "beams": 100}
-    beam = curves.OfBeam(**common, share=SHARE, length=1e-4)
+    beam = curves.OfBeam(**common, share=SHARE, length=1e-4, edge_radius=0.0)
     known, lengths = Known(2e-4, 5e-5, 5e-5), np.full(100, np.inf)
     never = beam._response(lengths, *sticking.safe_lengths(lengths, beam, known), known)
     points = [

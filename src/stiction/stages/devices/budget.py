@@ -20,6 +20,7 @@ from stiction.config import memory, test_beams
 from stiction.config.cases import Case, case_id
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
+from stiction.contact.tilt import EDGE_RADIUS
 from stiction.devices import arcs
 from stiction.devices.budget import Budget, choice_effect, log_slope
 from stiction.devices.stoppers import pull_off_force
@@ -144,20 +145,20 @@ def budget_settings(settings: dict[str, Any]) -> AnyBudget:
 def compute(
     contact: xr.Dataset,
     shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
-    solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
+    properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
     choices: Mapping[str, xr.Dataset],
     known: Mapping[str, Known],
     settings: AnyBudget,
 ) -> xr.Dataset:
     """Slopes of all uncertain inputs of a device at a humidity, their covariance, scatter, and other model choices.
 
-    The contact is that of the device, or of its tips; ``shifted``, ``solids`` and ``known`` are as in
+    The contact is that of the device, or of its tips; ``shifted``, ``properties`` and ``known`` are as in
     `stiction.stages.devices.uncertain_inputs.uncertain`. A contact under a choice of the model that has fewer samples
     is that of the first ones.
     """
     state = settings.state(contact)
     respond = settings.responder(state)
-    inputs, covariance = uncertain(state, shifted, solids, known, settings)
+    inputs, covariance = uncertain(state, shifted, properties, known, settings)
     slopes_with_errors = slopes(inputs, respond)
     changes = {}
     for name, changed in choices.items():
@@ -352,7 +353,8 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     name, devices = at.case.device, plan.devices
     section = plan.config["devices"][name]
     pair = plan.contact_of_device(at.case)
-    own = {"uncertainty": section.get("uncertainty", {}), "humidity": at.case.humidity}
+    stated = {key: value for key, value in section.get("uncertainty", {}).items() if key != EDGE_RADIUS.key}
+    own = {"uncertainty": stated, "humidity": at.case.humidity}
     own |= plan.materials.modulus(pair)
     if "hamaker_constant" in devices.uncertain_solids(name):
         own |= {"hamaker_constant_zJ": plan.air.beam_hamaker_constant(pair), "alike": plan.materials.alike(pair)}
@@ -380,6 +382,8 @@ def settings_of_tips(plan: Any, at: At, share: float | None = None) -> dict[str,
     """Settings of `settings_of`, for the length of a fraction of stuck tips, by default the middle one."""
     settings, shares = settings_of(plan, at), plan.config["design"]["shares"]
     own = {key: value for key, value in settings["budget"].items() if key not in ("beams", "waters")}
+    own |= {"uncertainty": plan.config["devices"][at.case.device].get("uncertainty", {})}
+    own |= {"edge_radius_um": plan.devices.edge_radius(at.case.device)}
     settings |= {"budget": own | {"share": share or shares[len(shares) // 2]}}
     pair = plan.contact_of_device(at.case)
     return _with_choices(plan, pair, settings, plan.variants.choices_of_solids(pair))
@@ -390,9 +394,9 @@ def _budget_of_job(data, settings):
     wanted = with_correction(budget_settings(settings["budget"]), data)
     described = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     shifted = {key: (less, data["more"][key]) for key, less in data["less"].items()}
-    solids = {name: (less, data["solids_more"][name]) for name, less in data["solids_less"].items()}
+    properties = {name: (less, data["properties_more"][name]) for name, less in data["properties_less"].items()}
     known = covariances(described, data["estimates"], wanted)
-    return compute(data["contact"], shifted, solids, data["choices"], known, wanted)
+    return compute(data["contact"], shifted, properties, data["choices"], known, wanted)
 
 
 def budgets_of(plan: Any, *devices: str) -> dict[tuple, str]:

@@ -50,6 +50,11 @@ class Settings:
     gaps: tuple[float, ...]  #: increasing [m]
     edge_radius: float  #: of tips, for the bound of flats [m]
 
+    @property
+    def flats(self) -> tuple[Water, float, float]:
+        """Water, humidity and edge, on which lengths of flats depend."""
+        return self.water, self.humidity, self.edge_radius
+
 
 @dataclass(frozen=True)
 class Filled:
@@ -90,7 +95,7 @@ def _release(size, met, settings):
 
 def _lengths_of(beams, settings):
     """Safe lengths of beams and their quantiles (shapes, shares and scores) [m]."""
-    known = sticking.lengths_without_samples(replace(settings, device=beams.device), beams.reach)
+    known = sticking.lengths_without_samples(beams.device, *settings.flats, beams.reach)
     safe = sticking.by_shape(beams, settings, known)
     of_shares = [[one.length for one in of_shape] for of_shape in safe.values()]
     return np.hstack([of_shares, [risk.quantiles(values, beams.reach) for values in beams.lengths.values()]])
@@ -209,7 +214,7 @@ def layout(filled: Filled, rms: float, longest_strips: Sequence[float], settings
     grid, size = (len(settings.thicknesses), len(settings.gaps)), ("thickness", "gap")
     shapes, shares = list(settings.device.opening.shapes), len(settings.shares)
     lengths = filled.lengths.reshape(*grid, len(shapes), -1)
-    limits = [sticking.flooded_lengths(replace(settings, device=device)) for device in _beams_of_chart(settings)]
+    limits = [sticking.flooded_lengths(device, *settings.flats) for device in _beams_of_chart(settings)]
     metres, none = {"units": "m"}, {"units": "1"}
     return xr.Dataset(
         {

@@ -3,9 +3,12 @@
 from typing import Any
 
 from stiction.config.cases import Case, case_id
+from stiction.config.units import without_unit
+from stiction.contact.tilt import EDGE_RADIUS
 from stiction.models import SHIFTS
 from stiction.plan.devices import Patch, patch
 from stiction.plan.stage import At
+from stiction.stages.contact.changes.edges import EDGE
 from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS
 from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
@@ -102,10 +105,14 @@ def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:
 def contacts_of_tip_budget(plan: Any, case: Case) -> dict[str, Any]:
     """Contact of the tips of a cantilever, with less and more of every uncertain input, and under other choices."""
     device, tips = case.device, patch_of_tips(plan, case)
-    choices = plan.variants.choices_of_solids(tips.pair)
+    choices, changed = plan.variants.choices_of_solids(tips.pair), _less_and_more(plan, device, tips, TIPS, TIPS)
+    if plan.devices.has_uncertain_edge(device):
+        for shift in SHIFTS:
+            edge = file_of(EDGE, TIPS, **tips._asdict(), side=shift)
+            changed[f"properties_{shift}"][without_unit(EDGE_RADIUS.key)] = edge
     return {
         "contact": file_of(AS_IT_IS, TIPS, **tips._asdict()),
-        **_less_and_more(plan, device, tips, TIPS, TIPS),
+        **changed,
         "choices": {name: file_of(VARIANT_OF_SOLIDS, TIPS, **tips._asdict(), variant=name) for name in choices},
     }
 
@@ -121,7 +128,7 @@ def _less_and_more(plan, device, patch, of_surfaces, of_solids):
         for shift in SHIFTS
     }
     uncertain = {
-        f"solids_{shift}": {
+        f"properties_{shift}": {
             name: file_of(SOLID, of_solids, **sides, solid_property=name, side=shift) for name in solids
         }
         for shift in SHIFTS

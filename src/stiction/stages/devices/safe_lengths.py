@@ -44,7 +44,8 @@ def compute(cracks: xr.Dataset, settings: Settings, tips: xr.Dataset | None = No
     if tips is not None:
         held = arcs.longest_free(*curves.tip_forces(tips, settings.humidity, settings.water), device.beam)
     beams = stage_cracks.beams_of(cracks, device, held)
-    without_samples = lengths_without_samples(settings, beams.reach)
+    air = settings.water, settings.humidity
+    without_samples = lengths_without_samples(device, *air, settings.edge_radius, beams.reach)
     dataset = layout(beams.lengths, by_shape(beams, settings, without_samples), without_samples, settings).assign(
         cracks[["rms", "share_flat", "longest_strip", "resampled", "repetition", "size_error"]]
     )

@@ -33,15 +33,6 @@ class Settings(Protocol):
     shares: tuple[float, ...]  #: p [-]
 
 
-class FlatSettings(Protocol):
-    """Settings of any job with lengths of flat surfaces."""
-
-    water: Water
-    humidity: float  #: [-]
-    device: DesignedBeam
-    edge_radius: float  #: of its tip [m]; 0 for an edge that is not rounded
-
-
 class BeamSettings(Protocol):
     """Settings of any job with released beams."""
 
@@ -176,19 +167,19 @@ def _errors_of_change(change, sampled, device):
     return np.log(lengths[0] / lengths[1]), change.power_error / change.power
 
 
-def flooded_lengths(settings: FlatSettings) -> list[float]:
+def flooded_lengths(device: DesignedBeam, water: Water, humidity: float, edge_radius: float) -> list[float]:
     """Lengths that stick on flats in contact, with water in all gaps where it condenses, one for each end state [m].
 
     Water, solids, adsorbed films and a voltage all do their work, see `stiction.contact.environment.flooded_law`. No
     surfaces hold a shorter cantilever along its underside, or a shorter bridge by its middle. The length of a tip, with
-    its edge, is no bound: roughness that follows its slope lets it hold harder than a flat one.
+    its edge, is no bound: roughness that follows its slope lets it hold harder than a flat one. The radius of a rounded
+    edge is in metres.
     """
-    device, humidity = settings.device, settings.humidity
-    law = flooded_law(humidity, settings.water.at(humidity), device.hamaker_constant)
+    law = flooded_law(humidity, water.at(humidity), device.hamaker_constant)
     if not device.opening.has_tip:
         return [bridges.least_length(*law, device.beam)]
     energy, _ = law
-    return [float(arrest_length(energy, device.beam)), arcs.flat_length(*law, settings.edge_radius, device.beam)]
+    return [float(arrest_length(energy, device.beam)), arcs.flat_length(*law, edge_radius, device.beam)]
 
 
 def sticking_lengths(
@@ -205,14 +196,16 @@ def sticking_lengths(
     return dict(zip(device.opening.shapes, (alone, risk.with_arcs(alone, held)), strict=True))
 
 
-def lengths_without_samples(settings: FlatSettings, reach: float) -> dict[str, Known]:
+def lengths_without_samples(
+    device: DesignedBeam, water: Water, humidity: float, edge_radius: float, reach: float
+) -> dict[str, Known]:
     """Known lengths of a device without samples, by shape, with the reach of the simulation [m].
 
     No surfaces hold a bridge up to the length of `flooded_lengths`, but a single tip may hold a shorter beam.
     """
-    lengths, opened = flooded_lengths(settings), settings.device.opening
-    safe = 0.0 if opened.has_tip else lengths[0]
-    return {shape: Known(reach, flat, safe) for shape, flat in zip(opened.shapes, lengths, strict=True)}
+    lengths = flooded_lengths(device, water, humidity, edge_radius)
+    safe = 0.0 if device.opening.has_tip else lengths[0]
+    return {shape: Known(reach, flat, safe) for shape, flat in zip(device.opening.shapes, lengths, strict=True)}
 
 
 def by_shape(beams: Released, settings: Settings, known: Mapping[str, Known]) -> dict[str, list[SafeLength]]:

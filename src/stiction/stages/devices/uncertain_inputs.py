@@ -18,6 +18,7 @@ from scipy.linalg import block_diag
 from stiction.config.units import without_unit
 from stiction.contact.environment import Water
 from stiction.contact.materials import OF_CONTACT, Step
+from stiction.contact.tilt import EDGE_RADIUS
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.scans import moments
 from stiction.stages.contact.changes.quantities import difference
@@ -141,15 +142,17 @@ OF_AIR = (
         least=0.0,
     ),
 )
-#: Fields of the uncertainties of the properties of solids, by their names.
-_OF_SOLIDS = {name: without_unit(one.key) for name, one in OF_CONTACT.items()}
+#: Uncertain properties that change the contact of bodies, by the name of this change: of solids, and of edges.
+_OF_BODIES = OF_CONTACT | {without_unit(EDGE_RADIUS.key): EDGE_RADIUS}
+#: Fields of their uncertainties.
+_FIELDS = {name: without_unit(one.key) for name, one in _OF_BODIES.items()}
 #: Standard uncertainties of all inputs in SI, zero where not stated; ``scan`` is the side of the scan that gave the
 #: moments of the surfaces that are described by numbers [m].
 Uncertainty = make_dataclass(
     "Uncertainty",
     [
         (key, float, 0.0)
-        for key in dict.fromkeys([*(one.field for one in (*OF_BEAMS, *OF_AIR)), *_OF_SOLIDS.values(), "scan"])
+        for key in dict.fromkeys([*(one.field for one in (*OF_BEAMS, *OF_AIR)), *_FIELDS.values(), "scan"])
     ],
     frozen=True,
 )
@@ -165,6 +168,7 @@ class Settings:
     uncertainty: Uncertainty
     surfaces: tuple[str, ...]  #: names of those of the pair
     young_modulus: float  #: E of the body of the beam or stopper [Pa]
+    edge_radius: float = 0.0  #: of the edges of tips that are budgeted [m]
     hamaker_constant: float | None = None  #: of two bodies like the beam or stopper [J], if it is uncertain
     alike: tuple[str, ...] = SIDES  #: as of `State`
     waters: dict[str, Water] = field(
@@ -180,21 +184,21 @@ class Settings:
 def uncertain(
     state: State,
     shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
-    solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
+    properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
     known: Mapping[str, Known],
     settings: Settings,
 ) -> tuple[list[Input], np.ndarray]:
     """Uncertain inputs and the covariance of their errors. Without condensation, the air has none.
 
     The state has the stated values of all inputs. There are contacts with less and with more of each quantity of a
-    surface, by both, and of each uncertain property of the solids, by its step in
-    `stiction.contact.materials.PROPERTIES`; ``known`` is what is known of the quantities of each surface.
+    surface, by both, and of each uncertain property of the solids and of edges, by its step; ``known`` is what is known
+    of the quantities of each surface.
     """
     stated = settings.uncertainty
     blocks = [surface_block(state, name, shifted, measured) for name, measured in known.items()]
     blocks += [
         *(number_blocks(state, OF_BEAMS, stated) if state.device else ()),
-        *solid_blocks(state, solids, settings),
+        *property_blocks(state, properties, settings),
     ]
     blocks += number_blocks(state, OF_AIR, stated) if state.water.film(state.humidity)[0] else ()
     inputs = [entry for block in blocks for entry in block.inputs]
@@ -220,9 +224,9 @@ def changed(state: State, errors: Mapping[str, float]) -> State:
 def countable(sizes: Sequence[str], settings: Settings) -> list[str]:
     """Names of all possible measurements of a device with these sizes."""
     surfaces = [f"the {part} of {name}" for name in settings.surfaces for part in ("heights", "spectrum")]
-    solids = [entry.group for entry in OF_CONTACT.values()]
+    bodies = [entry.group for entry in (*OF_CONTACT.values(), *[EDGE_RADIUS] * bool(settings.edge_radius))]
     air = [entry.group or f"the {entry.name}" for entry in OF_AIR if settings.water.film(settings.humidity)[0]]
-    return [*surfaces, *(f"the {name.replace('_', ' ')}" for name in sizes), *solids, *dict.fromkeys(air)]
+    return [*surfaces, *(f"the {name.replace('_', ' ')}" for name in sizes), *bodies, *dict.fromkeys(air)]
 
 
 def surface_block(
@@ -246,27 +250,27 @@ def number_blocks(state: State, varied: Sequence[Varied], stated: Uncertainty) -
             yield Block(list(inputs), np.full((len(inputs), len(inputs)), deviations[0] ** 2))
 
 
-def solid_blocks(
-    state: State, solids: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings
+def property_blocks(
+    state: State, properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings
 ) -> Iterator[Block]:
-    """Uncertain properties of the solids. The slopes of those with a relative step are in their logarithms.
+    """Uncertain properties of solids and of edges. The slopes of those with a relative step are in their logarithms.
 
     ASSUME: a beam bends with Young's modulus alone, without the 1 - ν² of a plate; only the contact has the other two.
     """
-    for name, key in _OF_SOLIDS.items():
-        if name not in solids:
+    for name, entry in _OF_BODIES.items():
+        if name not in properties:
             continue
-        states, step = [replace(state, contact=contact) for contact in solids[name]], OF_CONTACT[name].step
+        states, step = [replace(state, contact=contact) for contact in properties[name]], entry.step
         if name == "modulus" and state.device:
             moduli = step.ends(settings.young_modulus)
             beams = [replace(state.device, young_modulus=modulus) for modulus in moduli]
             states = [replace(of, device=beam) for of, beam in zip(states, beams, strict=True)]
         if name == "hamaker_constant":
             states = [of.attracting(end) for of, end in zip(states, step.ends(1.0), strict=True)]
-        deviation = getattr(settings.uncertainty, key)
-        relative = deviation / getattr(settings, key) if step.relative else deviation
-        entry = Input(OF_CONTACT[name].words, OF_CONTACT[name].group, tuple(states), step.difference)
-        yield Block([entry], np.array([[relative**2]]))
+        deviation = getattr(settings.uncertainty, _FIELDS[name])
+        relative = deviation / getattr(settings, _FIELDS[name]) if step.relative else deviation
+        found = Input(entry.words, entry.group, tuple(states), step.difference)
+        yield Block([found], np.array([[relative**2]]))
 
 
 def around(value: float, deviation: float, least: float = -np.inf) -> tuple[float, float]:

@@ -64,6 +64,7 @@ class OfBeam:
     beams: int
     share: float  #: p [-]
     length: float  #: required [m]
+    edge_radius: float  #: of tips, for the bound of flats [m]
 
     @property
     def required(self) -> tuple[float, str]:
@@ -84,7 +85,7 @@ class OfBeam:
         """Safe lengths at a humidity by shape, and a sentence about strips that are too long."""
         met = sticking.ground(contact, tips, humidity, self)
         beams = sticking.release_beams(self.device, met, self)
-        known = sticking.lengths_without_samples(self.device, self.water, humidity, beams.reach)
+        known = sticking.lengths_without_samples(self.device, self.water, humidity, self.edge_radius, beams.reach)
         safe = sticking.by_shape(beams, self, known)
         flag = long_strips(
             self.device.strip, self.device.opening.longest_strip(self.device, met.laws), self.device.opening.arms == 2
@@ -305,7 +306,8 @@ def settings_of(plan: Any, at: Any) -> dict[str, Any]:
     if not plan.devices.kind(at.device).is_beam:
         return select(OfStopper, own | {"seed": plan.config["seed"]} | {"restoring_force_uN": restoring_force(section)})
     common = {key: plan.config[key] for key in ("seed", "chaos")}
-    return select(OfBeam, own | common | {"device": section_of_beam(plan, at.device)})
+    edge = {"edge_radius_um": plan.devices.edge_radius(at.device)}
+    return select(OfBeam, own | common | edge | {"device": section_of_beam(plan, at.device)})
 
 
 def _what(plan, device):

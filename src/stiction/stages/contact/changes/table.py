@@ -9,6 +9,7 @@ from dataclasses import replace
 
 from stiction.plan.stage import Running, Stage
 from stiction.stages.contact import contact
+from stiction.stages.contact.changes.edges import EDGE
 from stiction.stages.contact.changes.moments import MOMENTS
 from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS, Change, Place
 from stiction.stages.contact.changes.quantities import QUANTITY
@@ -44,6 +45,9 @@ TABLE = {
     SOLID: {
         GROUND: ("solid_contact", "devices/contact/{solid_property}"),
         TIPS: ("tip_solid_contact", "devices/contact/tips/{solid_property}"),
+    },
+    EDGE: {
+        TIPS: ("tip_edge_contact", "devices/contact/tips/edge"),
     },
     VARIANT_OF_SOLIDS: {
         TIPS: ("tip_choice_contact", "devices/contact/tips/choices"),
