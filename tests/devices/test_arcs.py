@@ -133,7 +133,7 @@ def attraction_of_smooth_tip(law, slope, radius, far):
 def test_no_attraction_of_an_energy_and_a_largest_value_holds_smooth_tips_harder(slope, radius):
     reach, largest = 1.5e-9, 1e8
     energy = reach * largest
-    bound = float(arcs.flat_force(slope, energy, largest, radius))
+    bound = arcs.flat_force(np.array([slope]), np.array([(energy, largest), (0, 0)]), radius).item()
     constant = attraction_of_smooth_tip(lambda u: largest * (u < reach), slope, radius, 1.1 * reach)
     assert_allclose(constant, bound, rtol=1e-3)
     decaying = attraction_of_smooth_tip(lambda u: largest * np.exp(-u / reach), slope, radius, 40 * reach)
@@ -145,14 +145,15 @@ def test_no_attraction_of_an_energy_and_a_largest_value_holds_smooth_tips_harder
 @given(st.floats(-8, -5), st.floats(-4, 0), st.floats(6, 9))
 def test_the_arc_of_flats_balances_wedge_and_edge(of_radius, of_energy, of_largest):
     radius, energy, largest = 10.0 ** np.array([of_radius, of_energy, of_largest])
+    parts = np.array([(energy, largest), (0.1 * energy, 10 * largest)])
 
     def excess(slope):
-        return arcs.bending_force(slope, PAPER) / arcs.flat_force(slope, energy, largest, radius) - 1
+        return (arcs.bending_force(slope, PAPER) / arcs.flat_force(np.array([slope]), parts, radius)).item() - 1
 
     slope = brentq(excess, 1e-6, 1e3, xtol=1e-14)
-    found = arcs.tip_slope(arcs.flat_length(energy, largest, radius, PAPER), PAPER.gap)
+    found = arcs.tip_slope(arcs.flat_length(parts, radius, PAPER), PAPER.gap)
     assert (1 - 1e-9) * slope <= found < 1.005 * slope, "the safe side"
-    assert_allclose(arcs.flat_length(energy, largest, 0.0, PAPER), arcs.arc_length(energy, PAPER), rtol=1e-9)
+    assert_allclose(arcs.flat_length(parts, 0.0, PAPER), arcs.arc_length(1.1 * energy, PAPER), rtol=1e-9)
 
 
 def test_of_several_balances_the_shortest_arc_counts():

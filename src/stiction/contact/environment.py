@@ -161,15 +161,21 @@ def flooded_law(humidity: float, water: Water, hamaker_constant: float) -> tuple
     Water pulls nowhere harder or farther than between flats, and neither do the solids. Their Hamaker constant [J] is 0
     without van der Waals forces, and that of the water if attraction reaches across gaps.
     """
+    energy, pull = flooded_parts(humidity, water, hamaker_constant).sum(axis=0)
+    return float(energy), float(pull)
+
+
+def flooded_parts(humidity: float, water: Water, hamaker_constant: float) -> np.ndarray:
+    """Parts of `flooded_law` (3, 2) [J m⁻², Pa]: of water, solids and voltage, 0 where one does not attract."""
     height, pull = water.film(humidity)
-    energy = height * pull
+    solids, voltage = np.zeros((2, 2))
     if water.gaps:
         hamaker_constant = water.gaps.hamaker_constant[water.gaps.summits]
     if hamaker_constant:
-        solid = vanderwaals.DugdaleAttraction(hamaker_constant)
-        energy, pull = energy + solid.work_of_adhesion, pull + solid.stress
+        summits = vanderwaals.DugdaleAttraction(hamaker_constant)
+        solids += summits.work_of_adhesion, summits.stress
     if water.gaps:
-        pull += water.gaps.through("dry").largest_pressure
+        solids += float(water.gaps.work(0.0, height)), water.gaps.through("dry").largest_pressure
     if water.capacitor:
-        pull += water.capacitor.largest_pressure
-    return energy + float(water.work_across(0.0, height)), pull
+        voltage += float(water.capacitor.work(0.0)), water.capacitor.largest_pressure
+    return np.array([(height * pull, pull), solids, voltage])

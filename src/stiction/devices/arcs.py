@@ -39,10 +39,10 @@ def arc_length(energy: float | np.ndarray, beam: Beam) -> float | np.ndarray:
     return (3 / 8 * beam.young_modulus * beam.thickness**3 * beam.gap**2 / energy) ** (1 / 4)
 
 
-def flat_force(slope: np.ndarray, energy: float, largest: float, radius: float) -> np.ndarray:
-    r"""Largest attraction of smooth tips with a rounded edge, an upper bound, any shape [N m⁻¹].
+def flat_force(slope: np.ndarray, parts: np.ndarray, radius: float) -> np.ndarray:
+    r"""Largest attraction of smooth tips with a rounded edge, an upper bound (s,) [N m⁻¹].
 
-    With the energy e and at most the attraction q,
+    An attraction of the energy e and of at most q adds
 
     .. math:: \frac P w = \frac e \theta + q \frac{\theta R}{2} + \sqrt{2 R e q}
 
@@ -52,27 +52,28 @@ def flat_force(slope: np.ndarray, energy: float, largest: float, radius: float) 
 
     Parameters
     ----------
-    slope : array
+    slope : (s,) array
         θ [-].
-    energy, largest : float
-        e [J m⁻²], q [Pa].
+    parts : (k, 2) array
+        e [J m⁻²] and q [Pa] of each attraction, both zero or neither.
     radius : float
         R of the edge [m]; 0 leaves the wedge alone.
     """
+    energy, largest = parts[parts[:, 0] > 0].T[..., np.newaxis]
     edge = np.sqrt(2 * radius * energy * largest)
     on_wedge = slope**2 * radius / 2 < energy / largest
-    return np.where(on_wedge, energy / slope + largest * slope * radius / 2 + edge, 2 * edge)
+    return np.where(on_wedge, energy / slope + largest * slope * radius / 2 + edge, 2 * edge).sum(axis=0)
 
 
-def flat_length(energy: float, largest: float, radius: float, beam: Beam) -> float:
+def flat_length(parts: np.ndarray, radius: float, beam: Beam) -> float:
     """Longest releasing arc with a smooth tip that has a rounded edge, a lower bound [m]. Arguments as of `flat_force`.
 
     Its slope is between those of a sharp edge, and of a tip that is held at all slopes as at that one.
     """
-    sharp = tip_slope(arc_length(energy, beam), beam.gap)
-    steepest = (flat_force(sharp, energy, largest, radius) / bending_force(sharp, beam)) ** (1 / 3)
-    slopes = sharp * np.geomspace(1 / 2, 2 * steepest, _STEPS)
-    return float(longest_free(slopes, flat_force(slopes, energy, largest, radius)[np.newaxis], beam)[0])
+    sharp = np.atleast_1d(tip_slope(arc_length(parts[:, 0].sum(), beam), beam.gap))
+    steepest = (flat_force(sharp, parts, radius) / bending_force(sharp, beam)) ** (1 / 3)
+    slopes = sharp * np.geomspace(1 / 2, 2 * steepest.item(), _STEPS)
+    return float(longest_free(slopes, flat_force(slopes, parts, radius)[np.newaxis], beam)[0])
 
 
 def longest_free(slopes: np.ndarray, forces: np.ndarray, beam: Beam) -> np.ndarray:

@@ -9,10 +9,12 @@ from scipy.special import ndtr
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact import forcelaw
-from stiction.contact.environment import Gaps, Water, flooded_law, force_curves
+from stiction.contact.environment import Gaps, Water, flooded_parts, force_curves
+from stiction.contact.gaps import work_across_film
+from stiction.contact.tilt import Tilt
 from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.devices import risk
-from stiction.devices.arcs import arc_length, flat_length
+from stiction.devices.arcs import arc_length, flat_force, flat_length
 from stiction.devices.bridges import least_length
 from stiction.devices.risk import Known
 from stiction.stages.devices import ground, opening, sticking
@@ -46,9 +48,27 @@ def test_lengths_of_flats_are_those_of_their_water_and_their_solids_by_shape():
 def test_the_edge_of_the_tip_shortens_the_arc_of_flats_alone():
     sharp, round_edge = flooded_lengths(C1), flooded_lengths(C1, edge_radius=0.1e-6)
     assert round_edge[0] == sharp[0]
-    law = flooded_law(0.67, WATER.at(0.67), C1.hamaker_constant)
-    assert_allclose(round_edge[1], flat_length(*law, 0.1e-6, C1.beam), rtol=1e-12)
+    parts = flooded_parts(0.67, WATER.at(0.67), C1.hamaker_constant)
+    assert_allclose(round_edge[1], flat_length(parts, 0.1e-6, C1.beam), rtol=1e-12)
     assert round_edge[1] < 0.95 * sharp[1]
+
+
+@pytest.mark.parametrize("humidity", [0.0, 0.44, 0.92])
+@pytest.mark.parametrize("radius", [0.02e-6, 0.1e-6, 2e-6])
+def test_no_smooth_tip_in_water_and_across_gaps_is_held_harder_than_its_bound(humidity, radius):
+    air = Water(300.0, gaps=Gaps(HAMAKER_CONSTANT, "water", 100e-9)).at(humidity)
+    height, tension = air.film(humidity)
+    gap = np.concatenate([[0], np.geomspace(1e-13, 2e-6, 4000)])
+    solids = work_across_film(gap, height, air.gaps.through(air.gaps.summits), air.gaps.through("dry"))
+    middle, pulls = (gap[1:] + gap[:-1]) / 2, -np.diff(solids) / np.diff(gap)
+    for slope in (0.03, 0.15, 0.4):
+        tilt = Tilt((slope,), gap[-1] / 2, radius=radius)
+        steps = np.geomspace(1e-14, 1, 100_000)  # from the line that touches, on both sides
+        along = -radius * slope + np.concatenate([-(tilt.before - radius * slope) * steps[::-1], [0], 1e-6 * steps])
+        drop = tilt.drop(slope, along)
+        force = np.trapezoid(np.interp(drop, middle, pulls) + tension * (drop < height), along)
+        bound = flat_force(np.array([slope]), flooded_parts(humidity, air, 0.0), radius).item()
+        assert 0.4 * bound < force < bound
 
 
 def test_adsorbed_films_shorten_the_lengths_of_flooded_flats_by_their_work():

@@ -13,7 +13,7 @@ from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws
 from stiction.contact import forcelaw
 from stiction.contact.correction import NONE, Change
-from stiction.contact.environment import Water, flooded_law
+from stiction.contact.environment import Water, flooded_parts
 from stiction.devices import arcs, bridges, risk, strips
 from stiction.devices.risk import NOTHING, Basis, Known, SafeLength
 from stiction.devices.sampling import Move, SampledSurfaces, sampled_surfaces
@@ -170,16 +170,16 @@ def _errors_of_change(change, sampled, device):
 def flooded_lengths(device: DesignedBeam, water: Water, humidity: float, edge_radius: float) -> list[float]:
     """Lengths that stick on flats in contact, with water in all gaps where it condenses, one for each end state [m].
 
-    Water, solids, adsorbed films and a voltage all do their work, see `stiction.contact.environment.flooded_law`. No
+    Water, solids, adsorbed films and a voltage all do their work, see `stiction.contact.environment.flooded_parts`. No
     surfaces hold a shorter cantilever along its underside, or a shorter bridge by its middle. The length of a tip, with
     its edge, is no bound: roughness that follows its slope lets it hold harder than a flat one. The radius of a rounded
     edge is in metres.
     """
-    law = flooded_law(humidity, water.at(humidity), device.hamaker_constant)
+    parts = flooded_parts(humidity, water.at(humidity), device.hamaker_constant)
+    energy, largest = parts.sum(axis=0)
     if not device.opening.has_tip:
-        return [bridges.least_length(*law, device.beam)]
-    energy, _ = law
-    return [float(arrest_length(energy, device.beam)), arcs.flat_length(*law, edge_radius, device.beam)]
+        return [bridges.least_length(energy, largest, device.beam)]
+    return [float(arrest_length(energy, device.beam)), arcs.flat_length(parts, edge_radius, device.beam)]
 
 
 def sticking_lengths(
