@@ -391,14 +391,28 @@ def test_a_touch_of_attraction_before_repulsion_is_not_the_largest_one():
     assert separated_by(touch, led).pull_off == pytest.approx(2e6, rel=0.1)
 
 
-def test_rest_is_found_far_from_where_another_model_has_it_if_the_end_is_that_far():
-    law, led = law_of([0, 4, 4.3, 9], [4e6, 0, -1e6, 0]), curve_of(1 * NM, 0.1 * NM)
-    found = separated_by(law, led, end=5 * NM)
+@pytest.mark.parametrize("far", [{"end": 6 * NM}, {}])
+@pytest.mark.parametrize("width", [0.03, 0.1])
+def test_rest_is_found_far_from_where_another_model_has_it(width, far):
+    law, led = law_of([0, 5, 5 + width, 9], [4e6, 0, -1e6, 0]), curve_of(1 * NM, width * NM)
+    found = separated_by(law, led, **far)
     assert found.closed.force == pytest.approx(0, abs=2e5)
-    assert found.closed.distance == pytest.approx(4 * NM, abs=0.2 * NM)
+    assert found.closed.distance == pytest.approx(5 * NM, abs=0.1 * NM)
     assert found.pull_off == pytest.approx(1e6, rel=0.1)
+
+
+def test_rest_is_not_sought_beyond_where_nothing_resists():
     with pytest.raises(ValueError, match="finds no distance at which the surfaces come to rest"):
-        separated_by(law, led)
+        separated_by(law_of([0, 9], [-1e6, 0]), curve_of(1 * NM, 0.1 * NM))
+
+
+@pytest.mark.parametrize("beyond", [0.4, 1.3, 3.0])
+def test_rest_is_not_in_the_tail_of_the_attraction_where_another_model_leads(beyond):
+    """Far from a narrow well, hardly any force is left, less than a line from contact would have."""
+    law = law_of([0, 1, 1.1, 1.3, 9], [3e6, 0, -1e6, -1e3, 0])
+    found = separated_by(law, curve_of((1 + beyond) * NM, 0.3 * NM))
+    assert found.closed.distance == pytest.approx(1 * NM, abs=0.05 * NM)
+    assert found.pull_off == pytest.approx(1e6, rel=0.1)
 
 
 def test_the_attraction_of_coarse_steps_stays_where_finer_ones_jump_off_at_once():

@@ -56,7 +56,9 @@ GAP_STEP = 0.02e-9
 #: Gaps of these tables [m], to where flats have 1e-5 of the work of flats that touch. ASSUME: no attraction beyond.
 GAPS = np.arange(0, 300e-9, GAP_STEP)
 #: Most turns of the attraction, displacements in each, and distances in the search for one state.
-TURNS, STEPS, STATES = 40, 1000, 40
+TURNS, STEPS, STATES = 40, 1000, 60
+#: Distances in the search after which its steps away from contact grow.
+SHORT = 20
 _UNSETTLED = (
     "full elastic contact does not settle, with surfaces too smooth or a solid too soft for the grid: decrease "
     "sampling.spacing_nm"
@@ -462,21 +464,31 @@ def _without_force(at, curve, energy, end=0.0):
 
     The curve of another model, shifted to the force of the first state, leads near it, steps to a change of sign, and
     secants to a force too small to change the energy. More steps are taken if they lead to the ``end``.
+
+    The other model misses peaks at the rim of a strip, which are no summits. Steps away from contact grow after the
+    first ones, and halves take the place of secants where these would end in the tail of the attraction.
     """
     state, number, step = at(limit_distance(*curve, 0.0), None, FIRST), 1, _step(curve)
     ends, most = {state.force > 0: state}, _most(state, step, end)
     move = _shift(curve, state.force, step)
+    longest, stride, first = max(abs(move), step), step, state
     while True:
         before, state, number = state, at(state.distance + move, state), number + 1
-        ends[state.force > 0] = state
+        earlier, ends[state.force > 0] = ends.get(False, first), state
+        is_compared = state.force <= 0 and earlier is not first
+        is_tail = is_compared and state.force < earlier.force and state.distance < earlier.distance
         near, far = (ends[True], ends[False]) if len(ends) == 2 else (before, state)
         width, drop = far.distance - near.distance, near.force - far.force
-        if width * drop > 0 and 0.5 * state.force**2 * width / drop < ENERGY_LEFT * abs(energy(state)):
+        left = 0.5 * state.force**2 * width / drop if width * drop > 0 else np.inf
+        is_before = state.force > 0 or width <= step or is_compared and not is_tail  # the largest attraction
+        if left < ENERGY_LEFT * abs(energy(state)) and width <= longest and is_before:
             return state, number
         if len(ends) == 2:
-            move = near.distance + width * near.force / drop - state.distance
+            share = 0.5 if width > longest or is_tail else near.force / drop
+            move = near.distance + share * width - state.distance
         else:
-            move = step if state.force > 0 else -step
+            stride *= 2 if number > SHORT and state.force > 0 else 1
+            move = stride if state.force > 0 else -step
         _refuse_after(number, most)
 
 
