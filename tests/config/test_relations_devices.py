@@ -15,6 +15,8 @@ from stiction.config.files import load, normalised
 from stiction.config.kinds import KEYS
 from stiction.config.memory import field_memory
 from stiction.config.merging import merged
+from stiction.config.messages import ConfigError
+from stiction.config.test_beams import counts_as_devices
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import meniscus_height
@@ -422,6 +424,27 @@ def test_a_square_edge_has_no_radius_and_a_rounder_edge_a_longer_strip():
     radii = [plan.tilt(plan.tips("C1"))["radius_um"] for plan in (rounder, square, sharp)]
     assert radii == [plan.edge_radius("C1") for plan in (rounder, square, sharp)] == [1, 0, 0]
     assert rounder.tips("C1").length > square.tips("C1").length == sharp.tips("C1").length
+
+
+def test_each_device_with_an_uncertain_edge_that_it_cannot_have_is_told_why():
+    stated = {"uncertainty": {"edge_radius_um": 0.2}}
+    with pytest.raises(ConfigError) as caught:
+        load({"devices": {"A1": S1 | stated, "C1": C1 | stated}})
+    assert "devices.A1.uncertainty.edge_radius_um" in str(caught.value)
+    assert "must be below the radius itself (given design.edge_radius_um = 0.1)" in str(caught.value)
+    assert str(caught.value).count("devices.A1.kind") == 1
+
+
+def test_devices_of_other_kinds_share_test_beams_with_a_cantilever_whose_edge_is_uncertain():
+    array = {"pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
+    array |= {"stuck": [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]}
+    round_edge = C1 | {"test_beams": ["A"], "uncertainty": {"humidity": 0.01, "edge_radius_um": 0.03}}
+    stopper = S1 | {"test_beams": ["A"], "uncertainty": {"humidity": 0.01}}
+    config = load({"test_beams": {"A": array}, "devices": {"S1": stopper, "C1": round_edge}})
+    assert counts_as_devices(config)["A"]["uncertainty"] == round_edge["uncertainty"]
+    other = round_edge | {"uncertainty": {"humidity": 0.01}}
+    with pytest.raises(ConfigError, match="which states other uncertainties"):
+        load({"test_beams": {"A": array}, "devices": {"C2": other, "C1": round_edge}})
 
 
 def test_all_tips_of_a_pair_have_the_slopes_of_both_ends_the_least_width_and_the_largest_reach():

@@ -71,6 +71,10 @@ def test_an_input_that_is_known_tells_about_those_correlated_with_it():
     assert abs(residual / naive - 1 if naive else np.inf) > 4 / np.sqrt(2 * n)  # control
 
 
+def test_a_budget_without_inputs_has_no_uncertainty():
+    assert Budget((), np.empty(0), np.empty((0, 0))).total == 0
+
+
 def test_nothing_remains_if_all_is_known_and_everything_if_nothing_is():
     assert SURFACE.remaining(SURFACE.names) < 1e-8
     assert_allclose(SURFACE.remaining(()), SURFACE.total, rtol=1e-12)

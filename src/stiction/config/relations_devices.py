@@ -29,7 +29,7 @@ from stiction.config.relations import (
 )
 from stiction.config.test_beams import DATA, shared_uncertainty
 from stiction.contact.materials import COATING_ATTRACTION, OF_CONTACT
-from stiction.contact.tilt import Edge
+from stiction.contact.tilt import EDGE_RADIUS, Edge
 from stiction.rounding import is_at_most
 from stiction.surface.feasible import largest_kurtosis
 
@@ -265,17 +265,19 @@ def uncertain_hamaker_constants_are_those_of_bare_solids(config):
 @relation
 def uncertain_edges_are_those_of_round_tips(config):
     """Require a tip with a rounded edge for an uncertain radius, which stays positive below its value."""
-    key, given = "uncertainty.edge_radius_um", ("design.tip_edge", "design.edge_radius_um")
+    key, edge, radius = "uncertainty.edge_radius_um", "design.tip_edge", "design.edge_radius_um"
     for name, deviation, kind in config.entries("devices", key, "kind"):
-        message, design = None, config["design"]
-        if deviation and not KINDS[kind].has_tip:
-            message, given = "must be left out, because a device of this kind has no tip", (f"devices.{name}.kind",)
-        elif deviation and design["tip_edge"] == Edge.SQUARE:
-            message = "must be left out, because a square edge has no radius"
-        elif deviation and deviation >= design["edge_radius_um"]:
-            message = f"must be below the radius itself, {design['edge_radius_um']:g} µm"
-        if message:
-            yield f"devices.{name}.{key}", message, *given
+        message, given = None, radius
+        if not KINDS[kind].has_tip:
+            message, given = "must be left out, because a device of this kind has no tip", f"devices.{name}.kind"
+        elif config[edge] == Edge.SQUARE:
+            message, given = "must be left out, because a square edge has no radius", edge
+        elif config[radius] == 0:
+            message = "must be left out, because an edge with the radius 0 is sharp"
+        elif deviation >= config[radius]:
+            message = "must be below the radius itself"
+        if deviation and message:
+            yield f"devices.{name}.{key}", message, given
 
 
 @relation
@@ -461,13 +463,23 @@ def devices_with_common_test_beams_share_their_uncertainties(config):
     for name, used in config.entries("devices", "test_beams"):
         for other, section in devices.items():
             common = [array for array in used if array in section.get("test_beams", ())]
-            if common and shared_uncertainty(section) != shared_uncertainty(devices[name]):
+            if common and not _agree(section, devices[name]):
                 message = (
                     f"must not share {common[0]} with {other}, which states other uncertainties: apart from those of "
                     "their dimensions, both must be the same"
                 )
                 yield f"devices.{name}.test_beams", message
                 break
+
+
+def _agree(*devices):
+    """Whether devices have the same uncertainties of what is not their own: edges are those of devices with tips."""
+    shared = [dict(shared_uncertainty(device)) for device in devices]
+    if not all(kind_of(device).has_tip for device in devices):
+        for stated in shared:
+            stated.pop(EDGE_RADIUS.key, None)
+    first, second = shared
+    return first == second
 
 
 @relation

@@ -81,7 +81,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Property:
-    """Property of one body."""
+    """Property of a body, or of its edge."""
 
     key: str  #: of the configuration, where materials and uncertainties have it
     words: str

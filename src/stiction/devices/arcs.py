@@ -68,7 +68,7 @@ def flat_force(slope: np.ndarray, parts: np.ndarray, radius: float) -> np.ndarra
 def flat_length(parts: np.ndarray, radius: float, beam: Beam) -> float:
     """Longest releasing arc with a smooth tip that has a rounded edge, a lower bound [m]. Arguments as of `flat_force`.
 
-    Its slope is between those of a sharp edge, and of a tip that is held at all slopes as at that one.
+    The root lies between the slope of a sharp edge and the slope at which the force there bends the beam.
     """
     sharp = np.atleast_1d(tip_slope(arc_length(parts[:, 0].sum(), beam), beam.gap))
     steepest = (flat_force(sharp, parts, radius) / bending_force(sharp, beam)) ** (1 / 3)

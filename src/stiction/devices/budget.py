@@ -33,7 +33,7 @@ class Budget:
             raise ValueError(f"{k} inputs need as many slopes and a square covariance")
         scale = np.sqrt(np.diag(self.covariance))
         correlation = self.covariance / np.outer(*[np.where(scale > 0, scale, 1)] * 2)
-        if not np.allclose(correlation, correlation.T) or np.linalg.eigvalsh(correlation).min() < -1e-9:
+        if not np.allclose(correlation, correlation.T) or np.linalg.eigvalsh(correlation).min(initial=0) < -1e-9:
             raise ValueError("a covariance must be symmetric and must not have negative eigenvalues")
 
     @property

@@ -73,7 +73,8 @@ def _longest(beam: Beam, clamps: int, adhesion: float, fold: Callable[[Bent], fl
 def longest_free(beam: Beam, clamps: int, adhesion: float) -> float:
     """Longest beam to release after a liquid has dried, for bridges the length of two meeting cracks [m].
 
-    Infinite if the liquid does not wet the beam.
+    Infinite if the liquid does not wet the beam. ASSUME: the tip has a sharp edge. What a rounded one holds in the air
+    of the room is part of the safe lengths.
 
     Examples
     --------

@@ -115,6 +115,14 @@ def test_the_text_lists_once_for_each_device_what_counts_as_exact():
     assert tables_budget.counted_as_exact(BEAMS["C1", 0.67]).endswith(", the contact angles, the adsorbed water.")
 
 
+def test_what_counts_as_exact_is_listed_once_for_the_beam_and_its_tip():
+    beam = BEAMS["C1", 0.67]
+    tip = beam.drop_vars("exact").assign_coords(exact=["the radius of the edge", *beam.exact.values])
+    assert tables_budget.counted_as_exact(beam, tip) == tables_budget.counted_as_exact(tip)
+    caption = tables_budget.budget({("C1", 0.67): beam, ("C1", 0.67, "tip"): tip}).caption
+    assert caption.count("Counted as exact") == caption.count("the radius of the edge") == 1
+
+
 def test_an_exact_slope_is_shown_without_an_error():
     exact = BEAMS["C1", 0.67].assign(slope_error=("input", [0.02, 0.03, 0.0]))
     cells = tables_budget.budget({("C1", 0.67): exact}).cells.set_index("what")["effect [%]"]
@@ -124,7 +132,8 @@ def test_an_exact_slope_is_shown_without_an_error():
 
 def test_without_uncertainties_no_advice_is_given():
     exact = BUDGETS["C1", 0.67].assign(covariance=0 * BUDGETS["C1", 0.67].covariance)
-    assert tables_budget.what_to_measure(exact) == "No uncertainty of an input is stated."
+    said = tables_budget.what_to_measure(exact)
+    assert said == f"No input with a stated uncertainty acts on the {tables_budget.response_text(exact)}."
 
 
 def test_numbers_of_stoppers_are_those_of_the_dataset():

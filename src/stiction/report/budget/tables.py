@@ -193,7 +193,11 @@ def budget(budgets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset]
     sentences = [
         f"{device}, {Air(humidity).words}: {what_to_measure(one)}" for (device, humidity, *_), one in budgets.items()
     ]
-    omitted = {f"{device}: {counted_as_exact(one)}": None for (device, *_), one in budgets.items()}
+    devices = dict.fromkeys(device for device, *_ in budgets)
+    omitted = [
+        f"{name}: {counted_as_exact(*(one for (device, *_), one in budgets.items() if device == name))}"
+        for name in devices
+    ]
     caption = with_list(
         "Relative standard uncertainty of a result due to each measurement, if all others were exact, ± standard error "
         "of the simulation. The result is the mean length of beams stuck as S-shapes, the length at which few stick "
@@ -212,7 +216,7 @@ def what_to_measure(dataset: xr.Dataset) -> str:
     if np.isnan(uncertainty.total):
         return "Too few of the simulated devices stick to show the effect of an input."
     if uncertainty.total == 0:
-        return "No uncertainty of an input is stated."
+        return f"No input with a stated uncertainty acts on the {response_text(dataset)}."
     return advice(uncertainty, groups_of(dataset), response_text(dataset))
 
 
@@ -238,9 +242,11 @@ def response_text(dataset: xr.Dataset) -> str:
     return END_STATES[response].budget.format(f"{1 / share:g}" if share else "")
 
 
-def counted_as_exact(dataset: xr.Dataset) -> str:
-    """Sentence on inputs without a stated uncertainty."""
-    return f"Counted as exact: {', '.join(map(str, dataset.exact.values))}."
+def counted_as_exact(*datasets: xr.Dataset) -> str:
+    """Sentence on inputs without a stated uncertainty in budgets of a device: those of most, then of the others."""
+    longest_first = sorted(datasets, key=lambda dataset: -dataset.sizes["exact"])
+    names = dict.fromkeys(str(name) for dataset in longest_first for name in dataset.exact.values)
+    return f"Counted as exact: {', '.join(names)}."
 
 
 def _budget_rows(device, humidity, dataset):

@@ -246,7 +246,7 @@ def _sure(name, budgets, errors):
         f"{f'Relative humidity {humidity:g}' if humidity else 'Dry air'}: {tables_budget.what_to_measure(budget)}"
         for (humidity, *_), budget in budgets.items()
     ]
-    said += dict.fromkeys(map(tables_budget.counted_as_exact, budgets.values()))
+    said.append(tables_budget.counted_as_exact(*budgets.values()))
     cells, drawn = _side_by_side(tables_budget.budget(cases, errors).cells), figures_budget.budget(cases)
     return [Section("Uncertainty, and what should be measured better", said, cells, drawn, _MISSING_EFFECTS)]
 

@@ -35,14 +35,14 @@ _FEW = {
 }
 _BOUND = (
     "Bound: for a cantilever, the sticking length of flat surfaces in contact, with water in all gaps. For a "
-    "bridge: no surface, however smooth, can hold a bridge shorter than this at this humidity. For a tip the bound "
-    "holds only on average. A single rough tip can stick harder than flat, flooded surfaces, so a fitted length may "
-    "fall below it."
+    "bridge: no surface, however smooth, can hold a bridge shorter than this at this humidity. The bound of a tip has "
+    "its edge and holds only on average. A single rough tip can stick harder than flat, flooded surfaces, so a fitted "
+    "length may fall below it."
 )
 _DRY_BOUND = (
     "Bound: for a cantilever, the sticking length of flats in contact, as no water condenses. For a bridge: no "
-    "surface, however smooth, can hold a bridge shorter than this. For a tip the bound holds only on average. A single "
-    "rough tip can stick harder than flats, so a fitted length may fall below it."
+    "surface, however smooth, can hold a bridge shorter than this. The bound of a tip has its edge and holds only on "
+    "average. A single rough tip can stick harder than flats, so a fitted length may fall below it."
 )
 _CHART = (
     "Safe length of beams of the thicknesses and gaps of a chart against relative humidity: the largest length with at "

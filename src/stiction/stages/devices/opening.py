@@ -127,7 +127,7 @@ def ground_of(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
 
 
 def least_length(device: DesignedBeam, laws: np.ndarray) -> float:
-    """Length of a device that comes free of any ground no stronger than some force laws (n, 4) [m]."""
+    """Length of a device, apart from its tip, that comes free of ground no stronger than force laws (n, 4) [m]."""
     strongest = device.opening.contribution(laws).max(axis=0)
     return float(device.opening.bound(strongest, device.beam))
 

@@ -142,10 +142,10 @@ OF_AIR = (
         least=0.0,
     ),
 )
-#: Uncertain properties that change the contact of bodies, by the name of this change: of solids, and of edges.
-_OF_BODIES = OF_CONTACT | {without_unit(EDGE_RADIUS.key): EDGE_RADIUS}
+#: Uncertain properties that change the contact, by the name of this change: of solids, and of edges.
+_OF_CONTACTS = OF_CONTACT | {without_unit(EDGE_RADIUS.key): EDGE_RADIUS}
 #: Fields of their uncertainties.
-_FIELDS = {name: without_unit(one.key) for name, one in _OF_BODIES.items()}
+_FIELDS = {name: without_unit(one.key) for name, one in _OF_CONTACTS.items()}
 #: Standard uncertainties of all inputs in SI, zero where not stated; ``scan`` is the side of the scan that gave the
 #: moments of the surfaces that are described by numbers [m].
 Uncertainty = make_dataclass(
@@ -257,7 +257,7 @@ def property_blocks(
 
     ASSUME: a beam bends with Young's modulus alone, without the 1 - ν² of a plate; only the contact has the other two.
     """
-    for name, entry in _OF_BODIES.items():
+    for name, entry in _OF_CONTACTS.items():
         if name not in properties:
             continue
         states, step = [replace(state, contact=contact) for contact in properties[name]], entry.step

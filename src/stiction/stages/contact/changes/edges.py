@@ -1,12 +1,15 @@
-"""Less and more of the radius of the edge of tips: other settings, and nothing else.
+"""Tips with a sharper or a rounder edge: other settings, and nothing else.
 
-The same points of the surface are on wedge and edge as in the unchanged contact. ASSUME: the end of a rounder edge may
-be missing, where only the highest summits touch.
+The strips have room for the rounder one. The same points of their surfaces are on both, so that the difference is that
+of the edges.
 """
 
+import math
 from typing import Any
 
-from stiction.contact.tilt import EDGE_RADIUS
+from stiction.config.merging import merged
+from stiction.config.units import NM_PER_UM
+from stiction.contact.tilt import EDGE_RADIUS, length_of_edge
 from stiction.models import SHIFTS
 from stiction.stages.contact.changes.patches import Change
 
@@ -14,9 +17,13 @@ from stiction.stages.contact.changes.patches import Change
 def _with_radius(plan: Any, at: Any, place: Any) -> dict[str, Any]:
     """Settings of a contact of tips with less or more of the radius of their edge."""
     settings = place.settings(plan, at, place.fewer(plan, at))
-    radius = settings["tilt"]["radius_um"]
-    changed = EDGE_RADIUS.step.ends(radius)[SHIFTS.index(at.side)]
-    return settings | {"tilt": settings["tilt"] | {"radius_um": changed, "room_um": radius}}
+    tilt, sampling = settings["tilt"], settings["sampling"]
+    ends, reach = EDGE_RADIUS.step.ends(tilt["radius_um"]), tilt["reach_nm"] / NM_PER_UM
+    now, room = (length_of_edge(radius, reach, tilt["slopes"][-1]) for radius in (tilt["radius_um"], ends[1]))
+    point = sampling["spacing_nm"] * settings["contact"]["every"] / NM_PER_UM
+    longer = round(sampling["strip_length_um"] + point * math.ceil((room - now) / point), 6)
+    edge = {"radius_um": ends[SHIFTS.index(at.side)], "room_um": ends[1]}
+    return merged(settings, {"sampling": {"strip_length_um": longer}, "tilt": edge})
 
 
 #: The radius of a rounded edge.
