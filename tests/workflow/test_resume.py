@@ -199,8 +199,13 @@ SPOILS = {
 }
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("spoil", SPOILS)
+@pytest.mark.parametrize(
+    "spoil",
+    [
+        pytest.param(spoil, marks=pytest.mark.nightly if spoil in (empty, of_another_stage) else pytest.mark.slow)
+        for spoil in SPOILS
+    ],
+)
 def test_a_dataset_that_is_damaged_or_of_other_settings_is_computed_again(undisturbed, tiny, tmp_path, spoil):
     folder = copied(undisturbed, tmp_path / "run")
     shutil.rmtree(folder / ".snakemake" / "metadata")  # as in results copied from another folder
@@ -211,7 +216,7 @@ def test_a_dataset_that_is_damaged_or_of_other_settings_is_computed_again(undist
     assert datasets(folder) == datasets(undisturbed)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_dataset_that_is_damaged_a_second_time_is_computed_a_second_time(undisturbed, tiny, tmp_path):
     folder = copied(undisturbed, tmp_path / "run")
     for _ in range(2):

@@ -145,7 +145,7 @@ def test_tips_that_separate_fast_hold_shorter_beams_least_so_the_strongest(humid
     assert min(ratios) > factor + 4 * error
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_slope_of_the_edge_is_that_between_tips_with_a_sharper_and_a_rounder_one():
     humidity, radius = 0.92, 1
     own = C1 | {"uncertainty": {"edge_radius_um": 0.3 * radius}}

@@ -562,7 +562,7 @@ def test_lengths_to_build_after_counts_are_their_quantile_two_standard_deviation
     assert doubt > 2.05 * float(tips.result_after.max())  # control
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.usefixtures("shapes", "mean_lengths_alone")
 def test_the_true_lengths_of_the_device_are_inside_the_stated_intervals_of_counts():
     scores = []
