@@ -8,6 +8,8 @@ REFUSED = [2, 84]
 #: Laws with d_max < 0, strips longer than they allow, ground that differs by tens of lengths 1/a, no beam that sticks,
 #: a chart of such beams, a budget of which nothing is known, and bridges that stick just within their reach.
 ANSWERED = [1, 3, 5, 51, 101, 102, 199]
+#: Those that take least; the others are tests of the night.
+BY_DAY = {1, 3, 101, 199}
 
 
 @pytest.mark.parametrize("number", REFUSED)
@@ -18,9 +20,11 @@ def test_what_the_model_does_not_hold_for_is_refused_in_one_sentence_before_the_
     assert ("water and" in found) == (drawn(number).humidity != "dry")
 
 
-@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore")
-@pytest.mark.parametrize("number", ANSWERED)
+@pytest.mark.parametrize(
+    "number",
+    [pytest.param(draw, marks=pytest.mark.slow if draw in BY_DAY else pytest.mark.nightly) for draw in ANSWERED],
+)
 def test_drawn_surfaces_end_in_an_answer(number):
     found = outcome(drawn(number))
     assert found.startswith("answer ")

@@ -115,6 +115,7 @@ def test_public_names_configuration_and_provenance_need_neither_checkout_nor_sna
     assert run["config"]["contact"]["samples"] == 40
 
 
+@pytest.mark.nightly
 def test_beams_are_computed_without_checkout_and_snakemake(alone):
     cracks = alone(BEAMS)
     assert len(cracks) == 2

@@ -108,7 +108,7 @@ print(len(passes.buffer), len(end_stiffness.signatures))
 """
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_warm_up_compiles_in_other_processes_and_leaves_all_kernels_in_the_cache(tmp_path):
     environment = os.environ | {"PYTHONPATH": str(SOURCE), "NUMBA_CACHE_DIR": str(tmp_path)}
     for _ in range(2):

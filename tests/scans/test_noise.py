@@ -123,7 +123,7 @@ def test_noise_is_named_and_its_error_is_part_of_that_of_the_moments():
     np.testing.assert_allclose(maps.noise_covariance, error**2 * np.outer(slopes, slopes), rtol=1e-4)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_rms_of_noisy_scans_has_no_bias_beyond_its_error():
     scans = [fine("Sub1", seed) for seed in range(10)]
     found = [estimate([noisy(scan, 50e-12, k)], 2, model_scans=8) for k, scan in enumerate(scans)]

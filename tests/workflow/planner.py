@@ -7,12 +7,14 @@ import subprocess
 import sys
 from pathlib import Path
 
+#: Samples that decide numbers of beams and samples, few because a plan needs no good ones.
+PILOT = 40
 SERVER = """
 import gc, json, os, sys
 from pathlib import Path
 import jsonschema, netCDF4, numba, scipy.integrate, scipy.interpolate, scipy.optimize, scipy.stats, smart_open, xarray
 import snakemake.cli
-import stiction.config.validation, stiction.run.snakemake_patches, stiction.run.stale_results
+import stiction.accuracy, stiction.config.validation, stiction.run.snakemake_patches, stiction.run.stale_results
 from snakemake.executors.touch import Executor
 from stiction.config.files import load
 from stiction.plan.graph import stages
@@ -26,6 +28,7 @@ class Keeping(DiskCache):
         super().save()
 
 stiction.run.disk_cache.DiskCache = Keeping
+stiction.accuracy.PILOT = int(sys.argv[1])
 gc.disable()  # a plan is short, and its process ends with it
 load()  # what relations compute of the paper's numbers is kept
 Executor.SLEEPING_TIME = 0  # [s] for each job that is only touched; files touched in one tick count as up to date
@@ -62,7 +65,7 @@ class Planner:
         environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
         environment["PYTHONPATH"] = str(Path(folder) / "src")
         pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "text": True}
-        self.server = subprocess.Popen([sys.executable, "-c", SERVER], **pipes, cwd=folder, env=environment)
+        self.server = subprocess.Popen([sys.executable, "-c", SERVER, str(PILOT)], **pipes, cwd=folder, env=environment)
 
     def __call__(self, *arguments, config=(), folder=None):
         """Exit status and printed output."""

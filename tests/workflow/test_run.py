@@ -151,7 +151,7 @@ def test_surfaces_without_summits_and_few_samples_are_tabulated_and_drawn(tmp_pa
 @pytest.mark.parametrize(
     "moments",
     [
-        pytest.param("skewness: 0, kurtosis: 3", marks=pytest.mark.slow),
+        pytest.param("skewness: 0, kurtosis: 3", marks=pytest.mark.nightly),
         pytest.param("skewness: 0.3, kurtosis: 3.2", marks=pytest.mark.nightly),
     ],
 )

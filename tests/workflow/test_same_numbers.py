@@ -26,7 +26,7 @@ snakemake.cli.main()
 """
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_a_moved_checkout_gives_the_same_bytes_on_one_core_without_forks(undisturbed, tiny, tmp_path, overlay):
     for name in ("Snakefile", "config.yaml"):
         shutil.copy2(ROOT / name, tmp_path)

@@ -31,7 +31,7 @@ WIDTH, STEP = 10e-6, 0.2e-9
 GAPS = {"a": 20e-6, "b": 20e-6, "c": 2e-6}
 HUMIDITIES = {pair: section["humidities"] for pair, section in load()["pairs"].items()}
 #: Cases of continuous integration, and of the night.
-BY_DAY = ("a", 0.45), ("b", 0.67)
+BY_DAY = [("b", 0.67)]
 BY_NIGHT = [(pair, humidity) for pair in GAPS for humidity in HUMIDITIES[pair] if (pair, humidity) not in BY_DAY]
 
 

@@ -125,7 +125,7 @@ def _numbers(number):
     return {key: ETCH["settings"][number][key] for key in ("rms_nm", "skewness", "kurtosis")}
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_margin_at_the_best_setting_is_that_of_other_samples_on_its_surface(etched):
     settings = etched.settings().sel(who="Bump")
     best = float(settings.best)

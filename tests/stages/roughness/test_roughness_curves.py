@@ -88,7 +88,7 @@ def dry():
     return Results.of(stiction.load(SECTIONS, IN_DRY_AIR))
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_points_at_the_given_roughness_are_todays_results_in_dry_and_in_humid_air(dry):
     stopper, cantilever = (dry[f"devices/roughness/points/{name}_{POINTS - 1}"] for name in ("S1", "C1"))
     np.testing.assert_array_equal(stopper.stuck[:, 0], dry["devices/stoppers/S1"].stuck.T)

@@ -155,7 +155,7 @@ def test_an_error_of_one_step_gives_the_contact_of_the_slope_bit_for_bit(stopper
     xr.testing.assert_allclose(same, stopper.contact, rtol=1e-5)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_test_beams_in_dry_air_are_computed_again_on_contacts_in_dry_air():
     measured = [{"humidity": "dry", "mean_um": 1450, "std_um": 40, "beams": 10}]
     dry = SECTIONS | {"attraction": {"reach": "all"}}
