@@ -197,6 +197,7 @@ def nowhere(toy):
     return {"XDG_CACHE_HOME": "/proc/nowhere", "HOME": "/proc/nowhere", "TMPDIR": str(toy.parent / "tmp")}
 
 
+@pytest.mark.slow
 def test_machine_code_is_kept_for_this_user_alone_where_neither_package_nor_home_can_be_written(toy, nowhere):
     assert called(toy, **nowhere) == (21, True)
     assert called(toy, **nowhere) == (21, False)

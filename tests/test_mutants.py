@@ -118,6 +118,7 @@ def test_an_edit_of_a_function_leaves_the_sample_of_all_others(tmp_path, monkeyp
     assert len(changed) <= 4  # at the end of the samples, of which each has a share of the number
 
 
+@pytest.mark.slow
 def test_a_project_whose_tests_miss_one_of_its_errors(tmp_path, monkeypatch):
     project(tmp_path, monkeypatch, f="def f(x):\n    return abs(x) + 1\n")
     (tmp_path / "tests").mkdir()

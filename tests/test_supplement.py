@@ -26,6 +26,7 @@ supplement, compare_print = (module(ROOT / "examples" / f"{name}.py") for name i
 CONFIG = stiction.load()
 
 
+@pytest.mark.slow
 def test_neighbouring_strips_are_the_less_correlated_the_longer_they_are():
     short, long = (supplement.surfaces(CONFIG, (length, 30e-6))["neighbouring strips"] for length in (0.15e-6, 1.5e-6))
     assert (long < short / 3).all()

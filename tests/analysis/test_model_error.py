@@ -281,6 +281,7 @@ def drawn_tips(rng, number, power=1.4, ratios=(2.0, 0.7)):
     return [np.exp(s * x - s**2 / 2) * scale for s, x, scale in ((0.5 * power, own, ratios), (0.5, common, 1.0))]
 
 
+@pytest.mark.slow
 def test_ratios_of_tips_are_those_of_means_and_scatters_and_errors_those_of_repeated_studies():
     rng = np.random.default_rng(5)
     many = tip_ratios(*drawn_tips(rng, 40_000))

@@ -276,8 +276,9 @@ def test_a_power_law_that_no_pixel_resolves_does_not_go_on(tmp_path):
     assert problems(configured(write(tmp_path / "fine.gwy", fine.heights, fine.size), beyond="continued")) == ()
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:surface Etched")
-@pytest.mark.parametrize("share", [0.5, pytest.param(0.9, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("share", [0.5, 0.9])
 def test_scans_of_two_heights_have_their_measured_density_or_are_refused_before_a_run(tmp_path, share):
     (drawn,) = published("B2", SIDE, 1)
     steps = np.sign(drawn.heights - np.quantile(drawn.heights, share))

@@ -178,6 +178,7 @@ def scans(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_a_scan_is_of_one_setting_and_of_one_surface(scans):
     files = [str(scans / f"{number}.x3p") for number in range(4)]
     settings = [{"value": value, "scans": [file]} for value, file in zip((30, 60, 90), files, strict=False)]

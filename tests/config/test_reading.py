@@ -76,6 +76,7 @@ def test_aliases_that_stand_for_more_values_than_memory_holds_are_refused_at_onc
         load(path)
 
 
+@pytest.mark.slow
 def test_a_message_about_any_text_of_the_largest_size_ends(tmp_path):
     """Texts that a pattern or a suggestion could need long for, at a number, a choice, a name, a list and as a key."""
     path = tmp_path / "mine.yaml"

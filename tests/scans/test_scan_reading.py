@@ -501,6 +501,7 @@ def test_without_the_library_the_message_tells_how_to_install_it(tmp_path, monke
         read(path)
 
 
+@pytest.mark.slow
 def test_the_library_is_imported_only_to_read_and_its_import_warns_nobody(tmp_path):
     path = written(tmp_path, "gwy", topography())
     code = f"""

@@ -227,6 +227,7 @@ def test_a_part_gives_the_spectrum_of_a_scan_with_more_undefined_points_than_may
     assert (filled.names, filled.part.shape) == ((B2[1].name, "a.spm"), z.shape)
 
 
+@pytest.mark.slow
 def test_a_scan_without_plateau_gives_a_smoother_surface_and_says_so():
     z = np.cumsum(np.cumsum(stream(1, "walk").standard_normal((200, 200)), axis=0), axis=1)  # a power law throughout
     walks = [Scan(1e-10 * part, (SIDE, SIDE), f"{name}.spm") for name, part in (("a", z), ("b", z.T))]

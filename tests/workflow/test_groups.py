@@ -71,6 +71,7 @@ def test_grouped_rules_are_submitted_and_every_group_has_a_size():
 REMOTE = ("--mode", "remote", "--rerun-triggers", "mtime", "params", "software-env", "--cores", "1", "--nolock", "-n")
 
 
+@pytest.mark.slow
 def test_a_job_plans_what_its_run_planned_without_the_files_of_the_configuration(planner, smoke, tmp_path):
     handed = smoke / ".snakemake" / "configuration.json"
 

@@ -50,6 +50,7 @@ def test_adhesion_grows_with_humidity_and_negative_skewness_sticks_more(smoke):
         assert high - low > 4 * (low_error**2 + high_error**2) ** 0.5
 
 
+@pytest.mark.slow
 def test_the_study_of_a_pair_in_python_gives_the_numbers_of_the_workflow(smoke):
     study = PairStudy.of(files.load(SMOKE), "b")
     results = smoke / "results"

@@ -56,6 +56,7 @@ def test_a_sample_does_not_depend_on_the_others():
     assert alone.equals(study().isel(sample=slice(1)))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("of_ratios", "of_largest", "number"), [(0, np.inf, 9), (np.inf, 0, 9), (np.inf, np.inf, 4)])
 def test_strips_are_drawn_until_both_accuracies_or_the_most(monkeypatch, of_ratios, of_largest, number):
     monkeypatch.setattr(full_contact, "OF_RATIOS", of_ratios)
@@ -66,6 +67,7 @@ def test_strips_are_drawn_until_both_accuracies_or_the_most(monkeypatch, of_rati
     assert found.isel(sample=slice(2)).equals(study().isel(sample=slice(2)).sel(humidity=[0.92]))
 
 
+@pytest.mark.slow
 def test_means_in_dry_air_are_those_beside_the_summits_of_more_strips(monkeypatch):
     monkeypatch.setattr(model_error, "STRIPS_PER_SLOPE", 3)
     few = replace(SETTINGS_IN_DRY_AIR, strips=6)

@@ -25,6 +25,7 @@ def readings():
     return {(of["reading"], of["attraction"], of["spacing"]): e for of, e in asperities.energies_of_readings(study())}
 
 
+@pytest.mark.slow
 def test_the_first_reading_is_that_of_the_contact_and_of_full_contact():
     """All three are the same strips, drawn with the same random numbers."""
     (labels, found), *_ = asperities.energies_of_readings(study())

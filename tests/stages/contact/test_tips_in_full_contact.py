@@ -59,6 +59,7 @@ def test_strips_have_the_width_the_slopes_and_the_edge_of_the_tips_and_their_num
     assert free.settings["most"] == tips_in_full_contact.MOST
 
 
+@pytest.mark.slow
 def test_the_study_has_both_models_at_every_slope_and_a_sample_does_not_depend_on_the_others():
     assert few().sizes == {"sample": 3, "slope": 3, "humidity": 1}
     assert np.all(few().force > 0)

@@ -160,6 +160,7 @@ def test_tips_of_a_chart_hold_as_those_of_the_device():
     assert_allclose(found.safe_length[1, 0], alone(C1, wanted, tips), rtol=1e-12)
 
 
+@pytest.mark.slow
 def test_limits_of_saturated_air_are_those_of_flooded_flats_by_shape():
     tips = np.full(200, 2e-3)
     found, _ = computed(replace(C1, gap=10 * UM), (2 * UM,), (10 * UM, 20 * UM), tips)

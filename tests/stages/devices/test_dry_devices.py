@@ -322,6 +322,7 @@ def test_nothing_is_said_of_water_that_fills_gaps_where_none_condenses(humidity)
         assert not [word for word in ("saturated", "flooded", "all gaps", "at this humidity") if word in text]
 
 
+@pytest.mark.slow
 def test_bounds_in_both_airs_are_told_apart():
     for text in captions({0.0: without_water(TIPS), 0.67: TIPS}):
         assert "with water in all gaps" in text

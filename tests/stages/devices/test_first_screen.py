@@ -252,7 +252,7 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind != "bridge")) for kind in KINDS])
 def test_the_warning_that_forbids_a_number_stands_in_the_place_of_all_numbers_in_words(kind):
     open_, shut = (replace(KINDS[kind](one), more=["More."], explorer={"name": kind}) for one in (["Steep."], [UNSAFE]))
     assert len(open_.lines) > 1

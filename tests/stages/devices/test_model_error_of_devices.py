@@ -85,6 +85,7 @@ def test_tips_of_corrected_devices_have_the_correction_of_their_pair():
     assert "model_error" not in Graph(full).job("devices/safe_lengths/R1_rh067").inputs
 
 
+@pytest.mark.slow
 def test_a_page_says_by_how_much_and_which_side_is_safe():
     (dry, wet) = (safe(), safe(longest=500e-6))
     given = {"C1": CANTILEVER | {"humidities": [0.44, 0.67]}}

@@ -166,6 +166,7 @@ def correlated(laws, rho):
     return draw
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rho", [0.3, 0.45])
 def test_lengths_on_strips_that_repeat_laws_are_at_most_those_on_correlated_strips(rho):
     """Correlation of neighbours up to that of their distances, where heights are correlated over 5.5 strips."""

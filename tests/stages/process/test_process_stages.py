@@ -64,6 +64,7 @@ def etched():
     return stiction.Process.of(config(ETCH, Bump=BUMP | {"process": "etch"}, Small=other | {"process": "etch"}), "etch")
 
 
+@pytest.mark.slow
 def test_a_setting_alone_is_todays_roughness_at_its_value_bit_for_bit():
     device = BUMP | {"process": "etch", "roughness": {"surface": "B2", "rms_nm": [2, 8]}}
     results = Results.of(config(RMS, Bump=device))
@@ -162,6 +163,7 @@ def test_what_serves_all_devices_serves_each_and_has_the_smallest_margin(etched)
     np.testing.assert_allclose(found.margin.sel(who=recommended.ALL), each, atol=1e-12)
 
 
+@pytest.mark.slow
 def test_answers_name_the_settings_the_best_and_the_next(etched):
     first, *more = etched.answers("Bump")
     assert first.startswith(("Settings of the etch time from ", "No setting of the etch time from 30 to 120 s"))

@@ -124,6 +124,7 @@ def test_surfaces_that_no_water_wets_are_held_at_any_humidity_as_in_dry_air():
     assert float(dry.estimate[0]) > 0
 
 
+@pytest.mark.slow
 def test_the_legend_of_a_cantilever_names_the_bounds_of_beam_and_tip(cantilever):
     given = cantilever.results[f"devices/roughness/points/C1_{POINTS - 1}"]
     figure = figures_roughness.roughness(curves.join_points([given.assign(roughness=2e-9), given], "rms_nm", "B2"))

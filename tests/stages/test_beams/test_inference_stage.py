@@ -233,6 +233,7 @@ def mean_lengths_alone(monkeypatch):
     monkeypatch.setattr(inference, "further_dataset", lambda *_: xr.Dataset())
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("mean_lengths_alone")
 def test_the_true_lengths_of_the_device_are_inside_the_stated_intervals():
     found = np.abs(scores(STATED))
