@@ -7,7 +7,7 @@
 #   make example-process   the best etch time from drawn scans (3 to 5 minutes), in runs/example-process/
 #   make example-beams   a device with and without drawn test beams, beside the truth, in runs/example-beams/
 #   make measured-beams   what the beams that the paper measured say as test beams (4 minutes), in runs/measured-beams/
-#   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (4 to 10 minutes),
+#   make devices    safe lengths, stoppers and their uncertainty: examples/devices.yaml, or CONFIG=... (3 to 6 minutes),
 #                   in runs/devices/results/
 #   make model-error    Table III under full elastic contact, after make paper (3 minutes on two cores; takes CONFIG=... too)
 #   make sealed     devices in dry nitrogen, bare and coated (14 minutes on two cores), in runs/sealed/results/
