@@ -179,7 +179,7 @@ def test_a_beam_sticks_in_the_shape_that_sticks_at_the_shorter_length():
 # The end of the distribution of beams
 
 
-@pytest.mark.nightly
+@pytest.mark.slow
 def test_the_fit_of_few_beams_is_the_brute_force_of_many():
     # 10 000 beams: the 10th shortest bounds 1e-3. Fits of ten times 1000 beams must agree with it.
     cracks = []

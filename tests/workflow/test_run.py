@@ -149,13 +149,8 @@ def test_surfaces_without_summits_and_few_samples_are_tabulated_and_drawn(tmp_pa
     assert "(nan)" not in (tmp_path / "results" / "tables" / "table_1.md").read_text()
 
 
-@pytest.mark.parametrize(
-    "moments",
-    [
-        pytest.param("skewness: 0, kurtosis: 3", marks=pytest.mark.nightly),
-        pytest.param("skewness: 0.3, kurtosis: 3.2", marks=pytest.mark.nightly),
-    ],
-)
+@pytest.mark.nightly
+@pytest.mark.parametrize("moments", ["skewness: 0, kurtosis: 3", "skewness: 0.3, kurtosis: 3.2"])
 def test_everything_can_be_computed_and_drawn_for_a_surface_of_the_user(tmp_path, overlay, moments):
     mine = overlay(MINE.replace("skewness: -0.5, kurtosis: 3.6", moments))
     done = snakemake(tmp_path, "all", "--keep-going", configs=(SMOKE, mine), check=False)
