@@ -15,8 +15,7 @@ sys.path.insert(0, SOURCE)
 PATHS = [SOURCE, *filter(None, dict(os.environ).get("PYTHONPATH", "").split(os.pathsep))]
 os.environ.update(PYTHONPATH=os.pathsep.join(dict.fromkeys(PATHS)))
 
-# Nearly all objects of a plan remain until its end. Looking for garbage among them would take a sixth of its time, and
-# again as long when Python ends.
+# Planning frees almost nothing. The garbage collector would cost a sixth of a plan, and as much again at exit.
 gc.set_threshold(1_000_000)
 atexit.register(gc.freeze)
 

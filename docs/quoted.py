@@ -17,7 +17,7 @@ from stiction.devices.arcs import arc_length
 from stiction.devices.limits import FILMS
 from stiction.plan.plan import Plan
 from stiction.report.beams import prediction
-from stiction.report.checks import MESH_OFF_OF_PAPER, RESOLVED
+from stiction.report.checks import COARSER_ACCURACY, RESOLVED
 from stiction.report.devices.life import significant
 from stiction.report.format import MISSING, TO_MJ, TO_UM, number, with_error
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
@@ -474,7 +474,7 @@ def mesh(checks):
     """``mesh_off``: largest error of a crack length on uniform ground by the mesh of the paper [%]."""
     messages = checks[checks["name"] == RESOLVED].message
     off = [abs(float(re.search(r"([-+][\d.]+) % off", message)[1])) for message in messages]
-    return {"mesh_off": f"{max(off):.1f}", "mesh_allowed": f"{100 * MESH_OFF_OF_PAPER:g}"}
+    return {"mesh_off": f"{max(off):.1f}", "mesh_allowed": f"{100 * COARSER_ACCURACY:g}"}
 
 
 def scans(table):

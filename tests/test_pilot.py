@@ -205,7 +205,7 @@ def test_measured_surfaces_are_drawn_from_their_preliminary_numbers(written, ove
     ["surfaces: {B2: {rms_nm: 0.3}}", pytest.param("solid: {young_modulus_GPa: 0.1}", marks=pytest.mark.slow)],
 )
 def test_a_patch_that_does_not_resist_is_refused_with_the_forces_of_its_weakest_sample(overlay):
-    config = configured(B, overlay, "contact: {samples: 40}\nchaos: {order: 2}")
+    config = configured(B, overlay, "contact: {samples: 40}\nchaos: {order: 2}\npairs: {b: {attraction: all}}")
     (line,) = map(str, pilot.problems(config, {}, "code", REMEMBER))
     number, of = map(int, re.search(r"sample (\d+) of (\d+)", line).groups())
     pull = float(re.search(r"with up to ([\d.]+) MPa", line)[1])
@@ -292,7 +292,7 @@ def test_answers_are_remembered_until_something_changes_on_which_they_depend(tmp
     assert drawn(config) == 0
     assert drawn(merged(config, {"beam": {"thickness_um": 3}})) == 0
     assert drawn(config, "other code") == 2
-    for changed in ({"attraction": {"reach": "touching"}}, {"surfaces": {"B2": {"rms_nm": 4}}}, {"seed": 2}):
+    for changed in ({"attraction": {"reach": "all"}}, {"surfaces": {"B2": {"rms_nm": 4}}}, {"seed": 2}):
         assert drawn(config) == 2, "the last configuration is remembered"
         assert drawn(merged(config, changed)) == 2
 

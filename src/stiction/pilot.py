@@ -24,7 +24,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.resolution import longest
-from stiction.config.cases import Air, case_id
+from stiction.config.cases import Air
 from stiction.config.messages import Problem, dotted, one_line
 from stiction.config.relations import field_too_large
 from stiction.config.scans import is_measured, with_preliminary_estimates
@@ -143,25 +143,20 @@ def _pairs(plan):
     config = plan.config
     for number, pair in enumerate(plan.pairs):
         beam = cantilever(in_si(Cantilevers, sections(plan, pair)), pair)
+        coarser = config["pairs"][pair].get("coarser_mesh", 1)
         use = partial(
             Use,
             patch(pair, config["sampling"]["strip_length_um"], config["beam"]["width_um"]),
             SURFACE_MODELS,
             pair=("run", "pairs", number),
             size=("beam", "width_um"),
-            longest_strip=lambda laws, beam=beam: longest(beam, laws)[0],
+            longest_strip=lambda laws, beam=beam, coarser=coarser: coarser * longest(beam, laws)[0],
             strip=("sampling", "strip_length_um"),
             of_devices=False,
         )
         stated, shown = config["pairs"][pair]["humidities"], [config["figures"]["humidity"]]
-        yield use(stated, air=("pairs", pair, "humidities"), resolved=_humidities_of_elements(plan, pair, stated))
-        cracks = _humidities_of_elements(plan, pair, shown) if pair == plan.figure_pair else []
-        yield use(shown, air=("figures", "humidity"), resolved=cracks)
-
-
-def _humidities_of_elements(plan, pair, humidities):
-    """Humidities with elements of the beams of a pair after their force laws."""
-    return [humidity for humidity in humidities if not plan.paper.has_mesh(case_id(pair, humidity))]
+        yield use(stated, air=("pairs", pair, "humidities"), resolved=stated)
+        yield use(shown, air=("figures", "humidity"), resolved=shown if pair == plan.figure_pair else [])
 
 
 def _devices(plan, section):

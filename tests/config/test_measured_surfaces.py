@@ -17,7 +17,6 @@ from published import SURFACES
 from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
 
 from stiction.config import files, scans
-from stiction.config.cases import Case
 from stiction.config.merging import merged
 from stiction.config.surfaces.grid import completed
 from stiction.config.units import in_si
@@ -164,7 +163,6 @@ def test_a_configuration_with_good_scans_is_valid_and_its_surfaces_are_shifted_l
     assert plan.shifted_moments == ["rms", "skewness", "kurtosis"]
     assert Plan(files.load(etched(*both(folder), heights="measured"))).shifted_moments == ["rms"]
     assert plan.paper.pairs == []
-    assert not plan.paper.has_mesh(Case("b_rh067"))
     assert plan.variants.summits("b", "psd_identified")["base"]["surfaces"]["Sub1"]["psd"] == "identified"
     assert "Etched" not in plan.variants.summits("b", "psd_identified")["base"]["surfaces"]
     assert job_settings(plan, "tables/table_1.csv")["measured"].keys() == {"Sub1"}

@@ -3,7 +3,6 @@
 import pytest
 from plans import job_settings
 
-from stiction.config.cases import Case
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.units import in_si
@@ -181,41 +180,6 @@ def test_the_main_line_has_the_samples_of_the_variants_if_it_has_as_many(samples
     assert plan(contact={"samples": samples}, chaos={"order": 1}).variants.has_samples is enough
 
 
-@pytest.mark.parametrize(
-    ("changes", "known"),
-    [
-        ({}, "abc"),
-        ({"run": {"pairs": ["c"]}}, "abc"),
-        ({"pairs": {"b": {"humidities": [0.3, 0.92]}}}, "abc"),
-        ({"van_der_waals": "dry", "sampling": {"spacing_nm": 5}, "solid": {"poisson_ratio": 0.3}}, "abc"),
-        ({"surfaces": {"B1": {"psd": "identified"}}}, "abc"),
-        ({"surfaces": {"B1": {"summit_density_per_um2": 70}}}, "abc"),
-        ({"surfaces": {"B1": {"psd": "identified", "summit_density_per_um2": 70}}}, "b"),
-        ({"surfaces": {"B2": {"rms_nm": 3.0}}}, "ac"),
-        ({"surfaces": {"Sub2": {"published_psd": {"floor_nm4": 0.3}}}}, "ab"),
-        ({"pairs": {"b": {"gap_um": 10}}}, "ac"),
-        ({"beam": {"width_um": 20}}, "abc"),
-        ({"beam": {"elements": 500}}, ""),
-        ({"beam": {"thickness_um": 2.0}}, ""),
-        ({"solid": {"young_modulus_GPa": 60}}, ""),
-        ({"materials": {"Soft": {"young_modulus_GPa": 60}}, "surfaces": {"B2": {"material": "Soft"}}}, "ac"),
-        ({"materials": {"Soft": {"young_modulus_GPa": 60}}, "surfaces": {"Sub1": {"material": "Soft"}}}, "abc"),
-        ({"sampling": {"strip_length_um": 1.25}, "studies": {"variants": {"every": []}}}, ""),
-    ],
-)
-def test_only_beams_and_strips_of_the_paper_have_its_mesh(changes, known):
-    found = plan(**changes)
-    cases = {"a": "a_rh090", "b": "b_rh092", "c": "c_rh090"}
-    assert "".join(pair for pair, case in cases.items() if found.paper.has_mesh(Case(case))) == known
-
-
-def test_the_mesh_of_the_paper_ends_at_its_highest_humidity_and_its_own_pairs():
-    mine = plan(pairs={"mine": LIKE_A})
-    assert PAPER.paper.has_mesh(Case("b_rh065"))
-    assert not PAPER.paper.has_mesh(Case("b_rh093"))
-    assert not mine.paper.has_mesh(Case("mine_rh050"))
-
-
 def test_moments_are_shifted_from_feasible_ones():
     border = plan(surfaces={"B2": {"skewness": -0.3, "kurtosis": 3.5}})
     assert border.shifted_moments == ["rms"]  # on the border, less skewness or more kurtosis is infeasible
@@ -324,19 +288,17 @@ def test_choices_of_the_medium_change_the_attraction_of_devices_across_gaps_as_w
     [
         ({}, "touching", "all"),
         ({"contact": {"samples": 9}, "chaos": {"order": 1}, "seed": 3}, "touching", "all"),
-        ({"pairs": {"b": {"humidities": [0.5]}}}, "touching", "all"),
-        ({"pairs": {"b": {"gap_um": 10}}}, "all", "all"),
-        ({"pairs": {"b": {"humidities": ["dry", 0.5]}}}, "all", "all"),
-        ({"figures": {"humidity": "dry"}}, "all", "all"),
-        ({"surfaces": {"B2": {"rms_nm": 3}}}, "all", "all"),
-        ({"beam": {"width_um": 20}}, "all", "all"),
+        ({"pairs": {"b": {"gap_um": 10, "humidities": ["dry", 0.5]}}}, "touching", "all"),
+        ({"figures": {"humidity": "dry"}}, "touching", "all"),
+        ({"surfaces": {"B2": {"rms_nm": 3}}, "beam": {"width_um": 20}}, "touching", "all"),
+        ({"pairs": {"b": {"attraction": "all"}}}, "all", "all"),
         ({"attraction": {"reach": "touching"}, "beam": {"width_um": 20}}, "touching", "touching"),
         ({"attraction": {"reach": "all"}}, "all", "all"),
         ({"contact": {"model": "full"}}, "touching", "all"),
-        ({"contact": {"model": "full"}, "pairs": {"b": {"gap_um": 10}}}, "all", "all"),
+        ({"materials": {"Wax": {"contact_angle_deg": 180}}, "surfaces": {"B2": {"material": "Wax"}}}, "all", "all"),
     ],
 )
-def test_solids_attract_across_gaps_unless_the_case_is_of_the_paper(changes, pairs, devices):
+def test_solids_attract_across_gaps_unless_a_pair_states_otherwise_for_humid_air(changes, pairs, devices):
     found = plan(**changes)
     assert (found.air.reach("b"), found.air_of_devices.reach("b")) == (pairs, devices)
     for air, reach in ((found.air, pairs), (found.air_of_devices, devices)):
@@ -345,7 +307,33 @@ def test_solids_attract_across_gaps_unless_the_case_is_of_the_paper(changes, pai
         assert explicit is None or air.water("b") == explicit.air.water("b")
 
 
-@pytest.mark.parametrize("changes", [{}, {"beam": {"thickness_um": 2}}, {"surfaces": {"Sub1": {"rms_nm": 0.2}}}])
-def test_pairs_that_are_compared_with_published_values_are_those_that_keep_the_attraction_of_the_paper(changes):
-    found = plan(**changes)
-    assert found.paper.pairs == [pair for pair in found.pairs if found.air.reach(pair) == "touching"]
+@pytest.mark.parametrize("medium", ["water", "dry"])
+def test_a_pair_has_attraction_across_gaps_in_dry_air_whatever_it_states_for_humid_air(medium):
+    air = plan(van_der_waals=medium, pairs={"b": {"humidities": ["dry", 0.5]}}).air
+    humid, dry = air.contact("b", 0.5), air.contact("b", 0.0)
+    assert (humid, dry) == ("b", "b_dry")
+    assert "gaps" not in air.water(humid)
+    assert air.water(dry)["gaps"] == plan(van_der_waals="dry", attraction={"reach": "all"}).air.water("b")["gaps"]
+    assert "attraction of solids across gaps" in air.not_modelled([("b", 0.5), ("b", 0.0)])
+    assert "attraction of solids across gaps" not in air.not_modelled([("b", 0.0)])
+
+
+def test_pairs_that_state_nothing_have_attraction_across_gaps_and_the_finer_mesh():
+    mine = plan(pairs={"mine": LIKE_A}, run={"pairs": ["mine"]})
+    assert mine.air.reach("mine") == "all"
+    assert "coarser_mesh" not in job_settings(mine, "beams/mine_rh050_NG")
+    assert job_settings(PAPER, "beams/b_rh067_NG")["coarser_mesh"] == PAPER.config["pairs"]["b"]["coarser_mesh"] > 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "compared"),
+    [
+        ({}, "abc"),
+        ({"beam": {"thickness_um": 2.6 * (1 + 1e-7)}}, "abc"),
+        ({"beam": {"thickness_um": 2.7}}, ""),
+        ({"pairs": {"b": {"gap_um": 19}}}, "ac"),
+        ({"surfaces": {"Sub2": {"rms_nm": 5}}}, "ab"),
+    ],
+)
+def test_only_pairs_with_all_numbers_of_the_paper_are_compared_with_published_values(changes, compared):
+    assert "".join(plan(**changes).paper.pairs) == compared

@@ -39,10 +39,9 @@ def job(stage, inputs, structure, output, **more):
         def __iter__(self):
             return iter(self.values())
 
-    params = SimpleNamespace(module="declared here", inputs=structure, settings={"factor": 10})
-    return SimpleNamespace(
-        rule=stage.name, input=inputs, output=Named(output), params=params, wildcards=Named(), **more
-    )
+    params = SimpleNamespace(module="here", stage=stage.name, inputs=structure, settings={"factor": 10})
+    renamed = f"stiction_{stage.name}"  # by a workflow that uses this one as a module
+    return SimpleNamespace(rule=renamed, input=inputs, output=Named(output), params=params, wildcards=Named(), **more)
 
 
 def run(monkeypatch, stage, *described):

@@ -34,17 +34,12 @@ def test_a_variant_of_the_mesh_changes_only_the_number_of_elements():
     assert (base["samples"], base["beam"]["samples"]) == (sizes["samples"], sizes["beams"])
 
 
-def test_elements_follow_the_force_laws_except_on_the_mesh_of_the_paper():
-    other = Plan(load({"pairs": {"b": {"humidities": [0.67, 0.95]}}}))
-    assert "refined" not in job_settings(other, "beams/b_rh067_GEO")
-    assert job_settings(other, "beams/b_rh095_GEO")["refined"] is True
-    assert "refined" not in job_settings(other, "studies/resampling/b_rh067")
-    assert job_settings(other, "studies/resampling/b_rh095")["refined"] is True
-    assert job_settings(other, "studies/variants/b_rh095_strips_per_element_2")["refined"] is True
-    assert "refined" not in job_settings(other, "studies/variants/b_rh067_base")
-    assert set(job_settings(other, "checks.csv")["on_mesh_of_paper"]) == {*PLAN.cases} - {*PLAN.cases[6:12]} | {
-        "b_rh067"
-    }
+def test_all_beams_of_a_pair_have_its_mesh():
+    other = Plan(load({"pairs": {"b": {"coarser_mesh": 1.5}}}))
+    for name in ("beams/b_rh067_GEO", "studies/resampling/b_rh067", "studies/variants/b_rh067_strips_per_element_2"):
+        assert job_settings(other, name)["coarser_mesh"] == 1.5
+    assert job_settings(other, "checks.csv")["coarser"] == ["a", "b", "c"]
+    assert job_settings(Plan(load({"pairs": {"b": {"coarser_mesh": 1}}})), "checks.csv")["coarser"] == ["a", "c"]
 
 
 def test_si_values_are_those_of_the_paper():

@@ -407,15 +407,15 @@ def test_a_variant_has_the_first_samples_of_a_larger_contact():
 def test_elements_of_a_variant_and_of_resampled_beams_follow_the_laws_if_asked():
     settings = small.settings_of(variant_beams, job_settings(small.PLAN, "studies/variants/b_rh080_base"))
     base, finer = (
-        variant_beams.compute(small.contact_of_pair(), Case("b_rh080"), replace(settings, refined=refined))
-        for refined in (False, True)
+        variant_beams.compute(small.contact_of_pair(), Case("b_rh080"), replace(settings, coarser_mesh=coarser))
+        for coarser in (1.7, 1.0)
     )
     assert np.all(finer.crack_length != base.crack_length)
     settings = small.settings_of(resampling, job_settings(small.PLAN, f"studies/resampling/{small.CASE}"))
     vectors, limit = forces.vectors(small.forces_of_case())
     laws = resample_laws(vectors, limit, 10_000, stream(small.SEED, "resampling", small.CASE, "mesh"))
     refined = resolved(cantilever(settings, "b"), 1000, laws)
-    found = resampling.compute(small.forces_of_case(), small.CASE, replace(settings, refined=True))
+    found = resampling.compute(small.forces_of_case(), small.CASE, replace(settings, coarser_mesh=1.0))
     experiment = Experiment(refined, 1000, lambda n, rng: resample_laws(vectors, limit, n, rng))
     beam = release_beam(experiment, 1, stream(small.SEED, "resampling", small.CASE, 1))
     assert refined.elements > 200

@@ -77,6 +77,9 @@ def read_configuration():
     """Files of the configuration, read strictly, checked and made complete; and the numbers of measured surfaces."""
     # Read again, because Snakemake silently uses the last of duplicate keys.
     contents = {file: files.read(file) for file in snakemake_patches.files_of_configuration(workflow)}
+    # A workflow that uses this one as a module states its changes alone, and replaces the file of all keys by them.
+    defaults = BASE / "config.yaml"
+    config.update(merging.merged(contents.get(defaults) or files.read(defaults), config))
     for file in contents:  # files of scans and of test beams are relative to the first match
         config.update(scans.resolve_scan_paths(config, contents[file], file.parent))
         config.update(process.resolve_scan_paths(config, contents[file], file.parent))
@@ -149,7 +152,7 @@ def hand_to_jobs():
 
 
 def unlike_this_run():
-    """Files in results/ that other settings gave, or that are damaged; what is read of them, the next plan knows."""
+    """Results of other settings, or damaged. Caches their labels for the next plan."""
     read = DiskCache(".snakemake/labels.json")
     found = dict(stale_results.damaged("results/logs", read))
     found |= dict(stale_results.foreign(Path("results").rglob("*.nc"), planner.settings, read))
@@ -157,14 +160,14 @@ def unlike_this_run():
     return found
 
 
-#: Newer than any file that a run must not use, and never the same, because Snakemake takes a newer input of the same
-#: content for unchanged; an input of the jobs that write these files anew.
+#: Marker: an input of jobs that must rerun. It is newer than their results, and its content is never the same, because
+#: Snakemake takes a newer input of the same content for unchanged.
 STALE = Path(".snakemake/stale")
 
 
 @cache
 def unusable():
-    """These files, which are named: this run writes them anew."""
+    """Warn about unusable results and return them. This run recomputes them."""
     if not is_main:
         return {}
     found = unlike_this_run()

@@ -21,6 +21,7 @@ for declared in planner.rules:
             cpu_s=seconds_of(declared),
         params:
             module=declared["module"],
+            stage=declared["name"],
             inputs=of_job(declared, "inputs"),
             settings=of_job(declared, "settings"),
             code=planner.code(declared) | SCRIPT,

@@ -22,12 +22,13 @@ def longest(beam: Beam, laws: np.ndarray) -> tuple[float, float]:
     return min(STRIP * foundation, element), element
 
 
-def resolved(beam: Beam, points: int, laws: np.ndarray) -> Beam:
+def resolved(beam: Beam, points: int, laws: np.ndarray, coarser: float = 1.0) -> Beam:
     """Beam with as many elements as its laws require, and at least its original number.
 
     Every element contains a whole number of the ``points`` along the beam, each with a force law; a sample of these has
-    rows [f_max, d_max, a_left, a_right] (n, 4), SI. Where strips are longer than `longest` allows, but not by more
-    than the factor `stiction.beam.foundation.LONGER`, each is an element.
+    rows [f_max, d_max, a_left, a_right] (n, 4), SI. Elements and strips may be longer than `longest` allows by the
+    factor ``coarser`` [-], at most 2. Where strips are longer still, but not by more than the factor
+    `stiction.beam.foundation.LONGER`, each is an element.
 
     Raises
     ------
@@ -41,7 +42,7 @@ def resolved(beam: Beam, points: int, laws: np.ndarray) -> Beam:
             f"most {1e6 * allowed:.3g} µm (foundation length {1e6 * length:.3g} µm); decrease strip_length_um, or "
             "increase the thickness or the gap of the beam"
         )
-    if strip > allowed:
+    if strip > coarser * allowed:
         return replace(beam, elements=points)
-    whole = (n for n in range(beam.elements, points + 1) if points % n == 0 and beam.length / n <= element)
+    whole = (n for n in range(beam.elements, points + 1) if points % n == 0 and beam.length / n <= coarser * element)
     return replace(beam, elements=next(whole))

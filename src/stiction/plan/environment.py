@@ -16,7 +16,6 @@ from stiction.contact.meniscus import is_wetted, require_humidity
 from stiction.contact.vanderwaals import combined
 from stiction.devices import limits
 from stiction.models import SIDES
-from stiction.plan.paper import is_pair
 from stiction.plan.stage import subsection
 
 
@@ -27,19 +26,17 @@ class Environment:
     config: dict  #: complete and valid
     of_devices: bool = False  #: whether devices stick in it, none of which is a case of the paper
 
-    def reach(self, pair: str) -> str:
-        """Range of attraction between the solids of a pair, ``touching`` or ``all``: as stated.
+    def reach(self, contact: str) -> str:
+        """Range of attraction between the solids of a contact, ``touching`` or ``all``: as stated.
 
-        ASSUME: otherwise across all gaps, which is the safe side. The cases of the paper, in humid air, have its model.
+        ASSUME: otherwise across all gaps, which is the safe side. A pair can state another range for its beams in humid
+        air, as those of the paper do. It does not hold for devices.
         """
         if stated := self.config["attraction"].get("reach"):
             return stated
-        of_paper = not self.of_devices and self._is_of_paper(PairInAir(pair).pair)
-        return "touching" if of_paper else "all"
-
-    def _is_of_paper(self, pair):
-        humidities = *self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
-        return min(humidities) > 0 and is_pair(self.config, pair)
+        in_humid_air = contact == PairInAir(contact).pair and self.is_wetted(contact)
+        of_pair = in_humid_air and not self.of_devices
+        return self.config["pairs"][contact].get("attraction", "all") if of_pair else "all"
 
     @property
     def _materials(self):
@@ -48,7 +45,7 @@ class Environment:
     def contact(self, pair: str, humidity: float) -> PairInAir:
         """Contact of a pair at a humidity. Without condensation, it is the contact in dry air.
 
-        Its summits attract each other through air. One contact is enough if they do so at any humidity.
+        Its solids attract each other through air, across all gaps. One contact is enough if they do so at any humidity.
 
         Raises
         ------
@@ -58,9 +55,10 @@ class Environment:
         require_humidity(humidity)
         if humidity > 0 and self.is_wetted(pair):
             return PairInAir(pair)
-        if self.reach(pair) == "touching":
+        if self.config["attraction"].get("reach") == "touching":
             raise ValueError(f"pair {pair} in dry air needs attraction.reach: all: {TOO_LITTLE}")
-        return PairInAir(pair) if self.config["van_der_waals"] == "dry" else PairInAir.in_dry_air(pair)
+        is_same = self.config["van_der_waals"] == "dry" and self.reach(pair) == "all"
+        return PairInAir(pair) if is_same else PairInAir.in_dry_air(pair)
 
     def is_wetted(self, pair: str) -> bool:
         """Whether water condenses between the surfaces of a pair at some humidity."""
@@ -87,7 +85,8 @@ class Environment:
         """Sentence on the effects missing in the results of some cases, each a pair and a humidity."""
         cases = list(cases)
         pairs = list(dict.fromkeys(pair for pair, _ in cases))
-        touching = [pair for pair in pairs if self.reach(pair) == "touching"]
+        humid = {pair for pair, humidity in cases if not self.is_dry(pair, humidity)}
+        touching = [pair for pair in pairs if pair in humid and self.reach(pair) == "touching"]
         of_some = f" (pairs {', '.join(touching)})" * (len(touching) < len(pairs))
         left_out = [f"attraction of solids across gaps{of_some}"] * bool(touching)
         if self.config["van_der_waals"] == "none":

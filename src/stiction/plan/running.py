@@ -12,7 +12,7 @@ from stiction.run.atomic import save_text
 
 def run(job: Any) -> None:
     """Run a job as Snakemake describes it to a script."""
-    (stage,) = (stage for stage in stages_of(job.params.module) if stage.name == job.rule)
+    (stage,) = (stage for stage in stages_of(job.params.module) if stage.name == job.params.stage)
     stated = job.params.settings
     settings = stage.converted(stated)
     part = stage.running.first(settings) if stage.running.first else {}

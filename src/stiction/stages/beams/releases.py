@@ -19,7 +19,7 @@ from stiction.beam.resolution import longest, resolved
 from stiction.chaos.model import ChaosModel, draw_laws
 from stiction.config.cases import Case
 from stiction.contact import forcelaw
-from stiction.plan.stage import select
+from stiction.plan.stage import select, subsection
 from stiction.stages.beams import cantilevers
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, strips_along
 from stiction.streams import stream
@@ -36,7 +36,7 @@ class OnStrips(Cantilevers):
 
     seed: int
     sampling: StripLength
-    refined: bool = False  #: whether the elements follow the force laws, as in `stiction.beam.resolution.resolved`
+    coarser_mesh: float = 1.0  #: allowed elements and strips are longer, see `stiction.beam.resolution.resolved` [-]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,13 +72,12 @@ def released_on(
     others. Then the ground of all beams is everywhere like its strongest patch, the safe side.
     """
     beam, strips = cantilever(settings, case.pair), strips_along(settings.beam, settings.sampling)
-    if settings.refined:
-        laws = draw(_LAWS, address("mesh"))
-        if beam.length / strips > LONGER * longest(beam, laws)[0]:
-            strongest = partial(_on_uniform_ground, beam, float(forcelaw.energy(laws).max()), settings.scatter)
-            return columns([strongest(k, address(k)) for k in range(settings.samples)], shapes)
-        beam = resolved(beam, strips, laws)
-    experiment = Experiment(beam, strips, draw, settings.scatter)
+    laws = draw(_LAWS, address("mesh"))
+    if beam.length / strips > LONGER * longest(beam, laws)[0]:
+        strongest = partial(_on_uniform_ground, beam, float(forcelaw.energy(laws).max()), settings.scatter)
+        return columns([strongest(k, address(k)) for k in range(settings.samples)], shapes)
+    resolving = resolved(beam, strips, laws, settings.coarser_mesh)
+    experiment = Experiment(resolving, strips, draw, settings.scatter)
     return released_beams(experiment, settings.samples, address, threads, shapes)
 
 
@@ -117,4 +116,4 @@ def sections(plan: Any, case: Case) -> dict[str, Any]:
     """Sections of the configuration for the beams of a case, without their number."""
     strips = select(StripLength, plan.config["sampling"])
     nominal = {"seed": plan.config["seed"], "sampling": strips} | cantilevers.sections(plan, case.pair)
-    return nominal | ({} if plan.paper.has_mesh(case) else {"refined": True})
+    return nominal | subsection(plan.config["pairs"][case.pair], ("coarser_mesh",))
