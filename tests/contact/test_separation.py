@@ -7,6 +7,7 @@ from published import SPACING, SURFACES
 from scipy.integrate import trapezoid
 from scipy.optimize import brentq
 
+from stiction.contact import separation
 from stiction.contact.forcelaw import humid_curves, limit_distance
 from stiction.contact.meniscus import film, flooded_energy
 from stiction.contact.pair import bearing_area
@@ -185,3 +186,59 @@ def test_water_that_cannot_flow_holds_as_in_equilibrium_where_it_fills_no_gap():
     dry, left = keep_volume(slow, distance, area, first, (0.0, 0.0))
     assert np.all(dry == slow)
     assert left == 0
+
+
+# Patches that hold hardly any water
+
+
+def largest_ratio_of_steep_summits(humidity):
+    """Largest ratio of the pull-offs, fast over slow, of 60 soft steep spheres at drawn places on a grid [-]."""
+    radius, point, side, layer = 60 * NM, 10 * NM, 40, film(humidity, 300.0)
+    x, distance, ratios = point * np.arange(-side // 2, side // 2), STEP * np.arange(-40, 400), []
+    hertz = 4 / 3 * 2e10 * np.sqrt(radius) * np.maximum(-distance, 0) ** 1.5 / (point * side) ** 2
+    for number in range(60):
+        place = point * stream(11, "summit", number).uniform(-0.5, 0.5, 2)
+        heights = -((x[:, None] - place[0]) ** 2 + (x - place[1]) ** 2) / (2 * radius)
+        area, nodes = bearing_area(heights, STEP, 2000, 2).astype(np.float32), STEP * np.arange(-2000, 2)
+        slow = hertz - layer[1] * np.interp(distance - layer[0], nodes, area, left=1.0, right=0.0)
+        fast, _ = keep_volume(slow, distance, area, nodes[0], layer)
+        ratios.append(fast.min() / slow.min())
+    return max(ratios)
+
+
+def test_a_steep_sphere_on_a_coarse_grid_holds_about_as_much_as_the_sphere_itself(monkeypatch):
+    """The sphere has the same pull-off slowly and fast. Its grid resolves the water beside it by a few points."""
+    assert max(map(largest_ratio_of_steep_summits, (0.3, 0.44, 0.67))) < 2
+    monkeypatch.setattr(separation, "THINNEST", 1e-4 * NM)
+    assert largest_ratio_of_steep_summits(0.3) > 20, "control: a film of a picometre pulls without limit"
+
+
+def largest_pull_of_water(number):
+    """Largest pull of constant volume on a drawn map of 0.05 to 2 nm rms that rests deep in itself [Pa]."""
+    rng = stream(11, "map", number)
+    layer, heights = film(rng.uniform(0.3, 0.95), 300.0), NM * rng.uniform(0.05, 2) * rng.standard_normal((20, 20))
+    below, above = (int(np.ceil(end / STEP)) + 1 for end in (-heights.min(), heights.max()))
+    area, first = bearing_area(heights, STEP, below, above + 1).astype(np.float32), -below * STEP
+    distance, rest = first + STEP * np.arange(round(20 * NM / STEP)), rng.uniform(heights.min(), heights.max())
+    level = (distance - layer[0] - first) / STEP
+    water = layer[1] * np.interp(level, np.arange(len(area)), area.astype(float), left=1.0, right=0.0)
+    solid = np.where(distance < rest, 2 * layer[1], 0.0)
+    fast, _ = keep_volume(solid - water, distance, area, first, layer)
+    return (solid - fast).max()
+
+
+def test_water_pulls_on_no_surfaces_harder_than_on_flats_flooded_by_the_thinnest_liquid(monkeypatch):
+    flats = flooded_energy(300.0) / (3 * 0.28 * NM)
+    assert max(map(largest_pull_of_water, range(200))) <= flats * (1 + 1e-6)
+    monkeypatch.setattr(separation, "THINNEST", 1e-4 * NM)
+    assert max(map(largest_pull_of_water, range(200))) > 10 * flats, "control"
+
+
+def test_flats_reach_this_bound_where_they_rest_the_thinnest_liquid_apart():
+    gap, area = 3 * 0.28 * NM, np.array([1.0, 0.0])
+    first = -gap - STEP / 2
+    distance = first + STEP * np.arange(4, 4000)
+    slow = slow_curve(area, first, distance)
+    fast, _ = keep_volume(slow, distance, area, first, LAYER)
+    resting = limit_distance(distance, slow, 0.0) + gap
+    assert_allclose(-fast.min(), flooded_energy(300.0) / resting, rtol=0.05)  # half a step before the edge

@@ -54,8 +54,8 @@ def of_stopper(contacts: Mapping[float, xr.Dataset], settings: OfStopper) -> xr.
 
 def of_strips(contact: xr.Dataset, settings: InAir) -> xr.Dataset:
     """Factor of the length of a crack by the mean energies of strips, and its standard error."""
-    energies = (of(contact, settings.humidity, settings.water) for of in (curves.fast_energies, curves.energies))
-    found = _ratio(*energies, lambda means: (means[..., 1] / means[..., 0]) ** 0.25)
+    fast, slow = (of(contact, settings.humidity, settings.water) for of in (curves.fast_energies, curves.energies))
+    found = _ratio(np.maximum(fast, slow), slow, lambda means: (means[..., 1] / means[..., 0]) ** 0.25)
     none = {"units": "1", "long_name": "length of fast separation over that of slow separation"}
     return xr.Dataset(dict(zip(("factor", "factor_error"), (((), one, none) for one in found), strict=True)))
 
