@@ -383,7 +383,7 @@ def test_rules_on_the_page_of_clusters_reserve_the_minutes_that_it_says():
 
 
 def test_citation_changelog_and_package_name_the_same_version():
-    newest = re.search(r"^## (\S+)", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)[1]
+    newest = re.search(r"^## (\S+)$", (ROOT / "CHANGELOG.md").read_text(encoding="utf-8"), re.MULTILINE)[1]
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
     assert citation["version"] == newest == stiction.__version__
     assert citation["license"] == "BSD-3-Clause"

@@ -4,8 +4,10 @@ A patch touches everywhere at once, unlike a beam, and is pulled off by the larg
 force is therefore f_max times its area. Unlike the adhesion energy, f_max is largest below saturation: the wetter the
 air, the larger the wetted area, and the weaker the tension in it.
 
-ASSUME: the patch stays parallel to the substrate unless its tilt is stated, the safe side: one that tilts comes off
-more easily (`stiction.stages.devices.stoppers`).
+ASSUME: the patch stays parallel to the substrate unless its tilt is stated. That is the safe side for patches with one
+tilt each: as many of them hold any force at most. One and the same patch holds more at some tilts, where other summits
+touch (`stiction.stages.devices.stoppers`): of 1500 patches of 3 x 3 µm of pair b at RH 0.67, 43 % do at 0.01°, one in
+ten by 11 %, and one 3.8 times as much at 0.04°. If its tilt differs between landings, the largest force counts.
 """
 
 from dataclasses import dataclass

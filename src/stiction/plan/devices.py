@@ -31,9 +31,10 @@ from stiction.rounding import is_at_most
 OF_TIPS = 2
 #: Gaps across which solids attract a tilted stopper at most [nm]. Retarded attraction has 0.05 % of its work at 5 nm.
 FAR = 100.0
-#: Tilts of a range at which a stopper is computed, its ends among them. ASSUME: none between them holds much more or
-#: less. The force on smooth surfaces falls with the tilt, so that the ends bound it.
-TILTS = 5
+#: Tilts of a range at which a stopper is computed, its ends among them. ASSUME: patches between them hold little more.
+#: Among 150 to 300 patches at 19 tilts from 0 to 20 rms a side, P(stuck) of the largest force of each is up to 0.01
+#: (pair a), 0.02 (b) and 0.07 (c) above that at the nine of `tilts_of`, 0.05, 0.12 and 0.14 above that at even ones.
+TILTS = 9
 #: Number of cantilevers on a ground from which on their lengths follow those of a few sizes (`stiction.devices.sizes`).
 MANY = 20
 #: Points of a tip in full elastic contact, which then takes a few seconds: those of a width of 30 µm at 6.8 nm rms.
@@ -52,6 +53,24 @@ def ends_and_middle(values: Sequence[float]) -> list[float]:
     """
     low, high = min(values), max(values)
     return [low] if is_at_most(high, low) else [low, round(float(np.sqrt(low * high)), 6), high]
+
+
+def tilts_of(low: float, high: float, near: float) -> list[float]:
+    """Tilts of a range, `TILTS` of them: half up to ``near`` above the lowest, the others ever farther apart.
+
+    Near is the tilt at which the far side is higher by the rms of the heights. Up to there other summits touch first;
+    beyond it, a stopper becomes a wedge.
+
+    Examples
+    --------
+    >>> tilts_of(0.0, 8.0, 9.0), [round(tilt, 9) for tilt in tilts_of(0.0, 16.0, 1.0)]
+    ([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0], [0.0, 0.25, 0.5, 0.75, 1.0, 2.0, 4.0, 8.0, 16.0])
+    """
+    if high - low <= near:
+        return np.linspace(low, high, TILTS).tolist()
+    half = TILTS // 2
+    steps = np.append(np.linspace(0, near, half, endpoint=False), np.geomspace(near, high - low, half + 1))
+    return (low + steps).tolist()
 
 
 class Patch(NamedTuple):
@@ -217,8 +236,11 @@ class DevicePlan:
 
     def slopes(self, device: str) -> list[float]:
         """Slopes of a stopper at its tilt or at `TILTS` tilts of its range, increasing [-], none without a tilt."""
-        stated = self.sections[device].get("tilt_deg", ())
-        tilts = map(float, np.linspace(*stated, TILTS)) if len(stated) == 2 else stated
+        section = self.sections[device]
+        tilts = section.get("tilt_deg", ())
+        if len(tilts) == 2:
+            rms = self._rms_of_both(section["pair"])
+            tilts = tilts_of(*tilts, math.degrees(math.atan(rms / (NM_PER_UM * section["contact_um"][0]))))
         return [math.tan(to_si(tilt, "deg")) for tilt in tilts]
 
     def inclination(self, area: Patch) -> dict:

@@ -16,6 +16,7 @@ from stiction.config.units import in_si
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.environment import Gaps, Water
 from stiction.contact.pair import DistanceGrid
+from stiction.plan.devices import TILTS, tilts_of
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.devices import life as report
@@ -118,7 +119,7 @@ def test_stoppers_of_one_area_share_the_contact_and_no_tilt_needs_none():
     found = plan(S1={"tilt_deg": [0, 0.1]}, S2={"tilt_deg": [0.05]}, S3={"tilt_deg": [0]}, S4={})
     name = "devices/contact/tilted/b_1500x6000"
     tilt = job_settings(found, name)["tilt"]
-    assert_allclose(tilt["slopes"], np.tan(np.radians([0.025, 0.05, 0.075, 0.1])), rtol=1e-12)
+    assert_allclose(tilt["slopes"], np.tan(np.radians(0.1 * np.arange(1, 9) / 8)), rtol=1e-12)
     film, rise = 1e9 * Water(300.0).film(0.88)[0], tilt["slopes"][-1] * 1500
     assert tilt["reach_nm"] > film + rise
     graph = Graph(found)
@@ -159,31 +160,76 @@ def test_life_has_a_band_between_the_tilts():
     }
 
 
-def test_a_range_has_the_least_and_the_most_of_its_tilts_not_those_at_its_ends():
+def test_a_range_has_the_least_of_its_tilts_and_each_patch_at_its_worst():
     tilted = tilted_dataset((1.0, 0.2, 1.4, 0.9, 0.5), (0.0, 0.025, 0.05, 0.075, 0.1))
     found = {one.name: one for one in stopper_answers(stopper_dataset(), STOPPER, tilted=tilted)}
     assert_allclose(found["force_tilted"].low / found["force_tilted"].high, 0.2 / 1.4, rtol=1e-12)
     assert_allclose(found["restoring_force_tilted"].high, 1.4 * found["restoring_force"].high, rtol=1e-12)
     assert "tilted by 0 to 0.1°" in found["force_tilted"].what
-    assert found["force_tilted"].form.startswith("least and most of 5 tilts; ")
+    assert found["force_tilted"].form.startswith("least of 5 tilts, and each patch at its worst; ")
     for humidity in (0.44, 0.67):
         stuck, band = tilted.stuck.sel(humidity=humidity), found[f"stuck_tilted_{humidity:g}"]
         assert (band.low, band.high) == (stuck.sel(bound="low")[1], stuck.sel(bound="high")[2])
 
 
-def test_the_tilts_of_a_range_leave_little_between_them():
-    """On rough patches, a finer range exceeds the band of the tilts of the plan by its standard error at most."""
-    slopes, tilts = plan(S1={"tilt_deg": [0, 0.1]}).devices.slopes("S1"), np.linspace(0, 0.1, 9)
-    assert_allclose(np.degrees(np.arctan(slopes)), np.linspace(0, 0.1, 5), rtol=1e-12)
-    settings = job_settings(plan(S1={"tilt_deg": [0, 0.1]}), "devices/contact/tilted/b_1500x6000")
-    fine = settings | {"tilt": settings["tilt"] | {"slopes": [*map(float, np.tan(np.radians(tilts[1:])))]}}
+def test_stoppers_that_land_at_any_tilt_stick_as_often_as_some_landing_of_theirs_sticks():
+    """Second route: patch by patch, whether any of its landings sticks; at one tilt, fewer do."""
+    settings, rng = in_si(stoppers.Settings, job_settings(plan(S1={}), "devices/stoppers/S1")), np.random.default_rng(1)
+    forces = 18e-6 * rng.lognormal(-0.5, 0.8, (3, 2, 400))
+    dataset = stoppers.layout_tilted(stoppers.Tilted(**vars(settings), slopes=(0.0, 1e-4, 2e-4)), forces, np.ones(2))
+    sticks = [[any(forces[:, h, k] > settings.restoring_force) for k in range(400)] for h in range(2)]
+    assert_allclose(dataset.largest_stuck.sel(bound="estimate"), np.mean(sticks, axis=1), rtol=1e-12)
+    assert np.all(dataset.largest_stuck.sel(bound="estimate") > dataset.stuck.sel(bound="estimate").max("tilt") + 0.1)
+    assert np.all(dataset.largest_mean > dataset["mean"].max("tilt"))
+    safe = {"share": 1e-2, "part": ["safe", "estimate"]}
+    assert np.all(dataset.largest_safe_force.sel(safe) >= dataset.safe_force.sel(safe).max("tilt"))
+    answers = {one.name: one for one in stopper_answers(stopper_dataset(), STOPPER, tilted=dataset)}
+    for humidity in settings.humidities:
+        assert answers[f"stuck_tilted_{humidity:g}"].high == dataset.largest_stuck.sel(bound="high", humidity=humidity)
+
+
+@cache
+def of_range(degrees, finer):
+    """Forces of a stopper at the tilts that the plan has for a range, and at more between them (tilts, h, m) [N]."""
+    slopes = plan(S1={"tilt_deg": list(degrees)}).devices.slopes("S1")
+    settings = job_settings(plan(S1={"tilt_deg": list(degrees)}), "devices/contact/tilted/b_1500x6000")
+    between = np.interp(np.arange(len(slopes) * finer - finer + 1) / finer, np.arange(len(slopes)), slopes)
+    fine = settings | {"tilt": settings["tilt"] | {"slopes": [*map(float, between[1:])]}}
     contacts = contact.compute(small.surfaces(), "b", "NG", in_si(Settings, fine))
     shared = in_si(stoppers.Settings, job_settings(plan(S1={}), "devices/stoppers/S1"))
-    every = stoppers.Tilted(**vars(shared), slopes=tuple(np.tan(np.radians(tilts))))
-    found = stoppers.compute_tilted({"contact": small.contact_of_pair(), "tilted": contacts}, every)
-    chosen, error = found["mean"][::2], found.mean_error.max("tilt")
-    assert np.all(found["mean"] <= chosen.max("tilt") + error)
-    assert np.all(found["mean"] >= chosen.min("tilt") - error)
+    every = stoppers.Tilted(**vars(shared), slopes=tuple(between))
+    return stoppers.compute_tilted({"contact": small.contact_of_pair(), "tilted": contacts}, every)
+
+
+@pytest.mark.parametrize("degrees", [(0, 0.1), (0, 2)])
+def test_the_tilts_of_a_range_leave_little_between_them(degrees):
+    """Brute force: three times as many tilts raise the largest forces of patches by less than tilts raise them."""
+    every = of_range(degrees, 3)
+    assert_allclose(np.degrees(np.arctan(every.tilt[[0, -1]])), np.degrees(np.arctan(np.radians(degrees))), atol=1e-3)
+    chosen = every.pull_off[::3].max("tilt")
+    missed = (every.pull_off.max("tilt") / chosen - 1).mean("sample")
+    gained = (chosen / every.pull_off[0] - 1).mean("sample")
+    assert np.all(missed < 0.03)
+    assert gained[0] > 3 * missed[0], "control: a patch at another tilt can hold more than without"
+
+
+def test_single_patches_hold_more_at_small_tilts_but_their_mean_does_not():
+    every = of_range((0, 0.1), 3)
+    ratio = every.pull_off / every.pull_off[0]
+    assert np.all((ratio[1:10] > 1).mean("sample").isel(humidity=0) > 0.05)
+    assert ratio.max() > 1.1
+    assert np.all(every["mean"] <= every["mean"][0] + every.mean_error[0])
+
+
+@pytest.mark.parametrize(("low", "high", "near"), [(0, 0.1, 0.2), (0, 10, 0.1), (0.02, 0.5, 0.1), (1, 1.001, 1e-5)])
+def test_tilts_of_a_range_increase_from_one_end_to_the_other_and_crowd_where_other_summits_touch(low, high, near):
+    tilts = np.array(tilts_of(low, high, near))
+    assert len(tilts) == TILTS
+    assert np.all(np.diff(tilts) > 0)
+    assert_allclose(tilts[[0, -1]], [low, high], rtol=1e-12)
+    crowded = tilts[tilts <= low + near * (1 + 1e-9)]
+    assert len(crowded) >= 5
+    assert np.diff(crowded).max() <= near / 4 * (1 + 1e-9)
 
 
 def test_table_and_sentence_state_the_tilt(tmp_path):

@@ -67,8 +67,8 @@ def stoppers(
     rows = [row | model_errors.device_change(errors, row["device"], row["relative_humidity"], FORCE) for row in rows]
     rows = [row | {"warnings": " ".join(warnings[row["device"]])} for row in rows]
     caption = (
-        "Stoppers: pull-off force of a patch, an upper bound if it tilts or bends, mean ± standard error and "
-        "standard deviation over the patches; "
+        "Stoppers: pull-off force of a patch, on average an upper bound if it tilts or bends, mean ± standard error "
+        "and standard deviation over the patches; "
         "P(stuck): fraction of the patches with a pull-off force above the restoring force, with its 95 % band; safe "
         "force: restoring force exceeded by the pull-off force of at most this fraction of all patches, with 95 % "
         "confidence; fitted: by a line through the largest 5 % of the forces, if too few patches bound the fraction; "

@@ -183,7 +183,10 @@ def _at_tilts(answers):
         return []
     one, wedge = answers[TILTED], answers[WEDGE]
     ends, limit = (" to ".join(dict.fromkeys((_low(each), _high(each)))) for each in (one, wedge))
-    return [f"Its {one.what}, is {ends} µN. Beyond a tilt of {limit}°, a longer side of its area hardly holds more."]
+    worst = " (the most with each area at its worst tilt)" * (one.high > one.low)
+    return [
+        f"Its {one.what}, is {ends} µN{worst}. Beyond a tilt of {limit}°, a longer side of its area hardly holds more."
+    ]
 
 
 def _at_voltage(answers, potential):

@@ -92,7 +92,7 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
     its second side w. Smooth surfaces with the adhesion energy e then hold the force :math:`w e / s` at the slope s,
     without a. It equals the force f_max w a of parallel ones at the slope :math:`e / f_\mathrm{max} a`. On rough
     surfaces, whose wedge has few summits, each patch finds a distance of its own and holds more. The data are the
-    contacts of parallel and of tilted patches, in the wettest air and in dry air.
+    contacts of parallel and of tilted patches, in the wettest air and in dry air. A patch is the same at all tilts.
     """
     width, found, wedges = settings.contact[1], [], []
     for humidity in settings.humidities:
@@ -108,9 +108,29 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
     return layout_tilted(settings, np.swapaxes(found, 0, 1), np.array(wedges))
 
 
+#: Statistics of a tilted stopper, at each tilt and of the largest force of every patch over all tilts.
+_OVER_TILTS = ("mean", "mean_error", "stuck", "safe_force")
+
+
 def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) -> xr.Dataset:
-    """Dataset of a tilted stopper: forces (tilts, n_rh, m) [N], and slopes at the transition to a wedge (n_rh,) [-]."""
-    newton, none, over = {"units": "N"}, {"units": "1"}, ("tilt", "humidity")
+    """Dataset of a tilted stopper: forces (tilts, n_rh, m) [N], and slopes at the transition to a wedge (n_rh,) [-].
+
+    Variables ``largest_...`` are those of stoppers that land at any of the tilts, and then hold most at one of them.
+    """
+    statistics = _statistics(settings, np.append(pull_off, pull_off.max(axis=0, keepdims=True), axis=0))
+    largest = statistics[[*_OVER_TILTS]].isel(tilt=-1)
+    own = statistics.isel(tilt=slice(-1)).assign_coords(tilt=("tilt", np.arctan(settings.slopes), {"units": "rad"}))
+    long_name = "slope beyond which the force is that of a wedge"
+    return own.assign(
+        {f"largest_{name}": values for name, values in largest.items()}
+        | {"pull_off": (("tilt", "humidity", "sample"), pull_off, {"units": "N"})}
+        | {"wedge": ("humidity", wedges, {"units": "1", "long_name": long_name})}
+    )
+
+
+def _statistics(settings, pull_off):
+    """Mean forces, P(stuck) and safe forces of rows of patches (rows, n_rh, m) [N]."""
+    newton, over = {"units": "N"}, ("tilt", "humidity")
     changes = _changes(settings, settings.humidities)
     stuck = [
         [stuck_with_band(row, settings.restoring_force, of) for row, of in zip(rows, changes, strict=True)]
@@ -118,19 +138,16 @@ def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) ->
     ]
     safe, bases = zip(*(_safe(rows, settings.seed, changes) for rows in pull_off), strict=True)
     mean, error = mean_with_error(np.moveaxis(pull_off, -1, 0))
-    error = np.hypot(error, mean * _ratio_errors(changes))
+    of_stuck = {"units": "1", "long_name": "P(stuck) and its 95 % band"}
     return xr.Dataset(
         {
-            "pull_off": ((*over, "sample"), pull_off, newton),
             "mean": (over, mean, newton),
-            "mean_error": (over, error, newton),
-            "stuck": (("bound", *over), np.moveaxis(stuck, -1, 0), none | {"long_name": "P(stuck) and its 95 % band"}),
+            "mean_error": (over, np.hypot(error, mean * _ratio_errors(changes)), newton),
+            "stuck": (("bound", *over), np.moveaxis(stuck, -1, 0), of_stuck),
             "safe_force": (("part", *over, "share"), np.moveaxis(safe, 0, 1), newton),
             "basis": ("share", bases[0]),
-            "wedge": ("humidity", wedges, none | {"long_name": "slope beyond which the force is that of a wedge"}),
         },
         coords={
-            "tilt": ("tilt", np.arctan(settings.slopes), {"units": "rad"}),
             "humidity": list(settings.humidities),
             "share": list(SHARES),
             "bound": ["estimate", "low", "high"],
