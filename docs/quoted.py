@@ -9,6 +9,7 @@ import re
 import numpy as np
 import pandas as pd
 
+from stiction.analysis import smooth_pairs
 from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP
 from stiction.config.files import paper
 from stiction.config.units import in_si
@@ -50,7 +51,8 @@ def numbers(tables):
     texts |= measured_beams(tables["measured_beams"]) | said(tables["test_beams"]) | skewed(tables["roughness"])
     texts |= said(tables["process_answers"])
     texts |= tails(tables["tails"]) | texts_of(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
-    return texts | scans(tables["example_scans"]) | timings(tables["timings"]) | constants() | nearly_gaussian()
+    texts |= scans(tables["example_scans"]) | timings(tables["timings"]) | constants() | nearly_gaussian()
+    return texts | forces_on_summits()
 
 
 def measured_beams(frame):
@@ -497,6 +499,16 @@ def constants():
         "mesh_accuracy": f"{100 * ACCURACY:g}",
         "films": f"{FILMS:g}",
     }
+
+
+def forces_on_summits():
+    """``short_5_067``: percent by which forces on summits are too small at 0.5 nm rms and RH 0.67; ``short``: most."""
+    texts = {"short": f"{100 * smooth_pairs.largest_shortfall():.2g}"}
+    for beam, rms in zip(smooth_pairs.OF_BEAMS, smooth_pairs.RMS, strict=True):
+        for humidity in smooth_pairs.HUMIDITIES:
+            short, error = (100 * part for part in smooth_pairs.shortfall(rms, humidity))
+            texts[f"short_{10 * beam:.0f}_{_digits(humidity)}"] = f"{short:.0f} ± {max(error, 1):.0f} %"
+    return texts
 
 
 def nearly_gaussian():

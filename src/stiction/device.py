@@ -217,8 +217,7 @@ class Device:
         flags += settings.get("assumed", [])
         if "stopper" in settings:
             of = in_si(device_warnings.OfStopper, settings["stopper"])
-            own = device_warnings.stopper_warnings(of, share_flat=float(safe_lengths.share_flat))
-            return own + gap_warnings(changes, FORCE) + flags
+            return device_warnings.stopper_warnings(safe_lengths, of) + gap_warnings(changes, FORCE) + flags
         of_beam = device_warnings.beam_warnings(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
         with_gaps = {shape: said + gap_warnings(changes, shape) for shape, said in of_beam.items()}
         return pair_warnings.numbered(with_gaps)[0] + flags

@@ -6,6 +6,7 @@ Lengths are in metres, angles of rotation in radians, shares between 0 and 1.
 import math
 from collections.abc import Mapping, Sequence
 
+from stiction.analysis.smooth_pairs import largest_shortfall, shortfall
 from stiction.beam.foundation import ACCURACY, LONGER, TOO_EARLY
 from stiction.constants import WATER_MOLECULE
 from stiction.contact.materials import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
@@ -32,11 +33,13 @@ STRETCH = 0.5
 #: What plastic contact does to beams and to stoppers that were pressed as hard.
 SHORTER, STRONGER = "beams that were pressed stick at shorter lengths", "stoppers that were pressed hold more"
 #: Error of contact on summits alone. In humid air, full contact of two strips each of 1.0 and 1.7 nm rms at RH 0.45 and
-#: 0.65 has 1.05 to 1.16 times their energy and 0.98 to 1.2 times their f_max; at higher rms it has less energy.
+#: 0.65 has 1.05 to 1.16 times their energy; at higher rms it has less energy. Forces: `stiction.analysis.smooth_pairs`.
 SUMMITS = (
-    "interaction of neighbouring summits (in humid air, on surfaces of 1 to 1.7 nm rms, lengths come out up to 4 % too "
-    "long and forces up to 20 % too small)"
+    "interaction of neighbouring summits (in humid air, on surfaces of 0.5 to 1.7 nm rms, lengths come out up to 4 % "
+    f"too long and forces, up to RH 0.97, up to {in_percent(largest_shortfall())} too small)"
 )
+#: Largest shortfall of forces on summits without a warning.
+SHORTFALL = 0.1
 #: The same in dry air, from six strips of each pair of the paper (docs/tables/deformed.md) and five of the coated pair
 #: of examples/sealed.yaml. On the first strip of the smoothest pair there, e is 7.26 in place of 2.36 mJ/m², f_max 5.70
 #: in place of 1.61 MPa.
@@ -221,6 +224,20 @@ def flat_patches(share: float) -> str | None:
     return (
         f"{in_percent(share)} of the patches of surface have too few summits to resist the adhesion. They count as "
         "flat surfaces in contact, which hold more than any rough ones: the prediction is on the safe side."
+    )
+
+
+def smooth_pair(rms: float, humidities: Sequence[float]) -> str | None:
+    """Forces on summits at humidities [-] with water, on a pair of an rms [m] that attraction flattens."""
+    short = {humidity: shortfall(rms, humidity) for humidity in humidities}
+    large = {humidity: of for humidity, of in short.items() if of[0] > SHORTFALL}
+    if not large:
+        return None
+    by = [f"{100 * of:.0f} ± {max(100 * error, 1):.0f} % at RH {humidity:g}" for humidity, (of, error) in large.items()]
+    return (
+        f"Surfaces as smooth as these, {rms * 1e9:.2g} nm rms together, flatten each other in humid air. Forces on "
+        f"summits are then too small, {UNSAFE}: on slopes as gentle as those of B2 by {', '.join(by)}, on steeper ones "
+        "by less. contact.model full computes them."
     )
 
 

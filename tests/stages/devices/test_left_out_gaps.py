@@ -22,7 +22,12 @@ STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [1.5, 6], "restoring_fo
 SIZES = {"devices": {"C1": BEAM, "S1": STOPPER}, "design": {"beams": 200, "budget_beams": 20, "chart_points": 2}}
 SIZES |= {"design": SIZES["design"] | {"worst_humidities": [0.44, 0.9]}}
 #: Inputs of warnings that say nothing.
-NOTHING = {"plasticity": {}, "estimates": {}, "spectra": {}, "stoppers": {"S1": xr.Dataset({"share_flat": 0.0})}}
+NOTHING = {
+    "plasticity": {},
+    "estimates": {},
+    "spectra": {},
+    "stoppers": {"S1": xr.Dataset({"share_flat": 0.0, "rms": 3e-9})},
+}
 TOUCHING = Results.of(merged(small.PLAN.config, SIZES))
 
 

@@ -246,14 +246,14 @@ def warned(tmp_path):
     """Warnings about devices as the workflow writes and reads them, from their settings and datasets."""
     stage = next(stage for stage in device_warnings.STAGES if stage.name == "device_warnings")
 
-    def read(sections, lengths=(), charts=(), surfaces=NOT_MEASURED, share_flat=0.0):
+    def read(sections, lengths=(), charts=(), surfaces=NOT_MEASURED, share_flat=0.0, rms=3e-9):
         files = {}
         for name, section in sections.items():
             own = [
                 {key: found for key, found in dict(datasets).items() if key[0] == name}
                 for datasets in (lengths, charts)
             ]
-            stoppers = {name: xr.Dataset({"share_flat": share_flat})}
+            stoppers = {name: xr.Dataset({"share_flat": share_flat, "rms": rms})}
             data = {"lengths": own[0], "charts": own[1], "stoppers": stoppers, "plasticity": PLASTIC} | surfaces
             files[name] = tmp_path / f"{name}.json"
             stage.save(stage.result(data, At(), section), {"json": files[name]})

@@ -45,6 +45,7 @@ class OfDevice:
     accuracy: Accuracy | None = None  #: of its lengths
     materials: StatedProperties = ()  #: of its pair
     learns: bool = False  #: whether it has test beams
+    on_summits: tuple[float, ...] = ()  #: humidities with water at which summits alone make forces of its dimples [-]
 
 
 @dataclass(frozen=True)
@@ -57,6 +58,7 @@ class OfStopper:
     humidities: tuple[float, ...]  #: of the stopper [-]
     worst_humidities: tuple[float, float]  #: ends of the axis along which the worst humidity is sought [-]
     materials: StatedProperties = ()  #: of its pair
+    on_summits: tuple[float, ...] = ()  #: humidities with water at which summits alone make its forces [-]
 
 
 def beam_warnings(
@@ -72,6 +74,7 @@ def beam_warnings(
         limits.no_water(float(safe_lengths.film), humidity),
         limits.flat_patches(float(safe_lengths.share_flat)),
         limits.lengths_of_sizes(float(safe_lengths.size_error)),
+        limits.smooth_pair(float(safe_lengths.rms), [humidity] if humidity in of.on_summits else []),
     )
     return {
         shape: without
@@ -150,10 +153,13 @@ class OfDevices(NamedTuple):
     patches: dict[str, list[str]]  #: of stoppers, by name
 
 
-def stopper_warnings(of: OfStopper, plastic: Plastic = NOT_STUDIED, share_flat: float = 0.0) -> list[str]:
-    """Warnings about a stopper with a fraction of flat patches [-]. Other parameters as of `beam_warnings`."""
+def stopper_warnings(stopper: xr.Dataset, of: OfStopper, plastic: Plastic = NOT_STUDIED) -> list[str]:
+    """Warnings about a stopper, from its dataset of stage stoppers. Other parameters as of `beam_warnings`."""
     return limits.triggered(
-        *_water_warnings(of), limits.flat_patches(share_flat), *contact_warnings(plastic, of.materials, limits.STRONGER)
+        *_water_warnings(of),
+        limits.flat_patches(float(stopper.share_flat)),
+        limits.smooth_pair(float(stopper.rms), of.on_summits),
+        *contact_warnings(plastic, of.materials, limits.STRONGER),
     )
 
 
@@ -222,13 +228,24 @@ def _settings(plan, at):
     """Device, its pair and the stated properties of its materials."""
     section = plan.config["devices"][at.device]
     own = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
-    own |= {"learns": True} if "test_beams" in section else {}
+    own |= ({"learns": True} if "test_beams" in section else {}) | _on_summits(plan, at.device)
     said = plan.assumptions(section["pair"]).get(section["pair"])
     assumed = {"assumed": said} if said else {}
     if plan.devices.kind(at.device).is_beam:
         return assumed | {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
     own |= section | {"water": plan.air_of_devices.water(section["pair"])}
     return assumed | {"stopper": select(OfStopper, own)}
+
+
+def _on_summits(plan, device):
+    """Humidities with water at which the forces of a stopper, or of dimples, are those on summits alone."""
+    section = plan.config["devices"][device]
+    if plan.devices.kind(device).is_beam and "dimples" not in section:
+        return {}
+    pair, air = section["pair"], plan.air_of_devices
+    corrected = air.corrected(pair, section["humidities"])
+    humid = [rh for rh in section["humidities"] if not air.is_dry(pair, rh) and rh not in corrected]
+    return {"on_summits": humid} if humid else {}
 
 
 def _device_warnings(data, settings):
@@ -240,7 +257,7 @@ def _device_warnings(data, settings):
         gaps = gap_warnings(changes, FORCE)
         (stopper,) = data["stoppers"].values()
         plastic = plastic_contact(data["plasticity"], of.pair)
-        return [], [], [[[], stopper_warnings(of, plastic, float(stopper.share_flat)) + gaps + flags]]
+        return [], [], [[[], stopper_warnings(stopper, of, plastic) + gaps + flags]]
     of = in_si(OfDevice, settings["beam"])
     plastic = plastic_contact(data["plasticity"], of.device.pair)
     lengths = [

@@ -18,6 +18,7 @@ from stiction.devices.stoppers import SafeForce, pull_off_force, safe_forces, st
 from stiction.estimates import mean_with_error
 from stiction.plan.stage import Running, Stage, select
 from stiction.progress import progress
+from stiction.stages.contact.contact import surface_rms
 from stiction.stages.contact.corrections import with_correction
 from stiction.stages.contact.curves import energies, freeing_potentials, pull_offs, share_flat, tilted_forces
 from stiction.stages.contact.error_notes import on_patch
@@ -63,7 +64,8 @@ def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = No
     chosen = np.array([at[h] for h in settings.humidities])
     along = np.array([at[float(h)] for h in axis])
     flat = max(share_flat(one, h, settings.water.at(h)) for h, one in contacts.items())
-    return layout(settings, chosen, axis, along).assign(share_flat=((), flat, {"units": "1"}))
+    of_surfaces = {"share_flat": ((), flat, {"units": "1"}), "rms": ((), surface_rms(contact), {"units": "m"})}
+    return layout(settings, chosen, axis, along).assign(of_surfaces)
 
 
 def compute_at_voltage(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = None) -> xr.Dataset:
