@@ -4,6 +4,7 @@ Every simulated device has a *sticking length*, the shortest one that sticks on 
 if and only if its sticking length is smaller than L. One simulation of long beams thus gives P(stuck) at every length.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
@@ -241,6 +242,21 @@ def on_sampled_surfaces(safe: SafeLength, of_length: float, of_estimate: float, 
     both = np.hypot(own, ndtri(CONFIDENCE) * of_length / safe.length)
     length = max(float(safe.length * np.exp(own - both)), known.safe)
     return replace(safe, length=length, surfaces_error=float(of_estimate) if of_estimate > 0 else np.nan)
+
+
+# Order of bounds
+
+
+def in_order(lengths: np.ndarray, shares: Sequence[float]) -> np.ndarray:
+    """Safe lengths (..., shapes, shares) [m], none longer than one for a larger share or against fewer ways to stick.
+
+    Bounds for several shares and shapes rest on other statistics, an order statistic or a fit, so that they contradict
+    each other within their errors. The smaller one is safe by both. A shape holds whatever the one before it holds.
+    """
+    largest_first = np.argsort(shares)[::-1]
+    ordered = np.fmin.accumulate(np.asarray(lengths, float)[..., largest_first], axis=-1)
+    ordered = np.fmin.accumulate(ordered, axis=-2)[..., np.argsort(largest_first)]
+    return np.where(np.isnan(lengths), np.nan, ordered)
 
 
 def one_in(share: float) -> str:

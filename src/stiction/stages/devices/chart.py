@@ -218,7 +218,7 @@ def layout(filled: Filled, rms: float, longest_strips: Sequence[float], settings
     metres, none = {"units": "m"}, {"units": "1"}
     return xr.Dataset(
         {
-            "safe_length": ((*size, "shape", "share"), lengths[..., :shares], metres),
+            "safe_length": ((*size, "shape", "share"), risk.in_order(lengths[..., :shares], settings.shares), metres),
             "quantile": ((*size, "shape", "score"), lengths[..., shares:], metres),
             "beams": ((), settings.beams, {"long_name": "number of simulated devices of each size"}),
             "flooded_length": ((*size, "shape"), np.reshape(limits, (*grid, -1)), metres),

@@ -6,9 +6,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import xarray as xr
 
+from stiction.config.cases import case_id
 from stiction.contact.environment import Water
 from stiction.devices import arcs, risk
-from stiction.devices.risk import Known, SafeLength
+from stiction.devices.risk import Known, SafeLength, in_order
 from stiction.estimates import mean_with_error
 from stiction.life.freeing import probability_for
 from stiction.plan.stage import Running, Stage, select, subsection
@@ -18,7 +19,7 @@ from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices import cracks as stage_cracks
 from stiction.stages.devices import prediction
 from stiction.stages.devices.contact_names import contact_of, corrected_tips_of, corrections_of
-from stiction.stages.devices.opening import DesignedBeam, at_voltage, settings_of_beam
+from stiction.stages.devices.opening import S_SHAPE, DesignedBeam, at_voltage, settings_of_beam
 from stiction.stages.devices.sticking import Released, by_shape, lengths_without_samples
 
 #: Points along the axis of the lengths.
@@ -47,9 +48,23 @@ def compute(cracks: xr.Dataset, settings: Settings, tips: xr.Dataset | None = No
     air = settings.water, settings.humidity
     without_samples = lengths_without_samples(device, *air, settings.edge_radius, beams.reach)
     dataset = layout(beams.lengths, by_shape(beams, settings, without_samples), without_samples, settings).assign(
-        cracks[["rms", "share_flat", "longest_strip", "resampled", "repetition", "size_error"]]
+        cracks[["rms", "share_flat", "longest_strip", "resampled", "repetition", "size_error", "mean_energy"]]
     )
     return dataset if settings.length is None else dataset.assign(at_length(beams, settings.length))
+
+
+def no_longer_than_in_drier_air(dataset: xr.Dataset, drier: xr.Dataset | None) -> xr.Dataset:
+    """Dataset whose safe lengths are no longer than those of the same device in drier humid air, if there is some.
+
+    Cracks are as long as the energy of their strips allows, so that they are shorter where the mean energy is larger;
+    longer bounds are errors of the simulation. ASSUME: nothing of the kind for tips and bridges, which the largest
+    attraction holds as well: it falls in wet air. What holds a crack holds a beam whose tip may touch, too.
+    """
+    if drier is None or not float(drier.mean_energy) <= float(dataset.mean_energy):
+        return dataset
+    limit = drier.safe_length.where(drier["shape"] == S_SHAPE)
+    shortened = np.fmin(dataset.safe_length, limit).transpose("shape", "share")
+    return dataset.assign(safe_length=dataset.safe_length.copy(data=in_order(shortened.values, dataset.share.values)))
 
 
 def compute_at_voltage(
@@ -162,6 +177,14 @@ def _for_touchdowns(plan, at):
     return select(Settings, settings, shares=[probability_for(shares[len(shares) // 2], touchdowns)])
 
 
+def _in_drier_air(plan, case):
+    """Safe lengths of a cantilever in the next drier of its humid airs, if there is one."""
+    humid = [one for one in plan.config["devices"][case.device]["humidities"] if 0 < one < case.humidity]
+    if not (humid and plan.devices.kind(case.device).has_tip):
+        return {}
+    return {"drier": f"devices/safe_lengths/{case_id(case.device, max(humid))}"}
+
+
 _SAFE_LENGTHS = Stage.writing(
     "safe_lengths",
     "devices/safe_lengths/{case}",
@@ -178,9 +201,13 @@ _SAFE_LENGTHS = Stage.writing(
 STAGES = (
     replace(
         _SAFE_LENGTHS,
-        inputs=lambda plan, at: _SAFE_LENGTHS.inputs(plan, at) | prediction.inputs(plan, at.case),
+        inputs=lambda plan, at: (
+            _SAFE_LENGTHS.inputs(plan, at) | _in_drier_air(plan, at.case) | prediction.inputs(plan, at.case)
+        ),
         compute=lambda data, settings: prediction.with_intervals(
-            compute(data["cracks"], settings, data.get("tips")), data, settings
+            no_longer_than_in_drier_air(compute(data["cracks"], settings, data.get("tips")), data.get("drier")),
+            data,
+            settings,
         ),
     ),
     replace(

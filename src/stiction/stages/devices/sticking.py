@@ -222,11 +222,24 @@ def by_shape(beams: Released, settings: Settings, known: Mapping[str, Known]) ->
         return np.array([[(one.length, one.estimate) for one in row] for row in found(move).values()])
 
     given, errors = found(lambda lengths: lengths), beams.surfaces.error(numbers)
+    return _in_order(
+        {
+            shape: [
+                risk.on_sampled_surfaces(safe, *error, known[shape])
+                for safe, error in zip(row, errors_of_row, strict=True)
+            ]
+            for (shape, row), errors_of_row in zip(given.items(), errors, strict=True)
+        }
+    )
+
+
+def _in_order(found):
+    """Safe lengths for every share, by shape, in the order of `stiction.devices.risk.in_order`."""
+    shares = [one.share for one in next(iter(found.values()))]
+    ordered = risk.in_order([[one.length for one in row] for row in found.values()], shares)
     return {
-        shape: [
-            risk.on_sampled_surfaces(safe, *error, known[shape]) for safe, error in zip(row, errors_of_row, strict=True)
-        ]
-        for (shape, row), errors_of_row in zip(given.items(), errors, strict=True)
+        shape: [replace(one, length=float(length)) for one, length in zip(row, lengths, strict=True)]
+        for (shape, row), lengths in zip(found.items(), ordered, strict=True)
     }
 
 

@@ -13,7 +13,7 @@ from stiction.config.kinds import restoring_force
 from stiction.contact.correction import NONE, Change
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import is_wetted
-from stiction.devices.risk import CONFIDENCE, SCORES, quantiles
+from stiction.devices.risk import CONFIDENCE, SCORES, in_order, quantiles
 from stiction.devices.stoppers import SafeForce, pull_off_force, safe_forces, stuck_patches, worst_humidity
 from stiction.estimates import mean_with_error
 from stiction.plan.stage import Running, Stage, select
@@ -315,7 +315,8 @@ def _with_error(safe, error):
 def _safe(rows, seed, changes):
     """Safe forces of rows of patches, their estimates and errors (3, rows, shares) [N], and the basis of each share.
 
-    NaN, resting on nothing, for shares for which there are too few patches.
+    NaN, resting on nothing, for shares for which there are too few patches. No force is smaller than that for a larger
+    share: a fit of all forces and an order statistic contradict each other within their errors.
     """
     parts, bases = np.full((3, len(rows), len(SHARES)), np.nan), [""] * len(SHARES)
     for k, share in enumerate(SHARES):
@@ -323,6 +324,7 @@ def _safe(rows, seed, changes):
             found = safe_forces_of(rows, share, seed, changes)
             parts[..., k] = np.transpose([(one.force, one.estimate, one.error) for one in found])
             bases[k] = str(found[0].basis)
+    parts[0] = -in_order(-parts[0, :, None], SHARES)[:, 0]
     return parts, bases
 
 

@@ -17,8 +17,11 @@ from stiction.stages.life.lengths import least_safe
 def beam_after_touchdowns(
     of: OfBeam, share: float, once: tuple[float, float, str], after: Mapping[float, xr.Dataset]
 ) -> list[Answer]:
-    """Safe length and P(stuck) after all touchdowns, from the safe length of one, and its standard error [m]."""
-    independent = min(least_safe(dataset, chosen_share(dataset)) for dataset in after.values())
+    """Safe length and P(stuck) after all touchdowns, from the safe length of one, and its standard error [m].
+
+    Both bounds have errors of the simulation. More touchdowns never allow a longer beam.
+    """
+    independent = min(once, *(least_safe(dataset, chosen_share(dataset)) for dataset in after.values()))
     stuck = freeing.stuck_after(share, of.touchdowns)
     numbers = f"{of.touchdowns} touchdowns"
     return [
@@ -26,7 +29,7 @@ def beam_after_touchdowns(
             AFTER,
             FREE,
             f"safe length for {numbers}: at most {one_in(share)} sticks after all of them",
-            *(independent[0], max(once[0], independent[0]), independent[1], "m"),
+            *(independent[0], once[0], independent[1], "m"),
             "P of one = 1 - (1 - p)^(1/n) (at least); the same summits each time (at most)",
             "stage touchdowns",
         ),

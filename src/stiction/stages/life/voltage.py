@@ -39,7 +39,7 @@ def beam_at_voltage(
     if np.isnan(numbers).all():
         return answers
     what = f"safe length while {of.potential:g} V are on"
-    form = "1 / L_V⁴ = 1 / L⁴ + 8 Γ_V / (3 E t³ h²), flats (at least); gaps of rough surfaces (at most)"
+    form = "1 / L_V⁴ = 1 / L⁴ + 8 Γ_V / (3 E t³ h²), flats (at least); gaps of rough surfaces, L (at most)"
     return [*answers, Answer(AT_VOLTAGE, HOLD, what, *numbers, "m", form, _SOURCE)]
 
 
@@ -47,10 +47,11 @@ def _shorter(of, added, safe, rough):
     """Safe length at a voltage [m]: on flats, on rough surfaces, and an error of the first, or of the latter alone.
 
     NaN for bridges on flats, and on rough surfaces that were not computed. Tips are held at steeper slopes by more of
-    their surfaces, so that rough ones can have the least length.
+    their surfaces, so that rough ones can have the least length. A voltage holds more, so that no length is longer than
+    without it, as far as bounds of other fits say so.
     """
     length, flat, error = safe[0], np.nan, np.nan
-    high, high_error, _ = min(rough, default=(np.nan, np.nan, ""))
+    high, high_error, _ = min(safe, *rough) if rough else (np.nan, np.nan, "")
     if of.device.opening.has_tip and 0 < length < np.inf:
         flat = holding.length_at_voltage(length, of.beam(1.0), added, holding.ARC)
         error = safe[1] * (flat / length) ** 5
@@ -66,9 +67,10 @@ def stopper_at_voltage(stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | 
     if biased is not None:
         gained = [mean_with_error(row) for row in (biased.pull_off - stopper.pull_off).values]
         low, error = max(gained)
-        worst = biased.isel(humidity=int(biased.stuck.sel(bound="estimate").argmax("humidity")))
+        stuck = np.maximum(biased.stuck, stopper.stuck)
+        worst = stuck.isel(humidity=int(stuck.sel(bound="estimate").argmax("humidity")))
         what = f"probability of sticking while {of.potential:g} V are on, {Air(float(worst.humidity)).where}"
-        numbers = *map(float, worst.stuck.sel(bound=["low", "high"])), np.nan
+        numbers = *map(float, worst.sel(bound=["low", "high"])), np.nan
         sticking = [Answer("stuck_at_voltage", HOLD, what, *numbers, "1", "as without voltage", _SOURCE)]
     what, form = f"force that {of.potential:g} V add", "mean of rough patches (at least); ε₀ V² A / (2 D²) (at most)"
     added = Answer(AT_VOLTAGE, HOLD, what, min(low, flat), flat, error, "N", form, _SOURCE)
