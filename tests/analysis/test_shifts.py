@@ -12,7 +12,7 @@ from stiction.analysis.shifts import ORDERS, STEPS, Description, bracketed, move
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.scans.quantiles import SCORES
 from stiction.surface.empirical import MeasuredDensity
-from stiction.surface.feasible import is_feasible
+from stiction.surface.feasible import is_feasible, largest_kurtosis, least_kurtosis
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 
 B2 = Description(3.4e-9, -0.76, 3.9, SURFACES["B2"].spectrum)
@@ -160,3 +160,27 @@ def test_both_sides_of_heights_with_nearly_two_levels_have_a_density(quantity, s
     assert is_feasible(less.skewness, less.kurtosis)
     assert is_feasible(more.skewness, more.kurtosis)
     assert_allclose(getattr(more, quantity) - getattr(less, quantity), difference, rtol=1e-9)
+
+
+# Large uncertainties
+
+
+@pytest.mark.parametrize("quantity", MOMENT_QUANTITIES + SPECTRUM_QUANTITIES)
+@pytest.mark.parametrize("deviation", [0.0, 0.03, 0.3, 1.0, 3.0])
+def test_a_large_uncertainty_is_the_step_as_far_as_surfaces_go_on_both_sides(quantity, deviation):
+    rng, far = np.random.default_rng(4), 0
+    for _ in range(20):
+        skewness, cutoff = rng.uniform(-1, 0), 1.25e8
+        low, high = least_kurtosis(skewness), largest_kurtosis(abs(skewness))
+        kurtosis = low + rng.uniform(0.2, 0.9) * (high - low)
+        spectrum = CutoffSelfAffine(1e-32, 1e-32 * 10 ** rng.uniform(-6, -1), cutoff * rng.uniform(0.05, 0.5), cutoff)
+        surface = replace(B2, skewness=skewness, kurtosis=kurtosis, spectrum=spectrum)
+        (less, more), difference = bracketed(surface, quantity, deviation)
+        assert STEPS[quantity] <= difference / 2 <= max(STEPS[quantity], deviation)
+        ends = [quantities(one)[quantity] for one in (less, more)]
+        assert_allclose(np.diff(ends)[0], difference, rtol=1e-6)
+        if difference > 2 * STEPS[quantity]:
+            far += 1
+            assert_allclose(np.mean(ends), quantities(surface)[quantity], rtol=1e-6)
+            assert all(is_feasible(one.skewness, one.kurtosis) for one in (less, more))
+    assert bool(far) == (deviation > STEPS[quantity] and quantity != "skewness")

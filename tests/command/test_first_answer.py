@@ -33,7 +33,8 @@ def written(folder, case="C1_rh067", estimate=280e-6, surfaces_error=np.nan):
 
 def test_a_length_is_said_with_its_errors_by_beams_and_surfaces_if_it_has_one(tmp_path):
     log = written(tmp_path / "both", surfaces_error=3e-6)
-    said = "First safe length: C1 at RH 0.67 can be 267 µm long (estimate 280 ± 5 µm) if at most 1 in 1000 may stick."
+    said = "First safe length: C1 at RH 0.67 can be 267 µm long (estimate 280 ± 5 µm) if at most 1 in 1000 may stick "
+    said += "and the measurements are exact."
     assert first_answer(log, tmp_path / "both") == f"{said} The run goes on."
     assert "± 4 µm" in first_answer(written(tmp_path / "beams"), tmp_path / "beams")
     unknown = first_answer(written(tmp_path / "none", "L1_dry", np.inf), tmp_path / "none")

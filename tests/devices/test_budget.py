@@ -195,3 +195,44 @@ def test_a_budget_without_correlations_keeps_the_uncertainties():
     assert_allclose(np.diag(plain.covariance), np.diag(SURFACE.covariance))
     assert_allclose(plain.total**2, np.sum(SURFACE.slopes**2 * np.diag(SURFACE.covariance)), rtol=1e-12)
     assert plain.total > 1.5 * SURFACE.total
+
+
+# Curvature
+
+#: Share of normal numbers beyond two standard deviations.
+BEYOND = 0.0228
+
+
+def beyond_margin(bends, covers, slopes, covariance):
+    """Share of drawn truths ln l = -(g x + b x²) below a margin of twice a total, and its standard error."""
+    drawn = np.random.default_rng(8).multivariate_normal(np.zeros(len(slopes)), covariance, 200_000)
+    found = Budget(tuple(map(str, range(len(slopes)))), slopes, covariance)
+    change = drawn @ slopes + drawn**2 @ bends
+    return np.mean(change > 2 * covers(found)), np.sqrt(BEYOND / len(drawn))
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_margin_with_curvature_covers_drawn_truths_whose_response_is_curved(seed):
+    # At a slope of zero alone, 2.5 % of the truths are beyond five times b σ²: the 2.28 % of a normal number and 0.3.
+    rng = np.random.default_rng(seed)
+    k, deviations = int(rng.integers(1, 5)), 0.9
+    slopes, bends = rng.uniform(-0.3, 0.3, k), rng.uniform(-0.1, 0.3, k)
+    covariance = np.diag(np.full(k, deviations**2))
+    curved, error = beyond_margin(bends, lambda found: found.unsafe_total(bends), slopes, covariance)
+    assert curved < BEYOND + 0.003 + 4 * error
+    if np.max(bends) > 0.1:
+        linear, _ = beyond_margin(bends, lambda found: found.total, slopes, covariance)
+        assert linear > 1.3 * BEYOND  # control
+
+
+def test_a_linear_response_and_one_that_bends_to_the_safe_side_keep_the_linear_margin():
+    for bends in (np.zeros(3), np.array([-1.0, -2.0, 0.0])):
+        assert SURFACE.unsafe_total(bends) == SURFACE.total
+    assert SURFACE.unsafe_total(np.array([0.0, 0.1, 0.0])) > SURFACE.total
+
+
+def test_one_curved_input_takes_the_change_at_two_standard_uncertainties_and_half_of_one_of_its_bend():
+    for slope in (-0.3, 0.3):
+        found = Budget(("corner",), np.array([slope]), np.array([[0.64]]))
+        taken = 2 * found.unsafe_total(np.array([0.2]))
+        assert_allclose(taken, 0.3 * 1.6 + 0.2 * 1.6**2 + 0.2 * 0.8**2, rtol=1e-12)

@@ -46,7 +46,30 @@ class Description:
         return (MOMENT_QUANTITIES if self.form is None else MODE_QUANTITIES) + SPECTRUM_QUANTITIES
 
 
-def bracketed(surface: Description, quantity: str) -> tuple[tuple[Description, Description], float]:
+def step_of(surface: Description, quantity: str, deviation: float) -> float:
+    """Step of a quantity in either direction: its standard uncertainty, if that is larger than its step of `STEPS`.
+
+    A slope over a small step says little about a large error. ASSUME: where no surfaces are as far away on both sides,
+    the step is as large as they allow, and that of a skewness is small: its kurtosis would have to move as well.
+    """
+    return max(STEPS[quantity], min(deviation, _room(surface, quantity)))
+
+
+def _room(surface, quantity):
+    """Largest step around a surface with a surface at both ends."""
+    shape, size = surface.spectrum, abs(surface.skewness)
+    if quantity == "corner":
+        return np.log(shape.cutoff / shape.corner) / 2
+    if quantity == "slope":
+        return -shape.slope if isinstance(shape, CutoffSelfAffine) else np.inf
+    if quantity == "kurtosis":
+        return min(largest_kurtosis(size) - surface.kurtosis, surface.kurtosis - least_kurtosis(size))
+    return np.inf if quantity == "rms" else 0.0
+
+
+def bracketed(
+    surface: Description, quantity: str, deviation: float = 0.0
+) -> tuple[tuple[Description, Description], float]:
     """Bracket a surface: two with one quantity lower and higher, and the difference of the quantity.
 
     ASSUME: where no surface has the increased quantity, both values are lower, and where none has the decreased one,
@@ -59,6 +82,8 @@ def bracketed(surface: Description, quantity: str) -> tuple[tuple[Description, D
     surface : Description
     quantity : str
         One of its quantities.
+    deviation : float
+        Standard uncertainty of the quantity, see `step_of` [-].
 
     Returns
     -------
@@ -66,7 +91,7 @@ def bracketed(surface: Description, quantity: str) -> tuple[tuple[Description, D
     difference : float
         Of ln rms, skewness, kurtosis, x_k, ln corner or slope [-].
     """
-    step = STEPS[quantity]
+    step = step_of(surface, quantity, deviation)
     if quantity in MODE_QUANTITIES[1:]:
         shifted = _mode(surface, step, ORDERS[MODE_QUANTITIES.index(quantity) - 1])
     else:

@@ -40,7 +40,7 @@ def _length(dataset, name):
     case = Case(name)
     return (
         f"First safe length: {case.device} {Air(case.humidity).where} can be {length:.0f} µm long{known} if at most "
-        f"{one_in(float(found.share))} may stick."
+        f"{one_in(float(found.share))} may stick and the measurements are exact."
     )
 
 

@@ -5,6 +5,8 @@ of pair b add up to within 0.1 %. The slopes come from runs with common random n
 inputs, the relative variance of the length is :math:`g^T C g`. Inputs from one measurement are correlated: the errors
 of skewness and kurtosis from one scan cancel by half, and taking them as independent doubles the result.
 
+Large errors of stated or assumed surfaces are not linear: the margin of a length to build has their curvature.
+
 The scatter from beam to beam is no uncertainty of the length and is stated apart, as are choices of the model, which
 have no distribution.
 """
@@ -15,6 +17,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import block_diag
 
+#: Standard uncertainties that are subtracted from a length to build: normal errors exceed them on the unsafe side with
+#: a probability of 2 %.
+SUBTRACTED = 2.0
+#: Largest uncertainty of the logarithm of a length that allows a length to build. ASSUME: above it, where twice as much
+#: takes two thirds of the length, a budget that is linear does not say how much to subtract.
+LARGEST = 0.5
 #: Relative error of a slope below which all devices have the same slope, but for rounding.
 _ROUNDING = 1e-9
 
@@ -46,6 +54,23 @@ class Budget:
         """Budget of the same inputs, taken as independent."""
         return replace(self, covariance=np.diag(np.diag(self.covariance)))
 
+    def unsafe_total(self, bends: np.ndarray) -> float:
+        r"""Half of a margin that keeps its probability where the response is curved [-].
+
+        With :math:`g_k x + b_k x^2` an error of two standard uncertainties moves the response by
+        :math:`2 \sigma_k (|g_k| + 2 b_k \sigma_k)` to its unsafe side, and all curvatures move its mean by
+        :math:`\sum b_k \sigma_k^2`. What is curved to the safe side counts as linear: the margin is then too large.
+
+        Parameters
+        ----------
+        bends : array
+            b of each input (k,), positive to the unsafe side [1 / unit of x²].
+        """
+        deviations, curved = np.sqrt(np.diag(self.covariance)), np.maximum(bends, 0.0)
+        steeper = SUBTRACTED * curved * deviations
+        steepest = replace(self, slopes=self.slopes + np.where(self.slopes < 0, -steeper, steeper))
+        return steepest.total + float(curved @ deviations**2) / SUBTRACTED
+
     def effect(self, group: Sequence[str]) -> float:
         """Relative standard uncertainty of the length due to some inputs together, the others being exact [-]."""
         of = self._places(group)
@@ -73,6 +98,17 @@ class Budget:
     def _places(self, group):
         """Positions of inputs."""
         return [self.names.index(name) for name in group]
+
+
+def part_left(total: float) -> float:
+    """Part of a safe length that is left to build at an uncertainty of its logarithm, NaN where that allows none [-].
+
+    Examples
+    --------
+    >>> round(part_left(0.1), 2), part_left(0.6)
+    (0.82, nan)
+    """
+    return float(np.exp(-SUBTRACTED * total)) if total <= LARGEST else np.nan
 
 
 def joined(budgets: Sequence[Budget]) -> Budget:

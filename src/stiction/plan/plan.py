@@ -14,7 +14,7 @@ from stiction.config.materials import Materials
 from stiction.config.merging import values
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
-from stiction.config.surfaces.knowledge import sentences
+from stiction.config.surfaces.knowledge import knowledge, sentences, uncertain
 from stiction.config.test_beams import as_cantilevers
 from stiction.contact.materials import ELASTIC
 from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SURFACE_MODELS
@@ -156,6 +156,15 @@ class Plan:
         """Quantities of a surface with slopes, see `stiction.analysis.shifts`. Those of scans include modes."""
         modes = MODE_QUANTITIES if surface in self.scans.surfaces else ()
         return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
+
+    def deviation(self, surface: str, quantity: str) -> float:
+        """Standard uncertainty of a quantity of a surface, stated or assumed; 0 if it is measured or exact [-]."""
+        entry = self.config["surfaces"][surface]
+        if is_measured(entry) or quantity not in uncertain(entry):
+            return 0.0
+        known = knowledge(entry, paper()["surfaces"]).section
+        place = known["quantities"].index(quantity)
+        return float(known["covariance"][place][place] ** 0.5)
 
     def assumptions(self, *pairs: str) -> dict[str, list[str]]:
         """Sentences on assumed properties of the surfaces of some pairs, by pair, without empty ones."""

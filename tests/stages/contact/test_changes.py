@@ -10,8 +10,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
 from published import SURFACES
 
+from stiction.analysis.shifts import STEPS
 from stiction.config.files import load
 from stiction.config.merging import merged
+from stiction.config.reading import paper
 from stiction.config.units import in_si
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
@@ -246,3 +248,30 @@ def test_a_measured_surface_is_the_same_under_every_variant():
     measured = {"B2": small.surfaces()[0]}
     found = variants.summits_under({}, "b", replace(base, surfaces=described), changed, measured)
     assert_array_equal(found.top, variants.summits_under({}, "b", base, changed).top)
+
+
+# Large uncertainties
+
+
+@pytest.mark.parametrize(("deviation", "step"), [(0.0, 0.05), (0.02, 0.05), (0.8, 0.8), (3.0, np.log(125 / 12) / 2)])
+def test_a_quantity_is_shifted_as_far_as_it_is_uncertain(asked, deviation, step):
+    found = quantities.compute(small.surfaces(), "b", "B2", "corner", slope_settings(deviation=deviation))
+    corners = [parameters.spectrum_of(beam[1]).corner for beam, _ in asked[0][0]]
+    np.testing.assert_allclose(np.log(np.divide(corners, 12e6)), [-step, step], rtol=1e-9)
+    assert [quantities.is_large(contact, "corner") for contact in found] == [step > 0.05] * 2
+    assert quantities.difference(found[0]) == pytest.approx(2 * step)
+
+
+def test_assumed_surfaces_alone_are_shifted_by_their_uncertainty():
+    etched = {"Etched": {"like": "B2", "rms_nm": 3, "uncertainty": {"rms_nm": 0.3}}}
+    pairs = {"mine": {"beam": "Etched", "substrate": "Sub1", "gap_um": 20, "humidities": [0.67]}}
+    plan = Plan(load({"run": {"pairs": ["mine"], "studies": []}, "surfaces": etched, "pairs": pairs}))
+    spread = np.log([entry["published_psd"]["corner_rad_per_um"] for entry in paper()["surfaces"].values()]).std(ddof=1)
+    stated = {"rms": 0.1, "corner": spread}
+    for quantity, deviation in stated.items():
+        assert plan.deviation("Etched", quantity) == pytest.approx(deviation, rel=1e-8)
+        settings = job_settings(plan, f"studies/slopes/contact/mine_Etched_{quantity}_less")
+        assert settings["deviation"] == pytest.approx(deviation, rel=1e-8)
+    for surface in ("B1", "B2", "Sub1", "Sub2"):
+        assert not any(small.PLAN.deviation(surface, quantity) for quantity in STEPS)
+    assert "deviation" not in job_settings(small.PLAN, "studies/slopes/contact/b_B2_rms_less")

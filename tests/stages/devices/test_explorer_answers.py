@@ -136,7 +136,7 @@ def test_the_band_of_a_small_chart_is_that_of_the_figure():
 def test_a_cantilever_at_a_voltage_has_the_closed_form_of_flats_and_its_bound_of_life():
     section = CANTILEVER | {"voltage_V": 5, "offset_V": -0.5, "dielectric": {"thickness_nm": 100, "permittivity": 4.0}}
     lengths = {0.44: safe(), 0.67: safe(longest=500e-6)}
-    grid = voltage_views.beam_view("C1", section | {"young_modulus_GPa": 164}, lengths).grid
+    grid = voltage_views.beam_view("C1", section | {"young_modulus_GPa": 164}, lengths, {}).grid
     beam, oxide = Beam(1e-3, 30e-6, 2.6e-6, 164e9, 20e-6, 1), Dielectric(100e-9, 4.0)
     rng = np.random.default_rng(8)
     for volts, humidity, rank in zip(

@@ -136,12 +136,12 @@ def test_advice_warnings_and_what_is_not_modelled_are_shown(stopper):
 
 def test_the_page_of_a_beam_says_which_lengths_come_free():
     found = safe()
-    sentence = sentences.safe_sentence(0.67, found)
+    sentence = sentences.safe_sentence(0.67, found, {})
     lengths = [1e6 * float(found.safe_length.sel(shape=shape, share=1e-3)) for shape in found["shape"].values]
     assert f"up to {lengths[1]:.0f} µm come free" in sentence
     assert "at most 1 in 1000 (95 % confidence)" in sentence
     assert sentence.endswith(f"this is true of up to {lengths[0]:.0f} µm.")
-    assert "tip" not in sentences.safe_sentence(0.67, safe("bridge"))
+    assert "tip" not in sentences.safe_sentence(0.67, safe("bridge"), {})
 
 
 def length_to_build(page):

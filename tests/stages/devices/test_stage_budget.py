@@ -289,3 +289,30 @@ def test_an_error_of_a_changed_contact_names_the_input():
     with pytest.raises(ValueError, match="no force law") as refused:
         budget.slopes([Input("Young's modulus", "solids", (BASE, BASE), 0.1)], respond)
     assert refused.value.__notes__ == ["This is the contact with less or more of the input Young's modulus."]
+
+
+# Curvature
+
+
+def test_bends_are_those_of_the_response_and_of_inputs_with_a_middle_alone():
+    def respond(states):
+        return Responses(
+            np.array([[np.exp(-0.3 * x + 0.07 * x**2)] * 20 for x in (of.contact for of in states)]), np.mean
+        )
+
+    at = [replace(BASE, contact=x) for x in (-0.8, 0.0, 0.8)]
+    far = Input("corner", "spectrum", (at[0], at[2]), 1.6, at[1])
+    near = replace(far, middle=None)
+    assert_allclose(budget.bends([far, near], respond), [0.07, 0.0], rtol=1e-9)
+    assert_allclose(budget.slopes([far], respond)[0, 0], -0.3, rtol=1e-9)
+
+
+@pytest.mark.parametrize("settings", [SETTINGS, PatchBudget(*COMMON, contact=(3e-6, 3e-6))], ids=["beam", "stopper"])
+def test_a_bend_counts_where_it_makes_beams_shorter_and_forces_larger(settings):
+    inputs = [Input("corner", "spectrum", (BASE, BASE), 1.6, BASE)]
+    found = budget.layout(inputs, np.array([[0.1, 0.0]]), np.eye(1), Responses(np.ones((1, 9)), np.mean), {}, settings)
+    linear = budget.margin_of(found)
+    assert linear == pytest.approx(0.1)
+    assert [budget.margin_of(found.assign(bend=("input", [bend]))) > linear for bend in (-0.1, 0.1)] == (
+        [True, False] if settings is SETTINGS else [False, True]
+    )

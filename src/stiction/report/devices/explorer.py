@@ -10,7 +10,7 @@ from scipy.special import ndtr
 
 from stiction.config.kinds import kind_of
 from stiction.config.units import from_si
-from stiction.devices.budget import ranked
+from stiction.devices.budget import LARGEST, ranked
 from stiction.devices.risk import SCORES, quantiles
 from stiction.report.devices import sentences
 from stiction.report.devices.curves import Curves
@@ -105,10 +105,10 @@ def beam_view(
         "safe": "Safe length",
         "stick": "Devices of this length that stick",
         "build": "no more than",
-        "largest": sentences.LARGEST,
+        "largest": LARGEST,
         "bound": "safe",
     }
-    return View("sizes and air", grid, words, _margin(sentences.shortest_budgets(safe_lengths, budgets)))
+    return View("sizes and air", grid, words, margin_of_beam(safe_lengths, budgets))
 
 
 def _worst(safe_lengths):
@@ -268,6 +268,12 @@ def size_axis(key: str, label: str, unit: str, computed: Sequence[np.ndarray], s
 def _humidities_in_words(values):
     """Humidities in words."""
     return ", ".join(f"{value:g}" if value else "0 (dry air)" for value in values)
+
+
+def margin_of_beam(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> Margin | None:
+    """Margin that takes as much from the safe length of a beam as its answer does."""
+    margin = _margin(sentences.shortest_budgets(safe_lengths, budgets))
+    return margin and replace(margin, total=sentences.length_to_build(safe_lengths, budgets)[1])
 
 
 def _margin(budgets):

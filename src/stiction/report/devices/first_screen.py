@@ -65,7 +65,7 @@ def beam_screen(
         "What to change": _change_beam(section, safe / UM),
         _MEASURE: _measure(sentences.shortest_budgets(safe_lengths, budgets).values()),
     }
-    summary = Summary(*verdict, basis, points, _table_of_beam(safe_lengths, test_beams))
+    summary = Summary(*verdict, basis, points, _table_of_beam(safe_lengths, budgets, test_beams))
     return _unless_forbidden(summary, warnings, test_beams)
 
 
@@ -132,7 +132,7 @@ def _decides_beam(humidity, worst, budgets, section):
     shape = str(lengths["shape"].values[int(lengths.argmin("shape"))])
     yield f"{_air(humidity)}, held by the {END_STATES[shape].by}."
     if shape == EITHER:
-        yield f"If the tip could not touch: {float(lengths.sel(shape=S_SHAPE)) / UM:.0f} µm."
+        yield f"If the tip could not touch: {sentences.built_in_words(worst, budgets, 0).rstrip(',')}."
     yield from tables_budget.first_to_measure(budgets.values(), section.get("assumed", ()))
 
 
@@ -164,12 +164,15 @@ def _measure(budgets: Iterable[xr.Dataset]) -> str:
     return tables_budget.what_to_measure(max(stated, key=lambda dataset: np.nan_to_num(budget_of(dataset).total)))
 
 
-def _table_of_beam(safe_lengths, test_beams):
-    """Safe lengths by humidity, with and without tip and test beams, and P(stuck) at the stated length."""
+def _table_of_beam(safe_lengths, budgets, test_beams):
+    """Safe lengths by humidity, with and without tip and test beams, and P(stuck) at the stated length.
+
+    They are less the margin for the measurements.
+    """
     rows = []
     for humidity, dataset in safe_lengths.items():
-        lengths = _middle_lengths(dataset).safe_length
-        row = {"RH": humidity_text(humidity), "safe length [µm]": number(float(lengths.min()) / UM, ".0f")}
+        lengths = sentences.lengths_to_build(dataset, budgets)
+        row = {"RH": humidity_text(humidity), "safe length [µm]": number(float(lengths[-1]) / UM, ".0f")}
         if EITHER in lengths["shape"].values:
             row["if the tip cannot touch [µm]"] = number(float(lengths.sel(shape=S_SHAPE)) / UM, ".0f")
         if test_beams is not None:

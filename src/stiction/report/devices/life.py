@@ -12,6 +12,7 @@ from matplotlib.lines import Line2D
 from stiction.config.units import from_si
 from stiction.constants import FREE_FALL
 from stiction.contact.voltage import BREAKDOWN
+from stiction.devices.budget import part_left
 from stiction.plan.names import by_name
 from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN
 from stiction.report.style import (
@@ -25,6 +26,7 @@ from stiction.report.style import (
     styled,
 )
 from stiction.report.table import Table, table_stage
+from stiction.rounding import in_percent
 from stiction.stages.life.answers import (
     AFTER,
     AT_VOLTAGE,
@@ -39,6 +41,7 @@ from stiction.stages.life.answers import (
     QUESTIONS,
     RELEASED,
     RESTORING,
+    SAFE,
     SHOCK,
     TENSION_BESIDE,
     TILTED,
@@ -70,13 +73,17 @@ CAPTION = (
     "the keys that a row asks for. The column ± has the standard uncertainty of the lower bound, due to the stated "
     "uncertainties of the device or to sampled surfaces. Voltage, shock, energy and force of a beam are those of its "
     "length, which is stated or its least safe one. A liquid that dries is not humid air: it holds the whole area "
-    "that it wets."
+    "that it wets. The measurements count as exact, unless the form of a safe length says what is subtracted for them."
 )
 _COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#D55E00", "#CC79A7", "#009E73"), strict=True))
 #: Height of a row, and of everything else in a panel [in]. Size of text [points], mean width of its characters in
 #: sizes, and share of a column of panels that it may take.
 _ROW, _AROUND = 0.34, 1.1
 _SIZE, _CHARACTER, _FILLED = 7, 0.45, 0.85
+
+
+#: Fields of an answer that are numbers.
+_NUMBERS = ("low", "high", "error")
 
 
 def table(life: Mapping[str, xr.Dataset]) -> Table:
@@ -102,6 +109,19 @@ def table(life: Mapping[str, xr.Dataset]) -> Table:
         "source": (str, "source"),
     }
     return Table.of(rows, CAPTION, columns)
+
+
+def less_margin(dataset: xr.Dataset, total: float) -> xr.Dataset:
+    """Answers about a beam with safe lengths less twice the uncertainty of their logarithm due to the measurements."""
+    if not total:
+        return dataset
+    left = part_left(total)
+    margin = f"less {in_percent(1 - left)} for the measurements" if np.isfinite(left) else "if measurements were exact"
+    named = [name in (AFTER, FAST, AT_VOLTAGE) or name.startswith(SAFE) for name in map(str, dataset.answer.values)]
+    is_safe = xr.DataArray(named, dims="answer") & (dataset.unit == "m")
+    scaled = {name: dataset[name] * xr.where(is_safe, np.nan_to_num(left, nan=1.0), 1.0) for name in _NUMBERS}
+    forms = [f"{form}; {margin}" if is_one else form for form, is_one in zip(dataset.form.values, is_safe, strict=True)]
+    return dataset.assign(scaled).assign(form=("answer", forms))
 
 
 def significant(value: float) -> str:

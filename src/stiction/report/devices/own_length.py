@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.devices.risk import one_in
+from stiction.report.devices.sentences import built_in_words
 from stiction.report.format import UM, airs
 from stiction.rounding import in_percent
 from stiction.stages.devices.budget import budget_of
@@ -24,7 +25,10 @@ def sentences(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, 
     """
     stated = [(humidity, one.isel(shape=-1)) for humidity, one in safe_lengths.items() if "length_of_device" in one]
     worst_first = sorted(stated, key=lambda case: -float(case[1].stuck_at_length.sel(end="high")))
-    return [_sentence(humidity, one, _total(humidity, budgets)) for humidity, one in worst_first]
+    return [
+        _sentence(humidity, one, _total(humidity, budgets), built_in_words(safe_lengths[humidity], budgets, -1))
+        for humidity, one in worst_first
+    ]
 
 
 def effect_of_measurements(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> list[str]:
@@ -49,8 +53,8 @@ def _total(humidity, budgets):
     return max(filter(np.isfinite, totals), default=0.0)
 
 
-def _sentence(humidity, held, total):
-    """P(stuck) at one humidity in words, with the safe length for the middle one of the shares."""
+def _sentence(humidity, held, total, built):
+    """P(stuck) at one humidity in words, with the length to build for the middle one of the shares."""
     length, (stuck, low, high) = float(held.length_of_device), map(float, held.stuck_at_length)
     error, reach = float(held.stuck_surfaces_error), float(held.reach)
     surfaces = f", and ± {in_percent(error)} by the number of drawn surfaces" if error > 0 else ""
@@ -58,8 +62,7 @@ def _sentence(humidity, held, total):
     what = f"{100 * stuck:.3g} % ({band} with 95 % confidence{surfaces})"
     if length > reach:
         what = f"between {band} (devices were simulated up to {reach / UM:.0f} µm; longer ones may all stick)"
-    share = chosen_share(held)
-    safe = f"{float(held.safe_length.sel(share=share)) / UM:.0f} µm are safe for {one_in(share)}"
+    safe = f"{built} are safe for {one_in(chosen_share(held))}"
     left = _remaining_uncertainty(held, length, total)
     return f"Of devices of {length / UM:g} µm, {what} stick {airs([humidity])}; {safe}.{left}"
 

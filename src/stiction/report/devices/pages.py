@@ -103,7 +103,7 @@ def beam_page(
         Name of the device to the dataset of stage device_model_error.
     """
     cases = {(name, humidity): dataset for humidity, dataset in safe_lengths.items()}
-    table = tables_devices.safe_lengths(cases, warnings, errors).cells.drop(columns="device")
+    table = tables_devices.safe_lengths(cases, warnings, errors, budgets=budgets).cells.drop(columns="device")
     sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}), _MISSING_LENGTHS)]
     if charts:
         axis = {(name, humidity): dataset for humidity, dataset in charts.items()}
@@ -119,7 +119,7 @@ def beam_page(
     answer += [*alone, *built, *decided, *more]
     sections += _test_beam_sections(name, test_beams)
     predicted = sentences.prediction_sentences(safe_lengths)
-    answer += [*(sentences.safe_sentence(*case) for case in safe_lengths.items()), *of_model, *predicted]
+    answer += [*(sentences.safe_sentence(*case, budgets) for case in safe_lengths.items()), *of_model, *predicted]
     effects = own_length.effect_of_measurements(safe_lengths, of_shortest)
     more = [*effects, *few, *more, *built, *of_model[1:], *predicted]
     sections += _how_rough(name, roughness)
@@ -358,13 +358,16 @@ def _page(data, at, settings):
         lengths, charts = data["safe_lengths"], data["charts"]
         views = explorer.views_of_beam(at.device, settings, lengths, charts, budgets)
         if "young_modulus_GPa" in settings:
-            views.append(voltage_views.beam_view(at.device, settings, lengths))
+            views.append(voltage_views.beam_view(at.device, settings, lengths, budgets))
         page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
     views += curve_views.views(at.device, settings, data)
     if tested := tables_test_beams.beside_numbers(data.get("test_beams")):
         views = [replace(view, words={**view.words, "tested": tested}) for view in views]
     drawing = device_drawing(_with_force(settings)).svg
-    page = process_section.with_process(with_life(page, at.device, data["life"]), at.device, data)
+    answers = data["life"]
+    if "stopper" not in data:
+        answers = life.less_margin(answers, sentences.length_to_build(data["safe_lengths"], budgets)[1])
+    page = process_section.with_process(with_life(page, at.device, answers), at.device, data)
     return replace(
         page,
         not_modelled=settings["not_modelled"],

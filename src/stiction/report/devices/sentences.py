@@ -5,10 +5,11 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from stiction.devices.budget import LARGEST, SUBTRACTED, part_left
 from stiction.devices.risk import Basis, one_in, samples_for
 from stiction.report.format import UM, UN, airs, with_error
 from stiction.rounding import in_percent
-from stiction.stages.devices.budget import budget_of
+from stiction.stages.devices.budget import budget_of, margin_of_shape
 from stiction.stages.devices.opening import EITHER, S_SHAPE
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
@@ -17,16 +18,27 @@ from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, sha
 def length_to_build(
     safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
 ) -> tuple[float, float, float]:
-    """Least safe length [m], uncertainty of its logarithm due to the measurements, and the length less twice it [m]."""
-    least = min(_safe(dataset).item() for dataset in safe_lengths.values())
-    totals = [budget_of(budget).total for budget in shortest_budgets(safe_lengths, budgets).values()]
-    total = max((total for total in totals if np.isfinite(total)), default=0.0)
-    return least, total, float(np.exp(-2 * total)) * least
+    """Least safe length [m], uncertainty of its logarithm due to the measurements, and the length less twice it [m].
+
+    Of all end states, the one with the shortest length after its margin decides: what holds a beam in one holds it in
+    the last. The uncertainty is that which takes as much of the least length, unless its own is too large.
+    """
+    each = xr.concat(map(safe_lengths_of, safe_lengths.values()), "humidity", join="exact").min("humidity")
+    totals = np.array([margin_of_shape(budgets, shape) for shape in map(str, each["shape"].values)])
+    built, least = each.values * np.exp(-SUBTRACTED * totals), float(each.min())
+    length, own = float(built.min()), float(totals[built.argmin()])
+    total = float(np.log(least / length)) / SUBTRACTED if is_bounded(own) else own
+    return least, total, float(np.exp(-SUBTRACTED * total)) * least
 
 
-#: Largest uncertainty of the logarithm of a length that allows a length to build. ASSUME: above it, where twice as much
-#: takes two thirds of the length, a budget that is linear does not say how much to subtract.
-LARGEST = 0.5
+def lengths_to_build(dataset: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> xr.DataArray:
+    """Safe lengths for the chosen share, by shape, less the margin of `length_to_build`, NaN where it is too large [m].
+
+    A beam is no longer than what any end state before its own allows.
+    """
+    lengths = safe_lengths_of(dataset)
+    left = [part_left(margin_of_shape(budgets, shape)) for shape in map(str, lengths["shape"].values)]
+    return lengths.copy(data=np.fmin.accumulate(lengths.values * left))
 
 
 def is_bounded(total: float) -> bool:
@@ -84,11 +96,6 @@ def safe_lengths_of(dataset: xr.Dataset) -> xr.DataArray:
     return dataset.safe_length.sel(share=chosen_share(dataset))
 
 
-def _safe(dataset):
-    """Safe length for the chosen share, however the device is held [m]."""
-    return safe_lengths_of(dataset).min()
-
-
 def shortest_budgets(
     safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]
 ) -> dict[tuple, xr.Dataset]:
@@ -135,19 +142,27 @@ def _verdict_of_few(stopper):
     )
 
 
-def safe_sentence(humidity: float, dataset: xr.Dataset) -> str:
-    """Safe lengths of a device at one humidity in words, for the middle fraction."""
-    share = chosen_share(dataset)
-    lengths = dataset.safe_length.sel(share=share) / UM
-    shortest, longest = float(lengths.min()), float(lengths.max())
-    air, but = _at(humidity), f"at most {one_in(share)}"
+def safe_sentence(humidity: float, dataset: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> str:
+    """Safe lengths of a device at one humidity in words, for the middle fraction, less the margin of its budgets."""
+    shortest, few = built_in_words(dataset, budgets, -1), one_in(chosen_share(dataset))
     sentence = (
-        f"{air}, devices of up to {shortest:.0f} µm come free after they were pressed down, except for {but} (95 % "
-        "confidence)."
+        f"{_at(humidity)}, devices of up to {shortest} come free after they were pressed down, except for at most "
+        f"{few} (95 % confidence)."
     )
-    if longest == shortest:
+    alone, safe = built_in_words(dataset, budgets, 0), safe_lengths_of(dataset)
+    if alone != shortest:
+        sentence += f" If the tip cannot hold them, this is true of up to {alone}."
+    if lengths_to_build(dataset, budgets).equals(safe):
         return sentence
-    return f"{sentence} If the tip cannot hold them, this is true of up to {longest:.0f} µm."
+    return f"{sentence} Twice the uncertainty due to the measurements is subtracted."
+
+
+def built_in_words(dataset: xr.Dataset, budgets: Mapping[tuple, xr.Dataset], shape: int) -> str:
+    """Safe length against an end state, by its place, less its margin, or without one that is too large."""
+    built = float(lengths_to_build(dataset, budgets)[shape])
+    if np.isfinite(built):
+        return f"{built / UM:.0f} µm"
+    return f"{float(safe_lengths_of(dataset)[shape]) / UM:.0f} µm, if the measurements were exact,"
 
 
 def prediction_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from stiction.devices.budget import LARGEST, part_left
 from stiction.devices.risk import Basis
 from stiction.plan.names import by_case
 from stiction.report.format import MISSING, UM, error_alone, humidity_text, number
@@ -16,6 +17,7 @@ from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
 from stiction.rounding import in_percent
 from stiction.stages.beams.pair_warnings import numbered, with_numbers
 from stiction.stages.devices import device_warnings
+from stiction.stages.devices.budget import margin_of_shape
 from stiction.stages.devices.chart import axes, charts, largest_error_between
 from stiction.stages.devices.device_warnings import curves, not_modelled
 from stiction.stages.devices.end_states import END_STATES
@@ -27,6 +29,12 @@ _SAFE_LENGTHS = (
     "number of sampled surfaces. Every beam has its own tip, and the scatter of the tips is part of the first error. "
     "Basis: sampled, by order statistics; fitted, by a line through the shortest 5 %; extrapolated, by this line "
     "beyond its verified range."
+)
+#: What budgets do to safe lengths, without and with the column of lengths to build.
+_EXACT = "The measurements count as exact: the page of the device subtracts twice their uncertainty."
+_TO_BUILD = (
+    "The measurements count as exact. To build: the safe length less twice their uncertainty, the largest in its air "
+    f"by the budget of its end state; none where it exceeds {in_percent(LARGEST)}."
 )
 #: What other bases of a safe length mean, where they occur.
 _FEW = {
@@ -47,7 +55,8 @@ _DRY_BOUND = (
 _CHART = (
     "Safe length of beams of the thicknesses and gaps of a chart against relative humidity: the largest length with at "
     "most a fraction p stuck, with a confidence of 95 %. From: finite elements, or a power "
-    "law between their sizes and humidities, with its largest error at beams outside its fit."
+    "law between their sizes and humidities, with its largest error at beams outside its fit. The measurements count "
+    "as exact: the page of the device subtracts twice their uncertainty from lengths to build."
 )
 _CHART_BOUND = (
     "Bound: for a cantilever, the sticking length of flats in contact, with water in all gaps. For a bridge: no "
@@ -113,10 +122,12 @@ def safe_lengths(
     warnings: Mapping[tuple[str, float, str], list],
     errors: Mapping[str, xr.Dataset] | None = None,
     not_modelled: str = "",
+    budgets: Mapping[tuple, xr.Dataset] | None = None,
 ) -> Table:
-    """Safe lengths of all beams, one row per device, humidity, shape and share. Errors of the model are by device.
+    """Safe lengths of all beams, one row per device, humidity, shape and share.
 
-    The caption ends with what is not in the model.
+    Errors of the model are by device, and budgets as of `stiction.stages.devices.budget.budgets_of`, for a column of
+    lengths to build. The caption ends with what is not in the model.
     """
     rows, marks = [], []
     numbers = numbered(warnings)[1]
@@ -126,17 +137,19 @@ def safe_lengths(
             head |= _at_length(dataset.sel(shape=shape))
             last = model_errors.device_change(errors, device, humidity, shape)
             last |= {"warnings": " ".join(warnings[device, humidity, shape])}
-            rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
+            left = part_left(margin_of_shape(budgets, shape)) if budgets else None
+            rows += [head | _safe_length(dataset.sel(shape=shape, share=p), left) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
     own = _COLUMNS_AT_LENGTH if "length_um" in frame else {}
     said = [
         *([_AT_LENGTH] if own else []),
         _SAFE_LENGTHS,
+        _TO_BUILD if budgets else _EXACT,
         *_few(datasets),
         about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY),
     ]
-    text, columns = " ".join(said), _HELD | own | _LENGTHS
+    text, columns = " ".join(said), _HELD | own | (_LENGTHS | _BUILT if budgets else _LENGTHS)
     if "prediction_low_um" in frame:
         text, columns = f"{text} {_PREDICTED}", columns | _PREDICTION
     if errors:
@@ -169,12 +182,13 @@ def _caption(text, warnings, not_modelled):
     return with_list(" ".join([text, not_modelled, *(["Warnings:"] if listed else [])]), listed)
 
 
-def _safe_length(point):
-    """One safe length with its errors, and its prediction interval where the dataset has some."""
+def _safe_length(point, left):
+    """One safe length with its errors, the part left to build, and its prediction interval where there is one."""
     ends = [name for name in ("prediction_low", "prediction_high") if name in point]
     return {
         "share": float(point.share),
         "safe_length_um": float(point.safe_length) / UM,
+        **({} if left is None else {"to_build_um": left * float(point.safe_length) / UM}),
         "estimate_um": float(point.estimate.where(np.isfinite(point.estimate))) / UM,
         "estimate_se_beams_um": float(point.beams_error) / UM,
         "estimate_se_surfaces_um": float(point.surfaces_error) / UM,
@@ -199,6 +213,7 @@ _LENGTHS = {
     "basis": (str, "basis"),
     "bound [µm]": (".1f", "bound_um"),
 }
+_BUILT = {"to build [µm]": (".1f", "to_build_um")}
 
 
 # Charts

@@ -7,7 +7,7 @@ those of the samples.
 """
 
 import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar
@@ -36,6 +36,7 @@ from stiction.stages.contact.error_notes import explain_errors
 from stiction.stages.devices.contact_names import contacts_of_budget, contacts_of_tip_budget
 from stiction.stages.devices.opening import (
     ARC,
+    EITHER,
     FORCE,
     DesignedBeam,
     addresses,
@@ -166,7 +167,8 @@ def compute(
         with explain_errors(f"This is the contact under the choice {name}."):
             under = replace(state, contact=changed, water=settings.water_under(name))
             changes[name] = effect_if_known(base, under, respond)
-    return layout(inputs, slopes_with_errors, covariance, respond([state]), changes, settings)
+    found = layout(inputs, slopes_with_errors, covariance, respond([state]), changes, settings)
+    return found.assign(bend=("input", bends(inputs, respond)))
 
 
 def stopper_responses(states: Sequence[State]) -> Responses:
@@ -251,6 +253,19 @@ def slopes(inputs: Sequence[Input], respond: Respond) -> np.ndarray:
     return np.array(with_errors).reshape(len(inputs), 2)
 
 
+def bends(inputs: Sequence[Input], respond: Respond) -> np.ndarray:
+    """Curvatures b of the logarithm of the response, g x + b x² around an input, zero without a middle (inputs,)."""
+    return np.array([_bend(entry, respond) if entry.middle else 0.0 for entry in inputs])
+
+
+def _bend(entry, respond):
+    """Curvature of one input from three states with the same samples."""
+    less, more = entry.states
+    responses = respond([less, entry.middle, more])
+    low, centre, high = np.log([responses.centre_of_slopes(values) for values in responses.values])
+    return (low + high - 2 * centre) / 2 / (entry.step / 2) ** 2
+
+
 def _slope(responses, step):
     """Slope between two states and its standard error, of the devices and of their common samples."""
     value, own = log_slope(responses.centre_of_slopes, *responses.values, step)
@@ -305,6 +320,7 @@ def layout(
         {
             "slope": ("input", slopes[:, 0]),
             "slope_error": ("input", slopes[:, 1]),
+            "bend": ("input", np.zeros(len(inputs))),
             "covariance": (("input", "other"), covariance),
             "group": ("input", groups),
             "centre": ((), centre if np.isfinite(centre) else np.nan, response),
@@ -325,6 +341,22 @@ def budget_of(dataset: xr.Dataset) -> Budget:
     """Budget from its dataset."""
     names = tuple(map(str, dataset.input.values))
     return Budget(names, dataset.slope.values, dataset.covariance.values)
+
+
+def margin_of(dataset: xr.Dataset) -> float:
+    """Half of what the margin of a length or force takes from its logarithm: the total with its curvature [-]."""
+    is_force = dataset.centre.attrs["response"] == FORCE
+    return budget_of(dataset).unsafe_total(dataset.bend.values if is_force else -dataset.bend.values)
+
+
+def largest_margin(budgets: Iterable[xr.Dataset]) -> float:
+    """Largest known `margin_of` some budgets, 0 without any [-]."""
+    return max(filter(np.isfinite, map(margin_of, budgets)), default=0.0)
+
+
+def margin_of_shape(budgets: Mapping[tuple, xr.Dataset], shape: str) -> float:
+    """Largest known `margin_of` a beam in an end state, from its budgets as of `budgets_of` [-]."""
+    return largest_margin(budget for key, budget in budgets.items() if ("tip" in key) == (shape == EITHER))
 
 
 def groups_of(dataset: xr.Dataset) -> dict[str, list[str]]:

@@ -21,7 +21,8 @@ from stiction.contact.materials import OF_CONTACT, Step
 from stiction.contact.tilt import EDGE_RADIUS
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.scans import moments
-from stiction.stages.contact.changes.quantities import difference
+from stiction.stages.contact.changes.quantities import difference, is_large
+from stiction.stages.contact.contact import first
 from stiction.stages.devices.opening import DesignedBeam
 from stiction.stages.laws.scan_uncertainty import errors_of
 from stiction.stages.surfaces import heights, spectrum
@@ -57,6 +58,8 @@ class Input:
     group: str  #: what a measurement determines, this input and perhaps others, for reading
     states: tuple[State, State]  #: with less and with more of the input
     step: float  #: difference of the input between both
+    #: State between both, if they are as far around it as the uncertainty of the input and its curvature counts.
+    middle: State | None = None
 
 
 @dataclass(frozen=True)
@@ -238,7 +241,9 @@ def surface_block(
         kind = "spectrum" if quantity in SPECTRUM_QUANTITIES else "heights"
         contacts = shifted[surface, quantity]
         states = tuple(replace(state, contact=contact) for contact in contacts)
-        inputs.append(Input(f"{quantity} of {surface}", f"the {kind} of {surface}", states, difference(contacts[0])))
+        middle = replace(state, contact=first(state.contact, contacts[0].sizes["sample"]))
+        step, middle = difference(contacts[0]), middle if is_large(contacts[0], quantity) else None
+        inputs.append(Input(f"{quantity} of {surface}", f"the {kind} of {surface}", states, step, middle))
     return Block(inputs, known.covariance)
 
 

@@ -15,6 +15,8 @@ VOLTAGE, SHOCK, COLLAPSE, RELEASED, AFTER = "voltage", "shock", "collapse", "rel
 AT_VOLTAGE, VOLTAGE_ENERGY, FIELD, FREEING = "at_voltage", "voltage_energy", "field", "freeing_voltage"
 FAST, RESTORING, FREED = "fast", "restoring_force", "freeing"
 HELD, PULL = "energy", "force"
+#: Begins the names of safe lengths, which end with their humidity.
+SAFE = "safe_length_"
 TILTED, WEDGE = "force_tilted", "wedge"
 ON_DIMPLES, BESIDE, DIMPLES, PULLED = "stuck_dimples", "beside_dimples", "dimples", "dimples_force"
 VOLTAGE_BESIDE, TENSION_BESIDE = "voltage_dimples", "tension_dimples"

@@ -20,7 +20,7 @@ from stiction.devices.risk import one_in
 from stiction.plan.stage import Stage, select
 from stiction.stages.devices.opening import section_of_beam
 from stiction.stages.devices.safe_lengths import chosen_share
-from stiction.stages.life.answers import HOLD, STICK, Answer, in_order, layout
+from stiction.stages.life.answers import HOLD, SAFE, STICK, Answer, in_order, layout
 from stiction.stages.life.dimples import dimple_answers
 from stiction.stages.life.fast import separated_fast
 from stiction.stages.life.freeing import beam_held, stopper_freed
@@ -50,7 +50,7 @@ def beam_answers(
     length = length_of(lengths, of)
     answers = [
         Answer(
-            f"safe_length_{humidity:g}",
+            f"{SAFE}{humidity:g}",
             STICK,
             f"safe length {Air(humidity).where}: at most {one_in(share)} sticks after one touchdown",
             *(value, value, error),

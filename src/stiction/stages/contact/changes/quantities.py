@@ -5,18 +5,26 @@ Every slope with common random numbers uses them: of energies in `stiction.stage
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import xarray as xr
 
-from stiction.analysis.shifts import bracketed
+from stiction.analysis.shifts import STEPS, bracketed
 from stiction.models import MODE_QUANTITIES, SHIFTS
 from stiction.stages.contact import contact as stage_contact
+from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import Change
-from stiction.stages.contact.pairs import Settings
 from stiction.stages.surfaces import measured_heights
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
+
+
+@dataclass(frozen=True)
+class Settings(pairs.Settings):
+    """Settings of the contact, and the standard uncertainty of the quantity if it is stated or assumed."""
+
+    deviation: float = 0.0  #: [-]; of ln rms, skewness, kurtosis, ln corner or slope
 
 
 def compute(
@@ -36,7 +44,7 @@ def compute(
     heights, spectrum = surfaces[settings.surfaces.index(surface)]
     if estimate is not None:
         heights = measured_heights.compute(estimate, measured_heights.Settings(surface, "measured"))
-    shifted, difference = bracketed(description(heights, spectrum), quantity)
+    shifted, difference = bracketed(description(heights, spectrum), quantity, settings.deviation)
     changed = [drawn_as(one, settings.sampling.spacing) for one in shifted]
     alternatives = [
         [other if name == surface else same for name, same in zip(settings.surfaces, surfaces, strict=True)]
@@ -58,6 +66,11 @@ def difference(contact: xr.Dataset) -> float:
     return float(contact.difference)
 
 
+def is_large(contact: xr.Dataset, quantity: str) -> bool:
+    """Whether both sides are farther apart than for a slope: as far around the surface as its uncertainty."""
+    return difference(contact) > 2 * STEPS[quantity] * (1 + 1e-9)
+
+
 def _with_estimate(plan, at, _named):
     """Two surfaces, and the estimate of the surface if one of its modes is shifted.
 
@@ -67,12 +80,20 @@ def _with_estimate(plan, at, _named):
     return surface_inputs(plan, at.pair) | estimate
 
 
+def _settings(plan, at, place):
+    """Settings of a patch, with an uncertainty that is larger than the step of the quantity."""
+    deviation = plan.deviation(at.surface, at.quantity)
+    own = {"deviation": deviation} if deviation > STEPS[at.quantity] else {}
+    return place.settings(plan, at, plan.config["studies"]["slopes"]["samples"]) | own
+
+
 #: A quantity of one surface.
 QUANTITY = Change(
     words="with less and more {quantity} of {surface}",
     end="_{surface}_{quantity}_{each}",
     each=lambda plan: SHIFTS,
     inputs=_with_estimate,
-    settings=lambda plan, at, place: place.settings(plan, at, plan.config["studies"]["slopes"]["samples"]),
+    settings=_settings,
+    kind=Settings,
     compute=from_surfaces,
 )
