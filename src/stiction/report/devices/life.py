@@ -118,8 +118,8 @@ def less_margin(dataset: xr.Dataset, total: float) -> xr.Dataset:
     left = part_left(total)
     margin = f"less {in_percent(1 - left)} for the measurements" if np.isfinite(left) else "if measurements were exact"
     named = [name in (AFTER, FAST, AT_VOLTAGE) or name.startswith(SAFE) for name in map(str, dataset.answer.values)]
-    is_safe = xr.DataArray(named, dims="answer") & (dataset.unit == "m")
-    scaled = {name: dataset[name] * xr.where(is_safe, np.nan_to_num(left, nan=1.0), 1.0) for name in _NUMBERS}
+    is_safe = np.array(named) & (dataset.unit.values == "m")
+    scaled = {name: dataset[name] * np.where(is_safe, np.nan_to_num(left, nan=1.0), 1.0) for name in _NUMBERS}
     forms = [f"{form}; {margin}" if is_one else form for form, is_one in zip(dataset.form.values, is_safe, strict=True)]
     return dataset.assign(scaled).assign(form=("answer", forms))
 
