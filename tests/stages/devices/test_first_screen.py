@@ -187,6 +187,7 @@ def test_the_answer_of_a_device_with_test_beams_is_the_one_that_they_give():
     after, before = 1.02 * 244 * np.exp(-0.2), 244 * np.exp(-0.4)
     assert beam.answer == f"Safe up to {after:.0f} µm."
     assert beam.basis[-1].endswith(f"Without the test beams: {before:.0f} µm.")
+    assert beam.cells["with test beams [µm]"].tolist() == [f"{after:.0f}"]
     after, before = 0.9 * 40 * np.exp(0.2), 40 * np.exp(0.4)
     assert stopper.answer.startswith(f"At least {after:.3g} µN needed; ")
     assert stopper.basis[-1].endswith(f"Without the test beams: {before:.3g} µN.")

@@ -185,10 +185,11 @@ def _table_of_beam(safe_lengths, budgets, test_beams):
 
 
 def _with_test_beams(update, humidity):
-    """Safe length after test beams, before any margin [m], NaN if they are unreliable."""
-    if not is_reliable(update) or humidity not in update.humidity:
+    """Safe length after test beams, less as much as the answer is [m]; NaN if none is stated."""
+    if not (updated := updated_size(update)) or humidity not in update.humidity:
         return np.nan
-    return float(_middle_lengths(update).updated_safe.sel(humidity=humidity).min())
+    lengths = _middle_lengths(update).updated_safe
+    return float(lengths.sel(humidity=humidity).min()) * updated[1] * UM / float(lengths.min())
 
 
 def stopper_screen(
