@@ -133,6 +133,17 @@ def test_quantities_of_a_surface_keep_their_covariance_and_their_group():
     assert [entry.group for entry in found] == ["the heights of B2", "the spectrum of B2", "the humidity"]
     assert [entry.step for entry in found[:2]] == [0.1, 0.1]
     assert_allclose(matrix, [[4, 1, 0], [1, 9, 0], [0, 0, 0.01]])
+    assert not any(entry.middle for entry in found)
+
+
+def test_quantities_that_are_shifted_by_a_large_uncertainty_have_a_middle_with_as_many_samples():
+    contact = small.contact_of_pair()
+    pair = tuple(contact.isel(sample=slice(8)).assign(difference=((), 1.6)) for _ in range(2))
+    known, at = Known(("corner",), np.array([[0.64]])), replace(BASE, contact=contact)
+    block = inputs.surface_block(at, "B2", {("B2", "corner"): pair}, known)
+    (entry,) = block.inputs
+    assert entry.middle.contact.sizes["sample"] == 8 < contact.sizes["sample"]
+    assert entry.middle.humidity == at.humidity
 
 
 def test_one_scan_gives_the_covariance_of_its_closed_form():

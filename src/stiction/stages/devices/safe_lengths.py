@@ -178,8 +178,9 @@ def _for_touchdowns(plan, at):
 
 
 def _in_drier_air(plan, case):
-    """Safe lengths of a cantilever in the next drier of its humid airs, if there is one."""
-    humid = [one for one in plan.config["devices"][case.device]["humidities"] if 0 < one < case.humidity]
+    """Safe lengths of a cantilever in the next drier of its humid airs, if there is one. Other airs are in no table."""
+    airs = plan.config["devices"][case.device]["humidities"]
+    humid = [one for one in airs if case.humidity in airs and 0 < one < case.humidity]
     if not (humid and plan.devices.kind(case.device).has_tip):
         return {}
     return {"drier": f"devices/safe_lengths/{case_id(case.device, max(humid))}"}

@@ -241,9 +241,10 @@ def surface_block(
         kind = "spectrum" if quantity in SPECTRUM_QUANTITIES else "heights"
         contacts = shifted[surface, quantity]
         states = tuple(replace(state, contact=contact) for contact in contacts)
-        middle = replace(state, contact=first(state.contact, contacts[0].sizes["sample"]))
-        step, middle = difference(contacts[0]), middle if is_large(contacts[0], quantity) else None
-        inputs.append(Input(f"{quantity} of {surface}", f"the {kind} of {surface}", states, step, middle))
+        middle, of = None, contacts[0]
+        if is_large(of, quantity):
+            middle = replace(state, contact=first(state.contact, of.sizes["sample"]))
+        inputs.append(Input(f"{quantity} of {surface}", f"the {kind} of {surface}", states, difference(of), middle))
     return Block(inputs, known.covariance)
 
 
