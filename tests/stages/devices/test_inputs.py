@@ -9,6 +9,7 @@ import small
 from beams import PAPER
 from numpy.testing import assert_allclose
 
+from stiction.analysis.shifts import STEPS
 from stiction.contact.environment import Water
 from stiction.stages.devices import uncertain_inputs as inputs
 from stiction.stages.devices.opening import DesignedBeam
@@ -125,13 +126,16 @@ def test_a_stopper_has_no_dimensions_of_a_beam():
 
 def test_quantities_of_a_surface_keep_their_covariance_and_their_group():
     known = Known(("mode2", "corner"), np.array([[4.0, 1], [1, 9]]))
-    pair = tuple(small.contact_of_pair().assign(difference=((), 0.1)) for _ in range(2))
-    shifted = {("B2", name): pair for name in known.quantities}
+    differences = {name: 2 * STEPS[name] for name in known.quantities}
+    shifted = {
+        ("B2", name): tuple(small.contact_of_pair().assign(difference=((), difference)) for _ in range(2))
+        for name, difference in differences.items()
+    }
     settings = replace(SETTINGS, uncertainty=Uncertainty(humidity=0.1))
     found, matrix = inputs.uncertain(BASE, shifted, {}, {"B2": known}, settings)
     assert [entry.name for entry in found] == ["mode2 of B2", "corner of B2", "humidity"]
     assert [entry.group for entry in found] == ["the heights of B2", "the spectrum of B2", "the humidity"]
-    assert [entry.step for entry in found[:2]] == [0.1, 0.1]
+    assert [entry.step for entry in found[:2]] == list(differences.values())
     assert_allclose(matrix, [[4, 1, 0], [1, 9, 0], [0, 0, 0.01]])
     assert not any(entry.middle for entry in found)
 
