@@ -37,7 +37,8 @@ def printed(budgets):
     (own,) = own_length.sentences({0.67: of_length(300e-6, longest=450e-6)}, budgets)
     row, answers = screen.cells.iloc[1], layout(beam_answers(LENGTHS, {}, OF), OF)
     shown = life.table({"D": life.less_margin(answers, sentences.length_to_build(LENGTHS, budgets)[1])}).frame
-    beside = tables.safe_lengths({("D", 0.67): LENGTHS[0.67]}, SILENT, budgets=budgets or None).frame
+    left = sentences.parts_left(LENGTHS[0.67], budgets) if budgets else None
+    beside = tables.safe_lengths({("D", 0.67): LENGTHS[0.67]}, SILENT, left=left).frame
     column = "to_build_um" if budgets else "safe_length_um"
     at = beside[beside.share == 1e-3].set_index("held_by")[column]
     return {

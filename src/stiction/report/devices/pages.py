@@ -103,7 +103,8 @@ def beam_page(
         Name of the device to the dataset of stage device_model_error.
     """
     cases = {(name, humidity): dataset for humidity, dataset in safe_lengths.items()}
-    table = tables_devices.safe_lengths(cases, warnings, errors, budgets=budgets).cells.drop(columns="device")
+    left = sentences.parts_left(next(iter(safe_lengths.values())), budgets) if budgets else None
+    table = tables_devices.safe_lengths(cases, warnings, errors, left=left).cells.drop(columns="device")
     sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}), _MISSING_LENGTHS)]
     if charts:
         axis = {(name, humidity): dataset for humidity, dataset in charts.items()}

@@ -36,9 +36,13 @@ def lengths_to_build(dataset: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -
 
     A beam is no longer than what any end state before its own allows.
     """
-    lengths = safe_lengths_of(dataset)
-    left = [part_left(margin_of_shape(budgets, shape)) for shape in map(str, lengths["shape"].values)]
-    return lengths.copy(data=np.fmin.accumulate(lengths.values * left))
+    lengths, left = safe_lengths_of(dataset), parts_left(dataset, budgets)
+    return lengths.copy(data=np.fmin.accumulate(lengths.values * list(left.values())))
+
+
+def parts_left(dataset: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> dict[str, float]:
+    """Parts of the safe lengths of a dataset that the margin leaves, by shape, NaN where it is too large [-]."""
+    return {shape: part_left(margin_of_shape(budgets, shape)) for shape in map(str, dataset["shape"].values)}
 
 
 def is_bounded(total: float) -> bool:

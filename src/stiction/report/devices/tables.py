@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.devices.budget import LARGEST, part_left
+from stiction.devices.budget import LARGEST
 from stiction.devices.risk import Basis
 from stiction.plan.names import by_case
 from stiction.report.format import MISSING, UM, error_alone, humidity_text, number
@@ -17,7 +17,6 @@ from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
 from stiction.rounding import in_percent
 from stiction.stages.beams.pair_warnings import numbered, with_numbers
 from stiction.stages.devices import device_warnings
-from stiction.stages.devices.budget import margin_of_shape
 from stiction.stages.devices.chart import axes, charts, largest_error_between
 from stiction.stages.devices.device_warnings import curves, not_modelled
 from stiction.stages.devices.end_states import END_STATES
@@ -122,12 +121,12 @@ def safe_lengths(
     warnings: Mapping[tuple[str, float, str], list],
     errors: Mapping[str, xr.Dataset] | None = None,
     not_modelled: str = "",
-    budgets: Mapping[tuple, xr.Dataset] | None = None,
+    left: Mapping[str, float] | None = None,
 ) -> Table:
     """Safe lengths of all beams, one row per device, humidity, shape and share.
 
-    Errors of the model are by device, and budgets as of `stiction.stages.devices.budget.budgets_of`, for a column of
-    lengths to build. The caption ends with what is not in the model.
+    Errors of the model are by device, and the parts of lengths left to build by shape, for a column of lengths to
+    build. The caption ends with what is not in the model.
     """
     rows, marks = [], []
     numbers = numbered(warnings)[1]
@@ -137,19 +136,19 @@ def safe_lengths(
             head |= _at_length(dataset.sel(shape=shape))
             last = model_errors.device_change(errors, device, humidity, shape)
             last |= {"warnings": " ".join(warnings[device, humidity, shape])}
-            left = part_left(margin_of_shape(budgets, shape)) if budgets else None
-            rows += [head | _safe_length(dataset.sel(shape=shape, share=p), left) | last for p in dataset.share.values]
+            part = left and left[shape]
+            rows += [head | _safe_length(dataset.sel(shape=shape, share=p), part) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
     own = _COLUMNS_AT_LENGTH if "length_um" in frame else {}
     said = [
         *([_AT_LENGTH] if own else []),
         _SAFE_LENGTHS,
-        _TO_BUILD if budgets else _EXACT,
+        _TO_BUILD if left else _EXACT,
         *_few(datasets),
         about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY),
     ]
-    text, columns = " ".join(said), _HELD | own | (_LENGTHS | _BUILT if budgets else _LENGTHS)
+    text, columns = " ".join(said), _HELD | own | (_LENGTHS | _BUILT if left else _LENGTHS)
     if "prediction_low_um" in frame:
         text, columns = f"{text} {_PREDICTED}", columns | _PREDICTION
     if errors:
