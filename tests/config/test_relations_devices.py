@@ -202,17 +202,25 @@ def test_a_wrong_device_is_refused_by_name(keys, key, message):
         ({}, "dimples", "must come with length_um"),
         ({"length_um": 200}, "dimples.at_um", "must be below length_um of the beam"),
         ({"length_um": 300, "gap_um": 1}, "dimples.height_um", "must be below gap_um of the beam"),
-        ({"length_um": 300, "dimples": DIMPLES | {"number": 101}}, "dimples.number", "must be at most 1 / 50 of"),
+        (
+            {"width_um": 210, "length_um": 300, "dimples": DIMPLES | {"number": 101}},
+            "dimples.number",
+            "at most 1 / 50 of",
+        ),
         ({"length_um": 300, "dimples": DIMPLES | {"number": 0}}, "dimples.number", "at least 1"),
         (
-            {"length_um": 300, "dimples": DIMPLES | {"number": 51, "at_um": [9, 200]}},
+            {"width_um": 110, "length_um": 300, "dimples": DIMPLES | {"number": 51, "at_um": [9, 200]}},
             "dimples.number",
             "at most 1 / 100",
         ),
         ({"length_um": 300, "dimples": DIMPLES | {"at_um": [200, 200]}}, "dimples.at_um", "in increasing order"),
         ({"length_um": 300, "dimples": DIMPLES | {"at_um": 200}}, "dimples.at_um", "[200]"),
         ({"length_um": 300, "dimples": DIMPLES | {"at_um": [20, 300]}}, "dimples.at_um", "must be below length_um"),
-        ({"length_um": 300, "dimples": DIMPLES | {"contact_um": [200, 200]}}, "dimples.contact_um", "memory"),
+        (
+            {"width_um": 200, "length_um": 300, "dimples": DIMPLES | {"number": 1, "contact_um": [200, 200]}},
+            "dimples.contact_um",
+            "memory",
+        ),
     ],
 )
 def test_dimples_are_refused_by_name(keys, key, message):
@@ -262,7 +270,7 @@ def test_an_electrode_is_at_least_as_far_as_the_contact():
     ("liquid", "key", "message"),
     [
         ({"contact_angle_deg": 30}, "surface_tension_mN_per_m", "is missing"),
-        ({"surface_tension_mN_per_m": 0}, "surface_tension_mN_per_m", "above 0"),
+        ({"surface_tension_mN_per_m": 0.018}, "surface_tension_mN_per_m", "write 18 if 0.018 is in N/m"),
         ({"surface_tension_mN_per_m": 22, "contact_angle_deg": 190}, "contact_angle_deg", "at least 0 and at most 180"),
     ],
 )

@@ -2,8 +2,8 @@
 
 import math
 import operator
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -36,6 +36,7 @@ class Meeting:
     stated: list[str]  #: keys that say what meets
     asked: tuple[str, ...] = ()  #: key that says whether it is computed
     deviation: str = ""  #: key of the uncertainty of the humidities
+    others: tuple[tuple[str, float], ...] = ()  #: surfaces with another rms [nm] than in their sections
 
     def keys_behind(self, *more: str) -> list[str]:
         """List the keys behind a refusal, ``more`` among them."""
@@ -50,6 +51,12 @@ class Meeting:
     def sides(self) -> list[dict]:
         """Sections of both surfaces. Empty if one is not defined or has no numbers (yet)."""
         return sides_of(*self.surfaces, self.config["surfaces"])
+
+    @property
+    def rms(self) -> float:
+        """Rms of both surfaces together [nm]."""
+        stated = zip(self.surfaces, self.sides, strict=True)
+        return math.hypot(*(dict(self.others).get(name, side["rms_nm"]) for name, side in stated))
 
     @cached_property
     def materials(self) -> list[dict]:
@@ -137,19 +144,27 @@ def gaps_are_far_above_the_film(config):
             values = dict(config.valid(gap, air))
             if len(values) == 2 and meeting.sides:
                 adsorbed = dict(config.valid(ADSORBED))
-                least, refusal = _least_gap(values[air], meeting, adsorbed.get(ADSORBED, 0))
+                least, refusal = least_gap(values[air], meeting)
                 found = least, gap, refusal, air, *meeting.keys_behind(TEMPERATURE, *adsorbed)
                 if np.min(values[gap]) < least:
                     refused[gap] = max(refused.get(gap, found), found, key=operator.itemgetter(0))
         yield from (found[1:] for found in refused.values())
 
 
-def _least_gap(humidities, meeting, adsorbed):
-    """Smallest gap [µm] far above the film at the highest humidity, with the adsorbed water [nm], and its message."""
+def with_rms(config: Keys, device: str, rms: Mapping[str, float]) -> Meeting:
+    """Meeting at a device with another rms of some surfaces [nm]."""
+    return replace(device_meeting(device, config), others=tuple(rms.items()))
+
+
+def least_gap(humidities: float | list, meeting: Meeting) -> tuple[float, str] | None:
+    """Smallest gap [µm] far above the film at the highest humidity, and its message. None without known surfaces."""
+    if not meeting.sides:
+        return None
+    adsorbed = sum(value for _, value in meeting.config.valid(ADSORBED))
     angles, humid = meeting.wetting(), above_zero(humidities)
     wet = angles and humid
     heights = meniscus_height(humid, meeting.config[TEMPERATURE], angles) + to_si(adsorbed, "nm") if wet else 0.0
-    height, rms = float(np.max(heights)), math.hypot(*(to_si(side["rms_nm"], "nm") for side in meeting.sides))
+    height, rms = float(np.max(heights)), to_si(meeting.rms, "nm")
     least = from_si(limits.least_gap(height, rms), "um")
     return least, (
         f"must be at least {least:.4g} µm, {limits.FILMS} times the sum of the height of the water film, "

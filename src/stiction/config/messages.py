@@ -227,13 +227,13 @@ def _list_hint(value, entry):
 
 
 #: Units of keys whose values in SI lie outside the bounds of the schema, and the names of these values.
-_IN_SI = {"nm": "metres", "um": "metres", "GPa": "pascals", "MPa": "pascals", "uN": "newtons"}
+_IN_SI = {"nm": "metres", "um": "metres", "GPa": "pascals", "MPa": "pascals", "uN": "newtons", "mN_per_m": "N/m"}
 
 
 def _unit_of(path):
     """Unit in the last key of a path with a unit, empty if none has one."""
-    units = (key.rpartition("_")[2] for key in reversed(path) if isinstance(key, str))
-    return next((unit for unit in units if unit in _IN_SI), "")
+    keys = (key for key in reversed(path) if isinstance(key, str))
+    return next((unit for key in keys for unit in _IN_SI if key.endswith(f"_{unit}")), "")
 
 
 def _unit_hint(path, value, entry):

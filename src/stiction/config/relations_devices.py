@@ -13,7 +13,15 @@ from stiction.config.cases import Air
 from stiction.config.keys import Relations
 from stiction.config.kinds import KEYS, KINDS, KNOWN, ROUGHNESSES, kind_of
 from stiction.config.materials import hamaker_constant, material_of
-from stiction.config.meetings import TEMPERATURE, above_zero, device_meeting, sides_of, surfaces_of
+from stiction.config.meetings import (
+    TEMPERATURE,
+    above_zero,
+    device_meeting,
+    least_gap,
+    sides_of,
+    surfaces_of,
+    with_rms,
+)
 from stiction.config.messages import duplicates
 from stiction.config.reading import is_stated
 from stiction.config.relations import (
@@ -27,7 +35,9 @@ from stiction.config.relations import (
     schema,
     without_density,
 )
+from stiction.config.surfaces import process as process_surfaces
 from stiction.config.test_beams import DATA, shared_uncertainty
+from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.materials import COATING_ATTRACTION, OF_CONTACT
 from stiction.contact.tilt import EDGE_RADIUS, Edge
 from stiction.rounding import is_at_most
@@ -38,6 +48,8 @@ LEAST_SCATTER = 1e-4
 
 #: Relations between the keys of devices.
 relation = Relations()
+#: Relations between the sizes of all tips, those of counted test beams among them.
+relation_of_tips = Relations()
 
 #: Keys of the grid of contact points.
 _GRID = "sampling.spacing_nm", "contact.every"
@@ -94,10 +106,11 @@ def devices_have_the_keys_of_their_kind(config):
 def lengths_of_devices_are_those_of_slender_beams(config):
     """Require beams longer than their thickness and deflection. Lengths in mm are not."""
     sizes = "thickness_um", "gap_um"
-    for name, length, *values in config.entries("devices", "length_um", *sizes):
-        if length <= max(values):
-            message = "must be in µm, above the thickness and the gap of the beam"
-            yield f"devices.{name}.length_um", message, *(f"devices.{name}.{size}" for size in sizes)
+    for key in ("length_um", "requirement.length_um"):
+        for name, length, *values in config.entries("devices", key, *sizes):
+            if length <= max(values):
+                message = "must be in µm, above the thickness and the gap of the beam"
+                yield f"devices.{name}.{key}", message, *(f"devices.{name}.{size}" for size in sizes)
 
 
 @relation
@@ -551,3 +564,133 @@ def beams_are_counted_once(config):
         for length, humidity in duplicates((datum["length_um"], datum["humidity"]) for datum in data):
             group = f"beams of {length:g} µm {Air(humidity).where}"
             yield f"test_beams.{name}.stuck", f"must count each length at a humidity once: {group} are listed twice"
+
+
+# Sizes: the parts of a device fit together, and its uncertain inputs stay possible
+
+
+@relation
+def tilted_stoppers_fit_into_their_gap(config):
+    """Require both ends of a tilted stopper within the gap: the higher end is not above its place at rest."""
+    for name, tilts, sides, gap in config.entries("devices", "tilt_deg", "contact_um", "gap_um"):
+        rise = sides[0] * math.sin(math.radians(max(tilts)))
+        if rise > gap:
+            steepest = math.degrees(math.asin(gap / sides[0]))
+            message = (
+                f"must leave both ends within the gap, at most {steepest:.3g}: at {max(tilts):g}° one end is "
+                f"{rise:.3g} µm above the other"
+            )
+            yield f"devices.{name}.tilt_deg", message, f"devices.{name}.gap_um", f"devices.{name}.contact_um"
+
+
+@relation
+def dimples_have_room(config):
+    """Require dimples side by side in their row, rows apart from each other, and both on the beam."""
+    for name, dimples, width in config.entries("devices", "dimples", "width_um"):
+        key = f"devices.{name}.dimples"
+        along, across = _along_and_across(dimples, width)
+        if dimples["number"] * across > width:
+            message = (
+                f"must leave {dimples['number']} dimples side by side on the width of the beam, sides of at most "
+                f"{width / dimples['number']:.3g} µm"
+            )
+            yield f"{key}.contact_um", message, f"{key}.number", f"devices.{name}.width_um"
+        rows = dimples["at_um"]
+        if any(0 < high - low < along for low, high in zip(rows, rows[1:], strict=False)):
+            message = f"must have rows at least {along:g} µm apart, a side of their dimples"
+            yield f"{key}.at_um", message, f"{key}.contact_um"
+
+
+def _along_and_across(dimples, width):
+    """Sides of a dimple along and across the beam: the longer one lies across where all of a row have room then."""
+    short, long = sorted(dimples["contact_um"])
+    return (short, long) if dimples["number"] * long <= width else (long, short)
+
+
+@relation
+def dimples_are_whole_on_their_beam(config):
+    """Require the first and the last row with half a side of a dimple between them and the ends of the beam."""
+    for name, dimples, width, length in config.entries("devices", "dimples", "width_um", "length_um"):
+        rows, key = dimples["at_um"], f"devices.{name}.dimples"
+        half = _along_and_across(dimples, width)[0] / 2
+        if max(rows) < length and not half <= min(rows) <= max(rows) <= length - half:
+            message = f"must leave whole dimples on the beam, between {half:g} and {length - half:g} µm"
+            yield f"{key}.at_um", message, f"{key}.contact_um", f"devices.{name}.length_um"
+
+
+@relation
+def strips_are_parts_of_their_beam(config):
+    """Require strips no longer than the beam."""
+    for name, strip, length in config.entries("devices", "strip_um", "length_um"):
+        if strip > length:
+            yield f"devices.{name}.strip_um", "must be at most the length of the beam", f"devices.{name}.length_um"
+
+
+@relation
+def dielectrics_fit_into_the_gap(config):
+    """Require layers thinner than the gap: closed forms of voltages have the electrode at the distance of the gap."""
+    for name, thickness, gap in config.entries("devices", "dielectric.thickness_nm", "gap_um"):
+        if thickness >= gap * NM_PER_UM:
+            message = f"must be below the gap, {gap * NM_PER_UM:g} nm: voltages act across gap_um, with the layer in it"
+            yield f"devices.{name}.dielectric.thickness_nm", message, f"devices.{name}.gap_um"
+
+
+@relation
+def films_stand_their_stress(config):
+    """Require a stress below Young's modulus, a strain below 1."""
+    for name, stress, _ in config.entries("devices", "residual_stress_MPa", "pair"):
+        modulus = from_si(to_si(_material(config, name)["young_modulus_GPa"], "GPa"), "MPa")
+        if stress >= modulus:
+            message = f"must be below Young's modulus of the beam, {modulus:g} MPa"
+            yield f"devices.{name}.residual_stress_MPa", message, f"devices.{name}.pair"
+
+
+@relation
+def uncertain_stresses_are_tensile(config):
+    """Require a tensile stress one standard uncertainty below its value, too. Compression is not in the model."""
+    key = "residual_stress_MPa"
+    for name, deviation, stress in config.entries("devices", f"uncertainty.{key}", key):
+        if deviation > stress:
+            message = "must be at most the stress itself: compression is not in the model"
+            yield f"devices.{name}.uncertainty.{key}", message, f"devices.{name}.{key}"
+
+
+@relation
+def gaps_are_far_above_varied_surfaces(config):
+    """Require the gap far above the film and the roughest surface of a range, as above the given one."""
+    for name, key, surface, rms in _varied_surfaces(config):
+        for _, gap, humidities in (one for one in config.entries("devices", "gap_um", "humidities") if one[0] == name):
+            least = least_gap(humidities, with_rms(config, name, {surface: rms}))
+            if least is not None and gap < least[0]:
+                message = f"must leave a gap at the rms of {rms:g} nm, where gap_um {least[1]}"
+                yield f"devices.{name}.{key}", message, f"devices.{name}.gap_um", f"devices.{name}.humidities"
+
+
+def _varied_surfaces(config):
+    """Devices over a range of surfaces: name, key of the range, surface, and its largest rms [nm]."""
+    for name, ends, surface in config.entries("devices", "roughness.rms_nm", "roughness.surface"):
+        yield name, "roughness.rms_nm", surface, ends[1]
+    for key in ("process", "second_process"):
+        for name, process in config.entries("devices", key):
+            made = process_surfaces.names(config.config, process)
+            rms = [config["surfaces"][one]["rms_nm"] for one in made if "rms_nm" in config["surfaces"].get(one, {})]
+            for _, surface in (one for one in config.entries("process", "surface") if one[0] == process and rms):
+                yield name, key, surface, max(rms)
+
+
+@relation_of_tips
+def edges_are_within_their_tips(config):
+    """Require the radius of a rounded edge up to the thickness of every tip that may touch."""
+    if config["design.tip_edge"] == Edge.SQUARE:
+        return
+    key, radius = "design.edge_radius_um", config["design.edge_radius_um"]
+    kinds = config.entries("devices", "kind", "thickness_um")
+    tips = {f"devices.{name}.thickness_um": thickness for name, kind, thickness in kinds if KINDS[kind].has_tip}
+    for name, thicknesses in config.entries("devices", "chart.thicknesses_um"):
+        if f"devices.{name}.thickness_um" in tips:
+            tips[f"devices.{name}.chart.thicknesses_um"] = min(thicknesses)
+    for name, _, thickness in config.entries("test_beams", "stuck", "thickness_um"):
+        tips[f"test_beams.{name}.thickness_um"] = thickness
+    thinnest = min(tips, key=tips.get, default=None)
+    if thinnest and radius > tips[thinnest]:
+        yield key, f"must be at most the thickness of every tip, {tips[thinnest]:g} µm, or 0 for a sharp edge", thinnest

@@ -14,7 +14,9 @@ from stiction.config.surfaces import described, grid, process, process_relations
 #: Relations between the keys of devices, and of arrays of test beams in their place.
 _OF_DEVICES = Relations([*meetings.relation, *relations_devices.relation])
 #: All relations between keys.
-RELATIONS = Relations([*relations.relation, *_OF_DEVICES, *process_relations.relation])
+RELATIONS = Relations(
+    [*relations.relation, *_OF_DEVICES, *relations_devices.relation_of_tips, *process_relations.relation]
+)
 #: Sections that a configuration need not have.
 _OPTIONAL = {"materials": {}, "devices": {}, "test_beams": {}, "process": {}}
 

@@ -9,6 +9,7 @@ ASSUME: the library, the four surfaces of the paper (Tables I and II), stands fo
 is negative. Gaussian heights would stick less, which is not the safe side.
 """
 
+import math
 from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
@@ -121,8 +122,10 @@ def completed(
     wrong, surfaces, problems = faulty(faults, "surfaces"), {}, []
     for name, entry in config["surfaces"].items():
         refused = None if name in wrong else next(_refusals(entry, library), None)
-        problems += [_problem(name, entry, *refused)] if refused else []
         surfaces[name] = entry if refused or name in wrong else complete(entry, library)
+        if not refused and name not in wrong:
+            refused = next(_impossible_uncertainties(entry, surfaces[name]), None)
+        problems += [_problem(name, entry, *refused)] if refused else []
     uncertain = [name for name, entry in surfaces.items() if name not in wrong and _is_uncertain(entry)]
     return with_uncertain_devices(config | {"surfaces": surfaces}, uncertain), problems
 
@@ -199,6 +202,32 @@ def _refusals_of_uncertainty(entry):
             yield f"uncertainty.{key}", f"must come with {key} of the surface"
         elif key in ("corner_rad_per_um", "hurst") and not has_spectrum:
             yield f"uncertainty.{key}", "must come with published_psd, or with the spectrum as papers state it"
+
+
+def _impossible_uncertainties(entry, complete):
+    """Yield keys of uncertainties beyond their quantities, with refusals, from a section as stated and as completed.
+
+    Any distribution has a kurtosis above its skewness² + 1, so that the mean of kurtoses is above the mean skewness²,
+    its variance and 1 together.
+    """
+    stated, psd = entry.get("uncertainty", {}), complete.get("published_psd", {})
+    sizes = {key: complete.get(key, entry.get(key, psd.get(key))) for key in _POSITIVE}
+    for key, value in sizes.items():
+        if key in stated and value is not None and stated[key] >= value:
+            yield f"uncertainty.{key}", f"must be below {key} itself, {value:g}"
+    if set(_FORM) <= set(complete):
+        skewness, kurtosis = (complete[key] for key in _FORM)
+        if kurtosis - stated.get("kurtosis", 0) < 1:
+            yield "uncertainty.kurtosis", f"must be at most {kurtosis - 1:g}: the kurtosis, {kurtosis:g}, is above 1"
+        room = kurtosis - 1 - skewness**2
+        if 0 < room < stated.get("skewness", 0) ** 2:
+            largest = math.sqrt(room)
+            reason = f"the kurtosis, {kurtosis:g}, is above 1 and the mean of skewness² together"
+            yield "uncertainty.skewness", f"must be at most {largest:.3g}: {reason}"
+
+
+#: Quantities of surfaces that are positive.
+_POSITIVE = "rms_nm", "correlation_length_nm", "corner_rad_per_um"
 
 
 def origins(config: Mapping[str, Any]) -> dict[tuple, tuple]:

@@ -24,8 +24,13 @@ UNITS = {
     "nm_per_min": "nm/min",
     "J_per_cm2": "J/cm²",
     "percent": "%",
+    "ratio": "1",
     "cycles": "cycles",
 }
+#: Units of quantities that are never negative. Lengths, voltages and rates can be differences.
+_POSITIVE = ("s", "min", "h", "K", "Pa", "kPa", "mbar", "mTorr", "Torr", "W", "rpm", "sccm", "J/cm²", "%", "cycles")
+#: Least value in a unit that has one.
+LEAST = dict.fromkeys(_POSITIVE, 0.0) | {"°C": -273.15}
 _UNIT = re.compile(f"_({'|'.join(sorted(UNITS, key=len, reverse=True))})$")
 #: Numbers that a setting may state, and those among them of the spectrum.
 NUMBERS = ("rms_nm", "skewness", "kurtosis", "corner_rad_per_um", "hurst")

@@ -1,5 +1,6 @@
 """Relations between the keys of processes, and of the devices computed over them."""
 
+import math
 from collections.abc import Iterator
 from contextlib import suppress
 from itertools import chain
@@ -10,7 +11,7 @@ from stiction.config.meetings import surfaces_of
 from stiction.config.messages import duplicates
 from stiction.config.relations import undefined
 from stiction.config.scans import digest
-from stiction.config.surfaces.process import NUMBERS, UNITS, all_names, unit_of
+from stiction.config.surfaces.process import LEAST, NUMBERS, UNITS, all_names, unit_of
 
 #: Relations between the keys of processes.
 relation = Relations()
@@ -45,6 +46,20 @@ def processes_have_several_settings(config):
         for value in duplicates(values):
             place = len(values) - 1 - values[::-1].index(value)
             yield f"{key}.{place}.value", "must differ from that of the other settings; one has all scans of a value"
+
+
+@relation
+def settings_are_possible(config):
+    """Require values that their unit can have: no negative times, temperatures and pressures, at most 100 percent."""
+    for name, settings, variable in config.entries("process", "settings", "variable"):
+        unit = unit_of(variable)
+        least, most = LEAST.get(unit, -math.inf), 100 if unit == "%" else math.inf
+        for place, setting in enumerate(settings):
+            key, value = f"process.{name}.settings.{place}.value", setting["value"]
+            if not least <= value <= most:
+                part = f"and at most 100 %; for another ratio, write {value / 100:g} and a variable that ends in _ratio"
+                message = f"must be at least {least:g} {part if unit == '%' else unit}"
+                yield key, message, f"process.{name}.variable"
 
 
 @relation
