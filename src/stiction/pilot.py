@@ -13,7 +13,7 @@ are far too long.
 
 import warnings
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, cached_property, partial, reduce
 from itertools import chain
 from operator import getitem
@@ -38,6 +38,7 @@ from stiction.plan.devices import Patch, patch
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At, select
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
+from stiction.stages.contact import full_contact
 from stiction.stages.contact.changes.patches import GROUND
 from stiction.stages.contact.pairs import Settings, streams_of_sides, surface_pair
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
@@ -73,6 +74,7 @@ class Use:
     thickness: float | None = None  #: of its beam, if this key is its thickness [µm]
     #: Or of a pair that runs, whose solids may attract each other less, see `stiction.plan.environment.Environment`.
     of_devices: bool = True
+    in_full_contact: bool = False  #: whether these are the strips on which force laws are corrected
 
 
 def problems(
@@ -102,13 +104,16 @@ def problems(
         return of_patch(use.patch._replace(pair=air.contact(use.patch.pair, humidity)), model, air.of_devices)
 
     guessed, by_key = _identified_spectra(config), {}
-    for use in chain(_pairs(plan), _devices(plan, "devices"), _devices(plan.with_test_beams, "test_beams")):
+    uses = list(chain(_pairs(plan), _devices(plan, "devices"), _devices(plan.with_test_beams, "test_beams")))
+    for use in chain(uses, _in_full_contact(plan, uses)):
         given = [guessed[name] for name in dict.fromkeys(plan.sides(use.patch.pair)) if name in guessed]
-        given += ["full elastic contact"] * bool(plan.variants.corrected(use.patch.pair, use.humidities))
-        for path, message in _refusals(use, samples, preliminary=bool(given)):
+        is_changed = plan.variants.corrected(use.patch.pair, use.humidities) and not use.in_full_contact
+        given += ["full elastic contact"] * bool(is_changed)
+        for path, message in chain(_coarse_elements(plan, use), _refusals(use, samples, preliminary=bool(given))):
             end = f" (preliminary, given {', '.join(given)})" if given else ""
             value = one_line(reduce(getitem, path, config))
-            by_key.setdefault((path, use.patch), Problem(path, f"is {value}, {message}{end}"))
+            if not (use.in_full_contact and path in {refused for refused, _ in by_key}):
+                by_key.setdefault((path, use.patch), Problem(path, f"is {value}, {message}{end}"))
     return list(by_key.values())
 
 
@@ -171,9 +176,9 @@ def _devices(plan, section):
         )
         if not devices.kind(name).is_beam:
             yield use(device["humidities"], size=(*own, "contact_um"), air=air)
-            sought = plan.config["design"]["worst_humidities"], ("design", "worst_humidities")
-            if any(device["humidities"]):
-                yield use(sought[0], size=(*own, "contact_um"), air=sought[1])
+            sought = plan.config["design"].get("worst_humidities")
+            if sought and any(device["humidities"]):
+                yield use(sought, size=(*own, "contact_um"), air=("design", "worst_humidities"))
             continue
         sizes = [(device["humidities"], air, (*own, "thickness_um"), {})]
         if chart := device.get("chart"):
@@ -194,6 +199,26 @@ def _devices(plan, section):
                 strip=key,
                 thickness=from_si(beam.thickness, "um"),
             )
+
+
+def _in_full_contact(plan, uses):
+    """Yield the strips in full elastic contact that correct the force laws of some uses."""
+    for use in uses:
+        if corrected := plan.variants.corrected(use.patch.pair, use.humidities):
+            sides = plan.config["sampling"]["strip_length_um"], plan.config["beam"]["width_um"]
+            strips = {"patch": patch(use.patch.pair, *sides), "models": ("NG",), "humidities": corrected}
+            yield replace(use, **strips, resolved=[], longest_strip=None, size=(), in_full_contact=True)
+
+
+def _coarse_elements(plan, use):
+    """Yield the key of a pair, with a refusal, if the elements of its full contact are too large for its attraction."""
+    if not use.in_full_contact:
+        return
+    stated = full_contact.settings_across(plan, At(pair=use.patch.pair)) | {"humidities": use.humidities}
+    try:
+        full_contact.require_fine_elements(in_si(full_contact.Settings, stated))
+    except ValueError as reason:
+        yield use.pair, f"must have stiffer solids or a weaker attraction: {reason}, or state contact.model: summits"
 
 
 # What the samples show
@@ -251,7 +276,7 @@ def _weak(use, humidities, weak):
         f"{Air(humidities[0]).where}{more}, {water}van der Waals forces pull "
         f"with up to {pull}, and the summits of sample {weak['sample']} of {weak['samples']} resist with {repulsion}"
     )
-    if weak["together"]:
+    if weak["together"] and not use.in_full_contact:
         length, width = (side / NM_PER_UM for side in use.patch[1:])
         return use.size, (
             f"must give patches of surface with so many summits that every sample resists the adhesion: {resist} on "
@@ -261,9 +286,11 @@ def _weak(use, humidities, weak):
     others = [Air(humidity).name for humidity in use.humidities if humidity not in humidities]
     choose = f"only {', '.join(others)}" if others else "other humidities"
     humid = any(use.humidities)  # a study of dry air has no humidity to choose
+    full = " of the strips in full elastic contact" * use.in_full_contact
+    flat = ", or state contact.model: summits, which counts weak samples as flat" * use.in_full_contact
     return use.pair, (
         f"must have surfaces rough enough and a solid stiff enough{' for its humidities' * humid}: {resist} where the "
-        "mean planes meet; increase the roughness or young_modulus_GPa"
+        f"mean planes{full} meet; increase the roughness or young_modulus_GPa{flat}"
         + f", or choose {choose} in {dotted(use.air)}"
         * humid
     )

@@ -253,3 +253,26 @@ def test_between_humidities_the_true_ratios_are_within_two_stated_errors(pair, s
         assert np.all(off < 2 * errors[~computed])
         of_interpolation.extend(off / interpolation[~computed])
     assert np.median(of_interpolation) > 1 / 3  # it is no bound that says nothing
+
+
+def test_strips_whose_summits_do_not_resist_are_not_compared(monkeypatch):
+    """The second route: strips drawn one by one. No elements are needed to see which of them are compared."""
+    air, resists = replace(SETTINGS_IN_DRY_AIR, strips=3), full_contact.forcelaw.resists
+    drawn = [cases[0] for *_, cases in full_contact.strips(small.surfaces(), "b", air)]
+    curves_of = [case.curve[1].copy() for case in drawn]
+    assert all(map(resists, curves_of))
+    monkeypatch.setattr(full_contact, "_both_models", lambda _, case, __: [*case.on_summits * 2, 0, 0, 0, 0, 1])
+
+    def compared(*numbers):
+        """Energies of the strips that are compared if these resist."""
+        of = [curves_of[number] for number in numbers]
+        monkeypatch.setattr(
+            full_contact.forcelaw, "resists", lambda force: any(np.array_equal(force, one) for one in of)
+        )
+        return full_contact.compute(small.surfaces(), "b", air).summit_energy.values[:, 0]
+
+    energies = [case.on_summits[0] for case in drawn]
+    for numbers in ((0, 1, 2), (0, 2), (1, 2)):
+        assert_array_equal(compared(*numbers), [energies[number] for number in numbers])
+    with pytest.raises(ValueError, match="the summits of 1 of 3 strips resist"):
+        compared(1)

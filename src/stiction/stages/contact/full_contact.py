@@ -64,12 +64,15 @@ class Settings(pairs.Settings):
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
-    """Separate every strip at every humidity, by both models, until their means are accurate or the most are drawn.
+    """Separate strips at every humidity, by both models, until their means are accurate or the most are drawn.
+
+    Strips whose summits do not resist the adhesion are left out: they count as flat, on the safe side, and have no sum
+    over summits that could be corrected.
 
     Raises
     ------
     ValueError
-        If the grid is too coarse, or a strip does not come to rest.
+        If the grid is too coarse, a strip does not come to rest, or not two of them have summits that resist.
     """
     hardness = solids.softer_hardness(*bodies(settings))
     more = _on_summits(surfaces, pair, settings) if settings.on_summits else None
@@ -78,9 +81,16 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
     rows, most = [], max(settings.most, settings.strips)
     tried = range(settings.strips, most, max(settings.strips // 2, 1))
     for space, heights, cases in strips(surfaces, pair, replace(settings, strips=most)):
+        if not all(forcelaw.resists(case.curve[1]) for case in cases):
+            continue
         rows.append([_both_models((space, heights), case, hardness) for case in cases])
         if len(rows) in tried and _are_enough(study_of(np.array(rows))):
             break
+    if len(rows) < min(2, most):
+        raise ValueError(
+            f"the summits of {len(rows)} of {most} strips resist the adhesion, too few for full elastic contact: use "
+            "rougher surfaces or a stiffer solid, or contact.model summits"
+        )
     return study_of(np.array(rows))
 
 
@@ -139,6 +149,15 @@ def elements_of(pair: EquivalentSurface, materials: tuple[Solid, Solid]) -> Half
     """Elements of the strips of a pair of bodies."""
     shape = tuple(len(range(0, points, pair.every)) for points in pair.beam.grid.shape)
     return HalfSpace(shape, pair.spacing, solids.composite_modulus(*materials))
+
+
+def require_fine_elements(settings: Settings) -> None:
+    """Raise the error of `stiction.contact.full.elements.Adhesion.of` unless elements resolve the attraction."""
+    materials = bodies(settings)
+    spacing = settings.sampling.spacing * settings.contact.every
+    space = HalfSpace((1, 1), spacing, solids.composite_modulus(*materials))
+    for each in {medium(settings, humidity) for humidity in settings.humidities}:
+        elements.Adhesion.of((0.0, 0.0), solids.attraction_between(*materials, each), space)
 
 
 def medium(settings: Settings, humidity: float) -> str:
