@@ -7,7 +7,6 @@ units of their keys.
 
 import contextlib
 import functools
-import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
@@ -22,7 +21,7 @@ from stiction.config.materials import hamaker_constants
 from stiction.config.meetings import above_zero, pair_meetings
 from stiction.config.messages import did_you_mean, duplicates, one_line
 from stiction.config.scans import MEASURED_CORRELATION
-from stiction.config.surfaces.grid import published_correlation, used_surfaces
+from stiction.config.surfaces.grid import carried, published_correlation, used_surfaces
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si
 from stiction.contact.materials import COATING, COATING_ATTRACTION
 from stiction.errors import NotConverged
@@ -406,7 +405,8 @@ def summits_are_sought_on_the_grid(config):
 def strips_can_hold_a_summit(config):
     """Require strips with room for a summit and its eight neighbours."""
     coarse = config["character.spacing_nm"]
-    for key, side in config.valid("beam.width_um", "sampling.strip_length_um", "identification.patch_um"):
+    width = ["beam.width_um"] * pairs_run(config)
+    for key, side in config.valid(*width, "sampling.strip_length_um", "identification.patch_um"):
         if not is_at_most(3 * coarse, side * NM_PER_UM):
             yield "character.spacing_nm", f"must be at most a third of a side of {side} µm", key
 
@@ -423,12 +423,12 @@ def samples_carry_the_chaos(config):
     """Require more samples than polynomials in four variables, App. B. Stoppers need no model."""
     order, samples, pairs = config["chaos.order"], config["contact.samples"], config["run"]["pairs"]
     kinds = {device["kind"] for device in config["devices"].values()}
-    carried = next(n for n in itertools.count(order, -1) if math.comb(n + 4, 4) <= samples)
-    if order > carried and (pairs or kinds - {"stopper"}):
+    most = carried(order, samples)
+    if order > most and (pairs or kinds - {"stopper"}):
         hint = (
             "; run: {pairs: []} computes the stoppers alone, which need no chaos model" if kinds == {"stopper"} else ""
         )
-        message = f"must be at most {carried}, or {math.comb(order + 4, 4)} samples are needed{hint}"
+        message = f"must be at most {most}, or {math.comb(order + 4, 4)} samples are needed{hint}"
         yield "chaos.order", message, "contact.samples"
 
 

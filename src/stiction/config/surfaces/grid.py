@@ -4,6 +4,8 @@ The distance between heights is the largest whole part of 10 nm whose Nyquist wa
 spectrum, or the smallest one whose fields take half of the memory of a job, which leaves room for longer tips. The
 margin is 1 µm, or the smallest multiple of 0.5 µm above the correlation length of every surface. Only surfaces of pairs
 that run, of devices and of test beams count. Those of the paper have the paper's grid.
+
+Devices alone have a chaos model of the paper's order, or of the largest one that their samples carry.
 """
 
 import functools
@@ -14,6 +16,7 @@ from typing import Any
 
 from stiction.config import memory, scans
 from stiction.config.messages import faulty
+from stiction.config.reading import paper
 from stiction.config.surfaces import process
 from stiction.config.units import NM_PER_UM, from_si, in_si
 from stiction.models import SIDES
@@ -25,7 +28,7 @@ _SPACING, _MARGIN, _STEP = memory.GRID["spacing_nm"], memory.GRID["margin_um"], 
 
 
 def completed(config: dict[str, Any], estimates: Mapping[str, dict], faults: Collection[tuple] = ()) -> dict[str, Any]:
-    """Configuration, valid or not, with all keys of section ``sampling``, and heights with a density.
+    """Configuration, valid or not, with all keys of section ``sampling``, a chaos model, and heights with a density.
 
     Variants on grids that are not finer than one that follows the surfaces, or whose fields do not fit into memory with
     a margin that does, are left out. The estimates are the preliminary numbers of measured surfaces. Surfaces with one
@@ -34,7 +37,7 @@ def completed(config: dict[str, Any], estimates: Mapping[str, dict], faults: Col
     sampling = config.get("sampling") if isinstance(config, dict) else None
     if not isinstance(sampling, dict):
         return config
-    config = scans.with_heights(config, estimates)
+    config = _with_carried_order(scans.with_heights(config, estimates))
     if {"spacing_nm", "margin_um"} <= set(sampling):
         return config
     wrong = faulty(faults, "surfaces")
@@ -50,6 +53,26 @@ def completed(config: dict[str, Any], estimates: Mapping[str, dict], faults: Col
     spacing = _SPACING / parts
     config = config | {"sampling": config["sampling"] | {"spacing_nm": spacing}}
     return _with_variants(config, lambda other: not is_at_most(spacing, other))
+
+
+def carried(order: int, samples: int) -> int:
+    """Largest order, up to a given one, of polynomials in four variables that samples carry, App. B.
+
+    Examples
+    --------
+    >>> carried(12, 5000), carried(12, 300)
+    (12, 6)
+    """
+    return next(n for n in count(order, -1) if math.comb(n + 4, 4) <= samples)
+
+
+def _with_carried_order(config):
+    """Configuration with an order that the samples carry, if it has no pairs and states no order of its own."""
+    chaos, samples = _section(config, "chaos"), _section(config, "contact").get("samples")
+    order = paper()["chaos"]["order"]
+    if _section(config, "run").get("pairs") != [] or chaos.get("order") != order or not isinstance(samples, int):
+        return config
+    return config | {"chaos": chaos | {"order": carried(order, max(samples, 5))}}
 
 
 def _section(config, *place):
