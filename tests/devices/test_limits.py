@@ -93,6 +93,7 @@ def test_every_limit_is_tested():
         limits.forbids,
         limits.triggered,
         limits.beam_warnings,
+        limits.length_warnings,
         limits.least_gap,
         limits.not_modelled,
         limits.without_gaps,

@@ -469,12 +469,12 @@ def a_mesh_is_whole(config):
 
 @relation
 def solids_are_less_hard_than_stiff(config):
-    """Require a hardness below Young's modulus. Bonds break at a strain well below 1."""
+    """Require a hardness up to Young's modulus. Bonds break at a strain well below 1."""
     for name, own in config.entries("materials", "hardness_GPa"):
         modulus = (config["solid"] | config["materials"][name])["young_modulus_GPa"]
-        if own >= modulus:
+        if own > modulus:
             source = f"materials.{name}" if "young_modulus_GPa" in config["materials"][name] else "solid"
-            message = f"must be below Young's modulus of the material, {modulus:g} GPa"
+            message = f"must be at most Young's modulus of the material, {modulus:g} GPa"
             yield f"materials.{name}.hardness_GPa", message, f"{source}.young_modulus_GPa"
 
 

@@ -355,8 +355,12 @@ def beam_warnings(
     gap: float, width: float, thickness: float, crack_length: float, film: float, rms: float
 ) -> list[str]:
     """All warnings about the dimensions of a beam with this crack length, film height and rms roughness [m]."""
+    return triggered(filled_gap(gap, film, rms)) + length_warnings(gap, width, thickness, crack_length)
+
+
+def length_warnings(gap: float, width: float, thickness: float, crack_length: float) -> list[str]:
+    """Warnings about a beam with a crack as short as this [m]."""
     return triggered(
-        filled_gap(gap, film, rms),
         large_rotation(gap, crack_length),
         stubby_beam(crack_length, thickness),
         wide_beam(gap, width, thickness, crack_length),

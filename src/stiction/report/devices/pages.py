@@ -24,7 +24,7 @@ from stiction.report.devices import curve_views, explorer, first_screen, life, o
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
 from stiction.report.drawings.devices import device_drawing
-from stiction.report.format import MISSING, humidity_text
+from stiction.report.format import MISSING, UM, humidity_text
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.process import section as process_section
@@ -116,7 +116,8 @@ def beam_page(
     few, more = sentences.few_sentences(safe_lengths), _rough_enough(roughness)
     answer = [*own_length.sentences(safe_lengths, of_shortest), *few]
     built, of_model = _test_beam_sentence(test_beams), model_errors.sentences(name, errors)
-    alone = [] if tables_test_beams.updated_size(test_beams) else [sentences.build_sentence(safe_lengths, budgets)]
+    updated = tables_test_beams.updated_size(test_beams)
+    alone = [] if updated else [sentences.build_sentence(safe_lengths, budgets)]
     answer += [*alone, *built, *decided, *more]
     sections += _test_beam_sections(name, test_beams)
     predicted = sentences.prediction_sentences(safe_lengths)
@@ -124,7 +125,9 @@ def beam_page(
     effects = own_length.effect_of_measurements(safe_lengths, of_shortest)
     more = [*effects, *few, *more, *built, *of_model[1:], *predicted]
     sections += _how_rough(name, roughness)
+    shortest = updated[1] * UM if updated else None
     listed = pair_warnings.with_numbers(warnings)
+    listed += sentences.shortest_warnings(section, safe_lengths, budgets, shortest)
     listed += [] if test_beams is None else tables_test_beams.warnings(test_beams)
     shapes = next(iter(safe_lengths.values()))["shape"].values
     held = {term: text for shape in shapes for term, text in END_STATES[str(shape)].terms.items()}

@@ -1,16 +1,20 @@
 """Sentences on the pages of devices: the length to build, the sufficient force, and devices stuck in each air."""
 
+import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from stiction.config.units import to_si
+from stiction.devices import limits
 from stiction.devices.budget import LARGEST, SUBTRACTED, part_left
 from stiction.devices.risk import Basis, one_in, samples_for
 from stiction.report.format import UM, UN, airs, with_error
 from stiction.rounding import in_percent
 from stiction.stages.devices.budget import budget_of, margin_of_shape
-from stiction.stages.devices.opening import EITHER, S_SHAPE
+from stiction.stages.devices.opening import BEAMS, EITHER, S_SHAPE
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
 
@@ -88,6 +92,25 @@ def build_sentence(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tu
         f"{sentence} The shortest safe length, {least / UM:.0f} µm, is reduced by {less}, twice the uncertainty due to "
         "the measurements."
     )
+
+
+def shortest_warnings(
+    section: Mapping[str, Any],
+    safe_lengths: Mapping[float, xr.Dataset],
+    budgets: Mapping[tuple, xr.Dataset],
+    with_test_beams: float | None = None,
+) -> list[str]:
+    """Warnings about the shortest length that a page states, if it is below all safe lengths, whose warnings it has.
+
+    It is the length to build, that with test beams [m] in its place, or the device's own.
+    """
+    least, total, built = length_to_build(safe_lengths, budgets)
+    own = to_si(section.get("length_um", math.inf), "um")
+    stated = with_test_beams or (built if is_bounded(total) else least)
+    if (shortest := min(stated, own)) >= least:
+        return []
+    sizes = (to_si(section[key], "um") for key in ("gap_um", "width_um", "thickness_um"))
+    return limits.length_warnings(*sizes, shortest / BEAMS[section["kind"]].arms)
 
 
 def _any(safe_lengths):
