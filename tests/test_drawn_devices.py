@@ -4,12 +4,13 @@ import pytest
 from drawn_devices import drawn, outcome
 
 #: Draws that are refused, in humid and in dry air.
-REFUSED = [2, 84]
+REFUSED = [19, 84]
 #: Laws with d_max < 0, strips longer than they allow, ground that differs by tens of lengths 1/a, no beam that sticks,
-#: a chart of such beams, a budget of which nothing is known, and bridges that stick just within their reach.
-ANSWERED = [1, 3, 5, 51, 101, 102, 199]
+#: a chart of such beams, a budget of which nothing is known, and bridges that stick just within their reach. Number 2
+#: holds in its own air, and not at a humidity that nobody stated.
+ANSWERED = [1, 2, 3, 5, 51, 101, 102, 199]
 #: Those that take least; the others are tests of the night.
-BY_DAY = {1, 3, 101, 199}
+BY_DAY = {1, 2, 3, 101, 199}
 
 
 @pytest.mark.parametrize("number", REFUSED)

@@ -257,8 +257,8 @@ WRONG_RELATIONS = [
     (UNCERTAIN + "poisson_ratio: 0.3}}}", "devices.C1.uncertainty.poisson_ratio", "0.3", "its budget needs 0.23 ± 0.3"),
     (UNCERTAIN + "hamaker_constant_zJ: 98}}}", "devices.C1.uncertainty.hamaker_constant_zJ", "98",
      "below the Hamaker constant itself, 97.5 zJ (given van_der_waals = 'water')"),
-    (f"contact: {{model: full}}\ndevices: {{S1: {STOPPER}}}", "design.worst_humidities", "[0.4, 0.98]",
-     "within the humidities of pair b, to which the correction"),
+    (f"contact: {{model: full}}\ndesign: {{worst_humidities: [0.4, 0.98]}}\ndevices: {{S1: {STOPPER}}}",
+     "design.worst_humidities", "[0.4, 0.98]", "within the humidities of pair b, to which the correction"),
     (f"contact: {{model: full}}\npairs: {{b: {{humidities: [0.5, 0.7]}}}}\ndevices: {{C1: {CANTILEVER}}}",
      "devices.C1.humidities", "[0.5, 0.8]", "within the humidities of pair b"),
     ("materials: {SAM: {coating_nm: 1, coating_hamaker_constant_zJ: {water: 4, dry: 50}}}\n"

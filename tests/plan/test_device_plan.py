@@ -216,7 +216,7 @@ def test_the_warnings_of_a_stopper_have_its_water_its_patch_and_all_humidities_t
         "on_summits": section["humidities"],
         "contact_um": section["contact_um"],
         "humidities": section["humidities"],
-        "worst_humidities": PLAN.config["design"]["worst_humidities"],
+        "worst_humidities": [min(section["humidities"]), max(section["humidities"])],
     }
 
 

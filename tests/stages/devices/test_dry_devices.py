@@ -239,7 +239,7 @@ def test_a_stopper_in_dry_air_alone_is_in_no_humid_air(grounds):
     both = tables_budget.stoppers({"S1": layout, "S2": humid_layout()}, {"S1": [], "S2": []})
     assert list(both.cells.RH) == ["dry", "0.67", "0.6 to 0.9"]
     assert list(both.cells["worst RH"])[0] == "dry"
-    assert "One in dry air alone has no such row." in both.caption
+    assert "One in a single air has no such row." in both.caption
 
 
 def humid_layout():

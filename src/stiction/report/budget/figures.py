@@ -95,17 +95,20 @@ def _force_over_humidity(panel, dataset):
     low, high = (TO_UN * dataset.quantile_along.sel(probability=p) for p in dataset.probability.values[[0, -1]])
     light = {"color": _COLOUR, "alpha": 0.2, "linewidth": 0}
     placed, humid = places([*dataset.axis.values.tolist(), float(dataset.worst_humidity)]), dataset.axis.values > 0
+    single = ~humid | (humid.sum() == 1)
     axis, means = dataset.axis[humid], TO_UN * dataset.mean_along
     entries: list = []
-    if humid.any():
+    if not single.all():
         entries += panel.plot(axis, means[humid], color=_COLOUR, label="mean")
         entries.append(panel.fill_between(axis, low[humid], high[humid], **light, label="5 to 95 % of the patches"))
-    if not humid.all():
-        reach = np.abs(np.stack([low, high]) - means.values)[:, ~humid]
-        dry = {"fmt": "o", "color": _COLOUR, "markersize": 3, "alpha": 0.6, "label": "mean and 5 to 95 %, dry"}
-        entries.append(panel.errorbar(placed[0.0], means[~humid], reach, **dry))
+    if single.any():
+        reach = np.abs(np.stack([low, high]) - means.values)[:, single]
+        label = "mean and 5 to 95 %" + ", dry" * (not humid[single].any())
+        at = [placed[float(value)] for value in dataset.axis.values[single]]
+        points = {"fmt": "o", "color": _COLOUR, "markersize": 3, "alpha": 0.6, "label": label}
+        entries.append(panel.errorbar(at, means[single], reach, **points))
     panel.axhline(TO_UN * float(dataset.restoring_force), color="0.4", linestyle=":", linewidth=0.8)
-    if humid.any():
+    if not single.all():
         worst = float(dataset.worst_humidity)
         label = f"worst humidity {worst:.2f}" if worst else "worst in dry air"
         entries += panel.plot([placed[worst]], [float(means.max())], "v", color="black", label=label)

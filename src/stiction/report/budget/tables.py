@@ -83,7 +83,7 @@ def stoppers(
     if any(dataset.axis[0] == 0 for dataset in humid):
         caption += " For a stopper in dry air as well, this is one of them."
     if 0 < len(humid) < len(datasets):
-        caption += " One in dry air alone has no such row."
+        caption += " One in a single air has no such row."
     listed = [f"{device}: {sentence}" for device, of_device in warnings.items() for sentence in of_device]
     said = [caption, *([column.caption(errors)] if errors else []), not_modelled, *(["Warnings:"] if listed else [])]
     columns = _columns_of_stoppers(rows) | (_WORST if humid else {}) | (column.COLUMN if errors else {})

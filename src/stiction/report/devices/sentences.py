@@ -145,9 +145,10 @@ def verdict(stopper: xr.Dataset) -> str:
         return f"{head} does not suffice {where}: a larger one is needed if {tail}"
     if force < anywhere:
         return f"{head} suffices {where}, but not at all{_range(stopper)}: {tail}"
-    dry = ["in dry air"] if stopper.axis[0] == 0 else []
-    humid = [f"at all relative humidities{_range(stopper)}"] if ends(stopper) else []
-    return f"{head} suffices {' and '.join(dry + humid)}: {tail}"
+    if not ends(stopper):
+        return f"{head} suffices {where}: {tail}"
+    dry = "in dry air and " * bool(stopper.axis[0] == 0)
+    return f"{head} suffices {dry}at all relative humidities{_range(stopper)}: {tail}"
 
 
 def bounded_share(stopper: xr.Dataset) -> float | None:

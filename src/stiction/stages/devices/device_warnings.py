@@ -27,6 +27,7 @@ from stiction.stages.beams.pair_warnings import (
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import ARC, EITHER, FORCE, DesignedBeam, section_of_beam
 from stiction.stages.devices.safe_lengths import chosen_share
+from stiction.stages.devices.stoppers import sought
 from stiction.stages.surfaces import surface_flags
 
 
@@ -234,6 +235,7 @@ def _settings(plan, at):
     if plan.devices.kind(at.device).is_beam:
         return assumed | {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
     own |= section | {"water": plan.air_of_devices.water(section["pair"])}
+    own |= {"worst_humidities": sought(plan.config["design"], section)}
     return assumed | {"stopper": select(OfStopper, own)}
 
 

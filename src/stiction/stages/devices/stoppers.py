@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -191,8 +192,20 @@ def axis_of(settings: Settings) -> np.ndarray:
 
 
 def fine_axis(low: float, high: float) -> np.ndarray:
-    """Humidities from the lowest to the highest, about `STEP` apart [-]."""
-    return np.linspace(low, high, max(3, round((high - low) / STEP) + 1))
+    """Humidities from the lowest to the highest, about `STEP` apart, or one if they are equal [-]."""
+    return np.linspace(low, high, max(3, round((high - low) / STEP) + 1) if high > low else 1)
+
+
+def sought(design: Mapping[str, Any], stopper: Mapping[str, Any]) -> list[float]:
+    """Ends of the humidities in which the worst one is sought: the stated ones, or those of the stopper [-].
+
+    Examples
+    --------
+    >>> sought({}, {"humidities": [0.0, 0.44, 0.9]}), sought({"worst_humidities": [0.4, 0.98]}, {"humidities": [0.5]})
+    ([0.44, 0.9], [0.4, 0.98])
+    """
+    humid = [humidity for humidity in stopper["humidities"] if humidity > 0]
+    return design.get("worst_humidities") or [min(humid, default=0.0), max(humid, default=0.0)]
 
 
 def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.ndarray) -> xr.Dataset:
@@ -251,6 +264,8 @@ def _worst(axis, along):
     humid, means = axis > 0, along.mean(axis=1)
     if means[~humid].max(initial=0.0) >= means[humid].max(initial=0.0):
         return 0.0, 0.0
+    if humid.sum() == 1:
+        return float(axis[humid][0]), 0.0
     worst, scatter = worst_humidity(axis[humid], along[humid].T)
     return worst, float(np.hypot(scatter, np.diff(axis[humid])[0] / np.sqrt(12)))
 
@@ -334,9 +349,9 @@ def is_at_an_end(dataset: xr.Dataset) -> bool:
 
 
 def ends(dataset: xr.Dataset) -> tuple[float, ...]:
-    """Lowest and highest humidity of the fine axis [-]. None if the device is in dry air alone."""
+    """Lowest and highest humidity of the fine axis [-]. None if the device has a single air, or dry air alone."""
     humid = dataset.axis.values[dataset.axis.values > 0]
-    return tuple(map(float, humid[[0, -1]])) if humid.size else ()
+    return tuple(map(float, humid[[0, -1]])) if humid.size > 1 else ()
 
 
 def in_any_air(dataset: xr.Dataset) -> tuple[tuple[float, float, float], xr.DataArray]:
@@ -355,7 +370,8 @@ def _settings(plan, at):
     section, air = plan.config["devices"][at.device], plan.air_of_devices
     pair = air.contact(section["pair"], max(section["humidities"]))
     own = {"seed": plan.config["seed"], "restoring_force_uN": restoring_force(section), "water": air.water(pair)}
-    return select(Settings, plan.config["design"] | section | own)
+    own |= {"worst_humidities": sought(plan.config["design"], section)}
+    return select(Settings, section | own)
 
 
 def _inputs(plan, at):

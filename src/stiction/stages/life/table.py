@@ -89,7 +89,7 @@ def stopper_answers(
         )
         for humidity in stopper.humidity.values
     ]
-    what = f"mean pull-off force {where}, the worst air"
+    what = f"mean pull-off force {where}{', the worst air' * (stopper.sizes['axis'] > 1)}"
     answers.append(Answer("force", HOLD, what, mean, mean, error, "N", "largest attraction x area", "stage stoppers"))
     answers += stopper_moved(of) + stopper_freed(stopper, of, separation) + stopper_after_touchdowns(stopper, of)
     answers += [] if tilted is None else tilted_answers(tilted)

@@ -1,0 +1,79 @@
+"""What is said of a stopper is about the airs that it states, or about a range that the study states."""
+
+import re
+
+import numpy as np
+import pytest
+from test_pages import STOPPER
+
+from stiction.config.files import joined
+from stiction.contact.environment import Water
+from stiction.plan.plan import Plan
+from stiction.report.devices import pages
+from stiction.report.page import Page
+from stiction.stages.devices import device_warnings, stoppers
+from stiction.stages.life import table
+from stiction.stages.life.inputs import OfStopper
+
+AIRS = [(0.67,), (0.0,), (0.0, 0.67), (0.44, 0.9), (0.0, 0.44, 0.9), (0.4, 0.41)]
+#: Relative humidities, and ranges of them, in sentences and tables.
+_RANGE = r"(0\.\d+)(?: to | and )(0\.\d+)"
+_SAID = re.compile(rf"(?:RH|humidit(?:y|ies) of) (0\.\d+)|(?:humidit(?:y|ies)|air,) from {_RANGE}|<td>{_RANGE}</td>")
+
+
+def dataset(airs, design):
+    """Forces of 400 patches that hold most at RH 0.85, in some airs under section design."""
+    ends = stoppers.sought(design, {"humidities": list(airs)})
+    settings = stoppers.Settings(1, Water(300.0), (3e-6, 3e-6), 40e-6, airs, tuple(ends))
+    axis, scatter = stoppers.axis_of(settings), np.linspace(0.9, 1.1, 400)
+    forces = [np.outer(1 - (np.array(at) - 0.85) ** 2, scatter) * 20e-6 for at in (airs, axis)]
+    return stoppers.layout(settings, forces[0], axis, forces[1])
+
+
+def said_of(airs, design):
+    """Page of a stopper and its answers on life, as text."""
+    found = dataset(airs, design)
+    page: Page = pages.stopper_page("S1", STOPPER | {"humidities": list(airs)}, found, {}, [])
+    answers = table.stopper_answers(found, OfStopper(restoring_force=40e-6, contact=(3e-6, 3e-6)))
+    return " ".join([*page.answer, *page.lines, page.html, *(answer.what for answer in answers)])
+
+
+@pytest.mark.parametrize(
+    ("airs", "design"), [*((airs, {}) for airs in AIRS[:4]), (AIRS[0], {"worst_humidities": [0.4, 0.98]})]
+)
+def test_no_humidity_beyond_the_stated_ones_is_said(airs, design):
+    said = {float(number) for ends in _SAID.findall(said_of(airs, design)) for number in ends if number} - {0.0}
+    humid = [*filter(None, airs), *design.get("worst_humidities", ())] if any(airs) else []
+    assert all(min(humid) <= number <= max(humid) for number in said)
+    assert bool(said) == bool(humid)
+    # The control: a stated range is searched to its end.
+    assert (max(said, default=0) > max(airs)) == bool(design and any(airs))
+
+
+@pytest.mark.parametrize("airs", AIRS)
+def test_the_worst_air_is_one_of_several(airs):
+    answers = table.stopper_answers(dataset(airs, {}), OfStopper(restoring_force=40e-6, contact=(3e-6, 3e-6)))
+    (force,) = [answer.what for answer in answers if answer.name == "force"]
+    assert ("the worst air" in force) == (len(airs) > 1)
+    assert ("RH" in force) == any(airs)
+
+
+@pytest.mark.parametrize("side", [0.5, 1, 3])
+@pytest.mark.parametrize("air", [0.5, 0.9, 0.985])
+def test_the_meniscus_is_wide_in_a_stated_air_alone(side, air):
+    """At RH 0.98 the film is 51 nm high, and the warning forbids to rely on forces on 1 µm that nobody has there."""
+    device = {"kind": "stopper", "pair": "b", "contact_um": [side, side], "restoring_force_uN": 20, "humidities": [air]}
+    of = device_warnings.in_si(
+        device_warnings.OfStopper,
+        device_warnings._settings(Plan(joined({"devices": {"D": device}, "run": {"pairs": []}})), Of("D"))["stopper"],
+    )
+    film = -2 * 0.072 * 1.8e-5 / (8.314 * 300 * np.log(air))
+    wide = [one for one in device_warnings.stopper_warnings(of) if "rim" in one]
+    assert bool(wide) == (2 * film / (side * 1e-6) > 0.1)
+
+
+class Of:
+    """Wildcards of a device."""
+
+    def __init__(self, device):
+        self.device = device
