@@ -3,6 +3,8 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.linalg import eigh
 
 #: Points and weights of the integral of a load over an element.
 POINTS, WEIGHTS = ((1 + np.polynomial.legendre.leggauss(4)[0]) / 2, np.polynomial.legendre.leggauss(4)[1] / 2)
@@ -94,14 +96,27 @@ class Elements:
 
         return self.stands(lambda share, u: self.forces(u, lambda v: load(share, v)))
 
-    def stands_wet(self, adhesion):
-        """Whether it does not collapse while each cross-section has liquid of its own, γ cos θ [N/m]."""
-        gap, force = self.beam.gap, 2 * adhesion * self.beam.width
+    def stands_wet(self, tension, angle=0.0, pinned=None):
+        """Whether it does not collapse while each cross-section has liquid of its own, of a tension γ [N/m] and angle.
+
+        At both edges and at the free end it leaves the beam at any ``pinned`` angle (m,) that lets it stay there.
+        """
+        gap, width = self.beam.gap, self.beam.width
+        angles = np.linspace(angle, np.pi, 401) if pinned is None else pinned
+        end = np.zeros(2 * self.number + 2)
+        end[-2] = tension * width * np.sin(angles).max() * (self.clamps == 1)
 
         def load(share, u):
-            return share * force / (gap - u), share * force / (gap - u) ** 2
+            pulls = width / (gap - u)[..., None] * (np.cos(angle) + np.cos(angles)) + 2 * np.sin(angles)
+            worst = angles[np.argmax(pulls, axis=-1)]
+            change = width / (gap - u) ** 2 * (np.cos(angle) + np.cos(worst))
+            return share * tension * pulls.max(axis=-1), share * tension * change
 
-        return self.stands(lambda share, u: self.forces(u, lambda v: load(share, v)))
+        def forces(share, u):
+            along, tangent = self.forces(u, lambda v: load(share, v))
+            return along + share * end, tangent
+
+        return self.stands(forces)
 
     def stands_with_drop(self, adhesion, first):
         """As `stands_wet` with a connected liquid from node ``first`` to the end, or to the same node on the right."""
@@ -129,3 +144,34 @@ class Elements:
         for share in np.linspace(0, 1, 11)[1:]:
             u = self.balance(lambda _, share=share: (share * forces[0], 0 * forces[1]), u, within=np.inf)
         return u[-2 if self.clamps == 1 else self.number] / self.beam.gap
+
+    def modes(self, number):
+        """Squared frequencies of the lowest modes, their shapes, and the mass of a length of one."""
+        s, x = self.size, POINTS
+        shape = np.array([1 - 3 * x**2 + 2 * x**3, s * x * (1 - x) ** 2, 3 * x**2 - 2 * x**3, s * x**2 * (x - 1)])
+        mass = self.assembled(s * (WEIGHTS * shape) @ shape.T)
+        bending, slopes = self.stiffness()
+        free, shapes = np.ix_(self.free, self.free), np.zeros((len(mass), number))
+        squares, kept = eigh((bending + self.beam.tension * slopes)[free], mass[free])
+        shapes[self.free] = kept[:, :number]
+        return squares[:number], shapes, mass
+
+    def stands_at_once(self, load, number=5, periods=3):
+        """Whether it does not touch under a load ``u -> load per length`` switched on at once, without damping.
+
+        Its lowest modes move for some periods of the first one.
+        """
+        gap, (squares, shapes, _) = self.beam.gap, self.modes(number)
+
+        def rates(_, state):
+            u = shapes @ state[:number]
+            force, _ = self.forces(u, lambda v: (load(np.minimum(v, 0.999 * gap)), 0 * v))
+            return np.concatenate([state[number:], shapes.T @ force - squares * state[:number]])
+
+        def left(_, state):
+            return 0.99 * gap - (shapes @ state[:number])[::2].max()
+
+        left.terminal = True
+        time = 2 * np.pi * periods / squares[0] ** 0.5
+        found = solve_ivp(rates, (0, time), np.zeros(2 * number), "DOP853", events=left, rtol=1e-6)
+        return not len(found.t_events[0])

@@ -16,6 +16,14 @@ digits without tension and at τ = 1000, and to 1e-5 at τ = 10⁵. Those of a d
 The deflection at the free end, or at the middle of a bridge, is prescribed, and the load follows. A fold is the largest
 load along the deflection.
 
+**Loads switched on at once** bring a beam down earlier. Without damping it moves at the constant energy
+
+.. math:: \frac{1}{2} \int U''^2 + \tau U'^2 dx + \frac{s}{4} \left( \int U'^2 dx \right)^2
+    - \lambda \int \int_0^U f(u) \, du \, dx = 0 ,
+
+and cannot pass the equilibrium beyond the fold, from which it falls, if that has more. The load with as much is a bound
+on the safe side (`Bent.fold_at_once`).
+
 ASSUME: slopes are small, and the beam is clamped ideally. The gap is the same along the beam: no curl.
 """
 
@@ -27,7 +35,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import legendre
 from scipy.linalg import eigh
-from scipy.optimize import minimize_scalar
+from scipy.optimize import brentq, minimize_scalar
 
 from stiction.errors import NotConverged
 
@@ -35,6 +43,10 @@ from stiction.errors import NotConverged
 _POLYNOMIALS, _POINTS = 16, 64
 #: Largest change of a deflection in units of the gap after which an iteration ends, and most iterations.
 _TOLERANCE, _ITERATIONS = 1e-12, 500
+#: Points and weights of the integral of a load over the deflection.
+_PARTS = legendre.leggauss(24)
+#: Deflections in gaps between which the energy of an equilibrium becomes that at rest: 1/2 of a plate on a spring.
+_BEYOND = 0.2, 0.95
 
 
 class _Basis(NamedTuple):
@@ -69,6 +81,14 @@ def _basis(clamps):
 
 
 @dataclass(frozen=True)
+class Load:
+    """Load on a beam by its deflection U in gaps (p,)."""
+
+    along: Callable[[np.ndarray], np.ndarray]  #: f, per length [-]
+    at_end: Callable[[np.ndarray], np.ndarray] = lambda u: 0 * u  #: at the free end, over the length [-]
+
+
+@dataclass(frozen=True)
 class Bent:
     """Beam in units of its length, gap and stiffness."""
 
@@ -76,18 +96,24 @@ class Bent:
     tension: float = 0.0  #: τ [-]
     stretching: float = 0.0  #: s [-], of a bridge between rigid clamps
 
-    def under(self, load: Callable[[np.ndarray], np.ndarray], deflection: float) -> tuple[float, np.ndarray]:
+    def under(self, load: "Load | Callable", deflection: float) -> tuple[float, np.ndarray]:
         """Load factor λ to bend the end or middle to a deflection, and the coefficients of the beam (m,).
 
-        ``load`` gives f from the deflections (p,) at the points of the integrals, ``deflection`` is a part of the gap.
+        ``load`` is a `Load`, or f alone. ``deflection`` is a part of the gap.
 
         Raises
         ------
         NotConverged
             If the deflection is so large that the load concentrates in a point.
         """
-        basis = _basis(self.clamps)
-        return self._balanced(lambda u: basis.at.T @ (basis.weights * load(basis.at @ u)), deflection)
+        basis, load = _basis(self.clamps), self._complete(load)
+
+        def forces(u):
+            """Forces on the coefficients."""
+            along = basis.at.T @ (basis.weights * load.along(basis.at @ u))
+            return along + basis.end * load.at_end(basis.end @ u)
+
+        return self._balanced(forces, deflection)
 
     def fold_of_drop(self) -> float:
         r"""Smallest λ of a connected drop at the end or middle to pull the beam down, over all places of its edge.
@@ -114,6 +140,12 @@ class Bent:
         factor, u = self._balanced(lambda _: total, deflection)
         return factor, float(legendre.legval(ends[0], basis.series) @ u)
 
+    def _complete(self, load):
+        """Load along the beam and at its free end, if it has one."""
+        if isinstance(load, Load):
+            return load if self.clamps == 1 else Load(load.along)
+        return Load(load)
+
     def _balanced(self, forces, deflection):
         """Load factor and coefficients at a deflection, from the forces on the coefficients."""
         basis = _basis(self.clamps)
@@ -127,9 +159,34 @@ class Bent:
                 return float(factor), u
         raise NotConverged("deflection of a beam, in parts of its gap", float(change), _TOLERANCE, _ITERATIONS)
 
-    def fold(self, power: int) -> float:
-        """Largest λ of a load (1 - U)^-power along the whole beam. Beyond it there is no equilibrium."""
-        return -_least(lambda deflection: -self.under(lambda u: (1 - u) ** -power, deflection)[0], 1.0)[1]
+    def fold(self, load: "Load | Callable") -> float:
+        """Largest λ of a load along the whole beam. Beyond it there is no equilibrium."""
+        return -_least(lambda deflection: -self.under(load, deflection)[0], 1.0)[1]
+
+    def fold_at_once(self, load: "Load | Callable") -> float:
+        """Largest λ of a load that certainly does not bring the beam down if it is switched on at once."""
+        load = self._complete(load)
+
+        def energy(deflection):
+            """Energy of the equilibrium at a deflection of the end or middle, over that at rest."""
+            factor, u = self.under(load, deflection)
+            return self._stored(u) - factor * self._work(load, u)
+
+        return self.under(load, brentq(energy, *_BEYOND))[0]
+
+    def _stored(self, u):
+        """Energy of bending, tension and stretching."""
+        basis = _basis(self.clamps)
+        slopes = u @ basis.slope @ u
+        return (u @ basis.bending @ u + self.tension * slopes) / 2 + self.stretching * slopes**2 / 4
+
+    def _work(self, load, u):
+        """Work of a load from rest to some coefficients, at λ = 1."""
+        basis = _basis(self.clamps)
+        parts, weights = (1 + _PARTS[0]) / 2, _PARTS[1] / 2
+        along, end = basis.at @ u, basis.end @ u
+        by_place = along * (weights @ load.along(parts[:, None] * along))
+        return basis.weights @ by_place + end * (weights @ (load.at_end(parts * end) + 0 * parts))
 
     def overshoot(self) -> float:
         r"""Deflection of the end or middle with all modes of one sign, relative to a uniform load's.

@@ -17,6 +17,7 @@ from stiction.constants import VACUUM_PERMITTIVITY
 from stiction.contact.environment import Water
 from stiction.devices.stoppers import stuck_patches
 from stiction.life.dimples import least_load, states
+from stiction.life.fringes import edge_width
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.devices import life as report
@@ -101,9 +102,13 @@ def test_life_has_the_voltage_and_the_liquid_that_beams_on_dimples_bear(lengths,
     beam, way = of.beam(200e-6), of.device.gap - dimples.height
     on_rows = states(beam, of.clamps, dimples.at)
     volts, tension = found["voltage_dimples"], found["tension_dimples"]
+    # Without its edges and its end, a beam would bear more.
     load = VACUUM_PERMITTIVITY * volts.low**2 * beam.width / 2
-    assert_allclose(load, least_load(on_rows, way, beam.gap, 2), rtol=1e-12)
-    assert_allclose(2 * tension.low * beam.width, least_load(on_rows, way, beam.gap, 1), rtol=1e-12)
+    edge, end = edge_width(beam.gap, beam.thickness), (kind == "cantilever") * 8 / 3 / (beam.length - 190e-6)
+    bears = least_load(on_rows, way, beam.gap, 2), least_load(on_rows, way, beam.gap, 1)
+    assert_allclose(load * (1 + 2 * edge / beam.width) * (1 + end * edge), bears[0], rtol=1e-12)
+    pull = beam.width + np.hypot(beam.width, 2 * beam.gap)
+    assert_allclose(tension.low * (pull + end * beam.gap * beam.width), bears[1], rtol=1e-12)
     assert volts.low > 0
     assert np.isnan(volts.high)
 
@@ -145,3 +150,11 @@ def test_a_beam_with_dimples_has_a_job_for_them_at_each_humidity():
         assert graph.job(f"devices/dimples/{case}").inputs["contact"] == f"devices/contact/{pair}_2000x1000"
     of = in_si(OfBeam, job_settings(plan, "devices/life/C1")["beam"])
     assert_allclose((of.dimples.number, *of.dimples.at, of.dimples.height), (3, 80e-6, 1e-6), rtol=1e-12)
+
+
+def test_a_force_at_the_end_of_an_arm_bends_it_no_more_than_eight_thirds_of_it_spread_along_the_arm():
+    x = np.linspace(0, 1, 101)[1:]
+    by_force, spread = x**2 * (3 - x) / 6, x**2 * (6 - 4 * x + x**2) / 24
+    assert_allclose((by_force / spread).max(), 8 / 3, rtol=1e-12)
+    moments = 1, 1 / 2  # that turn the rest of the beam
+    assert moments[0] / moments[1] < 8 / 3

@@ -145,10 +145,10 @@ def test_a_cantilever_at_a_voltage_has_the_closed_form_of_flats_and_its_bound_of
         energy = holding.energy_of_voltage(Capacitor(oxide, volts, 0.5), 20e-6)
         state = grid.start | {"voltage_V": volts, "humidity": humidity}
         least = float(sentences.safe_lengths_of(lengths[humidity]).min())
-        expected = holding.length_at_voltage(least, beam, energy, holding.ARC)
+        expected = holding.tip_length_at_voltage(least, beam, energy)
         assert grid.safe_size(state) == pytest.approx(1e6 * expected, rel=1e-3)
         sticks = 0.7 * np.linspace(2 / 3, 1, 400) * (600e-6 if humidity == 0.44 else 500e-6)
-        shorter = holding.length_at_voltage(sticks, beam, energy, holding.ARC)
+        shorter = holding.tip_length_at_voltage(sticks, beam, energy)
         length = np.quantile(shorter, rank)
         assert grid.stuck(state | {"length_um": 1e6 * length}).share == pytest.approx(
             np.mean(shorter < length), abs=0.02

@@ -173,7 +173,8 @@ def _pulled_in(answers, potential):
     """Sentence on the pull-in of a device by its own voltage."""
     if VOLTAGE not in answers or potential < answers[VOLTAGE].low:
         return []
-    return [f"Its own voltage of {significant(potential)} V pulls it in."]
+    at_once = "" if potential >= answers[VOLTAGE].high else " if it is switched on at once"
+    return [f"Its own voltage of {significant(potential)} V {'can pull' if at_once else 'pulls'} it in{at_once}."]
 
 
 def _on_dimples(answers):

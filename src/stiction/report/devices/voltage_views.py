@@ -73,7 +73,7 @@ def beam_view(
 ) -> View:
     """View of a cantilever over the voltage that is on, whose surfaces count as flat and in contact.
 
-    Its lengths are the bound *at least* of stage life: the closed form of `stiction.life.holding`, for an arc. The
+    Its lengths are the bound *at least* of stage life: that of a tip in `stiction.life.holding`. The
     section has the modulus of the beam as well.
     """
     joined, (offset, limit) = alone(section, safe_lengths).isel(thickness=0, gap=0), _offset(section)
@@ -83,7 +83,7 @@ def beam_view(
     beam = Beam(1.0, *sizes, to_si(section["young_modulus_GPa"], "GPa"), section["gap_um"] * UM, 1)
     added = [holding.energy_of_voltage(Capacitor(oxide, one, offset), beam.gap) for one in volts]
     safe, scored = (
-        np.array([holding.length_at_voltage(lengths.values, beam, energy, holding.ARC) for energy in added]) / UM
+        np.array([holding.tip_length_at_voltage(lengths.values, beam, energy) for energy in added]) / UM
         for lengths in (joined.safe_length, joined["quantile"])
     )
     key, share = f"devices.{name}", chosen_share(next(iter(safe_lengths.values())))

@@ -214,7 +214,7 @@ BEAMS = {
         uniform=lambda part, laws: float(arrest_length(forcelaw.energy(laws).mean(), part)),
         bound=arc_length,
         at_voltage=lambda lengths, without, at, beam: holding.length_at_voltage(
-            lengths, beam, float(at[0] - without[0]), holding.S_SHAPE
+            lengths, beam, float(at[0] - without[0])
         ),
     ),
     "bridge": Opening(

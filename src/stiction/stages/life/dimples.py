@@ -10,6 +10,8 @@ from stiction.constants import VACUUM_PERMITTIVITY
 from stiction.devices.stoppers import stuck_patches
 from stiction.estimates import mean_with_error
 from stiction.life.dimples import holds, least_load, least_pull, states
+from stiction.life.drying import pull_of_liquid
+from stiction.life.fringes import edge_width
 from stiction.stages.life.answers import (
     BESIDE,
     DIMPLES,
@@ -73,19 +75,32 @@ def _brought_down(of):
 
     def voltage(beam):
         """Voltage that a beam bears [V]."""
-        return float(np.sqrt(2 * limit(beam, 2) / (VACUUM_PERMITTIVITY * beam.width)))
+        edge = edge_width(beam.gap, beam.thickness)
+        width = _with_end(of, beam, beam.width + 2 * edge, edge)
+        return float(np.sqrt(2 * limit(beam, 2) / (VACUUM_PERMITTIVITY * width)))
 
-    def adhesion(beam):
-        """Adhesion tension γ cos θ that a beam bears [N m⁻¹]."""
-        return limit(beam, 1) / (2 * beam.width)
+    def tension(beam):
+        """Surface tension γ of a liquid that a beam bears [N m⁻¹]."""
+        pull = float(pull_of_liquid(beam.width / beam.gap)) * beam.gap
+        return limit(beam, 1) / _with_end(of, beam, pull, beam.gap * beam.width / pull)
 
     form = "loads as at the smallest gap, on the parts that bring it down; on all its rows or some of them"
     volts, error = of.number(voltage, of.length)
-    what = "voltage below which it does not touch beside its dimples"
-    answers = [Answer(VOLTAGE_BESIDE, TOUCH, what, volts, np.nan, error, "V", form, _SOURCE)]
-    tension, error = of.number(adhesion, of.length)
-    what = "γ cos θ up to which no liquid brings it down beside its dimples"
-    return [*answers, Answer(TENSION_BESIDE, TOUCH, what, tension, np.nan, error, "N m-1", form, _SOURCE)]
+    what = "slowly raised voltage below which it does not touch beside its dimples"
+    with_edges = f"{form}; with fringes"
+    answers = [Answer(VOLTAGE_BESIDE, TOUCH, what, volts, np.nan, error, "V", with_edges, _SOURCE)]
+    most, error = of.number(tension, of.length)
+    what = "surface tension up to which no liquid brings it down beside its dimples"
+    with_edges = f"{form}; pinned at the edges"
+    return [*answers, Answer(TENSION_BESIDE, TOUCH, what, most, np.nan, error, "N m-1", with_edges, _SOURCE)]
+
+
+def _with_end(of, beam, per_length, end):
+    """Load per length on a beam that also bears one at its free end, as large as that on a length ``end`` [m].
+
+    A force at the end of an arm bends it nowhere more than 8/3 of it spread along the arm.
+    """
+    return per_length * (1 + 8 / 3 * end / (beam.length - of.dimples.at[-1]) * (of.clamps == 1))
 
 
 def _bent(of):
@@ -110,4 +125,5 @@ def _bent(of):
     what, form = f"force with which it pulls at its {rows_of(of)}", "k (h - h_d)"
     if len(at) > 1:
         form += "; largest on a row, at rest on those rows where this is least"
-    return [beside, Answer(PULLED, FREE, what, force, force, error, "N", form, _SOURCE)]
+    most = force if of.clamps == 1 else np.nan  # rigid clamps stretch a bridge
+    return [beside, Answer(PULLED, FREE, what, force, most, error, "N", form, _SOURCE)]

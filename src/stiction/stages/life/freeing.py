@@ -19,20 +19,22 @@ def beam_held(of: OfBeam, length: float) -> list[Answer]:
     force, force_error = of.number(lambda beam: freeing.force_at_contact(beam, clamps), length)
     forms = {
         1: ("Γ = 3 E t³ h² / (2 L⁴), Eq. (13)", "F = 3 E I h / L³"),
-        2: ("energy at which two cracks meet", "F = 192 E I h / L³ without tension"),
+        2: ("energy at which two cracks meet; more if rigid clamps stretch it",)
+        + ("F = 192 E I h / L³ without tension; more if rigid clamps stretch it",),
     }[clamps]
+    most, most_force = (along, force) if clamps == 1 else (np.nan, np.nan)
     answers = [
         Answer(
             HELD,
             HOLD,
             "adhesion energy that holds it along the beam" if clamps == 1 else "adhesion energy that holds both cracks",
-            *(along, along, error, "J m-2", forms[0], "stiction.beam.energy"),
+            *(along, most, error, "J m-2", forms[0], "stiction.beam.energy"),
         ),
         Answer(
             PULL,
             FREE,
             f"force with which it pulls at its {'tip' if clamps == 1 else 'middle'}",
-            *(force, force, force_error, "N", forms[1], "stiction.life.freeing"),
+            *(force, most_force, force_error, "N", forms[1], "stiction.life.freeing"),
         ),
     ]
     if clamps == 1:

@@ -59,9 +59,7 @@ def beam_answers(
         for humidity, (value, error, basis) in safe.items()
     ]
     answers += beam_touched(of, length) + beam_held(of, length) if 0 < length < np.inf else []
-    answers += [
-        answer for name, liquid in of.liquids.items() for answer in lengths_after_drying(of, name, liquid.adhesion)
-    ]
+    answers += [answer for name, liquid in of.liquids.items() for answer in lengths_after_drying(of, name, liquid)]
     answers += beam_after_touchdowns(of, share, min(safe.values()), after) if after else []
     answers += separated_fast(lengths, separation) if separation is not None else []
     answers += beam_at_voltage(of, min(safe.values()), biased)

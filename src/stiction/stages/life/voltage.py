@@ -16,6 +16,8 @@ from stiction.stages.life.inputs import OfBeam, OfStopper
 from stiction.stages.life.lengths import least_safe
 
 _SOURCE = "stage at_voltage, stiction.life.holding"
+#: Relative step of a length for the derivative of the one at a voltage.
+_STEP = 1e-4
 
 
 def beam_at_voltage(
@@ -39,7 +41,7 @@ def beam_at_voltage(
     if np.isnan(numbers).all():
         return answers
     what = f"safe length while {of.potential:g} V are on"
-    form = "1 / L_V⁴ = 1 / L⁴ + 8 Γ_V / (3 E t³ h²), flats (at least); gaps of rough surfaces, L (at most)"
+    form = "(L / L_V)³ = 1 + 8 Γ_V L_V L³ / (3 E t³ h²), flats (at least); gaps of rough surfaces, L (at most)"
     return [*answers, Answer(AT_VOLTAGE, HOLD, what, *numbers, "m", form, _SOURCE)]
 
 
@@ -53,8 +55,8 @@ def _shorter(of, added, safe, rough):
     length, flat, error = safe[0], np.nan, np.nan
     high, high_error, _ = min(safe, *rough) if rough else (np.nan, np.nan, "")
     if of.device.opening.has_tip and 0 < length < np.inf:
-        flat = holding.length_at_voltage(length, of.beam(1.0), added, holding.ARC)
-        error = safe[1] * (flat / length) ** 5
+        flat, longer = (holding.tip_length_at_voltage(by * length, of.beam(1.0), added) for by in (1, 1 + _STEP))
+        error = safe[1] * (longer - flat) / (_STEP * length)
     if high < flat:
         return high, high, high_error
     return flat, high, high_error if np.isnan(flat) else error
