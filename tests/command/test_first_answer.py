@@ -47,7 +47,7 @@ def test_a_share_of_stoppers_is_said_with_its_band_in_the_air_where_most_stick(t
     stuck = [[0.1, 0.08, 0.12], [0.3, 0.281, 0.32]]
     found = {"stuck": (("humidity", "end"), stuck), "restoring_force": 19e-6}
     storage.save(xr.Dataset(found, {"humidity": [0.44, 0.67]}), path, "stoppers", {})
-    said = "First answer: of S1 with 19 µN, 30 % stick at RH 0.67 (28.1 to 32 % with 95 % confidence)."
+    said = "First answer: of S1 with 19 µN, 30 % (28.1 to 32 %) stick at RH 0.67 (95 % confidence)."
     assert first_answer("results/logs/devices/stoppers/S1.log", tmp_path) == f"{said} The run goes on."
 
 

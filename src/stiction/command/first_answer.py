@@ -7,6 +7,7 @@ import numpy as np
 from stiction.config.cases import Air, Case
 from stiction.config.units import from_si
 from stiction.devices.risk import one_in
+from stiction.report.format import fraction_with_band
 from stiction.run import storage
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import shares_stuck
@@ -46,10 +47,9 @@ def _length(dataset, name):
 
 def _share(dataset, name):
     """Share of a stopper that sticks."""
-    humidity, *stuck = max(shares_stuck(dataset), key=lambda row: row[3])
-    stuck, low, high = (100 * share for share in stuck)
+    humidity, *stuck = max(shares_stuck(dataset), key=lambda row: row[1:])
     force = from_si(float(dataset.restoring_force), "uN")
     return (
-        f"First answer: of {name} with {force:.3g} µN, {stuck:.3g} % stick {Air(humidity).where} ({low:.3g} to "
-        f"{high:.3g} % with 95 % confidence)."
+        f"First answer: of {name} with {force:.3g} µN, {fraction_with_band(*stuck, ' %')} stick {Air(humidity).where} "
+        "(95 % confidence)."
     )

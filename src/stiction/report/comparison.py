@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from stiction.config.cases import Air
 from stiction.config.merging import values
 from stiction.plan.stage import File
-from stiction.report.format import number, with_error
+from stiction.report.format import fraction_with_band, with_error
 from stiction.report.style import DOUBLE, SINGLE, dashes, figure_stage, letter, marker, panels, styled
 from stiction.report.table import HUMIDITY, Columns, Table, table_stage
 
@@ -39,7 +39,7 @@ SOURCES = (
     ),
     Source(
         *("stoppers", "device", "device", "pull-off force [µN]", ("pull_off_uN", "pull_off_se_uN")),
-        more={"P(stuck) [%]": (lambda share: number(100 * share, ".3g"), "share_stuck")},
+        more={"P(stuck) [%]": (fraction_with_band, "share_stuck", "share_stuck_low", "share_stuck_high")},
         target="devices",
     ),
 )

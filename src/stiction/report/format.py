@@ -107,15 +107,42 @@ def as_published(value: float, deviation: float) -> str:
     return MISSING if np.isnan(value) else f"{number(value, 'g')} ± {number(deviation, 'g')}"
 
 
-def with_band(value: float, low: float, high: float) -> str:
-    """Value and the ends of its band as text, – for NaN.
+def fraction_with_band(share: float, low: float, high: float, unit: str = "") -> str:
+    """Fraction of devices and its 95 % band in percent, – for NaN. A count of none or of all is a bound alone.
 
     Examples
     --------
-    >>> with_band(0.05, 0.031, 0.0774), with_band(*[float("nan")] * 3)
-    ('0.05 (0.031 to 0.0774)', '–')
+    >>> fraction_with_band(0.0123, 0.0101, 0.0149), fraction_with_band(0.5, 0.48, 0.52, " %")
+    ('1.23 (1.01 to 1.49)', '50 % (48 to 52 %)')
+    >>> fraction_with_band(0.0, 0.0, 0.00037, " %"), fraction_with_band(1.0, 0.99963, 1.0)
+    ('at most 0.037 %', 'at least 99.963')
     """
-    return MISSING if np.isnan(value) else f"{value:.3g} ({low:.3g} to {high:.3g})"
+    if np.isnan(share):
+        return MISSING
+    if 0 < share < 1:
+        return f"{100 * share:.3g}{unit} ({fraction_between(low, high, unit)})"
+    return fraction_between(low if share else 0.0, high if share < 1 else 1.0, unit)
+
+
+def fraction_between(low: float, high: float, unit: str = "") -> str:
+    """Fraction of devices between two ends in percent. Ends of none and of all are left out.
+
+    Examples
+    --------
+    >>> fraction_between(0.0101, 0.0149), fraction_between(0.0, 0.00037, " %"), fraction_between(0.0, 1.0, " %")
+    ('1.01 to 1.49', 'at most 0.037 %', '0 to 100 %')
+    """
+    least, most = f"{100 - float(f'{100 * (1 - low):.2g}'):g}", f"{100 * high:.3g}"
+    if low <= 0 and high < 1:
+        return f"at most {most}{unit}"
+    if 0 < low < 1 <= high:
+        return f"at least {least}{unit}"
+    return f"{100 * low:.3g} to {most}{unit}"
+
+
+def with_band(stuck: float, low: float, high: float) -> str:
+    """Fraction of devices and its band as `fraction_with_band`, from percent."""
+    return fraction_with_band(*(part / 100 for part in (stuck, low, high)))
 
 
 def error_alone(error: float) -> str:

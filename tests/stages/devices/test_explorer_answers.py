@@ -15,6 +15,7 @@ from stiction.contact.voltage import Capacitor, Dielectric
 from stiction.devices.risk import SCORES
 from stiction.life import holding
 from stiction.report.devices import explorer, first_screen, sentences, voltage_views
+from stiction.report.format import fraction_with_band
 from stiction.stages.devices import stoppers
 from stiction.stages.devices.chart import largest_error_between
 from stiction.stages.devices.safe_lengths import chosen_share
@@ -56,14 +57,14 @@ BEAMS = {
 
 
 def stated(answer):
-    """P(stuck) and its band [%] in an answer."""
-    return re.findall(r"(\S+) % stick \((\S+) to (\S+) %\)", answer)
+    """P(stuck) with its band in an answer, as text."""
+    return re.findall(r"(\S+ % \(.* %\)|at (?:most|least) \S+ %) stick", answer)
 
 
 def shown(grid):
-    """P(stuck) and its band [%] at the beginning of the controls."""
+    """P(stuck) with its band at the beginning of the controls, as text."""
     stuck = grid.stuck(grid.start)
-    return [tuple(f"{100 * part:.3g}" for part in (stuck.share, stuck.low, stuck.high))]
+    return [fraction_with_band(stuck.share, stuck.low, stuck.high, " %")]
 
 
 @pytest.mark.parametrize("name", BEAMS)
@@ -92,10 +93,11 @@ def test_the_controls_of_a_stopper_begin_with_the_force_that_it_needs(section, p
     assert not others
     screen = first_screen.stopper_screen(section, stopper, budgets, [])
     needed = re.match(r"At least (\S+) µN needed", screen.answer)[1]
-    assert f"{per * view.grid.safe_size(view.grid.start):.3g}" == needed
+    added = np.exp(2 * view.margin.total) if budgets else 1.0
+    assert f"{added * per * view.grid.safe_size(view.grid.start):.3g}" == needed
     assert stated(screen.answer) == shown(view.grid)
-    assert "build" not in view.words, "the answer has no margin either"
-    assert "No margin for the measurements is added." in screen.basis
+    assert view.words["build"] == "at least", "the answer has the same margin"
+    assert any("dded for the measurements" in text for text in screen.basis)
     assert bool(view.margin) == bool(budgets)
 
 

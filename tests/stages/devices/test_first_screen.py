@@ -15,6 +15,7 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.devices import limits
 from stiction.report.devices import first_screen, pages, sentences
+from stiction.report.format import fraction_with_band
 from stiction.report.page import Page, Section, Summary
 from stiction.report.process.section import with_process
 from stiction.report.test_beams import tables as tables_test_beams
@@ -47,9 +48,9 @@ def test_a_stated_length_is_judged_by_its_own_share(length, sign):
     shown = first_screen.beam_screen(CANTILEVER | {"length_um": 1e6 * length}, {0.67: dataset}, {}, [])
     assert shown.sign == sign
     assert f"; your {1e6 * length:g} µm: " in shown.answer
-    share, low, high = 100 * dataset.stuck_at_length.sel(shape=EITHER).values
-    assert f"{share:.3g} % stick ({low:.3g} to {high:.3g} %)" in shown.answer
-    assert shown.cells.iloc[0, -1] == f"{share:.3g} ({low:.3g} to {high:.3g})"
+    share = dataset.stuck_at_length.sel(shape=EITHER).values
+    assert f"{fraction_with_band(*share, ' %')} stick" in shown.answer
+    assert shown.cells.iloc[0, -1] == fraction_with_band(*share)
 
 
 def test_dry_air_is_in_words():
@@ -57,7 +58,7 @@ def test_dry_air_is_in_words():
     stopped = first_screen.stopper_screen(STOPPER, forces.assign(restoring_force=1e-9), {}, [])
     released = first_screen.beam_screen(CANTILEVER | {"length_um": 400}, {0.0: of_length(400e-6)}, {}, [])
     for shown in (stopped, released):
-        assert shown.answer.endswith(" %) in dry air.")
+        assert shown.answer.endswith(" %) stick in dry air.")
         assert shown.points["What decides"].startswith("Dry air, ")
     assert any(text.startswith("Estimate in dry air: ") for text in released.basis)
 
@@ -109,8 +110,8 @@ def test_a_stopper_is_judged_by_the_force_that_it_needs():
         changed = stopper.assign(restoring_force=force * 1e-6)
         shown = first_screen.stopper_screen(STOPPER, changed, {}, [])
         assert shown.sign == sign
-        humidity, stuck, low, high = max(shares_stuck(changed), key=lambda row: row[3])
-        own = f"with {force:g} µN, {100 * stuck:.3g} % stick ({100 * low:.3g} to {100 * high:.3g} %) at RH {humidity:g}"
+        humidity, stuck, low, high = max(shares_stuck(changed), key=lambda row: row[1:])
+        own = f"with {force:g} µN, {fraction_with_band(stuck, low, high, ' %')} stick at RH {humidity:g}"
         assert shown.answer == f"At least {needed:.3g} µN needed; {own}."
 
 
@@ -215,7 +216,7 @@ def test_no_sentence_of_a_page_with_test_beams_states_the_answer_without_them(mo
     assert own not in with_them.lines
     assert with_them.lines[1] == tables_test_beams.sizes_to_build(of_tested_beam())
     stopped = pages.stopper_page("S1", STOPPER, STOPPERS["S1"], {}, [], of_tested_stopper())
-    assert sentences.verdict(STOPPERS["S1"]) not in stopped.lines
+    assert sentences.verdict(STOPPERS["S1"], {}) not in stopped.lines
     assert tables_test_beams.sizes_to_build(of_tested_stopper()) in stopped.lines
 
 
@@ -304,3 +305,37 @@ def test_the_longest_lengths_are_those_of_beams_whose_tip_cannot_touch():
     without_tip = 1e6 * float(dataset.safe_length.sel(share=1e-3, shape=S_SHAPE))
     assert f"If the tip could not touch: {without_tip:.0f} µm." in shown.points["What decides"]
     assert shown.cells["if the tip cannot touch [µm]"].tolist() == [f"{without_tip:.0f}"]
+
+
+# Margins of stoppers
+
+
+@pytest.mark.parametrize("factor", [0.1, 0.5, 1.0, 10.0, 40.0])
+def test_a_stopper_suffices_with_twice_the_uncertainty_of_its_measurements_as_a_beam_is_safe(factor):
+    known = BUDGETS["S1", 0.67]
+    budgets = {(0.67,): known.assign(covariance=known.covariance * factor**2)}
+    total, share = budget_of(budgets[0.67,]).total, sentences.bounded_share(STOPPERS["S1"])
+    least = float(STOPPERS["S1"].safe_force.sel(part="safe", share=share).max())
+    for by in (0.5, 0.99, 1.01, np.exp(2 * total) * 0.99, np.exp(2 * total) * 1.01, 100.0):
+        stopper = STOPPERS["S1"].assign(restoring_force=by * least)
+        shown = first_screen.stopper_screen(STOPPER, stopper, budgets, [])
+        said = sentences.verdict(stopper, budgets)
+        # A second route: the needed force, whose logarithm errs by the total, is exceeded by two standard errors.
+        enough = sentences.is_bounded(total) and (np.log(by) - 0.0) / total >= 2
+        assert (shown.sign == "Suffices") == enough
+        assert ("suffices" in said) == enough
+        assert ("exact" in shown.answer) == ("exact" in said) == (by > 1 and total > sentences.LARGEST) or by < 1
+        # Without the margin, forces in between would suffice: the rule makes a difference.
+        bare = first_screen.stopper_screen(STOPPER, stopper, {}, [])
+        assert (bare.sign == "Suffices") == (by >= 1)
+
+
+def test_what_decides_a_stopper_is_the_air_of_the_largest_force_in_its_table():
+    for humidities in ([0.0, 0.67], [0.67, 0.0]):
+        forces = stopper_dataset().assign_coords(humidity=humidities)
+        for force in (1e-9, 19e-6, 1.0):
+            stopper = forces.assign(restoring_force=force)
+            shown = first_screen.stopper_screen(STOPPER, stopper, {}, [])
+            column = shown.cells.iloc[:, -1].astype(float)
+            worst = shown.cells.RH[column.idxmax()]
+            assert shown.points["What decides"].startswith("Dry air, " if worst == "dry" else f"RH {worst}, ")

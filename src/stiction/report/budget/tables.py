@@ -11,7 +11,7 @@ from stiction.devices.budget import advice, ranked
 from stiction.devices.risk import Basis
 from stiction.estimates import mean_with_error
 from stiction.plan.names import by_name
-from stiction.report.format import UN, humidity_text, number, signed, with_error
+from stiction.report.format import UN, fraction_with_band, humidity_text, number, signed, with_error
 from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
@@ -127,7 +127,7 @@ def _columns_of_stoppers(rows):
         "pull-off force [µN]": (with_error, "pull_off_uN", "pull_off_se_uN"),
         "std [µN]": (".3g", "pull_off_std_uN"),
         "restoring force [µN]": ("g", "restoring_force_uN"),
-        "P(stuck) [%]": (percentage, "share_stuck", "share_stuck_low", "share_stuck_high"),
+        "P(stuck) [%]": (fraction_with_band, "share_stuck", "share_stuck_low", "share_stuck_high"),
         **{
             f"safe force, {share} [µN]": (_with_basis, f"safe_force_uN_{share}", f"safe_force_basis_{share}")
             for share in shares
@@ -145,17 +145,6 @@ def _humidities(humidity, lowest, highest):
     if np.isnan(humidity):
         return " to ".join(dict.fromkeys(map(humidity_text, (lowest, highest))))
     return humidity_text(humidity)
-
-
-def percentage(share: float, low: float, high: float) -> str:
-    """Fraction and its band, in percent.
-
-    Examples
-    --------
-    >>> percentage(0.0123, 0.0101, 0.0149)
-    '1.23 (1.01 to 1.49)'
-    """
-    return f"{100 * share:.3g} ({100 * low:.3g} to {100 * high:.3g})"
 
 
 def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:

@@ -151,7 +151,7 @@ def views_of_stopper(
 
     It is the one over the humidity, or, if the worst of its airs is dry and others are humid, the device alone.
     """
-    view, worst = stopper_view(section, stopper, budgets), _worst_air(stopper)
+    view, worst = stopper_view(section, stopper, budgets), sentences.worst_air(stopper)
     if worst in view.grid.axes[0].values:
         return [view]
     own = stopper.sortby("humidity")
@@ -167,16 +167,9 @@ def stopper_view(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mappi
     safe, scored = _along(stopper)
     shown = safe.axis.values > 0 if is_humid else slice(None)
     key = "design.worst_humidities" if is_humid else "humidities of the device"
-    axis = humidity_axis(safe.axis.values[shown], _worst_air(stopper), key, True)
+    axis = humidity_axis(safe.axis.values[shown], sentences.worst_air(stopper), key, True)
     view = _force_view((axis,), safe.isel(axis=shown), scored[shown], section, stopper)
     return replace(view, margin=_margin(budgets))
-
-
-def _worst_air(stopper):
-    """Stated humidity of the largest sufficient force, which is that of the answer."""
-    share = sentences.bounded_share(stopper)
-    stated = stopper.pull_off.mean("sample") if share is None else stopper.safe_force.sel(part="safe", share=share)
-    return float(stopper.humidity[int(np.argmax(stated.values))])
 
 
 def _along(stopper):
@@ -219,7 +212,8 @@ def _force_view(axes, safe, scored, section, stopper):
     of_axes = {axis.key for axis in axes} == {"humidity"}
     grid = Grid(axes, share, size, *numbers, stopper.sizes["sample"], True, counted if of_axes else ())
     words = {"what": label, "safe": f"Sufficient {label}", "stick": f"Stoppers with this {label} that stick"}
-    return View("humidity", grid, words | {"bound": "sufficient"})
+    words |= {"build": "at least", "largest": sentences.LARGEST, "bound": "sufficient"}
+    return View("humidity", grid, words)
 
 
 def humidity_axis(values: Sequence[float], worst: float, key: str, between: bool) -> Axis:

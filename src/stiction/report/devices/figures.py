@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from stiction.config.cases import Air
 from stiction.devices.chart import FEWEST_HUMIDITIES, between, error_between
 from stiction.plan.names import by_case
-from stiction.report.format import TO_UM
+from stiction.report.format import TO_UM, fraction_with_band
 from stiction.report.style import (
     SINGLE,
     at_most_double,
@@ -95,8 +95,9 @@ def _at_length(dataset):
     if "length_of_device" not in dataset:
         return ""
     held = dataset.isel(shape=-1)
-    stuck = float(held.stuck_at_length.sel(end="estimate"))
-    return f": {100 * stuck:.3g} % at {TO_UM * float(held.length_of_device):g} µm"
+    stuck, *band = map(float, held.stuck_at_length)
+    said = f"{100 * stuck:.3g} %" if 0 < stuck < 1 else fraction_with_band(stuck, *band, " %")
+    return f": {said} at {TO_UM * float(held.length_of_device):g} µm"
 
 
 def _own_length(panel, dataset):

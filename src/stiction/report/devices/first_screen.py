@@ -11,9 +11,8 @@ from stiction.config.cases import Air
 from stiction.devices import limits
 from stiction.devices.risk import one_in
 from stiction.report.budget import tables as tables_budget
-from stiction.report.budget.tables import percentage
 from stiction.report.devices import sentences
-from stiction.report.format import MISSING, UM, UN, airs, humidity_text, number, with_error
+from stiction.report.format import MISSING, UM, UN, airs, fraction_with_band, humidity_text, number, with_error
 from stiction.report.page import FORBIDDEN, Summary
 from stiction.report.test_beams.tables import contradiction, is_reliable, updated_size
 from stiction.rounding import in_percent
@@ -76,6 +75,13 @@ def _subtracted(total, left):
     return f"Subtracted for the measurements: {in_percent(1 - left)}, twice their standard uncertainty."
 
 
+def _added(total, times):
+    """What is added to the sufficient force for an uncertainty of the measurements, as in `_subtracted`."""
+    if not total:
+        return "Nothing is added for the measurements."
+    return f"Added for the measurements: {in_percent(times - 1)}, twice their standard uncertainty."
+
+
 def _by_test_beams(updated, unit, form):
     """What the answer from test beams contains, and the answer without them."""
     return (
@@ -123,7 +129,7 @@ def _unbounded(verdict, sentence):
 
 def _stuck_with_band(stuck, low, high):
     """Fraction stuck with its band of 95 % confidence."""
-    return f"{100 * stuck:.3g} % stick ({100 * low:.3g} to {100 * high:.3g} %)"
+    return f"{fraction_with_band(stuck, low, high, ' %')} stick"
 
 
 def _decides_beam(humidity, worst, budgets, section):
@@ -179,7 +185,7 @@ def _table_of_beam(safe_lengths, budgets, test_beams):
             row["with test beams [µm]"] = number(_with_test_beams(test_beams, humidity) / UM, ".0f")
         if "length_of_device" in dataset:
             at = f"P(stuck) at {float(dataset.length_of_device) / UM:g} µm [%]"
-            row[at] = percentage(*map(float, dataset.isel(shape=-1).stuck_at_length))
+            row[at] = fraction_with_band(*map(float, dataset.isel(shape=-1).stuck_at_length))
         rows.append(row)
     return pd.DataFrame(rows)
 
@@ -201,27 +207,28 @@ def stopper_screen(
 ) -> Summary:
     """First screen of a stopper: its section, dataset of stage stoppers, budgets, warnings, and perhaps test beams."""
     force, share = float(stopper.restoring_force), sentences.bounded_share(stopper)
-    humidity, *stuck = max(shares_stuck(stopper), key=lambda row: row[3])
-    needed = np.nan if share is None else float(stopper.safe_force.sel(part="safe", share=share).max(skipna=False))
+    humidity, *stuck = max(shares_stuck(stopper), key=lambda row: row[1:])
+    least, total, needed = sentences.force_to_build(stopper, budgets)
     updated = None if share is None else updated_size(test_beams)
     needed = updated[1] * UN if updated else needed
     own = f"with {force / UN:g} µN, {_stuck_with_band(*stuck)} {Air(humidity).where}"
-    if share is None:
-        verdict = "open", "Not known", f"There are too few patches to bound a force; {own}."
-    else:
-        weak = ("bad", "Too weak") if stuck[1] > share else ("open", "Not shown to suffice")
-        sign = ("good", "Suffices") if force >= needed else weak
-        verdict = *sign, f"At least {needed / UN:.3g} µN needed; {own}."
+    verdict, margin = (
+        _verdict_on_force(force, needed, share, stuck[1], own),
+        _added(total if share else 0.0, needed / least),
+    )
+    if not updated and share and not sentences.is_bounded(total):
+        verdict = _unbounded(verdict, sentences.unbounded_force_sentence(least, total))
+        margin, needed = _added(0.0, 1.0), least
     basis = [
         f"At most {one_in(share)} sticks {airs(stopper.humidity.values)}, with 95 % confidence." if share else "",
         f"From {stopper.sizes['sample']} simulated patches at each humidity.",
-        _by_test_beams(updated, "µN", ".3g") if updated else "No margin for the measurements is added.",
+        _by_test_beams(updated, "µN", ".3g") if updated else margin,
     ]
     change = f"A restoring force of at least {needed / UN:.3g} µN." if force < needed else "Nothing in these airs."
     points = {
         "What decides": " ".join(
             [
-                f"{_air(humidity)}, where most stick.",
+                f"{_air(sentences.worst_air(stopper))}, where it is held most.",
                 *tables_budget.first_to_measure(budgets.values(), section.get("assumed", ())),
             ]
         ),
@@ -232,11 +239,20 @@ def stopper_screen(
     return _unless_forbidden(Summary(*verdict, list(filter(None, basis)), points, cells), warnings, test_beams)
 
 
+def _verdict_on_force(force, needed, share, least_stuck, own):
+    """Tone, sign and answer for a restoring force, if ``needed`` leaves at most a share stuck [N]."""
+    if share is None:
+        return "open", "Not known", f"There are too few patches to bound a force; {own}."
+    weak = ("bad", "Too weak") if least_stuck > share else ("open", "Not shown to suffice")
+    sign = ("good", "Suffices") if force >= needed else weak
+    return *sign, f"At least {needed / UN:.3g} µN needed; {own}."
+
+
 def _table_of_stopper(stopper, share):
     """P(stuck) and the force needed by humidity."""
     rows = []
     for humidity, *stuck in shares_stuck(stopper):
-        row = {"RH": humidity_text(humidity), "P(stuck) [%]": percentage(*stuck)}
+        row = {"RH": humidity_text(humidity), "P(stuck) [%]": fraction_with_band(*stuck)}
         if share is not None:
             safe = stopper.safe_force.sel(part="safe", share=share, humidity=humidity)
             row[f"force for {one_in(share)} [µN]"] = number(float(safe) / UN, ".3g")

@@ -14,7 +14,7 @@ from stiction.constants import FREE_FALL
 from stiction.contact.voltage import BREAKDOWN
 from stiction.devices.budget import part_left
 from stiction.plan.names import by_name
-from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN
+from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN, fraction_between
 from stiction.report.style import (
     OUTLINED,
     SINGLE,
@@ -183,7 +183,10 @@ def _on_dimples(answers):
         return []
     pulls, holds = answers[PULLED], answers[DIMPLES]
     often = max((one for one in answers.values() if one.name.startswith(f"{ON_DIMPLES}_")), key=lambda one: one.high)
-    rows, fraction = pulls.what.rpartition(" at its ")[2], f"{_low(often)} to {_high(often)} % of the beams stick"
+    rows, fraction = (
+        pulls.what.rpartition(" at its ")[2],
+        f"{fraction_between(often.low, often.high, ' %')} of the beams stick",
+    )
     said = f"Its {rows} is pulled off by {_low(pulls)} µN and held by {_low(holds)} µN on average: {fraction} on it"
     if rows != "row of dimples":
         said = f"At least {_low(pulls)} µN pull at one of its {rows}, each held by {_low(holds)} µN on average: "

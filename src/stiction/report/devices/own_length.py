@@ -5,9 +5,9 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import xarray as xr
 
-from stiction.devices.risk import one_in
+from stiction.devices.risk import CONFIDENCE, one_in, upper_bound
 from stiction.report.devices.sentences import built_in_words
-from stiction.report.format import UM, airs
+from stiction.report.format import UM, airs, fraction_between, fraction_with_band
 from stiction.rounding import in_percent
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.safe_lengths import chosen_share
@@ -41,7 +41,7 @@ def effect_of_measurements(safe_lengths: Mapping[float, xr.Dataset], budgets: Ma
             low, high = _stuck_if_shifted(held, float(held.length_of_device), total)
             said.append(
                 f"With the measurements one standard uncertainty off, {in_percent(total)} of the length, "
-                f"{100 * low:.3g} to {100 * high:.3g} % of devices of {float(held.length_of_device) / UM:g} µm stick "
+                f"{fraction_between(low, high, ' %')} of devices of {float(held.length_of_device) / UM:g} µm stick "
                 f"{airs([humidity])}."
             )
     return said
@@ -57,14 +57,14 @@ def _sentence(humidity, held, total, built):
     """P(stuck) at one humidity in words, with the length to build for the middle one of the shares."""
     length, (stuck, low, high) = float(held.length_of_device), map(float, held.stuck_at_length)
     error, reach = float(held.stuck_surfaces_error), float(held.reach)
-    surfaces = f", and ± {in_percent(error)} by the number of drawn surfaces" if error > 0 else ""
-    band = f"{100 * low:.3g} to {100 * high:.3g} %"
-    what = f"{100 * stuck:.3g} % ({band} with 95 % confidence{surfaces})"
+    surfaces = f", ± {in_percent(error)} by the number of drawn surfaces" if error > 0 else ""
+    what, how = fraction_with_band(stuck, low, high, " %"), f" with 95 % confidence{surfaces}"
     if length > reach:
-        what = f"between {band} (devices were simulated up to {reach / UM:.0f} µm; longer ones may all stick)"
+        what = fraction_between(low, high, " %")
+        how = f" (devices were simulated up to {reach / UM:.0f} µm; longer ones may all stick)"
     safe = f"{built} are safe for {one_in(chosen_share(held))}"
     left = _remaining_uncertainty(held, length, total)
-    return f"Of devices of {length / UM:g} µm, {what} stick {airs([humidity])}; {safe}.{left}"
+    return f"Of devices of {length / UM:g} µm, {what} stick {airs([humidity])}{how}; {safe}.{left}"
 
 
 def _remaining_uncertainty(held: xr.Dataset, length: float, total: float) -> str:
@@ -74,11 +74,16 @@ def _remaining_uncertainty(held: xr.Dataset, length: float, total: float) -> str
     low, high = _stuck_if_shifted(held, length, total)
     return (
         f" With the measurements one standard uncertainty off, {in_percent(total)} of the length, it is "
-        f"{100 * low:.3g} to {100 * high:.3g} %."
+        f"{fraction_between(low, high, ' %')}."
     )
 
 
 def _stuck_if_shifted(held, length, total):
-    """P(stuck) at a length [m] if stuck lengths are longer or shorter by a relative amount."""
+    """P(stuck) at a length [m] if stuck lengths are longer or shorter by a relative amount.
+
+    Where none sticks in the end, its upper bound.
+    """
     at: Sequence[float] = length / np.array([1 + total, max(1 - total, 0.01)])
-    return np.interp(at, held.length.values, held.stuck.values, left=0.0)
+    low, high = np.interp(at, held.length.values, held.stuck.values, left=0.0)
+    none = float(upper_bound(0, int(held.beams), (1 + CONFIDENCE) / 2))
+    return float(low), float(high) or none

@@ -166,7 +166,7 @@ def stopper_page(
         _test_beam_sentence(test_beams),
         model_errors.sentences(name, errors),
     )
-    alone = [] if tables_test_beams.updated_size(test_beams) else [sentences.verdict(stopper)]
+    alone = [] if tables_test_beams.updated_size(test_beams) else [sentences.verdict(stopper, budgets)]
     answer = [*alone, *built, *decided, *rough]
     sections += _test_beam_sections(name, test_beams)
     listed = [*warnings, *([] if test_beams is None else tables_test_beams.warnings(test_beams))]

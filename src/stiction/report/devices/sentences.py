@@ -11,7 +11,7 @@ from stiction.config.units import to_si
 from stiction.devices import limits
 from stiction.devices.budget import LARGEST, SUBTRACTED, part_left
 from stiction.devices.risk import Basis, one_in, samples_for
-from stiction.report.format import UM, UN, airs, with_error
+from stiction.report.format import UM, UN, airs, fraction_with_band, with_error
 from stiction.rounding import in_percent
 from stiction.stages.devices.budget import budget_of, margin_of_shape
 from stiction.stages.devices.opening import BEAMS, EITHER, S_SHAPE
@@ -118,6 +118,32 @@ def _any(safe_lengths):
     return next(iter(safe_lengths.values()))
 
 
+def force_to_build(stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> tuple[float, float, float]:
+    """Sufficient force at all humidities of a stopper [N], uncertainty of its logarithm, and the force with twice it.
+
+    For the smallest fraction with a bound from its patches; NaN without one. As `length_to_build`.
+    """
+    share = bounded_share(stopper)
+    needed = np.nan if share is None else float(stopper.safe_force.sel(part="safe", share=share).max(skipna=False))
+    total = max(filter(np.isfinite, (budget_of(budget).total for budget in budgets.values())), default=0.0)
+    return needed, total, float(np.exp(2 * total)) * needed
+
+
+def worst_air(stopper: xr.Dataset) -> float:
+    """Stated humidity of the largest sufficient force, or of the largest mean force without a bound [-]."""
+    share = bounded_share(stopper)
+    stated = stopper.pull_off.mean("sample") if share is None else stopper.safe_force.sel(part="safe", share=share)
+    return float(stopper.humidity[int(np.argmax(stated.values))])
+
+
+def unbounded_force_sentence(needed: float, total: float) -> str:
+    """Sufficient force [N] without a margin, where the uncertainty due to the measurements allows none."""
+    return (
+        f"If the measurements were exact, {needed / UN:.3g} µN would suffice. They leave it uncertain by "
+        f"{in_percent(total)}, too much for a force to build: first measure better."
+    )
+
+
 def safe_lengths_of(dataset: xr.Dataset) -> xr.DataArray:
     """Safe lengths for the chosen share, by shape [m]."""
     return dataset.safe_length.sel(share=chosen_share(dataset))
@@ -131,19 +157,26 @@ def shortest_budgets(
     return {key: budget for key, budget in budgets.items() if ("tip" in key) == of_tips}
 
 
-def verdict(stopper: xr.Dataset) -> str:
-    """Answer on the restoring force of a stopper, for the smallest fraction with a bound from its patches."""
-    force, where = float(stopper.restoring_force), airs(stopper.humidity.values)
-    stated, any_air = stopper.safe_force.sel(part="safe").max("humidity", skipna=False), in_any_air(stopper)[1]
-    share = bounded_share(stopper)
+def verdict(stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> str:
+    """Answer on the restoring force of a stopper, for the smallest fraction with a bound from its patches.
+
+    It has to exceed what is needed by twice the uncertainty due to the measurements.
+    """
+    force, where, share = float(stopper.restoring_force), airs(stopper.humidity.values), bounded_share(stopper)
     if share is None:
         return _verdict_of_few(stopper)
-    at_these, anywhere = (float(needed.sel(share=share)) for needed in (stated, any_air))
+    needed, total, enough = force_to_build(stopper, budgets)
     head = f"The restoring force of {force / UN:g} µN"
     tail = f"at most {one_in(share)} sticks (95 % confidence, given the drawn surfaces)."
-    if force < at_these:
+    if force < needed:
         return f"{head} does not suffice {where}: a larger one is needed if {tail}"
-    if force < anywhere:
+    if not is_bounded(total):
+        return unbounded_force_sentence(needed, total)
+    more = f" {in_percent(enough / needed - 1)} are added, twice the uncertainty due to the measurements." * (total > 0)
+    if force < enough:
+        return f"{head} is not shown to suffice {where}: {enough / UN:.3g} µN are needed if {tail}{more}"
+    tail += more
+    if force < enough / needed * float(in_any_air(stopper)[1].sel(share=share)):
         return f"{head} suffices {where}, but not at all{_range(stopper)}: {tail}"
     if not ends(stopper):
         return f"{head} suffices {where}: {tail}"
@@ -248,10 +281,10 @@ def stuck_sentence(humidity: float, stuck: float, low: float, high: float, force
     Examples
     --------
     >>> stuck_sentence(0.67, 0.012, 0.01, 0.015, 20e-6)
-    'At a relative humidity of 0.67, 1.2 % of the stoppers (1 to 1.5 %) hold more than the restoring force of 20 µN.'
+    'At a relative humidity of 0.67, 1.2 % (1 to 1.5 %) of the stoppers hold more than the restoring force of 20 µN.'
     """
-    share, band = f"{100 * stuck:.3g} %", f"{100 * low:.3g} to {100 * high:.3g} %"
-    return f"{_at(humidity)}, {share} of the stoppers ({band}) hold more than the restoring force of {force / UN:g} µN."
+    share = fraction_with_band(stuck, low, high, " %")
+    return f"{_at(humidity)}, {share} of the stoppers hold more than the restoring force of {force / UN:g} µN."
 
 
 #: What a safe force rests on.
@@ -281,9 +314,8 @@ def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
 def worst_sentence(stopper: xr.Dataset) -> str:
     """Worst humidity of a stopper in words."""
     worst = float(stopper.worst_humidity)
-    share, least, most = (100 * share for share in in_any_air(stopper)[0])
-    stuck = f" In no air of this range do more than {share:.3g} % ({least:.3g} to {most:.3g} %) stick."
-    stuck = "" if f"{share:.3g}" == "100" else stuck
+    share, *band = in_any_air(stopper)[0]
+    stuck = f" In the worst air of this range, {fraction_with_band(share, *band, ' %')} stick." if share < 1 else ""
     if is_at_an_end(stopper):
         low, high = ends(stopper)
         return f"Between relative humidities of {low:g} and {high:g}, the stopper holds most at {worst:g}.{stuck}"

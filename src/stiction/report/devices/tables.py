@@ -10,7 +10,7 @@ import xarray as xr
 from stiction.devices.budget import LARGEST
 from stiction.devices.risk import Basis
 from stiction.plan.names import by_case
-from stiction.report.format import MISSING, UM, error_alone, humidity_text, number
+from stiction.report.format import MISSING, UM, error_alone, fraction_with_band, humidity_text, number
 from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
@@ -90,10 +90,8 @@ def _at_length(dataset: xr.Dataset) -> dict[str, float]:
 
 def _percent(stuck, low, high, error):
     """Fraction with its band and error in percent, – for devices without a length."""
-    if np.isnan(stuck):
-        return MISSING
     surfaces = f", ± {100 * error:.2g}" if error > 0 else ""
-    return f"{100 * stuck:.3g} ({100 * low:.3g} to {100 * high:.3g}{surfaces})"
+    return fraction_with_band(stuck, low, high) + surfaces
 
 
 def _interval(low, high):

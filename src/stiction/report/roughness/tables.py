@@ -10,7 +10,7 @@ from stiction.config.kinds import ROUGHNESSES
 from stiction.config.units import from_si, without_unit
 from stiction.devices.risk import VERIFIED, one_in, samples_for
 from stiction.plan.names import by_name
-from stiction.report.format import UM, airs, with_band, with_error
+from stiction.report.format import UM, airs, fraction_with_band, with_band, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import FORCE
@@ -184,12 +184,12 @@ def _worst(curve, humidity, shape):
 def _stuck_as_given(curve, humidity, shape):
     """P(stuck) on the surfaces as they are given, if it is known."""
     given = curve.sel(humidity=humidity, shape=shape, roughness=float(curve.given))
-    stuck, low, high = (100 * given.stuck.values).tolist()
+    stuck = given.stuck.values.tolist()
     where = f"At the given {name_of(curve)}" if _is_changed(curve) else "On the surfaces as they are given"
-    if np.isnan(stuck):
+    if np.isnan(stuck[0]):
         return f"{where}, it is not computed."
     place = f"{_value_text(curve, float(curve.given))}{_unit(curve)}"
-    return f"{where}, at {place}, {stuck:.3g} % ({low:.3g} to {high:.3g} %) stick."
+    return f"{where}, at {place}, {fraction_with_band(*stuck, ' %')} stick."
 
 
 def _rows(curve, dimension, humidity, shape):

@@ -166,7 +166,8 @@ function opened(number) {
 
   function stuckText({share, low, high, beyond}) {
     if (Number.isNaN(share)) return MISSING;
-    if (beyond) return `${beyond < 0 ? "less" : "more"} than ${percent(share)} %`;
+    if (beyond < 0 || !share) return `at most ${percent(high)} %`;
+    if (beyond || share === 1) return `at least ${text(100 - Number((100 * (1 - low)).toPrecision(2)), 9)} %`;
     return `${percent(share)} % (${percent(low)} to ${percent(high)} %)`;
   }
 
@@ -275,12 +276,12 @@ function opened(number) {
   function texts() {
     const unit = grid.size.unit, words = data.words, levels = levelsOf(state);
     const safe = safeSize(state), less = margin(state.humidity);
-    const bounded = less && less.total <= words.largest, build = words.build && bounded && safe * Math.exp(-2 * less.total);
+    const bounded = less && less.total <= words.largest, build = words.build && bounded && safe * Math.exp((grid.falls ? 2 : -2) * less.total);
     return {
       stuck: `${words.stick}: ${stuckText(stuckAt(state[grid.size.key], levels))}`,
       safe: `${words.safe} for ${oneIn(state.share)}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : words.none ?? `not known from ${grid.samples} devices`}`,
       budget: words.tested ? words.tested : less
-        ? `Measurements leave ${text(100 * less.total, 2)} %, most of it ${less.most}: ${Number.isFinite(build) && words.build ? `build ${words.build} ${text(build, DIGITS)} ${unit}` : words.build && !bounded ? "too much for a length to build" : "no margin is added for them"}`
+        ? `Measurements leave ${text(100 * less.total, 2)} %, most of it ${less.most}: ${Number.isFinite(build) && words.build ? `build ${words.build} ${text(build, DIGITS)} ${unit}` : words.build && !bounded ? `too much for a ${words.what} to build` : "no margin is added for them"}`
         : `Margin for the measurements: not computed ${data.margin ? "at this humidity" : content.views.some(view => view.margin) ? "in this view" : "without stated uncertainties"}`,
     };
   }

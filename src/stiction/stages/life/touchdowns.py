@@ -37,18 +37,22 @@ def beam_after_touchdowns(
             "stuck_after",
             FREE,
             f"probability of sticking after {numbers} at the safe length of one",
-            *(share, stuck, np.nan, "1", "P (at least) and 1 - (1 - P)^n (at most)", "stiction.life.freeing"),
+            *(np.nan, stuck, np.nan, "1", "1 - (1 - p)^n; p with the same summits each time", "stiction.life.freeing"),
         ),
     ]
 
 
 def stopper_after_touchdowns(stopper: xr.Dataset, of: OfStopper) -> list[Answer]:
-    """P(stuck) after all touchdowns in the worst given air, and the force for a small fraction stuck."""
+    """P(stuck) after all touchdowns in the worst given air, and the force for a small fraction stuck.
+
+    The bounds are those of the 95 % band of P: what none of the patches do bounds it from above alone.
+    """
     if of.touchdowns == 1:
         return []
-    once = float(stopper.stuck.sel(bound="estimate").max())
-    numbers, form = f"{of.touchdowns} touchdowns", "P (at least) and 1 - (1 - P)^n (at most)"
-    what, after = f"probability of sticking after {numbers}", freeing.stuck_after(once, of.touchdowns)
+    once, most = (float(stopper.stuck.sel(bound=bound).max()) for bound in ("low", "high"))
+    form = "P (at least) and 1 - (1 - P)^n (at most), of the 95 % band of P"
+    numbers, after = f"{of.touchdowns} touchdowns", freeing.stuck_after(most, of.touchdowns)
+    what = f"probability of sticking after {numbers}"
     answers = [Answer("stuck_after", FREE, what, once, after, np.nan, "1", form, "stiction.life.freeing")]
     share = float(stopper.share.max())
     rare = freeing.probability_for(share, of.touchdowns)
