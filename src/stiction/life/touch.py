@@ -10,7 +10,8 @@ Raised slowly, the voltage pulls the beam in where λ reaches its fold: 1.6808 f
 without tension. Fringes of the field (`stiction.life.fringes`) lower it, and a dielectric, a further gap D, raises it.
 *At most* the field has no fringes. *At least* it has them at all edges of the beam, and is switched on at once, so that
 the beam swings farther by its inertia (`stiction.life.bending`): 0.909 of the voltage of plates for a cantilever, 0.913
-for a bridge. ASSUME: it is switched on once. At the beam's own frequency, less brings it down.
+for a bridge. ASSUME: it is switched on once. At the beam's own frequency, less brings it down. It
+contains any offset by charge.
 
 **Shock.** At the acceleration a the beam carries the load ρ w t a. It touches with its tip or middle where U = 1,
 

@@ -194,9 +194,10 @@ def _on_dimples(answers):
     said += " in the worst of their air."
     if answers[BESIDE].low > 0:
         tension = from_si(answers[TENSION_BESIDE].low, "mN_per_m")
+        volts = f"a slowly raised voltage of {_low(answers[VOLTAGE_BESIDE])} V"
         return [
-            f"{said} Beside them, {_low(answers[BESIDE])} % of the gap is left: it does not touch there below "
-            f"{_low(answers[VOLTAGE_BESIDE])} V, or while a liquid of up to {significant(tension)} mN/m dries."
+            f"{said} Beside them, {_low(answers[BESIDE])} % of the gap is left: it does not touch there below {volts}, "
+            f"or while a liquid of up to {significant(tension)} mN/m dries."
         ]
     return [f"{said} But it touches beside them, where they do not protect it."]
 
