@@ -142,8 +142,9 @@ def sectors(spectrum: Periodogram, mean: Rings, low: float, high: float) -> tupl
     """
     first, second = spectrum.wavenumbers
     radius = np.hypot(first, second)
-    inside = (radius >= low) & (radius <= high) & ~spectrum.near_slow_axis
-    white = spectrum.power[inside] / np.interp(radius[inside], mean.wavenumber, mean.density)
+    expected = np.interp(radius, mean.wavenumber, mean.density)
+    inside = (radius >= low) & (radius <= high) & ~spectrum.near_slow_axis & (expected > 0)  # noise hides the others
+    white = spectrum.power[inside] / expected[inside]
     angle = np.broadcast_to(np.arctan2(second, first), radius.shape)[inside] % np.pi
     sector = (angle * SECTORS / np.pi).astype(int) % SECTORS
     count = np.bincount(sector, minlength=SECTORS)

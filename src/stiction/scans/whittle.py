@@ -131,8 +131,12 @@ class WhittleFit:
         """Whether a reach shows the power law: the fit falls below half of its plateau there."""
         return bool(shape(within.high, np.log(self.corner), self.slope) < _FALLEN)
 
+    def density(self, wavenumber: np.ndarray) -> np.ndarray:
+        """Fitted s_Z without cut-off, shape of the wave numbers [m⁴]. A trial fit may be that of no surface."""
+        return self.plateau * shape(wavenumber, np.log(self.corner), self.slope)
+
     def spectrum(self, cutoff: float) -> CutoffSelfAffine:
-        """Eq. (7) with a cut-off [rad m⁻¹]."""
+        """Eq. (7) with a cut-off [rad m⁻¹]. Raises ValueError if no surface has it."""
         return CutoffSelfAffine(self.plateau, self.plateau * (cutoff / self.corner) ** self.slope, self.corner, cutoff)
 
 
@@ -142,7 +146,8 @@ def fit_to_the_end(rings: Rings, within: Reach) -> tuple[WhittleFit, Reach]:
     Aliases and noise raise a spectrum, so that a drop is real: the surface, or what tip and instrument leave of it, has
     no shorter waves. A fit that includes waves beyond the end bends towards them, and hides it. Where the rings
     contradict the fit, parts of the reach are therefore fitted, too. An end is one that all parts show which reach from
-    half of it up to it; a spectrum that only becomes steeper has none, because longer parts show later ends.
+    half of it up to it; a spectrum that only becomes steeper has none, because longer parts show later ends. Where no
+    fit up to such an end is likely, as beyond a real end where noise begins, likely fits up to their own ends compete.
     """
     fitted, high = fit(rings, within), within.high
     if fitted.contradicted:
@@ -153,7 +158,9 @@ def fit_to_the_end(rings: Rings, within: Reach) -> tuple[WhittleFit, Reach]:
             parts.append(_Part(part, shorter, _end(rings, within, part)))
         showing = _showing(parts, within.nyquist)
         likely = (part for part in showing if part.fitted.likely)
-        best = next(likely, None) or min(showing or parts, key=lambda part: _deviance(known, part))
+        ended = [part for part in parts if part.fitted.likely and part.near(part.end)]
+        rivals = [*showing, *ended] if showing else parts
+        best = next(likely, None) or min(rivals, key=lambda part: _deviance(known, part))
         fitted, high = best.fitted, best.high
     return _up_to_the_end(rings, within, fitted, high)
 
@@ -191,17 +198,18 @@ def _shorter(known):
 
 def _deviance(known, part):
     """Deviance of rings from the fit to a part. Rings beyond it count as if they were at half of the fit [-]."""
-    ratio = known.density / part.fitted.spectrum(2 * known.wavenumber[-1])(known.wavenumber)
+    ratio = known.density / part.fitted.density(known.wavenumber)
     ratio = np.where(known.wavenumber <= part.high, np.maximum(ratio, np.finfo(float).tiny), _ENDED)
     return 2 * np.sum(known.modes * (ratio - 1 - np.log(ratio)))
 
 
 def _up_to_the_end(rings, within, fitted, high):
-    """Fit with all rings up to the end shown by a fit up to ``high``, unless they are unlikely, and its reach."""
+    """Fit with all rings up to the end shown by one up to ``high``, unless they are few or unlikely, and its reach."""
     last = min(_end(rings, within, fitted), within.high)
-    whole = fit(rings, replace(within, high=last))
-    if whole.likely or whole.misfit <= fitted.misfit:
-        fitted, high = whole, last
+    if len(rings.between(within.low, last).wavenumber) >= FEWEST_RINGS:
+        whole = fit(rings, replace(within, high=last))
+        if whole.likely or whole.misfit <= fitted.misfit:
+            fitted, high = whole, last
     end = _end(rings, within, fitted)
     return fitted, replace(within, high=min(within.high if fitted.contradicted else high, end), end=end)
 
@@ -209,7 +217,7 @@ def _up_to_the_end(rings, within, fitted, high):
 def _end(rings, within, fitted):
     """First wave number with all rings beyond below half of the fit, or the Nyquist one without any [rad m⁻¹]."""
     known = rings.between(within.low, within.nyquist)
-    last = np.flatnonzero(known.density >= _ENDED * fitted.spectrum(within.nyquist)(known.wavenumber))[-1]
+    last = np.flatnonzero(known.density >= _ENDED * fitted.density(known.wavenumber))[-1]
     if len(known.wavenumber) - 1 - last < _RINGS_BEYOND:
         return within.nyquist
     return float(known.wavenumber[last : last + 2].mean())
