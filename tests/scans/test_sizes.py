@@ -63,10 +63,11 @@ def test_moments_are_means_by_area_and_so_are_their_errors():
     np.testing.assert_allclose(inspection.weights, np.array([200, 75]) / 275)
     expected = (200 * inspection.sizes[0].moments + 75 * inspection.sizes[1].moments) / 275
     np.testing.assert_allclose(inspection.moments, expected)
-    variances = [estimate(scans, SEED, model_scans=8).errors ** 2 for scans in (LARGE, MIDDLE)]
-    expected = np.sqrt((200**2 * variances[0] + 75**2 * variances[1]) / 275**2)
-    np.testing.assert_allclose(of_all().errors, expected, rtol=0.1)
-    assert np.all(of_all().errors < of_large().errors)
+    alone = [estimate(scans, SEED, model_scans=8) for scans in (LARGE, MIDDLE)]
+    large, middle, together, first = (one.errors / one.places[:3] for one in (*alone, of_all(), of_large()))
+    expected = np.sqrt((200**2 * large**2 + 75**2 * middle**2) / 275**2)
+    np.testing.assert_allclose(together, expected, rtol=0.1)
+    assert np.all(together < first)
     assert inspection.areas == pytest.approx(275 / 200 * of_large().inspection.areas, rel=0.05)
 
 

@@ -13,7 +13,7 @@ from stiction.scans.flags import UNLIKELY, infeasible, sentences
 from stiction.scans.inspection import Inspection, Maps, Settings, inspect
 from stiction.scans.levelling import line_jump
 from stiction.scans.model_scans import SurfaceModel, draw_model_scans, summits_of_map
-from stiction.scans.moments import homogeneity, moments, tile_errors, tiles
+from stiction.scans.moments import growth, homogeneity, moments, tile_errors, tiles
 from stiction.scans.quantiles import COMPARED, SCORES, Feasible, compared_slopes, feasible, goodness, measured_density
 from stiction.scans.scan import Frame, Scan
 from stiction.scans.whittle import spectrum
@@ -45,9 +45,10 @@ class SurfaceEstimate:
 
     inspection: Inspection
     moments: np.ndarray  #: without white noise and without the bias of levelling and finite size, (3,)
-    covariance: np.ndarray  #: of the moments, by finite scans, model scans and noise; see `widened`, (3, 3)
+    covariance: np.ndarray  #: of the moments at another place, see `widened` and `elsewhere`, (3, 3)
     closed_form_errors: np.ndarray  #: standard errors of the moments if the heights have the density of the model, (3,)
     tile_errors: np.ndarray  #: standard errors of the moments from the scatter of tiles, (3,)
+    places: np.ndarray  #: `stiction.scans.moments.growth` of the errors of moments, ln corner and slope, (5,) [-]
     homogeneity: tuple[np.ndarray, np.ndarray]  #: χ² of the scatter between scans of one size and p, (3,) each
     agreement: tuple[np.ndarray, np.ndarray]  #: the same between sizes, (3,) each
     model: SurfaceModel  #: surface of which the model scans of the largest size were drawn
@@ -67,6 +68,12 @@ class SurfaceEstimate:
     def errors(self) -> np.ndarray:
         """Standard errors of the moments, (3,)."""
         return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def fit_covariance(self) -> np.ndarray:
+        """Covariance of (ln plateau, ln corner, slope) at another place, (3, 3)."""
+        corner, slope = self.places[3:]
+        return elsewhere(self.inspection.fit.covariance, np.array([max(corner, slope), corner, slope]))
 
     def density(self, heights: str) -> HeightDensity | MeasuredDensity:
         """Height density of ``moments`` (maximum entropy) or ``measured``.
@@ -140,7 +147,7 @@ def estimate(
         quantiles=heights,
         quantile_errors=_quantile_errors(inspection, drawn),
         goodness=fitness,
-        **_errors(inspection, model, drawn, nearest is not None and not fitness[1] < UNLIKELY),
+        **_errors(inspection, model, drawn, of_sizes, nearest is not None and not fitness[1] < UNLIKELY),
         agreement=_agreement(of_sizes, values, _covariances(inspection, model, drawn)),
         **_sectors(inspection),
         **_summits(inspection, drawn),
@@ -156,16 +163,34 @@ def _covariances(inspection, model, drawn):
     ]
 
 
-def _errors(inspection, model, drawn, described):
-    """Covariance of the moments, by their form if four moments describe the heights, and their errors of both kinds."""
+def _errors(inspection, model, drawn, of_sizes, described):
+    """Covariance of the moments, by their form if four moments describe the heights, and their errors of all kinds."""
     closed_form = inspection.propagated(_covariances(inspection, model, drawn))
     of_tiles = [tile_errors(maps.levelled, inspection.settings.tiles) ** 2 for maps in inspection.counted]
     by_tiles = np.sqrt(inspection.propagated(of_tiles))
+    here = closed_form if described else widened(closed_form, by_tiles)
+    places = _places(inspection, model, of_sizes, np.diag(here) / np.diag(closed_form))
     return {
-        "covariance": closed_form if described else widened(closed_form, by_tiles),
+        "covariance": elsewhere(here, places[:3]),
         "closed_form_errors": np.sqrt(np.diag(closed_form)),
         "tile_errors": by_tiles,
+        "places": places,
     }
+
+
+def _places(inspection, model, of_sizes, wider):
+    """Growth of the errors of moments and spectrum by the difference between places, (5,) [-].
+
+    Variances of the moments of a scan are those in closed form times ``wider``, (3,).
+    """
+    rows = []
+    for maps, weight, unbiased in zip(inspection.counted, inspection.weights, of_sizes, strict=True):
+        values = moments(maps.powers) + unbiased - maps.noisy_moments
+        variances = np.diag(seen(inspection, model, maps).covariance) * wider
+        rows += [(*scan, *variances, weight / len(values)) for scan in values]
+    of_moments, of_spectra = np.array(rows), np.array(inspection.spectra_of_scans)
+    columns = [(of_moments, 3, k) for k in range(3)] + [(of_spectra, 2, k) for k in range(2)]
+    return np.array([growth(table[:, k], table[:, k + n], table[:, -1]) for table, n, k in columns])
 
 
 def _sectors(inspection):
@@ -273,6 +298,14 @@ def widened(closed_form: np.ndarray, by_tiles: np.ndarray) -> np.ndarray:
     """
     ratio = np.maximum(by_tiles / np.sqrt(np.diag(closed_form)), 1)
     return closed_form * np.outer(ratio, ratio)
+
+
+def elsewhere(covariance: np.ndarray, places: np.ndarray) -> np.ndarray:
+    """Covariance (k, k) whose errors have grown by the difference between places (k,).
+
+    ASSUME: quantities of places are correlated as those of finite scans. Few scans do not show these correlations.
+    """
+    return covariance * np.outer(places, places)
 
 
 def _residual(nearest: Feasible | None, quantile: np.ndarray, moment: np.ndarray):

@@ -20,6 +20,8 @@ ENOUGH_WAVELENGTHS = 10
 _TILES, _ANISOTROPY, UNLIKELY, _JUMP, _SUMMITS = 2.0, 1.5, 0.01, 2.0, 4.0
 #: Names of the moments, and a factor of an error that is worth a flag.
 _MOMENTS, _WIDER = ("rms", "skewness", "kurtosis"), 1.1
+#: Quantities with errors at other places, and their growth that is worth a flag.
+_QUANTITIES, _ELSEWHERE = (*_MOMENTS, "corner", "slope"), 1.5
 #: Ratio of the spectra of scans of different sizes that is worth a flag.
 _STEP = 1.1
 #: Change of a moment by noise in standard errors that is worth a flag.
@@ -95,6 +97,15 @@ def _scans_differ(estimate):
     likely = estimate.homogeneity[1]
     names = [name for name, p in zip(_MOMENTS, likely, strict=True) if p < UNLIKELY]
     return f"the scans differ in {', '.join(names)} by more than their errors" if names else ""
+
+
+def _places_differ(estimate):
+    grown = [
+        f"{name} {ratio:.2g}" for name, ratio in zip(_QUANTITIES, estimate.places, strict=True) if ratio > _ELSEWHERE
+    ]
+    if not grown:
+        return ""
+    return f"places may differ: errors hold for another one, times those of one homogeneous surface {', '.join(grown)}"
 
 
 def _sizes_differ(estimate):
@@ -219,7 +230,7 @@ def _moments_do_not_describe(estimate):
 
 
 def _errors_are_wider(estimate):
-    ratio = estimate.errors / estimate.closed_form_errors
+    ratio = estimate.errors / estimate.places[:3] / estimate.closed_form_errors
     names = [name for name, r in zip(_MOMENTS, ratio, strict=True) if r > _WIDER]
     if not names:
         return ""
@@ -270,6 +281,7 @@ _FLAGS = (
     _not_homogeneous,
     _scans_differ,
     _sizes_differ,
+    _places_differ,
     _spectra_differ,
     _small_scans,
     _power_law_is_not_resolved,

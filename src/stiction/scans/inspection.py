@@ -24,7 +24,7 @@ from stiction.scans.periodogram import Periodogram, Rings, in_order
 from stiction.scans.quantiles import correlation_areas, quantiles
 from stiction.scans.remainder import Remainder, remainders
 from stiction.scans.scan import FEWEST_POINTS, Frame, Scan
-from stiction.scans.whittle import NON_GAUSSIAN, Reach, WhittleFit, fit_to_the_end, reach, spectrum, tip_reach
+from stiction.scans.whittle import NON_GAUSSIAN, Reach, WhittleFit, fit, fit_to_the_end, reach, spectrum, tip_reach
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 
 #: Fewest wavelengths of the corner along a scan: for a plateau at all. ASSUME: the spectrum of smaller scans is flat up
@@ -135,6 +135,12 @@ class Maps:
         """Standardised heights of all scans together at `stiction.scans.quantiles.SCORES`, (49,) [-]."""
         return quantiles(self.levelled)
 
+    def fits(self, within: Reach) -> list[WhittleFit]:
+        """Fits to the spectrum of every scan alone, within a reach as far as it is that of these scans."""
+        within = replace(within, low=max(within.low, self.reach.low), high=min(within.high, self.reach.high))
+        alone = (spectra.periodogram([z], self.part.size) for z in self.complete)
+        return [fit(spectra.rings(spectra.without_floor(each, self.floor.density)), within) for each in alone]
+
     def wavelengths(self, fit: WhittleFit) -> float:
         """Wavelengths of the corner along the shorter side [-]."""
         return fit.corner * min(self.part.size) / (2 * np.pi)
@@ -205,6 +211,19 @@ class Inspection:
         return self.averaged([maps.quantiles for maps in self.counted])
 
     @property
+    def spectra_of_scans(self) -> list[tuple[float, float, float, float, float]]:
+        """Logarithm of the corner, slope, their variances and weight of each scan. One row if a scan has few rings."""
+        try:
+            fits = [maps.fits(self.reach) for maps in self.counted]
+        except ValueError:
+            return [(0.0, 0.0, 1.0, 1.0, 1.0)]
+        return [
+            (np.log(alone.corner), alone.slope, *np.diag(alone.covariance)[1:], weight / len(of_size))
+            for of_size, weight in zip(fits, self.weights, strict=True)
+            for alone in of_size
+        ]
+
+    @property
     def spectrum(self) -> CutoffSelfAffine:
         """Fit, up to the end of the measured spectrum."""
         return self.fit.spectrum(self.reach.end)
@@ -254,7 +273,7 @@ class Inspection:
             high = min(self.reach.high, *(maps.reach.high for maps in (first, second)))
             rings = [maps.rings.between(low, high) for maps in (first, second)]
             if all(len(part.wavenumber) for part in rings):
-                fitted = self.fit.spectrum(high)
+                fitted = self.fit.density
                 means = [np.average(part.density / fitted(part.wavenumber), weights=part.weight) for part in rings]
                 error = NON_GAUSSIAN * np.sqrt(sum(1 / part.weight.sum() for part in rings))
                 yield first, second, means[1] / means[0], error * means[1] / means[0]

@@ -13,7 +13,8 @@ orthonormal Hermite polynomials, coefficients a_ik, and ρ the autocorrelation o
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.special import chdtrc
+from scipy.optimize import brentq
+from scipy.special import chdtrc, erfc, ndtri
 
 from stiction.estimates import jackknife
 from stiction.surface.spectrum import Spectrum, autocovariance
@@ -21,6 +22,12 @@ from stiction.surface.translation import LARGEST_SCORE, Translation, hermite_coe
 
 #: Lags of the radial integral, and trapezoids of the transform per radian of its fastest wave.
 _LAGS, _PANELS_PER_RADIAN, _FEWEST_PANELS = 1500, 2, 4000
+#: ASSUME: places differ with this probability before scans are compared. The logarithm of τ is uniform from a share to
+#: a multiple of the error of a scan then. τ is never taken as zero. Homogeneous scans get larger errors: the median of
+#: the growth is 17 % for 2 scans, 9 % for 3, 7 % for 5.
+DIFFER, _SCATTER = 0.2, (0.3, 100.0)
+#: Points of the density of τ, and probability beyond the interval that gives the error.
+_POINTS, _BEYOND = 60, 0.05
 
 
 def powers(heights: np.ndarray) -> np.ndarray:
@@ -137,6 +144,48 @@ def homogeneity(per_scan: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarra
         return np.full(3, np.nan), np.full(3, np.nan)
     chi2 = np.sum((per_scan - per_scan.mean(axis=0)) ** 2, axis=0) / np.diag(covariance)
     return chi2, chdtrc(freedom, chi2)
+
+
+def growth(values: np.ndarray, variances: np.ndarray, weights: np.ndarray) -> float:
+    r"""Error of the weighted mean at another place over that on one homogeneous surface, at least 1 [-].
+
+    Scan i of n errs by a known variance vᵢ about the value of its place, and places scatter by an unknown τ about their
+    mean. The mean :math:`\sum w_i x_i` therefore differs from another place, where a device is built, by the variance
+    :math:`\sum w_i^2 v_i + \tau^2 (1 + \sum w_i^2)`. τ has a posterior density by the scatter of the scans; where that
+    is clear, the interval is Student's t.
+    The error is the half width of the 95 % interval over 1.96. It is 1 for a single scan, which shows no other place.
+
+    Parameters
+    ----------
+    values, variances : (n,) arrays
+        A quantity of every scan, and the variance by which it errs on a homogeneous surface.
+    weights : (n,) array
+        Of the scans in the mean, of sum 1.
+
+    Examples
+    --------
+    >>> alike, thirds = np.array([-1.0, 0.0, 1.0]), np.full(3, 1 / 3)
+    >>> [round(growth(size * alike, np.ones(3), thirds), 1) for size in (1, 3, 10)]
+    [1.1, 11.8, 40.8]
+    """
+    if len(values) < 2:
+        return 1.0
+    squares = np.r_[0.0, np.geomspace(*_SCATTER, _POINTS) ** 2] * np.median(variances)
+    prior = np.r_[1 - DIFFER, np.full(_POINTS, DIFFER / _POINTS)]
+    likelihood = _log_likelihood(values, variances + squares[:, None])
+    share = prior * np.exp(likelihood - likelihood.max())
+    alone = weights**2 @ variances
+    widths = np.sqrt(2 * (alone + squares * (1 + weights @ weights)))
+    half = brentq(lambda z: share @ erfc(z / widths) / share.sum() - _BEYOND, 0, 10 * widths.max())
+    return max(float(half / -ndtri(_BEYOND / 2) / np.sqrt(alone)), 1.0)
+
+
+def _log_likelihood(values, variances):
+    """Restricted log-likelihood of values (n,) with an unknown mean, for each row of variances (m, n), (m,)."""
+    weight = 1 / variances
+    total = weight.sum(axis=1)
+    deviation = values - (weight @ values / total)[:, None]
+    return -(np.log(variances).sum(axis=1) + np.log(total) + np.sum(weight * deviation**2, axis=1)) / 2
 
 
 def tiles(scan: np.ndarray, sides: int) -> list[np.ndarray]:

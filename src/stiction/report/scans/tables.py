@@ -52,7 +52,7 @@ def _scans(name, estimate, maps):
         scan = stage_scan.scan_of(dataset)
         # The variance of a mean is inverse to the area.
         scans = sum(count * (frame.area / scan.frame.area) for count, frame in stage_estimate.counted_frames(estimate))
-        errors = np.sqrt(np.diag(estimate.covariance) * scans)
+        errors = np.sqrt(np.diag(estimate.covariance) * scans) / estimate.places.values[:3]
         rms = np.exp(moments[0]) / NM
         row = {"surface": name, "file": scan.name, "channel": str(dataset.channel.item())}
         row |= {f"size_{axis}_um": length / UM for axis, length in zip(("fast", "slow"), scan.size, strict=True)}
@@ -83,9 +83,9 @@ def scan_uncertainty(studies: Mapping[str, xr.Dataset]) -> Table:
         "Relative standard error of the mean adhesion energy ē due to the finite scans of measured surfaces, by what "
         "the scans measure (skewness and kurtosis with their correlation), and of the mean crack length l_s; the total "
         "± its standard error due to sampling. Needed: scans of each surface, the fewest in all, with which the error "
-        f"of ē is below {100 * GOAL:g} %. Last columns: change of ē if the measured surfaces had the other value of "
-        "the key, ± standard error due to sampling and, for heights, to the scans. Scans measure the shape of the "
-        "height density less precisely than the moments."
+        f"of ē is below {100 * GOAL:g} % where places are alike. Last columns: change of ē if measured surfaces had "
+        "the other value of the key, ± standard error due to sampling and, for heights, to the scans. Scans measure "
+        "the shape of the height density less precisely than the moments."
     )
     return Table.of(rows, caption, _UNCERTAINTY | _choice_columns(rows))
 

@@ -76,6 +76,7 @@ def layout(estimate: SurfaceEstimate, notes: Sequence[str] = ()) -> xr.Dataset:
             "moment": list(MOMENTS),
             "other_moment": list(MOMENTS),
             "shape": ["skewness", "kurtosis", "distance"],
+            "quantity": [*MOMENTS, *PARAMETERS[1:]],
             "parameter": list(PARAMETERS),
             "other_parameter": list(PARAMETERS),
             "score": ("score", SCORES, {"units": "1"}),
@@ -103,6 +104,7 @@ def _moments(estimate):
         ),
         "scan_moments": (("scan", "moment"), moments(powers), {"long_name": "of every scan"}),
         "closed_form_errors": ("moment", estimate.closed_form_errors, {"long_name": closed_form}),
+        "places": ("quantity", estimate.places, {"long_name": "errors at another place over those at one place"}),
         "tile_errors": ("moment", estimate.tile_errors, {"long_name": "standard errors from the scatter of tiles"}),
         "homogeneity_chi2": ("moment", estimate.homogeneity[0], _CHI2),
         "homogeneity_p": ("moment", estimate.homogeneity[1], _P),
@@ -132,7 +134,7 @@ def _spectrum(estimate):
         "plateau": ((), fit.plateau, {"units": "m4"}),
         "corner": ((), fit.corner, _WAVE),
         "slope": ((), fit.slope, {"units": "1"}),
-        "fit_covariance": (("parameter", "other_parameter"), fit.covariance, {"long_name": "of the fit of Eq. (7)"}),
+        "fit_covariance": (("parameter", "other_parameter"), estimate.fit_covariance, {"long_name": "of the fit"}),
         "fit_chi2": ((), fit.chi2, _CHI2),
         "fit_freedom": ((), fit.freedom, {"long_name": "rings less parameters"}),
         **{name: ((), value, _WAVE | words) for (name, words), value in reach},
@@ -194,6 +196,9 @@ def _mode_covariance(estimate):
     covariance = inspection.propagated(
         [mode_covariance(model.translation, model.overlaps, ORDERS) / count for model, count in models]
     )
+    # ASSUME: modes differ between places as much as the skewness or the kurtosis, whichever differs more.
+    rms, *shape = estimate.places[:3]
+    covariance = evaluation.elsewhere(covariance, np.array([rms, *[max(shape)] * len(ORDERS)]))
     covariance[0, 0] = estimate.covariance[0, 0]
     return covariance
 
