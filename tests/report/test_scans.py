@@ -228,8 +228,9 @@ def test_every_scan_has_its_row_with_the_error_of_one_scan():
         assert row.rms_nm == pytest.approx(1e9 * scan.heights.std(), rel=0.02)  # levelled
         assert (row.channel, row.points_fast, row.points_slow, row.undefined_percent) == ("Height", 250, 250, 0)
         assert (row.size_fast_um, row.size_slow_um) == pytest.approx((5, 5))
-        assert row.skewness_se == pytest.approx(np.sqrt(2 * float(estimated().covariance[1, 1])))
-        assert row.rms_se_nm == pytest.approx(row.rms_nm * np.sqrt(2 * float(estimated().covariance[0, 0])))
+        rms, skewness = (np.sqrt(np.diag(estimated().covariance)) / estimated().places.values[:3])[:2]
+        assert row.skewness_se == pytest.approx(np.sqrt(2) * skewness)
+        assert row.rms_se_nm == pytest.approx(row.rms_nm * np.sqrt(2) * rms)
         assert row.flags == f"a flag; {CLIPPED}"
     assert f"- Etched: a flag\n- Etched: {CLIPPED}" in table.markdown
 
