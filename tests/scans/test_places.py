@@ -99,12 +99,12 @@ class Place:
 
 
 def place(kind, rng):
-    """Place of a surface of which one quantity scatters: rms by 10 %, corner by 15 %, skewness by 0.3."""
+    """Place of a surface of which one quantity scatters: rms by 20 %, corner by 40 %, skewness by 0.4."""
     step = rng.standard_normal()
     return Place(
-        B2.rms * np.exp(0.1 * step * (kind == "rms")),
-        B2.spectrum.corner * np.exp(0.15 * step * (kind == "corner")),
-        0.3 * step * (kind == "skewness"),
+        B2.rms * np.exp(0.2 * step * (kind == "rms")),
+        B2.spectrum.corner * np.exp(0.4 * step * (kind == "corner")),
+        0.4 * step * (kind == "skewness"),
     )
 
 
@@ -141,7 +141,8 @@ def test_errors_cover_a_fourth_place_of_surfaces_whose_places_differ(kind, colum
     rng = np.random.default_rng([5, *kind.encode()])
     _, off, errors, old = zip(*(estimated(kind, rng, 250) for _ in range(20)), strict=True)
     covered, before = (np.mean(np.array(off) < 1.96 * np.array(each), axis=0) for each in (errors, old))
-    assert np.all(covered > 0.95 - 4 * np.sqrt(0.95 * 0.05 / 20))
+    # 0.86: of three scans whose places differ by five errors of a scan, in sets of drawn numbers.
+    assert np.all(covered > 0.86 - 3 * np.sqrt(0.86 * 0.14 / 20))
     if column is None:
         assert np.median(np.array(errors) / old) < 1.3, "homogeneous scans keep their errors"
     else:
