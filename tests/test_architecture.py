@@ -64,7 +64,8 @@ PHYSICS = [name for name in MODULES if ORDER.index(room(name)) < ORDER.index("ru
 #: Modules with the library for files of microscopes.
 READERS = {"scans.reading", "scans.published"}
 #: Physics that knows files, and the compiler that keeps its results in files.
-PHYSICS = [name for name in PHYSICS if name not in READERS | {"regular_files", "temporary", "kernels"}]
+FILED = {"regular_files", "temporary", "kernels", "formats.netcdf"}
+PHYSICS = [name for name in PHYSICS if name not in READERS | FILED]
 SCRIPTS = sorted((PACKAGE.parents[1] / "workflow" / "scripts").glob("*.py"))
 
 

@@ -12,8 +12,10 @@ import numpy as np
 import pytest
 
 from stiction.errors import ScanError
-from stiction.formats import high_speed, packed, text
+from stiction.formats import high_speed, packed
 from stiction.formats.content import content_of, own_reader
+from stiction.formats.texts import encoding
+from stiction.formats.texts.table import plain as plain_text
 from stiction.scans.reading import Source, read
 from stiction.streams import stream
 
@@ -112,12 +114,12 @@ def test_points_of_a_spreadsheet_are_points(tmp_path):
 
 @pytest.mark.parametrize("plain", ["1.5 2 3\n4 5 6\n", "a, b, c\nd, e, f\n", "1\n2\n3\n", "1,2\n3,4\n", ""])
 def test_texts_that_the_library_reads_and_those_that_are_no_tables_stay(plain):
-    assert text.plain(plain) == plain
+    assert plain_text(plain) == plain
 
 
 @pytest.mark.parametrize("content", [bytes(100), b"\x89PNG\r\n\x1a\n" + bytes(range(256)), codecs.BOM_UTF16_LE + b"1"])
 def test_other_files_are_no_texts(content):
-    assert text.decoded(content) is None
+    assert encoding.decoded(content) is None
 
 
 # Packed files
@@ -212,7 +214,7 @@ def sxm(direction="down", lines=40, kind="FLOAT            MSBFIRST", names=("Z"
     z[:, : 40 - lines] = np.nan
     image = (z if direction == "up" else z[:, ::-1]).T
     text = "".join(f":{tag}:\n{value}\n" for tag, value in tags.items()) + ":SCANIT_END:\n\n\n"
-    images = [image, image + 1e-9] * len(names) + [image]
+    images = [image, (image + 1e-9)[:, ::-1]] * len(names) + [image]  # every point in the order of the scan
     return text.encode("latin-1") + b"\x1a\x04" + b"".join(one.astype(">f4").tobytes() for one in images)
 
 

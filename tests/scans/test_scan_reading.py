@@ -208,7 +208,7 @@ def test_a_size_in_no_unit_of_length_is_not_a_size():
     channel.unit, channel.physical_sizes = ("um", None), (5.0, 5.0)
     with pytest.raises(ScanError, match="size_um: scan.spm has no size in a unit of length"):
         reading._size(channel, Source(), "scan.spm")
-    assert reading._size(channel, GIVEN, "scan.spm") == SIZE
+    assert reading._size(channel, GIVEN, "scan.spm") == (SIZE, ())
 
 
 def test_levelling_by_the_instrument_is_told():

@@ -8,16 +8,16 @@ import numpy as np
 
 @dataclass(frozen=True, eq=False)
 class Channel:
-    """Values on a rectangular grid, in SI units."""
+    """Values on a rectangular grid."""
 
     name: str
-    data_unit: str  #: of the values
+    data_unit: str  #: of the values, empty if the file has none
     nb_grid_pts: tuple[int, int]  #: along x and y
-    physical_sizes: tuple[float, float]  #: along both, number of points times their distance [m]
-    values: Callable[[], np.ndarray]  #: gives the values, (n_x, n_y)
+    physical_sizes: tuple[float, float] | None  #: along both, number of points times their distance, in ``unit``
+    values: Callable[[], np.ndarray]  #: gives the values, (n_x, n_y) [m if both units are lengths, else ``data_unit``]
     channel_id: str = ""  #: name, with a number behind # if others have the same
     index: int = 0
-    unit: str = "m"  #: of the sides
+    unit: str | None = "m"  #: of the sides
     dim: int = 2
     is_uniform: bool = True
     info: dict = field(default_factory=dict)

@@ -7,10 +7,13 @@ import zipfile
 import zlib
 from dataclasses import dataclass
 
-from stiction.formats import high_speed, jpk, nanonis
+from stiction.errors import ScanError
+from stiction.formats import float_tiff, high_speed, jpk, nanonis, netcdf, simple_field
 from stiction.formats.channel import Channel
+from stiction.formats.limits import HDF5, require_bytes, require_no_links
 from stiction.formats.packed import unpacked
-from stiction.formats.text import decoded, plain
+from stiction.formats.texts.encoding import decoded
+from stiction.formats.texts.table import plain
 
 #: Ending of movies of high-speed microscopes, whose first bytes say nothing.
 _HIGH_SPEED = "asd"
@@ -38,14 +41,24 @@ class Content:
 
 
 def content_of(label: str, path: str, stored: bytes) -> Content:
-    """Content of a file, unpacked. Numbers of a text are as the library reads them."""
+    """Content of a file, unpacked. Numbers of a text are as the library reads them.
+
+    Raises
+    ------
+    ScanError
+        If it is too large, leads to other files, or has numbers that can be read in two ways.
+    """
+    require_bytes(len(stored), label)
     try:
         name, content = unpacked(label, stored)
+    except ScanError as refusal:
+        raise ScanError(label, refusal.key, refusal.reason) from None
     except (OSError, EOFError, ValueError, zlib.error, struct.error, zipfile.BadZipFile):
         name, content = label, stored  # the reader of its format says what is damaged
+    require_no_links(content, label)
     text = decoded(content)
     if text is not None:
-        text = plain(text)
+        text = plain(text, label)
         content = text.encode()
     return Content(label, path, name, content, text, content != stored)
 
@@ -69,7 +82,7 @@ class OwnReader:
 
 
 def own_reader(file: Content) -> OwnReader | None:
-    """Reader of Nanonis, of high-speed microscopes or of JPK, or ``None`` for other formats.
+    """Reader of a format of this folder, or ``None`` for other formats.
 
     Raises
     ------
@@ -80,5 +93,12 @@ def own_reader(file: Content) -> OwnReader | None:
         return OwnReader("sxm", nanonis.channels(file.content))
     if file.ending == _HIGH_SPEED:
         return OwnReader(_HIGH_SPEED, high_speed.channels(file.content))
-    found = jpk.channels(file.content) if file.content.startswith(jpk.MAGIC) else []
-    return OwnReader("h5-jpk", found) if found else None
+    if file.content.startswith(simple_field.MAGIC):
+        return OwnReader("gsf", simple_field.channels(file.content))
+    if file.content.startswith(HDF5) and (found := jpk.channels(file.content, file.label)):
+        return OwnReader("h5-jpk", found)
+    if file.content.startswith(netcdf.MAGIC) and (found := netcdf.channels(file.content, file.label)):
+        return OwnReader("netcdf", found)
+    if file.content.startswith(float_tiff.MAGIC) and (found := float_tiff.channels(file.content, file.label)):
+        return OwnReader("float-tiff", found)
+    return None

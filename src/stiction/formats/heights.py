@@ -14,7 +14,7 @@ UNITS = {"m": 1.0, "mm": 1e-3, "µm": 1e-6, "um": 1e-6, "nm": 1e-9, "Å": 1e-10,
 STORED = set(UNITS) - {"A"}
 #: Names of height channels consist of these words: at least one of the first set, others only of the second and third.
 #: Heights by different means are different quantities. Those of both directions of a line are one quantity.
-_HEIGHT, _MEANS = {"height", "topography", "z"}, {"axis", "sensor", "measured", "raw", "data"}
+_HEIGHT, _MEANS = {"height", "heights", "topography", "z"}, {"axis", "sensor", "measured", "raw", "data"}
 _DIRECTION = {"scan", "trace", "retrace", "forward", "backward", "channel"}
 #: Words for other quantities that microscopes also give as lengths.
 _NO_HEIGHT = {"adhesion", "amplitude", "deflection", "deformation", "error", "friction", "lateral", "phase"}
@@ -64,7 +64,7 @@ def height_channel(channels: Sequence[Any], wanted: str | None, name: str) -> tu
 
 def unit_of(channel: Any) -> Any:
     """Unit of the heights of a channel, not always a length, or ``None`` if the file has none."""
-    return channel.unit if channel.data_unit is None else channel.data_unit
+    return channel.unit if channel.data_unit is None else channel.data_unit or None
 
 
 def _words(name):

@@ -15,6 +15,10 @@ _NM = 1e-9
 #: piezo below the sample retreats; libasd says so of ranges that are symmetric about 0, and the opposite of others.
 _RANGES = {1: (0.0, -1.0), 2: (0.0, -2.5), 3: (0.0, -9.99), 4: (0.0, -5.0)}
 _RANGES |= {0x00010000: (1.0, -1.0), 0x00020000: (2.5, -2.5), 0x00040000: (5.0, -5.0)}
+#: Bits of levels. ASSUME: levels of 16 bits do not all fit into 12.
+_BITS = (12, 16)
+#: ASSUME: least and largest extension of a piezo [nm/V], and gain of its amplifier. Others are damage.
+_PIEZO = ((0.1, 1000.0), (0.1, 1000.0))
 _UNSURE = "readers of this format disagree on the sign of its heights: check on the sheet that elevations are red"
 #: Names of the quantities of channels, and that of heights.
 _NAMES = {"TP": "Topography", "ER": "Error", "PH": "Phase"}
@@ -46,6 +50,8 @@ def channels(content: bytes) -> list[Channel]:
     layout, places = (_VERSION_0, _PLACES[0]) if version == 0 else (_VERSION_1, _PLACES[1])
     header = struct.unpack_from(layout, content)
     value = {name: _at(header, place) for name, place in places.items()}
+    if min(*value["texts"], *value["points"], value["frame"], value["frames"]) < 0:
+        raise ValueError("its header has a negative size")
     start = struct.calcsize(layout) + sum(value["texts"]) + _after_the_texts(version, content, layout, value["texts"])
     return numbered(_frames(content[start:], value))
 
@@ -74,11 +80,23 @@ def _frames(data, value) -> Iterator[Channel]:
         raise ValueError(f"its levels have the range {value['range']:#x} of voltages")
     points, sides = value["points"], tuple(_NM * length for length in value["sides"])
     size = value["frame"] + 2 * points[0] * points[1]
+    if min(points) < 1 or len(data) != size * value["frames"] * sum(map(bool, kinds)):
+        raise ValueError("its size is not that of the frames in its header")
     first = size * value["frames"] * kinds.index(_HEIGHTS)
+    if not all(least <= one <= most for one, (least, most) in zip(value["piezo"], _PIEZO, strict=True)):
+        raise ValueError("the extension of its piezo, or its gain, is that of no instrument")
     for number in range(value["frames"]):
         levels = np.frombuffer(data, "<i2", points[0] * points[1], first + size * number + value["frame"])
+        _require_levels(levels, value["bits"])
         info = {} if _RANGES[value["range"]][0] else {"note": _UNSURE}
         yield Channel(_NAMES[_HEIGHTS], "m", points, sides, lambda levels=levels: _heights(levels, value), info=info)
+
+
+def _require_levels(levels, bits):
+    """Refuse levels that need fewer or more bits than the header has, of the numbers of bits of instruments."""
+    needed = next((number for number in _BITS if levels.min() >= 0 and levels.max() < 2**number), None)
+    if bits != needed:
+        raise ValueError(f"its levels are not of {bits} bits")
 
 
 def _heights(levels, value):

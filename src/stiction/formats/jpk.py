@@ -11,13 +11,12 @@ from typing import Any
 import numpy as np
 
 from stiction.formats.channel import Channel, numbered
+from stiction.formats.limits import require_points
 
-#: First bytes of a file of HDF5.
-MAGIC = b"\x89HDF\r\n\x1a\n"
 _MEASUREMENT, _CHANNEL, _SCALING = re.compile(r"Measurement_\d+"), re.compile(r"Channel_\d+"), "net-encoder.scaling"
 
 
-def channels(content: bytes) -> list[Channel]:
+def channels(content: bytes, label: str) -> list[Channel]:
     """Channels of a file. None if it is another file of HDF5."""
     import h5py  # comes with the library for files
 
@@ -28,14 +27,18 @@ def channels(content: bytes) -> list[Channel]:
             for measurement in measured
             for name in measurement
             if _CHANNEL.fullmatch(name)
-            for channel in _frames(measurement.attrs, measurement[name])
+            for channel in _frames(measurement.attrs, measurement[name], label)
         )
 
 
-def _frames(scan, group) -> Iterator[Channel]:
+def _frames(scan, group, label) -> Iterator[Channel]:
     """Channel of every frame of a group."""
-    levels = next(group[name] for name in group if name != "thumbnail")[()]
+    stored = next(group[name] for name in group if name != "thumbnail")
+    require_points(stored.shape, label)
+    levels = stored[()]
     points = tuple(int(scan[f"position-pattern.grid.{side}length"]) for side in "ij")
+    if levels.ndim != 2 or min(points) < 1 or len(levels) != points[0] * points[1]:
+        raise ValueError(f"its frames have {len(levels)} points, not {points[0]} x {points[1]}")
     sides = tuple(float(scan[f"position-pattern.grid.{side}length"]) for side in "uv")
     scale, offset = (float(group.attrs[f"{_SCALING}.{name}"]) for name in ("multiplier", "offset"))
     direction = "retrace" if _text(group.attrs["retrace"]) == "true" else "trace"

@@ -1,6 +1,7 @@
 """Scans of Nanonis, ``.sxm``: a text of tags, and 32-bit numbers of every channel in both directions.
 
 The layout is that of the manual of Nanonis. Values are in SI units, and NaN where a scan was stopped.
+Lines, and the points of a line, are in the order of the scan, so that backward images are mirrored.
 """
 
 import re
@@ -12,6 +13,8 @@ from stiction.formats.channel import Channel, numbered
 
 #: First bytes of a file, the tag after which its data begin, and the bytes before these.
 MAGIC, _END, _BEFORE_DATA = b":NANONIS_VERSION:", b":SCANIT_END:", b"\x1a\x04"
+#: Tags on which the values depend.
+_USED = ("SCANIT_TYPE", "SCAN_PIXELS", "SCAN_RANGE", "SCAN_DIR", "DATA_INFO")
 
 
 def channels(content: bytes) -> list[Channel]:
@@ -29,10 +32,12 @@ def channels(content: bytes) -> list[Channel]:
         raise ValueError(f"its numbers are {' '.join(tags['SCANIT_TYPE'].split())}, not FLOAT MSBFIRST")
     points, sides = tuple(map(int, tags["SCAN_PIXELS"].split())), tuple(map(float, tags["SCAN_RANGE"].split()))
     size, found = points[0] * points[1], list(_images(tags["DATA_INFO"]))
-    values = np.frombuffer(data, ">f4", size * len(found)).reshape(len(found), points[1], points[0])
+    if any(parts[1::2].count(tag) > 1 for tag in _USED) or min(points) < 1 or len(data) != 4 * size * len(found):
+        raise ValueError("its data are not those that its tags describe")
+    values = np.frombuffer(data, ">f4").reshape(len(found), points[1], points[0])
     upwards = tags["SCAN_DIR"].strip() == "up"
     return numbered(
-        Channel(f"{name} ({direction})", unit, points, sides, lambda k=k: _oriented(values[k], upwards))
+        Channel(f"{name} ({direction})", unit, points, sides, lambda k=k: _oriented(values[k], upwards, found[k][2]))
         for k, (name, unit, direction) in enumerate(found)
     )
 
@@ -47,6 +52,7 @@ def _images(table) -> Iterator[tuple[str, str, str]]:
             yield channel["Name"], channel["Unit"], direction
 
 
-def _oriented(lines, upwards):
-    """Map (n_x, n_y) with y up, from lines in the order of the scan, and points of a line in the order of x."""
-    return (lines if upwards else lines[::-1]).T.astype(float)
+def _oriented(lines, upwards, direction):
+    """Map (n_x, n_y) with x to the right and y up, from lines and points in the order of the scan."""
+    ordered = lines if upwards else lines[::-1]
+    return (ordered[:, ::-1] if direction == "backward" else ordered).T.astype(float)

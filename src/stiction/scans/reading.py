@@ -18,16 +18,21 @@ from types import SimpleNamespace
 import numpy as np
 
 from stiction.errors import ScanError
+from stiction.formats.axes import without_axes
 from stiction.formats.content import content_of, own_reader
 from stiction.formats.heights import STORED, UNITS, height_channel, unit_of
-from stiction.formats.text_lines import COORDINATES, misread
+from stiction.formats.limits import require_bytes, require_points
+from stiction.formats.no_data import require_no_mark, without_marks
+from stiction.formats.texts.lines import COORDINATES, misread, uneven
 from stiction.regular_files import require_regular
-from stiction.scans.scan import Scan
+from stiction.scans.scan import PIXELS, Frame, Scan
 
 #: Formats that any file of a certain length has: recognised by the ending of the file only.
 _WITHOUT_MAGIC = {"hgt", "nms"}
 #: Formats of text: maps of lines, and points with their coordinates.
 _TEXTS = _LINES, _POINTS = "asc", "xyz"
+#: Formats of bare numbers, which may have axes before the heights, and formats with masks drawn by people.
+_BARE, _MASKED = {_LINES, "npy", "npz", "h5", "mat", "float-tiff"}, {"gwy"}
 #: Metadata of instruments on whether the stored heights are levelled, and their values if they are not.
 _LEVELLED = re.compile(r"offline planefit|(?:planefit|flattenorder) (\d+)", re.IGNORECASE)
 _NOT_LEVELLED = {"none", "-1", "0", ""}
@@ -83,6 +88,7 @@ def read(path: str | Path, source: Source | None = None) -> ScanFile:
 
 def _read(library, path, source):
     """`ScanFile` of a non-empty file."""
+    require_bytes(path.stat().st_size, path.name)
     name, file = path.name, content_of(path.name, str(path), path.read_bytes())
     with _reader_of(library, file) as reader:
         if not reader.channels:
@@ -96,15 +102,46 @@ def _read(library, path, source):
             raise ScanError(name, "files", "is a profile; a map of heights is needed")
         if reader.format() in (_LINES, _POINTS):
             _require_all_lines(library, file, reader.format(), channel)
-        unit, size = _unit(channel, source, name), _size(channel, source, name)
-        heights = UNITS[_delivered_unit(channel, unit)] * _heights(channel, name)
+        require_points(channel.nb_grid_pts, name)
+        unit, (size, resized) = _unit(channel, source, name), _size(channel, source, name)
+        heights, found = _stored_heights(channel, unit, reader.format(), name)
         notes += _instrument_levelling(channel, name) + _note(channel, name)
         identifier = channel.channel_id
     if source.fast_axis == "y":
         heights, size = heights.T, size[::-1]
     scan = _scan(heights, size, name, source)
-    notes += (f"{name}: {scan.stopped}, count as undefined",) if scan.stopped else ()
-    return ScanFile(scan, identifier, unit, notes)
+    _require_heights(scan, UNITS[unit])
+    found = resized + found + ((f"{scan.stopped}, count as undefined",) if scan.stopped else ())
+    return ScanFile(scan, identifier, unit, notes + tuple(f"{name}: {note}" for note in found))
+
+
+def _stored_heights(channel, unit, kind, name):
+    """Heights [m] without axes and marks of no data, and notes on these."""
+    values = _heights(channel, name)
+    values, axes = without_axes(values) if kind in _BARE else (values, "")
+    delivered = _delivered_unit(channel, unit)
+    try:
+        stored, marks = without_marks(values * (UNITS[delivered] / UNITS[unit]))
+    except ValueError as doubt:
+        raise ScanError(name, "files", str(doubt)) from None
+    heights = UNITS[delivered] * (np.where(np.isnan(stored), np.nan, values) if marks else values)
+    return heights, tuple(note for note in (axes, marks, _undefined(values, kind)) if note)
+
+
+def _require_heights(scan, unit):
+    """Refuse a scan with values that may be marks of no data, in terms of their unit [m]."""
+    try:
+        require_no_mark(scan.heights / unit)
+    except ValueError as doubt:
+        raise ScanError(scan.name, "files", str(doubt)) from None
+
+
+def _undefined(heights, kind):
+    """Note on points without a height in the file. Empty if there are none."""
+    number = int((~np.isfinite(heights)).sum())
+    what = "under a mask" if kind in _MASKED else "without a height"
+    points = f"{number} point{'s' * (number > 1)} ({100 * number / heights.size:.2g} %)"
+    return f"{points} {what} in the file count as undefined" if number else ""
 
 
 def _scan(heights, size, name, source):
@@ -176,6 +213,7 @@ def _reader_of(library, file):
     try:
         reader = library.open(file.source())
     except library.unknown:
+        _require_even_lines(file)
         raise _unreadable(library, file.label, _error_of_its_format(library, file)) from None
     if reader.format() in _WITHOUT_MAGIC and reader.format() not in kinds:
         reader.close()
@@ -227,6 +265,15 @@ def _require_all_lines(library, file, kind, channel):
         raise ScanError(file.label, "files", f"lists points that are on no regular grid{reason}; a map is needed")
 
 
+def _require_even_lines(file):
+    """Refuse a table of numbers whose lines have different numbers of values."""
+    found = uneven(file.text, commas=True) if file.text is not None else None
+    if found is not None:
+        line, number, usual = found
+        values = f"{number} value{'s' * (number > 1)} in line {line}, and {usual} in others"
+        raise ScanError(file.label, "files", f"has {values}: write nan where no height is defined")
+
+
 def _unit(channel, source, name):
     """Unit of the heights, from the file or, if it has none, from the configuration."""
     stored = unit_of(channel)
@@ -242,33 +289,58 @@ def _unit(channel, source, name):
 
 def _delivered_unit(channel, unit):
     """Unit of the heights from the library. It converts lengths to the lateral unit, if that is a length."""
-    return channel.unit if channel.unit in STORED else unit
+    return channel.unit if channel.unit in STORED and unit_of(channel) is not None else unit
 
 
 def _size(channel, source, name):
-    """Size along x and y [m], from the file or, if it has none, from the configuration."""
+    """Size along x and y [m], from the file or, if it has none, from the configuration, and notes on it."""
     if channel.physical_sizes is None or channel.unit not in STORED:
         if source.size is None:
             raise ScanError(name, "size_um", "has no size in a unit of length; give the size along x and y")
         if channel.physical_sizes is not None and channel.unit is None:
-            _require_some_unit(channel, source.size, name)
-        return source.size
+            return _size_of_coordinates(channel, source.size, name), ()
+        return source.size, ()
     stored = tuple(float(length) * UNITS[channel.unit] for length in channel.physical_sizes)
-    if source.size is not None and not np.allclose(source.size, stored, rtol=_SAME_SIZE, atol=0):
-        shown = " x ".join(f"{length / UNITS['um']:.4g}" for length in stored)
-        raise ScanError(name, "size_um", f"has a size of {shown} µm, which differs by more than 1 %")
-    return stored
+    if source.size is None or _same_size(source.size, stored, channel.nb_grid_pts):
+        return stored, ()
+    shown = " x ".join(f"{length / UNITS['um']:.4g}" for length in stored)
+    pixels = Frame(channel.nb_grid_pts, stored).pixel
+    if not all(PIXELS[0] <= pixel / UNITS["um"] <= PIXELS[1] for pixel in pixels):
+        return source.size, (f"its size of {shown} µm is that of no scan, the stated one was taken",)
+    reason = f"has a size of {shown} µm, which differs by more than 1 %"
+    raise ScanError(name, "size_um", f"{reason}: leave out size_um, or correct the size in Gwyddion")
 
 
-def _require_some_unit(channel, size, name):
-    """Refuse a size without a unit if it fits coordinates in no unit of length. Numbers of points are accepted."""
-    extent = tuple(map(float, channel.physical_sizes))
-    candidates = [channel.nb_grid_pts, *([length / unit for length in size] for unit in UNITS.values())]
-    if not any(np.allclose(extent, candidate, rtol=_SAME_SIZE, atol=0) for candidate in candidates):
-        stated, found = (
-            " x ".join(f"{length:.4g}" for length in pair) for pair in (np.array(size) / UNITS["um"], extent)
-        )
-        raise ScanError(name, "size_um", f"has coordinates over {found}, which are {stated} µm in no unit of length")
+def _same_size(stated, found, points):
+    """Whether two sizes agree, the stated one between the outer edges of the points or between their centres."""
+    nominal = _between_centres(found, points)
+    return any(np.allclose(stated, size, rtol=_SAME_SIZE, atol=0) for size in (found, nominal))
+
+
+def _between_centres(size, points):
+    """Distance of the outermost points along both axes, from the number of points times their distance."""
+    return tuple(length * (n - 1) / n for length, n in zip(size, points, strict=True))
+
+
+def _size_of_coordinates(channel, size, name):
+    """Stated size of coordinates without a unit [m]. Refuse one that fits them in no unit of length.
+
+    Numbers of points are accepted. A size that fits better between the outermost points is extended by one step.
+    """
+    extent, points = tuple(map(float, channel.physical_sizes)), channel.nb_grid_pts
+    scaled = [tuple(length / unit for length in size) for unit in UNITS.values()]
+    errors = [min(_difference(size, found) for size in scaled) for found in (extent, _between_centres(extent, points))]
+    if _difference(extent, points) <= _SAME_SIZE or errors[0] <= min(_SAME_SIZE, errors[1]):
+        return size
+    if errors[1] <= _SAME_SIZE:
+        return tuple(length * n / (n - 1) for length, n in zip(size, points, strict=True))
+    stated, found = (" x ".join(f"{length:.4g}" for length in pair) for pair in (np.array(size) / UNITS["um"], extent))
+    raise ScanError(name, "size_um", f"has coordinates over {found}, which are {stated} µm in no unit of length")
+
+
+def _difference(stated, found):
+    """Largest relative difference of two sizes."""
+    return float(np.max(np.abs(np.divide(stated, found) - 1)))
 
 
 def _heights(channel, name):

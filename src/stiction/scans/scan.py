@@ -17,7 +17,7 @@ FEWEST_POINTS = 32
 _SQUARE = 1e-3
 #: ASSUME: range of the distances of points [µm], from a tenth of an atom to the coarsest optical profilers; of the rms
 #: of the heights [µm]; and of their rms slope [-], from mirrors of telescopes to needles. Wrong units give others.
-_PIXELS, _HEIGHTS, _SLOPES = (1e-5, 10.0), (1e-6, 100.0), (1e-6, 10.0)
+PIXELS, _HEIGHTS, _SLOPES = (1e-5, 10.0), (1e-6, 100.0), (1e-6, 10.0)
 
 
 @dataclass(frozen=True)
@@ -78,8 +78,8 @@ class Scan:
     def _require_possible(self):
         """Refuse values impossible for a surface."""
         for key, what, value, (least, largest) in (
-            ("size_um", "a distance of its points of {} µm", 1e6 * min(self.frame.pixel), _PIXELS),
-            ("size_um", "a distance of its points of {} µm", 1e6 * max(self.frame.pixel), _PIXELS),
+            ("size_um", "a distance of its points of {} µm", 1e6 * min(self.frame.pixel), PIXELS),
+            ("size_um", "a distance of its points of {} µm", 1e6 * max(self.frame.pixel), PIXELS),
             ("height_unit", "heights with an rms of {} µm", 1e6 * np.nanstd(self.heights), _HEIGHTS),
             ("height_unit", "an rms slope of {}", self._rms_slope(), _SLOPES),
         ):

@@ -7,8 +7,8 @@ then has fewer lines over the same size.
 import re
 from collections import Counter
 
-#: Words of the library for an undefined height, in lower case, beside those that Python reads as numbers.
-_UNDEFINED = {"bad", "infinite"}
+from stiction.formats.texts.numbers import UNDEFINED
+
 _ENDS, _BETWEEN = re.compile(r"\r\n?|\n"), re.compile(r"[\s;,]+")
 #: Number of values up to which a line lists the coordinates of a point. The names of columns are such a line, too.
 COORDINATES = 3
@@ -46,6 +46,25 @@ def misread(text: str, *, commas: bool = False) -> tuple[int, str] | None:
     return None
 
 
+def uneven(text: str, *, commas: bool = False) -> tuple[int, int, int] | None:
+    r"""First line of a table of numbers with more or fewer values than most, its number of values, and the usual one.
+
+    ``None`` without any. Lines before the first one with the usual number are a head. Parameters are those of
+    `misread`.
+
+    Examples
+    --------
+    >>> uneven("64\n1 2 3\n4 5 6\n"), uneven("1 2 3\n4 5\n6 7 8\n")
+    (None, (2, 2, 3))
+    """
+    counts = [(line, len(values)) for line, values, wrong in _rows(text, commas) if wrong is None]
+    if not counts:
+        return None
+    usual = Counter(number for _, number in counts).most_common(1)[0][0]
+    first = next(line for line, number in counts if number == usual)
+    return next(((line, number, usual) for line, number in counts if number != usual and line > first), None)
+
+
 def _rows(text, commas):
     """Number, values and first non-number of every line, without empty lines and comments."""
     for line, content in enumerate(_ENDS.split(text.removeprefix("\ufeff")), 1):
@@ -59,5 +78,5 @@ def _is_no_number(value):
     try:
         float(value)
     except ValueError:
-        return value.lower() not in _UNDEFINED
+        return value.lower() not in UNDEFINED
     return False

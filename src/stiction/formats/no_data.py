@@ -1,0 +1,71 @@
+"""Numbers that stand in a map where no height is defined, as -9999 does."""
+
+import numpy as np
+
+#: Whole numbers that programs write so: nines, and the ends of integers. Beside them, all that no unit can mean.
+MARKS = [sign * number for number in (9999, 99999, 999999, 32767, 2147483647) for sign in (-1, 1)]
+MARKS += [-32768, 65535, -2147483648, -9999.99, 9999.99, -999.25, -999.99]
+_IMPOSSIBLE = 1e20
+#: ASSUME: from how many equal values, more than of any other one, a mark among the heights is doubtful.
+_OFTEN = 3
+
+
+def without_marks(heights: np.ndarray) -> tuple[np.ndarray, str]:
+    """Map with no height where a known mark stands, and what was left out, in words.
+
+    A mark lies farther from all heights than these from each other.
+
+    Parameters
+    ----------
+    heights : array, (n_x, n_y)
+        Numbers as they stand in the file, NaN where undefined.
+
+    Raises
+    ------
+    ValueError
+        In words, if values may be a mark or heights.
+
+    Examples
+    --------
+    >>> z = np.random.default_rng(1).standard_normal((40, 50))
+    >>> z[7, 8:10] = -9999
+    >>> found, words = without_marks(z)
+    >>> np.argwhere(np.isnan(found)).tolist(), words
+    ([[7, 8], [7, 9]], '2 points have -9999, the mark of no data, and count as undefined')
+    """
+    values, counts = np.unique(heights[np.isfinite(heights)], return_counts=True)
+    known = (np.abs(values) > _IMPOSSIBLE) | np.isclose(values[:, None], MARKS, rtol=1e-9, atol=0).any(axis=1)
+    if not known.any() or known.all():
+        return heights, ""
+    rest, most = values[~known], int(counts[~known].max())
+    away = np.maximum(values - rest[-1], rest[0] - values)
+    marks = known & (away > rest[-1] - rest[0])
+    doubtful = known & ~marks & (counts >= max(_OFTEN, most + 1))
+    if doubtful.any():
+        raise ValueError(_doubt(values[doubtful][0], counts[doubtful][0]))
+    if not marks.any():
+        return heights, ""
+    number, shown = int(counts[marks].sum()), ", ".join(f"{value:.6g}" for value in values[marks])
+    what = f"{number} points have {shown}, the mark" if number > 1 else f"1 point has {shown}, the mark"
+    verb = "count" if number > 1 else "counts"
+    return np.where(np.isin(heights, values[marks]), np.nan, heights), f"{what} of no data, and {verb} as undefined"
+
+
+def require_no_mark(heights: np.ndarray) -> None:
+    """Refuse a map with an extreme value that stands at several points, farther from all others than these lie apart.
+
+    Raises
+    ------
+    ValueError
+        In words.
+    """
+    values, counts = np.unique(heights[np.isfinite(heights)], return_counts=True)
+    for value, count, rest in ((values[0], counts[0], values[1:]), (values[-1], counts[-1], values[:-1])):
+        if len(rest) > 2 and count > 1 and np.abs(rest - value).min() > np.ptp(rest):
+            raise ValueError(_doubt(value, count))
+
+
+def _doubt(value, count):
+    """Question about a value in words."""
+    reason = f"has {value:.6g} at {count} points, which may be a mark of no data"
+    return f"{reason}: write nan where no height is defined"

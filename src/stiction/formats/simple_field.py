@@ -1,0 +1,43 @@
+"""Simple fields of Gwyddion, ``.gsf``: a head of lines, zeros, and 32-bit numbers of one map.
+
+The layout is that of the guide of Gwyddion: lines of ``key = value``, one to four zeros up to a multiple of four bytes,
+and the rows from the top, least significant byte first.
+"""
+
+import re
+
+import numpy as np
+
+from stiction.formats.channel import Channel, numbered
+from stiction.formats.heights import STORED, UNITS
+
+#: First bytes of a file.
+MAGIC = b"Gwyddion Simple Field 1.0\n"
+_NUMBER = np.dtype("<f4")
+_LINE = re.compile(r"^\s*(\w+)\s*=\s*(.*?)\s*$", re.MULTILINE)
+
+
+def channels(content: bytes) -> list[Channel]:
+    """Channel of a file.
+
+    Raises
+    ------
+    ValueError, KeyError
+        If its data are not those that its head describes, or its sides are no lengths.
+    """
+    end = content.index(b"\0")
+    found = _LINE.findall(content[len(MAGIC) : end].decode("utf-8"))
+    head = dict(found)
+    if len(head) < len(found):
+        raise ValueError("its head has a key twice")
+    points, start = (int(head["XRes"]), int(head["YRes"])), end + 4 - end % 4
+    if min(points) < 1 or content[end:start].strip(b"\0") or len(content) != start + points[0] * points[1] * 4:
+        raise ValueError("its data are not those that its head describes")
+    unit = head.get("XYUnits", "")
+    if unit not in STORED or not {"XReal", "YReal"} <= head.keys():
+        raise ValueError("its sides have no unit of length")
+    sides = tuple(UNITS[unit] * float(head[key]) for key in ("XReal", "YReal"))
+    values = np.frombuffer(content, _NUMBER, offset=start).reshape(points[::-1])
+    name, measured = head.get("Title") or "Default", head.get("ZUnits", "")
+    scale = UNITS.get(measured, 1.0)
+    return numbered([Channel(name, measured, points, sides, lambda: scale * values[::-1].T.astype(float))])

@@ -1,0 +1,1 @@
+"""Texts with tables of numbers, as people and programs write them."""

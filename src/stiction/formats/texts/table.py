@@ -1,0 +1,175 @@
+"""Tables of numbers in texts of any separator and decimal sign, as the library for files reads them."""
+
+import math
+import re
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from stiction.errors import ScanError
+from stiction.formats.axes import MOST_AXES, is_even
+from stiction.formats.texts.lines import COORDINATES
+from stiction.formats.texts.numbers import in_points, is_number, is_plain, style_of
+
+#: Separators of tables, white space first. Of those that give the most numbers in the most lines, the first is taken.
+_SEPARATORS = (None, ";", ",", "\t")
+#: Lines from which the form of a table is found, and fewest numbers of a line of a table.
+_LINES, _FEWEST = 400, 3
+#: Fewest columns of which every second one can be told from the others by its digits.
+_PAIRS = 16
+#: Comma between digits, and separators at the end of a line.
+_DECIMAL, _TRAILING = re.compile(r"(?<=\d),(?=\d)"), " \t;,"
+_QUOTED = re.compile(r'"[^"]*"')
+#: Line of a head that states the number that stands where no height is defined.
+_NO_DATA = re.compile(r"^[#\s]*no_?data(?:[_ ]?value)?\s*[:=]?\s*(\S+?)[\s;,]*$", re.IGNORECASE | re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class _Form:
+    """Form of a table."""
+
+    separator: str | None  #: ``None`` for white space
+    columns: int
+    ended: bool  #: whether a separator ends its lines
+
+    def values(self, line: str) -> list[str]:
+        """Values of a line, without blanks and quotes. Undefined ones are empty."""
+        values = _split(line, self.separator)
+        return values[:-1] if self.ended and values and not values[-1] else values
+
+
+def plain(text: str, label: str = "text") -> str:
+    r"""Text with white space between the numbers of a table, and points in their decimals.
+
+    A table has at least three numbers in most of its lines. Other texts are returned unchanged.
+
+    Parameters
+    ----------
+    text : str
+    label : str, optional
+        Name of the file, for messages.
+
+    Raises
+    ------
+    ScanError
+        If the numbers of a table can be read in two ways.
+
+    Examples
+    --------
+    >>> plain("Width: 2,5 µm;\n1,5;2;3\n;3,5;4\n"), plain('"1.5","2","3"\n'), plain("1.5 2\nnan 4\n")
+    ('Width: 2.5 µm\n1.5 2 3\nnan 3.5 4\n', '1.5 2 3\n', '1.5 2\nnan 4\n')
+    """
+    lines = text.split("\n")
+    filled = [line for line in lines if line.strip() and not line.startswith("#")]
+    form = _form(filled[len(filled) // 2 :][:_LINES])
+    if form.columns < _FEWEST:
+        return text
+    rows = [None if line.startswith("#") else form.values(line) for line in lines]
+    stated = _NO_DATA.findall(text)
+    style = _style(rows, form, label, stated)
+    marks = {_float(in_points(mark, style)) for mark in stated}
+    written = [row if row is None else [in_points(value, style) for value in row] for row in rows]
+    cornered = _with_corner(written, form.columns)
+    usual = form.separator is None and style == (".", "") and not marks and not re.search("[\xa0\"']", text)
+    return text if usual and cornered is written else "\n".join(_lines(cornered, lines, form, style, marks))
+
+
+def _split(line, separator):
+    """Values of a line, without blanks and quotes around them."""
+    if separator is None:
+        parts = line.strip(" \t\xa0").replace("\t", " ").split(" ")
+        return [part.strip("\"'\xa0") for part in parts if part]
+    outside = _QUOTED.sub(lambda quoted: quoted[0].replace(separator, "\0"), line) if '"' in line else line
+    parts = [part.replace("\0", separator).strip(" \t\"'\xa0") for part in outside.strip(" ").split(separator)]
+    return [part.replace(" ", "\xa0") if separator != "," else part for part in parts]
+
+
+def _form(lines: Sequence[str]) -> _Form:
+    """Form of a table, from some of its lines."""
+    found = [(_columns([_split(line, separator) for line in lines]), separator) for separator in _SEPARATORS]
+    (columns, _, ended), separator = max(found, key=lambda one: one[0][:2])
+    return _Form(separator, columns, ended)
+
+
+def _columns(rows) -> tuple[int, int, bool]:
+    """Usual number of values of a line, how many lines have it, and whether an empty one ends all of them.
+
+    All are 0 if fewer than half of the lines have this number, all of them numbers.
+    """
+    filled = [row for row in rows if any(row)]
+    ended = bool(filled) and all(not row[-1] for row in filled)
+    values = [row[:-1] if ended else row for row in filled]
+    counts = Counter(len(row) for row in values if all(is_number(value or "nan") for value in row))
+    usual, often = next(iter(counts.most_common(1)), (0, 0))
+    return (usual, often, ended) if 2 * often > len(rows) else (0, 0, False)
+
+
+def _style(rows, form, label, marks):
+    """Decimal sign and separator of thousands of the numbers of a table. Axes may have others."""
+    table = [row for row in rows if _in_table(row, form)]
+    border = MOST_AXES if form.columns > COORDINATES + MOST_AXES else 0
+    _require_no_pairs(table[border:], form, label)
+    values = [
+        value
+        for line, row in enumerate(table)
+        for column, value in enumerate(row)
+        if value not in marks and (min(line, column) >= border or not is_plain(value))
+    ]
+    return style_of(values, label, comma_expected=form.separator == ";")
+
+
+def _require_no_pairs(rows, form, label):
+    """Refuse a table whose commas both separate and are decimal signs. Every second number then has as many digits."""
+    columns = list(zip(*(row for row in rows if len(row) == form.columns), strict=True))[MOST_AXES:]
+    shapes = [{_shape(value) for column in columns[k::2] for value in column if value} for k in (0, 1)]
+    alone = form.separator == "," and len(columns) >= _PAIRS and 1 in map(len, shapes)
+    if alone and shapes[0] != shapes[1] and None not in set.union(*shapes):
+        raise ScanError(
+            label, "files", "has commas both between and within its numbers: write decimals with a point, or tabulators"
+        )
+
+
+def _shape(value):
+    """Number of digits of a whole number, negative if it has a sign. ``None`` for other values."""
+    return None if not value.strip("+-").isdigit() else len(value) if value.isdigit() else -len(value)
+
+
+def _in_table(row, form):
+    """Whether the values of a line are of the table, also if some of them are no numbers."""
+    return bool(row) and any(row) and (len(row) == form.columns or all(is_number(value or "nan") for value in row))
+
+
+def _with_corner(rows, columns):
+    """Lines with an undefined corner in the first one, if this is an axis with a word there, or with nothing."""
+    for k, row in enumerate(rows):
+        *word, first = [row[:1], row[1:]] if row and len(row) == columns else [row or []]
+        if len(first) == columns - 1 and is_even(list(map(_float, first))):
+            known = word and (not word[0][0] or is_number(word[0][0]))
+            return rows if known else [*rows[:k], ["", *first], *rows[k + 1 :]]
+        if row and all(map(is_number, row)):
+            break
+    return rows
+
+
+def _float(value):
+    """Value of a table as a number, NaN if it is none."""
+    try:
+        return float(value)
+    except ValueError:
+        return math.nan
+
+
+def _lines(rows, lines, form, style, marks):
+    """Lines of a text with white space and points."""
+    for row, line in zip(rows, lines, strict=True):
+        if row is None or not _in_table(row, form):
+            line = line.rstrip(_TRAILING)
+            yield _DECIMAL.sub(".", line) if style[0] == "," else line
+        else:
+            yield " ".join(_value(value, marks) for value in row)
+
+
+def _value(value, marks):
+    """Value of a table as the library reads it."""
+    undefined = not value or _float(value) in marks
+    return "nan" if undefined else re.sub(r"\s", "_", value)
