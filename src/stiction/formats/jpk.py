@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from stiction.formats.channel import Channel, numbered
+from stiction.formats.heights import UNITS
 from stiction.formats.limits import require_points
 
 _MEASUREMENT, _CHANNEL, _SCALING = re.compile(r"Measurement_\d+"), re.compile(r"Channel_\d+"), "net-encoder.scaling"
@@ -43,8 +44,9 @@ def _frames(scan, group, label) -> Iterator[Channel]:
     scale, offset = (float(group.attrs[f"{_SCALING}.{name}"]) for name in ("multiplier", "offset"))
     direction = "retrace" if _text(group.attrs["retrace"]) == "true" else "trace"
     name, unit = f"{_text(group.attrs['channel.name'])} ({direction})", _text(group.attrs[f"{_SCALING}.unit.unit"])
+    metres = UNITS.get(unit, 1.0)
     for frame in levels.T:
-        yield Channel(name, unit, points, sides, lambda frame=frame: _map(scale * frame + offset, points))
+        yield Channel(name, unit, points, sides, lambda frame=frame: _map(metres * (scale * frame + offset), points))
 
 
 def _map(values, points):

@@ -14,7 +14,7 @@ from stiction.formats.heights import STORED, UNITS
 #: First bytes of a file.
 MAGIC = b"Gwyddion Simple Field 1.0\n"
 _NUMBER = np.dtype("<f4")
-_LINE = re.compile(r"^\s*(\w+)\s*=\s*(.*?)\s*$", re.MULTILINE)
+_LINE = re.compile(r"^[ \t]*(\w+)[ \t]*=[ \t]*(.*?)[ \t\r]*$", re.MULTILINE)
 
 
 def channels(content: bytes) -> list[Channel]:
