@@ -176,3 +176,14 @@ def test_maps_in_many_dialects_are_read_as_they_were_written_or_refused(tmp_path
     rng = stream(1, "dialects", number)
     ending = ("txt", "csv", "dat", "asc")[number]
     assert sum(read_as_written(tmp_path / f"scan.{ending}", rng) for _ in range(400)) > 240
+
+
+@pytest.mark.parametrize("value", ["1 2", "12 34", "1 2345", "kein Wert", "1,2.3", "1.2,3", "0x1", "--1", "1-"])
+def test_a_value_that_is_no_number_is_never_read_as_one(tmp_path, value):
+    heights = [
+        [f"{height:.4f}".replace(".", ",") for height in row] for row in stream(1, "odd").standard_normal((40, 36))
+    ]
+    heights[7][5] = value
+    (tmp_path / "scan.csv").write_text("\n".join(map(";".join, heights)))
+    with pytest.raises(ScanError, match=r"has '.*' in line 8, must be a number"):
+        read(tmp_path / "scan.csv", GIVEN)

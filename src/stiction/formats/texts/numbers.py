@@ -64,12 +64,10 @@ def style_of(values: Sequence[str], label: str, *, comma_expected: bool = False)
     >>> style_of(["0,309", "1,234"], ""), style_of(["309", "27", "5", "1,234"], ""), style_of(["1.234", "2.5"], "")
     ((',', ''), ('.', ','), ('.', ''))
     """
-    numbers = [value for value in values if _ANY.fullmatch(value) and value not in _MARKS]
-    found = {style: sum(map(bool, map(pattern.fullmatch, numbers))) for style, pattern in _PATTERNS.items()}
-    style = max(_STYLES, key=found.__getitem__)
+    numbers, style = _numbers_and_style([value for value in values if value not in _MARKS])
     rival = _RIVALS.get(style)
     signed = [value for value in numbers if style[0] in value]
-    if not signed or rival is None or found[rival] < found[style]:
+    if not signed or rival is None or not _fits(rival, filter(_PATTERNS[style].fullmatch, numbers)):
         return style
     # Decimals of which all have three places, and none is below 1, are thousands if others have no places at all.
     whole = {value for value in numbers if value.strip("+-").isdigit() and value.strip("+-0")}
@@ -87,9 +85,23 @@ def style_of(values: Sequence[str], label: str, *, comma_expected: bool = False)
     )
 
 
+def _numbers_and_style(values):
+    """Numbers among values, and the style of all, or of most, of them."""
+    style = next((style for style in _STYLES if _fits(style, values)), None)
+    if style is not None:
+        return values, style
+    numbers = list(filter(_ANY.fullmatch, values))
+    return numbers, max(_STYLES, key=lambda style: sum(map(bool, map(_PATTERNS[style].fullmatch, numbers))))
+
+
+def _fits(style, values):
+    """Whether all values are numbers of a style."""
+    return all(map(_PATTERNS[style].fullmatch, values))
+
+
 def in_points(value: str, style: tuple[str, str]) -> str:
     """Number of a style with a decimal point and without a separator of thousands. Other values are unchanged."""
-    if not _PATTERNS[style].fullmatch(value):
+    if style == _STYLES[0] or not _PATTERNS[style].fullmatch(value):
         return value
     decimal, thousands = style
     return (value.replace(thousands, "") if thousands else value).replace(decimal, ".")

@@ -14,12 +14,12 @@ from stiction.formats.texts.numbers import in_points, is_number, is_plain, style
 #: Separators of tables, white space first. Of those that give the most numbers in the most lines, the first is taken.
 _SEPARATORS = (None, ";", ",", "\t")
 #: Lines from which the form of a table is found, and fewest numbers of a line of a table.
-_LINES, _FEWEST = 400, 3
+_LINES, _FEWEST = 100, 3
 #: Fewest columns of which every second one can be told from the others by its digits.
 _PAIRS = 16
 #: Comma between digits, and separators at the end of a line.
 _DECIMAL, _TRAILING = re.compile(r"(?<=\d),(?=\d)"), " \t;,"
-_QUOTED = re.compile(r'"[^"]*"')
+_QUOTED, _INVISIBLE = re.compile(r'"[^"]*"'), re.compile("[\xa0\"']")
 #: Line of a head that states the number that stands where no height is defined.
 _NO_DATA = re.compile(r"^[#\s]*no_?data(?:[_ ]?value)?\s*[:=]?\s*(\S+?)[\s;,]*$", re.IGNORECASE | re.MULTILINE)
 
@@ -68,17 +68,21 @@ def plain(text: str, label: str = "text") -> str:
     stated = _NO_DATA.findall(text)
     style = _style(rows, form, label, stated)
     marks = {_float(in_points(mark, style)) for mark in stated}
-    written = [row if row is None else [in_points(value, style) for value in row] for row in rows]
+    written = rows if style == (".", "") else [row and [in_points(value, style) for value in row] for row in rows]
     cornered = _with_corner(written, form.columns)
-    usual = form.separator is None and style == (".", "") and not marks and not re.search("[\xa0\"']", text)
+    usual = form.separator is None and style == (".", "") and not marks and not _INVISIBLE.search(text)
     return text if usual and cornered is written else "\n".join(_lines(cornered, lines, form, style, marks))
 
 
 def _split(line, separator):
     """Values of a line, without blanks and quotes around them."""
     if separator is None:
+        if not _INVISIBLE.search(line):
+            return line.split()
         parts = line.strip(" \t\xa0").replace("\t", " ").split(" ")
         return [part.strip("\"'\xa0") for part in parts if part]
+    if not _INVISIBLE.search(line) and " " not in line:
+        return line.split(separator)
     outside = _QUOTED.sub(lambda quoted: quoted[0].replace(separator, "\0"), line) if '"' in line else line
     parts = [part.replace("\0", separator).strip(" \t\"'\xa0") for part in outside.strip(" ").split(separator)]
     return [part.replace(" ", "\xa0") if separator != "," else part for part in parts]
@@ -109,20 +113,20 @@ def _style(rows, form, label, marks):
     table = [row for row in rows if _in_table(row, form)]
     border = MOST_AXES if form.columns > COORDINATES + MOST_AXES else 0
     _require_no_pairs(table[border:], form, label)
-    values = [
-        value
-        for line, row in enumerate(table)
-        for column, value in enumerate(row)
-        if value not in marks and (min(line, column) >= border or not is_plain(value))
-    ]
-    return style_of(values, label, comma_expected=form.separator == ";")
+    inside = [value for row in table[border:] for value in row[border:]]
+    axes = [value for row in table[:border] for value in row] + [value for row in table for value in row[:border]]
+    values = inside + [value for value in axes if not is_plain(value)]
+    known = [value for value in values if value not in marks] if marks else values
+    return style_of(known, label, comma_expected=form.separator == ";")
 
 
 def _require_no_pairs(rows, form, label):
     """Refuse a table whose commas both separate and are decimal signs. Every second number then has as many digits."""
+    if form.separator != ",":
+        return
     columns = list(zip(*(row for row in rows if len(row) == form.columns), strict=True))[MOST_AXES:]
     shapes = [{_shape(value) for column in columns[k::2] for value in column if value} for k in (0, 1)]
-    alone = form.separator == "," and len(columns) >= _PAIRS and 1 in map(len, shapes)
+    alone = len(columns) >= _PAIRS and 1 in map(len, shapes)
     if alone and shapes[0] != shapes[1] and None not in set.union(*shapes):
         raise ScanError(
             label, "files", "has commas both between and within its numbers: write decimals with a point, or tabulators"
@@ -171,5 +175,8 @@ def _lines(rows, lines, form, style, marks):
 
 def _value(value, marks):
     """Value of a table as the library reads it."""
-    undefined = not value or _float(value) in marks
-    return "nan" if undefined else re.sub(r"\s", "_", value)
+    if not value or (marks and _float(value) in marks):
+        return "nan"
+    parts = value.split()
+    # Python reads 1_2 as 12, but not 1__2.
+    return value if len(parts) == 1 else ("_" if math.isnan(_float("_".join(parts))) else "__").join(parts)
