@@ -187,3 +187,21 @@ def test_a_value_that_is_no_number_is_never_read_as_one(tmp_path, value):
     (tmp_path / "scan.csv").write_text("\n".join(map(";".join, heights)))
     with pytest.raises(ScanError, match=r"has '.*' in line 8, must be a number"):
         read(tmp_path / "scan.csv", GIVEN)
+
+
+@pytest.mark.parametrize("indexed", [False, True])
+@pytest.mark.parametrize(("separator", "decimal"), [(",", "."), (";", ","), ("\t", "."), (" ", ".")])
+def test_points_are_read_with_and_without_numbers_of_the_points_and_where_some_have_no_height(
+    tmp_path, separator, decimal, indexed
+):
+    heights = stream(1, "points").standard_normal((40, 36))
+    heights[0, 0] = heights[7, 5] = np.nan
+    empty = "nan" if separator == " " else ""
+    rows = [[f"{0.1 * i:.1f}", f"{0.1 * j:.1f}", f"{z:.6f}"] for (i, j), z in np.ndenumerate(heights)]
+    rows = [[*row[:2], row[2].replace("nan", empty)] for row in rows]
+    rows = [[str(k), *row] for k, row in enumerate(rows)] if indexed else rows
+    head = separator.join([""] * indexed + ["x", "y", "z"])
+    lines = [head, *(separator.join(row).replace(".", decimal) for row in rows)]
+    (tmp_path / "scan.csv").write_text("\n".join(lines) + "\n")
+    scan = read(tmp_path / "scan.csv", Source(size=(4e-6, 3.6e-6), height_unit="nm")).scan
+    np.testing.assert_allclose(scan.heights, heights * 1e-9, atol=1e-15)

@@ -11,8 +11,8 @@ from stiction.formats.axes import MOST_AXES, is_even
 from stiction.formats.texts.lines import COORDINATES
 from stiction.formats.texts.numbers import in_points, is_number, is_plain, style_of
 
-#: Separators of tables, white space first. Of those that give the most numbers in the most lines, the first is taken.
-_SEPARATORS = (None, ";", ",", "\t")
+#: Separators of tables, ``None`` for white space. Of those with the most numbers in the most lines, the first is taken.
+_SEPARATORS = ("\t", None, ";", ",")
 #: Lines from which the form of a table is found, and fewest numbers of a line of a table.
 _LINES, _FEWEST = 100, 3
 #: Fewest columns of which every second one can be told from the others by its digits.
@@ -69,7 +69,7 @@ def plain(text: str, label: str = "text") -> str:
     style = _style(rows, form, label, stated)
     marks = {_float(in_points(mark, style)) for mark in stated}
     written = rows if style == (".", "") else [row and [in_points(value, style) for value in row] for row in rows]
-    cornered = _with_corner(written, form.columns)
+    cornered = _with_corner(_without_index(written, form.columns), form.columns)
     usual = form.separator is None and style == (".", "") and not marks and not _INVISIBLE.search(text)
     return text if usual and cornered is written else "\n".join(_lines(cornered, lines, form, style, marks))
 
@@ -141,6 +141,16 @@ def _shape(value):
 def _in_table(row, form):
     """Whether the values of a line are of the table, also if some of them are no numbers."""
     return bool(row) and any(row) and (len(row) == form.columns or all(is_number(value or "nan") for value in row))
+
+
+def _without_index(rows, columns):
+    """Lines of points without a column that counts the points."""
+    if columns != COORDINATES + 1:
+        return rows
+    table = [row for row in rows if row and len(row) == columns and all(is_number(value or "nan") for value in row)]
+    if not is_even([_float(row[0]) for row in table]):
+        return rows
+    return [row[1:] if row and len(row) == columns else row for row in rows]
 
 
 def _with_corner(rows, columns):
