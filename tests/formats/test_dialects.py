@@ -57,6 +57,8 @@ def drawn(rng):
         return values[rng.integers(len(values))]
 
     separator, style = one_of(SEPARATORS), one_of(STYLES)
+    if style == (",", ".") and separator.strip(" ") in ("", ","):
+        separator = "\t"  # no program separates by blanks and writes 1.234 for 1234
     doubled = separator.strip() == "," and "," in style
     quoted = bool(rng.integers(3) == 0) or (doubled and style != (",", ""))
     encoding = one_of(ENCODINGS)

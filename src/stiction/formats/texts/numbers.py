@@ -80,8 +80,8 @@ def style_of(values: Sequence[str], label: str, *, comma_expected: bool = False)
     raise ScanError(
         label,
         "files",
-        f"has only numbers like {shown}, which may be {shown.replace(style[0], '.')} or {plain}: write all of them "
-        "with a decimal point and without a separator of thousands",
+        f"has only numbers like {shown}, which may be {shown.replace(style[0], '.')} or {plain}: write them with four "
+        "decimals, or without a separator of thousands",
     )
 
 

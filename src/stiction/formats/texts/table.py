@@ -13,6 +13,8 @@ from stiction.formats.texts.numbers import in_points, is_number, is_plain, style
 
 #: Separators of tables, ``None`` for white space. Of those with the most numbers in the most lines, the first is taken.
 _SEPARATORS = ("\t", None, ";", ",")
+#: ASSUME: separators of programs that may write decimal commas, and thus 1.234 for 1234. Others write decimal points.
+_COMMA_EXPECTED = (";", "\t")
 #: Lines from which the form of a table is found, and fewest numbers of a line of a table.
 _LINES, _FEWEST = 100, 3
 #: Fewest columns of which every second one can be told from the others by its digits.
@@ -117,7 +119,7 @@ def _style(rows, form, label, marks):
     axes = [value for row in table[:border] for value in row] + [value for row in table for value in row[:border]]
     values = inside + [value for value in axes if not is_plain(value)]
     known = [value for value in values if value not in marks] if marks else values
-    return style_of(known, label, comma_expected=form.separator == ";")
+    return style_of(known, label, comma_expected=form.separator in _COMMA_EXPECTED)
 
 
 def _require_no_pairs(rows, form, label):
@@ -134,8 +136,10 @@ def _require_no_pairs(rows, form, label):
 
 
 def _shape(value):
-    """Number of digits of a whole number, negative if it has a sign. ``None`` for other values."""
-    return None if not value.strip("+-").isdigit() else len(value) if value.isdigit() else -len(value)
+    """Number of digits of a whole number, negative if it has a sign, 0 if a zero leads. ``None`` for other values."""
+    if not value.strip("+-").isdigit():
+        return None
+    return (len(value) if value[0] != "0" or value == "0" else 0) if value.isdigit() else -len(value)
 
 
 def _in_table(row, form):
