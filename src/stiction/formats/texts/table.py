@@ -129,17 +129,16 @@ def _require_no_pairs(rows, form, label):
     columns = list(zip(*(row for row in rows if len(row) == form.columns), strict=True))[MOST_AXES:]
     shapes = [{_shape(value) for column in columns[k::2] for value in column if value} for k in (0, 1)]
     alone = len(columns) >= _PAIRS and 1 in map(len, shapes)
-    if alone and shapes[0] != shapes[1] and None not in set.union(*shapes):
+    padded = any(value.isdigit() and value[0] == "0" and value != "0" for column in columns for value in column)
+    if alone and (padded or shapes[0] != shapes[1]) and None not in set.union(*shapes):
         raise ScanError(
             label, "files", "has commas both between and within its numbers: write decimals with a point, or tabulators"
         )
 
 
 def _shape(value):
-    """Number of digits of a whole number, negative if it has a sign, 0 if a zero leads. ``None`` for other values."""
-    if not value.strip("+-").isdigit():
-        return None
-    return (len(value) if value[0] != "0" or value == "0" else 0) if value.isdigit() else -len(value)
+    """Number of digits of a whole number, negative if it has a sign. ``None`` for other values."""
+    return None if not value.strip("+-").isdigit() else len(value) if value.isdigit() else -len(value)
 
 
 def _in_table(row, form):
