@@ -70,12 +70,9 @@ class Measured:
     def prior(self, others=(), slope=True, fitted=None):
         """Prior of inputs and model, and responses of beams and others; the slope is about the fitted beams."""
         stated = self.settings.discrepancy if slope else replace(self.settings.discrepancy, slope=0.0)
-        results = [*self.beams, *others]
-        prior, responses = stage.with_discrepancy(stage.common_inputs(results), self.beams, others, stated)
-        reduced = np.array([result.reduced for result in results])
-        middle = reduced[list(self.places if fitted is None else fitted)].mean()
-        responses[:, prior.names.index(inference.SLOPE)] = reduced - middle
-        return prior, responses
+        results, places = [*self.beams, *others], self.places if fitted is None else fitted
+        middle = float(np.mean([self.beams[k].reduced for k in places]))
+        return stage.with_discrepancy(stage.common_inputs(results), results, middle, stated)
 
     def data(self, responses):
         """Measured crack lengths beside the computed ones."""

@@ -26,6 +26,8 @@ PRIOR, RESPONSES = with_discrepancy(
     [*"abc", None, None, None, *"def", None, None, None],
     Discrepancy(0.1, 0.3, 0.05),
 )
+# Tips err by 4/3 of what the cracks of the same beams do.
+RESPONSES[3:6, 4:], RESPONSES[9:, 4:] = 4 / 3 * RESPONSES[:3, 4:], 4 / 3 * RESPONSES[6:9, 4:]
 CRACKS, TIPS, RESULTS = RESPONSES[:3], RESPONSES[3:6], RESPONSES[6:]
 NOTHING = Lengths(np.empty((0, RESPONSES.shape[1])), np.empty(0), np.empty(0))
 

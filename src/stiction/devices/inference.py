@@ -209,7 +209,7 @@ def with_discrepancy(
     responses : (n, k) array
         d ln l / dx of all results, of test beams and of devices.
     reduced : (n,) array
-        u less its mean over the test beams [-].
+        u less the place about which the slope is [-].
     conditions : sequence of n
         Results under equal conditions have the same rest; those under none have no discrepancy at all.
     stated : Discrepancy

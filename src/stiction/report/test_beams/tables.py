@@ -114,7 +114,7 @@ def sizes_to_build(update: xr.Dataset) -> str:
     alone = "".join(
         f"; if its tip cannot touch, {one:.0f} µm with them and {other:.0f} µm without" for other, one in others
     )
-    beyond = "" if _show_errors_of_tips(update) else ", but not where tips or the middle of a bridge hold"
+    beyond = ", but not where the middle of a bridge holds" if MIDDLE in responses else ""
     margin = _margin(update, "lengths", 2.3)
     return (
         f"With the test beams, build it no longer than {after:.0f} µm, without them {before:.0f} µm{alone}. "
@@ -152,16 +152,11 @@ def _margin(update, of, percent):
     return f"{margin} without the test beams, and with their counts the distance to the quantile at {percent} %,"
 
 
-def _show_errors_of_tips(update):
-    """Whether crack lengths were measured. Tips have their errors of the model as well."""
-    return ARC in update.response.values and bool(update.measured.notnull().any())
-
-
 def _beyond_cracks(update):
     """Evidence of the cracks on errors of the model elsewhere in the device, empty without crack lengths."""
     if MIDDLE in update.response.values:
         return " Cracks do not say how much the model errs at bridges."
-    if not _show_errors_of_tips(update):
+    if ARC not in update.response.values or update.measured.isnull().all():
         return ""
     more = float(update.adhesion_of_tips.max())
     if more < NOTICED:
@@ -250,7 +245,7 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     caption = (
         "Test beams: measured crack lengths with the standard errors of their means, counts of stuck beams, and "
         "lengths of test beams and devices before and after the measurement, with standard deviations due to the "
-        "inputs and, of crack lengths and of tips beside measured ones, due to the model. Inputs in their standard "
+        "inputs and, of crack lengths and of tips, due to the model. Inputs in their standard "
         "uncertainties."
     )
     missing = {"measured"} - {name for row in rows for name in row}

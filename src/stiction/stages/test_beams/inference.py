@@ -151,19 +151,22 @@ def compute(
         [budget for budget in of_arrays if (budget.response == ARC) == is_tip] for is_tip in (False, True)
     )
     of_device = [Result(*key[:2], budget, settings.device) for key, budget in budgets.items()]
-    inputs = common_inputs([*beams, *of_tips, *of_device])
-    prior, responses = with_discrepancy(inputs, beams, [*of_tips, *of_device], settings.discrepancy)
+    results = [*beams, *of_tips, *of_device]
+    inputs = common_inputs(results)
+    middle = float(np.mean([beam.reduced for beam in beams])) if beams else 0.0
+    prior, responses = with_discrepancy(inputs, results, middle, settings.discrepancy)
     lengths = length_data(beams, responses, settings.crack_lengths)
     counts = count_data([*beams, *of_tips], responses, stuck, grounds, tips)
     posterior = inference.update(prior, lengths, counts, stream(settings.seed, "test beams", "counts"))
     device, own = responses[len(of_arrays) :], len(inputs.names)
-    if len(lengths.differences):
-        device = with_errors_of_cracks(of_device, device, own)
+    shown = [
+        shown_at_tips(of_device, device, own, state) for state in (inference.given_lengths(prior, lengths), posterior)
+    ]
     parts = [
         input_dataset(prior, posterior, own + 2),
         length_dataset(beams, responses, prior, posterior, settings),
         count_dataset(counts, posterior, stuck),
-        result_dataset(of_device, device, own, prior, posterior),
+        without_lengthening(result_dataset(of_device, device, own, prior, posterior), *shown),
         further_dataset(beams, responses, of_device, device, posterior),
         agreement_dataset(prior, lengths, counts, own),
     ]
@@ -183,38 +186,46 @@ def common_inputs(results: Sequence[Result]) -> Knowledge:
 
 
 def with_discrepancy(
-    inputs: Knowledge, beams: Sequence[Result], others: Sequence[Result], stated: Discrepancy
+    inputs: Knowledge, results: Sequence[Result], middle: float, stated: Discrepancy
 ) -> tuple[Knowledge, np.ndarray]:
-    """Responses with the discrepancy of `stiction.devices.inference`: of test beams and, after them, of others.
+    """Prior of inputs and model, and responses of all results, with the discrepancy of `stiction.devices.inference`.
 
-    ASSUME: cracks say nothing about how much the model errs at the middle of a bridge and at stoppers, and at tips only
-    what `with_errors_of_cracks` takes from them. Without a discrepancy, these have the uncertainty of their budget.
+    The slope of the model is about a ``middle`` of u [-], that of all test beams, counted or measured.
+
+    ASSUME: test beams say nothing about how much the model errs at the middle of a bridge and at stoppers. These have
+    the uncertainty of their budget.
     """
-    results = [*beams, *others]
     responses = np.zeros((len(results), len(inputs.names)))
     for row, result in zip(responses, results, strict=True):
         row[[inputs.names.index(name) for name in result.names]] = result.budget.slope.values
-    reduced = np.array([result.reduced for result in results])
-    reduced -= np.mean(reduced[: len(beams)]) if beams else 0.0
+    reduced = np.array([result.reduced for result in results]) - middle
     conditions = [result.condition if result.response == S_SHAPE else None for result in results]
-    return inference.with_discrepancy(inputs, responses, reduced, conditions, stated)
+    prior, responses = inference.with_discrepancy(inputs, responses, reduced, conditions, stated)
+    return prior, with_errors_of_cracks(results, responses, len(inputs.names))
 
 
 def with_errors_of_cracks(results: Sequence[Result], responses: np.ndarray, own: int) -> np.ndarray:
-    """Responses of a device (n, k) with tips under the model error of its cracks in the same air.
+    """Responses (n, k) with tips under the model error of the cracks of the same beams in the same air.
 
     The first ``own`` responses are to inputs, the others to the discrepancy of the model.
 
-    ASSUME: an error of the model in the adhesion is that of the surfaces, and acts on tips as well, where crack lengths
-    show it. Counts alone do not, because tips of counted beams have no error of the model that they could show.
+    ASSUME: an error of the model in the adhesion is that of the surfaces, and acts on tips as well, of test beams and
+    of devices, measured or not.
     """
     pairs = list(zip(results, responses, strict=True))
-    cracks = {result.humidity: row[own:] for result, row in pairs if result.response == S_SHAPE}
+    cracks = {(result.owner, result.humidity): row[own:] for result, row in pairs if result.response == S_SHAPE}
     shared = responses.copy()
     for result, row in zip(results, shared, strict=True):
-        if result.response == ARC:
-            row[own:] = arcs.LENGTH_POWER / CRACK_LENGTH_POWER * cracks[result.humidity]
+        # Tips of test beams whose cracks are not known take no part.
+        if result.response == ARC and (result.owner, result.humidity) in cracks:
+            row[own:] = arcs.LENGTH_POWER / CRACK_LENGTH_POWER * cracks[result.owner, result.humidity]
     return shared
+
+
+def shown_at_tips(of_device: Sequence[Result], responses: np.ndarray, own: int, state: Knowledge) -> np.ndarray:
+    """Change of ln l of tips by the expected error of the model, zero of other results (n,) [-]."""
+    is_tip = np.array([result.response == ARC for result in of_device])
+    return np.where(is_tip, responses[:, own:] @ state.mean[own:], 0.0)
 
 
 def length_data(beams: Sequence[Result], responses: np.ndarray, crack_lengths: Mapping[str, CrackLengths]) -> Lengths:
@@ -402,20 +413,16 @@ def result_dataset(
 ) -> xr.Dataset:
     """Results of a device before and after the measurement: mean crack lengths, lengths of few stuck tips, forces.
 
-    The first ``own`` responses are to inputs. ASSUME: where cracks show less adhesion than the inputs explain, tips do
-    not adhere less, which is the safe side; they are as uncertain.
+    The first ``own`` responses are to inputs.
     """
     numbers = {"of_inputs": first_inputs(prior, own).of(responses[:, :own])[1]} | _both(prior, posterior, responses)
     numbers |= {"reduced": [result.reduced for result in of_device]}
     centre = [float(result.budget.centre) for result in of_device], {"units": of_device[0].budget.centre.attrs["units"]}
     sizes = {size: [getattr(result.beam, size) for result in of_device] for size in OWN if of_device[0].beam}
-    is_tip = np.array([result.response == ARC for result in of_device])
-    shown = np.where(is_tip, responses[:, own:] @ posterior.mean[own:], 0.0)
-    found = xr.Dataset(
+    return xr.Dataset(
         {"centre": ("result", *centre)}
         | {f"own_{size}": ("result", values, {"units": "m"}) for size, values in sizes.items()}
         | {f"result_{name}": ("result", value, {"units": "1"}) for name, value in numbers.items()}
-        | {"adhesion_of_tips": ("result", np.exp(np.minimum(shown, 0) / arcs.LENGTH_POWER), {"units": "1"})}
         | _quantiles("result", posterior, responses),
         coords={
             "result": [result.condition for result in of_device],
@@ -423,8 +430,21 @@ def result_dataset(
             "humidity_of_result": ("result", [result.humidity for result in of_device]),
         },
     )
-    longer = xr.DataArray(np.maximum(shown, 0), dims="result")
-    return found.assign({name: found[name] - longer for name in ("result_shift", "result_quantile")})
+
+
+def without_lengthening(results: xr.Dataset, measured: np.ndarray, updated: np.ndarray) -> xr.Dataset:
+    """Results with tips that are no longer than the inputs explain where only cracks say so, and their adhesion.
+
+    The change of ln l of each by the expected error of the model is ``measured`` after crack lengths, and ``updated``
+    after counts as well (n,) [-].
+
+    ASSUME: where cracks show less adhesion than the inputs explain, tips do not adhere less, which is the safe side;
+    they are as uncertain. Counted beams show it themselves: the tips of free ones do not hold them.
+    """
+    longer = xr.DataArray(np.maximum(np.minimum(measured, updated), 0), dims="result")
+    moved = {name: results[name] - longer for name in ("result_shift", "result_quantile")}
+    adhesion = np.exp(np.minimum(updated, 0) / arcs.LENGTH_POWER)
+    return results.assign(moved | {"adhesion_of_tips": ("result", adhesion, {"units": "1"})})
 
 
 def further_dataset(
