@@ -4,6 +4,9 @@ Each quantity :math:`y` of the surface, in a scale in which all values are valid
 degree is the one whose polynomials through all settings but one predict that one best. Settings weigh by their errors
 and by a scatter beyond them, which a process has from run to run. Errors of quantities measured on the same scans are
 correlated, and so are those of their polynomials.
+
+A few settings hardly show the scatter. It is never taken as known: each scatter of a grid is as likely as its
+restricted likelihood and a prior say, which widens the law as Student's t does, and what is built is one more run.
 """
 
 from collections.abc import Sequence
@@ -11,8 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
-from scipy.optimize import brentq
-from scipy.special import chdtrc
+from scipy.special import chdtrc, logsumexp, softmax
 
 from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 
@@ -24,6 +26,11 @@ LARGEST_DEGREE = 3
 CONTRADICTS = 3.0
 #: Values of the variable at which a polynomial must be monotone.
 _CHECKED = np.linspace(-1, 1, 41)
+#: Standard deviations from run to run that are tried, in the scale of the law.
+SCATTERS = np.geomspace(1e-4, 1.0, 30)
+#: Scale of their prior, a half-Cauchy one. ASSUME: runs of a process differ by the order of 10 %; many times as much is
+#: not excluded.
+TYPICAL = 0.1
 
 
 # Scale of the quantities
@@ -71,6 +78,17 @@ def scaled_covariance(values: np.ndarray, covariance: np.ndarray) -> np.ndarray:
 
 
 @dataclass(frozen=True)
+class Parts:
+    """Polynomials of q quantities, of d degrees and with each of t scatters, and how likely each is."""
+
+    likely: np.ndarray  #: (q, d, t), a sum of 1 for each quantity
+    coefficients: np.ndarray  #: (q, d, t, c)
+    weights: np.ndarray  #: of the n settings in them (q, d, t, c, n)
+    errors: np.ndarray  #: covariance of the errors of the settings (n, q, q)
+    scatters: np.ndarray  #: (t,)
+
+
+@dataclass(frozen=True)
 class Law:
     """Polynomials of the scaled quantities, with the covariance of all their coefficients.
 
@@ -81,8 +99,9 @@ class Law:
     coefficients: np.ndarray  #: (q, c)
     covariance: np.ndarray  #: (q, c, q, c)
     degrees: np.ndarray  #: (q,)
-    scatter: np.ndarray  #: (q,) standard deviation of the settings beyond their errors
+    scatter: np.ndarray  #: (q,) standard deviation of runs beyond the errors of their settings, root of its mean square
     surprise: np.ndarray  #: (n, q) of each setting from the law of the others [standard errors], NaN if it has none
+    parts: Parts
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -106,12 +125,23 @@ class Law:
         basis = self.basis(values)
         return np.einsum("nc,qcrd,nd->nqr", basis, self.covariance, basis)
 
-    def drawn(self, number: int, rng: np.random.Generator) -> np.ndarray:
-        """Errors of the coefficients of some laws as likely as this one, (number, q, c)."""
-        size = self.coefficients.size
-        values, vectors = np.linalg.eigh(self.covariance.reshape(size, size))
-        errors = rng.standard_normal((number, size)) * np.sqrt(np.maximum(values, 0))
-        return (errors @ vectors.T).reshape(number, *self.coefficients.shape)
+    def drawn(self, number: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+        """Errors of some laws as likely as this one, and the next run of each beyond it.
+
+        Returns the errors of the coefficients (number, q, c), and the deviations of one run (number, q).
+        """
+        parts, (settings, quantities) = self.parts, self.parts.errors.shape[:2]
+        values, vectors = np.linalg.eigh(parts.errors)
+        measured = rng.standard_normal((number, settings, quantities)) * np.sqrt(np.maximum(values, 0))
+        errors, drawn, runs = np.einsum("nqr,mnr->mnq", vectors, measured), [], []
+        for quantity, likely in enumerate(parts.likely):
+            degree, scatter = np.unravel_index(rng.choice(likely.size, number, p=likely.ravel()), likely.shape)
+            wide = parts.scatters[scatter]
+            own = errors[:, :, quantity] + wide[:, None] * rng.standard_normal((number, settings))
+            away = parts.coefficients[quantity, degree, scatter] - self.coefficients[quantity]
+            drawn.append(away + np.einsum("mcn,mn->mc", parts.weights[quantity, degree, scatter], own))
+            runs.append(wide * rng.standard_normal(number))
+        return np.stack(drawn, axis=1), np.stack(runs, axis=1)
 
     def with_setting(self, value: float, errors: np.ndarray) -> np.ndarray:
         """Covariance of the coefficients after one more setting with errors of the covariance (q, q)."""
@@ -141,14 +171,32 @@ def fit(settings: np.ndarray, values: np.ndarray, covariances: np.ndarray) -> La
     """
     position, errors = _position(settings, settings[0], settings[-1]), np.sqrt(np.einsum("nqq->nq", covariances))
     columns = list(zip(np.transpose(values), errors.T, strict=True))
-    means = [_mean(position, *column) for column in columns]
-    coefficients, weights, between, scatter, degrees = (np.array(part) for part in zip(*means, strict=True))
-    total = covariances + np.eye(len(columns)) * np.square(scatter)
-    covariance = np.einsum("qcn,nqr,rdn->qcrd", weights, total, weights)
-    own = np.arange(len(columns))
-    covariance[own, :, own] += between
+    parts = Parts(
+        *map(np.array, zip(*(_parts(position, *column) for column in columns), strict=True)), covariances, SCATTERS
+    )
+    coefficients = np.einsum("qdt,qdtc->qc", parts.likely, parts.coefficients)
+    degrees = parts.likely.sum(axis=2).argmax(axis=1)
+    scatter = np.sqrt(np.einsum("qdt,t->q", parts.likely, SCATTERS**2))
     surprise = [_surprise(position, *column, degree) for column, degree in zip(columns, degrees, strict=True)]
-    return Law(np.asarray(settings, float), coefficients, covariance, degrees, scatter, np.transpose(surprise))
+    covariance = _covariance(parts, coefficients)
+    return Law(np.asarray(settings, float), coefficients, covariance, degrees, scatter, np.transpose(surprise), parts)
+
+
+def _covariance(parts, coefficients):
+    """Covariance of all coefficients (q, c, q, c), within and between the parts."""
+    mean = np.einsum("qdt,qdtcn->qcn", parts.likely, parts.weights)
+    covariance = np.einsum("qcn,nqr,rdn->qcrd", mean, parts.errors, mean)
+    variances = np.einsum("nqq->qn", parts.errors)[:, None, None] + (parts.scatters**2)[:, None]
+    away = parts.coefficients - coefficients[:, None, None]
+    own = np.arange(len(coefficients))
+    covariance[own, :, own] = np.einsum(
+        "qdt,qdtan,qdtn,qdtbn->qab",
+        parts.likely,
+        parts.weights,
+        np.broadcast_to(variances, (*parts.likely.shape, variances.shape[-1])),
+        parts.weights,
+    ) + np.einsum("qdt,qdta,qdtb->qab", parts.likely, away, away)
+    return covariance
 
 
 def contradictions(law: Law) -> list[tuple[int, int]]:
@@ -173,38 +221,35 @@ def _position(values, low, high):
     return 2 * (np.asarray(values, float) - low) / (high - low) - 1
 
 
-def _mean(position, values, errors):
-    """Mean of polynomials of all degrees, as likely as they predict settings that are left out.
+def _parts(position, values, errors):
+    """Polynomials of all degrees with all scatters.
 
-    Returns its coefficients (c,), weights of the values in them (c, n), covariance between the polynomials (c, c),
-    scatter, and the most likely degree.
+    Returns how likely they are (d, t), their coefficients (d, t, c), and weights of the values in them (d, t, c, n).
     """
     size = min(max(len(position) - 2, 1), LARGEST_DEGREE) + 1
-    degrees, scores = _degrees(position, values, errors)
-    likely = np.exp((scores.min() - scores) / 2) / np.sum(np.exp((scores.min() - scores) / 2))
-    coefficients, weights, scatter = np.zeros((len(degrees), size)), np.zeros((len(degrees), size, len(position))), []
-    for k, degree in enumerate(degrees):
-        coefficients[k, : degree + 1], weights[k, : degree + 1], beyond = _fitted(position, values, errors, degree)
-        scatter.append(beyond)
-    mean = likely @ coefficients
-    between = np.einsum("k,kc,kd->cd", likely, coefficients - mean, coefficients - mean)
-    beyond = float(np.sqrt(likely @ np.square(scatter)))
-    return mean, np.einsum("k,kcn->cn", likely, weights), between, beyond, degrees[int(np.argmax(likely))]
+    fits = [_fitted(position, values, errors, degree) for degree in range(size)]
+    likely = np.array([one for one, *_ in fits])
+    scores = np.array([_prediction(position, values, errors, *fit) for fit in enumerate(likely)])
+    shares = softmax(_of_possible(scores, [one @ found for one, found, _ in fits], values))
+    weights, coefficients = np.zeros((size, len(SCATTERS), size, len(position))), np.zeros((size, len(SCATTERS), size))
+    for degree, (_, found, of) in enumerate(fits):
+        coefficients[degree, :, : degree + 1], weights[degree, :, : degree + 1] = found, of
+    return shares[:, None] * likely, coefficients, weights
 
 
-def _degrees(position, values, errors):
-    """Degrees that settings can tell from each other, and how well each predicts those left out, as by `_prediction`.
+def _of_possible(scores, coefficients, values):
+    """Scores of all degrees, that of those which settings cannot show without end below.
 
-    If the settings are monotone, so are the polynomials, unless another predicts far better.
+    Two settings are on a straight line. If the settings are monotone, so are the polynomials, unless another predicts
+    far better.
     """
-    number, changes = len(position), np.diff(values)
-    degrees = [1] if number == 2 else list(range(min(number - 2, LARGEST_DEGREE) + 1))
-    scores = np.array([_prediction(position, values, errors, degree) for degree in degrees])
+    changes = np.diff(values)
+    if len(values) == 2:
+        return np.array([-np.inf, 0.0])
     if (changes > 0).all() or (changes < 0).all():
-        monotone = np.array([_is_monotone(_fitted(position, values, errors, degree)[0]) for degree in degrees])
-        kept = monotone | (scores < scores[monotone].min() - CONTRADICTS**2)
-        degrees, scores = [degree for degree, keep in zip(degrees, kept, strict=True) if keep], scores[kept]
-    return degrees, scores
+        monotone = np.array([_is_monotone(one) for one in coefficients])
+        return np.where(monotone | (scores > scores[monotone].max() + CONTRADICTS**2 / 2), scores, -np.inf)
+    return scores
 
 
 def _is_monotone(coefficients):
@@ -213,24 +258,40 @@ def _is_monotone(coefficients):
     return bool((steps >= 0).all() or (steps <= 0).all())
 
 
-def _prediction(position, values, errors, degree):
-    """Twice the negative logarithm of the density of all settings, each under the law of the others."""
+def _fitted(position, values, errors, degree):
+    """How likely each scatter is (t,), coefficients with it (t, c), and weights of the values in these (t, c, n).
+
+    The likelihood is the restricted one, of what the polynomial leaves.
+    """
+    wide, basis = np.hypot(errors, SCATTERS[:, None]), legvander(position, degree)
+    weights = _weights(position, wide, degree)
+    coefficients = weights @ values
+    squares = np.sum(((values - coefficients @ basis.T) / wide) ** 2, axis=1)
+    known = np.linalg.slogdet(np.einsum("na,tn,nb->tab", basis, wide**-2, basis))[1]
+    restricted = -(squares + 2 * np.log(wide).sum(axis=1) + known) / 2
+    prior = np.log(SCATTERS) - np.log1p((SCATTERS / TYPICAL) ** 2)  # of logarithms, which are evenly spaced
+    return np.maximum(softmax(restricted + prior), np.finfo(float).tiny), coefficients, weights
+
+
+def _prediction(position, values, errors, degree, likely):
+    """Logarithm of the density of all settings, each under the law of the others, with scatters as likely as given."""
     if len(position) == 2:
         return 0.0
-    scatter, total = _fitted(position, values, errors, degree)[2], 0.0
+    total = 0.0
     for left_out in range(len(position)):
-        residual, variance = _left_out(position, values, np.hypot(errors, scatter), degree, left_out)
-        total += np.log(variance) + residual**2 / variance
+        residual, variance = _left_out(position, values, np.hypot(errors, SCATTERS[:, None]), degree, left_out)
+        total += logsumexp(np.log(likely) - (np.log(variance) + residual**2 / variance) / 2)
     return total
 
 
 def _left_out(position, values, errors, degree, left_out):
-    """Residual of a setting from the law of the others, and its variance."""
+    """Residual of a setting from the law of the others, and its variance, for errors (..., n)."""
     others = np.arange(len(position)) != left_out
-    weights = _weights(position[others], errors[others], degree)
+    weights = _weights(position[others], errors[..., others], degree)
     (basis,) = legvander(position[[left_out]], degree)
-    variance = (basis @ weights) ** 2 @ errors[others] ** 2 + errors[left_out] ** 2
-    return values[left_out] - basis @ weights @ values[others], variance
+    along = basis @ weights
+    variance = np.sum((along * errors[..., others]) ** 2, axis=-1) + errors[..., left_out] ** 2
+    return values[left_out] - along @ values[others], variance
 
 
 def _surprise(position, values, errors, degree):
@@ -242,28 +303,9 @@ def _surprise(position, values, errors, degree):
 
 
 def _weights(position, errors, degree):
-    """Weights (c, n) of values with these errors in the coefficients of a polynomial."""
+    """Weights (..., c, n) of values with these errors (..., n) in the coefficients of a polynomial."""
     root = 1 / errors
-    return np.linalg.pinv(root[:, None] * legvander(position, degree)) * root
-
-
-def _fitted(position, values, errors, degree):
-    """Coefficients (c,), weights (c, n) of the values in them, and scatter beyond the errors.
-
-    The scatter is the smallest one with which the settings agree with their polynomial as they should.
-    """
-    freedom, scatter = len(position) - degree - 1, 0.0
-
-    def excess(scatter):
-        """Chi squared with a scatter, beyond the degrees of freedom."""
-        wide = np.hypot(errors, scatter)
-        left = values - legvander(position, degree) @ _weights(position, wide, degree) @ values
-        return float(np.sum((left / wide) ** 2)) - freedom
-
-    if freedom and excess(0.0) > 0:
-        scatter = float(brentq(excess, 0.0, np.ptp(values) * np.sqrt(len(values))))
-    weights = _weights(position, np.hypot(errors, scatter), degree)
-    return weights @ values, weights, scatter
+    return np.linalg.pinv(root[..., None] * legvander(position, degree)) * root[..., None, :]
 
 
 def fit_probability(law: Law, values: np.ndarray, errors: np.ndarray, quantity: int) -> float:

@@ -4,6 +4,9 @@ The margin of a device to its requirement (`stiction.devices.roughness.margins`)
 some settings, with its slopes by the quantities of the surfaces. Off the law, it is linear in them. The margin of
 several devices is their smallest one. Laws as likely as the law itself are drawn, and so are the errors of the
 simulation and of the model, each common to all settings of a curve: every draw has its own margins and best setting.
+
+These are the margins of the mean process. What is built is one run, the next one, which scatters about it: settings
+suffice if the next run does.
 """
 
 from collections.abc import Sequence
@@ -69,9 +72,11 @@ class Recommendation:
 
     settings: np.ndarray  #: (n,) values of the variable
     margin: np.ndarray  #: (n,) smallest margin of all devices [-]
-    band: np.ndarray  #: (2, n) ends of its 95 % band
-    safe: np.ndarray  #: (n,) margin with 95 % confidence
+    band: np.ndarray  #: (2, n) ends of the 95 % band of the mean process
+    safe: np.ndarray  #: (n,) margin of the next run with 95 % confidence
+    safe_mean: np.ndarray  #: (n,) margin of the mean process with 95 % confidence
     sufficient: list[tuple[float, float]]  #: ranges of settings with a safe margin above zero
+    sufficient_mean: list[tuple[float, float]]  #: ranges with a safe margin of the mean process above zero
     crossings: list[Crossing]  #: settings with a margin of zero
     best: float  #: setting of the largest margin
     error: float  #: standard error of the best setting
@@ -100,12 +105,14 @@ def recommended(
     """
     low, high = max(curve.settings[0] for curve in curves), min(curve.settings[-1] for curve in curves)
     values = np.linspace(low, high, SETTINGS)
-    drawn = np.concatenate([law.drawn(DRAWS, rng).reshape(DRAWS, -1) for law in laws], axis=1)
-    here = [curve.at(values) for curve in curves]
+    parts, runs = _drawn(laws, rng)
+    drawn, here = np.concatenate(parts, axis=1), [curve.at(values) for curve in curves]
     margin = np.min([curve.margin for curve in here], axis=0)
-    margins = np.min([_drawn_margins(curve, laws, drawn, rng.standard_normal((DRAWS, 1))) for curve in here], axis=0)
+    of_mean = [_drawn_margins(curve, laws, drawn, rng.standard_normal((DRAWS, 1))) for curve in here]
+    of_run = [one + runs @ curve.slopes.T for one, curve in zip(of_mean, here, strict=True)]
+    margins = np.min(of_mean, axis=0)
     best = np.array([_best(values, one) for one in margins])
-    safe = np.quantile(margins, 1 - CONFIDENCE, axis=0)
+    safe, safe_mean = (np.quantile(np.min(each, axis=0), 1 - CONFIDENCE, axis=0) for each in (of_run, of_mean))
     subject = "best" if best.std() else "range"
     wanted = best if best.std() else (margins >= 0).mean(axis=1) * (high - low)
     following, after = _next(laws, errors, drawn, wanted)
@@ -114,7 +121,9 @@ def recommended(
         margin=margin,
         band=np.quantile(margins, INTERVAL, axis=0),
         safe=safe,
+        safe_mean=safe_mean,
         sufficient=sufficient(values, safe),
+        sufficient_mean=sufficient(values, safe_mean),
         crossings=crossings(values, margin, margins.std(axis=0)),
         best=_best(values, margin),
         error=float(best.std()),
@@ -134,7 +143,8 @@ class Pairs:
     settings: np.ndarray  #: (n,) of the first process
     seconds: np.ndarray  #: (m,) of the second process
     margin: np.ndarray  #: (m, n) smallest margin at all humidities and against all end states [-]
-    safe: np.ndarray  #: (m, n) margin with 95 % confidence
+    safe: np.ndarray  #: (m, n) margin of the next runs with 95 % confidence
+    safe_mean: np.ndarray  #: (m, n) margin of the mean processes with 95 % confidence
     best: np.ndarray  #: (2,) pair of the largest margin
     error: np.ndarray  #: (2,) its standard errors
     interval: np.ndarray  #: (2, 2) ends of the 95 % interval of each of its settings
@@ -160,12 +170,14 @@ def recommended_pairs(
     """
     values, steps = (np.linspace(*law.ends, PAIRS) for law in laws)
     seconds = np.union1d(steps, laws[1].settings)
-    parts = [law.drawn(DRAWS, rng).reshape(DRAWS, -1) for law in laws]
-    drawn, margin, margins = np.concatenate(parts, axis=1), np.inf, np.inf
+    parts, runs = _drawn(laws, rng)
+    drawn, margin, margins, of_run = np.concatenate(parts, axis=1), np.inf, np.inf, np.inf
     for one in maps:
         rows, common = one.at(values, seconds), rng.standard_normal((DRAWS, 1))
         margin = np.minimum(margin, [row.margin for row in rows])
-        margins = np.minimum(margins, np.stack([_drawn_margins(row, laws, drawn, common) for row in rows], axis=1))
+        of_mean = np.stack([_drawn_margins(row, laws, drawn, common) for row in rows], axis=1)
+        margins = np.minimum(margins, of_mean)
+        of_run = np.minimum(of_run, of_mean + np.stack([runs @ row.slopes.T for row in rows], axis=1))
     best = np.array([_best_pair(values, seconds, one) for one in margins])
     of_each = zip(laws, errors, parts, best.T, strict=True)
     following, after = np.transpose([_next([law], [error], part, wanted) for law, error, part, wanted in of_each])
@@ -173,7 +185,8 @@ def recommended_pairs(
         settings=values,
         seconds=seconds,
         margin=margin,
-        safe=np.quantile(margins, 1 - CONFIDENCE, axis=0),
+        safe=np.quantile(of_run, 1 - CONFIDENCE, axis=0),
+        safe_mean=np.quantile(margins, 1 - CONFIDENCE, axis=0),
         best=_best_pair(values, seconds, margin),
         error=best.std(axis=0),
         interval=np.quantile(best, INTERVAL, axis=0).T,
@@ -199,13 +212,12 @@ def unknown(settings: np.ndarray, seconds: np.ndarray | None = None) -> Recommen
         nothing = np.full((len(seconds), len(settings)), none)
         best, error, interval, following, after = (np.full(shape, none) for shape in (2, 2, (2, 2), 2, 2))
         again = np.zeros(2, bool)
-        return Pairs(settings, seconds, nothing, nothing, best, error, interval, following, again, after)
+        return Pairs(settings, seconds, nothing, nothing, nothing, best, error, interval, following, again, after)
     nothing = np.full(len(settings), none)
-    arrays = {"settings": settings, "margin": nothing, "band": np.array([nothing, nothing]), "safe": nothing}
+    arrays = {"settings": settings, "band": np.array([nothing, nothing])}
+    arrays |= dict.fromkeys(("margin", "safe", "safe_mean"), nothing) | {"sufficient": [], "sufficient_mean": []}
     numbers = dict.fromkeys(("best", "error", "next", "before", "after"), none)
-    return Recommendation(
-        **arrays, **numbers, interval=(none, none), sufficient=[], crossings=[], again=False, subject="best"
-    )
+    return Recommendation(**arrays, **numbers, interval=(none, none), crossings=[], again=False, subject="best")
 
 
 def law_error(curve: Curve, laws: Sequence[Law]) -> np.ndarray:
@@ -216,6 +228,17 @@ def law_error(curve: Curve, laws: Sequence[Law]) -> np.ndarray:
         variance += np.einsum("pq,pqr,pr->p", slopes, law.covariance_at(curve.places(number)), slopes)
         first += len(law.coefficients)
     return np.sqrt(variance)
+
+
+def run_error(curve: Curve, laws: Sequence[Law]) -> np.ndarray:
+    """Standard deviation of the margins of one run about those of the mean process, (p,) [-]."""
+    return np.sqrt(curve.slopes**2 @ np.concatenate([law.scatter for law in laws]) ** 2)
+
+
+def _drawn(laws, rng):
+    """Errors of the coefficients of drawn laws (draws, all) of each law, and deviations of the next runs (draws, q)."""
+    drawn = [law.drawn(DRAWS, rng) for law in laws]
+    return [errors.reshape(DRAWS, -1) for errors, _ in drawn], np.concatenate([runs for _, runs in drawn], axis=1)
 
 
 def _between(places, values, others):

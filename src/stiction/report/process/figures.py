@@ -55,7 +55,7 @@ def devices(curve: xr.Dataset, recommended: xr.Dataset, device: str) -> Figure:
             _band(panel, curve.sel(humidity=humidity, shape=shape), colour)
         panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label=own)
         for low, high in one.sufficient.values[np.isfinite(one.sufficient.values[:, 0])]:
-            panel.axvspan(low, high, color="0.9", zorder=0, label="suffices, 95 % confidence")
+            panel.axvspan(low, high, color="0.9", zorder=0, label="next run suffices, 95 %")
         at = [[float(one.best) - float(one.best_interval[0])], [float(one.best_interval[1]) - float(one.best)]]
         place = float(one.best), TO_UM * float(curve.required)
         panel.errorbar(
@@ -71,12 +71,18 @@ def devices(curve: xr.Dataset, recommended: xr.Dataset, device: str) -> Figure:
 
 
 def _band(panel, line, colour):
-    """Estimate at one humidity, with the band of all errors of its margin."""
-    error = np.sqrt(sum(line[f"{name}_error"].values ** 2 for name in ("simulation", "law", "model")))
-    x, estimate = line.value.values, TO_UM * line.estimate.values
-    factor = np.exp(INTERVAL * error)
-    panel.fill_between(x, estimate / factor, estimate * factor, color=colour, alpha=0.2, linewidth=0)
-    panel.plot(x, estimate, ".-", color=colour, label=f"{Air(float(line.humidity)).words}, estimate and 95 % band")
+    """Estimate at one humidity, with the bands of the mean process and, wider, of the next run."""
+    x, estimate, parts = line.value.values, TO_UM * line.estimate.values, ("simulation", "law", "model")
+    for names in (parts, (*parts, "run")):
+        factor = np.exp(INTERVAL * np.sqrt(sum(line[f"{name}_error"].values ** 2 for name in names)))
+        panel.fill_between(x, estimate / factor, estimate * factor, color=colour, alpha=0.15, linewidth=0)
+    panel.plot(
+        x,
+        estimate,
+        ".-",
+        color=colour,
+        label=f"{Air(float(line.humidity)).words}, estimate, 95 % bands of mean and next run",
+    )
 
 
 @styled

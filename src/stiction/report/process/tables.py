@@ -49,10 +49,24 @@ def _sufficient(one, who, unit):
     ]
     if not ranges:
         settings = f"{_subject(who, 'No setting')} of the {words} from {value[0]:g} to {value[-1]:g} {unit}"
-        return f"{settings} is sure to leave at most {share} stuck; the best is {most}."
+        return (
+            f"{settings} is sure to leave at most {share} stuck in the next run ({mean_process(one)}); the best is "
+            f"{most}."
+        )
     enough = " or ".join(ranges)
     settings = f"{_subject(who, 'Settings')} of the {words} from {enough}"
-    return f"{settings} leave at most {share} stuck (95 % confidence), best {most}."
+    return (
+        f"{settings} leave at most {share} stuck in the next run (95 % confidence; {mean_process(one)}), best {most}."
+    )
+
+
+def mean_process(one: xr.Dataset) -> str:
+    """Settings that suffice for the mean process, beside those for the next run."""
+    ranges = [
+        f"{setting_text(one, low)} to {setting_text(one, high)} {unit_of(one)}"
+        for low, high in _pairs(*one.sufficient_mean.values.T)
+    ]
+    return f"mean process: {' or '.join(ranges) or 'none'}"
 
 
 def _subject(who, begins):
@@ -146,7 +160,7 @@ def caption(made: str) -> str:
         "Length of a beam, or restoring force of a stopper, with the allowed fraction p stuck, on the surfaces that "
         f"{made}, and its margin to the required one: the logarithm of their ratio, positive where the requirement is "
         "met. Errors of the margin are due to the simulation, to the law of the surface at and between the measured "
-        "settings, and to full elastic contact if it is computed."
+        "settings, and to full elastic contact if it is computed. The next run scatters about the mean process as well."
     )
 
 
@@ -156,7 +170,8 @@ def rows(device: str, curve: xr.Dataset) -> Iterator[dict]:
         for shape in map(str, curve["shape"].values):
             for value in curve.value.values:
                 point = curve.sel(humidity=humidity, shape=shape, value=value)
-                parts = {name: float(point[f"{name}_error"]) for name in ("simulation", "law", "model")}
+                parts = {name: float(point[f"{name}_error"]) for name in ("simulation", "law", "model", "run")}
+                of_mean = float(np.hypot(np.hypot(parts["simulation"], parts["law"]), parts["model"]))
                 stuck, low, high = (100 * point.stuck.values).tolist()
                 yield (
                     {
@@ -171,7 +186,8 @@ def rows(device: str, curve: xr.Dataset) -> Iterator[dict]:
                         "estimate_se": float(point.error) / UM,
                         "required": float(curve.required) / UM,
                         "margin": float(point.margin),
-                        "margin_se": float(np.sqrt(sum(part**2 for part in parts.values()))),
+                        "margin_se": of_mean,
+                        "margin_of_run_se": float(np.hypot(of_mean, parts["run"])),
                     }
                     | {f"{name}_se": part for name, part in parts.items()}
                     | {
@@ -190,10 +206,12 @@ COLUMNS = DEVICE | {
     "unit": (str, "unit"),
     "estimate": (with_error, "estimate", "estimate_se"),
     "required": ("g", "required"),
-    "margin": (with_error, "margin", "margin_se"),
+    "margin, mean process": (with_error, "margin", "margin_se"),
+    "margin, next run": (with_error, "margin", "margin_of_run_se"),
     "of simulation": (".2g", "simulation_se"),
     "of the law": (".2g", "law_se"),
     "of the model": (".2g", "model_se"),
+    "of one run": (".2g", "run_se"),
     "P(stuck) [%]": (with_band, "stuck_percent", "stuck_low_percent", "stuck_high_percent"),
 }
 

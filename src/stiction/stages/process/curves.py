@@ -9,7 +9,7 @@ import xarray as xr
 from scipy.special import ndtri
 
 from stiction.config.surfaces import process
-from stiction.devices.process import CONFIDENCE, Curve, law_error
+from stiction.devices.process import CONFIDENCE, Curve, law_error, run_error
 from stiction.devices.roughness import margins
 from stiction.plan.stage import Stage
 from stiction.stages.process.law import law_inputs, law_of
@@ -34,12 +34,13 @@ def compute(
     """
     curve = join_points(points, "value", model_error).assign(slopes=_slopes(points))
     known, dims = [law_of(one) for one in laws], ("value", "humidity", "shape")
-    of_law = np.full(curve.margin.shape, np.nan)
+    of_law, of_run = (np.full(curve.margin.shape, np.nan) for _ in range(2))
     for humidity, shape, one in curves_of(curve):
         at = dict(humidity=humidity, shape=shape)
         places = np.isin(curve.value.values, one.settings)
         of_law[places, *_indices(curve, at)] = law_error(one, known)
-    curve = curve.assign(law_error=(dims, of_law)).assign_coords(labels_of(laws, settings))
+        of_run[places, *_indices(curve, at)] = run_error(one, known)
+    curve = curve.assign(law_error=(dims, of_law), run_error=(dims, of_run)).assign_coords(labels_of(laws, settings))
     return curve.assign_attrs(variable=settings.variable, surface=" and ".join(settings.surfaces))
 
 

@@ -10,6 +10,7 @@ import xarray as xr
 from stiction.analysis.process_law import (
     QUANTITIES,
     Law,
+    Parts,
     contradictions,
     fit,
     is_unique,
@@ -78,6 +79,7 @@ def _measured_quantities(estimate):
 def layout(law: Law, measured: np.ndarray, errors: np.ndarray, settings: Settings) -> xr.Dataset:
     """Dataset of a law, with the scaled quantities of its settings (n, q) and the covariance of their errors."""
     over, other = ("quantity", "coefficient"), ("other_quantity", "other_coefficient")
+    part = "degree", "tried_scatter"
     scale = {"long_name": "ln rms [m], skewness, ln(kurtosis - 1 - skewness²), ln corner [rad/m], ln(-slope)"}
     return xr.Dataset(
         {
@@ -88,9 +90,13 @@ def layout(law: Law, measured: np.ndarray, errors: np.ndarray, settings: Setting
             "degrees": ("quantity", law.degrees, {"long_name": "degree that predicts left-out settings best"}),
             "scatter": ("quantity", law.scatter, {"long_name": "of the settings, beyond their errors"}),
             "surprise": (("setting", "quantity"), law.surprise, {"long_name": "from the law of the others [errors]"}),
+            "likely": (("quantity", *part), law.parts.likely, {"long_name": "of each degree and scatter"}),
+            "part_coefficients": (("quantity", *part, "coefficient"), law.parts.coefficients),
+            "part_weights": (("quantity", *part, "coefficient", "setting"), law.parts.weights),
             "flags": ((), "\n".join(sentences(law, settings))),
         },
         coords={
+            "tried_scatter": law.parts.scatters,
             "setting": ("setting", law.settings, {"units": process.unit_of(settings.variable)}),
             "quantity": list(settings.quantities),
             "other_quantity": list(settings.quantities),
@@ -123,7 +129,10 @@ def sentences(law: Law, settings: Settings) -> list[str]:
 def law_of(dataset: xr.Dataset) -> Law:
     """Law in a dataset of this stage."""
     names = "coefficients", "covariance", "degrees", "scatter", "surprise"
-    return Law(dataset.setting.values, *(dataset[name].values for name in names))
+    parts = Parts(
+        *(dataset[name].values for name in ("likely", "part_coefficients", "part_weights", "errors", "tried_scatter"))
+    )
+    return Law(dataset.setting.values, *(dataset[name].values for name in names), parts)
 
 
 def at_value(dataset: xr.Dataset, value: float) -> xr.Dataset:

@@ -7,7 +7,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import RegularGridInterpolator
 
-from stiction.devices.process import PAIRS, Map, Pairs, law_error, recommended_pairs, unknown
+from stiction.devices.process import PAIRS, Map, Pairs, law_error, recommended_pairs, run_error, unknown
 from stiction.devices.roughness import sufficient
 from stiction.plan.stage import Stage
 from stiction.stages.process.curves import Settings, inputs, join_points, labels_of, settings_of
@@ -30,11 +30,15 @@ def compute(
     dims = ("second", "value", "humidity", "shape")
     slopes = (*dims, "law_quantity"), _slopes(points, seconds, values)
     found = found.assign_coords(second=seconds, **labels_of(laws, settings)).assign(slopes=slopes)
-    known, of_law = [law_of(one) for one in laws], np.full([found.sizes[name] for name in dims], np.nan)
+    known = [law_of(one) for one in laws]
+    of_law, of_run = (np.full([found.sizes[name] for name in dims], np.nan) for _ in range(2))
     for (humidity, shape), one in _maps(found):
-        of_law[:, :, humidity, shape] = [law_error(curve, known) for curve in one.at(values, seconds)]
+        rows = one.at(values, seconds)
+        of_law[:, :, humidity, shape] = [law_error(curve, known) for curve in rows]
+        of_run[:, :, humidity, shape] = [run_error(curve, known) for curve in rows]
     attrs = {"variable": settings.variable, "second_variable": laws[1].variable}
-    return found.assign(law_error=(dims, of_law)).assign_attrs(attrs | {"surface": " and ".join(settings.surfaces)})
+    errors = {"law_error": (dims, of_law), "run_error": (dims, of_run)}
+    return found.assign(errors).assign_attrs(attrs | {"surface": " and ".join(settings.surfaces)})
 
 
 def _slopes(points, seconds, values):
@@ -73,7 +77,8 @@ def layout(pairs: Pairs, found: xr.Dataset, settings: np.ndarray) -> xr.Dataset:
     return xr.Dataset(
         {
             "margin": (over, pairs.margin, {"long_name": "smallest margin"}),
-            "safe": (over, pairs.safe, {"long_name": "margin with 95 % confidence"}),
+            "safe": (over, pairs.safe, {"long_name": "margin of the next runs with 95 % confidence"}),
+            "safe_mean": (over, pairs.safe_mean, {"long_name": "margin of the mean processes with 95 % confidence"}),
             "best": ("process", pairs.best, {"long_name": "pair of settings with the largest margin"}),
             "best_error": ("process", pairs.error),
             "best_interval": (("process", "end"), pairs.interval),
@@ -99,11 +104,15 @@ def settings_of_processes(pairs: xr.Dataset) -> list[xr.Dataset]:
 
 def _settings_of_process(pairs, number, own, other, variable):
     """Settings of one process."""
-    ranges = sufficient(pairs[own].values, pairs.safe.max(other, skipna=False).values)
+    ranges, of_mean = (
+        np.reshape(sufficient(pairs[own].values, pairs[name].max(other, skipna=False).values), (-1, 2))
+        for name in ("safe", "safe_mean")
+    )
     named = ("best", "best_error", "best_interval", "next", "next_again", "next_after")
     best = {name: pairs[name].isel(process=number) for name in named}
     best |= {"next_before": best["best_error"], "next_subject": xr.DataArray("best")}
-    places = {"value": ("place", pairs[own].values), "sufficient": (("range", "end"), np.reshape(ranges, (-1, 2)))}
+    places = {"value": ("place", pairs[own].values), "sufficient": (("range", "end"), ranges)}
+    places |= {"sufficient_mean": (("mean_range", "end"), of_mean)}
     return xr.Dataset(
         places | {name: one.variable for name, one in best.items()}, attrs={"variable": pairs.attrs[variable]}
     )

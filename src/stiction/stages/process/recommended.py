@@ -38,7 +38,7 @@ def compute(curves: Mapping[str, xr.Dataset], laws: Mapping[str, xr.Dataset], va
 
 def _padded_to_one_size(found):
     """Datasets with as many ranges and crossings each: those missing are NaN."""
-    sizes = {name: range(max(one.sizes[name] for one in found)) for name in ("range", "crossings")}
+    sizes = {name: range(max(one.sizes[name] for one in found)) for name in ("range", "mean_range", "crossings")}
     return [one.assign_coords({name: range(one.sizes[name]) for name in sizes}).reindex(sizes) for one in found]
 
 
@@ -68,15 +68,17 @@ def _by_laws(curve, slopes, laws):
 
 def layout(found: Recommendation) -> xr.Dataset:
     """Dataset of one recommendation."""
-    ranges, places = np.reshape(found.sufficient, (-1, 2)), [(one.place, one.error) for one in found.crossings]
-    places = np.reshape(places, (-1, 2))
+    ranges, of_mean = (np.reshape(some, (-1, 2)) for some in (found.sufficient, found.sufficient_mean))
+    places = np.reshape([(one.place, one.error) for one in found.crossings], (-1, 2))
     return xr.Dataset(
         {
             "value": ("place", found.settings, {"long_name": "of the variable"}),
             "margin": ("place", found.margin, {"long_name": "smallest margin"}),
-            "band": (("end", "place"), found.band, {"long_name": "95 % band of the margin"}),
-            "safe": ("place", found.safe, {"long_name": "margin with 95 % confidence"}),
-            "sufficient": (("range", "end"), ranges),
+            "band": (("end", "place"), found.band, {"long_name": "95 % band of the margin of the mean process"}),
+            "safe": ("place", found.safe, {"long_name": "margin of the next run with 95 % confidence"}),
+            "safe_mean": ("place", found.safe_mean, {"long_name": "margin of the mean process with 95 % confidence"}),
+            "sufficient": (("range", "end"), ranges, {"long_name": "next run"}),
+            "sufficient_mean": (("mean_range", "end"), of_mean, {"long_name": "mean process"}),
             "crossing": ("crossings", places[:, 0]),
             "crossing_error": ("crossings", places[:, 1]),
             "best": ((), found.best),
