@@ -275,9 +275,9 @@ def told(c=0.0, known=True):
 def test_answers_name_the_pairs_that_suffice_and_the_best_one():
     first, *more = maps.answers(told()[0])
     assert first.startswith(
-        "Pairs of the etch time and the deposition time leave at most 1 in 20 stuck (95 % confidence)"
+        "Pairs of the etch time and the deposition time leave at most 1 in 20 stuck in the next runs (95 % confidence)"
     )
-    low, best = re.search(r" where the deposition time is (\S+) to 20 min, best (.*)\.$", first).groups()
+    low, best = re.search(r"time is (\S+) to 20 min \(mean process: \S+ to 20 min\), best (.*)\.$", first).groups()
     assert 5 < float(low) < 8  # 12.5 - 7.5, and 1.645 errors of 0.75 min
     assert best == "90 s with 20 min"
     assert more[0] == "Where the deposition time is 5 min, no etch time is sure to suffice."
@@ -289,7 +289,7 @@ def test_answers_name_the_pairs_that_suffice_and_the_best_one():
 def test_without_pairs_that_suffice_the_best_is_named_and_settings_beyond_it():
     assert maps.answers(told(c=-4.0)[0]) == [
         "No pair of the etch time from 30 to 90 s and the deposition time from 5 to 20 min is sure to leave at most "
-        "1 in 20 stuck; the best is 90 s with 20 min.",
+        "1 in 20 stuck in the next runs (deposition time, mean process: none); the best is 90 s with 20 min.",
         "Etch time: the best setting is the end of the measured range: measure settings above 90 s.",
         "Deposition time: the best setting is the end of the measured range: measure settings above 20 min.",
     ]

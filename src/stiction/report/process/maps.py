@@ -40,7 +40,9 @@ def briefly(pairs: xr.Dataset) -> str:
         whole = " and ".join(
             f"the {_words(view)} from {_range(view, *view.value.values[[0, -1]])}" for view in (first, second)
         )
-        return f"No pair of {whole} is sure to leave at most {share} stuck in the next runs; the best is {best}."
+        of_mean = f"{_words(second)}, {tables.mean_process(second)}"
+        none = f"No pair of {whole} is sure to leave at most {share} stuck in the next runs"
+        return f"{none} ({of_mean}); the best is {best}."
     ranges = " or ".join(_range(second, *ends) for ends in second.sufficient.values)
     return (
         f"Pairs of {names} leave at most {share} stuck in the next runs (95 % confidence) where the "
