@@ -124,6 +124,7 @@ onstart:
     try:
         HELD.append(run_lock.reserve(".snakemake/running"))
         refuse_what_samples_show()
+        refuse_to_touch()
         provenance.record("results/provenance.json", BASE, config)
         hand_to_jobs()
     except (OSError, DataError) as error:
@@ -139,10 +140,7 @@ onstart:
 
 
 onsuccess:
-    unlike_this_run()
-    from stiction.command import index
-
-    index.write(Path("results"), planner.rules)
+    end_of_run()
 
 
 rule all:

@@ -10,6 +10,7 @@ import yaml
 from hostile import HOSTILE, MADE, Reading
 
 from stiction.command.front_page import answers, front_page, is_finished, provenance
+from stiction.command.present import Present
 from stiction.config.files import paper
 from stiction.run.provenance import record
 from stiction.stages.beams.pair_warnings import as_markdown
@@ -42,7 +43,7 @@ def finished(results, devices=(), **changes):
 
 def test_the_answers_are_those_of_devices_and_of_the_beams_on_non_gaussian_surfaces(tmp_path):
     config = finished(tmp_path, ["C1", "S1"])
-    assert list(answers(tmp_path, config)) == [
+    assert list(answers(Present(tmp_path), config)) == [
         "Device C1: Build C1 no longer than 3 µm & more.",
         "Device S1: Build S1 no longer than 3 µm & more.",
         "Pair b, beams of 1500 µm: RH 0.67: 98 % stick behind a crack of 686 ± 16 µm; RH 0.88: 25 % are held by their "

@@ -10,6 +10,7 @@ from hostile import HOSTILE, Reading
 from test_front_page import finished
 
 from stiction.command import index, main
+from stiction.command.present import Present
 from stiction.config.files import load, paper
 from stiction.models import SIDES
 from stiction.plan.planner import Planner
@@ -174,7 +175,7 @@ def test_all_that_a_run_wants_is_listed(tmp_path):
         (tmp_path / file.removeprefix("results/")).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / file.removeprefix("results/")).touch()
     listed = set(files_of(index.index(tmp_path, rules)))
-    shown = {item.shown for item in index.items(tmp_path, rules)}
+    shown = {item.shown for item in index.items(Present(tmp_path), rules)}
     assert shown <= listed
     assert {f"devices/{name}.html" for name in config["devices"]} <= listed
     ends = (".png", ".pdf", ".html", ".csv")
@@ -203,3 +204,21 @@ def test_a_damaged_record_of_runs_is_refused(tmp_path, capsys):
     (tmp_path / "results" / "provenance.json").write_text("{")
     assert main.main(["show", "--directory", str(tmp_path)]) == main.Status.REFUSED
     assert "provenance.json cannot be read" in capsys.readouterr().err
+
+
+def test_files_of_other_settings_are_not_on_the_page(tmp_path):
+    of_run(tmp_path, "C1", "S1")
+    names = [
+        "verdict.txt",
+        "devices/C1.txt",
+        "devices/C1.html",
+        "tables/table_3.html",
+        "tables/table_3.csv",
+        "warnings.md",
+    ]
+    marks = ["All 3 checks", "no longer than 3 µm", "devices/C1.html", "tables/table_3.html", "685", "Too &lt;dry"]
+    marks[4] = "98 % stick"
+    for name, mark in zip(names, marks, strict=True):
+        page = index.index(tmp_path, RULES)
+        without = index.index(tmp_path, RULES, {f"results/{name}": ""})
+        assert page.count(mark) > without.count(mark), name

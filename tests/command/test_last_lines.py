@@ -163,3 +163,19 @@ def test_a_finished_run_ends_in_at_most_four_lines(tmp_path):
     assert found[0] == "Done: 2 jobs in 2 min."
     assert lines(heard(), Status.DONE, tmp_path) == [], "an answer of Snakemake, such as --summary, ends by itself"
     assert lines(heard(record("Nothing to be done")), Status.DONE, tmp_path)[0].startswith("Nothing to do")
+
+
+def test_the_end_of_a_run_is_silent_about_files_of_other_settings_and_says_so(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    results = (tmp_path / "results").relative_to(tmp_path)
+    names = ["verdict.txt", "warnings.md", "tables/table_3.md", "figures/overview.png"]
+    fill(results, *names)
+    (results / "warnings.md").write_text("- a: b\n")
+    every = len(list(where_to_look(results)))
+    for number in range(1, len(names) + 1):
+        unlike = {f"results/{name}": "was made with other settings" for name in names[:number]}
+        *spoken, last = where_to_look(results, (), unlike)
+        assert len(spoken) == every - min(number, 2) - (number == 4), "figure and table share a line"
+        assert not [name for name in names[:number] if any(name in line for line in spoken)]
+        more = {1: "", 2: " (and 1 more file)"}.get(number, f" (and {number - 1} more files)")
+        assert last == f"Not computed in this run: results/verdict.txt was made with other settings{more}."

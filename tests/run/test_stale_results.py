@@ -14,7 +14,7 @@ import xarray as xr
 from stiction.run import labels, stale_results, storage
 from stiction.run.atomic import DataError
 from stiction.run.disk_cache import DiskCache
-from stiction.run.logs import checksum, logged, recorded_checksums
+from stiction.run.logs import checksum, logged, note_origin, recorded_checksums
 
 HEIGHTS, SPECTRUM = {"rms_nm": 3.4, "kurtosis": 3.9}, {"spacing_nm": 7.5, "psd": {"floor_nm4": 0.8}}
 
@@ -230,3 +230,15 @@ def test_the_summary_has_one_line_per_folder():
         "a/1.nc holds forces; this run does not use it (nor 2 more of this folder).",
         "a/b/1.nc is foreign; this run does not use it.",
     ]
+
+
+def test_results_without_a_label_are_judged_by_the_origin_in_their_log(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name, written in (("a.md", "1"), ("b.md", "2"), ("c.md", None), ("gone.md", "1"), ("unknown.md", "1")):
+        Path(name).touch()
+        with logged(f"logs/{name}.log", [name]):
+            if written:
+                note_origin(written * 64)
+    Path("gone.md").unlink()
+    expected = dict.fromkeys(["a.md", "b.md", "c.md", "gone.md"], "1" * 64).get
+    assert dict(stale_results.made_otherwise("logs", expected)) == {"b.md": "was made with other settings"}

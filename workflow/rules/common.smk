@@ -7,6 +7,7 @@ from functools import cache
 
 from snakemake.logging import logger
 
+from stiction.command.run_state import RUN
 from stiction.config import files, merging, messages, scans, test_beams
 from stiction.config.surfaces import process
 from stiction.plan import cost, memory
@@ -156,6 +157,7 @@ def unlike_this_run():
     read = DiskCache(".snakemake/labels.json")
     found = dict(stale_results.damaged("results/logs", read))
     found |= dict(stale_results.foreign(Path("results").rglob("*.nc"), planner.settings, read))
+    found |= dict(stale_results.made_otherwise("results/logs", planner.origin))
     read.save()
     return found
 
@@ -170,13 +172,30 @@ def unusable():
     """Warn about unusable results and return them. This run recomputes them."""
     if not is_main:
         return {}
-    found = unlike_this_run()
+    found = RUN.unlike = unlike_this_run()
     for line in stale_results.summary(found):
         logger.warning(line)
     if found:
         STALE.parent.mkdir(exist_ok=True)
         STALE.write_text(uuid.uuid4().hex)
     return found
+
+
+def refuse_to_touch():
+    """Refuse to mark files of other settings as new. Snakemake would then take them for files of this run."""
+    if snakemake_patches.only_touches(workflow) and unusable():
+        raise WorkflowError(
+            f"--touch would mark files of other settings as new: {stale_results.in_words(unusable())}. "
+            "Run without --touch."
+        )
+
+
+def end_of_run():
+    """Write the index without the files that are not of this run."""
+    from stiction.command import index
+
+    RUN.unlike = unlike_this_run()
+    index.write(Path("results"), planner.rules, RUN.unlike)
 
 
 # Rules of stages

@@ -12,6 +12,7 @@ from typing import Any
 
 import yaml
 
+from stiction.command.present import Present
 from stiction.config.cases import Air
 from stiction.config.merging import differing
 from stiction.config.reading import paper
@@ -30,9 +31,9 @@ _OF_DEVICES = ("device_page", "table_safe_lengths", "table_stoppers", "figure_ri
 _OF_PAIRS = ("table_3", "figure_overview", "table_scans", "table_1")
 
 
-def front_page(results: Path) -> str:
+def front_page(folder: Path) -> str:
     """Front page of the results of a finished run, as Snakemake takes it: HTML within reStructuredText."""
-    runs = recorded_runs(results / "provenance.json")
+    runs, results = recorded_runs(folder / "provenance.json"), Present(folder)
     last, config = runs[-1], runs[-1]["config"]
     changes = differing(config, paper())
     page = rendered(
@@ -40,7 +41,7 @@ def front_page(results: Path) -> str:
         subjects=subjects(config),
         answers=answers(results, config),
         opened=_first_results(results, config),
-        checks=_text(results / "verdict.txt").strip() if config["run"]["pairs"] else None,
+        checks=results.text("verdict.txt").strip() if config["run"]["pairs"] else None,
         warnings=list(warnings(results, config)),
         provenance=provenance(last, len(runs)),
         changes=yaml.safe_dump(changes, allow_unicode=True, sort_keys=False) if changes else "",
@@ -58,28 +59,23 @@ def is_finished(results: Path) -> bool:
     return (results / ("verdict.txt" if has_pairs else "devices/warnings.md")).exists()
 
 
-def _text(path):
-    return path.read_text(encoding="utf-8")
-
-
 def subjects(config: Mapping[str, Any]) -> str:
     """Pairs and devices of a configuration in words."""
     named = {"pair": config["run"]["pairs"], "device": config.get("devices", {})}
     return " and ".join(f"{kind}{'s' * (len(names) > 1)} {', '.join(names)}" for kind, names in named.items() if names)
 
 
-def answers(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
+def answers(results: Present, config: Mapping[str, Any]) -> Iterator[str]:
     """Yield the results about every device and every pair, a sentence each."""
     for name in config.get("devices", {}):
-        yield f"Device {name}: {_text(results / 'devices' / f'{name}.txt').splitlines()[0]}"
+        yield f"Device {name}: {next(iter(results.text(f'devices/{name}.txt').splitlines()), 'not computed')}"
     if config["run"]["pairs"]:
         yield from pair_answers(results, config)
 
 
-def pair_answers(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
+def pair_answers(results: Present, config: Mapping[str, Any]) -> Iterator[str]:
     """Yield the ends of the beams of every pair, a sentence each, or nothing before Table III is computed."""
-    table = results / "tables" / "table_3.csv"
-    rows = csv.DictReader(_text(table).splitlines() if table.exists() else ())
+    rows = csv.DictReader(results.text("tables/table_3.csv").splitlines())
     for pair, of_pair in groupby((row for row in rows if row["model"] == "NG"), lambda row: row["pair"]):
         yield cracks(pair, list(of_pair), config["beam"]["length_um"])
 
@@ -116,19 +112,19 @@ def _first_results(results, config):
         stage, _ = stages()[name]
         file, title = stage.files[stage.shown.file], stage.shown.title
         for device in devices if "{device}" in file else [""]:
-            if (results / file.format(device=device)).exists():
+            if results.has(file.format(device=device)):
                 yield f"{stage.shown.category} › {title.format(device=device)}"
 
 
-def warnings(results: Path, config: Mapping[str, Any]) -> Iterator[str]:
+def warnings(results: Present, config: Mapping[str, Any]) -> Iterator[str]:
     """Sentences about results beyond the limits of the model."""
-    return (item for page in warning_pages(results, config) for item in list_items(_text(page)))
+    return (item for page in warning_pages(results, config) for item in list_items(results.text(page)))
 
 
-def warning_pages(results: Path, config: Mapping[str, Any]) -> list[Path]:
+def warning_pages(results: Present, config: Mapping[str, Any]) -> list[str]:
     """Pages of warnings about the pairs and devices of a configuration, as far as they have been written."""
     pages = {"warnings.md": config["run"]["pairs"], "devices/warnings.md": config.get("devices")}
-    return [results / page for page, subjects in pages.items() if subjects and (results / page).exists()]
+    return [page for page, subjects in pages.items() if subjects and results.has(page)]
 
 
 def list_items(markdown: str) -> Iterator[str]:

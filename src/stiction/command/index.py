@@ -4,8 +4,10 @@ It is no rule of the workflow: a rule would compute everything that it lists, al
 lists what the configuration of the last run wants and the folder holds, and is written only if that has changed.
 """
 
+import contextlib
 import csv
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+import json
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -13,6 +15,7 @@ from typing import Any
 import yaml
 
 from stiction.command import front_page
+from stiction.command.present import RESULTS, Present
 from stiction.config.kinds import kind_of
 from stiction.config.materials import Materials
 from stiction.config.merging import differing
@@ -23,11 +26,13 @@ from stiction.plan.stage import WILDCARDS, expression
 from stiction.report.drawings.devices import device_drawing
 from stiction.report.html import rendered
 from stiction.report.surfaces.words import surface_in_words
-from stiction.run.atomic import save_text
+from stiction.run import stale_results
+from stiction.run.atomic import DataError, save_text
+from stiction.run.disk_cache import DiskCache
 from stiction.run.provenance import code_of, recorded_runs, start_of
 
-#: Name of the page, and of the folder of results in names of files.
-INDEX, _RESULTS = "index.html", "results/"
+#: Name of the page.
+INDEX = "index.html"
 
 
 @dataclass(frozen=True)
@@ -40,11 +45,14 @@ class Item:
     files: Mapping[str, str]  #: all its files by their endings
 
 
-def write(results: Path, rules: Iterable[Mapping[str, Any]]) -> None:
-    """Write the index of a folder of results unless it is there already. Rules are those of the planner."""
-    page, file = index(results, rules), results / INDEX
-    if not (file.exists() and file.read_text(encoding="utf-8") == page):
-        save_text(page, file)
+def write(results: Path, rules: Iterable[Mapping[str, Any]], unlike: Collection[str] = ()) -> None:
+    """Write the index of a folder of results unless it is there already.
+
+    Rules are those of the planner. Files ``unlike`` the last run are left out.
+    """
+    page = index(results, rules, unlike)
+    if Present(results).text(INDEX) != page:
+        save_text(page, results / INDEX)
 
 
 def write_for_last_run(results: Path) -> Path | None:
@@ -55,12 +63,43 @@ def write_for_last_run(results: Path) -> Path | None:
     Raises
     ------
     ValueError
-        If the record of runs is damaged.
+        If the record of runs is damaged, or not of this version.
     """
-    if not (runs := recorded_runs(results / "provenance.json")):
+    record = results / "provenance.json"
+    if not (runs := recorded_runs(record)):
         return None
-    write(results, Planner(runs[-1]["config"], {}, _now, _now).rules)
+    try:
+        write(results, _planner(results, runs[-1]["config"]).rules, unlike_last_run(results))
+    except (OSError, DataError):
+        raise
+    except Exception as reason:  # a record can say anything
+        raise ValueError(
+            f"{record} describes no run of this version of stiction ({type(reason).__name__}: {reason}): "
+            "run stiction paper or stiction run FILE again"
+        ) from reason
     return results / INDEX
+
+
+def unlike_last_run(results: Path) -> dict[str, str]:
+    """Results without a label that were made with other settings than the last run's, each with the reason.
+
+    Without judgement on a folder that no longer has the plan of its last run.
+    """
+    config = recorded_runs(results / "provenance.json")[-1]["config"]
+    planner = _planner(results, config)
+    if planner.plan.preliminary is None:
+        return {}
+    with contextlib.chdir(results.parent):
+        return dict(stale_results.made_otherwise("results/logs", planner.origin))
+
+
+def _planner(results, config):
+    """Planner of the last run of a folder, with its numbers of measured surfaces if they are still there."""
+    kept, preliminary = results.parent / ".snakemake", None
+    with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
+        planned, numbers = json.loads(Present(kept).text("configuration.json"))["planned"]
+        preliminary = numbers if planned == config else None
+    return Planner(config, preliminary, _now, DiskCache(kept / "jobs.json"))
 
 
 def _now(_key: Any, compute: Callable[[], Any]) -> Any:
@@ -68,11 +107,11 @@ def _now(_key: Any, compute: Callable[[], Any]) -> Any:
     return compute()
 
 
-def index(results: Path, rules: Iterable[Mapping[str, Any]]) -> str:
-    """Page with the results of the last run of a folder."""
-    runs = recorded_runs(results / "provenance.json")
+def index(folder: Path, rules: Iterable[Mapping[str, Any]], unlike: Collection[str] = ()) -> str:
+    """Page with the results of the last run of a folder, without the files ``unlike`` this run."""
+    runs, results = recorded_runs(folder / "provenance.json"), Present(folder, unlike)
     last, config, found = runs[-1], runs[-1]["config"], list(items(results, rules))
-    changes, checks = differing(config, paper()), list(csv.DictReader(_text(results / "checks.csv").splitlines()))
+    changes, checks = differing(config, paper()), list(csv.DictReader(results.text("checks.csv").splitlines()))
     return rendered(
         "index.html",
         title=front_page.subjects(config) or f"surfaces {', '.join(_surfaces_of_run(config))}",
@@ -82,7 +121,7 @@ def index(results: Path, rules: Iterable[Mapping[str, Any]]) -> str:
         surfaces=list(_surfaces(results, config)),
         figures=_by_category(item for item in found if item.shown.endswith(".png")),
         tables=[item for item in found if item.category == "Tables"],
-        verdict=_text(results / "verdict.txt").strip() or _failed(checks),
+        verdict=results.text("verdict.txt").strip() or _failed(checks),
         checks=checks,
         judged=bool(front_page.warning_pages(results, config)),
         warnings=list(front_page.warnings(results, config)),
@@ -98,18 +137,18 @@ def _failed(checks):
     return counted + "; ".join(failed) if failed else ""
 
 
-def items(results: Path, rules: Iterable[Mapping[str, Any]]) -> Iterator[Item]:
+def items(results: Present, rules: Iterable[Mapping[str, Any]]) -> Iterator[Item]:
     """Results wanted by the targets of a configuration, as far as the folder holds them."""
     for rule in rules:
         if not rule["shown"]:
             continue
         key, patterns = rule["shown"]["file"], rule["files"]
-        wanted = [path.removeprefix(_RESULTS) for path in rule["wanted"]]
+        wanted = [path.removeprefix(RESULTS) for path in rule["wanted"]]
         for paths in zip(*(wanted[k :: len(patterns)] for k in range(len(patterns))), strict=True):
             files = dict(zip(patterns, paths, strict=True))
-            if (results / files[key]).exists():
-                at = expression(patterns[key], WILDCARDS).fullmatch(_RESULTS + files[key]).groupdict()
-                ends = {Path(file).suffix[1:]: file for file in files.values() if (results / file).exists()}
+            if results.has(files[key]):
+                at = expression(patterns[key], WILDCARDS).fullmatch(RESULTS + files[key]).groupdict()
+                ends = {Path(file).suffix[1:]: file for file in files.values() if results.has(file)}
                 yield Item(rule["shown"]["category"], rule["shown"]["title"].format(**at), files[key], ends)
 
 
@@ -121,12 +160,12 @@ def _by_category(figures: Iterable[Item]) -> dict[str, list[Item]]:
     return ordered
 
 
-def _devices(results: Path, config: Mapping, found: Sequence[Item]) -> Iterator[dict[str, Any]]:
+def _devices(results: Present, config: Mapping, found: Sequence[Item]) -> Iterator[dict[str, Any]]:
     """Devices with their first answer, their page and the number of warnings."""
     pages = {item.shown for item in found}
     said = list(front_page.warnings(results, config))
     for name, section in config.get("devices", {}).items():
-        page, (answer, *_) = f"devices/{name}.html", [*_text(results / "devices" / f"{name}.txt").splitlines(), ""]
+        page, (answer, *_) = f"devices/{name}.html", [*results.text(f"devices/{name}.txt").splitlines(), ""]
         yield {
             "name": name,
             "kind": kind_of(section).words,
@@ -142,9 +181,9 @@ def _subjects_of(sentence: str) -> list[str]:
     return [part.split(",")[0].strip() for part in sentence.split(":")[0].split(";")]
 
 
-def _surfaces(results: Path, config: Mapping) -> Iterator[dict[str, Any]]:
+def _surfaces(results: Present, config: Mapping) -> Iterator[dict[str, Any]]:
     """Surfaces of the run: measured ones with their sheet and flags, others by their numbers."""
-    flags = [flag.partition(": ") for flag in front_page.list_items(_text(results / "tables" / "scans.md"))]
+    flags = [flag.partition(": ") for flag in front_page.list_items(results.text("tables/scans.md"))]
     materials = Materials(config)
     for name in _surfaces_of_run(config):
         section, sheet = config["surfaces"][name], f"figures/surface_sheet_{name}.png"
@@ -152,7 +191,7 @@ def _surfaces(results: Path, config: Mapping) -> Iterator[dict[str, Any]]:
             "name": name,
             "described": surface_in_words(section, materials.stated(name)),
             "flags": [flag for surface, _, flag in flags if surface == name],
-            "sheet": sheet if (results / sheet).exists() else "",
+            "sheet": sheet if results.has(sheet) else "",
         }
 
 
@@ -162,8 +201,3 @@ def _surfaces_of_run(config: Mapping) -> list[str]:
     sides = [config["pairs"][pair][side] for pair in pairs for side in SIDES]
     scanned = [name for name, section in config["surfaces"].items() if "scans" in section]
     return list(dict.fromkeys([*sides, *scanned]))
-
-
-def _text(path: Path) -> str:
-    """Text of a file. Empty if it is missing."""
-    return path.read_text(encoding="utf-8") if path.exists() else ""

@@ -2,12 +2,14 @@
 
 import csv
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
 from pathlib import Path
 
+from stiction.command.present import Present
 from stiction.command.progress_line import duration
 from stiction.command.run_state import Job, Run, is_fault
+from stiction.run import stale_results
 
 
 class Status(IntEnum):
@@ -28,6 +30,8 @@ _TABLES = tuple(
     f"tables/{name}.md"
     for name in ("process", "process_map", "roughness", "test_beams", "safe_lengths", "stoppers", "table_3", "scans")
 )
+#: Pages of warnings.
+_WARNINGS = ("warnings.md", "devices/warnings.md")
 #: Where everything goes that Snakemake and its jobs print, relative to the folder of the run.
 PRINTED = Path(".snakemake", "printed.log")
 #: What to do about an error of the code.
@@ -61,7 +65,7 @@ def last_lines(
         yield f"stopped{after}; run the same command to continue"
     elif ended == Status.CHECKS:
         yield from _failed_checks(short_path(directory / "results"))
-        yield from where_to_look(short_path(directory / "results"), targets)
+        yield from where_to_look(short_path(directory / "results"), targets, run.unlike)
     elif run.failures:
         yield from _first_error(list(run.failures.values()), directory)
     elif ended != Status.DONE:
@@ -70,7 +74,7 @@ def last_lines(
             yield from fault(directory / PRINTED)
     elif run.planned or run.up_to_date:
         yield _report_end(run)
-        yield from where_to_look(short_path(directory / "results"), targets)
+        yield from where_to_look(short_path(directory / "results"), targets, run.unlike)
 
 
 def fault(log: Path) -> Iterator[str]:
@@ -100,31 +104,31 @@ def _report_end(run):
     return f"Done: {run.done} jobs in {duration(run.last - run.started)}{of_budgets}."
 
 
-def where_to_look(results: Path, targets: Sequence[str] = ()) -> Iterator[str]:
-    """Verdict, warnings, and the files to open first, of a folder of results."""
-    verdict = results / "verdict.txt"
-    if verdict.exists():
-        yield f"{verdict.read_text(encoding='utf-8').strip()} The numbers are in {results / 'checks.md'}."
-    listed = [results / "warnings.md", results / "devices" / "warnings.md"]
-    if counted := [f"{number} in {page}" for page in listed if (number := _warnings(page))]:
+def where_to_look(results: Path, targets: Sequence[str] = (), unlike: Mapping[str, str] | None = None) -> Iterator[str]:
+    """Verdict, warnings, and the files to open first, of a folder of results, without files ``unlike`` the run."""
+    present = Present(results, unlike or {})
+    if present.has("verdict.txt"):
+        yield f"{present.text('verdict.txt').strip()} The numbers are in {results / 'checks.md'}."
+    if counted := [f"{number} in {results / page}" for page in _WARNINGS if (number := _warnings(present.text(page)))]:
         yield f"Warnings about results beyond the limits of the model: {', '.join(counted)}."
     pages = [*(f"figures/{name}.png" for name in targets), *_PAGES]
     tables = [*(f"tables/{name}.md" for name in targets), *_TABLES]
-    if first := [*_first(results, pages), *_first(results, tables)]:
+    if first := [*_first(present, pages), *_first(present, tables)]:
         yield f"Open first: {' and '.join(map(str, first))}."
-    if (results / "index.html").exists():
+    if present.has("index.html"):
         yield f"All results: {results / 'index.html'}; stiction show opens it."
+    if unlike:
+        yield f"Not computed in this run: {stale_results.in_words(unlike)}."
 
 
 def _warnings(page):
     """Number of warnings on a page."""
-    return page.exists() and sum(line.startswith("- ") for line in page.read_text(encoding="utf-8").splitlines())
+    return sum(line.startswith("- ") for line in page.splitlines())
 
 
-def _first(results, patterns):
+def _first(present, patterns):
     """First file for the first pattern with any file, empty without one."""
-    matching = (sorted(results.glob(pattern)) for pattern in patterns)
-    return next(filter(None, matching), [])[:1]
+    return next(filter(None, map(present.first, patterns)), [])
 
 
 def _failed_checks(results):

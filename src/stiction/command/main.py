@@ -15,6 +15,7 @@ from stiction.command.run_state import RUN
 from stiction.config import reading
 from stiction.config.messages import ConfigError
 from stiction.models import SIDES
+from stiction.run import stale_results
 
 _PURPOSE = "From the statistics of two rough surfaces to the crack lengths and safe lengths of MEMS beams that stick."
 _STATUS = """
@@ -228,6 +229,7 @@ def _run(arguments, *targets):
         from stiction.command import index  # takes longer than all other imports
 
         index.write_for_last_run(directory / "results")
+        RUN.unlike = index.unlike_last_run(directory / "results")
     printed = "" if verbose else launch.printed_last(directory)
     asked = ["compared_*"] * any("compare" in reading.read(file) for file in arguments.files)
     asked += [Path(word).stem for word in (*targets, *arguments.more)]
@@ -300,10 +302,12 @@ def _results(find, folder, purpose="", note=""):
 
 def _report(arguments):
     """Write the report of finished results."""
-    from stiction.command import front_page  # imports the libraries for numbers
+    from stiction.command import front_page, index  # imports the libraries for numbers
 
     results = Path(arguments.directory) / "results"
     _results(front_page.is_finished, results, " for a report", " (stiction devices is not enough)")
+    if unlike := index.unlike_last_run(results):
+        raise launch.RefusedError(f"{stale_results.in_words(unlike)}: run stiction run FILE before the report")
     page = Path(arguments.directory) / front_page.FRONT
     page.parent.mkdir(exist_ok=True)
     page.write_text(front_page.front_page(results), encoding="utf-8")

@@ -6,7 +6,7 @@ Snakemake reports by records of the standard library's ``logging``, whose attrib
 import builtins
 import re
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from logging import WARNING, LogRecord
 
@@ -72,6 +72,8 @@ class Run:
         Class and places of this error if it is one of the code, no refusal; empty otherwise.
     warnings : list of str
         Warnings about the results that are present.
+    unlike : dict
+        Results in the folder that are not of this run, each with the reason.
     up_to_date : bool
         Whether there was nothing to do.
     started, last : float
@@ -92,6 +94,7 @@ class Run:
     refusal: str = ""
     fault: str = ""
     warnings: list[str] = field(default_factory=list)
+    unlike: Mapping[str, str] = field(default_factory=dict)
     up_to_date: bool = False
     started: float | None = None
     last: float = 0.0

@@ -4,6 +4,7 @@ Declarations are in the modules of the stages, whose libraries take longer to im
 from them is therefore kept between plans, as long as neither code nor configuration change.
 """
 
+import contextlib
 import hashlib
 import json
 import re
@@ -15,6 +16,7 @@ from typing import Any
 from stiction.plan.cost import USUAL_MINUTES
 from stiction.plan.plan import Plan
 from stiction.plan.stage import WILDCARDS, At, expression
+from stiction.run import labels
 from stiction.run.fingerprint import PACKAGE, fingerprint
 from stiction.run.provenance import version_of
 
@@ -37,7 +39,7 @@ class Planner:
 
     def __init__(self, config: dict, preliminary: Mapping[str, Any], remember: Callable, remember_jobs: Callable):
         self.plan, self._remember, self._remember_jobs = Plan(config, preliminary), remember, remember_jobs
-        self._codes = {}
+        self._codes, self._jobs, self._behind_datasets = {}, {}, {}
 
     @cached_property
     def _determined_by(self):
@@ -45,8 +47,9 @@ class Planner:
         files = (file for kind in ("*.py", "*.yaml") for file in PACKAGE.rglob(kind))
         code = {str(file.relative_to(PACKAGE)): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
         scans = [Path(file) for surface in self.plan.scans.surfaces for file in self.plan.scans.files(surface).values()]
-        states = [(str(file), file.stat().st_mtime_ns, file.stat().st_size) for file in scans]
-        text = json.dumps([code, self.plan.config, states, dict(self.plan.preliminary)], sort_keys=True, default=str)
+        states = [(str(file), *_state(file)) for file in scans]
+        known = dict(self.plan.preliminary or {})
+        text = json.dumps([code, self.plan.config, states, known], sort_keys=True, default=str)
         return hashlib.sha256(text.encode()).hexdigest()
 
     def _code(self, file):
@@ -93,7 +96,7 @@ class Planner:
             "priority": running.priority,
             "last": running.last,
             "temporary": running.temporary,
-            "dataset": stage.save is None,
+            "stage": stage.stage,
             "files": {key: path_of(stage, name) for key, name in stage.patterns(self.plan).items()},
             "wanted": [
                 path_of(stage, name.format(**at)) for at in stage.wanted(self.plan) for name in stage.files.values()
@@ -173,24 +176,68 @@ class Planner:
         return [f"{RESULTS}{name}{DATASET}" for name in listed], label, keys
 
     def settings(self, path: str) -> dict | None:
-        """Settings of the job for a dataset, ``None`` without such a job in the configuration."""
+        """Settings of the job for a file, ``None`` without such a job in the configuration."""
+        _, job = self._job_of(path)
+        return job and job["settings"]
+
+    def origin(self, path: str) -> str | None:
+        """Origin of a file without a label, see `stiction.run.labels.origin`. ``None`` without such a job."""
+        _, job = self._job_of(path)
+        return job and self._kept(f"origin of {path}", lambda: labels.origin(job["settings"], self._behind(path)))
+
+    def _behind(self, path):
+        """Digests of all results behind a file, by file."""
+        behind = dict(self._datasets_behind(path))
+        texts = (file for file, label in self._inputs_of(path) if not label)
+        return behind | {file: origin for file in texts if (origin := self.origin(file))}
+
+    def _datasets_behind(self, path):
+        """Digests of the settings of all datasets behind a file, by file, without its chunks."""
+        if path not in self._behind_datasets:
+            rule, _ = self._job_of(path)
+            found = self._behind_datasets[path] = {}
+            for file, label in self._inputs_of(path):
+                found |= self._datasets_behind(file) if label else {}
+                found |= {file: labels.digest(self.settings(file))} if label not in (None, rule["stage"]) else {}
+        return self._behind_datasets[path]
+
+    def _inputs_of(self, path):
+        """Yield the inputs of the job of a file, each with the stage of datasets, ``None`` for other files."""
+        _, job = self._job_of(path)
+        for name, (label, _) in job["inputs"].items():
+            yield from ((file, label) for file in job["files"][name])
+
+    def _job_of(self, path):
+        """Rule and job of a file, both ``None`` without such a job in the configuration."""
+        if path not in self._jobs:
+            self._jobs[path] = self._found(path)
+        return self._jobs[path]
+
+    def _found(self, path):
+        """Rule and job of a file, see `_job_of`."""
         for rule, matches in self._expressions:
             if match := matches.fullmatch(path):
                 try:
-                    return self.job(rule["name"], match.groupdict())["settings"]
-                except KeyError:
-                    return None
-        return None
+                    return rule, self.job(rule["name"], match.groupdict())
+                except (KeyError, OSError):  # a scan can have moved
+                    break
+        return None, None
 
     @cached_property
     def _expressions(self):
-        """Rule and regular expression of the names of all datasets."""
+        """Rule and regular expression of the names of all files."""
         return [
             (rule, expression(file, WILDCARDS | rule["constraints"]))
             for rule in self.rules
-            if rule["dataset"]
             for file in rule["files"].values()
         ]
+
+
+def _state(file):
+    """Time and size of a file. Empty if it is missing, as after a move."""
+    with contextlib.suppress(OSError):
+        return file.stat().st_mtime_ns, file.stat().st_size
+    return ()
 
 
 def path_of(stage: Any, name: str) -> str:

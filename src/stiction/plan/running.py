@@ -6,8 +6,9 @@ from pathlib import Path
 from typing import Any
 
 from stiction.plan.stage import At, Stage, stages_of
-from stiction.run import storage
+from stiction.run import labels, storage
 from stiction.run.atomic import save_text
+from stiction.run.logs import log_of, note_origin, recorded_origin
 
 
 def run(job: Any) -> None:
@@ -22,10 +23,26 @@ def run(job: Any) -> None:
         stage.save(result, dict(job.output.items()))
         if template := job.input.get("caption"):
             save_text(_caption(stage, job, template, result.get_label()), job.output.txt)
+        note_origin(labels.origin(stated, _behind(stage, job)))
         return
-    datasets = [path for name, (label, _) in job.params.inputs.items() if label for path in _as_list(job.input[name])]
+    datasets = _inputs(job, of_datasets=True)
     for dataset, path in zip(result if stage.each else [result], job.output, strict=True):
         storage.save(dataset, path, stage.stage, stated, datasets)
+
+
+def _inputs(job, of_datasets) -> list[str]:
+    """Paths of the inputs of a job that are datasets, or of all others."""
+    named = (name for name, (label, _) in job.params.inputs.items() if bool(label) == of_datasets)
+    return [path for name in named for path in _as_list(job.input.get(name, []))]
+
+
+def _behind(stage, job) -> dict[str, str]:
+    """Digests of all results behind a job, by file, as `stiction.run.labels.origin` takes them."""
+    datasets = labels.made_from(_inputs(job, of_datasets=True), stage.stage, "", {}).before
+    noted = {path: recorded_origin(log_of(path)) for path in _inputs(job, of_datasets=False)}
+    return {path: labels.digest(settings) for path, settings in datasets.items()} | {
+        path: origin for path, origin in noted.items() if origin
+    }
 
 
 def _caption(stage, job, template, more) -> str:

@@ -1,7 +1,11 @@
-"""Labels of datasets: stage, name, settings, and the settings of all datasets behind a dataset."""
+"""Labels of datasets: stage, name, settings, and the settings of all datasets behind a dataset.
 
+Other results, such as tables, have no place for a label: their logs keep its digest, `origin`.
+"""
+
+import hashlib
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -39,6 +43,19 @@ def made_from(inputs: Iterable[str | Path], stage: str, name: str, settings: dic
         label = read(path)
         before |= label.before | ({} if label.stage == stage else {Path(path).as_posix(): label.settings})
     return Label(stage, name, settings, before)
+
+
+def digest(value: Any) -> str:
+    """SHA-256 of plain numbers, strings, lists and dicts."""
+    return hashlib.sha256(json.dumps(value, sort_keys=True).encode()).hexdigest()
+
+
+def origin(settings: Any, behind: Mapping[str, str]) -> str:
+    """Digest of the settings of a result without a label and of all results behind it, by file.
+
+    Behind it are the digests of the settings of datasets, and the origins of results without a label.
+    """
+    return digest([settings, dict(behind)])
 
 
 def read(path: str | Path) -> Label:

@@ -10,6 +10,12 @@ import traceback
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
+from stiction.regular_files import require_regular
+
+#: Lines of a log about a result: its checksum and its name, and the origin of all results of the job.
+_CHECKSUM = re.compile(r"^([0-9a-f]{64})  (.+)$", re.MULTILINE)
+_ORIGIN = re.compile(r"^made from settings ([0-9a-f]{64})$", re.MULTILINE)
+
 
 @contextlib.contextmanager
 def logged(path: str | Path, results: Iterable[str] = ()) -> Iterator[None]:
@@ -43,8 +49,42 @@ def checksum(path: str | Path) -> str:
 
 def recorded_checksums(folder: str | Path) -> dict[str, str]:
     """Checksums of results in the logs of a folder, by file."""
-    texts = (path.read_text(encoding="utf-8") for path in sorted(Path(folder).rglob("*.log")))
-    return {file: sha for text in texts for sha, file in re.findall(r"^([0-9a-f]{64})  (.+)$", text, re.MULTILINE)}
+    return {file: sha for text in _texts(folder) for sha, file in _CHECKSUM.findall(text)}
+
+
+def note_origin(origin: str) -> None:
+    """Note the origin of results without a label, from `stiction.run.labels.origin`, in the log of this job."""
+    sys.stderr.write(f"made from settings {origin}\n")
+
+
+def recorded_origin(log: str | Path) -> str | None:
+    """Origin of the results of a job by its log, ``None`` without one."""
+    return next(reversed(_ORIGIN.findall(_text(log))), None)
+
+
+def recorded_origins(folder: str | Path) -> dict[str, str]:
+    """Origins of results without a label in the logs of a folder, by file."""
+    noted = ((text, origin) for text in _texts(folder) for origin in _ORIGIN.findall(text)[-1:])
+    return {file: origin for text, origin in noted for _, file in _CHECKSUM.findall(text)}
+
+
+def log_of(result: str | Path) -> Path:
+    """Log of the job of a result without a label. Both are relative to the folder of the run."""
+    _, *parts = Path(result).with_suffix(".log").parts
+    return Path("results", "logs", *parts)
+
+
+def _texts(folder):
+    """Texts of all logs of a folder."""
+    return map(_text, sorted(Path(folder).rglob("*.log")))
+
+
+def _text(log):
+    """Text of a log, empty if it cannot be read. A library can write bytes into it that are no UTF-8."""
+    with contextlib.suppress(OSError):
+        require_regular(log)
+        return Path(log).read_text(encoding="utf-8", errors="replace")
+    return ""
 
 
 def peak_memory() -> float:

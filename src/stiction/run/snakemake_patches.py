@@ -193,6 +193,14 @@ def is_main(workflow: Any) -> bool:
     return getattr(workflow, "is_main_process", not {"subprocess", "remote"} & set(sys.argv))
 
 
+def only_touches(workflow: Any) -> bool:
+    """Whether a run computes nothing and marks its files as new, by the option ``--touch``.
+
+    If Snakemake no longer says so, such a run is not refused.
+    """
+    return bool(getattr(workflow, "touch", False))
+
+
 def files_of_configuration(workflow: Any) -> list[Path]:
     """Files of the configuration, each before the files overwritten by it.
 

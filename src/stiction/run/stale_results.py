@@ -13,7 +13,7 @@ from typing import Any
 
 from stiction.run import labels
 from stiction.run.atomic import DataError
-from stiction.run.logs import checksum, recorded_checksums
+from stiction.run.logs import checksum, recorded_checksums, recorded_origins
 
 
 def foreign(
@@ -77,6 +77,16 @@ def _value(value):
     return "nothing" if value is None else value
 
 
+def made_otherwise(logs: str | Path, expected: Callable[[str], str | None]) -> Iterator[tuple[str, str]]:
+    """Yield results without a label that were made with other settings, by the origins in a folder of logs.
+
+    ``expected`` gives the origin of a file in this run, ``None`` if no job writes it: such files are left out.
+    """
+    for path, origin in recorded_origins(logs).items():
+        if Path(path).is_file() and expected(path) not in (None, origin):
+            yield path, "was made with other settings"
+
+
 def damaged(logs: str | Path, remember: Callable[[object, Callable[[], Any]], Any]) -> Iterator[tuple[str, str]]:
     """Yield files changed since the end of their jobs, by the checksums in a folder of logs, each with the reason.
 
@@ -96,3 +106,11 @@ def summary(unusable: Mapping[str, str]) -> Iterator[str]:
         first, *others = map(Path.as_posix, files)
         more = f" (nor {len(others)} more of this folder)" if others else ""
         yield f"{first} {unusable[first]}; this run does not use it{more}."
+
+
+def in_words(unusable: Mapping[str, str]) -> str:
+    """Say which unusable file matters most to a reader, and the number of the others: datasets matter least."""
+    first = min(unusable, key=lambda file: (file.endswith(".nc"), not file.endswith("verdict.txt"), file))
+    more = len(unusable) - 1
+    others = f" (and {more} more file{'s' * (more > 1)})" if more else ""
+    return f"{first} {unusable[first]}{others}"
