@@ -5,6 +5,7 @@ import threading
 import warnings
 from contextlib import contextmanager
 from http.server import BaseHTTPRequestHandler, HTTPServer
+from pathlib import Path
 from zipfile import ZipFile
 
 import numpy as np
@@ -64,7 +65,7 @@ def two(tmp_path):
 
 
 def test_every_map_is_read_back_with_its_undefined_points(tmp_path, two):
-    etched, other = unpack(two, tmp_path)
+    etched, other = unpack(Path(two).read_bytes(), two, tmp_path)
     assert (etched.name, etched.files) == ("Etched_Si_100", ("Etched_Si_100_1.nc", "Etched_Si_100_3.nc"))
     assert etched.left_out == ("a line is not used: it is no map of equal distances",)
     assert (other.name, other.left_out) == ("Surface_7_nm", ())
@@ -83,7 +84,7 @@ def test_filled_points_of_a_map_are_told(tmp_path, two):
     with ZipFile(two, "w") as archive:
         for name, text in (content | {"meta.yml": yaml.safe_dump(about)}).items():
             archive.writestr(name, text)
-    *_, filled = unpack(two, tmp_path)
+    *_, filled = unpack(Path(two).read_bytes(), two, tmp_path)
     assert filled.left_out == ("measurement_3 has filled gaps (harmonic), which count as measured",)
 
 
@@ -135,10 +136,17 @@ def served(path):
 
 def test_a_published_container_is_fetched_by_its_address(tmp_path, two, monkeypatch):
     monkeypatch.setenv("NO_PROXY", "127.0.0.1")
-    (tmp_path / "new").mkdir()
     with served(tmp_path / "two.zip") as address:
-        found = unpack(address, tmp_path / "new")
-    assert found == unpack(two, tmp_path)
+        published.written(address, tmp_path / "fetched")
+    published.written(two, tmp_path / "read")
+    fetched, stored = (maps_in(tmp_path / name) for name in ("fetched", "read"))
+    assert fetched == stored
+    assert len(stored) == 3
+
+
+def maps_in(folder):
+    """Content of all maps of a folder, by name."""
+    return {path.name: path.read_bytes() for path in folder.glob("*.nc")}
 
 
 @pytest.mark.parametrize(

@@ -1,25 +1,36 @@
-"""Published surfaces as files of scans: the maps of a container file, or of the one behind a DOI.
+"""Published surfaces as files of scans: the maps of a container.
 
 Containers of contact.engineering are read by SurfaceTopography. Each of their maps becomes a file of its own, which a
 study names like any other scan: a run needs neither the container nor a network.
 """
 
+import contextlib
 import io
 import re
+import textwrap
+import zipfile
+import zlib
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import count
 from pathlib import Path
 from typing import Any
 
-from stiction.errors import ScanError
-from stiction.scans.reading import silenced
+import yaml
 
-#: A DOI, and what is in front of it in an address.
-_DOI, _RESOLVER = re.compile(r"10\.\d{4,9}/\S+"), "https://doi.org/"
+from stiction.errors import ScanError
+from stiction.scans.reading import read, silenced
+
 #: Characters of the name of a surface that no key of ``surfaces`` may have, and the longest name.
 _NOT_IN_KEYS, _LONGEST_NAME = re.compile(r"[^A-Za-z0-9_-]+"), 32
-#: Metadata of a map, and their value if its undefined points were left as they are.
-_FILLED, _AS_THEY_ARE = "fill_undefined_data_mode", "do-not-fill"
+#: Metadata of a map, and their value if its undefined points were left as they are; longest quoted title.
+_FILLED, _AS_THEY_ARE, _LONGEST_TITLE = "fill_undefined_data_mode", "do-not-fill", 100
+#: Names of the metadata of a container, their largest size, and that of all files [MiB]; size of a MiB [bytes].
+_METADATA, LARGEST_METADATA, LARGEST_FILES, _MIB = ("index.json", "meta.yml"), 5, 4000, 2**20
+#: Largest number of entries in the metadata, each counted as often as an alias repeats it.
+MOST_ENTRIES = 500_000
+#: First bytes of HDF5.
+_HDF5 = b"\x89HDF"
 
 
 @dataclass(frozen=True)
@@ -31,92 +42,171 @@ class Published:
     left_out: tuple[str, ...]  #: sentences on its other measurements, and on changed maps
 
 
-def unpack(source: str, folder: Path) -> list[Published]:
-    """Write every map of a container into a file of its own.
+def unpack(content: bytes, source: str, folder: Path) -> list[Published]:
+    """Write every map of a container that can be read as a scan into a file of its own.
 
     Parameters
     ----------
+    content : bytes
+        Content of the container.
     source : str
-        Path of a container, DOI of a published one, or the address of its page.
+        Its name in messages.
     folder : path
         Existing folder for the files.
 
     Raises
     ------
     ScanError
-        If there is no such container, it is damaged or without maps, or a file exists already.
+        If the content is no container, is too large, damaged, or without maps.
     """
-    named = {}
-    for container in _containers(source):
-        named[_key(str(container.info.get("name", "")), named)] = container
-    files = {name: [folder / f"{name}_{number + 1}.nc" for number in range(len(named[name]))] for name in named}
-    if there := [file for of_surface in files.values() for file in of_surface if file.exists()]:
-        raise ScanError(str(there[0]), "files", "exists already: nothing was written")
-    surfaces = [_unpacked(name, container, files[name]) for name, container in named.items()]
+    surfaces = []
+    for container in _containers(content, source):
+        name = _key(_title(container.info.get("name"), ""), [surface.name for surface in surfaces])
+        surfaces.append(_unpacked(name, container, folder))
     if not any(surface.files for surface in surfaces):
-        raise ScanError(source, "files", "holds no map of heights")
+        why = "".join(f": {surface.left_out[0]}" for surface in surfaces[:1] if surface.left_out)
+        raise ScanError(source, "files", f"holds no map of heights{why}")
     return surfaces
 
 
-def _containers(source):
+def _containers(content, source):
     """Surfaces of a container, each a sequence of measurements."""
     with silenced():
         try:
-            from SurfaceTopography.Container.IO import read_container, read_published_container
+            from SurfaceTopography.Container.IO import read_container
         except ImportError:
             reason = "needs the library SurfaceTopography to be read: pip install 'SurfaceTopography>=1.27'"
             raise ScanError(source, "files", reason) from None
-        found = Path(source).is_file()
         try:
-            if found:
-                return read_container(io.BytesIO(Path(source).read_bytes()))  # the library leaves files open
-            return read_published_container(_address(source))
+            _require_moderate(content, source)
+            containers = read_container(io.BytesIO(content))
+            for container in containers:  # the library takes whatever the metadata hold
+                container.info.get("name")
+                [about.get("name") for about in container.info["topographies"]]
+            return containers
         except ScanError:
             raise
-        except Exception as reason:  # whatever the library raises on a damaged file, or without a network
-            why = "is no container of contact.engineering, or damaged" if found else "cannot be fetched"
-            raise ScanError(source, "files", f"{why} ({type(reason).__name__})") from None
+        except Exception as reason:  # whatever the library raises on a damaged file
+            why = f"is no container of contact.engineering, or damaged ({type(reason).__name__})"
+            raise ScanError(source, "files", why) from None
 
 
-def _address(source):
-    """Address of the page of a published container."""
-    if _DOI.fullmatch(source):
-        return _RESOLVER + source
-    if source.startswith(("https://", "http://")):
-        return source
-    raise ScanError(source, "files", "does not exist; give a container file, a DOI, or the address of its page")
+def _require_moderate(content, source):
+    """Refuse an archive that takes far more memory than its own, and files in it that read others."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        stated = {member.filename: member.file_size for member in archive.infolist()}
+        if sum(member.file_size for member in archive.infolist()) > LARGEST_FILES * _MIB:
+            raise ScanError(source, "files", f"holds more than {LARGEST_FILES} MiB")
+        for name in stated.keys() & {*_METADATA}:
+            if stated[name] > LARGEST_METADATA * _MIB:
+                raise ScanError(source, "files", f"has more than {LARGEST_METADATA} MiB in {name}")
+        if "meta.yml" in stated and _entries(archive.read("meta.yml")) > MOST_ENTRIES:
+            raise ScanError(source, "files", f"has more than {MOST_ENTRIES} entries in meta.yml")
+        if outside := [name for name in stated if _reads_others(_hdf5_in(archive, name))]:
+            raise ScanError(source, "files", f"holds {outside[0]}, which reads files outside of it")
+
+
+def _entries(text):
+    """Number of entries of a text in YAML, each counted as often as an alias repeats it; infinite for a cycle."""
+    counted = {}
+
+    def size(node):
+        """Entries of a node of the graph."""
+        if id(node) not in counted:
+            counted[id(node)] = float("inf")  # until known: a node that contains itself has no end
+            parts = node.value if isinstance(node.value, list) else []
+            inside = (part for entry in parts for part in (entry if isinstance(entry, tuple) else (entry,)))
+            counted[id(node)] = 1 + sum(map(size, inside))
+        return counted[id(node)]
+
+    root = yaml.compose(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    return size(root) if root else 0
+
+
+def _hdf5_in(archive, name):
+    """Content of a file of HDF5 in an archive, empty for others and for those that cannot be read."""
+    with contextlib.suppress(zipfile.BadZipFile, zlib.error, RuntimeError, EOFError), archive.open(name) as file:
+        return file.read(len(_HDF5)) == _HDF5 and archive.read(name)
+    return b""
+
+
+def _reads_others(content):
+    """Whether a file of HDF5 has links into other files, or datasets in them."""
+    if not content:
+        return False
+    import h5py  # comes with SurfaceTopography
+
+    found = []
+
+    def look(group):
+        """Look at the links and datasets of a group."""
+        for name in group:
+            link = group.get(name, getlink=True)
+            if not isinstance(link, h5py.HardLink):
+                found.append(name)
+            elif isinstance(entry := group[name], h5py.Group):
+                look(entry)
+            elif isinstance(entry, h5py.Dataset) and (entry.external or entry.is_virtual):
+                found.append(name)
+
+    with h5py.File(io.BytesIO(content), "r") as file:
+        look(file)
+    return bool(found)
+
+
+def _title(name, otherwise):
+    """Name of a user as a short line of signs that can be printed."""
+    signs = "".join(sign if sign.isprintable() else " " for sign in str(name or otherwise))
+    return textwrap.shorten(signs, _LONGEST_TITLE, placeholder=" ...") or otherwise
 
 
 def _key(name, others):
     """Name of a surface as a key, unlike others."""
-    stem = _NOT_IN_KEYS.sub("_", name).strip("_-")[: _LONGEST_NAME - 3]
-    stem = stem if stem[:1].isalpha() and not stem.startswith("dry_") else f"Surface_{stem}"[: _LONGEST_NAME - 3]
-    names = (stem, *(f"{stem}_{number}" for number in range(2, 100)))
-    return next(each for each in names if each not in others)
+    stem = _NOT_IN_KEYS.sub("_", name).strip("_-")[: _LONGEST_NAME - 6]
+    stem = stem if stem[:1].isalpha() and not stem.startswith("dry_") else f"Surface_{stem}"[: _LONGEST_NAME - 6]
+    if stem not in others:
+        return stem
+    return next(name for number in count(2) if (name := f"{stem}_{number}") not in others)
 
 
-def _unpacked(name, container, paths):
+def _unpacked(name, container, folder):
     """Surface with its maps in files, one for every measurement that has one."""
     files, left_out = [], []
-    for path, (title, measurement) in zip(paths, _measurements(container), strict=True):
-        if isinstance(measurement, str):
-            left_out.append(f"{title} is not used: {measurement}")
+    for number, (title, measurement) in enumerate(_measurements(container), start=1):
+        path = folder / f"{name}_{number}.nc"
+        if why := measurement if isinstance(measurement, str) else _written(measurement, path):
+            left_out.append(f"{title} is not used: {why}")
+            path.unlink(missing_ok=True)
             continue
-        measurement.to_netcdf(str(path))
         files.append(path.name)
         if (mode := measurement.info.get(_FILLED, _AS_THEY_ARE)) != _AS_THEY_ARE:
-            left_out.append(f"{title} has filled gaps ({mode}), which count as measured")
+            left_out.append(f"{title} has filled gaps ({_title(mode, '')}), which count as measured")
     return Published(name, tuple(files), tuple(left_out))
+
+
+def _written(measurement, path):
+    """Write a map into a file, and return why it is no scan, empty if it is one."""
+    with silenced():
+        try:
+            measurement.to_netcdf(str(path))
+        except OSError:  # a full disk
+            raise
+        except Exception as reason:  # whatever the library does not write
+            return f"it cannot be written ({type(reason).__name__})"
+    try:
+        read(path)
+    except ScanError as refusal:
+        return f"it {refusal.reason}"
+    return ""
 
 
 def _measurements(container) -> Iterator[tuple[str, Any]]:
     """Title of every measurement of a surface, and its map, or why it has none."""
-    described = container.info.get("topographies", [])
-    for number, about in enumerate(described):
+    for number, about in enumerate(container.info["topographies"]):
         with silenced():
             try:
                 found = container[number]
                 found = found if found.dim == 2 and found.is_uniform else "it is no map of equal distances"
             except Exception as reason:  # whatever a reader raises on a damaged file
                 found = f"it cannot be read ({type(reason).__name__})"
-        yield str(about.get("name") or f"measurement {number + 1}"), found
+        yield _title(about.get("name"), f"measurement {number + 1}"), found
