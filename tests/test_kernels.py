@@ -3,13 +3,15 @@
 import ast
 import fcntl
 import os
+import random
 import shutil
 import subprocess
 import sys
+from itertools import cycle, product
 from pathlib import Path
 
 import pytest
-from numba.core.caching import FunctionCache
+from numba.core.caching import FunctionCache, IndexDataCacheFile
 
 from stiction import kernels, temporary
 from stiction.run import fingerprint
@@ -246,3 +248,102 @@ def test_every_kernel_of_the_package_has_the_decorator():
             text = path.read_text(encoding="utf-8")
             assert "njit" not in text, path
             assert "numba.jit" not in text, path
+
+
+def flipped(content, draw):
+    """Content with some bits flipped."""
+    changed = bytearray(content)
+    for _ in range(draw.randint(1, 5)):
+        changed[draw.randrange(len(changed))] ^= 1 << draw.randrange(8)
+    return bytes(changed)
+
+
+#: Damage of a file by a full disk, a power failure or a disk, from its content.
+DAMAGE = {
+    "empty": lambda content, _: b"",
+    "cut off": lambda content, draw: content[: draw.randrange(1, len(content))],
+    "zeros": lambda content, _: bytes(len(content)),
+    "zeros at the end": lambda content, draw: content[: draw.randrange(len(content))] + bytes(200),
+    "longer": lambda content, draw: content + draw.randbytes(50),
+    "flipped": flipped,
+    "another": lambda _, draw: draw.randbytes(4000),
+}
+
+
+@pytest.fixture
+def files(tmp_path):
+    """Files of a kernel for two types, and what they hold."""
+    files = kernels._Files(str(tmp_path), "kernel", (1, 2))
+    codes = {"float": ["code", 1.0], "int": ["other code", 2]}
+    for key, code in codes.items():
+        files.save(key, code)
+    return files, codes
+
+
+@pytest.mark.parametrize("damage", DAMAGE)
+def test_a_damaged_file_counts_as_missing_and_is_written_again(files, tmp_path, damage):
+    (files, codes), draw = files, random.Random(damage)
+    sound = {path: path.read_bytes() for path in tmp_path.iterdir()}
+    assert len(sound) == 3
+    assert {key: files.load(key) for key in codes} == codes
+    for path in sorted(sound) * 30:
+        path.write_bytes(DAMAGE[damage](sound[path], draw))
+        found = {key: files.load(key) for key in codes}
+        assert all(found[key] in (None, code) for key, code in codes.items())
+        assert found != codes, "the damage is seen"
+        for key, code in codes.items():
+            files.save(key, code)
+        assert {key: files.load(key) for key in codes} == codes
+        for other, content in sound.items():
+            other.write_bytes(content)
+
+
+def test_numba_alone_stops_at_a_damaged_file(tmp_path):
+    numba = IndexDataCacheFile(str(tmp_path), "kernel", (1, 2))
+    numba.save("float", ["code", 1.0])
+    for path in tmp_path.iterdir():
+        content = path.read_bytes()
+        path.write_bytes(b"")
+        with pytest.raises(EOFError):
+            numba.load("float")
+        path.write_bytes(content)
+
+
+def test_files_of_two_states_never_belong_together(files, tmp_path):
+    """Any file can be of an earlier or later state after a power failure, also if its checksum holds."""
+    files, codes = files
+    states = [{path.name: path.read_bytes() for path in tmp_path.iterdir()}]
+    for path in tmp_path.iterdir():
+        path.unlink()
+    later = {"int": codes["int"], "float": ["newer code", 1.5]}  # in another order, which gives other numbers
+    for key, code in later.items():
+        files.save(key, code)
+    states.append({path.name: path.read_bytes() for path in tmp_path.iterdir()})
+    for chosen in product(states, repeat=3):
+        for state, name in zip(chosen, sorted(states[0]), strict=True):
+            (tmp_path / name).write_bytes(state[name])
+        assert all(files.load(key) in (None, codes[key], later[key]) for key in codes)
+
+
+def test_files_of_another_version_of_numba_are_not_read(files, tmp_path):
+    files, codes = files
+    other = kernels._Files(str(tmp_path), "kernel", (1, 2))
+    other._version = "0.0"
+    assert [other.load(key) for key in codes] == [None, None]
+    assert {key: files.load(key) for key in codes} == codes
+
+
+@pytest.mark.slow
+def test_a_process_compiles_again_what_is_damaged_on_disk(toy):
+    assert called(toy) == (21, True)
+    assert called(toy) == (21, False)
+    draw, places = random.Random(1), sorted(toy.rglob("*.nb[ic]"))
+    sound = {path: path.read_bytes() for path in places}
+    for path, damage in zip(places[::2], cycle(DAMAGE), strict=False):
+        path.write_bytes(DAMAGE[damage](sound[path], draw))
+        assert called(toy) == (21, True)
+        assert called(toy) == (21, False)
+    for path in places:  # exchange all files
+        path.write_bytes(sound[places[places.index(path) - 1]])
+    assert called(toy) == (21, True)
+    assert called(toy) == (21, False)

@@ -8,20 +8,24 @@ they name a type that the sources no longer define.
 """
 
 import fcntl
+import pickle
 import re
 from collections.abc import Callable
 from contextlib import suppress
 from functools import cache, partial
 from hashlib import sha256
+from itertools import count
 from pathlib import Path
 from typing import Any
 
 from numba import config, njit
-from numba.core.caching import CompileResultCacheImpl, FunctionCache
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile
 
 from stiction.temporary import own_folder
 
 _PACKAGE = Path(__file__).parent
+#: Size of a checksum [bytes].
+_CHECKSUM = 32
 #: Module, and names in it. A syntax tree takes 30 times as long, at every start.
 _IMPORT = re.compile(r"^\s*(?:from|import)\s+stiction\.?([\w.]*)(?:\s+import\s+(\([^)]*\)|.*))?", re.MULTILINE)
 
@@ -63,10 +67,61 @@ class _Names(CompileResultCacheImpl):
         self._filename_base += f".{_digest(Path(function.__code__.co_filename))}"
 
 
+class _Files(IndexDataCacheFile):
+    """Files of a kernel: an index of its types, and machine code for each. A damaged file counts as missing.
+
+    A full disk or a power failure can damage them. Numba would run damaged machine code. The index contains the
+    checksums of the other files, so that files of two states never belong together, and begins with its own.
+    """
+
+    def load(self, key):
+        """Machine code for some types, ``None`` without it."""
+        name, checksum = self._load_index().get(key, ("", b""))
+        content = _content(self._data_path(name))
+        return pickle.loads(content) if name and sha256(content).digest() == checksum else None
+
+    def save(self, key, data):
+        """Save machine code for some types, then the index that names it."""
+        overloads, content = self._load_index(), self._dump(data)
+        used = {name for name, _ in overloads.values()}
+        name, _ = overloads.get(key) or (next(name for name in map(self._data_name, count(1)) if name not in used), b"")
+        with self._open_for_write(self._data_path(name)) as file:
+            file.write(content)
+        self._save_index({**overloads, key: (name, sha256(content).digest())})
+
+    def _load_index(self):
+        stored = _content(self._index_path)
+        if self._checksum(content := stored[_CHECKSUM:]) != stored[:_CHECKSUM]:
+            return {}
+        stamp, overloads = pickle.loads(content)
+        return overloads if stamp == self._source_stamp else {}
+
+    def _save_index(self, overloads):
+        content = self._dump((self._source_stamp, overloads))
+        with self._open_for_write(self._index_path) as file:
+            file.write(self._checksum(content) + content)
+
+    def _checksum(self, content):
+        """Checksum of an index of this version of Numba."""
+        return sha256(self._version.encode() + content).digest()
+
+
+def _content(path):
+    """Content of a file, empty if it cannot be read."""
+    with suppress(OSError):
+        return Path(path).read_bytes()
+    return b""
+
+
 class _Cache(FunctionCache):
     """Files of a kernel. Those of other sources are removed when it is saved."""
 
     _impl_class = _Names
+
+    def __init__(self, function):
+        super().__init__(function)
+        names, stamp = self._impl.filename_base, self._impl.locator.get_source_stamp()
+        self._cache_file = _Files(self._cache_path, names, stamp)
 
     def save_overload(self, sig, data):
         """Save a compiled kernel, unless the disk refuses."""
