@@ -142,7 +142,7 @@ LAUGHS = "a0: &a0 [0]\n" + "".join(f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)
     [
         (LAUGHS + "surfaces: [{name: a, topographies: [], more: *a9}]", "has more than 500000 entries in meta.yml"),
         ("surfaces: &a [{name: a, topographies: *a}]", "has more than 500000 entries"),
-        ("surfaces: [" * 3000, "is no container of contact.engineering, or damaged"),
+        ("[" * 10**6, "is no container of contact.engineering, or damaged"),
         ("x" * 6 * 2**20, "has more than 5 MiB in meta.yml"),
     ],
     ids=["aliases", "cycle", "nested", "long"],

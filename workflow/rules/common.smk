@@ -176,8 +176,7 @@ def unusable():
     for line in stale_results.summary(found):
         logger.warning(line)
     if found:
-        STALE.parent.mkdir(exist_ok=True)
-        STALE.write_text(uuid.uuid4().hex)
+        save_text(uuid.uuid4().hex, STALE)
     return found
 
 

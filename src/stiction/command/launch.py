@@ -126,7 +126,8 @@ def opened(path: Path) -> TextIO:
     """New file for printed text, without a name if the folder cannot be written. The run then reports this."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        return path.open("w")
+        path.unlink(missing_ok=True)  # a link leads elsewhere, and a pipe is never read
+        return path.open("x")
     except OSError:
         return tempfile.TemporaryFile("w")
 

@@ -16,6 +16,8 @@ from stiction.config import reading
 from stiction.config.messages import ConfigError
 from stiction.models import SIDES
 from stiction.run import stale_results
+from stiction.run.atomic import save_text
+from stiction.run.provenance import RecordError, understood
 
 _PURPOSE = "From the statistics of two rough surfaces to the crack lengths and safe lengths of MEMS beams that stick."
 _STATUS = """
@@ -290,14 +292,20 @@ def _figures(arguments):
 
 def _results(find, folder, purpose="", note=""):
     """Find something in a folder of results, and refuse a folder without results or with damaged ones."""
-    try:
-        found = find(folder)
-    except ValueError as damaged:
-        raise launch.RefusedError(str(damaged)) from None
-    if not found:
+    if not (found := _of_record(find, folder)):
         run = "run stiction paper or stiction run FILE first"
         raise launch.RefusedError(f"there are no results{purpose} in {folder}: {run}{note}")
     return found
+
+
+def _of_record(find, folder):
+    """Find something by the record of runs in a folder of results, and refuse a damaged one."""
+    record = folder / "provenance.json"
+    try:
+        with understood(record):
+            return find(folder)
+    except RecordError as damaged:
+        raise launch.RefusedError(str(damaged)) from None
 
 
 def _report(arguments):
@@ -306,11 +314,10 @@ def _report(arguments):
 
     results = Path(arguments.directory) / "results"
     _results(front_page.is_finished, results, " for a report", " (stiction devices is not enough)")
-    if unlike := index.unlike_last_run(results):
+    if unlike := _of_record(index.unlike_last_run, results):
         raise launch.RefusedError(f"{stale_results.in_words(unlike)}: run stiction run FILE before the report")
     page = Path(arguments.directory) / front_page.FRONT
-    page.parent.mkdir(exist_ok=True)
-    page.write_text(front_page.front_page(results), encoding="utf-8")
+    save_text(_of_record(front_page.front_page, results), page)
     files = launch.WORKFLOW / "workflow" / "report"
     options = ("--report-stylesheet", str(files / "style.css"), "--report-metadata", str(files / "guide.yaml"))
     ended = _run(arguments, "--report", "results/report.html", *options)

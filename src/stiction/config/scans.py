@@ -23,7 +23,7 @@ from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
 from stiction.errors import ScanError
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.regular_files import require_regular
-from stiction.run.atomic import DataError, save_text
+from stiction.run.disk_cache import DiskCache
 from stiction.run.fingerprint import fingerprint
 from stiction.run.provenance import version_of
 
@@ -208,12 +208,18 @@ def _preliminary_numbers(entry, section, kept):
     text = json.dumps([contents, settings, _code()], sort_keys=True)
     key = hashlib.sha256(text.encode()).hexdigest()
     if key not in _KNOWN:
-        file = None if kept is None else Path(kept) / f"{key}.json"
-        _KNOWN[key] = _read(file) or _preliminary(files, *settings)
-        if file is not None and not file.exists():
-            with contextlib.suppress(DataError):  # they are computed again, or another process keeps them
-                save_text(json.dumps(_KNOWN[key]), file)
+        _KNOWN[key] = _kept(key, kept, lambda: _preliminary(files, *settings))
     return _KNOWN[key]
+
+
+def _kept(key, folder, compute):
+    """Numbers kept in a folder under a key, or computed now."""
+    if folder is None:
+        return compute()
+    remember = DiskCache(Path(folder) / f"{key}.json")
+    numbers = remember(key, compute)
+    remember.save()
+    return numbers
 
 
 def _labels(entry):
@@ -241,14 +247,6 @@ def _contents(files):
 
 #: Preliminary numbers that this process knows, by content, settings and code.
 _KNOWN = {}
-
-
-def _read(file):
-    """Numbers in a file, or ``None`` if it is missing or damaged."""
-    try:
-        return json.loads(file.read_text(encoding="utf-8")) if file else None
-    except (OSError, ValueError):
-        return None
 
 
 @cache

@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from stiction.regular_files import require_regular
 from stiction.run.atomic import DataError, save_text
 from stiction.temporary import own_folder
 
@@ -18,12 +19,9 @@ class DiskCache:
     """Results by the hash of all their sources."""
 
     def __init__(self, path: str | Path):
-        """Results in a file. None if it cannot be read."""
+        """Results in a file. None if it cannot be read, or is not as it was written."""
         self._path, self._used = Path(path).absolute(), {}  # Snakemake leaves its working directory before it ends
-        try:
-            self._known = dict(json.loads(self._path.read_text(encoding="utf-8")))
-        except (OSError, ValueError, TypeError):
-            self._known = {}
+        self._known = _stored(self._path)
 
     def __call__(self, determined_by: object, compute: Callable[[], Any]) -> Any:
         """Return a known result, or compute it now. An error is not kept.
@@ -41,8 +39,23 @@ class DiskCache:
         """Keep the used results. If the file cannot be written, only time is lost."""
         if self._used != self._known:
             with contextlib.suppress(OSError, DataError):
-                save_text(json.dumps(self._used), self._path)
+                text = json.dumps(self._used)
+                save_text(f"{_checksum(text)}\n{text}", self._path)
             self._known = dict(self._used)
+
+
+def _stored(path):
+    """Results in a file that begins with its checksum."""
+    with contextlib.suppress(OSError, ValueError):
+        require_regular(path)
+        checksum, _, text = path.read_text(encoding="utf-8").partition("\n")
+        return json.loads(text) if checksum == _checksum(text) else {}
+    return {}
+
+
+def _checksum(text):
+    """SHA-256 of a text."""
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 class SharedCache(DiskCache):

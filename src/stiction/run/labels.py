@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from stiction.regular_files import require_regular
 from stiction.run.atomic import DataError
 
 
@@ -69,12 +70,16 @@ def read(path: str | Path) -> Label:
     import netCDF4  # not needed where the label is known
 
     try:
+        require_regular(path)
         with netCDF4.Dataset(path) as file:
             attributes = {key: file.getncattr(key) for key in file.ncattrs()}
-    except (OSError, RuntimeError) as error:
+        settings, before = (json.loads(attributes.get(key, "{}")) for key in ("settings", "before"))
+    except (OSError, RuntimeError, ValueError, TypeError, RecursionError) as error:
         raise unreadable(path, error) from error
-    parts = (json.loads(attributes.get(key, "{}")) for key in ("settings", "before"))
-    return Label(attributes.get("stage"), attributes.get("name"), *parts)
+    sections = [settings, before, *(before.values() if isinstance(before, dict) else ())]
+    if not all(isinstance(section, dict) for section in sections):
+        raise unreadable(path, ValueError("its label holds no settings"))
+    return Label(attributes.get("stage"), attributes.get("name"), settings, before)
 
 
 def unreadable(path: str | Path, reason: Exception) -> DataError:

@@ -1,5 +1,6 @@
 """Record of every run: date, machine, code, libraries and configuration."""
 
+import contextlib
 import datetime
 import json
 import os
@@ -10,7 +11,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-from stiction.run.atomic import save_text
+from stiction.regular_files import require_regular
+from stiction.run.atomic import DataError, save_text
 
 #: Libraries on which results may depend.
 LIBRARIES = (
@@ -28,6 +30,10 @@ LIBRARIES = (
 )
 
 
+class RecordError(ValueError):
+    """Error of a record of runs: one sentence with its file and the remedy."""
+
+
 def record(path: str | Path, checkout: str | Path, config: dict) -> None:
     """Append the starting run to the record of runs, oldest first. The JSON file is replaced atomically.
 
@@ -35,7 +41,7 @@ def record(path: str | Path, checkout: str | Path, config: dict) -> None:
 
     Raises
     ------
-    ValueError
+    RecordError
         If the file exists and is not a list of runs.
     DataError
         If the file cannot be written.
@@ -50,18 +56,40 @@ def recorded_runs(path: Path) -> list[dict]:
 
     Raises
     ------
-    ValueError
+    RecordError
         If the file exists and is not a list of runs.
     """
     if not path.exists():
         return []
     try:
+        require_regular(path)
         runs = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError as reason:
-        raise ValueError(f"{path} cannot be read ({reason}); delete it") from reason
+    except (OSError, ValueError, RecursionError) as reason:
+        raise RecordError(f"{path} cannot be read ({reason}); delete it") from reason
     if not (isinstance(runs, list) and all(isinstance(run, dict) and "config" in run for run in runs)):
-        raise ValueError(f"{path} does not contain a list of runs; delete it")
+        raise RecordError(f"{path} does not contain a list of runs; delete it")
     return runs
+
+
+@contextlib.contextmanager
+def understood(record: Path) -> Iterator[None]:
+    """Blame a record of runs for errors from its content: another version can have written it.
+
+    Raises
+    ------
+    RecordError
+        One sentence that names the record.
+    """
+    try:
+        yield
+    except (OSError, DataError, RecordError):
+        raise
+    except Exception as reason:  # a record can say anything
+        said = " ".join(f"{type(reason).__name__}: {reason}".split())[:200]
+        raise RecordError(
+            f"{record} describes no run of this version of stiction ({said}): run stiction paper or stiction run FILE "
+            "again"
+        ) from reason
 
 
 def _run(checkout, config):

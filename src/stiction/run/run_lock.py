@@ -5,6 +5,8 @@ import tempfile
 from pathlib import Path
 from typing import IO
 
+from stiction.regular_files import require_regular
+
 
 def require_writable(record: str | Path) -> None:
     """Refuse a folder without room for the record of Snakemake. It changes even if nothing is to do.
@@ -33,7 +35,9 @@ def reserve(lock: str | Path) -> IO[str]:
     RuntimeError
         If another run has locked the folder, or its disk does not support locks.
     """
-    file = Path(lock).open("w")  # noqa: SIM115
+    if Path(lock).exists():
+        require_regular(lock)
+    file = Path(lock).open("a")  # noqa: SIM115
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
     except BlockingIOError:

@@ -119,7 +119,7 @@ def _entries(text):
             counted[id(node)] = 1 + sum(map(size, inside))
         return counted[id(node)]
 
-    root = yaml.compose(text, Loader=getattr(yaml, "CSafeLoader", yaml.SafeLoader))
+    root = yaml.compose(text, Loader=yaml.SafeLoader)  # the loader in C ends the process at a million open brackets
     return size(root) if root else 0
 
 
