@@ -76,7 +76,7 @@ def test_a_run_speaks_only_of_files_of_its_configuration(smoke, tmp_path, overla
     status, printed = stiction(folder, "run", SMOKE, other, "--", "--touch")
     assert (status, printed[-1][:46]) == (2, "--touch would mark files of other settings as ")
     assert (folder / "results" / "provenance.json").read_bytes() == record
-    for asked in (["results/heights/B2.nc"], ["--until", "spectrum"]):
+    for asked in (["results/heights/B2.nc"], ["results/identification/B2.nc"]):
         status, printed = stiction(folder, "run", SMOKE, other, "--", *asked)
         assert status == 0
         assert printed[-1].startswith("Not computed in this run: results/verdict.txt was made with other settings (and")
