@@ -550,3 +550,11 @@ def test_forms_of_the_density_are_told_apart_in_nine_of_ten_scans():
     )
     assert np.sum(cubic < 0.01) >= 9
     assert np.sum(maximum < 0.01) <= 1
+
+
+def test_certain_differences_of_summits_that_no_digit_shows_are_no_flag():
+    certain = dataclasses.replace(of_b2(), summit_errors=np.zeros(2), model_summit_errors=np.zeros(2))
+    certain = dataclasses.replace(certain, covariance=np.zeros((3, 3)))
+    for scale, shown in (([1.02, 0.98], False), ([1.02, 1.1], True)):
+        other = dataclasses.replace(certain, summits=certain.model_summits * scale)
+        assert bool(about(other.flags, "summits have")) == shown

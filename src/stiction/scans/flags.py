@@ -18,6 +18,8 @@ ENOUGH_WAVELENGTHS = 10
 #: Limits: error by tiles over that of the closed form, sector ratio, p, step between lines over step along them, and
 #: difference of the summits in standard errors.
 _TILES, _ANISOTROPY, UNLIKELY, _JUMP, _SUMMITS = 2.0, 1.5, 0.01, 2.0, 4.0
+#: Relative difference of summits from which two digits show it [-].
+_ALIKE = 0.05
 #: Names of the moments, and a factor of an error that is worth a flag.
 _MOMENTS, _WIDER = ("rms", "skewness", "kurtosis"), 1.1
 #: Quantities with errors at other places, and their growth that is worth a flag.
@@ -260,7 +262,9 @@ def _summits_differ(estimate):
     variance[0] += (estimate.errors[0] * estimate.summits[0]) ** 2
     if not np.any(np.abs(estimate.summits - estimate.model_summits) > _SUMMITS * np.sqrt(variance)):
         return ""
-    radius, density = estimate.summits / estimate.model_summits
+    radius, density = ratios = estimate.summits / estimate.model_summits
+    if np.all(np.abs(np.log(ratios)) < _ALIKE):
+        return ""
     sharper = radius < 1 < density
     reason = "noise, or short waves that the fit does not have" if sharper else "its short waves differ from the scans"
     return f"summits have {radius:.2g} times the radius and {density:.2g} times the density of the model: {reason}"

@@ -25,7 +25,8 @@ from stiction.formats.limits import require_bytes, require_points
 from stiction.formats.no_data import require_no_mark, without_marks
 from stiction.formats.texts.lines import COORDINATES, misread, uneven
 from stiction.regular_files import require_regular
-from stiction.scans.scan import PIXELS, Frame, Scan
+from stiction.rounding import in_percent
+from stiction.scans.scan import PIXELS, Frame, Scan, stored_once
 
 #: Formats that any file of a certain length has: recognised by the ending of the file only.
 _WITHOUT_MAGIC = {"hgt", "nms"}
@@ -105,14 +106,22 @@ def _read(library, path, source):
         require_points(channel.nb_grid_pts, name)
         unit, (size, resized) = _unit(channel, source, name), _size(channel, source, name)
         heights, found = _stored_heights(channel, unit, reader.format(), name)
+        heights, times = stored_once(heights)
         notes += _instrument_levelling(channel, name) + _note(channel, name)
         identifier = channel.channel_id
     if source.fast_axis == "y":
         heights, size = heights.T, size[::-1]
     scan = _scan(heights, size, name, source)
     _require_heights(scan, UNITS[unit])
-    found = resized + found + ((f"{scan.stopped}, count as undefined",) if scan.stopped else ())
+    found = resized + found + _oddities(scan, times)
     return ScanFile(scan, identifier, unit, notes + tuple(f"{name}: {note}" for note in found))
+
+
+def _oddities(scan, times):
+    """Notes on lines that stand there several times, are no part of the scan, and on points that stand out."""
+    copies = f"lines stand there {times[0]} times along one axis and {times[1]} times along the other, and count once"
+    stopped, out = f"{scan.stopped}, count as undefined", f"{scan.standing_out}: mask them if they are no surface"
+    return (copies,) * (max(times) > 1) + (stopped,) * bool(scan.stopped) + (out,) * bool(scan.standing_out)
 
 
 def _stored_heights(channel, unit, kind, name):
@@ -140,7 +149,7 @@ def _undefined(heights, kind):
     """Note on points without a height in the file. Empty if there are none."""
     number = int((~np.isfinite(heights)).sum())
     what = "under a mask" if kind in _MASKED else "without a height"
-    points = f"{number} point{'s' * (number > 1)} ({100 * number / heights.size:.2g} %)"
+    points = f"{number} point{'s' * (number > 1)} ({in_percent(number / heights.size)})"
     return f"{points} {what} in the file count as undefined" if number else ""
 
 

@@ -18,6 +18,8 @@ _SQUARE = 1e-3
 #: ASSUME: range of the distances of points [µm], from a tenth of an atom to the coarsest optical profilers; of the rms
 #: of the heights [µm]; and of their rms slope [-], from mirrors of telescopes to needles. Wrong units give others.
 PIXELS, _HEIGHTS, _SLOPES = (1e-5, 10.0), (1e-6, 100.0), (1e-6, 10.0)
+#: ASSUME: a point is no part of the surface if it is so many rms of the map away from all its neighbours.
+_OUT = 10.0
 
 
 @dataclass(frozen=True)
@@ -72,11 +74,16 @@ class Scan:
         object.__setattr__(self, "size", tuple(map(float, size)))
         object.__setattr__(self, "heights", _without_repeats(np.where(np.isfinite(heights), heights, np.nan)))
         if not self.defined.any():
-            raise ScanError(self.name, "files", "has the same height, or none, at all points")
+            raise ScanError(self.name, "files", "has the same height, or none, at all points of different lines")
         self._require_possible()
 
     def _require_possible(self):
         """Refuse values impossible for a surface."""
+        if np.isnan(self._rms_slope()):
+            reason = "has no neighbouring points with heights along one side, because its lines repeat each other"
+            raise ScanError(
+                self.name, "files", f"{reason}: it is a profile or a pattern, and a map of heights is needed"
+            )
         for key, what, value, (least, largest) in (
             ("size_um", "a distance of its points of {} µm", 1e6 * min(self.frame.pixel), PIXELS),
             ("size_um", "a distance of its points of {} µm", 1e6 * max(self.frame.pixel), PIXELS),
@@ -124,6 +131,49 @@ class Scan:
         lines = sum(int((~self.defined.any(axis=axis)).sum()) for axis in (0, 1))
         counted = f"{lines} empty, constant or repeated line{'s' * (lines > 1)}"
         return f"{counted}, as where a scan was stopped" if lines else ""
+
+    @property
+    def standing_out(self) -> str:
+        """Single points far from all their neighbours, in words. Empty if there are none.
+
+        Examples
+        --------
+        >>> heights = np.random.default_rng(1).normal(0, 1e-9, (32, 40))
+        >>> heights[7, 7] = 1e-7
+        >>> Scan(heights, (1e-6, 1e-6)).standing_out
+        '1 point stands out of all its neighbours by up to 99.4 nm'
+        """
+        centre = self.heights[1:-1, 1:-1]
+        beside = np.array([np.roll(self.heights, by, axis)[1:-1, 1:-1] for axis in (0, 1) for by in (-1, 1)])
+        away = np.maximum(centre - np.fmax.reduce(beside), np.fmin.reduce(beside) - centre)
+        count = int(np.sum(away > _OUT * np.nanstd(self.heights)))
+        if not count:
+            return ""
+        stand = "point stands out of all its" if count == 1 else "points stand out of all their"
+        return f"{count} {stand} neighbours by up to {1e9 * np.nanmax(away):.3g} nm"
+
+
+def stored_once(heights: np.ndarray) -> tuple[np.ndarray, tuple[int, int]]:
+    """Map without copies of its lines (n1, n2), and how often it had each line along both axes.
+
+    Programs enlarge a map by repeating its points. Heights may be masked.
+
+    Examples
+    --------
+    >>> map_, times = stored_once(np.kron(np.random.default_rng(1).normal(size=(32, 40)), np.ones((2, 3))))
+    >>> map_.shape, times
+    ((32, 40), (2, 3))
+    """
+    times = tuple(_copies(rows) for rows in (heights, heights.T))
+    return heights[:: times[0], :: times[1]], times
+
+
+def _copies(rows):
+    """How often each of some rows (n, points) stands there, 1 if not all stand equally often or too few differ."""
+    rows = np.ma.filled(np.ma.asarray(rows, dtype=float), np.nan)
+    begins = np.flatnonzero([True, *(a.tobytes() != b.tobytes() for a, b in zip(rows, rows[1:], strict=False))])
+    length = np.diff([*begins, len(rows)])
+    return int(length[0]) if len(begins) >= FEWEST_POINTS and np.all(length == length[0]) else 1
 
 
 def _without_repeats(heights):

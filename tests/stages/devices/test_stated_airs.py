@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+import xarray as xr
 from test_pages import STOPPER
 
 from stiction.config.files import joined
@@ -58,6 +59,10 @@ def test_the_worst_air_is_one_of_several(airs):
     assert ("RH" in force) == any(airs)
 
 
+#: What warnings read of the forces of a stopper on rough surfaces.
+ROUGH = xr.Dataset({"share_flat": 0.0, "rms": 4e-9})
+
+
 @pytest.mark.parametrize("side", [0.5, 1, 3])
 @pytest.mark.parametrize("air", [0.5, 0.9, 0.985])
 def test_the_meniscus_is_wide_in_a_stated_air_alone(side, air):
@@ -68,7 +73,7 @@ def test_the_meniscus_is_wide_in_a_stated_air_alone(side, air):
         device_warnings._settings(Plan(joined({"devices": {"D": device}, "run": {"pairs": []}})), Of("D"))["stopper"],
     )
     film = -2 * 0.072 * 1.8e-5 / (8.314 * 300 * np.log(air))
-    wide = [one for one in device_warnings.stopper_warnings(of) if "rim" in one]
+    wide = [one for one in device_warnings.stopper_warnings(ROUGH, of) if "rim" in one]
     assert bool(wide) == (2 * film / (side * 1e-6) > 0.1)
 
 
