@@ -283,7 +283,9 @@ def imported(path):
 def rounds(module):
     """Tests of a module and their marks, one after the other: each for the mutants that those before have missed."""
     *folder, name = module.split(".")
-    tests, own = ROOT / "tests", ROOT.joinpath("tests", *folder)
+    tests = ROOT / "tests"
+    above = [tests.joinpath(*folder[:depth]) for depth in range(len(folder), -1, -1)]
+    own = next(path for path in above if path.is_dir())
     named = sorted({*own.glob(f"test_{name}*.py"), *own.glob(f"test_*_{name}.py")})
     using = [path for path in sorted(tests.rglob("test_*.py")) if module in imported(path) and path not in named]
     using.sort(key=lambda path: path.parent != own)

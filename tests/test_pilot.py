@@ -77,6 +77,8 @@ def test_poorly_wetted_surfaces_can_run():
 TOUCHING = "attraction: {reach: touching}"
 DRY = "attraction: {reach: all}\npairs: {b: {humidities: [dry]}}\nfigures: {humidity: dry}"
 WEAK, FEW = "surfaces rough enough and a solid stiff enough", "so many summits that every sample resists the adhesion"
+#: Mesh of a pair that is not the paper's.
+FINE = "pairs: {b: {coarser_mesh: 1}}"
 CHART = "chart: {thicknesses_um: [0.2, 3], gaps_um: [10, 20], humidities: [0.5, 0.9]}"
 REFUSALS = [
     (
@@ -107,10 +109,18 @@ REFUSALS = [
         "beam.width_um is 0.06",
         "on 1.5 x 0.06 µm of pair b; as far as these samples show, ",
     ),
-    ("beam: {thickness_um: 1}", "sampling.strip_length_um is 1.5", "µm to resolve the cracks of pair b: at RH "),
-    ("surfaces: {B2: {kurtosis: 1.5777}}", "sampling.strip_length_um is 1.5", "must be at most 0.6"),
     (
-        "figures: {humidity: 0.88}\npairs: {b: {humidities: [0.44]}}\nbeam: {thickness_um: 1.2}",
+        f"beam: {{thickness_um: 1}}\n{FINE}",
+        "sampling.strip_length_um is 1.5",
+        "µm to resolve the cracks of pair b: at RH ",
+    ),
+    (
+        f"surfaces: {{B2: {{kurtosis: 1.5777}}}}\npairs: {{b: {{attraction: all, coarser_mesh: 1}}}}",
+        "sampling.strip_length_um is 1.5",
+        "must be at most 0.6",
+    ),
+    (
+        "figures: {humidity: 0.88}\npairs: {b: {humidities: [0.44], coarser_mesh: 1}}\nbeam: {thickness_um: 1.2}",
         "sampling.strip_length_um",
         "pair b: at RH 0.88 ",
     ),

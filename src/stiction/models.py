@@ -9,6 +9,8 @@ SIDES = ("beam", "substrate")
 #: Quantities of maximum-entropy heights, of measured heights and of spectra, see `stiction.analysis.shifts`.
 MOMENT_QUANTITIES, SPECTRUM_QUANTITIES = ("rms", "skewness", "kurtosis"), ("corner", "slope")
 MODE_QUANTITIES = ("rms", *(f"mode{k}" for k in range(2, 9)))
+#: Quantities whose errors can be larger than the steps of slopes, see `stiction.analysis.shifts.step_of`.
+FAR_QUANTITIES = ("rms", "kurtosis", *SPECTRUM_QUANTITIES)
 #: Sides of a shift, as in names of files: a quantity decreased, and increased.
 SHIFTS = ("less", "more")
 #: Keys of a surface described by scans that choose how these are evaluated, and the two values of each.

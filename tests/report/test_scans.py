@@ -246,7 +246,8 @@ def test_a_surface_of_scans_of_two_sizes_has_the_errors_of_each():
     assert list(table.frame.file) == ["B2-scan-0.spm", "B2-scan-0.spm", "B2-scan-1.spm"]
     assert list(table.frame.size_fast_um) == pytest.approx([4, 5, 5])
     assert_allclose(table.frame.rms_nm, [1e9 * scan.elevation.values.std() for scan in datasets], rtol=0.02)
-    total = float(estimate.covariance[1, 1]) * (2 * 25 + 16)
+    at_one_place = float(estimate.covariance[1, 1]) / float(estimate.places[1]) ** 2
+    total = at_one_place * (2 * 25 + 16)
     assert_allclose(table.frame.skewness_se, np.sqrt(total / np.array([16, 25, 25])))
     title = surface_sheet("Etched", estimate, spectrum())._suptitle.get_text()
     assert "Etched: 2 scans of 5 × 5 µm, 250 × 250 points and 1 scan of 4 × 4 µm, 200 × 200 points" in title

@@ -111,11 +111,9 @@ OF_FIGURE |= OF_DEVICES
 #: their files do not depend on it; pattern of files that must not rerun.
 MATRIX = [
     ("kurtosis of one surface", "surfaces: {B1: {kurtosis: 4.5}}", "heights table_1 variant_summits readings", OF_FIGURE, "B2|Sub1|/b_"),
-    # The surface, hence its pair, is no longer the paper's: published values leave the tables, and solids attract across
-    # gaps.
+    # The surface, hence its pair, is no longer the paper's: published values leave the tables.
     ("radius of its summits", "surfaces: {B1: {mean_summit_radius_um: 0.42}}",
-     "identification forces humidity variant table_1 table_3 checks", OF_FIGURE, "B2|/b_|contact/a_(NG|G)"),
-    # The elements of its beams follow the force laws, under every variant.
+     "identification table_1 table_3 checks", OF_FIGURE, "B2|/b_|contact/a_(NG|G)|forces|beams"),
     ("its published spectrum", "surfaces: {B1: {published_psd: {floor_nm4: 0.9}}}", "spectrum variant_summits readings",
      OF_FIGURE, "B2|Sub1|/b_|(summits|contact)/a_psd_identified"),
     ("source of its spectrum", "surfaces: {B1: {psd: identified}}", "spectrum variant_summits readings", OF_FIGURE,
@@ -123,7 +121,7 @@ MATRIX = [
     ("surface in a pair", "pairs: {a: {beam: B2}}",
      "table_1 table_2 correlation contact_chunk plasticity full_contact pressed variant_summits readings checks", OF_FIGURE,
      "heights|spectrum|/b_"),
-    ("gap of one pair", "pairs: {a: {gap_um: 19}}", "forces humidity beams resampling variant checks", OF_FIGURE, "/b_|contact"),
+    ("gap of one pair", "pairs: {a: {gap_um: 19}}", "beams resampling variant checks", OF_FIGURE, "/b_|contact|forces|chaos"),
     ("one humidity added", "pairs: {a: {humidities: [0.6, 0.7, 0.8]}}", "full_contact pressed readings forces variant table_3 checks", OF_FIGURE,
      "/b_|/a_rh060|/a_rh080"),
     ("one humidity removed", "pairs: {a: {humidities: [0.6]}}", "full_contact pressed readings humidity table_3 checks model_limits", (), "/b_|/a_rh"),
@@ -152,7 +150,7 @@ MATRIX = [
      "contact_chunk sensitivity_contact plasticity full_contact pressed variant_summits readings device_contact tip_contact", (), "spectrum"),
     ("chaos order", "chaos: {order: 6}", "chaos variant ground", (), "forces"),
     ("beam thickness", "beam: {thickness_um: 2.5}",
-     "forces humidity sensitivity beams resampling mesh variant checks", (), "contact"),
+     "beams resampling mesh variant checks", (), "contact|forces|chaos"),
     ("beam width", "beam: {width_um: 24}", "character contact_chunk beams resampling mesh sensitivity_contact plasticity full_contact pressed variant_summits readings checks model_limits",
      (), "heights|spectrum|tips|R1"),
     ("number of beams", "beam: {samples: 500}", "beams", (), "chaos|studies"),

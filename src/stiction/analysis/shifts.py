@@ -18,7 +18,7 @@ from math import factorial
 import numpy as np
 from scipy.special import eval_hermitenorm
 
-from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
+from stiction.models import FAR_QUANTITIES, MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import largest_kurtosis, least_kurtosis
 from stiction.surface.spectrum import CutoffSelfAffine, Spectrum
@@ -46,13 +46,17 @@ class Description:
         return (MOMENT_QUANTITIES if self.form is None else MODE_QUANTITIES) + SPECTRUM_QUANTITIES
 
 
+#: Largest step of ln rms [-]. ASSUME: rougher surfaces may hold no device, so that a slope by them is not known.
+FARTHEST_RMS = 0.3
+
+
 def step_of(surface: Description, quantity: str, deviation: float) -> float:
     """Step of a quantity in either direction: its standard uncertainty, if that is larger than its step of `STEPS`.
 
     A slope over a small step says little about a large error. ASSUME: where no surfaces are as far away on both sides,
     the step is as large as they allow, and that of a skewness is small: its kurtosis would have to move as well.
     """
-    return max(STEPS[quantity], min(deviation, _room(surface, quantity)))
+    return max(STEPS[quantity], min(deviation, _room(surface, quantity)) if quantity in FAR_QUANTITIES else 0.0)
 
 
 def _room(surface, quantity):
@@ -64,7 +68,7 @@ def _room(surface, quantity):
         return -shape.slope if isinstance(shape, CutoffSelfAffine) else np.inf
     if quantity == "kurtosis":
         return min(largest_kurtosis(size) - surface.kurtosis, surface.kurtosis - least_kurtosis(size))
-    return np.inf if quantity == "rms" else 0.0
+    return FARTHEST_RMS
 
 
 def bracketed(

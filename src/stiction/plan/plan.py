@@ -17,7 +17,7 @@ from stiction.config.scans import is_measured, preliminary_estimates, quantities
 from stiction.config.surfaces.knowledge import knowledge, sentences, uncertain
 from stiction.config.test_beams import as_cantilevers
 from stiction.contact.materials import ELASTIC
-from stiction.models import BEAM_MODELS, MODE_QUANTITIES, SURFACE_MODELS
+from stiction.models import BEAM_MODELS, FAR_QUANTITIES, MODE_QUANTITIES, SURFACE_MODELS
 from stiction.plan.devices import DevicePlan
 from stiction.plan.environment import Environment
 from stiction.plan.paper import SUMMITS, PaperCase
@@ -158,9 +158,9 @@ class Plan:
         return tuple(dict.fromkeys((*quantities(self.config["surfaces"][surface]), *modes)))
 
     def deviation(self, surface: str, quantity: str) -> float:
-        """Standard uncertainty of a quantity of a surface, stated or assumed; 0 if it is measured or exact [-]."""
+        """Standard uncertainty of a quantity of a surface, stated or assumed, that its slope spans, otherwise 0 [-]."""
         entry = self.config["surfaces"][surface]
-        if is_measured(entry) or quantity not in uncertain(entry):
+        if is_measured(entry) or quantity not in FAR_QUANTITIES or quantity not in uncertain(entry):
             return 0.0
         known = knowledge(entry, paper()["surfaces"]).section
         place = known["quantities"].index(quantity)
