@@ -115,7 +115,7 @@ REFUSALS = [
         "µm to resolve the cracks of pair b: at RH ",
     ),
     (
-        f"surfaces: {{B2: {{kurtosis: 1.5777}}}}\npairs: {{b: {{attraction: all, coarser_mesh: 1}}}}",
+        "surfaces: {B2: {kurtosis: 1.5777}}\npairs: {b: {attraction: all, coarser_mesh: 1}}",
         "sampling.strip_length_um is 1.5",
         "must be at most 0.6",
     ),

@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import re
 import shutil
 import subprocess
 import tempfile
@@ -9,6 +10,8 @@ import time
 import urllib.error
 import urllib.request
 from importlib import resources
+
+import numpy as np
 
 #: Names of the browser on different systems.
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -18,6 +21,22 @@ FLAGS += ["--disable-background-networking", "--disable-component-update", "--di
 PATIENCE = 60
 #: Key of an element in the answers of WebDriver.
 _ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
+
+
+def says_fraction(text, fraction, band, beyond=0):
+    """Whether a text ends in a fraction with its band, or in the end of it that bounds a count of none or of all.
+
+    All are between 0 and 1; ``beyond`` is -1 or 1 for sizes at which less or more stick than at any that was computed.
+    """
+    behind = text.rpartition(": ")[2]
+    shown = [float(number) / 100 for number in re.findall(r"\d[\d.]*(?:e[+-]?\d+)?", behind)]
+    none, every = "at most" in behind, "at least" in behind
+    if beyond and (none, every) != (beyond < 0, beyond > 0) or none and not beyond and fraction > 1e-6:
+        return False
+    if every and not beyond and fraction < 1 - 1e-6:
+        return False
+    expected = [band[1]] if none else [band[0]] if every else [fraction, *band]
+    return len(shown) == len(expected) and np.allclose(shown, expected, rtol=1e-2, atol=1e-11)
 
 
 def missing():

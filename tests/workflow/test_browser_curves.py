@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
-from browser import Browser, missing
+from browser import Browser, missing, says_fraction
 from drawn_curves import BEAM, OXIDE, STOPPER, biased, etched, mapped, rough
 
 import stiction
@@ -157,8 +157,7 @@ def test_a_page_answers_any_state_as_python_does(views, page, browser, name):
         reach = 1.959964 * found["error"]
         margins = [found["margin"] + part for part in (0, -reach, reach)]
         assert numbers(shown["margin"]) == pytest.approx(margins, rel=1e-3, abs=1e-5)
-        stuck = [100 * found[part] for part in ("stuck", "low", "high")]
-        assert numbers(shown["stuck"]) == pytest.approx(stuck, rel=1e-2, abs=1e-9)
+        assert says_fraction(shown["stuck"], found["stuck"], (found["low"], found["high"]))
     assert (unknown > 0) == (name in ("beam", "of_beam"))
     assert browser.errors() == []
 
@@ -170,8 +169,7 @@ def test_a_page_answers_any_voltage_as_python_does(views, page, browser):
         state = grid.start | {"voltage_V": float(f"{rng.uniform(0.1, grid.size.values[1]):.4g}")}
         state |= {"humidity": float(rng.choice(grid.axes[0].values))}
         shown, stuck = go_to(browser, list(views).index("voltage"), state), grid.stuck(state)
-        expected = [stuck.share] if stuck.beyond else [stuck.share, stuck.low, stuck.high]
-        assert numbers(shown["stuck"]) == pytest.approx([100 * part for part in expected], rel=1e-2)
+        assert says_fraction(shown["stuck"], stuck.share, (stuck.low, stuck.high), stuck.beyond)
         safe = grid.safe_size(state)
         assert ("none: too few" in shown["safe"]) == np.isnan(safe)
         if np.isfinite(safe):

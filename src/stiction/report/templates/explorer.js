@@ -273,15 +273,23 @@ function opened(number) {
     };
   }
 
+  /** What to build, from the safe size and the uncertainty of its logarithm. */
+  function toBuild(safe, total) {
+    const words = data.words;
+    if (!words.build) return "no margin is added for them";
+    if (!(total <= words.largest)) return `too much for a ${words.what} to build`;
+    if (!Number.isFinite(safe)) return `no ${words.what} to build is known`;
+    return `build ${words.build} ${text(safe * Math.exp((grid.falls ? 2 : -2) * total), DIGITS)} ${grid.size.unit}`;
+  }
+
   function texts() {
     const unit = grid.size.unit, words = data.words, levels = levelsOf(state);
     const safe = safeSize(state), less = margin(state.humidity);
-    const bounded = less && less.total <= words.largest, build = words.build && bounded && safe * Math.exp((grid.falls ? 2 : -2) * less.total);
     return {
       stuck: `${words.stick}: ${stuckText(stuckAt(state[grid.size.key], levels))}`,
       safe: `${words.safe} for ${oneIn(state.share)}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : words.none ?? `not known from ${grid.samples} devices`}`,
       budget: words.tested ? words.tested : less
-        ? `Measurements leave ${text(100 * less.total, 2)} %, most of it ${less.most}: ${Number.isFinite(build) && words.build ? `build ${words.build} ${text(build, DIGITS)} ${unit}` : words.build && !bounded ? `too much for a ${words.what} to build` : "no margin is added for them"}`
+        ? `Measurements leave ${text(100 * less.total, 2)} %, most of it ${less.most}: ${toBuild(safe, less.total)}`
         : `Margin for the measurements: not computed ${data.margin ? "at this humidity" : content.views.some(view => view.margin) ? "in this view" : "without stated uncertainties"}`,
     };
   }
