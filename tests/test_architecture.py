@@ -23,7 +23,7 @@ ORDER = [
         "temporary",
         "kernels",
     ),
-    *("surface", "formats", "scans", "contact", "chaos", "beam", "analysis", "devices", "life"),
+    *("surface", "formats", "scans", "contact", "chaos", "beam", "analysis", "devices", "life", "answer"),
     *("run", "config", "plan"),
     *(
         "stages.surfaces",
@@ -35,6 +35,7 @@ ORDER = [
         "stages.roughness",
         "stages.process",
         "stages.test_beams",
+        "stages.answer",
     ),
     *("pilot", "accuracy", "report", "described_surface", "study", "device", "process", "command"),
 ]

@@ -27,9 +27,13 @@ class TailFit:
     samples: int  #: number n of all samples
     fitted: int  #: number of the lowest ones that are fitted
 
+    def logarithm(self, share: float) -> float:
+        """Logarithm of `length`."""
+        return float(self.intercept + self.slope * ndtri(share))
+
     def length(self, share: float) -> float:
         """Quantile of all lengths at a share [m]."""
-        return float(np.exp(self.intercept + self.slope * ndtri(share)))
+        return float(np.exp(self.logarithm(share)))
 
 
 def normal_scores(samples: int, fitted: int | None = None) -> np.ndarray:
@@ -80,8 +84,19 @@ def scaled_errors(
 @lru_cache(maxsize=64)  # a device asks for the same lines for every share, shape and error of the surfaces
 def _simulated_lines(samples, generator, repeats, fitted):
     """Intercepts and slopes of simulated lines from a pickled generator, and its state after them."""
-    rng, scores = pickle.loads(generator), normal_scores(samples, fitted)
+    rng = pickle.loads(generator)
+    return *simulated_lines(samples, fitted, rng, repeats), rng.bit_generator.state
+
+
+def simulated_lines(
+    samples: int, fitted: int | None, rng: np.random.Generator, repeats: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Intercepts and slopes of lines through the lowest of ``samples`` normal numbers (repeats,) each.
+
+    As many are ``fitted`` as by `normal_scores`.
+    """
+    scores = normal_scores(samples, fitted)
     k = len(scores)
     sums = np.cumsum(rng.exponential(size=(repeats, k)), axis=1)
     rest = rng.gamma(samples + 1 - k, size=(repeats, 1))
-    return *_lines(ndtri(sums / (sums[:, -1:] + rest)), scores), rng.bit_generator.state
+    return _lines(ndtri(sums / (sums[:, -1:] + rest)), scores)

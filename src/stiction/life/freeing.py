@@ -47,15 +47,16 @@ def freeing_potential_of_flats(spare: float, capacitor: Capacitor, area: float) 
     return float(np.sqrt(max(spare, 0.0) / (area * capacitor.per_volt.largest_pressure)))
 
 
-def stuck_after(probability: float, touchdowns: int) -> float:
-    """P(stuck) after n independent touchdowns [-], 1 - (1 - P)^n, from one touchdown's.
+def stuck_after(probability: float | np.ndarray, touchdowns: int) -> float | np.ndarray:
+    """P(stuck) after n independent touchdowns [-], 1 - (1 - P)^n, from one touchdown's, of any shape.
 
     Examples
     --------
     >>> round(stuck_after(1e-3, 1000), 3)
     0.632
     """
-    return float(-np.expm1(touchdowns * np.log1p(-probability))) if probability < 1 else 1.0
+    with np.errstate(divide="ignore"):  # all stick
+        return -np.expm1(touchdowns * np.log1p(-np.asarray(probability, float)))[()]
 
 
 def probability_for(stuck: float, touchdowns: int) -> float:

@@ -16,7 +16,7 @@ from stiction.rounding import in_percent
 from stiction.stages.devices.budget import budget_of, margin_of_shape
 from stiction.stages.devices.opening import BEAMS, EITHER, S_SHAPE
 from stiction.stages.devices.safe_lengths import chosen_share
-from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
+from stiction.stages.devices.stoppers import bounded_share, ends, in_any_air, is_at_an_end, shares_stuck
 
 
 def length_to_build(
@@ -182,13 +182,6 @@ def verdict(stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> str:
         return f"{head} suffices {where}: {tail}"
     dry = "in dry air and " * bool(stopper.axis[0] == 0)
     return f"{head} suffices {dry}at all relative humidities{_range(stopper)}: {tail}"
-
-
-def bounded_share(stopper: xr.Dataset) -> float | None:
-    """Smallest fraction with a bound from the patches of a stopper alone at all its humidities, or none."""
-    stated = stopper.safe_force.sel(part="safe").max("humidity", skipna=False)
-    sampled = stated.where(stopper.basis == Basis.SAMPLED)
-    return min((float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))), default=None)
 
 
 def _verdict_of_few(stopper):

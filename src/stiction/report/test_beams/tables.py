@@ -12,11 +12,11 @@ from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import ARC, FORCE, MIDDLE, S_SHAPE
-from stiction.stages.test_beams.inference import OWN, shape_of
+from stiction.stages.test_beams.inference import OWN, UNLIKELY, is_reliable, shape_of
 
-#: p value below which data count as not explained; number of standard deviations beyond which an input counts as wrong;
-#: ratio of dimensions beyond which a prediction counts as extrapolated. ASSUME: a factor of two.
-UNLIKELY, LARGE, SIZES = 0.05, 2.0, 2.0
+#: Number of standard deviations beyond which an input counts as wrong; ratio of dimensions beyond which a prediction
+#: counts as extrapolated. ASSUME: a factor of two.
+LARGE, SIZES = 2.0, 2.0
 #: Difference of ln l of equal beams beyond which it counts as extrapolated. ASSUME: 10 % of the length, over which the
 #: standard deviation of the slope of the model is 3 %.
 ADHESION = 0.1
@@ -37,11 +37,6 @@ _STUCK = ("expected_stuck", "updated_stuck", 100)
 
 
 # Sentences
-
-
-def is_reliable(update: xr.Dataset) -> bool:
-    """Whether inputs and model, as given, explain the data. Otherwise no result may rest on them."""
-    return float(update.p_value) >= UNLIKELY
 
 
 def combinations(update: xr.Dataset) -> list[str]:

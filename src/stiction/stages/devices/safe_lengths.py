@@ -50,7 +50,18 @@ def compute(cracks: xr.Dataset, settings: Settings, tips: xr.Dataset | None = No
     dataset = layout(beams.lengths, by_shape(beams, settings, without_samples), without_samples, settings).assign(
         cracks[["rms", "share_flat", "longest_strip", "resampled", "repetition", "size_error", "mean_energy"]]
     )
+    dataset = dataset.assign(_thresholds(beams.lengths, without_samples))
     return dataset if settings.length is None else dataset.assign(at_length(beams, settings.length))
+
+
+def _thresholds(sticking, without_samples):
+    """Variables of the sticking lengths of all devices, and of lengths that no surfaces hold, by shape."""
+    metres = {"units": "m"}
+    ordered, floors = np.sort(list(sticking.values())), [one.safe for one in without_samples.values()]
+    return {
+        "sticking_length": (("shape", "device"), ordered, metres | {"long_name": "sticking lengths, increasing"}),
+        "floor": ("shape", floors, metres | {"long_name": "length up to which no surfaces hold a device"}),
+    }
 
 
 def no_longer_than_in_drier_air(dataset: xr.Dataset, drier: xr.Dataset | None) -> xr.Dataset:

@@ -14,7 +14,7 @@ from stiction.config.kinds import restoring_force
 from stiction.contact.correction import NONE, Change
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import is_wetted
-from stiction.devices.risk import CONFIDENCE, SCORES, in_order, quantiles
+from stiction.devices.risk import CONFIDENCE, SCORES, Basis, in_order, quantiles
 from stiction.devices.stoppers import SafeForce, pull_off_force, safe_forces, stuck_patches, worst_humidity
 from stiction.estimates import mean_with_error
 from stiction.plan.stage import Running, Stage, select
@@ -363,6 +363,13 @@ def in_any_air(dataset: xr.Dataset) -> tuple[tuple[float, float, float], xr.Data
 def shares_stuck(dataset: xr.Dataset) -> Sequence[tuple[float, float, float, float]]:
     """Humidity, P(stuck) and the ends of its 95 % band, at every humidity of the device."""
     return [(float(h), *map(float, dataset.stuck.sel(humidity=h))) for h in dataset.humidity.values]
+
+
+def bounded_share(stopper: xr.Dataset) -> float | None:
+    """Smallest fraction with a bound from the patches of a stopper alone at all its humidities, or none."""
+    stated = stopper.safe_force.sel(part="safe").max("humidity", skipna=False)
+    sampled = stated.where(stopper.basis == Basis.SAMPLED)
+    return min((float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))), default=None)
 
 
 def _settings(plan, at):

@@ -30,6 +30,8 @@ from stiction.streams import stream
 
 #: Inputs that are those of one device or array alone: its dimensions.
 OWN = tuple(one.name for one in OF_BEAMS if one.step)
+#: p value below which data count as not explained.
+UNLIKELY = 0.05
 #: Numbers of further test beams for which the gain is stated.
 FURTHER = (10, 100)
 #: Points between the smallest and the largest share for which a safe length is stated.
@@ -75,6 +77,11 @@ class Settings:
     crack_lengths: dict[str, CrackLengths]  #: by array
     stuck: dict[str, Stuck]  #: by array
     device: DesignedBeam | None = None  #: none of a stopper
+
+
+def is_reliable(update: xr.Dataset) -> bool:
+    """Whether inputs and model, as given, explain the data. Otherwise no result may rest on them."""
+    return float(update.p_value) >= UNLIKELY
 
 
 def shape_of(response: str) -> str:

@@ -1,0 +1,138 @@
+"""Answer about a device as data: the size to build, the steps that lead to it, and the probability at its own size.
+
+Numbers, sides and causes are fields. Pages, tables and sentences are made from them (`stiction.report.answer`).
+"""
+
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+import numpy as np
+
+from stiction.devices.risk import CONFIDENCE
+
+
+class Verdict(StrEnum):
+    """Judgement of a stated size, or of none."""
+
+    BUILD = "build"  #: no size is stated: a size to build is known
+    SAFE = "safe"  #: the stated size is within the size to build
+    OPEN = "open"  #: neither shown to be safe nor to stick too often
+    BAD = "bad"  #: even the lower end of the band sticks more often than allowed
+    NONE = "none"  #: a limit forbids a number, or nothing bounds it
+
+
+class Cause(StrEnum):
+    """Cause of a step from the estimate to the size to build, in the order of the steps."""
+
+    ESTIMATE = "estimate"  #: sampled devices, in the worst stated air
+    SIMULATION = "simulation"  #: finite numbers of devices and of sampled surfaces
+    FAST = "fast"  #: separation that is faster than evaporation
+    TOUCHDOWNS = "touchdowns"  #: all stated touchdowns, each on other summits
+    TILT = "tilt"  #: worst of the stated tilts
+    VOLTAGE = "voltage"  #: stated voltage while the device touches
+    DRYING = "drying"  #: liquids that are stated
+    INPUTS = "inputs"  #: stated and assumed inputs
+    TEST_BEAMS = "test_beams"  #: inputs and model, as test beams leave them
+
+
+@dataclass(frozen=True)
+class Step:
+    """Step from the estimate to the size to build."""
+
+    cause: Cause
+    size: float  #: after this step [m, N]
+    factor: float  #: change of the size by this step [-]
+    humidity: float  #: air that decides after this step [-]
+    shape: str  #: end state that decides
+    source: str  #: dataset that it comes from
+    stated: bool = True  #: whether the user stated the cause; other steps stand beside and change nothing
+
+
+@dataclass(frozen=True)
+class Probability:
+    """Expected fraction of stuck devices, and a band of the fraction that contains all that is unknown."""
+
+    value: float
+    low: float
+    high: float
+    none_seen: bool = False  #: whether no simulated device sticks, so that the upper end alone is known
+
+
+@dataclass(frozen=True)
+class InAir:
+    """Answer for one of the stated airs alone."""
+
+    humidity: float  #: [-]
+    build: float  #: [m, N]
+    without_tip: float  #: length of a cantilever whose tip cannot touch, NaN for others [m]
+    stuck: Probability | None  #: at the stated size
+    #: Expected fraction stuck, and ends of its band, at `Answer.sizes` (3, n) [-].
+    curve: np.ndarray = field(default_factory=lambda: np.empty((3, 0)), compare=False)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Everything that a page, a table or a picture shows about the main question of a device."""
+
+    device: str
+    kind: str
+    share: float  #: allowed fraction of stuck devices [-]
+    unit: str  #: of sizes, m or N
+    build: float  #: size to build, NaN if none is known
+    exact: float  #: the same if all inputs were exact
+    steps: tuple[Step, ...]
+    airs: tuple[InAir, ...]
+    size: float = np.nan  #: stated, NaN without one
+    stuck: Probability | None = None  #: at the stated size, in the worst stated air
+    touchdowns: int = 1
+    left_out: tuple[str, ...] = ()  #: conditions that are stated but not inside
+    forbidden: tuple[str, ...] = ()  #: kinds of the limits that forbid a number
+    measure: str = ""  #: group of inputs that costs most
+    if_measured: float = np.nan  #: size to build if this group were exact
+    spread_of_budget: float = 0.0  #: part of the size that the errors of the budget itself take [-]
+    without_test_beams: float = np.nan  #: size to build without test beams, NaN if none say anything
+    sizes: np.ndarray = field(default_factory=lambda: np.empty(0), compare=False)  #: of the curves (n,) [m, N]
+
+    @property
+    def more_is_better(self) -> bool:
+        """Whether a larger size than that to build is safe: forces, not lengths."""
+        return self.unit == "N"
+
+    @property
+    def is_enough(self) -> bool:
+        """Whether the stated size is within the size to build."""
+        return self.size >= self.build if self.more_is_better else self.size <= self.build
+
+    @property
+    def verdict(self) -> Verdict:
+        """Judgement by fields alone."""
+        if self.forbidden:
+            return Verdict.NONE
+        if self.stuck is not None and not self.is_enough and self.stuck.low > self.share:
+            return Verdict.BAD
+        if not np.isfinite(self.build):
+            return Verdict.NONE
+        if self.stuck is None:
+            return Verdict.BUILD
+        return Verdict.SAFE if self.is_enough else Verdict.OPEN
+
+    @property
+    def stated_steps(self) -> tuple[Step, ...]:
+        """Steps inside the size to build."""
+        return tuple(step for step in self.steps if step.stated)
+
+    @property
+    def largest_step(self) -> Step:
+        """Step inside the size to build that changes it most."""
+        return max(self.stated_steps[1:], key=lambda step: abs(np.log(step.factor)))
+
+    @property
+    def included(self) -> tuple[Cause, ...]:
+        """Causes inside the size to build."""
+        return tuple(step.cause for step in self.stated_steps[1:])
+
+
+def band(fractions: np.ndarray) -> tuple[float, float]:
+    """Ends of the band of drawn fractions (draws,) [-]."""
+    low, high = np.quantile(fractions, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2])
+    return float(low), float(high)

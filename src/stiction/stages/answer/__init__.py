@@ -1,0 +1,1 @@
+"""Stage of the answer about a device, from the datasets of all others."""

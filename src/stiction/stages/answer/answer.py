@@ -1,0 +1,226 @@
+"""Stage answer: the size to build of a device, the steps that lead to it, and P(stuck) at its own size, as data."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from stiction.answer import ladder
+from stiction.answer.data import Answer, Cause, InAir, Probability, Step
+from stiction.answer.ladder import Question
+from stiction.answer.unknowns import Draws
+from stiction.answer.worlds import DRAWS, worst_first
+from stiction.config.cases import case_id
+from stiction.config.units import in_si
+from stiction.devices.budget import LARGEST
+from stiction.plan.stage import Stage, select
+from stiction.stages.answer import conditions
+from stiction.stages.devices.budget import budgets_of
+from stiction.stages.devices.opening import DesignedBeam, section_of_beam
+from stiction.stages.devices.safe_lengths import chosen_share
+from stiction.stages.devices.stoppers import bounded_share
+from stiction.stages.life.separation import separation_inputs
+from stiction.stages.life.table import is_biased
+from stiction.stages.test_beams.inference import is_reliable
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Settings of an answer, without the datasets that it comes from."""
+
+    seed: int
+    name: str  #: of the device
+    kind: str
+    length: float = np.nan  #: of a beam, NaN if none is stated [m]
+    touchdowns: int = 1
+    liquids: tuple[str, ...] = ()  #: that are stated
+    left_out: tuple[str, ...] = ()  #: conditions that are stated but not inside
+    beam: DesignedBeam | None = None  #: none for a stopper
+    budgets: tuple[float, ...] = ()  #: humidities of the budgets [-]
+
+
+def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
+    """Answer about a device."""
+    found, question = _of_stopper(data) if settings.beam is None else _of_beam(data, settings)
+    before = conditions.of_budgets(data["budgets"], settings.budgets)
+    unknowns = conditions.of_test_beams(data.get("test_beams")) or before
+    stated = {"touchdowns": settings.touchdowns, "left_out": settings.left_out}
+    asked = Question(settings.name, settings.kind, forbidden=_forbidden(data, unknowns), **stated, **question)
+    draws = Draws(DRAWS, settings.seed)
+    return ladder.answer(asked, found, unknowns, draws, None if unknowns is before else before)
+
+
+def _of_beam(data, settings):
+    """Conditions of a beam, and its question."""
+    slow = list(conditions.of_lengths(data["lengths"], Cause.ESTIMATE, "safe_lengths"))
+    share = chosen_share(next(iter(data["lengths"].values())))
+    found = [
+        *slow,
+        *conditions.separated_fast(slow, data.get("fast_strips", {}), data.get("fast_tips", {}), settings.beam),
+        *conditions.of_lengths(data["biased"], Cause.VOLTAGE, "at_voltage"),
+        *conditions.of_life(data["life"], settings.liquids, worst_first(slow, share)[0]),
+    ]
+    return found, {"share": share, "unit": "m", "size": settings.length}
+
+
+def _of_stopper(data):
+    """Conditions of a stopper, and its question."""
+    stopper = data["stopper"]
+    share, errors = bounded_share(stopper), stopper.full_contact_error
+    found = list(conditions.of_forces(stopper.pull_off, share, stopper.safe_force, errors, Cause.ESTIMATE))
+    if "separation" in data:
+        found += conditions.of_forces(data["separation"].pull_off, share, None, errors, Cause.FAST)
+    if "tilted" in data:
+        tilted = data["tilted"]
+        most, safe = tilted.pull_off.max("tilt"), tilted.largest_safe_force
+        found += conditions.of_forces(most, share, safe, errors, Cause.TILT)
+    if "biased" in data:
+        biased = data["biased"]
+        found += conditions.of_forces(biased.pull_off, share, biased.safe_force, errors, Cause.VOLTAGE)
+    found += conditions.at_voltage_on_flats(stopper, data["life"], share)
+    size = float(stopper.restoring_force)
+    return found, {"share": share or float(stopper.share.max()), "unit": "N", "size": size}
+
+
+def _forbidden(data, unknowns):
+    """Reasons why no number may be stated: test beams that contradict, and inputs that are too uncertain."""
+    found = []
+    if data.get("test_beams") is not None and not is_reliable(data["test_beams"]):
+        found.append("test_beams")
+    totals = [one.total for one in getattr(unknowns, "budgets", {}).values() if one.is_known]
+    if max(totals, default=0.0) > LARGEST:
+        found.append("inputs")
+    return tuple(found)
+
+
+# Dataset
+
+#: Fields of an answer that are numbers, with the unit of the size or none.
+_SIZES, _NUMBERS = ("build", "exact", "size", "if_measured", "without_test_beams"), ("share", "spread_of_budget")
+_TEXTS, _LISTS = ("device", "kind", "measure"), ("left_out", "forbidden")
+_STUCK = ("value", "low", "high", "none_seen")
+#: Rows of an answer by the dimension of their dataset.
+_STEPS = {"size": True, "factor": False, "humidity": False, "shape": None, "source": None, "stated": None}
+_AIRS = {"build": True, "without_tip": True}
+
+
+def layout(answer: Answer) -> xr.Dataset:
+    """Dataset of an answer: steps along ``step``, stated airs along ``air``."""
+    size, none = {"units": answer.unit}, {"units": "1"}
+    variables = {name: ((), getattr(answer, name), size) for name in _SIZES}
+    variables |= {name: ((), getattr(answer, name), none) for name in _NUMBERS}
+    variables |= {"touchdowns": ((), answer.touchdowns, none)}
+    variables |= {name: (name, np.array(getattr(answer, name), dtype=object)) for name in _LISTS}
+    for name, is_size in _STEPS.items():
+        values = [getattr(step, name) for step in answer.steps]
+        note = {} if is_size is None else size if is_size else none
+        variables[f"step_{name}"] = ("step", np.array(values, dtype=int if name == "stated" else None), note)
+    for name in _AIRS:
+        variables[f"air_{name}"] = ("air", [getattr(one, name) for one in answer.airs], size)
+    for name in _STUCK:
+        at = [np.nan if one is None else float(getattr(one, name)) for one in (answer.stuck, *_of_airs(answer))]
+        variables[f"stuck_{name}"] = ((), at[0], none)
+        variables[f"air_stuck_{name}"] = ("air", at[1:], none)
+    curves = [one.curve for one in answer.airs]
+    variables["air_curve"] = ("air", "end", "point"), curves, none | {"long_name": "P(stuck) with its 95 % band"}
+    variables["curve_size"] = "point", answer.sizes, size
+    coords = {"step": [str(step.cause) for step in answer.steps], "air": [one.humidity for one in answer.airs]}
+    coords["end"] = ["value", "low", "high"]
+    return xr.Dataset(variables, coords, {name: getattr(answer, name) for name in _TEXTS})
+
+
+def _of_airs(answer):
+    """P(stuck) in each of the airs."""
+    return [one.stuck for one in answer.airs]
+
+
+def answer_of(dataset: xr.Dataset) -> Answer:
+    """Answer from its dataset, the inverse of `layout`."""
+    steps = [
+        Step(
+            Cause(str(row.step.values)),
+            *(float(row[f"step_{name}"]) for name in ("size", "factor", "humidity")),
+            *(str(row[f"step_{name}"].values) for name in ("shape", "source")),
+            bool(row.step_stated),
+        )
+        for row in (dataset.isel(step=k) for k in range(dataset.sizes["step"]))
+    ]
+    airs = [
+        InAir(
+            float(row.air),
+            *(float(row[f"air_{name}"]) for name in _AIRS),
+            _probability(row, "air_stuck_"),
+            row.air_curve.values,
+        )
+        for row in (dataset.isel(air=k) for k in range(dataset.sizes["air"]))
+    ]
+    return Answer(
+        **{name: dataset.attrs[name] for name in _TEXTS},
+        **{name: float(dataset[name]) for name in (*_SIZES, *_NUMBERS)},
+        **{name: tuple(map(str, dataset[name].values)) for name in _LISTS},
+        unit=dataset.build.attrs["units"],
+        steps=tuple(steps),
+        airs=tuple(airs),
+        stuck=_probability(dataset, "stuck_"),
+        touchdowns=int(dataset.touchdowns),
+        sizes=dataset["curve_size"].values,
+    )
+
+
+def _probability(dataset, start):
+    """P(stuck) of a dataset, none where it has none."""
+    *numbers, none_seen = (float(dataset[f"{start}{name}"]) for name in _STUCK)
+    return None if np.isnan(numbers[0]) else Probability(*numbers, bool(none_seen))
+
+
+# Stage
+
+
+def _inputs(plan, at):
+    """All datasets of a device that bear on its size."""
+    section, device = plan.config["devices"][at.device], at.device
+    own = {"budgets": list(_budgets(plan, device).values()), "life": f"devices/life/{device}"}
+    own |= separation_inputs(plan, device)
+    own |= {"test_beams": f"devices/test_beams/{device}"} if "test_beams" in section else {}
+    if not plan.devices.kind(device).is_beam:
+        own |= {"tilted": f"devices/tilted/{device}"} if "tilt_deg" in section else {}
+        own |= {"biased": f"devices/at_voltage/{device}"} if is_biased(plan, device) else {}
+        return own | {"stopper": f"devices/stoppers/{device}"}
+    cases = {humidity: case_id(device, humidity) for humidity in section["humidities"]}
+    biased = cases if is_biased(plan, device) else {}
+    return own | {
+        "lengths": {humidity: f"devices/safe_lengths/{case}" for humidity, case in cases.items()},
+        "biased": {humidity: f"devices/at_voltage/{case}" for humidity, case in biased.items()},
+    }
+
+
+def _budgets(plan, device):
+    """Budgets of a device by humidity and more; none without uncertain inputs."""
+    budgets = budgets_of(plan, device) if device in plan.devices.with_budget else {}
+    return {key[1:]: name for key, name in budgets.items()}
+
+
+def _settings(plan, at):
+    """Settings of a device."""
+    section, is_beam = plan.config["devices"][at.device], plan.devices.kind(at.device).is_beam
+    own = {"seed": plan.config["seed"], "name": at.device, "liquids": sorted(plan.config.get("liquids", {}))}
+    own |= {"left_out": ["dimples"] if "dimples" in section else []}
+    own |= {"budgets": [humidity for humidity, *_ in _budgets(plan, at.device)]}
+    own |= {"beam": section_of_beam(plan, at.device)} if is_beam else {}
+    return select(Settings, section | own | ({} if is_beam else {"liquids": []}))
+
+
+STAGES = (
+    Stage.writing(
+        "answer",
+        "devices/answer/{device}",
+        inputs=_inputs,
+        settings=_settings,
+        compute=lambda data, settings: layout(compute(data, in_si(Settings, settings))),
+        message="Answer about device {device}.",
+        jobs=lambda plan: [{"device": name} for name in plan.devices.sections],
+        targets=("devices",),
+    ),
+)
