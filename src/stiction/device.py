@@ -11,11 +11,16 @@ from typing import TYPE_CHECKING
 import xarray as xr
 
 from stiction.accuracy import decided
+from stiction.answer.data import Answer
 from stiction.config.cases import Air, case_id, in_numbers
 from stiction.config.kinds import KEYS, KINDS, Kind, kind_of
 from stiction.config.units import in_si
+from stiction.devices import limits
 from stiction.plan.devices import DevicePlan
 from stiction.plan.graph import Results
+from stiction.report.answer import words
+from stiction.report.answer.judged import with_limits
+from stiction.stages.answer.answer import answer_of
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings, stuck
 from stiction.stages.devices.contact_names import contact_of, tips_of
@@ -139,11 +144,26 @@ class Device:
         return f"Device {self.name}, {self.kind.words}: {facts}"
 
     def _repr_html_(self):
-        """Table of its facts, for notebooks."""
+        """Table of its answer, if it is computed already, and of its facts, for notebooks."""
+        known = {}
+        if self.results.has(f"devices/answer/{self.name}"):
+            answer = self.answer()
+            known = {words.sign_of(answer)[1]: words.headline(answer)} if not words.is_forbidden(answer) else {}
         rows = "".join(
-            f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in self.facts.items()
+            f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in (known | self.facts).items()
         )
         return f"<table><caption>Device {escape(self.name)}, {escape(self.kind.words)}</caption>{rows}</table>"
+
+    def answer(self) -> Answer:
+        """Answer about the device: the size to build, its steps, and P(stuck) at its own size, all as fields.
+
+        It has everything inside that the device states, as on its page. The first call computes all of it: with stated
+        uncertainties, some minutes. Whether the contact is plastic is not checked.
+        """
+        answer = answer_of(self.results[f"devices/answer/{self.name}"])
+        humidities = self._section["humidities"]
+        found = [self.safe_lengths(humidity) for humidity in humidities] if self.kind.is_beam else [self.forces()]
+        return with_limits(answer, [limit for one in found for limit in self.warnings(one) if limits.forbids(limit)])
 
     def chart(self, humidity: float | str) -> xr.Dataset:
         """Safe lengths of the thicknesses and gaps of its chart. Dataset of `stiction.stages.devices.chart`."""

@@ -10,6 +10,9 @@ import numpy as np
 
 from stiction.devices.risk import CONFIDENCE
 
+#: Kind of the limit that inputs are too uncertain. It leaves no size to build, but a device may stick for certain.
+INPUTS = "inputs"
+
 
 class Verdict(StrEnum):
     """Judgement of a stated size, or of none."""
@@ -106,11 +109,11 @@ class Answer:
     @property
     def verdict(self) -> Verdict:
         """Judgement by fields alone."""
-        if self.forbidden:
+        if set(self.forbidden) - {INPUTS}:
             return Verdict.NONE
         if self.stuck is not None and not self.is_enough and self.stuck.low > self.share:
             return Verdict.BAD
-        if not np.isfinite(self.build):
+        if self.forbidden or not np.isfinite(self.build):
             return Verdict.NONE
         if self.stuck is None:
             return Verdict.BUILD

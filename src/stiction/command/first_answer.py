@@ -40,8 +40,8 @@ def _length(dataset, name):
     known = f" (estimate {estimate:.0f} ± {error:.2g} µm)" if np.isfinite(error) else ""
     case = Case(name)
     return (
-        f"First safe length: {case.device} {Air(case.humidity).where} can be {length:.0f} µm long{known} if at most "
-        f"{one_in(float(found.share))} may stick and the measurements are exact."
+        f"First number: by simulation alone, {case.device} {Air(case.humidity).where} can be {length:.0f} µm long"
+        f"{known} if at most {one_in(float(found.share))} may stick."
     )
 
 

@@ -27,7 +27,7 @@ FRONT = Path(".snakemake", "front.rst")
 #: Braces as HTML reads them, but not Jinja.
 _BRACES = str.maketrans({"{": "&#123;", "}": "&#125;"})
 #: Stages whose results to open first: those of devices, if there are any, and of pairs.
-_OF_DEVICES = ("device_page", "table_safe_lengths", "table_stoppers", "figure_risk")
+_OF_DEVICES = ("device_page", "table_devices", "table_safe_lengths", "table_stoppers", "figure_risk")
 _OF_PAIRS = ("table_3", "figure_overview", "table_scans", "table_1")
 
 

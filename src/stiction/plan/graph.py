@@ -171,6 +171,10 @@ class Results:
             self._known.update(datasets)
         return datasets[file]
 
+    def has(self, file: str) -> bool:
+        """Whether a dataset is computed already."""
+        return file in self._known
+
     def inputs(self, job: Job) -> dict[str, Any]:
         """Data of the inputs of a job."""
         return {name: structured(files, self._read) for name, files in job.inputs.items()}

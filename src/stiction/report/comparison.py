@@ -34,7 +34,7 @@ SOURCES = (
     ),
     Source(
         *("safe_lengths", "device", "held_by", "length that a share p holds [µm]", ("estimate_um", "estimate_se_um")),
-        more={"held by": (str, "held_by"), "p": ("g", "share"), "safe length [µm]": (".1f", "safe_length_um")},
+        more={"held by": (str, "held_by"), "p": ("g", "share"), "simulated limit [µm]": (".1f", "safe_length_um")},
         target="devices",
     ),
     Source(

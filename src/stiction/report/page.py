@@ -97,9 +97,11 @@ class Page:
 
     @property
     def lines(self) -> list[str]:
-        """Answer for a file of text: the first screen in a line, and all sentences unless a warning forbids them."""
-        first = [self.summary.line] if self.summary else []
-        return first if self.is_forbidden else [*first, *self.answer]
+        """Answer for a file of text: the first screen, and all sentences unless a warning forbids them."""
+        if self.summary is None:
+            return [*self.answer]
+        points = [f"{term}: {text}" for term, text in self.summary.points.items()]
+        return [self.summary.line, *self.summary.basis, *points, *([] if self.is_forbidden else self.answer)]
 
     @property
     def is_forbidden(self) -> bool:

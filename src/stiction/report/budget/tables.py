@@ -68,11 +68,11 @@ def stoppers(
     rows = [row | {"warnings": " ".join(warnings[row["device"]])} for row in rows]
     caption = (
         "Stoppers: pull-off force of a patch, on average an upper bound if it tilts or bends, mean ± standard error "
-        "and standard deviation over the patches; "
-        "P(stuck): fraction of the patches with a pull-off force above the restoring force, with its 95 % band; safe "
-        "force: restoring force exceeded by the pull-off force of at most this fraction of all patches, with 95 % "
-        "confidence; fitted: by a line through the largest 5 % of the forces, if too few patches bound the fraction; "
-        "extrapolated: by this line beyond its verified range; –: too few patches."
+        "and standard deviation over the patches; P(stuck): fraction of the patches with a pull-off force above the "
+        "restoring force, with its 95 % band; simulated limit: restoring force exceeded by the pull-off force of at "
+        "most this fraction of all patches, with 95 % confidence; fitted: by a line through the largest 5 % of the "
+        "forces, if too few patches bound the fraction; extrapolated: by this line beyond its verified range; –: too "
+        "few patches. One touchdown, no voltage, and all inputs exact: table devices has forces to build."
     )
     humid = [dataset for dataset in datasets.values() if ends(dataset)]
     if humid:
@@ -129,7 +129,7 @@ def _columns_of_stoppers(rows):
         "restoring force [µN]": ("g", "restoring_force_uN"),
         "P(stuck) [%]": (fraction_with_band, "share_stuck", "share_stuck_low", "share_stuck_high"),
         **{
-            f"safe force, {share} [µN]": (_with_basis, f"safe_force_uN_{share}", f"safe_force_basis_{share}")
+            f"simulated limit, {share} [µN]": (_with_basis, f"safe_force_uN_{share}", f"safe_force_basis_{share}")
             for share in shares
         },
     }

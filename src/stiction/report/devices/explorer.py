@@ -1,4 +1,4 @@
-"""Grid of the computed states of a device, and its uncertainty by the measurements, for its page."""
+"""Grid of the computed states of a device for the controls of its page."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
@@ -8,32 +8,21 @@ import numpy as np
 import xarray as xr
 from scipy.special import ndtr
 
+from stiction.answer.data import Answer
 from stiction.config.kinds import kind_of
 from stiction.config.units import from_si
-from stiction.devices.budget import LARGEST, ranked
 from stiction.devices.risk import SCORES, quantiles
 from stiction.report.devices import sentences
 from stiction.report.devices.curves import Curves
 from stiction.report.devices.grid import Axis, Grid
 from stiction.report.format import UM, UN
-from stiction.stages.devices.budget import budget_of, groups_of
 from stiction.stages.devices.safe_lengths import chosen_share
-from stiction.stages.devices.stoppers import shares_stuck
+from stiction.stages.devices.stoppers import bounded_share
 
 #: Title of a view of a device in its own airs.
 _ALONE = "the device itself"
 #: Part of a size beyond the smallest and largest computed ones that a control reaches.
 _ROOM = 0.05
-
-
-@dataclass(frozen=True)
-class Margin:
-    """Uncertainty of a size by the measurements: the largest one at the humidities of a device, as in its answer."""
-
-    low: float  #: ends of these humidities [-]
-    high: float
-    total: float  #: relative standard uncertainty [-]
-    most: str  #: input to measure better
 
 
 @dataclass(frozen=True)
@@ -43,7 +32,6 @@ class View:
     title: str
     grid: Grid | Curves
     words: Mapping[str, str]  #: that differ between beams and stoppers
-    margin: Margin | None = None
 
 
 def content(name: str, section: Mapping[str, Any], views: Sequence[View]) -> dict:
@@ -57,17 +45,17 @@ def views_of_beam(
     section: Mapping[str, Any],
     safe_lengths: Mapping[float, xr.Dataset],
     charts: Mapping[float, xr.Dataset],
-    budgets: Mapping[tuple, xr.Dataset],
+    answer: Answer,
 ) -> list[View]:
     """Views of a cantilever or bridge, the first of which begins with the number of its answer.
 
     It is the one over the chart, or, if the chart has neither the device itself nor its worst air, the device alone.
     """
-    view = beam_view(name, section, safe_lengths, charts, budgets)
+    view = beam_view(name, section, safe_lengths, charts, answer)
     own = _worst(safe_lengths), section["thickness_um"], section["gap_um"]
     if all(np.isclose(axis.values, value, rtol=1e-9).any() for axis, value in zip(view.grid.axes, own, strict=True)):
         return [view]
-    return [replace(beam_view(name, section, safe_lengths, {}, budgets), title=_ALONE), view]
+    return [replace(beam_view(name, section, safe_lengths, {}, answer), title=_ALONE), view]
 
 
 def beam_view(
@@ -75,13 +63,16 @@ def beam_view(
     section: Mapping[str, Any],
     safe_lengths: Mapping[float, xr.Dataset],
     charts: Mapping[float, xr.Dataset],
-    budgets: Mapping[tuple, xr.Dataset],
+    answer: Answer,
 ) -> View:
-    """View of a cantilever or bridge. Parameters as of `stiction.report.devices.pages.beam_page`."""
+    """View of a cantilever or bridge, with its datasets by humidity. Charts may be empty.
+
+    ASSUME: at other sizes and in other airs, all causes inside the answer change lengths by as much as at its own.
+    """
     humid = {humidity: chart for humidity, chart in sorted(charts.items()) if humidity > 0}
     joined = _chart_views(humid) if humid else alone(section, safe_lengths)
     worst = _worst(safe_lengths)
-    chart = f"devices.{name}.chart"
+    least, chart = float(sentences.safe_lengths_of(safe_lengths[worst]).min()), f"devices.{name}.chart"
     axes = (
         humidity_axis(
             joined.humidity.values, worst, f"{chart}.humidities" if humid else f"devices.{name}.humidities", humid
@@ -89,26 +80,23 @@ def beam_view(
         _size_axis("thickness_um", "thickness", joined.thickness.values / UM, section, f"{chart}.thicknesses_um"),
         _size_axis("gap_um", "gap", joined.gap.values / UM, section, f"{chart}.gaps_um"),
     )
-    safe, quantiles = joined.safe_length.values / UM, joined["quantile"].values / UM
-    start = section.get("length_um", float(sentences.safe_lengths_of(safe_lengths[worst]).min()) / UM)
-    size = size_axis("length_um", "length", "µm", (safe, quantiles), start)
+    build, quantiles = answer.build / least * joined.safe_length.values / UM, joined["quantile"].values / UM
+    size = size_axis("length_um", "length", "µm", (build, quantiles), section.get("length_um", least / UM))
     share = share_axis(joined.share.values, chosen_share(safe_lengths[worst]), "shares")
     sizes = {"thickness_um": float(section["thickness_um"]), "gap_um": float(section["gap_um"])}
-    counted = [
-        ({"humidity": humidity, size.key: size.start} | sizes, *map(float, one.isel(shape=-1).stuck_at_length))
-        for humidity, one in safe_lengths.items()
-        if "length_of_device" in one
+    grid = Grid(axes, share, size, build, quantiles, int(joined.beams), False, counted(answer, size, sizes))
+    words = {"what": "length", "safe": "Length to build", "bound": "to build"}
+    words |= {"stick": "Devices of this length that stick"}
+    return View("sizes and air", grid, words)
+
+
+def counted(answer: Answer, size: Axis, sizes: Mapping[str, float]) -> list[tuple]:
+    """States at the stated size in each air of an answer, with P(stuck) and its band."""
+    return [
+        ({"humidity": one.humidity, size.key: size.start} | sizes, one.stuck.value, one.stuck.low, one.stuck.high)
+        for one in answer.airs
+        if one.stuck is not None
     ]
-    grid = Grid(axes, share, size, safe, quantiles, int(joined.beams), False, counted)
-    words = {
-        "what": "length",
-        "safe": "Safe length",
-        "stick": "Devices of this length that stick",
-        "build": "no more than",
-        "largest": LARGEST,
-        "bound": "safe",
-    }
-    return View("sizes and air", grid, words, margin_of_beam(safe_lengths, budgets))
 
 
 def _worst(safe_lengths):
@@ -144,32 +132,41 @@ def _quantiles(lengths, stuck, samples):
     return np.where(inside, np.interp(shares, stuck, lengths), np.nan)
 
 
-def views_of_stopper(
-    section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]
-) -> list[View]:
+def views_of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, answer: Answer) -> list[View]:
     """Views of a stopper, the first of which begins with the force of its answer.
 
     It is the one over the humidity, or, if the worst of its airs is dry and others are humid, the device alone.
     """
-    view, worst = stopper_view(section, stopper, budgets), sentences.worst_air(stopper)
+    view, worst = stopper_view(section, stopper, answer), sentences.worst_air(stopper)
     if worst in view.grid.axes[0].values:
         return [view]
     own = stopper.sortby("humidity")
     axis = humidity_axis(own.humidity.values, worst, "humidities of the device", False)
     scored = np.array([quantiles(row) for row in own.pull_off.values])
     alone = _force_view((axis,), own.safe_force.sel(part="safe", drop=True), scored, section, stopper)
-    return [replace(alone, title=_ALONE, margin=view.margin), view]
+    return [replace(_to_build(alone, answer), title=_ALONE), view]
 
 
-def stopper_view(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Mapping[tuple, xr.Dataset]) -> View:
-    """View of a stopper over the humidity: its section, dataset of stage stoppers and budgets."""
+def stopper_view(section: Mapping[str, Any], stopper: xr.Dataset, answer: Answer) -> View:
+    """View of a stopper over the humidity: its section, dataset of stage stoppers and answer."""
     is_humid = stopper.axis.values[-1] > 0
     safe, scored = _along(stopper)
     shown = safe.axis.values > 0 if is_humid else slice(None)
     key = "design.worst_humidities" if is_humid else "humidities of the device"
     axis = humidity_axis(safe.axis.values[shown], sentences.worst_air(stopper), key, True)
-    view = _force_view((axis,), safe.isel(axis=shown), scored[shown], section, stopper)
-    return replace(view, margin=_margin(budgets))
+    return _to_build(_force_view((axis,), safe.isel(axis=shown), scored[shown], section, stopper), answer)
+
+
+def _to_build(view, answer):
+    """View of forces to build in place of simulated limits, as `beam_view`."""
+    grid = view.grid
+    start = {axis.key: axis.start for axis in grid.axes} | {"share": answer.share}
+    is_known = np.isfinite(answer.build) and answer.share in grid.share.values
+    scale = grid.size.start / answer.size  # of forces, or of stiffnesses
+    factor = answer.build * scale / grid.safe_size(start) if is_known else np.nan
+    words = {**view.words, "safe": f"{grid.size.label.capitalize()} to build", "bound": "to build"}
+    grid = replace(grid, safe=factor * grid.safe, counted=counted(answer, grid.size, {}))
+    return replace(view, grid=grid, words=words)
 
 
 def _along(stopper):
@@ -206,13 +203,11 @@ def _force_view(axes, safe, scored, section, stopper):
         key, label, unit, per = "stiffness_N_per_m", "stiffness of the spring", "N/m", section["gap_um"] * UM
     numbers = known.values / per, scored / per
     size = size_axis(key, label, unit, numbers, float(stopper.restoring_force) / per)
-    least = sentences.bounded_share(stopper)
+    least = bounded_share(stopper)
     share = share_axis(known.share.values, least if least in known.share.values else float(known.share[-1]), "")
-    counted = [({"humidity": humidity, key: size.start}, *stuck) for humidity, *stuck in shares_stuck(stopper)]
-    of_axes = {axis.key for axis in axes} == {"humidity"}
-    grid = Grid(axes, share, size, *numbers, stopper.sizes["sample"], True, counted if of_axes else ())
-    words = {"what": label, "safe": f"Sufficient {label}", "stick": f"Stoppers with this {label} that stick"}
-    words |= {"build": "at least", "largest": sentences.LARGEST, "bound": "sufficient"}
+    grid = Grid(axes, share, size, *numbers, stopper.sizes["sample"], True)
+    words = {"what": label, "safe": f"{label.capitalize()} that simulation alone allows", "bound": "limit"}
+    words |= {"stick": f"Stoppers with this {label} that stick"}
     return View("humidity", grid, words)
 
 
@@ -262,20 +257,3 @@ def size_axis(key: str, label: str, unit: str, computed: Sequence[np.ndarray], s
 def _humidities_in_words(values):
     """Humidities in words."""
     return ", ".join(f"{value:g}" if value else "0 (dry air)" for value in values)
-
-
-def margin_of_beam(safe_lengths: Mapping[float, xr.Dataset], budgets: Mapping[tuple, xr.Dataset]) -> Margin | None:
-    """Margin that takes as much from the safe length of a beam as its answer does."""
-    margin = _margin(sentences.shortest_budgets(safe_lengths, budgets))
-    return margin and replace(margin, total=sentences.length_to_build(safe_lengths, budgets)[1])
-
-
-def _margin(budgets):
-    """Margin of the most uncertain budget, where one is known."""
-    known = [(budget_of(dataset), dataset) for _, dataset in sorted(budgets.items())]
-    known = [(budget, dataset) for budget, dataset in known if np.isfinite(budget.total) and budget.total > 0]
-    if not known:
-        return None
-    budget, dataset = max(known, key=lambda one: one[0].total)
-    humidities = [float(humidity) for humidity, *_ in budgets]
-    return Margin(min(humidities), max(humidities), budget.total, ranked(budget, groups_of(dataset))[0][0])

@@ -142,7 +142,7 @@ def _explain(panel, datasets):
         panel.plot([], [], ":", color="0.4", linewidth=0.8, label="length of the device")
     for basis, mark in _BASES.items():
         if any(basis in dataset.basis.values for dataset in datasets.values()):
-            panel.plot([], [], mark, color="0.3", label=f"safe length, {basis}")
+            panel.plot([], [], mark, color="0.3", label=f"simulated limit, {basis}")
 
 
 @styled
@@ -171,7 +171,7 @@ def chart(
         panel.set(xlabel="relative humidity [–]", ylim=(0.95 * low, high + _ROOM * (high - low)))
         humidity_axis(panel, placed[name])
     for line in lines:
-        line[0, 0].set_ylabel(on_own_axes("safe length [µm]", line))
+        line[0, 0].set_ylabel(on_own_axes("simulated limit [µm]", line))
     letter_lines(
         lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].legend}" for name, gap, shape in subjects]
     )
@@ -250,7 +250,7 @@ STAGES = (
     ),
     figure_stage(
         "chart",
-        "safe length against relative humidity",
+        "simulated limit against relative humidity",
         "Devices",
         inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.with_chart)},
         compute=lambda data: chart(data["charts"], device_warnings.read(data["warnings"]).curves),

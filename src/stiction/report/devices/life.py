@@ -12,7 +12,6 @@ from matplotlib.lines import Line2D
 from stiction.config.units import from_si
 from stiction.constants import FREE_FALL
 from stiction.contact.voltage import BREAKDOWN
-from stiction.devices.budget import part_left
 from stiction.plan.names import by_name
 from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN, fraction_between
 from stiction.report.style import (
@@ -26,7 +25,6 @@ from stiction.report.style import (
     styled,
 )
 from stiction.report.table import Table, table_stage
-from stiction.rounding import in_percent
 from stiction.stages.life.answers import (
     AFTER,
     AT_VOLTAGE,
@@ -73,7 +71,8 @@ CAPTION = (
     "the keys that a row asks for. The column ± has the standard uncertainty of the lower bound, due to the stated "
     "uncertainties of the device or to sampled surfaces. Voltage, shock, energy and force of a beam are those of its "
     "length, which is stated or its least safe one. A liquid that dries is not humid air: it holds the whole area "
-    "that it wets. The measurements count as exact, unless the form of a safe length says what is subtracted for them."
+    "that it wets. Lengths and forces are simulated limits: all inputs "
+    "count as exact. The answer of the device has everything inside."
 )
 _COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#D55E00", "#CC79A7", "#009E73"), strict=True))
 #: Height of a row, and of everything else in a panel [in]. Size of text [points], mean width of its characters in
@@ -111,19 +110,6 @@ def table(life: Mapping[str, xr.Dataset]) -> Table:
     return Table.of(rows, CAPTION, columns)
 
 
-def less_margin(dataset: xr.Dataset, total: float) -> xr.Dataset:
-    """Answers about a beam with safe lengths less twice the uncertainty of their logarithm due to the measurements."""
-    if not total:
-        return dataset
-    left = part_left(total)
-    margin = f"less {in_percent(1 - left)} for the measurements" if np.isfinite(left) else "if measurements were exact"
-    named = [name in (AFTER, FAST, AT_VOLTAGE) or name.startswith(SAFE) for name in map(str, dataset.answer.values)]
-    is_safe = np.array(named) & (dataset.unit.values == "m")
-    scaled = {name: dataset[name] * np.where(is_safe, np.nan_to_num(left, nan=1.0), 1.0) for name in _NUMBERS}
-    forms = [f"{form}; {margin}" if is_one else form for form, is_one in zip(dataset.form.values, is_safe, strict=True)]
-    return dataset.assign(scaled).assign(form=("answer", forms))
-
-
 def significant(value: float) -> str:
     """Number with three significant digits and without an exponent, – for NaN.
 
@@ -148,12 +134,17 @@ def sentences(dataset: xr.Dataset) -> list[str]:
     answers = {answer.name: answer for answer in answers_of(dataset) if not answer.needs}
     unknown = [answer for answer in answers_of(dataset) if answer.needs]
     length = float(dataset.length)
-    at = f"At {TO_UM * length:.0f} µm it" if np.isfinite(length) else "It"
+    at = f"At {TO_UM * length:.0f} µm{_limit(answers, length)} it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
     said = [*_touching(answers, at), *_asking(one for one in unknown if one.question == TOUCH)]
     said += [*_pulled_in(answers, potential), *_drying(answers, at, length), *_on_dimples(answers), *_at_tilts(answers)]
     said += [*_at_voltage(answers, potential), *_fast(answers), *_often(answers, int(dataset.touchdowns))]
     return [*said, *_asking(one for one in unknown if one.question != TOUCH)]
+
+
+def _limit(answers, length):
+    """Note on a length that is the least simulated limit [m]."""
+    return ", its simulated limit," * any(one.low == length for name, one in answers.items() if name.startswith(SAFE))
 
 
 def _asking(unknown):
@@ -220,7 +211,7 @@ def _at_voltage(answers, potential):
         return []
     one, field = answers[AT_VOLTAGE], answers[FIELD]
     is_length, on = one.unit == "m", f"While {significant(potential)} V are on,"
-    what, unit = ("its safe length is", "µm") if is_length else ("they hold it with a further", "µN")
+    what, unit = ("its simulated limit is", "µm") if is_length else ("they hold it with a further", "µN")
     ends = list(dict.fromkeys(end for end, value in ((_low(one), one.low), (_high(one), one.high)) if value == value))
     said = [f"{on} {what} {' to '.join(ends)} {unit}."]
     if FREEING in answers:
@@ -285,7 +276,7 @@ def _fast(answers):
     one = answers.get(FAST) or answers.get(RESTORING)
     if one is None or not one.low < one.high < np.inf:
         return []
-    needs = f"its safe length can fall from {_high(one)} to {_low(one)} µm"
+    needs = f"its simulated limit can fall from {_high(one)} to {_low(one)} µm"
     if one.unit == "N":
         needs = f"it can need a restoring force of {_high(one)} instead of {_low(one)} µN"
     return [f"If it separates faster than water evaporates, as in a shock, {needs}."]
@@ -298,7 +289,7 @@ def _often(answers, touchdowns):
     one = answers[AFTER]
     is_length = one.unit == "m"
     bounds = [_low(one), _high(one)] if is_length else [_high(one), _low(one)]
-    what = "its safe length is" if is_length else "it needs a restoring force of"
+    what = "its simulated limit is" if is_length else "it needs a restoring force of"
     unit = _UNITS[one.unit][1]
     return [
         f"For {touchdowns} touchdowns {what} {bounds[0]} {unit} if each meets other summits, and {bounds[1]} {unit} if "

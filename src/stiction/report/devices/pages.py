@@ -1,14 +1,16 @@
 """Pages of single devices for the report: the answer in words, tables, figures, warnings and terms."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import xarray as xr
 import yaml
 
+from stiction.answer.data import Answer
 from stiction.config.cases import DRY, case_id
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of, restoring_force
 from stiction.config.merging import differing
@@ -18,13 +20,16 @@ from stiction.devices.risk import one_in
 from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
 from stiction.report import html
+from stiction.report.answer import figures as figures_answer
+from stiction.report.answer import judged, screen
+from stiction.report.answer import tables as tables_answer
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
-from stiction.report.devices import curve_views, explorer, first_screen, life, own_length, sentences, voltage_views
+from stiction.report.devices import curve_views, explorer, life, sentences, voltage_views
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
 from stiction.report.drawings.devices import device_drawing
-from stiction.report.format import MISSING, UM, humidity_text
+from stiction.report.format import MISSING, humidity_text
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.process import section as process_section
@@ -41,7 +46,7 @@ from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budgets_of
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import section_of_beam
-from stiction.stages.devices.stoppers import ends, shares_stuck
+from stiction.stages.devices.stoppers import ends
 from stiction.stages.life.table import is_biased
 
 #: What a map over two quantities shows.
@@ -56,6 +61,16 @@ _MISSING_LENGTHS = (
     "paper measured no tips; or too few beams stick for an estimate"
 )
 _MISSING_EFFECTS = "this input does not act here, or too few of the simulated devices stick to show what it changes"
+#: What is not inside a table of one stage, and what a ladder shows.
+_SIMULATED = (
+    "Simulated limits: one touchdown, no voltage, and all inputs exact. The answer above has everything inside."
+)
+_LADDER = (
+    "Each step adds one cause to those above it, in the air and end state that are then worst. From the error of the "
+    "simulation on, sizes hold with 95 % confidence. What is not stated stands beside and changes nothing. Lines: the "
+    "size to build, and yours (dotted)."
+)
+_NO_ERROR = "Not inside: the error of the model of the contact, which study full_contact computes."
 #: Terms that pages explain.
 _GLOSSARY = Path(__file__).with_name("terms.yaml")
 
@@ -73,120 +88,71 @@ def _read(part):
     return part if isinstance(part, str) else " ".join(part)
 
 
-def beam_page(
-    name: str,
-    section: Mapping,
-    safe_lengths: Mapping[float, xr.Dataset],
-    charts: Mapping[float, xr.Dataset],
-    budgets: Mapping[tuple, xr.Dataset],
-    warnings: Mapping[tuple, Sequence[str]],
-    test_beams: xr.Dataset | None = None,
-    errors: Mapping[str, xr.Dataset] | None = None,
-    roughness: xr.Dataset | None = None,
-) -> Page:
-    """Page of a cantilever or bridge.
+def beam_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], answer: Answer) -> Page:
+    """Page of a cantilever or bridge, from its section of the configuration, its datasets and its answer.
 
-    Parameters
-    ----------
-    name : str
-    section : dict
-        Its section of the configuration.
-    safe_lengths, charts : dict
-        Humidity to the datasets of the stages safe_lengths and chart; the latter may be empty.
-    budgets : dict
-        Humidity and, for tips, more to the dataset of stage budget; may be empty.
-    warnings : dict
-        Where the model ends: ``lengths`` and ``curves`` of `stiction.stages.devices.device_warnings.OfDevices`.
-    test_beams, roughness : Dataset, optional
-        Of stages test_beams_rerun and roughness.
-    errors : dict, optional
-        Name of the device to the dataset of stage device_model_error.
+    Of the data, ``safe_lengths`` and ``charts`` are by humidity, ``budgets`` as of `budgets_of` without the name, and
+    ``warnings`` are those of `stiction.stages.devices.device_warnings.read`. Charts, budgets, ``test_beams``,
+    ``errors`` of the model and ``roughness`` may be missing.
     """
-    cases = {(name, humidity): dataset for humidity, dataset in safe_lengths.items()}
-    left = sentences.parts_left(next(iter(safe_lengths.values())), budgets) if budgets else None
-    table = tables_devices.safe_lengths(cases, warnings, errors, left=left).cells.drop(columns="device")
-    sections = [Section("How long may it be?", (), table, figures_devices.risk(cases, {}), _MISSING_LENGTHS)]
-    if charts:
-        axis = {(name, humidity): dataset for humidity, dataset in charts.items()}
+    lengths, warnings = data["safe_lengths"], data["warnings"].lengths | data["warnings"].curves
+    cases = {(name, humidity): dataset for humidity, dataset in lengths.items()}
+    table = tables_devices.safe_lengths(cases, warnings, data.get("errors")).cells.drop(columns="device")
+    pictures = figures_devices.risk(cases, {})
+    sections = [Section("By simulation alone", (_SIMULATED,), table, pictures, _MISSING_LENGTHS)]
+    if data.get("charts"):
+        axis = {(name, humidity): dataset for humidity, dataset in data["charts"].items()}
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
-    sections += _sure(name, budgets, errors)
-    of_shortest = sentences.shortest_budgets(safe_lengths, budgets)
-    decided = tables_budget.first_to_measure(of_shortest.values(), section.get("assumed", ()))
-    few, more = sentences.few_sentences(safe_lengths), _rough_enough(roughness)
-    answer = [*own_length.sentences(safe_lengths, of_shortest), *few]
-    built, of_model = _test_beam_sentence(test_beams), model_errors.sentences(name, errors)
-    updated = tables_test_beams.updated_size(test_beams)
-    alone = [] if updated else [sentences.build_sentence(safe_lengths, budgets)]
-    answer += [*alone, *built, *decided, *more]
-    sections += _test_beam_sections(name, test_beams)
-    predicted = sentences.prediction_sentences(safe_lengths)
-    answer += [*(sentences.safe_sentence(*case, budgets) for case in safe_lengths.items()), *of_model, *predicted]
-    effects = own_length.effect_of_measurements(safe_lengths, of_shortest)
-    more = [*effects, *few, *more, *built, *of_model[1:], *predicted]
-    sections += _how_rough(name, roughness)
-    shortest = updated[1] * UM if updated else None
-    listed = pair_warnings.with_numbers(warnings)
-    listed += sentences.shortest_warnings(section, safe_lengths, budgets, shortest)
-    listed += [] if test_beams is None else tables_test_beams.warnings(test_beams)
-    shapes = next(iter(safe_lengths.values()))["shape"].values
-    held = {term: text for shape in shapes for term, text in END_STATES[str(shape)].terms.items()}
-    terms = _terms()
-    words = (
+    said = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
+    listed = pair_warnings.with_numbers(warnings) + sentences.shortest_warnings(section, lengths, answer.build)
+    return _page_of(name, section, data, answer, (sections, said, listed, _words_of_beam(data)))
+
+
+def _words_of_beam(data):
+    """Terms that the page of a beam explains."""
+    lengths, terms = data["safe_lengths"], _terms()
+    shapes = map(str, next(iter(lengths.values()))["shape"].values)
+    held = {term: text for shape in shapes for term, text in END_STATES[shape].terms.items()}
+    return (
         held
         | terms["beams"]
-        | {"Bound": tables_devices.about_bounds(safe_lengths, **terms["bounds"])}
-        | (terms["dry_air"] if any(float(dataset.film) == 0 for dataset in safe_lengths.values()) else {})
-        | (terms["charts"] if charts else {})
-        | _words_of_budgets(budgets)
+        | {"Bound": tables_devices.about_bounds(lengths, **terms["bounds"])}
+        | (terms["dry_air"] if any(float(dataset.film) == 0 for dataset in lengths.values()) else {})
+        | (terms["charts"] if data.get("charts") else {})
     )
-    summary = _with_model_error(
-        first_screen.beam_screen(section, safe_lengths, budgets, listed, test_beams), name, errors
-    )
-    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary, more=more)
 
 
-def stopper_page(
-    name: str,
-    section: Mapping,
-    stopper: xr.Dataset,
-    budgets: Mapping[tuple, xr.Dataset],
-    warnings: Sequence[str],
-    test_beams: xr.Dataset | None = None,
-    errors: Mapping[str, xr.Dataset] | None = None,
-    roughness: xr.Dataset | None = None,
-) -> Page:
-    """Page of a stopper. Parameters as in `beam_page`, with one dataset of stage stoppers and a list of warnings."""
-    table = tables_budget.stoppers({name: stopper}, {name: []}, errors).cells.drop(columns=["device"])
-    sections = [Section("Does the restoring force suffice?", (), table, figures_budget.stoppers({name: stopper}, {}))]
-    sections += [*_sure(name, budgets, errors), *_how_rough(name, roughness)]
-    decided = tables_budget.first_to_measure(budgets.values(), section.get("assumed", ()))
-    rough, built, of_model = (
-        _rough_enough(roughness),
-        _test_beam_sentence(test_beams),
-        model_errors.sentences(name, errors),
-    )
-    alone = [] if tables_test_beams.updated_size(test_beams) else [sentences.verdict(stopper, budgets)]
-    answer = [*alone, *built, *decided, *rough]
-    sections += _test_beam_sections(name, test_beams)
-    listed = [*warnings, *([] if test_beams is None else tables_test_beams.warnings(test_beams))]
-    answer += [sentences.stuck_sentence(*row, force=float(stopper.restoring_force)) for row in shares_stuck(stopper)]
+def stopper_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], answer: Answer) -> Page:
+    """Page of a stopper. Parameters as of `beam_page`, with its dataset ``stopper`` in place of lengths."""
+    stopper = data["stopper"]
+    table = tables_budget.stoppers({name: stopper}, {name: []}, data.get("errors")).cells.drop(columns=["device"])
+    picture = figures_budget.stoppers({name: stopper}, {})
+    sections = [Section("By simulation alone", (_SIMULATED,), table, picture)]
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
-    forces = sentences.safe_force_sentences(stopper)
-    answer += [*forces, *worst, *of_model]
-    more = [*forces, *worst, *rough, *built, *of_model[1:]]
-    words = _terms()["stoppers"] | (_terms()["worst_humidity"] if worst else {}) | _words_of_budgets(budgets)
-    summary = first_screen.stopper_screen(section, stopper, budgets, listed, test_beams)
-    summary = _with_model_error(summary, name, errors)
-    return Page(_title(name, section), _facts_of(section), answer, sections, listed, words, summary=summary, more=more)
+    said = [*sentences.safe_force_sentences(stopper), *worst]
+    words = _terms()["stoppers"] | (_terms()["worst_humidity"] if worst else {})
+    return _page_of(name, section, data, answer, (sections, said, list(data["warnings"].patches[name]), words))
 
 
-def _with_model_error(summary, name, errors):
-    """First screen with the error of the model of the contact, beside a number."""
-    if not summary.basis:
-        return summary
-    unstated = "The error of the model of the contact is not stated: run.studies leaves out full_contact."
-    return replace(summary, basis=[*summary.basis, *(model_errors.sentences(name, errors)[:1] or [unstated])])
+def _page_of(name, section, data, answer, own):
+    """Page of a device from the first sections, sentences, warnings and terms of its kind."""
+    sections, said, listed, words = own
+    budgets, errors, test_beams, roughness = (data.get(key) for key in ("budgets", "errors", "test_beams", "roughness"))
+    of_model, told = model_errors.sentences(name, errors), []
+    if test_beams is not None:
+        told, listed = [tables_test_beams.notes(test_beams)], listed + tables_test_beams.warnings(test_beams)
+    forbidding = judged.forbidding(name, data["warnings"])
+    contradicted = [tables_test_beams.contradiction(test_beams)] if "test_beams" in answer.forbidden else []
+    shown = screen.screen(answer, section, [*contradicted, *forbidding], (of_model or [_NO_ERROR])[0])
+    said = [*said, *filter(None, told), *_rough_enough(roughness), *of_model[1:]]
+    steps = Section(
+        "From the estimate to the answer", (_LADDER,), tables_answer.steps(answer), figures_answer.ladder(answer)
+    )
+    sections = [steps, *sections, *_sure(name, budgets or {}, errors), *_test_beam_sections(name, test_beams)]
+    sections += _how_rough(name, roughness)
+    terms = words | _words_of_budgets(budgets)
+    return Page(_title(name, section), _facts_of(section), said, sections, listed, terms, summary=shown, more=said)
 
 
 def _words_of_budgets(budgets):
@@ -255,11 +221,6 @@ def _sure(name, budgets, errors):
     return [Section("Uncertainty, and what should be measured better", said, cells, drawn, _MISSING_EFFECTS)]
 
 
-def _test_beam_sentence(update):
-    """Sentence on the test beams of a device, if it has some."""
-    return [] if update is None else [tables_test_beams.sizes_to_build(update)]
-
-
 def _test_beam_sections(name, update):
     """Section on the evidence of the test beams of a device, if it has some."""
     if update is None:
@@ -308,8 +269,9 @@ def _inputs(plan, at):
     devices, section = plan.devices, plan.config["devices"][at.device]
     cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
     budgets = budgets_of(plan, at.device) if at.device in devices.with_budget else {}
-    own = {"budgets": {key[1:]: name for key, name in budgets.items()}, "warnings": device_warnings.files_of(at.device)}
-    own |= {"life": f"devices/life/{at.device}"} | model_errors.error_inputs(plan, at.device)
+    own = {"answer": f"devices/answer/{at.device}", "life": f"devices/life/{at.device}"}
+    own |= {"budgets": {key[1:]: name for key, name in budgets.items()}}
+    own |= {"warnings": device_warnings.files_of(at.device)[at.device]} | model_errors.error_inputs(plan, at.device)
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
     own |= process_section.inputs(plan, at.device)
@@ -349,44 +311,45 @@ def _settings(plan, at):
 @on_a_page()
 def _page(data, at, settings):
     """Page of a device."""
-    warnings, budgets = device_warnings.read(data["warnings"]), data["budgets"]
-    more = {name: data.get(name) for name in ("test_beams", "errors", "roughness")}
-    if "stopper" in data:
-        views = explorer.views_of_stopper(settings, data["stopper"], budgets)
-        if "tilted" in data:
-            views.append(explorer.tilted_view(at.device, settings, data["tilted"], data["stopper"]))
-        if "biased" in data:
-            views.append(voltage_views.stopper_view(at.device, settings, data["biased"]))
-        page = stopper_page(at.device, settings, data["stopper"], budgets, warnings.patches[at.device], **more)
-    else:
-        lengths, charts = data["safe_lengths"], data["charts"]
-        views = explorer.views_of_beam(at.device, settings, lengths, charts, budgets)
-        if "young_modulus_GPa" in settings:
-            views.append(voltage_views.beam_view(at.device, settings, lengths, budgets))
-        page = beam_page(at.device, settings, lengths, charts, budgets, warnings.lengths | warnings.curves, **more)
-    views += curve_views.views(at.device, settings, data)
-    if tested := tables_test_beams.beside_numbers(data.get("test_beams")):
-        views = [replace(view, words={**view.words, "tested": tested}) for view in views]
-    drawing = device_drawing(_with_force(settings)).svg
-    answers = data["life"]
-    if "stopper" not in data:
-        answers = life.less_margin(answers, sentences.length_to_build(data["safe_lengths"], budgets)[1])
-    page = process_section.with_process(with_life(page, at.device, answers), at.device, data)
+    data = dict(data) | {"warnings": device_warnings.read({at.device: data["warnings"]})}
+    answer = judged.judged(data["answer"], data["warnings"])
+    make, views = (stopper_page, _views_of_stopper) if "stopper" in data else (beam_page, _views_of_beam)
+    page = make(at.device, settings, data, answer)
+    views = [*views(at.device, settings, data, answer), *curve_views.views(at.device, settings, data)]
+    page = process_section.with_process(with_life(page, at.device, data["life"]), at.device, data)
     return replace(
         page,
         not_modelled=settings["not_modelled"],
-        drawing=drawing,
+        drawing=device_drawing(_with_force(settings)).svg,
         explorer=explorer.content(at.device, settings, views),
     )
 
 
+def _views_of_stopper(name, section, data, answer):
+    """Views of a stopper."""
+    stopper, views = data["stopper"], explorer.views_of_stopper(section, data["stopper"], answer)
+    if "tilted" in data:
+        views.append(explorer.tilted_view(name, section, data["tilted"], stopper))
+    if "biased" in data:
+        views.append(voltage_views.stopper_view(name, section, data["biased"]))
+    return views
+
+
+def _views_of_beam(name, section, data, answer):
+    """Views of a cantilever or bridge."""
+    views = explorer.views_of_beam(name, section, data["safe_lengths"], data["charts"], answer)
+    if "young_modulus_GPa" in section:
+        views.append(voltage_views.beam_view(name, section, data["safe_lengths"]))
+    return views
+
+
 def with_life(page: Page, name: str, answers: xr.Dataset) -> Page:
-    """Page with the life of its device: below the verdict in words, and after the first section as table and figure."""
-    (verdict, *reasons), (first, *others) = page.answer, page.sections
+    """Page with the life of its device: in words, and after the first section as table and figure."""
+    first, *others = page.sections
     cells = life.table({name: answers}).cells.drop(columns="device")
     section = Section("From the first contact to the last", (life.CAPTION,), cells, life.figure({name: answers}))
     said, sections = life.sentences(answers), [first, section, *others]
-    return replace(page, answer=[verdict, *said, *reasons], more=[*said, *page.more], sections=sections)
+    return replace(page, answer=[*said, *page.answer], more=[*said, *page.more], sections=sections)
 
 
 def _save(page, paths):

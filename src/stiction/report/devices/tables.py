@@ -7,7 +7,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.devices.budget import LARGEST
 from stiction.devices.risk import Basis
 from stiction.plan.names import by_case
 from stiction.report.format import MISSING, UM, error_alone, fraction_with_band, humidity_text, number
@@ -22,18 +21,16 @@ from stiction.stages.devices.device_warnings import curves, not_modelled
 from stiction.stages.devices.end_states import END_STATES
 
 _SAFE_LENGTHS = (
-    "Safe length: the largest length with at most a fraction p of the devices stuck, with a confidence of 95 %. "
+    "Simulated limit: the largest length with at most a fraction p of the devices stuck, with a confidence of 95 %. "
     "A cantilever sticks along its beam (S-shape) or at its tip alone (arc), a bridge at its "
     "middle. Estimate: length with a fraction p stuck, with standard errors due to the number of beams and to the "
     "number of sampled surfaces. Every beam has its own tip, and the scatter of the tips is part of the first error. "
     "Basis: sampled, by order statistics; fitted, by a line through the shortest 5 %; extrapolated, by this line "
     "beyond its verified range."
 )
-#: What budgets do to safe lengths, without and with the column of lengths to build.
-_EXACT = "The measurements count as exact: the page of the device subtracts twice their uncertainty."
-_TO_BUILD = (
-    "The measurements count as exact. To build: the safe length less twice their uncertainty, the largest in its air "
-    f"by the budget of its end state; none where it exceeds {in_percent(LARGEST)}."
+#: What these limits leave out.
+_EXACT = (
+    "One touchdown, no voltage, and all inputs exact: lengths to build, with everything inside, are in table devices."
 )
 #: What other bases of a safe length mean, where they occur.
 _FEW = {
@@ -52,10 +49,10 @@ _DRY_BOUND = (
     "average. A single rough tip can stick harder than flats, so a fitted length may fall below it."
 )
 _CHART = (
-    "Safe length of beams of the thicknesses and gaps of a chart against relative humidity: the largest length with at "
-    "most a fraction p stuck, with a confidence of 95 %. From: finite elements, or a power "
-    "law between their sizes and humidities, with its largest error at beams outside its fit. The measurements count "
-    "as exact: the page of the device subtracts twice their uncertainty from lengths to build."
+    "Simulated limit of beams of the thicknesses and gaps of a chart against relative humidity: the largest length "
+    "with at most a fraction p stuck, with a confidence of 95 %. From: finite elements, or a power law between their "
+    "sizes and humidities, with its largest error at beams outside its fit. One touchdown, no voltage, and all inputs "
+    "exact: table devices has lengths to build."
 )
 _CHART_BOUND = (
     "Bound: for a cantilever, the sticking length of flats in contact, with water in all gaps. For a bridge: no "
@@ -105,8 +102,8 @@ _PREDICTION = {"95 %, form of the model [µm]": (_interval, "prediction_low_um",
 _PREDICTED = (
     "95 %, form of the model: prediction interval of the estimate of a cantilever held by its beam, if this model errs "
     "on its pair as it does on the paper's, whose measured lengths show how far, with the standard errors. It is "
-    "beside the safe length and does not change it. Tips, bridges and dry air, which the paper did not measure, and "
-    "devices with test beams have none."
+    "beside the simulated limit and does not change it. Tips, bridges and dry air, which the paper did not measure, "
+    "and devices with test beams have none."
 )
 _COLUMNS_AT_LENGTH = {
     "length [µm]": (lambda length: number(length, "g"), "length_um"),
@@ -119,12 +116,10 @@ def safe_lengths(
     warnings: Mapping[tuple[str, float, str], list],
     errors: Mapping[str, xr.Dataset] | None = None,
     not_modelled: str = "",
-    left: Mapping[str, float] | None = None,
 ) -> Table:
     """Safe lengths of all beams, one row per device, humidity, shape and share.
 
-    Errors of the model are by device, and the parts of lengths left to build by shape, for a column of lengths to
-    build. The caption ends with what is not in the model.
+    Errors of the model are by device. The caption ends with what is not in the model.
     """
     rows, marks = [], []
     numbers = numbered(warnings)[1]
@@ -134,19 +129,18 @@ def safe_lengths(
             head |= _at_length(dataset.sel(shape=shape))
             last = model_errors.device_change(errors, device, humidity, shape)
             last |= {"warnings": " ".join(warnings[device, humidity, shape])}
-            part = left and left[shape]
-            rows += [head | _safe_length(dataset.sel(shape=shape, share=p), part) | last for p in dataset.share.values]
+            rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
     own = _COLUMNS_AT_LENGTH if "length_um" in frame else {}
     said = [
         *([_AT_LENGTH] if own else []),
         _SAFE_LENGTHS,
-        _TO_BUILD if left else _EXACT,
+        _EXACT,
         *_few(datasets),
         about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY),
     ]
-    text, columns = " ".join(said), _HELD | own | (_LENGTHS | _BUILT if left else _LENGTHS)
+    text, columns = " ".join(said), _HELD | own | _LENGTHS
     if "prediction_low_um" in frame:
         text, columns = f"{text} {_PREDICTED}", columns | _PREDICTION
     if errors:
@@ -179,13 +173,12 @@ def _caption(text, warnings, not_modelled):
     return with_list(" ".join([text, not_modelled, *(["Warnings:"] if listed else [])]), listed)
 
 
-def _safe_length(point, left):
-    """One safe length with its errors, the part left to build, and its prediction interval where there is one."""
+def _safe_length(point):
+    """One simulated limit with its errors, and its prediction interval where there is one."""
     ends = [name for name in ("prediction_low", "prediction_high") if name in point]
     return {
         "share": float(point.share),
         "safe_length_um": float(point.safe_length) / UM,
-        **({} if left is None else {"to_build_um": left * float(point.safe_length) / UM}),
         "estimate_um": float(point.estimate.where(np.isfinite(point.estimate))) / UM,
         "estimate_se_beams_um": float(point.beams_error) / UM,
         "estimate_se_surfaces_um": float(point.surfaces_error) / UM,
@@ -203,14 +196,13 @@ def _bound(point):
 _HELD = DEVICE | {"held by": (str, "held_by")}
 _LENGTHS = {
     "p": ("g", "share"),
-    "safe length [µm]": (".1f", "safe_length_um"),
+    "simulated limit [µm]": (".1f", "safe_length_um"),
     "estimate [µm]": (".1f", "estimate_um"),
     "se, beams": (error_alone, "estimate_se_beams_um"),
     "se, surfaces": (error_alone, "estimate_se_surfaces_um"),
     "basis": (str, "basis"),
     "bound [µm]": (".1f", "bound_um"),
 }
-_BUILT = {"to build [µm]": (".1f", "to_build_um")}
 
 
 # Charts
@@ -297,7 +289,7 @@ STAGES = (
     ),
     table_stage(
         "chart",
-        "safe length against relative humidity",
+        "simulated limit against relative humidity",
         inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.with_chart)},
         settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.with_chart)},
         compute=lambda data, settings: chart(data["charts"], device_warnings.read(data["warnings"]).curves, **settings),

@@ -9,10 +9,9 @@ import xarray as xr
 from stiction.beam.cantilever import Beam
 from stiction.config.units import to_si
 from stiction.contact.voltage import BREAKDOWN, Capacitor, Dielectric
-from stiction.devices.budget import LARGEST
 from stiction.devices.risk import quantiles, sampled_bound, samples_for
 from stiction.life import holding
-from stiction.report.devices.explorer import View, alone, humidity_axis, margin_of_beam, share_axis, size_axis
+from stiction.report.devices.explorer import View, alone, humidity_axis, share_axis, size_axis
 from stiction.report.devices.grid import Axis, Grid
 from stiction.report.format import UM
 from stiction.stages.devices.safe_lengths import chosen_share
@@ -65,12 +64,7 @@ def stopper_view(name: str, section: Mapping[str, Any], biased: xr.Dataset) -> V
     return View("voltage", grid, words)
 
 
-def beam_view(
-    name: str,
-    section: Mapping[str, Any],
-    safe_lengths: Mapping[float, xr.Dataset],
-    budgets: Mapping[tuple, xr.Dataset],
-) -> View:
+def beam_view(name: str, section: Mapping[str, Any], safe_lengths: Mapping[float, xr.Dataset]) -> View:
     """View of a cantilever over the voltage that is on, whose surfaces count as flat and in contact.
 
     Its lengths are the bound *at least* of stage life: that of a tip in `stiction.life.holding`. The
@@ -105,10 +99,8 @@ def beam_view(
     )
     words = {
         "what": "length",
-        "safe": "Safe length with this voltage on, surfaces flat",
+        "safe": "Length that simulation alone allows with this voltage on, surfaces flat",
         "stick": "Devices of this length that stick with this voltage on, surfaces flat",
-        "build": "no more than",
-        "largest": LARGEST,
-        "bound": "safe",
+        "bound": "limit",
     }
-    return View("voltage", grid, words, margin_of_beam(safe_lengths, budgets))
+    return View("voltage", grid, words)

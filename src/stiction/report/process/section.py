@@ -35,7 +35,7 @@ def with_process(page: Page, device: str, data: Mapping[str, Any]) -> Page:
     """Page with the sufficient settings for its device, also on its first screen, or itself without a process."""
     if "process_laws" not in data:
         return page
-    laws, (verdict, *reasons) = data["process_laws"], page.answer
+    laws = data["process_laws"]
     if "process_map" in data:
         own, answer = (
             _map_answers(device, data["process_map"], data["process_pairs"], laws),
@@ -49,7 +49,7 @@ def with_process(page: Page, device: str, data: Mapping[str, Any]) -> Page:
     if summary and not page.is_forbidden:
         summary = replace(summary, points=_with_advice(summary.points, answer))
     sections = [*page.sections, own, *pictures]
-    return replace(page, summary=summary, answer=[verdict, answer, *reasons], sections=sections)
+    return replace(page, summary=summary, answer=[answer, *page.answer], sections=sections)
 
 
 def _with_advice(points, answer):

@@ -151,9 +151,6 @@ function opened(number) {
     return {share, low, high, beyond: sign * ((place > levels[levels.length - 1]) - (place < levels[0])) || 0};
   }
 
-  /** Uncertainty by the measurements at a humidity, nothing outside of those of the device. */
-  const margin = humidity => data.margin && data.margin.low <= humidity && humidity <= data.margin.high ? data.margin : null;
-
   // Texts
 
   function text(value, digits = 3) {
@@ -266,31 +263,19 @@ function opened(number) {
     const unknown = Number.isFinite(margin) ? "beyond a factor of 1000 of the required one" : "not computed here";
     const safe = grid.lines.safe ? `; ${text(grid.size.start * Math.exp((grid.falls ? -1 : 1) * onLine("safe", state)), DIGITS)} ${grid.size.unit} with 95 % confidence` : "";
     return {
-      enough: `${at}: ${suffices(state) ? words.yes : words.no}${words.tested ? `. ${words.tested}` : ""}`,
+      enough: `${at}: ${suffices(state) ? words.yes : words.no}`,
       size: `${words.size}: ${beyond || !Number.isFinite(margin) ? unknown : `${text(size, DIGITS)} ${grid.size.unit} (${between(band)} ${grid.size.unit})${safe}`}`,
       stuck: `${words.stick}: ${stuckText(stuckOn(state))}`,
       margin: `Margin, ln(${grid.falls ? "restoring force / force needed" : "length / required length"}): ${beyond || !Number.isFinite(margin) ? unknown : `${text(margin, DIGITS)} (${between(ends)})`}`,
     };
   }
 
-  /** What to build, from the safe size and the uncertainty of its logarithm. */
-  function toBuild(safe, total) {
-    const words = data.words;
-    if (!words.build) return "no margin is added for them";
-    if (!(total <= words.largest)) return `too much for a ${words.what} to build`;
-    if (!Number.isFinite(safe)) return `no ${words.what} to build is known`;
-    return `build ${words.build} ${text(safe * Math.exp((grid.falls ? 2 : -2) * total), DIGITS)} ${grid.size.unit}`;
-  }
-
   function texts() {
     const unit = grid.size.unit, words = data.words, levels = levelsOf(state);
-    const safe = safeSize(state), less = margin(state.humidity);
+    const safe = safeSize(state);
     return {
       stuck: `${words.stick}: ${stuckText(stuckAt(state[grid.size.key], levels))}`,
       safe: `${words.safe} for ${oneIn(state.share)}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : words.none ?? `not known from ${grid.samples} devices`}`,
-      budget: words.tested ? words.tested : less
-        ? `Measurements leave ${text(100 * less.total, 2)} %, most of it ${less.most}: ${toBuild(safe, less.total)}`
-        : `Margin for the measurements: not computed ${data.margin ? "at this humidity" : content.views.some(view => view.margin) ? "in this view" : "without stated uncertainties"}`,
     };
   }
 
@@ -476,7 +461,7 @@ function opened(number) {
   const panel = make(root, "div", {class: "controls"});
   for (const axis of controls) control(panel, axis);
   const answers = make(panel, "div", {class: "answers", "aria-live": "polite"});
-  shown = Object.fromEntries((data.forbidden ? ["forbidden"] : grid.lines ? ["enough", "size", "stuck", "margin"] : ["stuck", "safe", "budget"]).map(name => [name, make(answers, "p", {"data-answer": name})]));
+  shown = Object.fromEntries((data.forbidden ? ["forbidden"] : grid.lines ? ["enough", "size", "stuck", "margin"] : ["stuck", "safe"]).map(name => [name, make(answers, "p", {"data-answer": name})]));
   const buttons = make(panel, "p"), copy = make(buttons, "button", {type: "button"}, "Copy as YAML");
   const reset = make(buttons, "button", {type: "button"}, "Back to this device");
   const status = make(panel, "p", {class: "note", role: "status"});

@@ -30,8 +30,6 @@ DIFFERENT = 3.0
 _MORE = {True: "more", False: "less"}
 #: Why nothing is known of a result, or of what test beams say.
 _FEW = "so few of the simulated devices stick that they do not show what an input changes"
-#: Ways in which devices are held, that of the shortest devices first.
-_WEAKEST = tuple(reversed(END_STATES))
 #: P(stuck) before and after, and its scale.
 _STUCK = ("expected_stuck", "updated_stuck", 100)
 
@@ -87,64 +85,19 @@ def agreement(update: xr.Dataset) -> str:
     )
 
 
-def sizes_to_build(update: xr.Dataset) -> str:
-    """Length or force to build before and after the measurement, for the middle fraction.
-
-    As `stiction.report.devices.sentences.build_sentence`: the least safe length, less twice the largest uncertainty of
-    what holds the devices, here with the error of the model as far as it applies; of a stopper the largest safe force,
-    with twice the uncertainty added. Where nothing explains the test beams, they give no length, but a warning.
-    """
-    responses = list(dict.fromkeys(map(str, update.response.values)))
+def notes(update: xr.Dataset) -> str:
+    """What the test beams say about the answer apart from its number, or why they say nothing."""
+    responses = list(map(str, update.response.values))
     none = f"With the test beams, no {'force' if FORCE in responses else 'length'} is stated"
     if not is_reliable(update):
         return f"{none}. {contradiction(update)}"
     if update.result_after.isnull().any():
         return f"{none}: {_FEW}."
-    (before, after), *others = (_size_to_build(update, response) for response in sorted(responses, key=_WEAKEST.index))
     if FORCE in responses:
-        return (
-            f"With the test beams, give it a restoring force of at least {after:.3g} µN, without them {before:.3g} µN; "
-            f"{_margin(update, 'force', 97.7)} is added. Cracks do not say how much the model errs at stoppers."
-        )
-    alone = "".join(
-        f"; if its tip cannot touch, {one:.0f} µm with them and {other:.0f} µm without" for other, one in others
-    )
+        return "Cracks do not say how much the model errs at stoppers."
     beyond = ", but not where the middle of a bridge holds" if MIDDLE in responses else ""
-    margin = _margin(update, "lengths", 2.3)
-    return (
-        f"With the test beams, build it no longer than {after:.0f} µm, without them {before:.0f} µm{alone}. "
-        f"{margin[0].upper()}{margin[1:]} is subtracted. It includes the error of the model{beyond}."
-        f"{_beyond_cracks(update)}"
-    )
-
-
-def updated_size(update: xr.Dataset | None) -> tuple[float, float] | None:
-    """Length or force to build before and after the measurement [µm, µN], as `sizes_to_build`, if one is stated."""
-    if update is None or not is_reliable(update) or update.result_after.isnull().any():
-        return None
-    weakest = min(map(str, update.response.values), key=_WEAKEST.index)
-    before, after = _size_to_build(update, weakest)
-    return float(before), float(after)
-
-
-def beside_numbers(update: xr.Dataset | None) -> str | None:
-    """Answer with test beams, for a place whose numbers are without them, if one is stated."""
-    if not (updated := updated_size(update)):
-        return None
-    with_them = (
-        f"it needs at least {updated[1]:.3g} µN"
-        if FORCE in update.response.values
-        else f"build it no longer than {updated[1]:.0f} µm"
-    )
-    return f"These numbers are without the test beams. With them, {with_them}."
-
-
-def _margin(update, of, percent):
-    """Difference between the mean and the given number. After counts, the uncertainty is not normal."""
-    margin = f"twice the uncertainty of the {of}"
-    if not update.sizes["count"]:
-        return margin
-    return f"{margin} without the test beams, and with their counts the distance to the quantile at {percent} %,"
+    said = f"The answer contains the error of the model as far as the test beams show it{beyond}."
+    return said + _beyond_cracks(update)
 
 
 def _beyond_cracks(update):
@@ -158,18 +111,6 @@ def _beyond_cracks(update):
         return " Cracks show no more adhesion than the inputs explain, and tips are taken to adhere as these say."
     shown = f" Cracks show up to {more:.3g} times the adhesion that the inputs explain"
     return f"{shown}: tips are taken to adhere as much more."
-
-
-def _size_to_build(update, response):
-    """Lengths, or forces, to build before and after the measurement for one shape of adhesion [µm, µN]."""
-    share = update.share.values[update.sizes["share"] // 2]
-    chosen = update.isel(result=np.flatnonzero(update.response.values == response))
-    sign = 1 if response == FORCE else -1
-    updated = sign * (chosen.result_quantile.sel(score=2 * sign) - chosen.result_shift)
-    for safe, doubts in (("safe", 2 * chosen.result_before), ("updated_safe", updated)):
-        sizes, doubt = update[safe].sel(share=share, shape=shape_of(response)), float(doubts.max())
-        least, most = (TO_UM * float(size) for size in (sizes.min(), sizes.max()))
-        yield most * np.exp(doubt) if response == FORCE else least * np.exp(-doubt)
 
 
 def again(update: xr.Dataset) -> str:
@@ -203,7 +144,7 @@ def stuck_sentences(update: xr.Dataset) -> list[str]:
     """
     if not is_reliable(update):
         return []
-    shape = shape_of(min(map(str, update.response.values), key=_WEAKEST.index))
+    shape = shape_of(min(map(str, update.response.values), key=list(reversed(END_STATES)).index))
     chosen = update.sel(shape=shape)
     if "share" in chosen.expected_stuck.dims:
         chosen = chosen.isel(share=update.sizes["share"] // 2)

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.answer import ladder
-from stiction.answer.data import Answer, Cause, InAir, Probability, Step
+from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, Step
 from stiction.answer.ladder import Question
 from stiction.answer.unknowns import Draws
 from stiction.answer.worlds import DRAWS, worst_first
@@ -91,7 +91,7 @@ def _forbidden(data, unknowns):
         found.append("test_beams")
     totals = [one.total for one in getattr(unknowns, "budgets", {}).values() if one.is_known]
     if max(totals, default=0.0) > LARGEST:
-        found.append("inputs")
+        found.append(INPUTS)
     return tuple(found)
 
 

@@ -27,14 +27,14 @@ END_STATES = {
         lines=("--", ":"),
         budget="mean length at which beams stick (S-shape)",
         result="crack length [µm]",
-        safe="safe length, beam",
+        safe="simulated limit, beam",
         terms={"Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape)."},
     ),
     EITHER: EndState(
         by="beam or tip",
         legend="held by beam or tip",
         lines=("-", "-."),
-        safe="safe length, beam or tip",
+        safe="simulated limit, beam or tip",
         terms={
             "Held by the tip": (
                 "Only the free end touches and holds the beam (arc). Shorter beams can be held in this way."
@@ -48,7 +48,7 @@ END_STATES = {
         lines=("-", ":"),
         budget="mean length at which the middle of bridges holds",
         result="length that the middle holds [µm]",
-        safe="safe length, middle",
+        safe="simulated limit, middle",
         terms={
             "Held by the middle": (
                 "Both cracks of a bridge have met, and a few micrometres of its middle hold it, where it has no slope. "
@@ -57,6 +57,6 @@ END_STATES = {
         },
     ),
     FORCE: EndState(
-        by="whole area", budget="mean pull-off force", result="mean pull-off force [µN]", safe="safe force"
+        by="whole area", budget="mean pull-off force", result="mean pull-off force [µN]", safe="simulated limit"
     ),
 }

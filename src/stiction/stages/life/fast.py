@@ -27,7 +27,7 @@ def separated_fast(lengths: Mapping[float, xr.Dataset], separation: xr.Dataset) 
             fast.append((shorter, float(np.hypot(spread * factor, length * error)), factor, Air(humidity).where))
     shorter, error, factor, air = min(fast)
     form = f"L x {factor:.3g} {air}, by (e / e_V)^(1/4) of strips or lengths of tips (at least); slow (at most)"
-    what = "safe length if it separates faster than water evaporates"
+    what = "simulated limit if it separates faster than water evaporates"
     numbers = (shorter, min(slow), error) if 0 < shorter < np.inf else (np.nan, min(slow), np.nan)
     return [Answer(FAST, FREE, what, *numbers, "m", form, "stage separation")]
 

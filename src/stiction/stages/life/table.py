@@ -52,7 +52,7 @@ def beam_answers(
         Answer(
             f"{SAFE}{humidity:g}",
             STICK,
-            f"safe length {Air(humidity).where}: at most {one_in(share)} sticks after one touchdown",
+            f"simulated limit {Air(humidity).where}: at most {one_in(share)} sticks after one touchdown",
             *(value, value, error),
             *("m", f"bound of random beams, 95 %, {basis}", "stage safe_lengths"),
         )

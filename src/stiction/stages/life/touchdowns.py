@@ -28,7 +28,7 @@ def beam_after_touchdowns(
         Answer(
             AFTER,
             FREE,
-            f"safe length for {numbers}: at most {one_in(share)} sticks after all of them",
+            f"simulated limit for {numbers}: at most {one_in(share)} sticks after all of them",
             *(independent[0], once[0], independent[1], "m"),
             "P of one = 1 - (1 - p)^(1/n) (at least); the same summits each time (at most)",
             "stage touchdowns",
@@ -36,7 +36,7 @@ def beam_after_touchdowns(
         Answer(
             "stuck_after",
             FREE,
-            f"probability of sticking after {numbers} at the safe length of one",
+            f"probability of sticking after {numbers} at the limit of one",
             *(np.nan, stuck, np.nan, "1", "1 - (1 - p)^n; p with the same summits each time", "stiction.life.freeing"),
         ),
     ]

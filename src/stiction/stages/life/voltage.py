@@ -40,7 +40,7 @@ def beam_at_voltage(
     numbers = _shorter(of, added, safe, [least_safe(one, chosen_share(one)) for one in (biased or {}).values()])
     if np.isnan(numbers).all():
         return answers
-    what = f"safe length while {of.potential:g} V are on"
+    what = f"simulated limit while {of.potential:g} V are on"
     form = "(L / L_V)³ = 1 + 8 Γ_V L_V L³ / (3 E t³ h²), flats (at least); gaps of rough surfaces, L (at most)"
     return [*answers, Answer(AT_VOLTAGE, HOLD, what, *numbers, "m", form, _SOURCE)]
 

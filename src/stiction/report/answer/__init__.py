@@ -1,0 +1,1 @@
+"""Answer about a device in words, tables and pictures, all made from one dataset of stage answer."""

@@ -1,0 +1,182 @@
+"""Answer about a device in words. No decision is made here: `stiction.answer.data.Answer` has them."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from stiction.answer.data import INPUTS, Answer, Cause, Probability, Verdict
+from stiction.config.cases import Air
+from stiction.devices.risk import one_in
+from stiction.report.format import UM, UN, airs, humidity_text
+from stiction.rounding import in_percent
+from stiction.stages.devices.end_states import END_STATES
+
+#: Causes in words: as the row of a ladder, and inside a sentence.
+CAUSES: Mapping[Cause, tuple[str, str]] = {
+    Cause.ESTIMATE: ("estimate, in the worst air", "the estimate"),
+    Cause.SIMULATION: ("error of the simulation", "the simulation"),
+    Cause.FAST: ("fast separation, as in a shock (not stated)", "fast separation"),
+    Cause.TOUCHDOWNS: ("all touchdowns", "all touchdowns"),
+    Cause.TILT: ("worst of its tilts", "its tilts"),
+    Cause.VOLTAGE: ("voltage", "its voltage"),
+    Cause.DRYING: ("drying of the stated liquids", "the drying of the stated liquids"),
+    Cause.INPUTS: ("uncertainty of the inputs", "the uncertainty of the inputs"),
+    Cause.TEST_BEAMS: ("inputs and model, by the test beams", "the test beams"),
+}
+#: Signs of verdicts with the tone of their box, for lengths and for forces.
+_SIGNS = {
+    Verdict.BUILD: ("good", "Length to build", "Force to build"),
+    Verdict.SAFE: ("good", "Safe", "Suffices"),
+    Verdict.OPEN: ("open", "Not shown to be safe", "Not shown to suffice"),
+    Verdict.BAD: ("bad", "Too long", "Too weak"),
+}
+#: Reasons in the data why no number is stated, in words.
+NO_NUMBER = "Do not rely on a number"
+_REASONS = {
+    INPUTS: "The inputs are too uncertain for a number. Were all exact, it would be {exact}. First measure {measure}.",
+}
+
+
+def size_in_words(answer: Answer, size: float) -> str:
+    """Size in its unit.
+
+    Lengths have whole micrometres, forces three digits.
+    """
+    return f"{size / UN:.3g} µN" if answer.more_is_better else f"{size / UM:.0f} µm"
+
+
+def percent(fraction: float, end: str = "") -> str:
+    """Fraction in percent with two digits, as an ``end`` of a band or alone.
+
+    Examples
+    --------
+    >>> percent(0.1812), percent(0.000242), percent(3e-9), percent(3e-9, "low"), percent(0.99992)
+    ('18 %', '0.024 %', 'less than 0.001 %', '0 %', 'more than 99.9 %')
+    """
+    if fraction < 1e-5:
+        return "0 %" if end else "less than 0.001 %"
+    if fraction > 1 - 1e-3:
+        return "100 %" if end else "more than 99.9 %"
+    return f"{float(f'{100 * fraction:.2g}'):g} %"
+
+
+def stuck_in_words(stuck: Probability) -> str:
+    """P(stuck) with its band. Where no simulated device sticks, its upper end alone.
+
+    Examples
+    --------
+    >>> stuck_in_words(Probability(0.18, 1e-9, 0.95)), stuck_in_words(Probability(1e-9, 0.0, 0.0037, none_seen=True))
+    ('18 % (0 to 95 %)', 'at most 0.37 %')
+    """
+    if stuck.none_seen:
+        return f"at most {percent(stuck.high, 'high')}"
+    if stuck.low > 1 - 1e-3:
+        return percent(stuck.low)
+    low, high = percent(stuck.low, "low").removesuffix(" %"), percent(stuck.high, "high")
+    return f"{percent(stuck.value)} ({low} to {high})"
+
+
+def is_forbidden(answer: Answer) -> bool:
+    """Whether a limit of the model, or test beams, forbid a number. Inputs that are too uncertain only leave none."""
+    return bool(set(answer.forbidden) - set(_REASONS))
+
+
+def sign_of(answer: Answer) -> tuple[str, str]:
+    """Tone and sign of the verdict."""
+    if answer.verdict is Verdict.NONE:
+        return ("bad", NO_NUMBER) if is_forbidden(answer) else ("open", "Not known")
+    tone, *signs = _SIGNS[answer.verdict]
+    return tone, signs[answer.more_is_better]
+
+
+def headline(answer: Answer) -> str:
+    """Size to build, and what happens at the stated size."""
+    if said := reasons(answer):
+        build = " ".join(said).removesuffix(".")
+    elif not np.isfinite(answer.build):
+        build = "Too few simulated devices bound a size"
+    elif answer.more_is_better:
+        build = f"At least {size_in_words(answer, answer.build)}"
+    else:
+        build = f"No longer than {size_in_words(answer, answer.build)}"
+    if answer.stuck is None:
+        return f"{build}."
+    scale, unit = (UN, "µN") if answer.more_is_better else (UM, "µm")
+    return f"{build}; with your {answer.size / scale:.4g} {unit}, {stuck_in_words(answer.stuck)} stick."
+
+
+def promise(answer: Answer) -> str:
+    """What the size to build promises."""
+    after = f" after {answer.touchdowns} touchdowns" * (answer.touchdowns > 1)
+    return (
+        f"At most {one_in(answer.share)} sticks{after} {airs([one.humidity for one in answer.airs])} (95 % confidence)."
+    )
+
+
+def contains(answer: Answer) -> str:
+    """What the numbers contain, and which stated conditions they leave out."""
+    inside = [CAUSES[cause][1] for cause in answer.included]
+    said = f"Inside: {', '.join(inside)}."
+    if Cause.INPUTS not in answer.included and Cause.TEST_BEAMS not in answer.included:
+        said += " All inputs count as exact."
+    if answer.left_out:
+        said += f" Stated, but not inside: {', '.join(answer.left_out)} (see below)."
+    return said
+
+
+def decides(answer: Answer) -> str:
+    """Air and end state that decide, and the largest step."""
+    last, largest = answer.stated_steps[-1], answer.largest_step
+    held = END_STATES[last.shape].by if last.shape in END_STATES else "liquid that dries"
+    air = Air(last.humidity).words if last.humidity else "Dry air"
+    said = f"{air}, stuck by {'the ' if held != 'beam or tip' else ''}{held}."
+    change = largest.factor - 1
+    if not np.isfinite(change) or abs(change) < 0.01:
+        return said
+    what = "force" if answer.more_is_better else "length"
+    by = f"{'+' if change > 0 else '−'}{in_percent(abs(change))} of the {what}"
+    return f"{said} Largest step: {CAUSES[largest.cause][1]}, {by}."
+
+
+def measure(answer: Answer) -> str:
+    """What to measure, and what it would be worth."""
+    if Cause.TEST_BEAMS in answer.included:
+        return "The section on test beams says which further ones help."
+    if not answer.measure:
+        return "State the uncertainties of the inputs in section uncertainty: the answer then says what to measure."
+    left = size_in_words(answer, answer.if_measured)
+    if abs(np.log(answer.if_measured / answer.build)) < 0.01:
+        return f"Nothing: with {answer.measure} known exactly, it would still be {left}."
+    return f"{answer.measure[0].upper()}{answer.measure[1:]}: known exactly, it would be {left}."
+
+
+def reasons(answer: Answer) -> list[str]:
+    """Why no number is stated, as far as the inputs are the reason."""
+    exact = size_in_words(answer, answer.exact)
+    return [_REASONS[kind].format(exact=exact, measure=answer.measure) for kind in answer.forbidden if kind in _REASONS]
+
+
+def by_test_beams(answer: Answer) -> list[str]:
+    """Size without the test beams, beside the one with them."""
+    if np.isnan(answer.without_test_beams):
+        return []
+    return [f"Without the test beams, it would be {size_in_words(answer, answer.without_test_beams)}."]
+
+
+def of_airs(answer: Answer) -> list[dict[str, str]]:
+    """Rows of the table of a first screen: size to build and P(stuck) in each stated air alone."""
+    rows, scale = [], UN if answer.more_is_better else UM
+    what, unit = ("force", "µN") if answer.more_is_better else ("length", "µm")
+    for one in answer.airs:
+        row = {"RH": humidity_text(one.humidity), f"{what} to build [{unit}]": _size(answer, one.build)}
+        if np.isfinite(one.without_tip):
+            row["if the tip cannot touch [µm]"] = _size(answer, one.without_tip)
+        if one.stuck is not None:
+            row[f"P(stuck) at {answer.size / scale:.4g} {unit}"] = stuck_in_words(one.stuck)
+        rows.append(row)
+    return rows
+
+
+def _size(answer, size):
+    """Size without its unit, – if none is known."""
+    return size_in_words(answer, size).split()[0] if np.isfinite(size) else "–"
