@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from stiction.analysis import smooth_pairs
+from stiction.answer.data import Cause
 from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP
 from stiction.config.files import paper
 from stiction.config.units import in_si
@@ -44,7 +45,7 @@ def numbers(tables):
     )
     texts |= life(tables["life"])
     texts |= safe_lengths(tables["safe_lengths"]) | stoppers(tables["stoppers"]) | budget(tables["budget"])
-    texts |= drawn_lengths(tables["safe_lengths"], tables["budget"])
+    texts |= saturated() | answers(tables["devices"])
     texts |= model_errors(tables["model_error"]) | attraction(tables["attraction"])
     texts |= readings(tables["asperities"]) | pressing(tables["pressing"])
     texts |= sealed(tables["sealed_safe_lengths"], tables["sealed_stoppers"])
@@ -574,19 +575,25 @@ def budget(table):
     return texts
 
 
-def drawn_lengths(safe, budget):
-    """Lengths of C1, a beam of pair b, with its tip [µm], for 1 in 1000 stuck beams.
-
-    ``saturated_C1``: held on flats by water alone; ``least_C1``: the least over its humidities; ``drawn_C1``: its
-    logarithm less twice ``largest_total_C1``, the largest total of the budgets of the tip [%].
-    """
+def saturated():
+    """``saturated_C1``: length of C1, a beam of pair b, whose tip flats hold by water alone [µm]."""
     beam = cantilever(in_si(Cantilevers, sections(Plan(paper()), "b")), "b")
-    saturated = TO_UM * arc_length(flooded_energy(paper()["water"]["temperature_K"]), beam)
-    totals = budget[(budget.device == "C1") & (budget.held_by == "tip") & (budget["name"] == "total")].effect_percent
-    of_tip = safe[(safe.device == "C1") & (safe.held_by == "beam or tip") & (safe.share == 1e-3)]
-    least = float(of_tip.safe_length_um.min())
-    texts = {"saturated_C1": saturated, "least_C1": least, "drawn_C1": np.exp(-2 * totals.max() / 100) * least}
-    return {name: f"{length:.0f}" for name, length in texts.items()} | {"largest_total_C1": f"{totals.max():.3g}"}
+    return {"saturated_C1": f"{TO_UM * arc_length(flooded_energy(paper()['water']['temperature_K']), beam):.0f}"}
+
+
+def answers(table):
+    """``build_C1``: size to build [µm, µN]; ``step_C1_inputs``: size after a step, and ``factor_C1_inputs`` [%]."""
+    texts = {}
+    for row in table.to_dict("records"):
+        digits, before = ".3g" if row["unit"] == "µN" else ".0f", row["after_estimate"]
+        texts |= {f"build_{row['device']}": f"{row['to_build']:{digits}}", f"measure_{row['device']}": row["measure"]}
+        for cause in Cause:
+            size = row[f"after_{cause}"]
+            if np.isfinite(size):
+                texts[f"step_{row['device']}_{cause}"] = f"{size:{digits}}"
+                texts[f"change_{row['device']}_{cause}"] = f"{100 * (size / before - 1):+.1f}".replace("-", "−")
+                before = before if cause is Cause.FAST else size
+    return texts
 
 
 def _duration(seconds):

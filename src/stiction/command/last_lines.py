@@ -28,7 +28,7 @@ _VERDICT = "verdict"
 _PAGES = ("devices/*.html", "figures/overview.png", "figures/surface_sheet_*.png", "figures/*.png")
 _TABLES = tuple(
     f"tables/{name}.md"
-    for name in ("process", "process_map", "roughness", "test_beams", "safe_lengths", "stoppers", "table_3", "scans")
+    for name in ("devices", "process", "process_map", "roughness", "test_beams", "safe_lengths", "stoppers", "table_3", "scans")
 )
 #: Pages of warnings.
 _WARNINGS = ("warnings.md", "devices/warnings.md")

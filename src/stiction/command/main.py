@@ -19,7 +19,7 @@ from stiction.run import stale_results
 from stiction.run.atomic import save_text
 from stiction.run.provenance import RecordError, understood
 
-_PURPOSE = "From the statistics of two rough surfaces to the crack lengths and safe lengths of MEMS beams that stick."
+_PURPOSE = "From the statistics of two rough surfaces to the probability that MEMS devices stick, and what to build."
 _STATUS = """
 exit status: 0 done, 1 a job or stiction itself failed, 2 refused (wrong input, or another run uses
 the folder), 3 checks of the results failed, 130 stopped by Ctrl-C or SIGTERM. Results are in results/,

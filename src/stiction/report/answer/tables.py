@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.answer.data import Answer
+from stiction.answer.data import Answer, Cause
 from stiction.plan.names import by_name
 from stiction.report.answer import words
 from stiction.report.answer.judged import judged
@@ -61,6 +61,8 @@ def _row(answer):
         **dict(zip(("stuck_value", "stuck_low", "stuck_high"), known * np.array(band), strict=True)),
         "none_seen": bool(stuck and stuck.none_seen),
         "stuck": words.stuck_in_words(stuck) if stuck and not words.is_forbidden(answer) else "–",
+        **{f"after_{cause}": np.nan for cause in Cause},
+        **{f"after_{step.cause}": known * step.size / scale for step in answer.steps},
         "relative_humidity": last.humidity,
         "held_by": END_STATES[last.shape].by if last.shape in END_STATES else last.shape,
         "largest_step": str(answer.largest_step.cause),
