@@ -16,7 +16,7 @@ from stiction.config.files import paper
 from stiction.config.units import in_si
 from stiction.contact.meniscus import flooded_energy
 from stiction.devices.arcs import arc_length
-from stiction.devices.limits import FILMS
+from stiction.devices.limits.rules import FILMS
 from stiction.plan.plan import Plan
 from stiction.report.beams import prediction
 from stiction.report.checks import COARSER_ACCURACY, RESOLVED

@@ -33,6 +33,7 @@ from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.plan.plan import Plan
 from stiction.report.format import TO_UM, with_error
+from stiction.report.limits import words
 from stiction.report.process import tables as tables_process
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run.storage import load
@@ -92,7 +93,7 @@ TEST_BEAMS = "test_beams"
 TEST_BEAMS_SAID = {
     "build": tables_test_beams.sizes_to_build,
     "further": tables_test_beams.beams_to_add,
-    "warned": lambda update: " ".join(tables_test_beams.warnings(update)),
+    "warned": lambda update: " ".join(words.texts(tables_test_beams.warnings(update))),
 }
 TEST_BEAMS_PICTURE = ("test_beams_onB", 1100)
 #: Tables of studies with a command of their own: command, and width of the picture of the same name [pixels] or 0.

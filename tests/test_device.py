@@ -7,10 +7,11 @@ import xarray as xr
 import stiction
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
-from stiction.devices import limits
+from stiction.devices.limits import rules as limits
 from stiction.models import MOMENT_QUANTITIES
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
+from stiction.report.limits.words import text
 from stiction.stages.contact import curves
 
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 10, "width_um": 20, "humidities": [0.88]}
@@ -59,10 +60,10 @@ def test_results_are_computed_once(device):
 
 def test_warnings_are_those_of_all_shapes_and_that_plasticity_is_not_checked(device):
     found = device.safe_lengths(0.88)
-    assert device.warnings(found) == [limits.plastic_contact(np.nan, np.nan)]
+    assert device.limits(found) == [limits.plastic_contact(np.nan, np.nan)]
     length = float(found.safe_length.sel(shape="S-shape").min())
     warnings = device.warnings(found.assign(safe_length=found.safe_length * 100e-6 / length))
-    assert warnings[0] == limits.large_rotation(10e-6, 100e-6)
+    assert warnings[0] == text(limits.large_rotation(10e-6, 100e-6))
     assert sum("slope" in sentence for sentence in warnings) == 2  # of beam and tip
     assert len(warnings) == len(set(warnings))
 
@@ -91,7 +92,7 @@ def test_a_stopper_has_its_whole_area_and_the_forces_of_its_stage():
     assert water.gaps is not None
     pulls = curves.pull_offs(stopper.contact, 0.5, water)
     np.testing.assert_allclose(found.pull_off.sel(humidity=0.5), 9e-12 * pulls, rtol=1e-12)
-    assert stopper.warnings(found) == [limits.plastic_contact(np.nan, np.nan)]
+    assert stopper.limits(found) == [limits.plastic_contact(np.nan, np.nan)]
 
 
 def test_a_stopper_on_very_rough_surfaces_does_not_stick_and_a_smooth_one_does():

@@ -15,13 +15,13 @@ from stiction.answer.data import Answer
 from stiction.config.cases import Air, case_id, in_numbers
 from stiction.config.kinds import KEYS, KINDS, Kind, kind_of
 from stiction.config.units import in_si
-from stiction.devices import limits
+from stiction.devices.limits.limit import Limit, restored
 from stiction.plan.devices import DevicePlan
 from stiction.plan.graph import Results
-from stiction.report.answer import words
+from stiction.report.answer import words as answer_words
 from stiction.report.answer.judged import with_limits
+from stiction.report.limits import words
 from stiction.stages.answer.answer import answer_of
-from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings, stuck
 from stiction.stages.devices.contact_names import contact_of, tips_of
 from stiction.stages.devices.device_warnings import gap_warnings, left_out_changes
@@ -148,7 +148,11 @@ class Device:
         known = {}
         if self.results.has(f"devices/answer/{self.name}"):
             answer = self.answer()
-            known = {words.sign_of(answer)[1]: words.headline(answer)} if not words.is_forbidden(answer) else {}
+            known = (
+                {answer_words.sign_of(answer)[1]: answer_words.headline(answer)}
+                if not answer_words.is_forbidden(answer)
+                else {}
+            )
         rows = "".join(
             f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in (known | self.facts).items()
         )
@@ -163,7 +167,7 @@ class Device:
         answer = answer_of(self.results[f"devices/answer/{self.name}"])
         humidities = self._section["humidities"]
         found = [self.safe_lengths(humidity) for humidity in humidities] if self.kind.is_beam else [self.forces()]
-        return with_limits(answer, [limit for one in found for limit in self.warnings(one) if limits.forbids(limit)])
+        return with_limits(answer, [limit for one in found for limit in self.limits(one)])
 
     def chart(self, humidity: float | str) -> xr.Dataset:
         """Safe lengths of the thicknesses and gaps of its chart. Dataset of `stiction.stages.devices.chart`."""
@@ -222,9 +226,13 @@ class Device:
         return self.results[f"devices/test_beams/rerun/{self.name}"]
 
     def warnings(self, safe_lengths: xr.Dataset) -> list[str]:
-        """Results of `safe_lengths` or `forces` beyond the limits of the model, one sentence each.
+        """Sentences on the `limits` of `safe_lengths` or `forces`."""
+        return words.texts(self.limits(safe_lengths))
 
-        Plasticity is not checked, which is one of the sentences. Where attraction across gaps is left out, the first
+    def limits(self, safe_lengths: xr.Dataset) -> list[Limit]:
+        """Limits of the model that `safe_lengths` or `forces` are beyond, each with the side on which they then err.
+
+        Plasticity is not checked, which is one of the limits. Where attraction across gaps is left out, the first
         call computes what it would change.
         """
         settings = self.results.graph.job(f"devices/warnings/{self.name}.json").settings
@@ -234,13 +242,13 @@ class Device:
         )
         left_out = device_warnings.left_out_gaps(self._plan, self.name).values()
         changes = {key: of for name in left_out for key, of in left_out_changes(self.results[name]).items()}
-        flags += settings.get("assumed", [])
+        flags += map(restored, settings.get("assumed", []))
         if "stopper" in settings:
             of = in_si(device_warnings.OfStopper, settings["stopper"])
             return device_warnings.stopper_warnings(safe_lengths, of) + gap_warnings(changes, FORCE) + flags
         of_beam = device_warnings.beam_warnings(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
         with_gaps = {shape: said + gap_warnings(changes, shape) for shape, said in of_beam.items()}
-        return pair_warnings.numbered(with_gaps)[0] + flags
+        return words.distinct(with_gaps) + flags
 
     def _result(self, stage, humidity, end=""):
         """Dataset of a stage at a humidity."""

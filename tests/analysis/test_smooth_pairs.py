@@ -10,9 +10,10 @@ from stiction.analysis.model_error import mean_ratios
 from stiction.analysis.smooth_pairs import ERRORS, HUMIDITIES, RATIOS, RMS, largest_shortfall, shortfall
 from stiction.config.files import load
 from stiction.config.units import in_si
-from stiction.devices import limits
+from stiction.devices.limits import rules as limits
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
+from stiction.report.limits.words import not_modelled, text
 from stiction.stages.contact import full_contact
 from stiction.stages.surfaces.rough_surfaces import both
 
@@ -96,9 +97,10 @@ def test_stoppers_and_dimples_on_summits_in_humid_air_are_checked_and_no_others(
 
 def test_the_warning_has_the_number_of_the_table_and_forbids_to_rely_on_the_force():
     for rms, humidity in ((1.0 * NM, 0.9), (0.6 * NM, 0.7), (1.2 * NM, 0.95)):
-        sentence = limits.smooth_pair(rms, [humidity])
+        found = limits.smooth_pair(rms, [humidity])
+        sentence = text(found)
         assert f" {100 * shortfall(rms, humidity)[0]:.0f} ± " in sentence
-        assert limits.forbids(sentence)
+        assert found.forbids
     assert limits.smooth_pair(1.7 * NM, [0.9]) is None
     assert limits.smooth_pair(1.0 * NM, []) is None
-    assert f"up to {100 * largest_shortfall():.2g} % too small" in limits.SUMMITS
+    assert f"up to {100 * largest_shortfall():.2g} % too small" in not_modelled(["summits"])

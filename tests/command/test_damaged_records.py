@@ -99,7 +99,7 @@ def test_names_that_lead_outside_are_not_followed(run, capsys):
 
 
 @pytest.mark.parametrize(
-    "name", ["verdict.txt", "devices/C1.txt", "warnings.md", "provenance.json", "tables/table_3.csv"]
+    "name", ["verdict.txt", "devices/C1.txt", "warnings.json", "provenance.json", "tables/table_3.csv"]
 )
 @pytest.mark.parametrize("make", [os.mkfifo, os.mkdir])
 def test_what_is_no_file_is_not_waited_for(run, capsys, name, make):

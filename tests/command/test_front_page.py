@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 import yaml
 from hostile import HOSTILE, MADE, Reading
+from noted import noted, save_page
 
 from stiction.command.front_page import answers, front_page, is_finished, provenance
 from stiction.command.present import Present
 from stiction.config.files import paper
 from stiction.run.provenance import record
-from stiction.stages.beams.pair_warnings import as_markdown
 
 #: Part of Table III of two pairs.
 TABLE = """pair,relative_humidity,model,crack_length_um,crack_length_std_um,share_s_shape,share_arc,share_free
@@ -31,8 +31,8 @@ def finished(results, devices=(), **changes):
     config = copy.deepcopy(paper()) | {"run": {"pairs": ["b", "c"]}, "devices": dict.fromkeys(devices, {})} | changes
     record(results / "provenance.json", results, config)
     (results / "verdict.txt").write_text("All 3 checks of the results passed.\n")
-    (results / "warnings.md").write_text("# Where\n\n- pair b: Too <dry> & {{ thin }}.\n\nNot in the model: curl.\n")
-    (results / "devices" / "warnings.md").write_text("# Where\n\n- C1: Too long.\n")
+    save_page(results, noted("Too <dry> & {{ thin }}."))
+    save_page(results / "devices", noted("Too long."), name="C1")
     (results / "tables" / "table_3.csv").write_text(TABLE)
     (results / "tables" / "table_3.html").touch()
     for name in devices:
@@ -62,7 +62,7 @@ def test_the_page_holds_verdict_warnings_provenance_and_what_differs_from_the_pa
     for part in (
         "All 3 checks",
         "Too &lt;dry&gt; &amp; &#123;&#123; thin &#125;&#125;.",
-        "C1: Too long.",
+        "C1: surface B2: Too long.",
         "the last of 2 runs",
         "seed: 7\n",
     ):
@@ -140,7 +140,7 @@ def test_text_of_configurations_files_and_names_is_on_the_page_as_it_is(tmp_path
     run = with_text(runs[-1] | {"git": git}, HOSTILE) | {"started": runs[-1]["started"]}
     (tmp_path / "provenance.json").write_text(json.dumps([*runs, run]))
     (tmp_path / "verdict.txt").write_text(HOSTILE)
-    (tmp_path / "warnings.md").write_text(as_markdown({HOSTILE: [HOSTILE]}, ""))
+    save_page(tmp_path, noted(HOSTILE), name=HOSTILE)
     (tmp_path / "devices" / "C1.txt").write_text(HOSTILE)
     _, shown = filled(front_page(tmp_path))
     assert not (tmp_path / MADE).exists()
@@ -149,7 +149,8 @@ def test_text_of_configurations_files_and_names_is_on_the_page_as_it_is(tmp_path
     assert shown.text["p"] == [HOSTILE, "Keys that differ from those of the paper:"]
     files = [f"Files that are {state} in its folder: {HOSTILE}" for state in ("changed", "untracked")]
     scans = f"Scans of B2: {Path(HOSTILE).name}"
-    assert {f"Device C1: {HOSTILE}", f"{HOSTILE}: {HOSTILE}", *files, scans} < {*shown.text["li"]}
+    warned = f"{HOSTILE}: surface B2: {HOSTILE}"
+    assert {f"Device C1: {HOSTILE}", warned, *files, scans} < {*shown.text["li"]}
     assert sum(HOSTILE in item for item in shown.text["li"]) == 4 + len(["commit", "machine", "libraries"])
     (written,) = shown.text["pre"]
     assert yaml.safe_load(written)["surfaces"]["B2"] == {"scans": {"files": [HOSTILE], "channel": HOSTILE}}

@@ -7,6 +7,7 @@ from urllib.parse import unquote
 
 import pytest
 from hostile import HOSTILE, Reading
+from noted import noted, save_page
 from test_front_page import finished
 
 from stiction.command import index, main
@@ -14,7 +15,6 @@ from stiction.command.present import Present
 from stiction.config.files import load, paper
 from stiction.models import SIDES
 from stiction.plan.planner import Planner
-from stiction.run.markdown import literal
 from stiction.run.provenance import record
 
 DEVICE = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.44]}
@@ -95,7 +95,7 @@ def test_pairs_checks_warnings_provenance_and_changes_are_on_the_page(tmp_path):
         "98 % stick behind a crack of 686 ± 16 µm",
         "<td>passed</td><td>mass</td><td>b, NG</td><td>kept</td>",
         "<td>failed</td><td>law</td><td>c</td><td>broken</td>",
-        "<li>pair b: Too &lt;dry&gt; &amp; {{ thin }}.</li>",
+        "<li>pair b: surface B2: Too &lt;dry&gt; &amp; {{ thin }}.</li>",
         "Last run: 20",
         "provenance.json",
         "seed: 7\n",
@@ -130,7 +130,7 @@ def test_flags_are_beside_their_surface_and_its_sheet_is_linked(tmp_path):
 def test_a_run_without_warnings_says_whether_it_has_asked(tmp_path):
     asked, unasked = "No result is beyond", "has not asked"
     of_run(tmp_path)
-    (tmp_path / "warnings.md").write_text("# Where\n\nNothing.\n")
+    save_page(tmp_path)
     page = index.index(tmp_path, RULES)
     assert (asked in page, unasked in page) == (True, False)
     (tmp_path / "warnings.md").unlink()
@@ -141,7 +141,7 @@ def test_a_run_without_warnings_says_whether_it_has_asked(tmp_path):
 def test_texts_of_users_are_their_characters_and_no_script_runs(tmp_path):
     of_run(tmp_path, "C1")
     (tmp_path / "devices" / "C1.txt").write_text(f"{HOSTILE}\n")
-    (tmp_path / "warnings.md").write_text(f"- {literal(HOSTILE)}\n")
+    save_page(tmp_path, noted(HOSTILE))
     config = copy.deepcopy(paper()) | {"run": {"pairs": ["b"]}, "devices": {"C1": DEVICE}}
     config["surfaces"]["B2"] |= {"material": HOSTILE}
     record(tmp_path / "provenance.json", tmp_path, config)
@@ -149,7 +149,7 @@ def test_texts_of_users_are_their_characters_and_no_script_runs(tmp_path):
     read = Reading(page)
     assert read.code == ["meta"] * 2, "those of the template"
     assert HOSTILE in read.text["strong"]
-    assert HOSTILE in read.text["li"]
+    assert f"pair b: surface B2: {HOSTILE}" in read.text["li"]
     assert not [address for address in links(page) if ":" in address or address.startswith("/")]
 
 

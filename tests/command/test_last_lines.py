@@ -3,6 +3,7 @@
 import contextlib
 
 import pytest
+from noted import noted, save_page
 from test_run_state import end, failure, heard, plan, record, start
 
 from stiction.command.last_lines import FAULT, Status, last_lines, sentence, status, where_to_look
@@ -131,7 +132,7 @@ def test_where_to_look_counts_warnings_and_names_page_and_table(tmp_path, monkey
     results = (tmp_path / "results").relative_to(tmp_path)
     fill(results, "verdict.txt", "tables/table_3.md", "tables/table_1.md", "figures/overview.png", "figures/a.png")
     (results / "verdict.txt").write_text("All 3 checks of the results passed.\n")
-    (results / "warnings.md").write_text("# Warnings\n\n- a: b\n- c: d\n\nNot modelled.\n")
+    save_page(results, noted("One."), noted("Two."))
     verdict, warnings, first = where_to_look(results)
     assert verdict == "All 3 checks of the results passed. The numbers are in results/checks.md."
     assert warnings.endswith("2 in results/warnings.md.")
@@ -157,7 +158,7 @@ def test_what_was_asked_for_is_opened_first(tmp_path, monkeypatch):
 
 def test_a_finished_run_ends_in_at_most_four_lines(tmp_path):
     fill(tmp_path / "results", "verdict.txt", "tables/table_3.md", "figures/overview.png")
-    (tmp_path / "results" / "warnings.md").write_text("- a: b\n")
+    save_page(tmp_path / "results", noted("One."))
     found = lines(DONE, Status.DONE, tmp_path)
     assert len(found) == 4
     assert found[0] == "Done: 2 jobs in 2 min."
@@ -170,7 +171,7 @@ def test_the_end_of_a_run_is_silent_about_files_of_other_settings_and_says_so(tm
     results = (tmp_path / "results").relative_to(tmp_path)
     names = ["verdict.txt", "warnings.md", "tables/table_3.md", "figures/overview.png"]
     fill(results, *names)
-    (results / "warnings.md").write_text("- a: b\n")
+    save_page(results, noted("One."))
     every = len(list(where_to_look(results)))
     for number in range(1, len(names) + 1):
         unlike = {f"results/{name}": "was made with other settings" for name in names[:number]}

@@ -12,6 +12,7 @@ from stiction.config.merging import merged
 from stiction.config.surfaces import described, knowledge
 from stiction.config.units import in_si
 from stiction.plan.devices import DevicePlan
+from stiction.report.limits.words import texts
 from stiction.surface import self_affine
 from stiction.surface.spectrum import CutoffSelfAffine
 
@@ -120,12 +121,12 @@ def test_a_device_on_such_a_surface_has_a_budget_and_one_on_surfaces_of_the_pape
 
 
 def test_readers_are_told_what_is_assumed_and_how_uncertain_it_is():
-    (said,) = knowledge.sentences("Mine", normal(STATED), LIBRARY)
+    (said,) = texts(knowledge.limits("Mine", normal(STATED), LIBRARY))
     assert said.startswith("surface Mine: not measured but assumed, with the scatter over 4 typical surfaces (B1, B2")
     assert said.endswith("skewness -0.738 ± 0.32; kurtosis 4.17 ± 0.87")
-    assert knowledge.sentences("B2", LIBRARY["B2"], LIBRARY) == []
+    assert knowledge.limits("B2", LIBRARY["B2"], LIBRARY) == []
     both = {"skewness": 0.1, "kurtosis": 0.2}
-    assert knowledge.sentences("Mine", normal(STATED | {"uncertainty": both}), LIBRARY) == []
+    assert knowledge.limits("Mine", normal(STATED | {"uncertainty": both}), LIBRARY) == []
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 from hostile import HOSTILE, HOSTILE_FILE, Reading
+from noted import noted
 from numpy.testing import assert_allclose
 
 from stiction.models import surface_model
@@ -15,10 +16,11 @@ from stiction.plan.stage import At
 from stiction.report import checks, published
 from stiction.report import table as tables
 from stiction.report.beams import tables as tables_beams
+from stiction.report.limits import pages
 from stiction.report.studies import tables as tables_studies
 from stiction.report.surfaces import tables as tables_surfaces
 from stiction.run.markdown import plain
-from stiction.stages.beams.pair_warnings import as_markdown
+from stiction.stages.beams.pair_warnings import Subject
 from stiction.stages.contact import pair_model_error
 from stiction.stages.laws import forces as stage_forces
 
@@ -309,13 +311,15 @@ def test_text_of_users_in_a_table_is_shown_as_it_is():
 
 def test_text_of_users_in_checks_and_warnings_is_shown_as_it_is():
     failed = checks.table([checks.Check("name", HOSTILE, False, HOSTILE)])
-    for markdown in (checks.markdown(failed), as_markdown({HOSTILE: [HOSTILE]}, HOSTILE)):
+    limited = pages.as_markdown({Subject(HOSTILE): [noted(HOSTILE, HOSTILE)]}, {})
+    said = {checks.markdown(failed): f"{HOSTILE}: {HOSTILE}", limited: f"{HOSTILE}: surface {HOSTILE}: {HOSTILE}"}
+    for markdown, sentence in said.items():
         shown = Reading(rendered(markdown))
         assert shown.code == []
-        assert shown.text["li"][0].removeprefix("FAILED ") == f"{HOSTILE}: {HOSTILE}"
+        assert shown.text["li"][0].removeprefix("FAILED ") == sentence
         assert "eq" not in shown.text
         (line,) = [line for line in markdown.splitlines() if line.startswith("- ")]
-        assert plain(line.removeprefix("- ").removeprefix("**FAILED** ")) == f"{HOSTILE}: {HOSTILE}"
+        assert plain(line.removeprefix("- ").removeprefix("**FAILED** ")) == sentence
 
 
 def rendered(markdown):

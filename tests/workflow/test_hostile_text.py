@@ -8,10 +8,10 @@ import yaml
 from conftest import TINY, snakemake
 from drawn_scans import published
 from hostile import HOSTILE, HOSTILE_FILE, MADE, Reading
+from noted import noted, save_page
 from written_scans import QUICK, SIDE, SurfaceTopography
 
 from stiction.command.front_page import FRONT, front_page
-from stiction.stages.beams.pair_warnings import as_markdown
 
 pytestmark = pytest.mark.slow
 
@@ -28,7 +28,7 @@ def folder(tmp_path_factory):
     snakemake(folder, "scans", configs=[folder / "mine.yaml"])
     results = folder / "results"
     (results / "verdict.txt").write_text(HOSTILE)  # of a finished run of the pair, without its jobs
-    (results / "warnings.md").write_text(as_markdown({"pair b": [HOSTILE]}, ""))
+    save_page(results, noted(HOSTILE))
     (results / "tables" / "table_3.csv").write_text("pair,model\n")
     (folder / FRONT).write_text(front_page(results), encoding="utf-8")
     snakemake(folder, "scans", "--report", "results/report.html", configs=[folder / "mine.yaml"])
@@ -44,7 +44,7 @@ def test_a_report_runs_no_code_of_a_study_and_shows_its_text(folder):
     shown = Reading(json.loads(front))
     assert shown.code == []
     assert f"Scans of Mine: {HOSTILE_FILE}" in shown.text["li"]
-    assert f"pair b: {HOSTILE}" in shown.text["li"]
+    assert f"pair b: surface B2: {HOSTILE}" in shown.text["li"]
     assert HOSTILE in shown.text["p"]
     written = yaml.safe_load(shown.text["pre"][0])["surfaces"]["Mine"]["scans"]
     assert written["channel"] == HOSTILE

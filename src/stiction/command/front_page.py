@@ -8,7 +8,7 @@ import csv
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import yaml
 
@@ -21,6 +21,10 @@ from stiction.report.html import rendered
 from stiction.rounding import in_percent
 from stiction.run.markdown import plain
 from stiction.run.provenance import code_of, recorded_runs, start_of
+
+if TYPE_CHECKING:
+    from stiction.devices.limits.limit import Limit
+    from stiction.stages.beams.pair_warnings import Subject
 
 #: Where the command leaves the page for Snakemake, relative to the folder of the run.
 FRONT = Path(".snakemake", "front.rst")
@@ -118,7 +122,17 @@ def _first_results(results, config):
 
 def warnings(results: Present, config: Mapping[str, Any]) -> Iterator[str]:
     """Sentences about results beyond the limits of the model."""
-    return (item for page in warning_pages(results, config) for item in list_items(results.text(page)))
+    from stiction.report.limits.pages import sentence  # imports the physics
+
+    return (sentence(*found) for found in limits(results, config))
+
+
+def limits(results: Present, config: Mapping[str, Any]) -> Iterator["tuple[Limit, list[Subject]]"]:
+    """Limits of results, each with its subjects."""
+    from stiction.report.limits.pages import of_json  # imports the physics
+
+    for page in warning_pages(results, config):
+        yield from of_json(results.text(str(Path(page).with_suffix(".json"))))
 
 
 def warning_pages(results: Present, config: Mapping[str, Any]) -> list[str]:

@@ -154,7 +154,7 @@ def _by_category(figures: Iterable[Item]) -> dict[str, list[Item]]:
 def _devices(results: Present, config: Mapping, found: Sequence[Item]) -> Iterator[dict[str, Any]]:
     """Devices with their first answer, their page and the number of warnings."""
     pages = {item.shown for item in found}
-    said = list(front_page.warnings(results, config))
+    found_limits = list(front_page.limits(results, config))
     for name, section in config.get("devices", {}).items():
         page, (answer, *_) = f"devices/{name}.html", [*results.text(f"devices/{name}.txt").splitlines(), ""]
         yield {
@@ -163,13 +163,8 @@ def _devices(results: Present, config: Mapping, found: Sequence[Item]) -> Iterat
             "drawing": device_drawing(section).svg,
             "page": page if page in pages else "",
             "answer": answer,
-            "warnings": sum(name in _subjects_of(sentence) for sentence in said),
+            "warnings": sum(name in {one.name for one in subjects} for _, subjects in found_limits),
         }
-
-
-def _subjects_of(sentence: str) -> list[str]:
-    """Names of the devices at the start of a warning, as in ``C1, RH 0.9; R1: Too long.``."""
-    return [part.split(",")[0].strip() for part in sentence.split(":")[0].split(";")]
 
 
 def _surfaces(results: Present, config: Mapping) -> Iterator[dict[str, Any]]:

@@ -1,6 +1,7 @@
 """Last lines of a command, and its exit status."""
 
 import csv
+import json
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from enum import IntEnum
@@ -28,7 +29,17 @@ _VERDICT = "verdict"
 _PAGES = ("devices/*.html", "figures/overview.png", "figures/surface_sheet_*.png", "figures/*.png")
 _TABLES = tuple(
     f"tables/{name}.md"
-    for name in ("devices", "process", "process_map", "roughness", "test_beams", "safe_lengths", "stoppers", "table_3", "scans")
+    for name in (
+        "devices",
+        "process",
+        "process_map",
+        "roughness",
+        "test_beams",
+        "safe_lengths",
+        "stoppers",
+        "table_3",
+        "scans",
+    )
 )
 #: Pages of warnings.
 _WARNINGS = ("warnings.md", "devices/warnings.md")
@@ -109,7 +120,8 @@ def where_to_look(results: Path, targets: Sequence[str] = (), unlike: Mapping[st
     present = Present(results, unlike or {})
     if present.has("verdict.txt"):
         yield f"{present.text('verdict.txt').strip()} The numbers are in {results / 'checks.md'}."
-    if counted := [f"{number} in {results / page}" for page in _WARNINGS if (number := _warnings(present.text(page)))]:
+    numbers = {page: _number_of_warnings(present, page) for page in _WARNINGS}
+    if counted := [f"{number} in {results / page}" for page, number in numbers.items() if number]:
         yield f"Warnings about results beyond the limits of the model: {', '.join(counted)}."
     pages = [*(f"figures/{name}.png" for name in targets), *_PAGES]
     tables = [*(f"tables/{name}.md" for name in targets), *_TABLES]
@@ -121,9 +133,10 @@ def where_to_look(results: Path, targets: Sequence[str] = (), unlike: Mapping[st
         yield f"Not computed in this run: {stale_results.in_words(unlike)}."
 
 
-def _warnings(page):
-    """Number of warnings on a page."""
-    return sum(line.startswith("- ") for line in page.splitlines())
+def _number_of_warnings(present, page):
+    """Number of warnings on a page, from the file beside it."""
+    limits = present.text(str(Path(page).with_suffix(".json"))) if present.has(page) else ""
+    return len(json.loads(limits or "[]"))
 
 
 def _first(present, patterns):

@@ -15,7 +15,7 @@ from stiction.config.materials import material_of
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.materials import COATING
 from stiction.contact.meniscus import dry_air, is_wetted, meniscus_height
-from stiction.devices import limits
+from stiction.devices.limits import rules
 from stiction.models import SIDES
 from stiction.rounding import is_at_most
 
@@ -165,9 +165,9 @@ def least_gap(humidities: float | list, meeting: Meeting) -> tuple[float, str] |
     wet = angles and humid
     heights = meniscus_height(humid, meeting.config[TEMPERATURE], angles) + to_si(adsorbed, "nm") if wet else 0.0
     height, rms = float(np.max(heights)), to_si(meeting.rms, "nm")
-    least = from_si(limits.least_gap(height, rms), "um")
+    least = from_si(rules.least_gap(height, rms), "um")
     return least, (
-        f"must be at least {least:.4g} µm, {limits.FILMS} times the sum of the height of the water film, "
+        f"must be at least {least:.4g} µm, {rules.FILMS} times the sum of the height of the water film, "
         f"{from_si(height, 'nm'):.5g} nm, and the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
     )
 

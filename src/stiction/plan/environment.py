@@ -14,7 +14,6 @@ from stiction.config.units import to_si
 from stiction.contact.materials import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.contact.meniscus import is_wetted, require_humidity
 from stiction.contact.vanderwaals import combined
-from stiction.devices import limits
 from stiction.models import SIDES
 from stiction.plan.stage import subsection
 
@@ -81,19 +80,18 @@ class Environment:
         model = (config or self.config)["contact"].get("model")
         return [rh for rh in humidities if model == "full" or model is None and self.is_dry(pair, rh)]
 
-    def not_modelled(self, cases: Iterable[tuple[str, float]]) -> str:
-        """Sentence on the effects missing in the results of some cases, each a pair and a humidity."""
+    def not_modelled(self, cases: Iterable[tuple[str, float]]) -> dict[str, Any]:
+        """Effects missing in the results of some cases, each a pair and a humidity, by keys and for which pairs."""
         cases = list(cases)
         pairs = list(dict.fromkeys(pair for pair, _ in cases))
         humid = {pair for pair, humidity in cases if not self.is_dry(pair, humidity)}
         touching = [pair for pair in pairs if pair in humid and self.reach(pair) == "touching"]
-        of_some = f" (pairs {', '.join(touching)})" * (len(touching) < len(pairs))
-        left_out = [f"attraction of solids across gaps{of_some}"] * bool(touching)
-        if self.config["van_der_waals"] == "none":
-            left_out = ["van der Waals attraction of solids"]
+        nothing_attracts = self.config["van_der_waals"] == "none"
+        left_out = ["van_der_waals"] if nothing_attracts else ["gaps"] * bool(touching)
         dry = {self.is_dry(*case) for case in cases if not self.corrected(case[0], case[1:])}
-        left_out += [limits.SUMMITS] * (False in dry) + [limits.BENT] * (True in dry)
-        return limits.not_modelled(left_out, not all(self.is_dry(*case) for case in cases))
+        left_out += ["summits"] * (False in dry) + ["bent"] * (True in dry)
+        of_some = {"pairs": touching} if "gaps" in left_out and len(touching) < len(pairs) else {}
+        return {"left_out": left_out, "humid": not all(self.is_dry(*case) for case in cases)} | of_some
 
     def around(self, contact: str, config: dict | None = None) -> dict[str, Any]:
         """Configuration with attraction of the summits of a contact through its own medium."""

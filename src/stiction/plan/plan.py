@@ -14,7 +14,7 @@ from stiction.config.materials import Materials
 from stiction.config.merging import values
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
-from stiction.config.surfaces.knowledge import knowledge, sentences, uncertain
+from stiction.config.surfaces.knowledge import knowledge, limits, uncertain
 from stiction.config.test_beams import as_cantilevers
 from stiction.contact.materials import ELASTIC
 from stiction.models import BEAM_MODELS, FAR_QUANTITIES, MODE_QUANTITIES, SURFACE_MODELS
@@ -166,13 +166,16 @@ class Plan:
         place = known["quantities"].index(quantity)
         return float(known["covariance"][place][place] ** 0.5)
 
-    def assumptions(self, *pairs: str) -> dict[str, list[str]]:
-        """Sentences on assumed properties of the surfaces of some pairs, by pair, without empty ones."""
+    def assumptions(self, *pairs: str) -> dict[str, list[dict[str, Any]]]:
+        """Stored limits by assumed properties of the surfaces of some pairs, by pair, without empty ones."""
         library, entries = paper()["surfaces"], self.config["surfaces"]
-        by_surface = {name: sentences(name, entries[name], library) for name in self.scans.others}
+        by_surface = {name: limits(name, entries[name], library) for name in self.scans.others}
         named = {pair: dict.fromkeys(self.sides(pair)) for pair in pairs}
-        said = {pair: [one for name in names for one in by_surface.get(name, ())] for pair, names in named.items()}
-        return {pair: of_pair for pair, of_pair in said.items() if of_pair}
+        found = {
+            pair: [limit.stored() for name in names for limit in by_surface.get(name, ())]
+            for pair, names in named.items()
+        }
+        return {pair: of_pair for pair, of_pair in found.items() if of_pair}
 
     @cached_property
     def with_summits(self) -> list[str]:

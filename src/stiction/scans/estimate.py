@@ -8,8 +8,9 @@ from scipy.special import chdtrc
 
 from stiction.errors import NotConverged, ScanError
 from stiction.estimates import jackknife
+from stiction.scans import flags
 from stiction.scans import periodogram as spectra
-from stiction.scans.flags import UNLIKELY, infeasible, sentences
+from stiction.scans.flags import UNLIKELY, infeasible
 from stiction.scans.inspection import Inspection, Maps, Settings, inspect
 from stiction.scans.levelling import line_jump
 from stiction.scans.model_scans import SurfaceModel, draw_model_scans, summits_of_map
@@ -95,9 +96,14 @@ class SurfaceEstimate:
         return spectrum(psd, inspection.fit, inspection.rings, inspection.reach, cutoff)
 
     @property
+    def flags_by_kind(self) -> dict[str, str]:
+        """Sentences on all limits of the estimate, by the kind of limit."""
+        return flags.by_kind(self)
+
+    @property
     def flags(self) -> tuple[str, ...]:
         """Sentences on all limits of the estimate."""
-        return sentences(self)
+        return tuple(self.flags_by_kind.values())
 
 
 def estimate(

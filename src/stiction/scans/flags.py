@@ -33,9 +33,9 @@ _NOISE = 0.1
 _RANGE_OF_SECTORS = 4.99
 
 
-def sentences(estimate: Any) -> tuple[str, ...]:
-    """Sentences on an estimate, the most serious causes first."""
-    return tuple(sentence for flag in _FLAGS if (sentence := flag(estimate)))
+def by_kind(estimate: Any) -> dict[str, str]:
+    """Sentences on an estimate by the kind of their limit, the most serious causes first."""
+    return {flag.__name__[1:]: sentence for flag in _FLAGS if (sentence := flag(estimate))}
 
 
 def infeasible(estimate: Any) -> str:
@@ -302,3 +302,6 @@ _FLAGS = (
     _summits_differ,
     _no_summits,
 )
+
+#: Kinds of all flags.
+KINDS = tuple(flag.__name__[1:] for flag in _FLAGS)

@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 from ground import exactly, safe_with_tips, safe_without_tips
 from legends import covering
+from noted import noted
 
 from stiction.devices.chart import error_between
 from stiction.report.devices import figures as figures_devices
@@ -15,8 +16,8 @@ from stiction.report.style import save
 from stiction.stages.devices import safe_lengths
 
 S_SHAPE, EITHER = "S-shape", "S-shape or arc"
-WARNINGS = {("C1", 0.44, S_SHAPE): ["Too wet."], ("C1", 0.44, EITHER): ["Too wet.", "Too thin."]}
-WARNINGS |= {("C1", 0.67, S_SHAPE): [], ("C1", 0.67, EITHER): ["Too thin."], ("R1", 0.67, "middle"): []}
+WARNINGS = {("C1", 0.44, S_SHAPE): [noted("Too wet.")], ("C1", 0.44, EITHER): [noted("Too wet."), noted("Too thin.")]}
+WARNINGS |= {("C1", 0.67, S_SHAPE): [], ("C1", 0.67, EITHER): [noted("Too thin.")], ("R1", 0.67, "middle"): []}
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +49,10 @@ def charted(humidity, factor=1.0, error=0.004):
 
 CHARTS = {("C1", humidity): charted(humidity, factor) for humidity, factor in ((0.5, 1.0), (0.4, 2.0), (0.6, 0.5))}
 CURVES = list(product(("C1",), (2e-6, 3e-6), (10e-6, 20e-6), (S_SHAPE, EITHER)))
-STEEP = dict.fromkeys(CURVES, []) | {CURVES[2]: ["Too steep."], CURVES[3]: ["Too steep.", "Too short."]}
+STEEP = dict.fromkeys(CURVES, []) | {
+    CURVES[2]: [noted("Too steep.")],
+    CURVES[3]: [noted("Too steep."), noted("Too short.")],
+}
 
 
 def test_the_table_has_a_row_per_shape_and_share_with_the_numbers_of_the_dataset(found):
@@ -72,9 +76,9 @@ def test_arcs_have_no_error_of_surfaces_of_their_own(found):
 
 def test_warnings_are_numbered_in_the_cells_and_written_out_in_caption_and_csv(found):
     table = tables_devices.safe_lengths(found, WARNINGS, not_modelled="Not all.")
-    assert table.caption.endswith("Not all. Warnings:\n\n- (1) Too wet.\n- (2) Too thin.")
+    assert table.caption.endswith("Not all. Warnings:\n\n- (1) surface B2: Too wet.\n- (2) surface B2: Too thin.")
     assert list(table.cells.warnings) == ["1"] * 2 + ["1, 2"] * 2 + [""] * 2 + ["2"] * 2 + [""] * 2
-    assert "Too wet. Too thin." in table.csv
+    assert "surface B2: Too wet. surface B2: Too thin." in table.csv
 
 
 def test_a_table_without_warnings_does_not_speak_of_them(found):
@@ -170,8 +174,8 @@ def test_a_line_of_a_chart_has_all_shares_and_its_warnings():
         "bound [µm]": "53.0",
         "warnings": "1, 2",
     }
-    assert table.caption.endswith("Warnings:\n\n- (1) Too steep.\n- (2) Too short.")
-    assert "Too steep. Too short." in table.csv
+    assert table.caption.endswith("Warnings:\n\n- (1) surface B2: Too steep.\n- (2) surface B2: Too short.")
+    assert "surface B2: Too steep. surface B2: Too short." in table.csv
     assert table.cells["from"].iloc[0] == "finite elements"
 
 
@@ -242,7 +246,9 @@ def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count):
     cases = {(f"C{k}", rh): found["C1", 0.44 if rh == 0.44 else 0.67] for k in range(count) for rh in (0.44, 0.67, 0.9)}
     bases = np.resize(["sampled", "fitted", "extrapolated"], found["C1", 0.44].basis.shape)
     cases = {case: one.assign(basis=one.basis.copy(data=bases)) for case, one in cases.items()}
-    warned = dict.fromkeys(product(*map(dict.fromkeys, zip(*cases, strict=True)), (S_SHAPE, EITHER)), ["Too wet."])
+    warned = dict.fromkeys(
+        product(*map(dict.fromkeys, zip(*cases, strict=True)), (S_SHAPE, EITHER)), [noted("Too wet.")]
+    )
     assert covering(figures_devices.risk(cases, warned)) == []
     axes = {(f"C{k}", rh): charted(rh) for k in range(count) for rh in (0.4, 0.5)}
     assert covering(figures_devices.chart(axes, {})) == []
@@ -251,11 +257,11 @@ def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count):
 @pytest.mark.slow
 def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found):
     cases = {(f"C{k}", rh): found["C1", 0.44] for k in range(20) for rh in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)}
-    warned = {(*case, shape): [f"{case} is too wet."] for case in cases for shape in (S_SHAPE, EITHER)}
+    warned = {(*case, shape): [noted(f"{case} is too wet.")] for case in cases for shape in (S_SHAPE, EITHER)}
     figure = figures_devices.risk(cases, warned)
     assert figure._supxlabel.get_text() == "(1) to (120): beyond a limit of the model"
     assert named(figure.axes[0])[1] == "RH 0.5 (2)"
-    assert "(2) ('C0', 0.5) is too wet." in tables_devices.safe_lengths(cases, warned).caption
+    assert "(2) surface B2: ('C0', 0.5) is too wet." in tables_devices.safe_lengths(cases, warned).caption
     assert figure.get_figheight() <= 24
     assert covering(figure) == []
     assert sum(panel.get_position().height for panel in figure.axes[::4]) > 0.5

@@ -10,9 +10,11 @@ from stiction.config.merging import merged
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.device import Device
-from stiction.devices import limits
+from stiction.devices.limits import rules as limits
+from stiction.devices.limits.limit import Side
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
+from stiction.report.limits.words import text, texts
 from stiction.stages.contact import curves
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE
@@ -54,12 +56,12 @@ def test_every_result_has_its_change_as_a_warning():
     graph = TOUCHING.graph
     job = graph.job("devices/warnings/S1.json")
     *_, [[_, said]] = job.compute(NOTHING | {"left_out_gaps": TOUCHING["devices/left_out_gaps/S1"]})
-    assert any("across gaps is left out" in one and "RH 0.44" in one and "unsafe" in one for one in said)
+    assert any("across gaps is left out" in one and "RH 0.44" in one and "unsafe" in one for one in texts(said))
     changes = device_warnings.left_out_changes(TOUCHING["devices/left_out_gaps/C1"])
     for shape in (S_SHAPE, EITHER):
-        (sentence,) = device_warnings.gap_warnings({key: of for key, of in changes.items() if key[0] == 0.44}, shape)
+        (limit,) = device_warnings.gap_warnings({key: of for key, of in changes.items() if key[0] == 0.44}, shape)
         number = 100 * changes[0.44, ARC if shape == EITHER else shape][0]
-        assert f"change the length that holds by {number:+.2g} ±" in sentence
+        assert f"change the length that holds by {number:+.2g} ±" in text(limit)
     assert device_warnings.gap_warnings({}, S_SHAPE) == []
 
 
@@ -96,9 +98,9 @@ def test_the_change_is_computed_where_attraction_across_gaps_is_left_out(changes
 
 
 def test_the_side_of_what_is_left_out_is_that_of_lengths_and_forces():
-    assert "unsafe" in limits.without_gaps({0.5: (-0.03, 0.01)}, shorter=True)
-    assert "unsafe" not in limits.without_gaps({0.5: (0.03, 0.01)}, shorter=True)
-    assert "+10 ± 1 % at RH 0.5, -2 ± 1 % at RH 0.9, which is the unsafe" in limits.without_gaps(
-        {0.5: (0.1, 0.01), 0.9: (-0.02, 0.01)}
-    )
+    assert limits.without_gaps({0.5: (-0.03, 0.01)}, shorter=True).side == Side.UNSAFE
+    assert limits.without_gaps({0.5: (0.03, 0.01)}, shorter=True).side == Side.SAFE
+    both = limits.without_gaps({0.5: (0.1, 0.01), 0.9: (-0.02, 0.01)})
+    assert (both.side, both.amount, both.forbids) == (Side.UNSAFE, 0.1, True)
+    assert "+10 ± 1 % at RH 0.5, -2 ± 1 % at RH 0.9, which is the unsafe" in text(both)
     assert limits.without_gaps({}) is None

@@ -12,6 +12,7 @@ import xarray as xr
 from ground import exactly
 from hostile import HOSTILE, Reading
 from matplotlib.figure import Figure
+from noted import noted
 from test_device_outputs import charted
 from test_tables_budget import BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
 
@@ -52,7 +53,7 @@ def safe(kind="cantilever", longest=600e-6, reach=np.inf):
 @pytest.fixture(scope="module")
 def stopper():
     budgets = {(0.67,): BUDGETS["S1", 0.67]}
-    return pages.stopper_page("S1", STOPPER, STOPPERS["S1"], budgets, ["Too hot."]).html
+    return pages.stopper_page("S1", STOPPER, STOPPERS["S1"], budgets, [noted("Too hot.")]).html
 
 
 def test_a_page_is_one_file_with_its_figures(stopper):
@@ -130,7 +131,7 @@ def test_a_bound_of_all_stoppers_is_no_statement():
 
 def test_advice_warnings_and_what_is_not_modelled_are_shown(stopper):
     assert "Relative humidity 0.67: Measure heights of B2 better" in stopper
-    assert "<p>Too hot.</p>" in stopper
+    assert "<p>surface B2: Too hot.</p>" in stopper
     assert "<p>Not all.</p>" in replace(Page("S1", {}, ["Yes."]), not_modelled="Not all.").html
 
 
@@ -262,11 +263,11 @@ def test_a_beam_without_chart_and_budget_has_neither():
 
 
 def test_warnings_of_a_beam_have_the_numbers_of_its_tables():
-    warned = {("C1", 0.67, shape): ["Too steep."] * (shape == EITHER) for shape in SHAPES}
+    warned = {("C1", 0.67, shape): [noted("Too steep.")] * (shape == EITHER) for shape in SHAPES}
     curves = [("C1", *curve) for curve in device_warnings.curves(charted(0.5))]
-    warned |= dict.fromkeys(curves, []) | {curves[0]: ["Too thin.", "Too steep."]}
+    warned |= dict.fromkeys(curves, []) | {curves[0]: [noted("Too thin."), noted("Too steep.")]}
     page = pages.beam_page("C1", CANTILEVER, {0.67: safe()}, {0.5: charted(0.5)}, {}, warned).html
-    assert "<p>(1) Too steep.</p>\n<p>(2) Too thin.</p>" in page
+    assert "<p>(1) surface B2: Too steep.</p>\n<p>(2) surface B2: Too thin.</p>" in page
     rows = re.findall(r"<td>([^<]*)</td>\s*</tr>", page.partition("How long")[2])  # last cells
     assert rows == [""] * 3 + ["1"] * 3 + ["2, 1"] + [""] * 7
     assert page.count('class="panels"') == 2

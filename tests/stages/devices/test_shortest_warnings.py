@@ -7,8 +7,9 @@ import pytest
 from test_pages import CANTILEVER, safe
 from test_tables_budget import TIPS, budget_dataset
 
-from stiction.devices import limits
+from stiction.devices.limits import rules as limits
 from stiction.report.devices import pages, sentences
+from stiction.report.limits.words import text, texts
 from stiction.stages.devices.opening import EITHER, S_SHAPE
 
 SILENT = {("C1", 0.67, shape): [] for shape in (S_SHAPE, EITHER)}
@@ -28,7 +29,7 @@ def test_a_length_to_build_with_a_slope_beyond_the_linear_theory_is_flagged(sect
         lengths = {0.67: safe(section["kind"], longest)}
         budgets = {(0.67, *["tip"] * (arms == 1)): budget_dataset(factor, TIPS)}
         least, total, built = sentences.length_to_build(lengths, budgets)
-        said = [one for one in sentences.shortest_warnings(section, lengths, budgets) if "slope" in one]
+        said = [one for one in texts(sentences.shortest_warnings(section, lengths, budgets)) if "slope" in one]
         slope = steepest(20e-6, built / arms)
         assert bool(said) == (sentences.is_bounded(total) and slope > limits.ROTATION)
         assert all(f"a slope of {slope:.3g}" in one and f"of {built / arms * 1e6:.0f} µm" in one for one in said)
@@ -44,10 +45,10 @@ def test_a_shorter_length_with_test_beams_or_of_the_device_counts():
         sentences.shortest_warnings(CANTILEVER, lengths, {}, 0.2 * least),
         sentences.shortest_warnings(CANTILEVER | {"length_um": 0.2e6 * least}, lengths, {}),
     ):
-        assert f"slope of {steepest(20e-6, 0.2 * least):.3g}" in said[0]
+        assert f"slope of {steepest(20e-6, 0.2 * least):.3g}" in text(said[0])
 
 
 def test_the_page_of_a_device_lists_them():
     lengths, budgets = {0.67: safe(longest=400e-6)}, {(0.67, "tip"): budget_dataset(15, TIPS)}
     (said, *_) = sentences.shortest_warnings(CANTILEVER, lengths, budgets)
-    assert said in pages.beam_page("C1", CANTILEVER, lengths, {}, budgets, SILENT).warnings
+    assert text(said) in pages.beam_page("C1", CANTILEVER, lengths, {}, budgets, SILENT).warnings

@@ -73,7 +73,7 @@ def test_the_meniscus_is_wide_in_a_stated_air_alone(side, air):
         device_warnings._settings(Plan(joined({"devices": {"D": device}, "run": {"pairs": []}})), Of("D"))["stopper"],
     )
     film = -2 * 0.072 * 1.8e-5 / (8.314 * 300 * np.log(air))
-    wide = [one for one in device_warnings.stopper_warnings(ROUGH, of) if "rim" in one]
+    wide = [one for one in device_warnings.stopper_warnings(ROUGH, of) if one.kind == "wide_meniscus"]
     assert bool(wide) == (2 * film / (side * 1e-6) > 0.1)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from legends import covering
 from matplotlib.lines import Line2D
+from noted import noted
 from numpy.testing import assert_allclose
 
 from stiction.config.files import load
@@ -50,7 +51,7 @@ def stopper_dataset(peak=0.7):
 
 BEAMS = {("C1", 0.44): budget_dataset(2.0), ("C1", 0.67): budget_dataset()}
 BUDGETS = BEAMS | {("C1", 0.67, "tip"): budget_dataset(0.5, TIPS), ("S1", 0.67): budget_dataset(1, PATCH)}
-WARNINGS = {"S1": [], "S2": ["Beware."]}
+WARNINGS = {"S1": [], "S2": [noted("Beware.")]}
 STOPPERS = {"S1": stopper_dataset(), "S2": stopper_dataset(peak=1.0)}
 
 
@@ -232,7 +233,7 @@ def test_six_humidities_fit_a_screen_with_bars_that_darken_and_do_not_meet():
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_no_legend_of_stoppers_covers_a_panel_or_a_text(count):
     datasets = {f"S{k}": stopper_dataset() for k in range(count)}
-    assert covering(figures_budget.stoppers(datasets, {"S0": ["Beware."]})) == []
+    assert covering(figures_budget.stoppers(datasets, {"S0": [noted("Beware.")]})) == []
 
 
 @pytest.mark.parametrize(
@@ -255,7 +256,7 @@ def test_effects_that_are_not_known_have_no_bar_and_leave_the_others(name, unkno
 @pytest.mark.parametrize("count", [2, 6, pytest.param(30, marks=pytest.mark.slow)])
 def test_every_panel_has_the_name_of_its_stopper_in_a_figure_that_is_not_too_tall(count):
     datasets = {f"S{k}": stopper_dataset(peak=1 + k) for k in range(count)}
-    figure = figures_budget.stoppers(datasets, {name: ["Beware."] for name in datasets})
+    figure = figures_budget.stoppers(datasets, {name: [noted("Beware.")] for name in datasets})
     forces = [panel for panel in figure.axes if panel.get_xlabel().startswith("relative humidity")]
     tops = {panel.get_title("left").split()[1]: max(panel.lines[0].get_ydata()) for panel in forces}
     expected = {name: 1e6 * float(dataset.mean_along.max()) for name, dataset in datasets.items()}

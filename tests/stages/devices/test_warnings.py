@@ -13,13 +13,16 @@ from stiction.config.files import load
 from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import film, surface_energy
-from stiction.devices import limits
+from stiction.devices.limits import rules as limits
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At
+from stiction.report.limits import pages
+from stiction.report.limits.words import not_modelled, texts
 from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.opening import EITHER, MIDDLE, S_SHAPE
+from stiction.stages.surfaces.surface_flags import flagged
 
 PLAN = Plan(load())
 
@@ -28,6 +31,26 @@ def beams(s_shaped, arc, crack=700 * UM):
     """Dataset of stage beams with numbers of S-shaped beams and of arcs."""
     state = np.repeat([0, 1], [s_shaped, arc])
     return xr.Dataset({"state": ("sample", state), "crack_length": ("sample", np.where(state, 1500 * UM, crack))})
+
+
+def in_words(limits):
+    """Sentences on limits by subject, a name or a tuple."""
+    return {str(key) if isinstance(key, pair_warnings.Subject) else key: texts(found) for key, found in limits.items()}
+
+
+def about_beams(*case):
+    """Sentences on the beams of a case of the main line."""
+    return texts(pair_warnings.beam_warnings(*case))
+
+
+def about_device(*case, **more):
+    """Sentences on a device, by shape."""
+    return in_words(device_warnings.beam_warnings(*case, **more))
+
+
+def about_curves(*case):
+    """Sentences on the curves of a chart."""
+    return in_words(device_warnings.chart_warnings(*case))
 
 
 def device(energy=2e-3, of=C1):
@@ -39,11 +62,11 @@ def device(energy=2e-3, of=C1):
 
 
 def test_s_shaped_beams_of_the_paper_have_no_warning():
-    assert pair_warnings.beam_warnings(beams(50, 0), PAPER, 1.5 * UM) == []
+    assert about_beams(beams(50, 0), PAPER, 1.5 * UM) == []
 
 
 def test_arcs_and_what_their_mean_lacks_are_each_said_once():
-    arcs, mean = pair_warnings.beam_warnings(beams(58, 42, 1400 * UM), PAPER, 1.5 * UM)
+    arcs, mean = about_beams(beams(58, 42, 1400 * UM), PAPER, 1.5 * UM)
     assert "42 % of the beams end as arcs" in arcs
     assert "1.5 µm" in arcs
     assert "1400 µm" in mean
@@ -51,7 +74,7 @@ def test_arcs_and_what_their_mean_lacks_are_each_said_once():
 
 
 def test_beams_that_all_end_as_arcs_have_no_mean_to_warn_about():
-    (sentence,) = pair_warnings.beam_warnings(beams(0, 10), PAPER, 1.5 * UM)
+    (sentence,) = about_beams(beams(0, 10), PAPER, 1.5 * UM)
     assert "100 % of the beams end as arcs" in sentence
 
 
@@ -64,32 +87,34 @@ def test_beams_that_all_end_as_arcs_have_no_mean_to_warn_about():
     ],
 )
 def test_each_dimension_beyond_the_model_is_said_once(beam, words):
-    (sentence,) = pair_warnings.beam_warnings(beams(9, 0), beam, 1.5 * UM)
+    (sentence,) = about_beams(beams(9, 0), beam, 1.5 * UM)
     assert words in sentence
 
 
 def about_pairs(cases, plasticity, plan=PLAN):
     settings = job_settings(plan, "warnings.md")
     nominal = in_si(pair_warnings.OfPairs, settings["pairs"])
-    return pair_warnings.main_line_warnings(cases, plasticity, settings["materials"], nominal)
+    return in_words(pair_warnings.main_line_warnings(cases, plasticity, settings["materials"], nominal))
 
 
 NOT_MEASURED = {"estimates": {}, "spectra": {}}
 #: Two flags of a measured surface, as the datasets of its estimate and spectrum hold them.
 MEASURED = {
-    "estimates": {"Etched": xr.Dataset({"flags": "the spectrum ends near 125 rad/µm"})},
-    "spectra": {"Etched": xr.Dataset({"flags": "cut by the grid"})},
+    "estimates": {"Etched": xr.Dataset(flagged([("spectrum_ends", "the spectrum ends near 125 rad/µm")]))},
+    "spectra": {"Etched": xr.Dataset(flagged([("grid_ends", "cut by the grid")]))},
 }
 FLAGS = ["surface Etched: the spectrum ends near 125 rad/µm", "surface Etched: cut by the grid"]
 
 
 def test_flags_of_a_surface_stand_beside_everything_that_rests_on_it(warned):
     settings = job_settings(PLAN, "warnings.md") | {"surfaces": {"a": ["Etched"], "b": []}}
-    page = pair_warnings.STAGES[0].result({"beams": {}, "plasticity": PLASTIC} | MEASURED, At(), settings)
+    page = pages.as_markdown(*pages.STAGES[0].result({"beams": {}, "plasticity": PLASTIC} | MEASURED, At(), settings))
     for flag in FLAGS:
         (line,) = (line for line in page.splitlines() if flag in line)
         assert line.startswith("- pair a: ")
-    assert pair_warnings.surface_notes(MEASURED, settings["surfaces"]) == {"a": FLAGS, "b": []}, "in Table III"
+    assert in_words(pair_warnings.surface_notes(MEASURED, settings["surfaces"])) == {"a": FLAGS, "b": []}, (
+        "in Table III"
+    )
     assert warned({"S1": stopper()}, surfaces=MEASURED).patches["S1"][-2:] == FLAGS
     assert not set(FLAGS) & set(warned({"S1": stopper()}).patches["S1"])
     lengths = {("C1", 0.67): device()[0]}
@@ -121,7 +146,7 @@ def test_pairs_whose_plasticity_was_not_studied_are_said_to_be_unchecked():
 def test_the_remedy_names_the_list_of_studies_where_it_leaves_plasticity_out(studies, named):
     plan = Plan(load({"run": {"pairs": ["b"]} | ({} if studies is None else {"studies": studies})}))
     data = {"beams": {}, "plasticity": {}} | NOT_MEASURED
-    page = pair_warnings.STAGES[0].result(data, At(), job_settings(plan, "warnings.md"))
+    page = pages.as_markdown(*pages.STAGES[0].result(data, At(), job_settings(plan, "warnings.md")))
     assert "give its distance in studies.plasticity.distance_nm" in page
     assert (", and name plasticity in run.studies." in page) == named
 
@@ -158,7 +183,7 @@ def test_beams_of_pairs_a_and_b_at_the_humidities_of_the_paper_have_the_warnings
         mean = float(row["crack_length_um"] or "nan") * UM
         ended = xr.Dataset({"state": ("sample", np.repeat([0, 1, 2], np.round(np.multiply(shares, 1000)).astype(int)))})
         ended["crack_length"] = "sample", np.where(ended.state == 0, mean, 1500 * UM)
-        found = pair_warnings.beam_warnings(ended, PAPER, 1.5 * UM)
+        found = about_beams(ended, PAPER, 1.5 * UM)
         # Gaussian surfaces and all in the driest air adhere so little that some end as arcs: two sentences, else none.
         assert len(found) == (shares[1] > 0) + (0 < shares[0] < 1)
         assert all("end as arcs" in sentence or "end S-shaped" in sentence for sentence in found)
@@ -171,12 +196,12 @@ def test_beams_of_pairs_a_and_b_at_the_humidities_of_the_paper_have_the_warnings
 
 def only(found, of, shape=EITHER, **more):
     """Warnings about a device in one shape."""
-    return device_warnings.beam_warnings(found, of, **{"plastic": (0.0, 3e7)} | more)[shape]
+    return about_device(found, of, **{"plastic": (0.0, 3e7)} | more)[shape]
 
 
 def test_a_device_within_the_limits_has_no_warning():
     found, of = device()
-    assert device_warnings.beam_warnings(found, of, plastic=(0.02, 3e7)) == {S_SHAPE: [], EITHER: []}
+    assert about_device(found, of, plastic=(0.02, 3e7)) == {S_SHAPE: [], EITHER: []}
 
 
 @pytest.mark.parametrize(
@@ -217,7 +242,7 @@ def test_plastic_contact_of_a_device_is_said_and_so_is_that_it_was_not_studied()
     (sentence,) = only(found, of, plastic=(0.58, 1.04e8))
     assert "58 %" in sentence
     assert "when the surfaces are pressed together with 104 MPa: beams that were pressed" in sentence
-    assert ["was not checked" in sentence for sentence in device_warnings.beam_warnings(found, of)[S_SHAPE]] == [True]
+    assert ["was not checked" in sentence for sentence in about_device(found, of)[S_SHAPE]] == [True]
 
 
 def test_a_gap_that_the_film_fills_is_said():
@@ -257,7 +282,7 @@ def warned(tmp_path):
             data = {"lengths": own[0], "charts": own[1], "stoppers": stoppers, "plasticity": PLASTIC} | surfaces
             files[name] = tmp_path / f"{name}.json"
             stage.save(stage.result(data, At(), section), {"json": files[name]})
-        return device_warnings.read(files)
+        return device_warnings.OfDevices(*map(in_words, device_warnings.read(files)))
 
     return read
 
@@ -290,8 +315,9 @@ def test_cases_of_the_main_line_in_air_that_is_hardly_humid_enough_are_said():
     cases = {("b", 0.39, "NG"): beams(9, 0), ("b", 0.39, "G"): beams(9, 0), ("b", 0.4, "NG"): beams(9, 0)}
     said = {subject for subject, sentences in about_pairs(cases, PLASTIC).items() if "thinner" in " ".join(sentences)}
     assert said == {"pair b, RH 0.39, NG", "pair b, RH 0.39, G"}
-    (sentence,) = pair_warnings.film_warnings(cases, {"b": Water(300.0)})
-    assert sentence.startswith("Pair b, RH 0.39: The film of water is 1.1 nm high")
+    ((subject, (sentence,)),) = in_words(pair_warnings.film_warnings(cases, {"b": Water(300.0)})).items()
+    assert subject == "Pair b, RH 0.39"
+    assert sentence.startswith("The film of water is 1.1 nm high")
 
 
 # Charts
@@ -329,21 +355,18 @@ def test_the_air_of_the_shortest_length_of_a_curve_counts():
     along = [charted(700 * UM), charted(800 * UM, film=2 * UM)]
     along[1]["safe_length"] = along[1].safe_length * less_certain  # longer than the others at the largest share alone
     of = device_warnings.OfDevice(C1)
-    assert (
-        "sum of film height and roughness"
-        in device_warnings.chart_warnings(along, of, (0.0, 3e7))[3 * UM, 20 * UM, S_SHAPE][0]
-    )
-    assert device_warnings.chart_warnings(along[:1], of, (0.0, 3e7))[3 * UM, 20 * UM, S_SHAPE] == []
+    assert "sum of film height and roughness" in about_curves(along, of, (0.0, 3e7))[3 * UM, 20 * UM, S_SHAPE][0]
+    assert about_curves(along[:1], of, (0.0, 3e7))[3 * UM, 20 * UM, S_SHAPE] == []
 
 
 def test_the_thinnest_film_of_a_curve_counts_whatever_the_air_of_its_shortest_length():
     along = [charted(800 * UM, film=1e-9), charted(700 * UM)]
-    found = device_warnings.chart_warnings(along, device_warnings.OfDevice(C1), (0.0, 3e7))
+    found = about_curves(along, device_warnings.OfDevice(C1), (0.0, 3e7))
     assert all("The film of water is 1 nm high" in " ".join(sentences) for sentences in found.values())
 
 
 def test_the_thickness_of_a_curve_counts():
-    found = device_warnings.chart_warnings([charted(50 * UM)], device_warnings.OfDevice(C1), (0.0, 3e7))
+    found = about_curves([charted(50 * UM)], device_warnings.OfDevice(C1), (0.0, 3e7))
     thin, thick = ([text for text in found[t * UM, 20 * UM, EITHER] if "thick" in text] for t in (2, 3))
     assert thin[0].startswith("A crack of 22 µm is only 11.2 times as long as the beam is thick")
     assert thick[0].startswith("A crack of 35 µm is only 11.7 times as long as the beam is thick")
@@ -373,7 +396,7 @@ def test_the_rim_of_a_film_adds_its_share_to_the_force_of_the_film():
     # Surface energy times the length of the rim, over tension times area.
     height, tension = film(0.995, 300.0)
     share = surface_energy(300.0) * (2 * 3e-6 + 2 * 5e-6) / (tension * 3e-6 * 5e-6)
-    assert f"adds up to {100 * share:.3g} %" in limits.wide_meniscus(height, (3e-6, 5e-6))
+    assert f"adds up to {100 * share:.3g} %" in texts([limits.wide_meniscus(height, (3e-6, 5e-6))])[0]
 
 
 @pytest.mark.parametrize(
@@ -396,25 +419,36 @@ def test_a_stopper_has_the_warnings_of_its_contact(warned):
 # Page
 
 
+SPACERS = [limits.spacer(name, ("coating",)) for name in ("One", "Two", "Three", "Four")]
+
+
 def test_the_page_has_each_sentence_once_with_its_subjects_and_what_is_not_modelled():
-    page = pair_warnings.as_markdown({"pair a": [], "pair b": ["One.", "Two."], "pair c": ["Two."]}, "Not all.")
-    assert [line for line in page.splitlines() if line.startswith("-")] == ["- pair b: One.", "- pair b; pair c: Two."]
-    assert page.endswith("Not all.\n")
+    one, two = SPACERS[:2]
+    found = {"pair a": [], "pair b": [one, two], "pair c": [two]}
+    page = pages.as_markdown({pair_warnings.Subject(pair): of_pair for pair, of_pair in found.items()}, {})
+    lines = [line for line in page.splitlines() if line.startswith("-")]
+    assert [line.partition(" counts")[0] for line in lines] == [
+        "- pair b: The coating of One",
+        "- pair b; pair c: The coating of Two",
+    ]
+    assert page.endswith(f"{not_modelled()}\n")
 
 
 def test_subjects_are_named_in_words():
-    devices = {("C1", 0.67, S_SHAPE): ["One."], ("C1", 0.67, EITHER): ["Two."]}
-    curves = {("C1", 2.6 * UM, 20 * UM, EITHER): ["Three."]}
-    assert device_warnings.subjects(device_warnings.OfDevices(devices, curves, {"S1": ["Four."]})) == {
-        "C1, RH 0.67, held by the beam": ["One."],
-        "C1, RH 0.67, held by the beam or tip": ["Two."],
-        "C1, chart, 2.6 µm thick, gap 20 µm, held by the beam or tip": ["Three."],
-        "S1": ["Four."],
+    one, two, three, four = ([limit] for limit in SPACERS)
+    devices = {("C1", 0.67, S_SHAPE): one, ("C1", 0.67, EITHER): two}
+    curves = {("C1", 2.6 * UM, 20 * UM, EITHER): three}
+    found = device_warnings.subjects(device_warnings.OfDevices(devices, curves, {"S1": four}))
+    assert {str(subject): limits for subject, limits in found.items()} == {
+        "C1, RH 0.67, held by the beam": one,
+        "C1, RH 0.67, held by the beam or tip": two,
+        "C1, chart, 2.6 µm thick, gap 20 µm, held by the beam or tip": three,
+        "S1": four,
     }
 
 
 def test_a_page_without_warnings_says_so():
-    assert "No result is beyond the limits" in pair_warnings.as_markdown({"pair a": []}, "Not all.")
+    assert "No result is beyond the limits" in pages.as_markdown({pair_warnings.Subject("pair a"): []}, {})
 
 
 #: Settings, and what is not in the results of devices with them.
@@ -444,14 +478,14 @@ def test_what_is_not_in_the_model_follows_from_the_settings_in_force(changes, le
         "tables/stoppers.csv",
     ]
     for file in files:
-        said = Graph(plan).job(file).settings["not_modelled"]
+        said = not_modelled(**Graph(plan).job(file).settings["not_modelled"])
         assert {words for words in everything if words in said} == set(left_out)
         assert "water" in said
 
 
 def test_what_is_not_in_the_model_of_dry_devices_is_about_no_water():
     dry = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": ["dry"]}
-    said = Graph(Plan(load({"devices": {"S1": dry}}))).job("devices/S1.html").settings["not_modelled"]
+    said = not_modelled(**Graph(Plan(load({"devices": {"S1": dry}}))).job("devices/S1.html").settings["not_modelled"])
     assert "water" not in said
     assert "across gaps" not in said
     assert "bending" not in said, "full elastic contact is the default there"
@@ -468,15 +502,15 @@ def test_devices_in_dry_air_say_that_summits_leave_out_the_bending_of_surfaces(m
     devices = {"C1": lever | {"humidities": [humidity]}}
     study = {"run": {"pairs": ["mine"]}, "figures": {"humidity": 0.6}, "contact": model}
     config = load(study | {"pairs": pair, "devices": devices})
-    said = Graph(Plan(config)).job("devices/C1.html").settings["not_modelled"]
-    assert (limits.BENT in said) == bent
-    assert (limits.SUMMITS in said) == (humidity != "dry")
+    left_out = Graph(Plan(config)).job("devices/C1.html").settings["not_modelled"]["left_out"]
+    assert ("bent" in left_out) == bent
+    assert ("summits" in left_out) == (humidity != "dry")
 
 
 def test_what_pairs_leave_out_is_named_with_those_of_the_paper():
     mine = {"beam": "B1", "substrate": "Sub1", "gap_um": 20, "humidities": [0.5]}
     said = Graph(Plan(load({"pairs": {"mine": mine}, "run": {"pairs": ["a", "mine"]}}))).job("warnings.md")
-    assert "attraction of solids across gaps (pairs a)," in said.settings["not_modelled"]
+    assert "attraction of solids across gaps (pairs a)," in not_modelled(**said.settings["not_modelled"])
 
 
 # Patches that count as flat surfaces
@@ -499,7 +533,7 @@ BRIDGE = safe_without_tips(), device_warnings.OfDevice(R1)
 @pytest.mark.parametrize(("found", "of", "side"), [(*device(), "is the safe side"), (*BRIDGE, "off to either side")])
 def test_strips_that_are_too_long_are_said_of_lengths(found, of, side):
     def said(longest):
-        every = device_warnings.beam_warnings(found.assign(longest_strip=longest), of)
+        every = about_device(found.assign(longest_strip=longest), of)
         return [sentence for sentences in every.values() for sentence in sentences if sentence.startswith("Strips of")]
 
     sentences = said(of.device.strip / 1.2)
@@ -510,12 +544,12 @@ def test_strips_that_are_too_long_are_said_of_lengths(found, of, side):
 
 def test_strips_that_are_too_long_for_one_size_are_said_of_its_curves():
     along = [charted(800 * UM), charted(700 * UM, longest_strip=1.4), charted(600 * UM)]
-    found = device_warnings.chart_warnings(along, device_warnings.OfDevice(C1))
+    found = about_curves(along, device_warnings.OfDevice(C1))
     said = {curve for curve, sentences in found.items() if any("longer than the 1.4 µm" in one for one in sentences)}
     assert said == {(2 * UM, 20 * UM, S_SHAPE), (2 * UM, 20 * UM, EITHER)}
 
 
 def test_strips_that_are_too_long_are_said_of_pairs():
-    (sentence,) = pair_warnings.beam_warnings(beams(50, 0).assign(longest_strip=1.4 * UM), PAPER, 1.5 * UM)
+    (sentence,) = about_beams(beams(50, 0).assign(longest_strip=1.4 * UM), PAPER, 1.5 * UM)
     assert sentence.startswith("Strips of 1.5 µm are longer than the 1.4 µm that resolve the cracks")
-    assert pair_warnings.beam_warnings(beams(50, 0).assign(longest_strip=1.6 * UM), PAPER, 1.5 * UM) == []
+    assert about_beams(beams(50, 0).assign(longest_strip=1.6 * UM), PAPER, 1.5 * UM) == []

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from legends import covering
+from noted import noted
 
 import stiction
 from stiction.contact.correction import Change, Correction
@@ -16,9 +17,11 @@ from stiction.devices import stoppers
 from stiction.devices.risk import Known
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
+from stiction.report.limits.words import text
 from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import png
+from stiction.run.stored_limits import as_text, of_text
 from stiction.stages.devices import sticking
 from stiction.stages.devices.opening import S_SHAPE
 from stiction.stages.roughness import contacts, curves
@@ -105,7 +108,7 @@ def test_smooth_stoppers_in_dry_air_are_held_more_than_rough_ones_and_the_page_s
     first, second, flag = tables_roughness.answers(found)
     assert first.startswith("For a restoring force of 0.2 µN, in dry air, ")
     assert "(dry)" in flag
-    assert curves.SMOOTHER in flag
+    assert text(curves.SMOOTHER) in flag
     assert "at a relative humidity of 0.6" in second
     figure = figures_roughness.roughness(found)
     assert "dry, estimate and 95 % band" in {text.get_text() for text in figure.legends[0].get_texts()}
@@ -285,20 +288,20 @@ def test_what_cannot_be_computed_is_named_with_its_reason_and_leaves_the_rest():
 
 
 def test_what_is_less_accurate_is_named_with_its_place():
-    points = [point(RANGE[0], flagged="Strips are long."), *map(point, RANGE[1:]), point(3.4e-9)]
+    points = [point(RANGE[0], flagged=as_text([noted("Strips are long.")])), *map(point, RANGE[1:]), point(3.4e-9)]
     _, flag = tables_roughness.answers(curves.join_points(points, "rms_nm", "B2"))
-    assert flag == "Where the rms of B2 is 1 nm (RH 0.6): Strips are long."
+    assert flag == "Where the rms of B2 is 1 nm (RH 0.6): surface B2: Strips are long."
 
 
 def test_smoother_surfaces_than_those_of_full_contact_are_flagged_and_no_others():
     """Their forces are corrected by the ratios of the given surface, which are too small for them."""
     full = replace(WATER, correction=Correction(np.array([0.5, 0.8]), Change(1.2), Change(1.3)))
     values = [*RANGE, 3.4e-9]
-    points = [point(value, flagged="Long." * (k == 0), water=full) for k, value in enumerate(values)]
+    points = [point(value, flagged=as_text([noted("Long.")] * (k == 0)), water=full) for k, value in enumerate(values)]
     flags = curves.join_points(points, "rms_nm", "B2").flagged.sel(humidity=0.6)
-    assert flags.values[0] == f"Long.; {curves.SMOOTHER}"
+    assert of_text(flags.values[0]) == [noted("Long."), curves.SMOOTHER]
     for flag, rms in zip(flags.values, flags.roughness.values, strict=True):
-        assert (curves.SMOOTHER in flag) == (rms < 3.4e-9)
+        assert (curves.SMOOTHER in of_text(flag)) == (rms < 3.4e-9)
     for key, water in (("skewness", full), ("rms_nm", WATER)):
         others = curves.join_points([point(value, water=water) for value in values], key, "B2")
         assert not others.flagged.values.any()

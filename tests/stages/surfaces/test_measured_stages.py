@@ -13,7 +13,6 @@ from published import SURFACES
 from written_scans import SIDE, scans_of, write
 
 from stiction.analysis.shifts import ORDERS
-from stiction.devices import limits
 from stiction.errors import ScanError
 from stiction.scans import estimate as evaluation
 from stiction.scans.histogram import histogram, histogram_errors
@@ -321,11 +320,13 @@ def test_strips_and_margins_within_the_correlation_length_are_named(psd, key, wo
 
 @pytest.mark.filterwarnings("ignore:surface Etched")
 def test_strips_that_long_waves_raise_as_a_whole_repeat_laws_under_devices():
-    (sentence,) = surface_flags.flags(spectrum_with(use=dataclasses.replace(USE, strip_length=0.05e-6)))
+    found = spectrum_with(use=dataclasses.replace(USE, strip_length=0.05e-6))
+    (sentence,) = surface_flags.flags(found)
     assert "strips of 0.05 µm count as independent under the beams of pairs" in sentence
     assert "under devices strips repeat the law of their neighbour" in sentence
     assert sentence.endswith("the safe side")
-    assert not limits.forbids(sentence)
+    (limit,) = surface_flags.limits_of({"estimates": {"E": b2()}, "spectra": {"E": found}})["E"][-1:]
+    assert not limit.forbids
 
 
 @pytest.mark.filterwarnings("ignore:surface Etched")

@@ -18,6 +18,8 @@ from stiction.devices import arcs
 from stiction.devices.inference import FACTOR, SCORES, SLOPE, Discrepancy, expected_share, lognormal
 from stiction.report import style
 from stiction.report.devices import warnings_page
+from stiction.report.limits import pages
+from stiction.report.limits.words import texts
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import storage
@@ -611,21 +613,31 @@ def test_the_dataset_is_stored_and_read_unchanged(tmp_path):
 # Sentences
 
 
+def said(update):
+    """Sentences on the limits by test beams."""
+    return texts(tables_test_beams.warnings(update))
+
+
+def of_page(update):
+    """Lines of the page of limits of a device without other limits."""
+    return pages.as_markdown(warnings_page.together(NO_LIMITS, {"C1": update}), {}).splitlines()
+
+
 def test_data_that_the_inputs_explain_give_no_warning():
-    assert tables_test_beams.warnings(computed(as_computed(1.01))) == []
+    assert said(computed(as_computed(1.01))) == []
     assert tables_test_beams.agreement(computed(as_computed(1.01))).startswith("The test beams are as computed, ")
     assert tables_test_beams.agreement(computed(as_computed(1.3))).startswith("Differences from the computed ")
 
 
 def test_data_that_only_the_model_explains_say_so_with_its_factor():
-    (sentence, *_) = tables_test_beams.warnings(computed(as_computed(1.3)))
+    (sentence, *_) = said(computed(as_computed(1.3)))
     assert sentence.startswith("The errors of the inputs, as stated, do not explain the test beams (p = ")
     assert "times as large as computed" in sentence
 
 
 def test_data_that_nothing_explains_are_refused_in_words():
     zigzag = np.array(as_computed()) * [1.3, 0.7, 1.3]
-    sentences = tables_test_beams.warnings(computed(zigzag))
+    sentences = said(computed(zigzag))
     assert "rely neither on the update" in sentences[0]
     assert any(sentence.startswith("arrayA, RH 0.67: -") for sentence in sentences)
 
@@ -648,9 +660,9 @@ def test_an_update_that_nothing_explains_recommends_nothing_and_its_warning_coun
     assert safe.after.notnull().all()
     assert others.after.isnull().all()
     assert_array_equal(safe.before, others.before)
-    (warned,) = [line for line in warnings_page.page(NO_LIMITS, {"C1": refused}, "").splitlines() if "rely" in line]
+    (warned,) = [line for line in of_page(refused) if "rely" in line]
     assert plain(warned) == f"- C1, test beams: {refusal.partition('. ')[2]}"
-    assert not any("rely" in line for line in warnings_page.page(NO_LIMITS, {"C1": reliable}, "").splitlines())
+    assert not any("rely" in line for line in of_page(reliable))
 
 
 #: Devices without other warnings.
@@ -664,7 +676,7 @@ def of_safe_sizes(found):
 
 
 def test_humidities_and_dimensions_beyond_those_of_the_test_beams_are_extrapolations():
-    dry = tables_test_beams.warnings(computed(as_computed(humidities=(0.67,)), humidities=(0.67,)))
+    dry = said(computed(as_computed(humidities=(0.67,)), humidities=(0.67,)))
     assert dry[:1] == [
         "Test beams were measured from RH 0.67 to 0.67: the prediction at relative humidities of 0.44, 0.92 is an "
         "extrapolation."
@@ -678,17 +690,13 @@ def test_humidities_and_dimensions_beyond_those_of_the_test_beams_are_extrapolat
     assert len(dry) == 3
     thin = replace(ARRAY, thickness=1.2 * UM)
     found = computed([length(thin, rh) for rh in HUMIDITIES], array=thin)
-    assert tables_test_beams.warnings(found)[0].startswith(
-        "The thickness of the device, 2.6 µm, differs by more than a"
-    )
+    assert said(found)[0].startswith("The thickness of the device, 2.6 µm, differs by more than a")
 
 
 def test_computed_cracks_that_are_longer_than_the_beams_are_named():
     long = replace(ARRAY, thickness=6 * UM, gap=40 * UM)
     found = computed([length(long, rh) for rh in HUMIDITIES], array=long)
-    assert any(
-        sentence.startswith("arrayA, RH 0.44: computed cracks of") for sentence in tables_test_beams.warnings(found)
-    )
+    assert any(sentence.startswith("arrayA, RH 0.44: computed cracks of") for sentence in said(found))
 
 
 def test_the_combination_that_one_length_determines_names_its_inputs():

@@ -10,6 +10,7 @@ from numpy.testing import assert_allclose
 import stiction
 from stiction.beam.energy import arrest_length
 from stiction.plan.graph import Results
+from stiction.report.limits.words import texts
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.stages.devices import budget as stage_budget
 from stiction.stages.devices.budget import Responses
@@ -64,7 +65,7 @@ def compared(exponent):
 def reported(numbers):
     """Warnings of a device with these numbers."""
     found = rerun.with_reruns(xr.Dataset(), ["C1, RH 0.6"], [numbers])
-    return list(tables_test_beams._nonlinear(found)), tables_test_beams.again(found)
+    return texts(tables_test_beams._nonlinear(found)), tables_test_beams.again(found)
 
 
 def test_lengths_that_are_powers_of_the_inputs_change_as_in_the_linear_update():

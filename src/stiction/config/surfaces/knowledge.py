@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from stiction.devices.limits.limit import Limit, Side
 from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.surface import self_affine
 
@@ -31,7 +32,7 @@ class Knowledge(NamedTuple):
     @property
     def section(self) -> dict[str, list]:
         """Settings of a job, with the same numbers on every machine."""
-        rounded = [[float(f"{value:.9g}") for value in row] for row in self.covariance]
+        rounded = [list(map(_rounded, row)) for row in self.covariance]
         return {"quantities": list(self.quantities), "covariance": rounded}
 
 
@@ -114,35 +115,20 @@ def scatter(library: Library) -> np.ndarray:
     return np.cov(np.transpose(rows)) * (part[:, None] == part)
 
 
-def sentences(name: str, entry: Mapping[str, Any], library: Library) -> list[str]:
-    """Sentence on the unknowns of a surface in normal form, for readers of results, or none."""
+def limits(name: str, entry: Mapping[str, Any], library: Library) -> list[Limit]:
+    """Limit of a surface in normal form by its unknowns, or none. Their uncertainties are in the budgets."""
     if not (unknown := assumed(entry)):
         return []
     known = knowledge(entry, library)
-    errors = dict(zip(known.quantities, np.sqrt(np.diag(known.covariance)), strict=True))
+    errors = dict(zip(known.quantities, np.sqrt(np.diag(known.covariance)).tolist(), strict=True))
     values = {"rms": entry["rms_nm"], "skewness": entry["skewness"], "kurtosis": entry["kurtosis"]}
     if psd := entry.get("published_psd"):
         values |= {"corner": psd["corner_rad_per_um"], "hurst": self_affine.hurst_of(slope(psd))}
-    listed = [_assumption(word, values.get(word), errors[name]) for name, word in unknown.items()]
-    return [
-        f"surface {name}: not measured but assumed, with the scatter over {len(library)} typical surfaces "
-        f"({', '.join(library)}) as standard uncertainty: {'; '.join(listed)}"
-    ]
+    listed = [[word, _rounded(values.get(word)), _rounded(errors[quantity])] for quantity, word in unknown.items()]
+    numbers = {"surface": name, "library": list(library), "listed": listed}
+    return [Limit("assumed_surface", Side.EITHER, True, numbers=numbers)]
 
 
-def _assumption(word, value, error):
-    """Assumed value with its standard uncertainty, in words."""
-    label, unit, relative = _WORDS[word]
-    scale = 100 * error if relative else error / 2 if word == "hurst" else error
-    number = "" if value is None else f" {value:.3g}{unit}"
-    return f"{label}{number} ± {scale:.2g}{' %' if relative else ''}"
-
-
-#: Words of key ``unknown`` for readers: name, unit, and whether its uncertainty is relative.
-_WORDS = {
-    "rms": ("rms", " nm", True),
-    "skewness": ("skewness", "", False),
-    "kurtosis": ("kurtosis", "", False),
-    "corner": ("corner of the spectrum", " rad/µm", True),
-    "hurst": ("Hurst exponent", "", False),
-}
+def _rounded(value):
+    """Number with nine digits, the same on every machine, or None."""
+    return None if value is None else float(f"{value:.9g}")

@@ -54,7 +54,7 @@ def _row(answer):
         "verdict": str(answer.verdict),
         "sign": words.sign_of(answer)[1],
         "unit": unit,
-        "size": answer.size / scale,
+        "size": float(f"{answer.size / scale:.9g}"),  # as in the configuration
         "to_build": to_build,
         "exact": known * answer.exact / scale,
         "share": answer.share,

@@ -16,6 +16,7 @@ from stiction.plan.names import Outcome, by_case, by_name, by_outcome
 from stiction.report import published
 from stiction.report.beams import prediction
 from stiction.report.format import TO_MJ, UM, as_published, error_alone, number, percent, signed, with_error
+from stiction.report.limits.words import texts
 from stiction.report.model_error import column as beside
 from stiction.report.published import value
 from stiction.report.table import PAIR, Table, table_stage, with_list
@@ -253,9 +254,10 @@ def _table_3(data, settings):
     scanned = ((pair, pair_errors(study)) for pair, study in data["by_scans"].items())
     by_scans = {(pair, humidity): error for pair, errors in scanned for humidity, error in errors.items()}
     water = {pair: in_si(Water, section) for pair, section in settings["water"].items()}
-    warnings = pair_warnings.film_warnings(data["beams"], water)
+    found = pair_warnings.film_warnings(data["beams"], water)
     flags = pair_warnings.surface_notes(data, settings["surfaces"], settings["assumed"])
-    warnings += [f"Pair {pair}: {sentence}" for pair, said in flags.items() for sentence in said]
+    listed = [*found.items(), *((f"Pair {pair}", limits) for pair, limits in flags.items())]
+    warnings = [f"{subject}: {sentence}" for subject, limits in listed for sentence in texts(limits)]
     known = published.published_rows(data, settings)
     return table_3(data["beams"], data["forces"], known, by_scans, warnings, data.get("errors"))
 

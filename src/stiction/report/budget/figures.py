@@ -8,10 +8,12 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from stiction.config.cases import Air
+from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import stuck_share
 from stiction.plan.names import by_name
 from stiction.report.budget.tables import SCATTER, TOTAL, choice_label, response_text
 from stiction.report.format import TO_UN
+from stiction.report.limits import words
 from stiction.report.style import (
     DOUBLE,
     OUTLINED,
@@ -44,10 +46,10 @@ _ROW, _AROUND, _LEGEND, _FILLED = 0.22, 0.62, 0.3, 0.8
 
 
 @styled
-def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence[str]]) -> Figure:
+def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence[Limit]]) -> Figure:
     """Stoppers: P(stuck) against restoring force, and pull-off force against humidity, a column for each.
 
-    Datasets and the sentences of warnings, which the table of stoppers contains, are by device.
+    Datasets and limits, which the table of stoppers contains, are by device.
     """
     figure, columns, lines = columns_of_panels(len(datasets), 2, at_most_double(SINGLE), 5.0)
     for column, dataset in zip(columns, datasets.values(), strict=True):
@@ -58,7 +60,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         line[0, 0].set_ylabel("P(stuck) [–]")
         line[1, 0].set_ylabel(on_own_axes("pull-off force [µN]", line))
     letter_lines(lines, list(datasets))
-    if sentences := [f"{name}: {sentence}" for name, of_device in warnings.items() for sentence in of_device]:
+    if sentences := [f"{name}: {sentence}" for name, found in warnings.items() for sentence in words.texts(found)]:
         figure.set_label("\n".join(["Warnings:", *sentences]))
         figure.supxlabel("Some results are beyond limits of the model.", fontsize=6, ha="left", x=0.01)
     return figure

@@ -8,10 +8,12 @@ import xarray as xr
 
 from stiction.config.cases import Air
 from stiction.devices.budget import advice, ranked
+from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import Basis
 from stiction.estimates import mean_with_error
 from stiction.plan.names import by_name
 from stiction.report.format import UN, fraction_with_band, humidity_text, number, signed, with_error
+from stiction.report.limits import words
 from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
@@ -55,7 +57,7 @@ def choice_label(name: str) -> str:
 
 def stoppers(
     datasets: Mapping[str, xr.Dataset],
-    warnings: Mapping[str, Sequence[str]],
+    warnings: Mapping[str, Sequence[Limit]],
     errors: Mapping[str, xr.Dataset] | None = None,
     not_modelled: str = "",
 ) -> Table:
@@ -65,7 +67,7 @@ def stoppers(
     """
     rows = [row for device, dataset in datasets.items() for row in _stopper_rows(device, dataset)]
     rows = [row | model_errors.device_change(errors, row["device"], row["relative_humidity"], FORCE) for row in rows]
-    rows = [row | {"warnings": " ".join(warnings[row["device"]])} for row in rows]
+    rows = [row | {"warnings": " ".join(words.texts(warnings[row["device"]]))} for row in rows]
     caption = (
         "Stoppers: pull-off force of a patch, on average an upper bound if it tilts or bends, mean ± standard error "
         "and standard deviation over the patches; P(stuck): fraction of the patches with a pull-off force above the "
@@ -84,7 +86,7 @@ def stoppers(
         caption += " For a stopper in dry air as well, this is one of them."
     if 0 < len(humid) < len(datasets):
         caption += " One in a single air has no such row."
-    listed = [f"{device}: {sentence}" for device, of_device in warnings.items() for sentence in of_device]
+    listed = [f"{device}: {sentence}" for device, of_device in warnings.items() for sentence in words.texts(of_device)]
     said = [caption, *([column.caption(errors)] if errors else []), not_modelled, *(["Warnings:"] if listed else [])]
     columns = _columns_of_stoppers(rows) | (_WORST if humid else {}) | (column.COLUMN if errors else {})
     return Table.of(rows, with_list(" ".join(said), listed), columns)
@@ -308,7 +310,10 @@ STAGES = (
         ),
         settings=lambda plan, at: {"not_modelled": device_warnings.not_modelled(plan, *plan.devices.stoppers)},
         compute=lambda data, settings: stoppers(
-            data["stoppers"], device_warnings.read(data["warnings"]).patches, data.get("errors"), **settings
+            data["stoppers"],
+            device_warnings.read(data["warnings"]).patches,
+            data.get("errors"),
+            words.not_modelled(**settings["not_modelled"]),
         ),
         jobs=lambda plan: [{}] if plan.devices.stoppers else [],
         targets=("devices",),

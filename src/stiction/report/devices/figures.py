@@ -12,8 +12,10 @@ from matplotlib.lines import Line2D
 
 from stiction.config.cases import Air
 from stiction.devices.chart import FEWEST_HUMIDITIES, between, error_between
+from stiction.devices.limits.limit import Limit
 from stiction.plan.names import by_case
 from stiction.report.format import TO_UM, fraction_with_band
+from stiction.report.limits.words import numbered, with_numbers
 from stiction.report.style import (
     SINGLE,
     at_most_double,
@@ -31,7 +33,6 @@ from stiction.report.style import (
     styled,
 )
 from stiction.rounding import in_percent
-from stiction.stages.beams.pair_warnings import numbered, with_numbers
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import axes, charts, largest_error_between
 from stiction.stages.devices.end_states import END_STATES
@@ -48,7 +49,7 @@ _LIGHTEST = 0.25
 _ROOM = 0.05
 
 
-def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[str]]) -> None:
+def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[Limit]]) -> None:
     """Explain the numbers of the warnings below a figure, and add their texts to its caption."""
     if sentences := with_numbers(warnings):
         numbers = "(1)" if len(sentences) == 1 else f"(1) to ({len(sentences)})"
@@ -64,7 +65,7 @@ def risk(datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tup
     The numbers of the warnings, which are by name, humidity and shape, mark the curves.
     """
     names = list(dict.fromkeys(name for name, _ in datasets))
-    _, numbers = numbered(warnings)
+    numbers = numbered(warnings)
     most = max(sum(device == name for device, _ in datasets) for name in names)
     colours = humidity_colours(humidity for _, humidity in datasets)
     figure, columns, lines = columns_of_panels(len(names), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
@@ -155,7 +156,7 @@ def chart(
     Dry air is beside the axis. The numbers of the warnings, by name, thickness [m], gap [m] and shape, mark the curves;
     there may be none.
     """
-    _, numbers = numbered(warnings)
+    numbers = numbered(warnings)
     wholes = axes(datasets)
     placed = {name: places(whole.relative_humidity.values.tolist()) for name, whole in wholes.items()}
     subjects = [(name, *at) for name, whole in wholes.items() for at in product(whole.gap.values, _shapes_of(whole))]

@@ -30,6 +30,7 @@ from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
 from stiction.report.drawings.devices import device_drawing
 from stiction.report.format import MISSING, humidity_text
+from stiction.report.limits.words import not_modelled, texts, with_numbers
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.process import section as process_section
@@ -41,7 +42,6 @@ from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import provenance
 from stiction.run.atomic import save_text
-from stiction.stages.beams import pair_warnings
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budgets_of
 from stiction.stages.devices.end_states import END_STATES
@@ -105,7 +105,7 @@ def beam_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], an
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     said = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
-    listed = pair_warnings.with_numbers(warnings) + sentences.shortest_warnings(section, lengths, answer.build)
+    listed = with_numbers(warnings) + texts(sentences.shortest_warnings(section, lengths, answer.build))
     return _page_of(name, section, data, answer, (sections, said, listed, _words_of_beam(data)))
 
 
@@ -132,7 +132,7 @@ def stopper_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any],
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
     said = [*sentences.safe_force_sentences(stopper), *worst]
     words = _terms()["stoppers"] | (_terms()["worst_humidity"] if worst else {})
-    return _page_of(name, section, data, answer, (sections, said, list(data["warnings"].patches[name]), words))
+    return _page_of(name, section, data, answer, (sections, said, texts(data["warnings"].patches[name]), words))
 
 
 def _page_of(name, section, data, answer, own):
@@ -140,11 +140,12 @@ def _page_of(name, section, data, answer, own):
     sections, said, listed, words = own
     budgets, errors, test_beams, roughness = (data.get(key) for key in ("budgets", "errors", "test_beams", "roughness"))
     of_model, told = model_errors.sentences(name, errors), []
+    limits = judged.limits_of(name, data["warnings"])
     if test_beams is not None:
-        told, listed = [tables_test_beams.notes(test_beams)], listed + tables_test_beams.warnings(test_beams)
-    forbidding = judged.forbidding(name, data["warnings"])
-    contradicted = [tables_test_beams.contradiction(test_beams)] if "test_beams" in answer.forbidden else []
-    shown = screen.screen(answer, section, [*contradicted, *forbidding], (of_model or [_NO_ERROR])[0])
+        of_beams = tables_test_beams.warnings(test_beams)
+        told, listed, limits = [tables_test_beams.notes(test_beams)], listed + texts(of_beams), [*of_beams, *limits]
+    forbidding = texts(dict.fromkeys(limit for limit in limits if limit.forbids))
+    shown = screen.screen(answer, section, forbidding, (of_model or [_NO_ERROR])[0])
     said = [*said, *filter(None, told), *_rough_enough(roughness), *of_model[1:]]
     steps = Section(
         "From the estimate to the answer", (_LADDER,), tables_answer.steps(answer), figures_answer.ladder(answer)
@@ -297,7 +298,7 @@ def _settings(plan, at):
         part: f"{name}: {surface_in_words(plan.config['surfaces'][name], material)}"
         for (part, name), material in zip(names.items(), materials, strict=True)
     }
-    not_modelled = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
+    left_out = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
     assumed = plan.devices.assumed_inputs(at.device)
     measured = [name for name in names.values() if is_measured(plan.config["surfaces"][name])]
     known = {"assumed": assumed, "measured": measured}
@@ -305,7 +306,7 @@ def _settings(plan, at):
         known["tip_edge"] = plan.devices.edge_in_words
     if plan.devices.kind(at.device).has_tip and is_biased(plan, at.device):
         known["young_modulus_GPa"] = section_of_beam(plan, at.device)["young_modulus_GPa"]
-    return section | {"surfaces": surfaces} | not_modelled | {key: some for key, some in known.items() if some}
+    return section | {"surfaces": surfaces} | left_out | {key: some for key, some in known.items() if some}
 
 
 @on_a_page()
@@ -319,7 +320,7 @@ def _page(data, at, settings):
     page = process_section.with_process(with_life(page, at.device, data["life"]), at.device, data)
     return replace(
         page,
-        not_modelled=settings["not_modelled"],
+        not_modelled=not_modelled(**settings["not_modelled"]),
         drawing=device_drawing(_with_force(settings)).svg,
         explorer=explorer.content(at.device, settings, views),
     )

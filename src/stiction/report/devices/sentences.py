@@ -8,7 +8,8 @@ import numpy as np
 import xarray as xr
 
 from stiction.config.units import to_si
-from stiction.devices import limits
+from stiction.devices.limits import rules
+from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import Basis, one_in, samples_for
 from stiction.report.format import UM, UN, airs, fraction_with_band, with_error
 from stiction.rounding import in_percent
@@ -17,17 +18,19 @@ from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import bounded_share, ends, in_any_air, is_at_an_end
 
 
-def shortest_warnings(section: Mapping[str, Any], safe_lengths: Mapping[float, xr.Dataset], build: float) -> list[str]:
-    """Warnings about the length to build [m], or the stated one, if it is below all simulated limits.
+def shortest_warnings(
+    section: Mapping[str, Any], safe_lengths: Mapping[float, xr.Dataset], build: float
+) -> list[Limit]:
+    """Limits of the length to build [m], or the stated one, if it is below all simulated limits.
 
-    Those have warnings of their own.
+    Those have limits of their own.
     """
     least = min(float(safe_lengths_of(dataset).min()) for dataset in safe_lengths.values())
     shortest = np.nanmin([build, to_si(section.get("length_um", math.inf), "um")])
     if not shortest < least:
         return []
     sizes = (to_si(section[key], "um") for key in ("gap_um", "width_um", "thickness_um"))
-    return limits.length_warnings(*sizes, shortest / BEAMS[section["kind"]].arms)
+    return rules.length_warnings(*sizes, shortest / BEAMS[section["kind"]].arms)
 
 
 def worst_air(stopper: xr.Dataset) -> float:

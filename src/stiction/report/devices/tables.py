@@ -10,11 +10,12 @@ import xarray as xr
 from stiction.devices.risk import Basis
 from stiction.plan.names import by_case
 from stiction.report.format import MISSING, UM, error_alone, fraction_with_band, humidity_text, number
+from stiction.report.limits import words
+from stiction.report.limits.words import numbered, texts, with_numbers
 from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
 from stiction.rounding import in_percent
-from stiction.stages.beams.pair_warnings import numbered, with_numbers
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.chart import axes, charts, largest_error_between
 from stiction.stages.devices.device_warnings import curves, not_modelled
@@ -122,13 +123,13 @@ def safe_lengths(
     Errors of the model are by device. The caption ends with what is not in the model.
     """
     rows, marks = [], []
-    numbers = numbered(warnings)[1]
+    numbers = numbered(warnings)
     for (device, humidity), dataset in datasets.items():
         for shape in map(str, dataset["shape"].values):
             head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[shape].by}
             head |= _at_length(dataset.sel(shape=shape))
             last = model_errors.device_change(errors, device, humidity, shape)
-            last |= {"warnings": " ".join(warnings[device, humidity, shape])}
+            last |= {"warnings": " ".join(texts(warnings[device, humidity, shape]))}
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
@@ -217,10 +218,10 @@ def chart(
 
     Warnings are by name, thickness [m], gap [m] and shape. The caption ends with what is not in the model.
     """
-    numbers = numbered(warnings)[1]
+    numbers = numbered(warnings)
     rows, cells = [], []
     for device, curve in dict.fromkeys((name, curve) for (name, _), one in datasets.items() for curve in curves(one)):
-        last = {"warnings": " ".join(warnings[device, *curve])}
+        last = {"warnings": " ".join(texts(warnings[device, *curve]))}
         marks = {"warnings": ", ".join(map(str, numbers[device, *curve]))}
         for humidity in sorted(humidity for name, humidity in datasets if name == device):
             one = datasets[device, humidity].sel(dict(zip(("thickness", "gap", "shape"), curve, strict=True)))
@@ -282,7 +283,10 @@ STAGES = (
         ),
         settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.beams)},
         compute=lambda data, settings: safe_lengths(
-            data["lengths"], device_warnings.read(data["warnings"]).lengths, data.get("errors"), **settings
+            data["lengths"],
+            device_warnings.read(data["warnings"]).lengths,
+            data.get("errors"),
+            words.not_modelled(**settings["not_modelled"]),
         ),
         jobs=lambda plan: [{}] if plan.devices.cases else [],
         targets=("devices",),
@@ -292,7 +296,11 @@ STAGES = (
         "simulated limit against relative humidity",
         inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.with_chart)},
         settings=lambda plan, at: {"not_modelled": not_modelled(plan, *plan.devices.with_chart)},
-        compute=lambda data, settings: chart(data["charts"], device_warnings.read(data["warnings"]).curves, **settings),
+        compute=lambda data, settings: chart(
+            data["charts"],
+            device_warnings.read(data["warnings"]).curves,
+            words.not_modelled(**settings["not_modelled"]),
+        ),
         jobs=lambda plan: [{}] if plan.devices.with_chart else [],
         targets=("devices",),
     ),

@@ -10,6 +10,7 @@ from stiction.config.surfaces import process
 from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.format import UM, with_band, with_error
+from stiction.report.roughness.tables import said_of_point
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.process.recommended import ALL, variables
@@ -130,7 +131,7 @@ def notes(curve: xr.Dataset, laws: Sequence[xr.Dataset]) -> list[str]:
         places = {}
         for humidity in curve.humidity.values:
             for value in curve.value.values:
-                if sentence := str(curve[name].sel(humidity=humidity, value=value).values):
+                if sentence := said_of_point(name, str(curve[name].sel(humidity=humidity, value=value).values)):
                     places.setdefault(sentence.rstrip("."), []).append(f"{setting_text(curve, value)} {unit_of(curve)}")
         words = process.words_of(curve.variable)
         said += [

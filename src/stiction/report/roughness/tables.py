@@ -11,7 +11,9 @@ from stiction.config.units import from_si, without_unit
 from stiction.devices.risk import VERIFIED, one_in, samples_for
 from stiction.plan.names import by_name
 from stiction.report.format import UM, airs, fraction_with_band, with_band, with_error
+from stiction.report.limits import words
 from stiction.report.table import DEVICE, Table, table_stage, with_list
+from stiction.run.stored_limits import of_text
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import FORCE
 from stiction.stages.roughness.curves import KURTOSIS, curves_of
@@ -214,12 +216,17 @@ def _share(dataset):
     return one_in(float(dataset.share))
 
 
+def said_of_point(name: str, text: str) -> str:
+    """Sentence of a variable of a point: reasons are stored in words, flags as limits."""
+    return words.joined(of_text(text)) if name == "flagged" else text
+
+
 def _notes(curve, name, begins):
     """Sentences of a variable about single points, each with its places."""
     places = {}
     for humidity in curve.humidity.values:
         for value in curve.roughness.values:
-            if said := str(curve[name].sel(humidity=humidity, roughness=value).values):
+            if said := said_of_point(name, str(curve[name].sel(humidity=humidity, roughness=value).values)):
                 at = f"{_value_text(curve, value)}{_unit(curve)} ({Air(humidity).words})"
                 places.setdefault(said.rstrip("."), []).append(at)
     return [f"{begins} the {name_of(curve)} is {', '.join(at)}: {said}." for said, at in places.items()]

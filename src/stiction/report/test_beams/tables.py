@@ -6,8 +6,10 @@ import numpy as np
 import xarray as xr
 
 from stiction.devices import inference
+from stiction.devices.limits.limit import Limit, Side
 from stiction.plan.names import by_name
 from stiction.report.format import TO_UM, airs, number, with_error
+from stiction.report.limits import words
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
@@ -90,7 +92,7 @@ def notes(update: xr.Dataset) -> str:
     responses = list(map(str, update.response.values))
     none = f"With the test beams, no {'force' if FORCE in responses else 'length'} is stated"
     if not is_reliable(update):
-        return f"{none}. {contradiction(update)}"
+        return f"{none}. {words.text(contradiction(update))}"
     if update.result_after.isnull().any():
         return f"{none}: {_FEW}."
     if FORCE in responses:
@@ -175,7 +177,7 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
             beams_to_add(update),
             again(update),
             *stuck_sentences(update),
-            *warnings(update),
+            *words.texts(warnings(update)),
         ]
     ]
     caption = (
@@ -281,11 +283,11 @@ _COLUMNS = DEVICE | {
 }
 
 
-# Warnings
+# Limits
 
 
-def warnings(update: xr.Dataset) -> list[str]:
-    """Contradictions of the test beams, and predictions beyond them, in sentences with numbers."""
+def warnings(update: xr.Dataset) -> list[Limit]:
+    """Contradictions of the test beams, and predictions beyond them."""
     return [*_contradictions(update), *_moved_inputs(update), *_nonlinear(update), *_beyond_test_beams(update)]
 
 
@@ -296,26 +298,17 @@ def _contradictions(update):
         yield contradiction(update)
     elif of_inputs < UNLIKELY:
         factor, slope = (float(update["shift"].sel(input=name)) for name in (inference.FACTOR, inference.SLOPE))
-        yield (
-            f"The errors of the inputs, as stated, do not explain the test beams (p = {of_inputs:.1g}); an error of "
-            f"the model does: lengths are {np.exp(factor):.3g} times as large as computed, with a slope of "
-            f"{slope:+.2g} in the logarithm of the length."
-        )
-    for datum in update.datum.values[update.computed.values > update.beam_length.values]:
+        numbers = {"p_value": of_inputs, "factor": float(np.exp(factor)), "slope": slope}
+        yield Limit("model_explains_test_beams", Side.EITHER, True, numbers=numbers)
+    for datum in map(str, update.datum.values[update.computed.values > update.beam_length.values]):
         at = update.sel(datum=datum)
-        yield (
-            f"{datum}: computed cracks of {TO_UM * float(at.computed):.0f} µm are longer than the beams, "
-            f"{TO_UM * float(at.beam_length):.0f} µm: mean lengths of the beams that stick are too short."
-        )
+        numbers = {"datum": datum, "computed": float(at.computed), "beam_length": float(at.beam_length)}
+        yield Limit("cracks_beyond_test_beams", Side.SAFE, False, numbers=numbers)
 
 
-def contradiction(update: xr.Dataset) -> str:
-    """Sentence on test beams that neither inputs nor model explain, which forbids relying on any length."""
-    return (
-        "Neither the errors of the inputs nor those of the model, as stated, explain the test beams (p = "
-        f"{float(update.p_value):.1g}): something else is wrong, such as a dimension, a humidity or plastic contact. "
-        "Until it is found, rely neither on the update nor on what is stated without it."
-    )
+def contradiction(update: xr.Dataset) -> Limit:
+    """Test beams that neither inputs nor model explain: lengths may be too long by any amount."""
+    return Limit("test_beams_contradict", Side.UNSAFE, False, numbers={"p_value": float(update.p_value)})
 
 
 def _moved_inputs(update):
@@ -323,10 +316,11 @@ def _moved_inputs(update):
     known = update.isel(input=np.flatnonzero(update.prior_deviation.values > 0))
     for name, score in zip(known.input.values, (known["shift"] / known.prior_deviation).values, strict=True):
         if abs(score) > LARGE:
-            yield f"The test beams move the {name} by {score:+.2g} of its standard uncertainties: check it."
+            yield Limit("moved_input", Side.EITHER, True, numbers={"name": str(name), "score": float(score)})
     for datum, rest in zip(update.datum.values, update.datum_rest.values, strict=True):
         if abs(rest) > LARGE * update.attrs["rest"]:
-            yield f"{datum}: {100 * rest:+.2g} % of the length are left to errors of the model at this humidity alone."
+            numbers = {"datum": str(datum), "rest": float(rest)}
+            yield Limit("left_to_the_model", Side.EITHER, True, numbers=numbers)
 
 
 def _nonlinear(update):
@@ -336,50 +330,41 @@ def _nonlinear(update):
         apart = float(result.rerun - result.linear)
         error = float(np.hypot(result.linear_error, result.rerun_error))
         if abs(apart) > DIFFERENT * error:
-            different.append(f"{with_error(100 * apart, 100 * error)} % ({result['again'].values})")
+            different.append([str(result["again"].values), apart, error])
     if different:
-        yield (
-            f"The update is not linear: results computed again differ from it by {', '.join(different)}. If this "
-            "matters beside their standard uncertainties, set the inputs to the values from the test beams and "
-            "compute the device again."
-        )
+        yield Limit("nonlinear_update", Side.EITHER, True, numbers={"different": different})
 
 
 def _beyond_test_beams(update):
     """Conditions of the device beyond those of its test beams, if any of these say something."""
     if not update.sizes["datum"]:
         return
-    measured = set(update.datum_humidity.values.tolist())
-    humid = sorted(measured - {0.0}) or [np.inf]
-    results = sorted(set(update.humidity_of_result.values.tolist()) - measured)
+    measured = sorted(set(update.datum_humidity.values.tolist()))
+    humid = [humidity for humidity in measured if humidity > 0] or [np.inf]
+    results = sorted(set(update.humidity_of_result.values.tolist()) - set(measured))
     beyond = [humidity for humidity in results if not humid[0] <= humidity <= humid[-1]]
     if beyond:
-        where = ["in dry air"] * (0 in measured) + [f"from RH {humid[0]:g} to {humid[-1]:g}"] * bool(measured - {0.0})
-        yield (f"Test beams were measured {' and '.join(where)}: the prediction {airs(beyond)} is an extrapolation.")
+        numbers = {"measured": measured, "beyond": beyond}
+        yield Limit("beyond_humidities_of_test_beams", Side.EITHER, False, numbers=numbers)
     yield from _beyond_in_adhesion(update)
     for size in OWN if "own_thickness" in update else ():
         device = float(update[f"own_{size}"][0])
-        nearest = min(update[size].values, key=lambda value: abs(np.log(device / value)))
+        nearest = min(update[size].values.tolist(), key=lambda value: abs(np.log(device / value)))
         if abs(np.log(device / nearest)) > np.log(SIZES):
-            yield (
-                f"The {size} of the device, {TO_UM * device:.3g} µm, differs by more than a factor of {SIZES:g} from "
-                f"that of the test beams, {TO_UM * nearest:.3g} µm: the prediction is an extrapolation."
-            )
+            numbers = {"size": size, "device": device, "nearest": nearest, "factor": SIZES}
+            yield Limit("beyond_sizes_of_test_beams", Side.EITHER, False, numbers=numbers)
 
 
 def _beyond_in_adhesion(update):
     """Cracks of the device longer, or shorter, than equal beams would have under the conditions of the test beams."""
     least, most = (float(update.datum_reduced.quantile(end)) for end in (0, 1))
     for result, response, reduced in zip(
-        update.result.values, update.response.values, update.result_reduced.values, strict=True
+        update.result.values, update.response.values, update.result_reduced.values.tolist(), strict=True
     ):
         beyond = max(reduced - most, least - reduced)
         if response == S_SHAPE and beyond > ADHESION:
-            sign, words = (1, "longer than the longest") if reduced > most else (-1, "shorter than the shortest")
-            yield (
-                f"{result}: cracks of equal beams would be {100 * sign * np.expm1(sign * beyond):.0f} % {words} of the "
-                "test beams, so that the slope of the model over the adhesion is extrapolated."
-            )
+            numbers = {"result": str(result), "change": float(np.expm1(beyond if reduced > most else -beyond))}
+            yield Limit("beyond_adhesion_of_test_beams", Side.EITHER, False, numbers=numbers)
 
 
 STAGES = (

@@ -1,4 +1,4 @@
-"""Results of devices beyond the limits of the model, in sentences of `stiction.devices.limits`."""
+"""Results of devices beyond the limits of the model, by the rules of `stiction.devices.limits.rules`."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -12,15 +12,17 @@ import xarray as xr
 from stiction.config.cases import Air, case_id
 from stiction.config.units import from_si, in_si
 from stiction.contact.environment import Water
-from stiction.devices import limits
+from stiction.devices.limits import rules
+from stiction.devices.limits.limit import Limit, restored
 from stiction.plan.names import by_case, by_name
 from stiction.plan.stage import File, Stage, select
 from stiction.run.atomic import save_text
 from stiction.stages.beams.pair_warnings import (
     NOT_STUDIED,
+    Limits,
     Plastic,
     StatedProperties,
-    Warnings,
+    Subject,
     contact_warnings,
     plastic_contact,
 )
@@ -64,18 +66,18 @@ class OfStopper:
 
 def beam_warnings(
     safe_lengths: xr.Dataset, of: OfDevice, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0
-) -> dict[str, list[str]]:
-    """Warnings about a device at a humidity, by the shape of its adhesion. Dataset of stage safe_lengths.
+) -> dict[str, list[Limit]]:
+    """Limits of a device at a humidity, by the shape of its adhesion. Dataset of stage safe_lengths.
 
     Each shape is checked at the shortest of its lengths, where slopes are largest. That no water condenses is worth a
-    sentence at a humidity, but not in dry air.
+    warning at a humidity, but not in dry air.
     """
     shortest = safe_lengths.safe_length.min("share")
-    without = limits.triggered(
-        limits.no_water(float(safe_lengths.film), humidity),
-        limits.flat_patches(float(safe_lengths.share_flat)),
-        limits.lengths_of_sizes(float(safe_lengths.size_error)),
-        limits.smooth_pair(float(safe_lengths.rms), [humidity] if humidity in of.on_summits else []),
+    without = rules.triggered(
+        rules.no_water(float(safe_lengths.film), humidity),
+        rules.flat_patches(float(safe_lengths.share_flat)),
+        rules.lengths_of_sizes(float(safe_lengths.size_error)),
+        rules.smooth_pair(float(safe_lengths.rms), [humidity] if humidity in of.on_summits else []),
     )
     return {
         shape: without
@@ -91,17 +93,17 @@ def _accuracy_warnings(safe_lengths, of):
         return []
     one = safe_lengths.sel(share=chosen_share(safe_lengths))
     parts = [float(one[name] / one.estimate) for name in ("beams_error", "surfaces_error")]
-    return limits.triggered(limits.missed_accuracy(*parts, of.accuracy.length))
+    return rules.triggered(rules.missed_accuracy(*parts, of.accuracy.length))
 
 
 def chart_warnings(
     charts: Sequence[xr.Dataset], of: OfDevice, plastic: Plastic = NOT_STUDIED
-) -> dict[tuple[float, float, str], list[str]]:
-    """Warnings about the chart of a device by thickness [m], gap [m] and shape. A dataset of stage chart per humidity.
+) -> dict[tuple[float, float, str], list[Limit]]:
+    """Limits of the chart of a device by thickness [m], gap [m] and shape. A dataset of stage chart per humidity.
 
     Each curve is checked at its shortest length.
     """
-    warnings = {}
+    found = {}
     for thickness, gap, shape in curves(charts[0]):
         along = [curve.sel(thickness=thickness, gap=gap, shape=shape) for curve in charts]
         shortest = min(along, key=lambda curve: float(curve.safe_length.min()))
@@ -109,10 +111,10 @@ def chart_warnings(
         shortest = shortest.assign(resampled=max(curve.resampled for curve in along))
         of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
         length = float(shortest.safe_length.min())
-        warnings[thickness, gap, shape] = _length_warnings(
+        found[thickness, gap, shape] = _length_warnings(
             length, shortest, of_size, plastic, min(filter(None, (float(curve.film) for curve in along)), default=0.0)
         )
-    return warnings
+    return found
 
 
 def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
@@ -128,12 +130,12 @@ def _length_warnings(length, dataset, of, plastic, thinnest=None):
     device = of.device
     sizes = device.gap, device.width, device.thickness, length / device.opening.arms
     is_bridge = device.opening.arms == 2
-    return limits.beam_warnings(*sizes, float(dataset.film), float(dataset.rms)) + limits.triggered(
-        limits.long_strips(device.strip, float(dataset.longest_strip), is_bridge),
-        limits.resampled_strips(int(dataset.resampled)),
-        limits.repeated_strips(float(dataset.repetition), device.strip, of.learns),
-        limits.thin_film(thinnest or float(dataset.film)),
-        limits.stretched_bridge(device.gap, device.thickness) if is_bridge else None,
+    return rules.beam_warnings(*sizes, float(dataset.film), float(dataset.rms)) + rules.triggered(
+        rules.long_strips(device.strip, float(dataset.longest_strip), is_bridge),
+        rules.resampled_strips(int(dataset.resampled)),
+        rules.repeated_strips(float(dataset.repetition), device.strip, of.learns),
+        rules.thin_film(thinnest or float(dataset.film)),
+        rules.stretched_bridge(device.gap, device.thickness) if is_bridge else None,
         *contact_warnings(plastic, of.materials),
     )
 
@@ -142,47 +144,47 @@ def _water_warnings(of):
     """Warnings, or None, about the thinnest and the thickest film on the patch of a stopper."""
     humid = [*filter(None, of.humidities), *of.worst_humidities] if any(of.humidities) else []
     films = [of.water.film(humidity)[0] for humidity in humid] or [0.0]
-    without = limits.no_water(max(films), max(of.humidities))
-    return without, limits.thin_film(min(films)), limits.wide_meniscus(max(films), of.contact)
+    without = rules.no_water(max(films), max(of.humidities))
+    return without, rules.thin_film(min(films)), rules.wide_meniscus(max(films), of.contact)
 
 
 class OfDevices(NamedTuple):
-    """Warnings about devices."""
+    """Limits of devices."""
 
-    lengths: dict[tuple[str, float, str], list[str]]  #: by name, humidity and shape
-    curves: dict[tuple[str, float, float, str], list[str]]  #: of charts, by name, thickness [m], gap [m] and shape
-    patches: dict[str, list[str]]  #: of stoppers, by name
+    lengths: dict[tuple[str, float, str], list[Limit]]  #: by name, humidity and shape
+    curves: dict[tuple[str, float, float, str], list[Limit]]  #: of charts, by name, thickness [m], gap [m] and shape
+    patches: dict[str, list[Limit]]  #: of stoppers, by name
 
 
-def stopper_warnings(stopper: xr.Dataset, of: OfStopper, plastic: Plastic = NOT_STUDIED) -> list[str]:
-    """Warnings about a stopper, from its dataset of stage stoppers. Other parameters as of `beam_warnings`."""
-    return limits.triggered(
+def stopper_warnings(stopper: xr.Dataset, of: OfStopper, plastic: Plastic = NOT_STUDIED) -> list[Limit]:
+    """Limits of a stopper, from its dataset of stage stoppers. Other parameters as of `beam_warnings`."""
+    return rules.triggered(
         *_water_warnings(of),
-        limits.flat_patches(float(stopper.share_flat)),
-        limits.smooth_pair(float(stopper.rms), of.on_summits),
-        *contact_warnings(plastic, of.materials, limits.STRONGER),
+        rules.flat_patches(float(stopper.share_flat)),
+        rules.smooth_pair(float(stopper.rms), of.on_summits),
+        *contact_warnings(plastic, of.materials, is_stopper=True),
     )
 
 
 def read(files: Mapping[str, str]) -> OfDevices:
-    """Warnings about devices from their files, by name."""
+    """Limits of devices from their files, by name."""
     joined = OfDevices({}, {}, {})
     for name, path in files.items():
         for known, stored in zip(joined, json.loads(Path(path).read_text(encoding="utf-8")), strict=True):
-            known.update({(name, *key) if key else name: sentences for key, sentences in stored})
+            known.update({(name, *key) if key else name: list(map(restored, found)) for key, found in stored})
     return joined
 
 
-def subjects(warnings: OfDevices) -> Warnings:
-    """Warnings about devices by their subjects in words."""
+def subjects(found: OfDevices) -> Limits:
+    """Limits of devices by their subjects in words."""
     by_subject = {
-        f"{name}, {Air(humidity).words}, held by the {END_STATES[shape].by}": sentences
-        for (name, humidity, shape), sentences in warnings.lengths.items()
+        Subject(name, (Air(humidity).words, f"held by the {END_STATES[shape].by}")): limits_of_length
+        for (name, humidity, shape), limits_of_length in found.lengths.items()
     }
-    for (name, thickness, gap, shape), sentences in warnings.curves.items():
-        size = f"{from_si(thickness, 'um'):g} µm thick, gap {from_si(gap, 'um'):g} µm"
-        by_subject[f"{name}, chart, {size}, held by the {END_STATES[shape].by}"] = sentences
-    return by_subject | warnings.patches
+    for (name, thickness, gap, shape), limits_of_curve in found.curves.items():
+        size = f"{from_si(thickness, 'um'):g} µm thick", f"gap {from_si(gap, 'um'):g} µm"
+        by_subject[Subject(name, ("chart", *size, f"held by the {END_STATES[shape].by}"))] = limits_of_curve
+    return by_subject | {Subject(name): limits_of_patch for name, limits_of_patch in found.patches.items()}
 
 
 # Stages
@@ -197,11 +199,11 @@ def left_out_changes(dataset: xr.Dataset) -> dict[tuple[float, str], tuple[float
     return dict(zip(keys, zip(dataset.change.values.tolist(), dataset.error.values.tolist(), strict=True), strict=True))
 
 
-def gap_warnings(changes: Mapping[tuple[float, str], tuple[float, float]], shape: str) -> list[str]:
-    """Warning about the effect of attraction across gaps on adhesion in a shape, from `left_out_changes`."""
+def gap_warnings(changes: Mapping[tuple[float, str], tuple[float, float]], shape: str) -> list[Limit]:
+    """Limit by the effect of attraction across gaps on adhesion in a shape, from `left_out_changes`."""
     response = ARC if shape == EITHER else shape
     of_shape = {humidity: change for (humidity, of), change in changes.items() if of == response}
-    return limits.triggered(limits.without_gaps(of_shape, shorter=shape != FORCE))
+    return rules.triggered(rules.without_gaps(of_shape, shorter=shape != FORCE))
 
 
 def left_out_gaps(plan: Any, device: str) -> dict[str, str]:
@@ -251,8 +253,8 @@ def _on_summits(plan, device):
 
 
 def _device_warnings(data, settings):
-    """Warnings about a device: about its lengths, its curves and its patch, each with a suffix to its name."""
-    flags = surface_flags.together(data) + settings.get("assumed", [])
+    """Limits of a device: of its lengths, its curves and its patch, each with a suffix to its name."""
+    flags = surface_flags.together(data) + list(map(restored, settings.get("assumed", [])))
     changes = left_out_changes(data["left_out_gaps"]) if "left_out_gaps" in data else {}
     if "stopper" in settings:
         of = in_si(OfStopper, settings["stopper"])
@@ -263,17 +265,19 @@ def _device_warnings(data, settings):
     of = in_si(OfDevice, settings["beam"])
     plastic = plastic_contact(data["plasticity"], of.device.pair)
     lengths = [
-        [[humidity, shape], sentences + gap_warnings(_at(changes, humidity), shape) + flags]
+        [[humidity, shape], found + gap_warnings(_at(changes, humidity), shape) + flags]
         for (_, humidity), dataset in data["lengths"].items()
-        for shape, sentences in beam_warnings(dataset, of, plastic, humidity).items()
+        for shape, found in beam_warnings(dataset, of, plastic, humidity).items()
     ]
     charts = list(data["charts"].values())
-    curves = (
-        [[curve, sentences + flags] for curve, sentences in chart_warnings(charts, of, plastic).items()]
-        if charts
-        else []
-    )
-    return lengths, curves, []
+    of_curves = chart_warnings(charts, of, plastic) if charts else {}
+    return lengths, [[curve, found + flags] for curve, found in of_curves.items()], []
+
+
+def _save(found, paths):
+    """Write limits as JSON."""
+    stored = [[[key, [limit.stored() for limit in limits]] for key, limits in part] for part in found]
+    save_text(json.dumps(stored, ensure_ascii=False, indent=1, allow_nan=False), paths["json"])
 
 
 def _at(changes, humidity):
@@ -281,8 +285,8 @@ def _at(changes, humidity):
     return {key: change for key, change in changes.items() if key[0] == humidity}
 
 
-def not_modelled(plan: Any, *devices: str) -> str:
-    """Sentence on effects missing in the results of some devices."""
+def not_modelled(plan: Any, *devices: str) -> dict[str, Any]:
+    """Effects missing in the results of some devices, for `stiction.report.limits.words`."""
     sections = (plan.config["devices"][name] for name in devices)
     return plan.air_of_devices.not_modelled(
         (section["pair"], humidity) for section in sections for humidity in section["humidities"]
@@ -301,7 +305,7 @@ STAGES = (
         inputs=_inputs,
         settings=_settings,
         compute=_device_warnings,
-        save=lambda warnings, paths: save_text(json.dumps(warnings, ensure_ascii=False, indent=1), paths["json"]),
+        save=_save,
         message="Where the results of device {device} are beyond the model.",
     ),
 )

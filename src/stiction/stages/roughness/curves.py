@@ -18,11 +18,13 @@ from stiction.config.units import in_si
 from stiction.contact.correction import NONE
 from stiction.contact.environment import Water
 from stiction.devices import risk
-from stiction.devices.limits import long_strips
+from stiction.devices.limits.limit import Limit, Side
+from stiction.devices.limits.rules import long_strips, triggered
 from stiction.devices.roughness import crossings, margins, sufficient
 from stiction.errors import NotConverged
 from stiction.plan.stage import Running, Stage, select
 from stiction.rounding import is_equal
+from stiction.run.stored_limits import as_text, of_text
 from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices import sticking, stoppers
 from stiction.stages.devices.contact_names import corrections_of
@@ -33,11 +35,8 @@ from stiction.stages.roughness.contacts import POINTS, contacts_of, points_of, r
 OTHERS = ("other", "other_given")
 #: Kurtosis of a point, which curves and maps over the skewness have.
 KURTOSIS = "kurtosis"
-#: What is said of surfaces smoother than those on which full elastic contact was computed.
-SMOOTHER = (
-    "smoother surfaces than the given one change more in full elastic contact than is computed, which is the unsafe "
-    "side: give the smoothest surface of the range"
-)
+#: Limit of surfaces smoother than those on which full elastic contact was computed, where they change more.
+SMOOTHER = Limit("smoother_than_full_contact", Side.UNSAFE, False)
 #: Dimensions of what is found on a curve.
 _TABLES = ("crossing", "range")
 
@@ -50,6 +49,10 @@ class Response(NamedTuple):
     error: float  #: standard error of the estimate
     bound: float  #: shortest length that sticks on any surface; NaN of a force
     stuck: tuple[float, float, float]  #: P(stuck) at the required length or force, with the ends of its 95 % band
+
+
+#: Responses at a humidity by shape, and limits of all of them.
+Found = tuple[list[Response], list[Limit]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,16 +84,17 @@ class OfBeam:
         """End states of a stuck device."""
         return self.device.opening.shapes
 
-    def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> tuple[list[Response], str]:
-        """Safe lengths at a humidity by shape, and a sentence about strips that are too long."""
+    def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> Found:
+        """Safe lengths at a humidity by shape, and the limit of strips that are too long."""
         met = sticking.ground(contact, tips, humidity, self)
         beams = sticking.release_beams(self.device, met, self)
         known = sticking.lengths_without_samples(self.device, self.water, humidity, self.edge_radius, beams.reach)
         safe = sticking.by_shape(beams, self, known)
-        flag = long_strips(
+        limit = long_strips(
             self.device.strip, self.device.opening.longest_strip(self.device, met.laws), self.device.opening.arms == 2
         )
-        return [self._response(held, *safe[shape], known[shape]) for shape, held in beams.lengths.items()], flag or ""
+        found = [self._response(held, *safe[shape], known[shape]) for shape, held in beams.lengths.items()]
+        return found, triggered(limit)
 
     def _response(self, lengths, safe, known):
         """Response from stuck lengths (n,) [m], their safe length and other known lengths."""
@@ -117,13 +121,13 @@ class OfStopper:
         """Required number, with its unit."""
         return self.restoring_force, "N"
 
-    def responses(self, contact: xr.Dataset, _tips: None, humidity: float) -> tuple[list[Response], str]:
-        """Safe force at a humidity; nothing is to be said about strips."""
+    def responses(self, contact: xr.Dataset, _tips: None, humidity: float) -> Found:
+        """Safe force at a humidity, without limits of strips."""
         forces = stoppers.forces(contact, humidity, self)
         change = self.water.changes(humidity)[1]
         stuck = tuple(stoppers.stuck_with_band(forces, self.restoring_force, change))
         (safe,) = stoppers.safe_forces_of(forces[None], self.share, self.seed, [change])
-        return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)], ""
+        return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)], []
 
 
 def point_settings(settings: dict[str, Any], data: Mapping[str, Any]) -> OfBeam | OfStopper:
@@ -145,14 +149,14 @@ def compute(
     for humidity in settings.humidities:
         met, air = (contact[humidity > 0], (tips or {}).get(humidity > 0)), settings.water.at(humidity)
         try:
-            found, flag = replace(settings, water=air).responses(*met, humidity)
+            found, limits = replace(settings, water=air).responses(*met, humidity)
             reason = ""
         except (ValueError, NotConverged) as error:
             traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code
-            found, flag = [Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes), ""
+            found, limits = [Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes), []
             reason = str(error)
         responses.append(found)
-        flagged.append(flag)
+        flagged.append(as_text(limits))
         refused.append(reason)
     first = next(iter(contact.values()))
     said = {"flagged": ("humidity", flagged), "refused": ("humidity", refused)}
@@ -229,8 +233,8 @@ def join_points(points: Sequence[xr.Dataset], key: str, surface: str) -> xr.Data
 
 def flagged(points: xr.Dataset, smoother: xr.DataArray | bool) -> xr.Dataset:
     """Points with a flag where they are corrected, and ``smoother`` than where full elastic contact was computed."""
-    joined = np.vectorize(lambda *said: "; ".join(filter(None, said)), otypes=[object])
-    flags = xr.apply_ufunc(joined, points.flagged, xr.where(points.corrected & smoother, SMOOTHER, ""))
+    joined = np.vectorize(lambda flag, is_beyond: as_text([*of_text(flag), *[SMOOTHER] * is_beyond]), otypes=[object])
+    flags = xr.apply_ufunc(joined, points.flagged, points.corrected & smoother)
     return points.assign(flagged=flags).drop_vars("corrected")
 
 

@@ -22,6 +22,7 @@ from stiction.scans.quantiles import SCORES, measured_density
 from stiction.scans.scan import Frame
 from stiction.scans.whittle import Reach, WhittleFit
 from stiction.stages.surfaces import scan as stage_scan
+from stiction.stages.surfaces.surface_flags import NOTE, flagged
 from stiction.surface import maxent
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.maxent import HeightDensity
@@ -177,6 +178,7 @@ def _summits(estimate):
 def _scans(estimate, notes):
     """Variables of the scans themselves, and sentences about them."""
     inspection = estimate.inspection
+    flags = [*estimate.flags_by_kind.items(), *((NOTE, note) for note in notes)]
     return {
         "line_jump": ("axis", list(estimate.line_jump[::-1]), {"units": "m", "long_name": "typical step"}),
         "noise": ("size", [maps.noise for maps in inspection.sizes], {"units": "m", "long_name": "rms of white noise"}),
@@ -185,7 +187,7 @@ def _scans(estimate, notes):
         "pixel": (("size", "axis"), [maps.frame.pixel for maps in inspection.sizes], {"units": "m"}),
         "points": (("size", "axis"), [maps.frame.shape for maps in inspection.sizes]),
         "files": ((), "\n".join(inspection.names)),
-        "flags": ((), "\n".join([*estimate.flags, *notes]), {"long_name": "limits of the estimate, one per line"}),
+        **flagged(flags),
     }
 
 

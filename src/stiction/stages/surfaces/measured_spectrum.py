@@ -15,6 +15,7 @@ from stiction.rounding import is_at_most
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import spectrum as stage_spectrum
 from stiction.stages.surfaces.spectrum import Use
+from stiction.stages.surfaces.surface_flags import flagged
 from stiction.surface.neighbours import mean_height_correlations
 from stiction.surface.spectrum import uncorrelated_beyond
 
@@ -46,29 +47,34 @@ def compute(estimate: xr.Dataset, heights: xr.Dataset, settings: Settings) -> xr
         spectrum = stage_spectrum.on_grid(target, heights, settings.spacing)
     except (ValueError, NotConverged) as reason:
         raise ValueError(f"surface {use.surface} {source} cannot be drawn: {reason}") from None
-    limits = [sentence for sentence in (clipped, *_within_correlation(target, use)) if sentence]
-    for sentence in limits:
+    limits = [*([("grid_ends", clipped)] if clipped else []), *_within_correlation(target, use)]
+    for _, sentence in limits:
         warnings.warn(f"surface {use.surface}: {sentence}", stacklevel=2)
-    return spectrum.assign(flags=((), "\n".join(limits)))
+    return spectrum.assign(flagged(limits))
 
 
 def _within_correlation(spectrum, use):
-    """Sentences about strips and margins within the correlation length."""
+    """Kinds and sentences of limits of strips and margins within the correlation length."""
     length = uncorrelated_beyond(spectrum)
     strip, margin, heights = (from_si(value, "um") for value in (use.strip_length, use.margin, length))
     if use.strip_length <= length:
         lags = math.ceil(length / use.strip_length)
         repeated = repetition(mean_height_correlations([(spectrum, 1.0)], (use.strip_length, math.inf), lags))
-        yield f"heights are correlated over {heights:.2g} µm; strips of {strip:g} µm count as independent" + (
-            f" under the beams of pairs, whose lengths then come out up to 10 % too long, while under devices strips "
-            f"repeat the law of their neighbour with a probability of up to {repeated:.2g}, the safe side"
-            if repeated
-            else " nevertheless"
+        yield (
+            "correlated_strips",
+            f"heights are correlated over {heights:.2g} µm; strips of {strip:g} µm count as independent"
+            + (
+                " under the beams of pairs, whose lengths then come out up to 10 % too long, while under devices "
+                f"strips repeat the law of their neighbour with a probability of up to {repeated:.2g}, the safe side"
+                if repeated
+                else " nevertheless"
+            ),
         )
     if use.margin <= length:
         yield (
+            "correlated_edges",
             f"heights are correlated over {heights:.2g} µm, so that a margin of {margin:g} µm makes opposite edges of "
-            "a strip alike; a longer sampling.margin_um does not"
+            "a strip alike; a longer sampling.margin_um does not",
         )
 
 

@@ -1,0 +1,1 @@
+"""Limits of results in words, and pages of them."""

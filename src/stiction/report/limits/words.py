@@ -1,0 +1,459 @@
+"""Sentences on limits of results, one for each kind, from the numbers of `stiction.devices.limits.limit.Limit`.
+
+Nothing is decided here: sides and amounts are fields of the limits.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+from stiction.analysis.smooth_pairs import largest_shortfall
+from stiction.beam.foundation import ACCURACY, LONGER, TOO_EARLY
+from stiction.constants import WATER_MOLECULE
+from stiction.contact.materials import COATING_ATTRACTION
+from stiction.devices.limits.limit import Limit
+from stiction.devices.limits.rules import FILMS, MOLECULES, PLASTIC, PLATE, RIM, ROTATION, SLENDER
+from stiction.report.format import TO_MPA, TO_NM, TO_UM, airs, with_error
+from stiction.rounding import in_percent
+from stiction.stages.surfaces.surface_flags import SIDES
+
+
+def text(limit: Limit) -> str:
+    """Sentence on a limit.
+
+    Raises
+    ------
+    KeyError
+        If the kind has no sentence.
+    """
+    return SENTENCES[limit.kind](**limit.numbers)
+
+
+def texts(limits: Iterable[Limit]) -> list[str]:
+    """Sentences on limits, in order."""
+    return [text(limit) for limit in limits]
+
+
+def joined(limits: Iterable[Limit]) -> str:
+    """Sentences on limits of one point as one, empty without any."""
+    return "; ".join(texts(limits))
+
+
+# Strips and lengths
+
+
+def _arcs_of_elements(share, strip):
+    return (
+        f"{100 * share:.4g} % of the beams end as arcs, held by the tip only. This share depends on the strip length, "
+        f"here {TO_UM * strip:.3g} µm. For a realistic share, describe the beam under `devices`, where tips are "
+        "computed on tilted strips."
+    )
+
+
+def _longer_strips(strip, longest, is_bridge):
+    what = "middle of this bridge" if is_bridge else "cracks of this beam"
+    return f"Strips of {TO_UM * strip:.3g} µm are longer than the {TO_UM * longest:.3g} µm that resolve the {what}"
+
+
+def _nothing_simulated(is_bridge, **strips):
+    return (
+        f"{_longer_strips(**strips, is_bridge=is_bridge)}, by so much that nothing is simulated: all beams count as "
+        "stuck that surfaces could hold which are everywhere like their strongest patch, the safe side."
+    )
+
+
+def _long_strips_of_bridge(**strips):
+    head = _longer_strips(**strips, is_bridge=True)
+    return f"{head}: its lengths may be off to either side. Shorter strips are more accurate."
+
+
+def _long_strips(**strips):
+    return (
+        f"{_longer_strips(**strips, is_bridge=False)} within {100 * ACCURACY:.0f} %: they stop too early, by at most "
+        f"{100 * TOO_EARLY:.0f} % where strips are {LONGER:g} times as long, which is the safe side. Shorter strips "
+        "are more accurate."
+    )
+
+
+def _smoother_than_full_contact():
+    return (
+        "smoother surfaces than the given one change more in full elastic contact than is computed, which is the "
+        "unsafe side: give the smoothest surface of the range"
+    )
+
+
+def _resampled_strips(samples):
+    return (
+        f"Few strips hold much more than most: the chaos model lacks them, so that strips are drawn from the {samples} "
+        "samples themselves. Strips that are rarer are missing. On two microscope files, lengths from 500 samples were "
+        "up to 3 % longer than lengths from 5000; contact.samples sets their number."
+    )
+
+
+def _lengths_of_sizes(error):
+    return (
+        f"Many devices are on this ground: lengths along the beam follow power laws through a few sizes. They err by "
+        f"{error:.1%} at sizes between these. Where they are too long, all lengths are shortened by it."
+    )
+
+
+def _repeated_strips(repetition, strip):
+    return (
+        f"Long waves raise or lower whole strips of {TO_UM * strip:.3g} µm: a strip repeats the law of its neighbour "
+        f"with a probability of {repetition:.2g}, the correlation of mean heights. Adhesion is correlated less, so "
+        "lengths come out too short, the safe side."
+    )
+
+
+def _repeated_strips_learnt(**numbers):
+    return (
+        f"{_repeated_strips(**numbers)} Test beams are computed in the same way and thus suggest too little adhesion: "
+        "this is the unsafe side."
+    )
+
+
+def _missed_accuracy(reached, asked, key):
+    return (
+        f"The standard error of this length is {in_percent(reached)}, more than the {in_percent(asked)} of "
+        f"design.accuracy.length: state more {key} than this run has, or a larger error there."
+    )
+
+
+def _cut_off_mean(share, mean, length):
+    return (
+        f"Only {100 * share:.4g} % of the beams end S-shaped. Their mean crack length, {TO_UM * mean:.0f} µm, lacks "
+        f"the longer cracks that beams of {TO_UM * length:.0f} µm cut off: it is not the mean of longer beams."
+    )
+
+
+# Contact
+
+
+def _plasticity_unchecked(is_listed):
+    named = "" if is_listed else ", and name plasticity in run.studies"
+    return (
+        f"Whether the contact is plastic was not checked: give its distance in studies.plasticity.distance_nm{named}."
+    )
+
+
+def _plastic_contact(share, pressure, is_stopper):
+    of_beams, of_stoppers = "beams that were pressed stick at shorter lengths", "stoppers that were pressed hold more"
+    effect = of_stoppers if is_stopper else of_beams
+    return (
+        f"{in_percent(share)} of the area in contact is plastic, more than {in_percent(PLASTIC)}, when the surfaces "
+        f"are pressed together with {TO_MPA * pressure:.3g} MPa: {effect} than the elastic model predicts, which is "
+        "the unsafe side. The study pressing says by how much, and from which pressure on."
+    )
+
+
+def _default_material(name, missing):
+    if len(missing) == 1:
+        return f"1 property of {name} is not stated; that of section solid or of polysilicon is used: {missing[0]}."
+    return (
+        f"{len(missing)} properties of {name} are not stated; those of section solid and of polysilicon are used: "
+        f"{', '.join(missing)}."
+    )
+
+
+def _spacer(name):
+    return (
+        f"The coating of {name} counts as a spacer that attracts no more than the air or water around it. Real "
+        "coatings attract, so that this result is on the unsafe side; the one without coating_nm is on the safe side. "
+        f"{COATING_ATTRACTION} includes it."
+    )
+
+
+def _gaps(changes, shorter, side=""):
+    by = [
+        f"{100 * change:+.2g} ± {100 * error:.1g} %{f' at RH {humidity:g}' * (len(changes) > 1)}"
+        for humidity, change, error in changes
+    ]
+    return (
+        f"Attraction of solids across gaps is left out. On these surfaces it would change the "
+        f"{'length' if shorter else 'force'} that holds by {', '.join(by)}{side}. attraction.reach all includes it."
+    )
+
+
+def _without_gaps(changes, shorter):
+    return _gaps(changes, shorter, ", which is the unsafe side")
+
+
+def _flat_patches(share):
+    return (
+        f"{in_percent(share)} of the patches of surface have too few summits to resist the adhesion. They count as "
+        "flat surfaces in contact, which hold more than any rough ones: the prediction is on the safe side."
+    )
+
+
+def _smooth_pair(rms, short):
+    by = [f"{100 * of:.0f} ± {max(100 * error, 1):.0f} % at RH {humidity:g}" for humidity, of, error in short]
+    return (
+        f"Surfaces as smooth as these, {TO_NM * rms:.2g} nm rms together, flatten each other in humid air. Forces on "
+        f"summits are then too small, the unsafe side: on slopes as gentle as those of B2 by {', '.join(by)}, on "
+        "steeper ones by less. contact.model full computes them."
+    )
+
+
+# Water
+
+
+def _thin_film(film):
+    return (
+        f"The film of water is {TO_NM * film:.2g} nm high, thinner than {MOLECULES} molecules, "
+        f"{MOLECULES * TO_NM * WATER_MOLECULE:.3g} nm: the air is too dry for the theory of a liquid, and this result "
+        "can be off to either side. Results for dry air and for the next humidity above bracket it."
+    )
+
+
+def _no_water():
+    return (
+        "No water condenses between the surfaces, because the cosines of their contact angles add up to zero or less: "
+        "results at any humidity are those for dry air."
+    )
+
+
+def _wide_meniscus(film, share):
+    return (
+        f"The film of water is up to {TO_UM * film:.3g} µm high, not small against the area in contact: the surface "
+        f"tension along its rim, which is left out, adds up to {100 * share:.3g} % of the force of the film, more than "
+        f"{100 * RIM:.0f} %. Stoppers may hold more than computed, which is the unsafe side."
+    )
+
+
+def _filled_gap(gap, film, rms):
+    what, acts = ("sum of film height and roughness", "water") if film else ("roughness", "attraction across gaps")
+    return (
+        f"The gap of {TO_UM * gap:.3g} µm is less than {FILMS} times the {what}, "
+        f"{TO_NM * (film + rms):.3g} nm: the {acts} acts on the beam ahead of its contact, too."
+    )
+
+
+# Beams
+
+
+def _large_rotation(crack_length, slope):
+    return (
+        f"At a length of {TO_UM * crack_length:.0f} µm the beam reaches a slope of {slope:.3g}, above {ROTATION}: the "
+        "linear theory of beams does not hold."
+    )
+
+
+def _stubby_beam(crack_length, ratio, shorter):
+    return (
+        f"A crack of {TO_UM * crack_length:.0f} µm is only {ratio:.3g} times as long as the beam is thick, less than "
+        f"{SLENDER:.0f}: shear and the compliance of the clamp, which are not in the model, shorten it by about "
+        f"{in_percent(shorter)}."
+    )
+
+
+def _wide_beam(crack_length, ratio):
+    return (
+        f"At a length of {TO_UM * crack_length:.0f} µm, 6 h w² / (t l²) is {ratio:.3g}, above {PLATE:.0f}: the beam "
+        "bends as a plate, with the modulus E / (1 - ν²)."
+    )
+
+
+def _stretched_bridge(ratio):
+    size = "equal to the thickness" if f"{ratio:.3g}" == "1" else f"{ratio:.3g} times the thickness"
+    return (
+        f"The gap is {size} of the bridge: its stretching, which is left out, helps to free it. Longer bridges would "
+        "release, too: by up to 5 % at a gap of half the thickness, by up to 16 % at an equal gap, and by more beyond. "
+        "The prediction is on the safe side."
+    )
+
+
+# Surfaces
+
+
+def _flag(surface, flag):
+    return f"surface {surface}: {flag}"
+
+
+#: Words of key ``unknown`` of a surface: name, unit, and whether its uncertainty is relative.
+_UNKNOWN = {
+    "rms": ("rms", " nm", True),
+    "skewness": ("skewness", "", False),
+    "kurtosis": ("kurtosis", "", False),
+    "corner": ("corner of the spectrum", " rad/µm", True),
+    "hurst": ("Hurst exponent", "", False),
+}
+
+
+def _assumption(word, value, error):
+    """Assumed value with its standard uncertainty. The Hurst exponent is half of the slope."""
+    label, unit, relative = _UNKNOWN[word]
+    scale = 100 * error if relative else error / 2 if word == "hurst" else error
+    number = "" if value is None else f" {value:.3g}{unit}"
+    return f"{label}{number} ± {scale:.2g}{' %' if relative else ''}"
+
+
+def _assumed_surface(surface, library, listed):
+    assumed = [_assumption(*each) for each in listed]
+    return (
+        f"surface {surface}: not measured but assumed, with the scatter over {len(library)} typical surfaces "
+        f"({', '.join(library)}) as standard uncertainty: {'; '.join(assumed)}"
+    )
+
+
+# Test beams
+
+
+def _test_beams_contradict(p_value):
+    return (
+        "Neither the errors of the inputs nor those of the model, as stated, explain the test beams (p = "
+        f"{p_value:.1g}): something else is wrong, such as a dimension, a humidity or plastic contact. "
+        "Until it is found, rely neither on the update nor on what is stated without it."
+    )
+
+
+def _model_explains_test_beams(p_value, factor, slope):
+    return (
+        f"The errors of the inputs, as stated, do not explain the test beams (p = {p_value:.1g}); an error of "
+        f"the model does: lengths are {factor:.3g} times as large as computed, with a slope of "
+        f"{slope:+.2g} in the logarithm of the length."
+    )
+
+
+def _cracks_beyond_test_beams(datum, computed, beam_length):
+    return (
+        f"{datum}: computed cracks of {TO_UM * computed:.0f} µm are longer than the beams, "
+        f"{TO_UM * beam_length:.0f} µm: mean lengths of the beams that stick are too short."
+    )
+
+
+def _moved_input(name, score):
+    return f"The test beams move the {name} by {score:+.2g} of its standard uncertainties: check it."
+
+
+def _left_to_the_model(datum, rest):
+    return f"{datum}: {100 * rest:+.2g} % of the length are left to errors of the model at this humidity alone."
+
+
+def _nonlinear_update(different):
+    listed = [f"{with_error(100 * apart, 100 * error)} % ({again})" for again, apart, error in different]
+    return (
+        f"The update is not linear: results computed again differ from it by {', '.join(listed)}. If this "
+        "matters beside their standard uncertainties, set the inputs to the values from the test beams and "
+        "compute the device again."
+    )
+
+
+def _beyond_humidities_of_test_beams(measured, beyond):
+    humid = [humidity for humidity in measured if humidity > 0]
+    where = ["in dry air"] * (0 in measured) + [f"from RH {humid[0]:g} to {humid[-1]:g}" for _ in humid[:1]]
+    return f"Test beams were measured {' and '.join(where)}: the prediction {airs(beyond)} is an extrapolation."
+
+
+def _beyond_sizes_of_test_beams(size, device, nearest, factor):
+    return (
+        f"The {size} of the device, {TO_UM * device:.3g} µm, differs by more than a factor of {factor:g} from "
+        f"that of the test beams, {TO_UM * nearest:.3g} µm: the prediction is an extrapolation."
+    )
+
+
+def _beyond_adhesion_of_test_beams(result, change):
+    words = "longer than the longest" if change > 0 else "shorter than the shortest"
+    return (
+        f"{result}: cracks of equal beams would be {100 * abs(change):.0f} % {words} of the "
+        "test beams, so that the slope of the model over the adhesion is extrapolated."
+    )
+
+
+#: Sentence of each kind, as a function of its numbers.
+SENTENCES: dict[str, Callable[..., str]] = {
+    "arcs_of_elements": _arcs_of_elements,
+    "nothing_simulated": _nothing_simulated,
+    "long_strips_of_bridge": _long_strips_of_bridge,
+    "long_strips": _long_strips,
+    "smoother_than_full_contact": _smoother_than_full_contact,
+    "resampled_strips": _resampled_strips,
+    "lengths_of_sizes": _lengths_of_sizes,
+    "repeated_strips": _repeated_strips,
+    "repeated_strips_learnt": _repeated_strips_learnt,
+    "missed_accuracy": _missed_accuracy,
+    "cut_off_mean": _cut_off_mean,
+    "plasticity_unchecked": _plasticity_unchecked,
+    "plastic_contact": _plastic_contact,
+    "default_material": _default_material,
+    "spacer": _spacer,
+    "without_gaps": _without_gaps,
+    "without_gaps_safe": _gaps,
+    "flat_patches": _flat_patches,
+    "smooth_pair": _smooth_pair,
+    "thin_film": _thin_film,
+    "no_water": _no_water,
+    "wide_meniscus": _wide_meniscus,
+    "filled_gap": _filled_gap,
+    "large_rotation": _large_rotation,
+    "stubby_beam": _stubby_beam,
+    "wide_beam": _wide_beam,
+    "stretched_bridge": _stretched_bridge,
+    **dict.fromkeys(SIDES, _flag),
+    "assumed_surface": _assumed_surface,
+    "test_beams_contradict": _test_beams_contradict,
+    "model_explains_test_beams": _model_explains_test_beams,
+    "cracks_beyond_test_beams": _cracks_beyond_test_beams,
+    "moved_input": _moved_input,
+    "left_to_the_model": _left_to_the_model,
+    "nonlinear_update": _nonlinear_update,
+    "beyond_humidities_of_test_beams": _beyond_humidities_of_test_beams,
+    "beyond_sizes_of_test_beams": _beyond_sizes_of_test_beams,
+    "beyond_adhesion_of_test_beams": _beyond_adhesion_of_test_beams,
+}
+
+
+# What is in no result
+
+
+#: Effects that settings leave out, by their keys of `stiction.plan.environment.Environment.not_modelled`. Errors of
+#: contact on summits: in humid air, full contact of two strips each of 1.0 and 1.7 nm rms at RH 0.45 and 0.65 has 1.05
+#: to 1.16 times their energy; at higher rms it has less. In dry air, from six strips of each pair of the paper
+#: (docs/tables/deformed.md) and five of the coated pair of examples/sealed.yaml: on the first strip of the smoothest
+#: pair there, e is 7.26 in place of 2.36 mJ/m², f_max 5.70 in place of 1.61 MPa.
+_LEFT_OUT = {
+    "gaps": "attraction of solids across gaps",
+    "van_der_waals": "van der Waals attraction of solids",
+    "summits": "interaction of neighbouring summits (in humid air, on surfaces of 0.5 to 1.7 nm rms, lengths come out "
+    f"up to 4 % too long and forces, up to RH 0.97, up to {in_percent(largest_shortfall())} too small)",
+    "bent": "in dry air the bending of surfaces towards each other (on surfaces like those of the paper lengths come "
+    "out 1 to 8 % too long and forces 10 to 40 % too small; on a strip of 1.6 nm rms, lengths were a third too long "
+    "and the force 3.5 times too small; without contact.model summits it is included)",
+}
+
+
+def not_modelled(left_out: Sequence[str] = (), humid: bool = True, pairs: Sequence[str] = ()) -> str:
+    """Effects relevant to stiction but not in the model: at no settings, or left out by the present ones.
+
+    Attraction across gaps is left out for some pairs, or, if these are empty, for all.
+    """
+    of_some = {"gaps": f" (pairs {', '.join(pairs)})"} if pairs else {}
+    named = [_LEFT_OUT[key] + of_some.get(key, "") for key in left_out]
+    time = ["the time that water needs to condense and to evaporate"] * humid
+    never = [
+        "residues of drying",
+        *time,
+        "drift of electric charge",
+        "wear",
+        "conformal films, which correlate both surfaces",
+    ]
+    sentence = f"Not in the model: {', '.join([*named, *never])}, and curl by a stress gradient."
+    fast = " If surfaces separate faster than water evaporates, they hold more than computed: this is the unsafe side."
+    return sentence + fast * humid
+
+
+# Lists
+
+
+def distinct(limits: Mapping[Any, Iterable[Limit]]) -> list[Limit]:
+    """Different limits of all subjects in their order."""
+    return list(dict.fromkeys(limit for found in limits.values() for limit in found))
+
+
+def numbered(limits: Mapping[Any, Iterable[Limit]]) -> dict[Any, list[int]]:
+    """Numbers, from 1, of the limits of each subject among the `distinct` ones."""
+    numbers = {limit: number for number, limit in enumerate(distinct(limits), 1)}
+    return {subject: [numbers[limit] for limit in found] for subject, found in limits.items()}
+
+
+def with_numbers(limits: Mapping[Any, Iterable[Limit]]) -> list[str]:
+    """Sentences on the different limits, each after its number."""
+    return [f"({k}) {sentence}" for k, sentence in enumerate(texts(distinct(limits)), 1)]
