@@ -88,6 +88,7 @@ class Answer:
     size: float = np.nan  #: stated, NaN without one
     stuck: Probability | None = None  #: at the stated size, in the worst stated air
     touchdowns: int = 1
+    extrapolated: bool = False  #: whether the size rests on a line beyond what was verified, on either side
     left_out: tuple[str, ...] = ()  #: conditions that are stated but not inside
     forbidden: tuple[str, ...] = ()  #: kinds of the limits that forbid a number
     measure: str = ""  #: group of inputs that costs most

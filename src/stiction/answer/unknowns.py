@@ -122,8 +122,9 @@ class OfBudgets:
         """Errors of all inputs, (number,) each, by name."""
         if draws not in self._drawn:
             names, covariance = joint(list(self.budgets.values()))
-            values, vectors = np.linalg.eigh(covariance)
-            root = vectors * np.sqrt(np.clip(values, 0, None))
+            scales = np.sqrt(np.diag(covariance))  # inputs have units of their own
+            values, vectors = np.linalg.eigh(covariance / np.outer(*[np.where(scales > 0, scales, 1.0)] * 2))
+            root = scales[:, None] * vectors * np.sqrt(np.clip(values, 0, None))
             # One stream for each input, so that a further input changes no error of the others.
             independent = np.array([normal(draws, "input", name) for name in names]).reshape(-1, draws.number)
             self._drawn[draws] = dict(zip(names, root @ vectors.T @ independent, strict=True))

@@ -7,22 +7,26 @@ A *condition* is one set of circumstances: an air, an end state, with or without
 worst condition in every draw, so that one more condition never makes a beam longer.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
-from scipy.special import ndtr, ndtri
+from scipy.special import betaincinv, expit, logit, ndtr, ndtri
 
 from stiction.answer.data import Cause
 from stiction.answer.unknowns import Draws, Unknowns, normal
-from stiction.devices.risk import CONFIDENCE, upper_bound
-from stiction.devices.tail import TAIL, TailFit, simulated_lines
+from stiction.devices.risk import CONFIDENCE, DECADE, VERIFIED, upper_bound
+from stiction.devices.tail import FEWEST, TAIL, TailFit, fit_tail, simulated_lines
 from stiction.life.freeing import probability_for, stuck_after
 from stiction.streams import stream
 
 #: Number of draws. They leave 0.3 % in a size.
 DRAWS = 20_000
+#: Smallest scatter of ln size. Where no strips resolve the ground, all devices are alike.
+_ALIKE = 1e-9
+#: Normal scores at which distributions of counted fractions are tabulated.
+_SCORES = np.linspace(-4.0, 4.0, 33)
 
 
 @dataclass(frozen=True)
@@ -30,8 +34,8 @@ class Stated:
     """Size for a fraction as a dataset states it, as v."""
 
     share: float  #: p [-]
-    estimate: float
-    bound: float  #: with 95 % confidence, no larger than the estimate
+    estimate: float  #: infinite if the bound does not rest on a line or an order statistic
+    bound: float  #: with 95 % confidence, no larger than the estimate; minus infinity if none is known
 
 
 @dataclass(frozen=True)
@@ -39,11 +43,39 @@ class Sampled:
     """Thresholds of simulated devices."""
 
     values: np.ndarray  #: increasing, infinite where a device does not stick (n,)
-    tail: TailFit | None  #: line through the lowest; none if too few stick
-    stated: Stated
+    stated: tuple[Stated, ...]  #: for the fraction after one touchdown, and after all of them
     reach: float = np.inf  #: end of the simulation
     floor: float = -np.inf  #: below which no surfaces hold a device
+    flat: float = -np.inf  #: threshold on flat surfaces, the bound without a line and a statement
     surfaces_error: float = 0.0  #: standard error of all thresholds by the number of sampled surfaces
+    is_bounded: bool = True  #: whether there are enough devices to state anything about few
+
+    @cached_property
+    def tail(self) -> TailFit | None:
+        """Line through the lowest thresholds; none if too few devices stick."""
+        within = np.where(self.values <= self.reach, self.values, np.inf)
+        enough = min(np.isfinite(within).sum(), int(TAIL * len(within))) >= FEWEST
+        return fit_tail(np.exp(within)) if enough and self.is_bounded else None
+
+    def stated_for(self, share: float) -> Stated | None:
+        """Statement for a fraction, none if there is none."""
+        return next((one for one in self.stated if np.isclose(one.share, share, rtol=1e-9, atol=0)), None)
+
+    def bound_for(self, share: float) -> float:
+        """Bound for a fraction without a line."""
+        stated = self.stated_for(share)
+        return self.flat if stated is None else stated.bound
+
+    def moved(self, move: Callable[[np.ndarray], np.ndarray]) -> "Sampled":
+        """Thresholds after a change that increases with them."""
+
+        def end(v):
+            """Finite end after the change."""
+            return float(move(np.array(v))) if np.isfinite(v) else v
+
+        stated = tuple(Stated(one.share, end(one.estimate), end(one.bound)) for one in self.stated)
+        ends = {name: end(getattr(self, name)) for name in ("reach", "floor", "flat")}
+        return replace(self, values=move(self.values), stated=stated, **ends)
 
 
 @dataclass(frozen=True)
@@ -57,7 +89,7 @@ class Condition:
     sampled: Sampled | None = None
     bound: float = np.nan  #: threshold of all devices, where none is sampled
     shift: float = 0.0  #: of all thresholds
-    error: float = 0.0  #: standard error of ``shift``, or of ``bound``
+    error: float = 0.0  #: standard error of ``shift`` by the simulation, or of ``bound`` by its inputs
 
 
 @dataclass(frozen=True)
@@ -70,6 +102,7 @@ class World:
     conditions: tuple[Condition, ...]
     unknowns: Unknowns
     causes: frozenset[Cause]
+    share: float  #: allowed fraction of stuck devices [-]
     touchdowns: int = 1
     draws: Draws = Draws(DRAWS, 0)
     exact: frozenset[str] = field(default_factory=frozenset)  #: groups of inputs that count as known
@@ -89,13 +122,18 @@ class World:
         """Touchdowns that count."""
         return self.touchdowns if Cause.TOUCHDOWNS in self.causes else 1
 
+    @property
+    def _once(self):
+        """Fraction of devices that may stick at each touchdown [-]."""
+        return probability_for(self.share, self._repeats)
+
     @cached_property
     def _shifts(self):
         """Shift of every condition by the errors of the inputs, and by its own (conditions, draws)."""
         of_inputs = self.causes & {Cause.INPUTS, Cause.TEST_BEAMS}
         shifts = np.array([np.full(self.draws.number, one.shift) for one in self.inside])
         for row, one in zip(shifts, self.inside, strict=True):
-            if self._is_simulated and one.error:
+            if one.error and (self._is_simulated if one.sampled else of_inputs):
                 row += one.error * normal(self.draws, "shift", one.source)
             if of_inputs:
                 row += self.unknowns.shift((one.humidity, one.shape), self.draws, self.exact)
@@ -104,58 +142,93 @@ class World:
     @cached_property
     def _lines(self):
         """Intercepts and slopes of the tails of all sampled conditions, with the errors of the simulation."""
-        return {k: self._line(one) for k, one in enumerate(self.inside) if one.sampled and one.sampled.tail}
+        return {k: self._line(one.sampled) for k, one in enumerate(self.inside) if one.sampled and one.sampled.tail}
 
-    def _line(self, condition):
-        """Intercepts and slopes of one tail (draws,) each. All airs of an end state share their samples."""
-        of, tail = condition.sampled, condition.sampled.tail
+    def _line(self, of):
+        """Intercepts and slopes of one tail (draws,) each.
+
+        The same draw is the same rank in all conditions. The least of their bounds then is one of all of them, whatever
+        their errors have in common.
+        """
+        tail, slope = of.tail, max(of.tail.slope, _ALIKE)
         if not self._is_simulated:
-            intercept = (
-                np.full(self.draws.number, tail.intercept) + of.stated.estimate - tail.logarithm(of.stated.share)
-            )
-            return intercept, np.full(self.draws.number, tail.slope)
-        at, along = _pivots(tail.samples, tail.fitted, condition.shape, self.draws)
-        slopes = tail.slope / along
+            rows = np.full(self.draws.number, tail.intercept), np.full(self.draws.number, slope)
+            return rows[0] + _to_stated(of, self._once, *rows), rows[1]
+        at, along = _pivots(tail.samples, tail.fitted, self.draws)
+        slopes = slope / along
         intercepts = tail.intercept - at * slopes + of.surfaces_error * normal(self.draws, "surfaces")
-        return intercepts + _to_stated(of.stated, intercepts + slopes * ndtri(of.stated.share)), slopes
+        order = np.argsort(intercepts + slopes * ndtri(self._once))[_ranks(self.draws)]
+        intercepts = intercepts + _to_stated(of, self._once, intercepts, slopes)
+        return intercepts[order], slopes[order]
 
-    def thresholds(self, share: float) -> np.ndarray:
-        """Quantile of the thresholds of every condition at a fraction, in every draw (conditions, draws)."""
-        score, rows = ndtri(probability_for(share, self._repeats)), []
+    @cached_property
+    def thresholds(self) -> np.ndarray:
+        """Thresholds of the allowed fraction in every condition and draw (conditions, draws)."""
+        score, rows = ndtri(self._once), []
         for k, one in enumerate(self.inside):
-            if k in self._lines:
+            if self._has_line(k):
                 intercepts, slopes = self._lines[k]
                 rows.append(np.maximum(intercepts + slopes * score, one.sampled.floor))
             else:
-                rows.append(np.full(self.draws.number, one.sampled.stated.bound if one.sampled else one.bound))
+                bound = one.sampled.bound_for(self._once) if one.sampled else one.bound
+                rows.append(np.full(self.draws.number, bound))
         return np.array(rows) + self._shifts
 
-    def size(self, share: float) -> tuple[float, Condition]:
-        """Size that at most a fraction sticks at, with confidence where errors are inside, and what decides."""
-        rows = self.thresholds(share)
-        least = rows.min(axis=0)
-        bound = float(np.quantile(least, 1 - CONFIDENCE) if self._is_simulated else np.median(least))
-        near = np.abs(least - bound) <= np.quantile(np.abs(least - bound), 0.02)
-        decides = np.bincount(rows[:, near].argmin(axis=0), minlength=len(rows)).argmax()
-        return bound, self.inside[int(decides)]
+    def _has_line(self, k):
+        """Whether the line of a condition gives the threshold of the allowed fraction."""
+        if k not in self._lines:
+            return False
+        stated = self.inside[k].sampled.stated_for(self._once)
+        return stated is None or bool(np.isfinite(stated.estimate))
+
+    @cached_property
+    def _size(self):
+        """Size to build as v, and the place of what decides: it is worst in most draws near the size."""
+        least = self.thresholds.min(axis=0)
+        order, number = np.argsort(least), len(least)
+        at = int((1 - CONFIDENCE) * number) if self._is_simulated else number // 2
+        near = order[max(at - number // 100, 0) : at + number // 100]
+        decides = np.bincount(self.thresholds[:, near].argmin(axis=0), minlength=len(self.inside)).argmax()
+        return float(least[order[at]]), int(decides)
+
+    @property
+    def size(self) -> float:
+        """Size to build as v, with confidence where errors of the simulation are inside; minus infinity without any."""
+        return self._size[0]
+
+    @property
+    def decides(self) -> Condition:
+        """Condition that decides about the size."""
+        return self.inside[self._size[1]]
+
+    @property
+    def is_extrapolated(self) -> bool:
+        """Whether the size rests on a line beyond the fractions and the samples for which it was verified."""
+        if not self._has_line(self._size[1]):
+            return False
+        return self._once < VERIFIED or len(self.decides.sampled.values) * self._once < DECADE
 
     def stuck(self, v: float) -> np.ndarray:
         """Fraction stuck at v in the worst sampled condition, in every draw (draws,)."""
         rows = [self._stuck(k, v - self._shifts[k]) for k, one in enumerate(self.inside) if one.sampled]
-        return np.max(rows, axis=0)
+        return stuck_after(np.max(rows, axis=0), self._repeats)
 
     def _stuck(self, k, at):
-        """Fraction stuck in one condition at values (draws,): by counts, or by the line where few stick."""
-        of, n = self.inside[k].sampled, len(self.inside[k].sampled.values)
-        below = np.searchsorted(of.values, at)
-        rng = stream(self.draws.seed, "answer", "counts", self.inside[k].shape)
-        share = rng.beta(below + 0.5, n - below + 0.5)
+        """Fraction stuck at one touchdown in one condition at values (draws,): by counts, or a line where few stick.
+
+        ASSUME: beyond the reach, devices that did not stick there do so in every second draw.
+        """
+        of = self.inside[k].sampled
+        n, number = len(of.values), normal(self.draws, "counts")
+        moved = at - of.surfaces_error * normal(self.draws, "surfaces")
+        share = _counted(n, np.searchsorted(of.values, moved), number)
         if k in self._lines:
             intercepts, slopes = self._lines[k]
-            share = np.where(below > TAIL * n, share, ndtr((at - intercepts) / slopes))
+            end = of.values[of.tail.fitted - 1]
+            line = ndtr((np.minimum(at, end) - intercepts) / slopes)
+            share = np.where(at > end, np.maximum(share, line), line)
         share = np.where(at < of.floor, 0.0, share)
-        beyond = share + (1 - share) * rng.random(self.draws.number)  # devices that did not stick there may all do so
-        return stuck_after(np.where(at > of.reach, beyond, share), self._repeats)
+        return np.where((at > of.reach) & (normal(self.draws, "beyond") > 0), 1.0, share)
 
     def seen(self, v: float) -> int:
         """Largest number of simulated devices stuck at v in a condition, all inputs as stated."""
@@ -167,23 +240,53 @@ class World:
         return float(stuck_after(upper_bound(0, fewest, (1 + CONFIDENCE) / 2), self._repeats))
 
 
-@lru_cache(maxsize=8)  # all airs of an end state, and every step, ask for the same
-def _pivots(samples, fitted, shape, draws):
+@lru_cache(maxsize=8)  # all airs and end states, and every step, ask for the same
+def _pivots(samples, fitted, draws):
     """Intercepts and slopes of lines through the lowest of normal samples (draws,) each."""
-    return simulated_lines(samples, fitted, stream(draws.seed, "answer", "tail", shape), draws.number)
+    return simulated_lines(samples, fitted, stream(draws.seed, "answer", "tail"), draws.number)
 
 
-def _to_stated(stated: Stated, drawn: np.ndarray) -> np.ndarray:
-    """Addition to drawn quantiles (draws,) that makes their median and 5 % quantile those of a stated bound.
+@lru_cache(maxsize=8)
+def _ranks(draws):
+    """Rank of the error of the simulation in every draw (draws,)."""
+    return stream(draws.seed, "answer", "ranks").permutation(draws.number)
 
-    A bound of order statistics, or one that is no larger than that in drier air, is not that of a line.
+
+@lru_cache(maxsize=8)
+def _table(n):
+    """Logits of Jeffreys' quantiles of fractions of n devices by the number stuck, at `_SCORES` (n + 1, scores)."""
+    stuck = np.arange(n + 1)[:, None]
+    return logit(betaincinv(stuck + 0.5, n - stuck + 0.5, ndtr(_SCORES)))
+
+
+def _counted(n, stuck, scores):
+    """Fractions by Jeffreys' distribution of counts of n devices (draws,), at normal scores (draws,).
+
+    They increase with the counts in every draw, to one where all devices stick.
     """
-    middle, least = np.median(drawn), np.quantile(drawn, 1 - CONFIDENCE)
-    wider = (stated.estimate - stated.bound) / (middle - least)
+    place = np.clip((scores - _SCORES[0]) / (_SCORES[1] - _SCORES[0]), 0, len(_SCORES) - 1.001)
+    left = place.astype(int)
+    low, high = _table(n)[stuck, left], _table(n)[stuck, left + 1]
+    return np.where(stuck < n, expit(low + (place - left) * (high - low)), 1.0)
+
+
+def _to_stated(of, share, intercepts, slopes):
+    """Addition to drawn intercepts (draws,) that makes the median and the 5 % quantile those of a stated bound.
+
+    A bound of order statistics, or one that is no larger than that in drier air, is not that of a line. Where nothing
+    is stated for a fraction, no line passes what is stated for another one.
+    """
+    stated = of.stated_for(share) or next(iter(of.stated), None)
+    if stated is None or not np.isfinite([stated.estimate, stated.bound]).all():
+        return 0.0
+    drawn = intercepts + slopes * ndtri(stated.share)
+    middle, least = np.median(drawn), _least(drawn)
+    if of.stated_for(share) is None:
+        return min(0.0, (stated.bound if middle > least else stated.estimate) - least)
+    wider = (stated.estimate - stated.bound) / (middle - least) if middle > least else 0.0
     return stated.estimate - drawn + (drawn - middle) * wider
 
 
-def worst_first(conditions: Sequence[Condition], share: float) -> list[Condition]:
-    """Sampled conditions, that with the smallest stated bound first."""
-    sampled = [one for one in conditions if one.sampled and one.sampled.stated.share == share]
-    return sorted(sampled, key=lambda one: one.sampled.stated.bound + one.shift)
+def _least(drawn):
+    """5 % quantile of draws (draws,), one of them."""
+    return np.sort(drawn)[int((1 - CONFIDENCE) * len(drawn))]

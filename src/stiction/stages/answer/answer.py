@@ -10,14 +10,14 @@ import xarray as xr
 from stiction.answer import ladder
 from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, Step
 from stiction.answer.ladder import Question
-from stiction.answer.unknowns import Draws
-from stiction.answer.worlds import DRAWS, worst_first
+from stiction.answer.unknowns import Draws, OfBudgets
+from stiction.answer.worlds import DRAWS
 from stiction.config.cases import case_id
 from stiction.config.units import in_si
 from stiction.devices.budget import LARGEST
 from stiction.plan.stage import Stage, select
 from stiction.stages.answer import conditions
-from stiction.stages.devices.budget import budgets_of
+from stiction.stages.devices.budget import budgets_of, largest_margin
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import bounded_share
@@ -54,14 +54,15 @@ def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
 
 def _of_beam(data, settings):
     """Conditions of a beam, and its question."""
-    slow = list(conditions.of_lengths(data["lengths"], Cause.ESTIMATE, "safe_lengths"))
-    share = chosen_share(next(iter(data["lengths"].values())))
+    slow = list(conditions.of_lengths(data["lengths"], Cause.ESTIMATE, "safe_lengths", data.get("after")))
     found = [
         *slow,
         *conditions.separated_fast(slow, data.get("fast_strips", {}), data.get("fast_tips", {}), settings.beam),
         *conditions.of_lengths(data["biased"], Cause.VOLTAGE, "at_voltage"),
-        *conditions.of_life(data["life"], settings.liquids, worst_first(slow, share)[0]),
+        *conditions.at_voltage_on_flats(slow, data["life"], settings.beam),
+        *conditions.drying(data["life"], settings.liquids, data["lengths"]),
     ]
+    share = chosen_share(next(iter(data["lengths"].values())))
     return found, {"share": share, "unit": "m", "size": settings.length}
 
 
@@ -69,7 +70,8 @@ def _of_stopper(data):
     """Conditions of a stopper, and its question."""
     stopper = data["stopper"]
     share, errors = bounded_share(stopper), stopper.full_contact_error
-    found = list(conditions.of_forces(stopper.pull_off, share, stopper.safe_force, errors, Cause.ESTIMATE))
+    parallel = list(conditions.of_forces(stopper.pull_off, share, stopper.safe_force, errors, Cause.ESTIMATE))
+    found = [*parallel, *conditions.at_voltage_on_flat_patches(parallel, data["life"])]
     if "separation" in data:
         found += conditions.of_forces(data["separation"].pull_off, share, None, errors, Cause.FAST)
     if "tilted" in data:
@@ -79,7 +81,6 @@ def _of_stopper(data):
     if "biased" in data:
         biased = data["biased"]
         found += conditions.of_forces(biased.pull_off, share, biased.safe_force, errors, Cause.VOLTAGE)
-    found += conditions.at_voltage_on_flats(stopper, data["life"], share)
     size = float(stopper.restoring_force)
     return found, {"share": share or float(stopper.share.max()), "unit": "N", "size": size}
 
@@ -88,9 +89,8 @@ def _forbidden(data, unknowns):
     """Reasons why no number may be stated: test beams that contradict, and inputs that are too uncertain."""
     found = []
     if data.get("test_beams") is not None and not is_reliable(data["test_beams"]):
-        found.append("test_beams")
-    totals = [one.total for one in getattr(unknowns, "budgets", {}).values() if one.is_known]
-    if max(totals, default=0.0) > LARGEST:
+        found.append("test_beams_contradict")
+    if isinstance(unknowns, OfBudgets) and largest_margin(data["budgets"]) > LARGEST:
         found.append(INPUTS)
     return tuple(found)
 
@@ -111,7 +111,7 @@ def layout(answer: Answer) -> xr.Dataset:
     size, none = {"units": answer.unit}, {"units": "1"}
     variables = {name: ((), getattr(answer, name), size) for name in _SIZES}
     variables |= {name: ((), getattr(answer, name), none) for name in _NUMBERS}
-    variables |= {"touchdowns": ((), answer.touchdowns, none)}
+    variables |= {"touchdowns": ((), answer.touchdowns, none), "extrapolated": ((), int(answer.extrapolated))}
     variables |= {name: (name, np.array(getattr(answer, name), dtype=object)) for name in _LISTS}
     for name, is_size in _STEPS.items():
         values = [getattr(step, name) for step in answer.steps]
@@ -165,6 +165,7 @@ def answer_of(dataset: xr.Dataset) -> Answer:
         airs=tuple(airs),
         stuck=_probability(dataset, "stuck_"),
         touchdowns=int(dataset.touchdowns),
+        extrapolated=bool(dataset.extrapolated),
         sizes=dataset["curve_size"].values,
     )
 
@@ -190,10 +191,15 @@ def _inputs(plan, at):
         return own | {"stopper": f"devices/stoppers/{device}"}
     cases = {humidity: case_id(device, humidity) for humidity in section["humidities"]}
     biased = cases if is_biased(plan, device) else {}
-    return own | {
-        "lengths": {humidity: f"devices/safe_lengths/{case}" for humidity, case in cases.items()},
-        "biased": {humidity: f"devices/at_voltage/{case}" for humidity, case in biased.items()},
-    }
+    more = {name: f"devices/touchdowns/{case}" for name, case in cases.items()} if "touchdowns" in section else {}
+    return (
+        own
+        | ({"after": more} if more else {})
+        | {
+            "lengths": {humidity: f"devices/safe_lengths/{case}" for humidity, case in cases.items()},
+            "biased": {humidity: f"devices/at_voltage/{case}" for humidity, case in biased.items()},
+        }
+    )
 
 
 def _budgets(plan, device):

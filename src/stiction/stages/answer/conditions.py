@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import xarray as xr
@@ -9,40 +10,54 @@ import xarray as xr
 from stiction.answer.data import Cause
 from stiction.answer.unknowns import Exact, Members, OfBudgets, OfTestBeams, Slopes, Unknowns
 from stiction.answer.worlds import Condition, Sampled, Stated
-from stiction.devices.risk import Basis, sampled_bound, samples_for
-from stiction.devices.tail import FEWEST, TAIL, fit_tail
+from stiction.devices.risk import sampled_bound
+from stiction.life import holding
 from stiction.stages.devices.budget import response_of
 from stiction.stages.devices.opening import EITHER, FORCE, DesignedBeam
 from stiction.stages.devices.safe_lengths import chosen_share
-from stiction.stages.life.answers import AFTER, AT_VOLTAGE, COLLAPSE, answers_of
+from stiction.stages.life.answers import AT_VOLTAGE, COLLAPSE, VOLTAGE_ENERGY, answers_of
 from stiction.stages.life.separation import of_beam
 from stiction.stages.test_beams.inference import is_reliable, shape_of
-
-#: Smallest number, in place of a force of zero.
-_TINY = np.finfo(float).tiny
-
 
 # Beams
 
 
-def of_lengths(lengths: Mapping[float, xr.Dataset], cause: Cause, source: str) -> Iterator[Condition]:
-    """Yield conditions of a beam from its safe lengths by humidity, one for each end state."""
+def of_lengths(
+    lengths: Mapping[float, xr.Dataset], cause: Cause, source: str, after: Mapping[float, xr.Dataset] | None = None
+) -> Iterator[Condition]:
+    """Yield conditions of a beam from its safe lengths by humidity, one for each end state.
+
+    ``after`` are those for many touchdowns, if there are some.
+    """
     for humidity, dataset in lengths.items():
         for shape in map(str, dataset["shape"].values):
-            yield Condition(humidity, shape, cause, source, _sampled_lengths(dataset.sel(shape=shape)))
+            stated = [dataset.sel(share=chosen_share(dataset)), *([after[humidity].isel(share=0)] if after else [])]
+            sampled = _sampled_lengths(*(one.sel(shape=shape) for one in stated))
+            yield Condition(humidity, shape, cause, source, sampled)
 
 
-def _sampled_lengths(one):
-    """Sticking lengths in one end state with the safe length for the chosen fraction."""
-    at = one.sel(share=chosen_share(one))
-    values, reach = np.log(one.sticking_length.values), float(np.log(one.reach))
-    estimate, bound, floor = (float(np.log(np.maximum(of, _TINY))) for of in (at.estimate, at.safe_length, one.floor))
-    within = np.where(values <= reach, values, np.inf)
-    is_line = str(at.basis.values) not in (Basis.LONGEST, Basis.FLAT) and np.isfinite(within).sum() >= FEWEST
-    stated = Stated(float(at.share), max(estimate, bound) if is_line else bound, bound)
-    tail = fit_tail(np.exp(within)) if is_line else None
-    error = float(np.nan_to_num(at.surfaces_error / at.estimate)) if is_line else 0.0
-    return Sampled(values, tail, stated, reach, floor, error)
+def _sampled_lengths(once, *more):
+    """Sticking lengths in one end state, with the safe lengths for one touchdown and more."""
+    stated = tuple(_stated_length(*(float(one[name]) for name in _STATED)) for one in (once, *more))
+    ends = (_log(one) for one in (once.reach, once.floor, once.flooded_length))
+    error = float(once.surfaces_error / once.estimate) if np.isfinite(once.estimate) else 0.0
+    return Sampled(_log(once.sticking_length.values), stated, *map(float, ends), float(np.nan_to_num(error)))
+
+
+#: Fraction, estimate and bound of lengths in their datasets.
+_STATED = ("share", "estimate", "safe_length")
+
+
+def _stated_length(share, estimate, bound):
+    """Safe length as v."""
+    estimate, bound = _log(estimate), _log(bound)
+    return Stated(share, float(max(estimate, bound)), float(bound))
+
+
+def _log(sizes):
+    """Logarithm of sizes, minus infinity of zero."""
+    with np.errstate(divide="ignore"):
+        return np.log(np.asarray(sizes, float))
 
 
 def separated_fast(
@@ -65,22 +80,25 @@ def separated_fast(
     return found
 
 
-def of_life(life: xr.Dataset, liquids: Iterable[str], worst: Condition) -> Iterator[Condition]:
-    """Yield bounds of the length of a beam by other routes: at its voltage, after touchdowns, in stated liquids.
+def at_voltage_on_flats(slow: Iterable[Condition], life: xr.Dataset, device: DesignedBeam) -> Iterator[Condition]:
+    """Yield conditions of tips at a voltage as if flats were at the distance of the dielectric."""
+    added = max((row.high for row in answers_of(life) if row.name == VOLTAGE_ENERGY), default=np.nan)
+    for one in slow:
+        if added > 0 and one.shape == EITHER:
+            at = one.sampled.moved(lambda v: _log(holding.tip_length_at_voltage(np.exp(v), device.beam, added)))
+            yield replace(one, cause=Cause.VOLTAGE, source="life", sampled=at)
 
-    The first two have the air and the end state of the worst condition, whose inputs they share.
+
+def drying(life: xr.Dataset, liquids: Iterable[str], humidities: Iterable[float]) -> Iterator[Condition]:
+    """Yield bounds of the length of a beam that dries in stated liquids, whatever air it meets afterwards.
+
+    Their errors are those of the dimensions.
     """
-    named = {AFTER: Cause.TOUCHDOWNS, AT_VOLTAGE: Cause.VOLTAGE}
-    named |= {f"{COLLAPSE}_{liquid}": Cause.DRYING for liquid in liquids}
-    for row in answers_of(life):
-        if row.name not in named or not 0 < row.low < np.inf:
-            continue
-        cause, low = named[row.name], float(np.log(row.low))
-        if cause is Cause.DRYING:  # whose uncertainty is due to inputs of its own
-            error = float(np.nan_to_num(row.error / row.low))
-            yield Condition(worst.humidity, row.name, cause, "life", bound=low, error=error)
-        else:
-            yield Condition(worst.humidity, worst.shape, cause, "life", bound=low)
+    named = {f"{COLLAPSE}_{liquid}" for liquid in liquids}
+    rows = [row for row in answers_of(life) if row.name in named and 0 < row.low < np.inf]
+    for humidity, row in product(humidities, rows):
+        error = float(np.nan_to_num(row.error / row.low))
+        yield Condition(humidity, row.name, Cause.DRYING, "life", bound=float(np.log(row.low)), error=error)
 
 
 # Stoppers
@@ -94,34 +112,36 @@ def of_forces(
     ``safe`` has the forces for a fraction as a dataset states them, and ``errors`` the relative errors of all forces.
     """
     for humidity in map(float, forces.humidity.values):
-        values = np.sort(-np.log(np.maximum(forces.sel(humidity=humidity).values, _TINY)))
+        values = np.sort(-_log(forces.sel(humidity=humidity).values))
         error = 0.0 if errors is None else float(errors.sel(humidity=humidity))
         stated = _stated_force(values, share, None if safe is None else safe.sel(humidity=humidity))
-        is_line = share is not None and TAIL * len(values) >= FEWEST
-        tail = fit_tail(np.exp(values)) if is_line else None
-        yield Condition(humidity, FORCE, cause, "stoppers", Sampled(values, tail, stated, surfaces_error=error))
+        yield Condition(
+            humidity,
+            FORCE,
+            cause,
+            "stoppers",
+            Sampled(values, stated, surfaces_error=error, is_bounded=share is not None),
+        )
 
 
 def _stated_force(values, share, safe):
     """Force for a fraction as v: as stated, or by order statistics; none is known without enough patches."""
-    if share is None or len(values) < samples_for(share):
-        return Stated(share or 0.5, -np.inf, -np.inf)
+    if share is None:
+        return ()
     if safe is None:
         bound, estimate, _ = sampled_bound(values, share)
     else:
-        bound, estimate = -np.log(np.maximum(safe.sel(share=share, part=["safe", "estimate"]).values, _TINY))
-    return Stated(share, max(float(estimate), float(bound)), float(bound))
+        bound, estimate = -_log(safe.sel(share=share, part=["safe", "estimate"]).values)
+    return (Stated(share, max(float(estimate), float(bound)), float(bound)),)
 
 
-def at_voltage_on_flats(stopper: xr.Dataset, life: xr.Dataset, share: float | None) -> Iterator[Condition]:
-    """Yield the force that suffices at a voltage if flats were at the distance of the dielectric."""
-    rows = {row.name: row for row in answers_of(life)}
-    if share is None or AT_VOLTAGE not in rows or not np.isfinite(rows[AT_VOLTAGE].high):
-        return
-    safe = stopper.safe_force.sel(part="safe", share=share)
-    worst = float(stopper.humidity[int(safe.argmax("humidity"))])
-    force = float(safe.max()) + rows[AT_VOLTAGE].high
-    yield Condition(worst, FORCE, Cause.VOLTAGE, "life", bound=float(-np.log(force)))
+def at_voltage_on_flat_patches(stopper: Iterable[Condition], life: xr.Dataset) -> Iterator[Condition]:
+    """Yield conditions of a stopper at a voltage as if flats were at the distance of the dielectric."""
+    added = max((row.high for row in answers_of(life) if row.name == AT_VOLTAGE), default=np.nan)
+    for one in stopper:
+        if added > 0:
+            at = one.sampled.moved(lambda v: -_log(np.exp(-v) + added))
+            yield replace(one, cause=Cause.VOLTAGE, source="life", sampled=at)
 
 
 # Inputs
