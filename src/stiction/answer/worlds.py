@@ -25,6 +25,8 @@ from stiction.streams import stream
 DRAWS = 20_000
 #: Smallest scatter of ln size. Where no strips resolve the ground, all devices are alike.
 _ALIKE = 1e-9
+#: Distance of the normal scores of two points of a line that tell its slope.
+_APART = 0.5
 #: Normal scores at which distributions of counted fractions are tabulated.
 _SCORES = np.linspace(-4.0, 4.0, 33)
 
@@ -152,13 +154,13 @@ class World:
         """
         tail, slope = of.tail, max(of.tail.slope, _ALIKE)
         if not self._is_simulated:
-            rows = np.full(self.draws.number, tail.intercept), np.full(self.draws.number, slope)
-            return rows[0] + _to_stated(of, self._once, *rows), rows[1]
+            exact = np.full(self.draws.number, tail.intercept), np.full(self.draws.number, slope)
+            return _to_stated(of, self._once, *exact)
         at, along = _pivots(tail.samples, tail.fitted, self.draws)
         slopes = slope / along
         intercepts = tail.intercept - at * slopes + of.surfaces_error * normal(self.draws, "surfaces")
         order = np.argsort(intercepts + slopes * ndtri(self._once))[_ranks(self.draws)]
-        intercepts = intercepts + _to_stated(of, self._once, intercepts, slopes)
+        intercepts, slopes = _to_stated(of, self._once, intercepts, slopes)
         return intercepts[order], slopes[order]
 
     @cached_property
@@ -271,20 +273,24 @@ def _counted(n, stuck, scores):
 
 
 def _to_stated(of, share, intercepts, slopes):
-    """Addition to drawn intercepts (draws,) that makes the median and the 5 % quantile those of a stated bound.
+    """Lines (draws,) with the median and the 5 % quantile of a stated bound. They turn about the end of the fit.
 
     A bound of order statistics, or one that is no larger than that in drier air, is not that of a line. Where nothing
     is stated for a fraction, no line passes what is stated for another one.
     """
     stated = of.stated_for(share) or next(iter(of.stated), None)
     if stated is None or not np.isfinite([stated.estimate, stated.bound]).all():
-        return 0.0
-    drawn = intercepts + slopes * ndtri(stated.share)
+        return intercepts, slopes
+    score, end = ndtri(stated.share), ndtri(of.tail.fitted / of.tail.samples)
+    drawn = intercepts + slopes * score
     middle, least = np.median(drawn), _least(drawn)
     if of.stated_for(share) is None:
-        return min(0.0, (stated.bound if middle > least else stated.estimate) - least)
+        return intercepts + min(0.0, (stated.bound if middle > least else stated.estimate) - least), slopes
     wider = (stated.estimate - stated.bound) / (middle - least) if middle > least else 0.0
-    return stated.estimate - drawn + (drawn - middle) * wider
+    moved = stated.estimate + (drawn - middle) * wider
+    if score < end - _APART:
+        slopes = np.maximum((intercepts + slopes * end - moved) / (end - score), _ALIKE)
+    return moved - slopes * score, slopes
 
 
 def _least(drawn):
