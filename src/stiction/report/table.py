@@ -91,11 +91,11 @@ def save(table: Table, paths: Mapping[str, str], title: str) -> None:
     save_text(table.page(title), paths["html"])
 
 
-def table_stage(file: str, shows: str, inputs: Callable, name: str = "", **declared: Any) -> Stage:
-    """Stage for a `Table` in files of a name. ``shows`` ends its title in the report."""
+def table_stage(file: str, shows: str, inputs: Callable, name: str = "", title: str = "", **declared: Any) -> Stage:
+    """Stage for a `Table` in files of a name. ``shows`` ends its title in the report, which begins with their name."""
     files = {key: f"tables/{file}.{end}" for key, end in (("csv", "csv"), ("markdown", "md"), ("html", "html"))}
-    shown = Shown(file="html", title=title_of(file, shows), category="Tables")
-    name, message = name or stage_name("table", file), f"{title_of(file, shows)}."
+    shown = Shown(file="html", title=title or title_of(file, shows), category="Tables")
+    name, message = name or stage_name("table", file), f"{shown.title}."
     return Stage(
         name=name,
         files=files,

@@ -274,6 +274,7 @@ STAGES = (
     table_stage(
         "safe_lengths",
         "lengths of releasing beams",
+        title="Simulated limits of beams",
         inputs=lambda plan, at: (
             {
                 "lengths": by_case("devices/safe_lengths", plan.devices.cases),
