@@ -243,8 +243,7 @@ def stretched_bridge(gap: float, thickness: float) -> Limit | None:
     ratio = gap / thickness
     if ratio < STRETCH:
         return None
-    is_known = ratio <= 1
-    return Limit("stretched_bridge", Side.SAFE, is_known, STRETCHED if is_known else math.nan, {"ratio": ratio})
+    return Limit("stretched_bridge", Side.SAFE, False, STRETCHED if ratio <= 1 else math.nan, {"ratio": ratio})
 
 
 def triggered(*limits: Limit | None) -> list[Limit]:
