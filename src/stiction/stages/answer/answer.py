@@ -46,7 +46,8 @@ def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
     found, question = _of_stopper(data) if settings.beam is None else _of_beam(data, settings)
     before = conditions.of_budgets(data["budgets"], settings.budgets)
     unknowns = conditions.of_test_beams(data.get("test_beams")) or before
-    stated = {"touchdowns": settings.touchdowns, "left_out": settings.left_out}
+    left_out = (*settings.left_out, *(["inputs"] if _misses_inputs(unknowns, found) else []))
+    stated = {"touchdowns": settings.touchdowns, "left_out": left_out}
     asked = Question(settings.name, settings.kind, forbidden=_forbidden(data, unknowns), **stated, **question)
     draws = Draws(DRAWS, settings.seed)
     return ladder.answer(asked, found, unknowns, draws, None if unknowns is before else before)
@@ -83,6 +84,12 @@ def _of_stopper(data):
         found += conditions.of_forces(biased.pull_off, share, biased.safe_force, errors, Cause.VOLTAGE)
     size = float(stopper.restoring_force)
     return found, {"share": share or float(stopper.share.max()), "unit": "N", "size": size}
+
+
+def _misses_inputs(unknowns, found):
+    """Whether too few devices stick in an end state to show in any air what its inputs change."""
+    at = {(one.humidity, one.shape) for one in found} & set(getattr(unknowns, "budgets", ()))
+    return any(unknowns.of(one) is None for one in at)
 
 
 def _forbidden(data, unknowns):
