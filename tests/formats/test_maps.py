@@ -7,7 +7,7 @@ from test_formats import GIVEN, HEIGHTS, SIZE, same, sxm
 
 from stiction.errors import ScanError
 from stiction.formats.axes import without_axes
-from stiction.formats.no_data import require_no_mark, without_marks
+from stiction.formats.no_data import MARKS, require_no_mark, without_marks
 from stiction.scans.reading import UNITS, Source, read
 from stiction.streams import stream
 
@@ -127,6 +127,17 @@ def test_a_mark_far_from_the_heights_is_no_height_in_any_format_of_bare_numbers(
         found = read(tmp_path / name, GIVEN)
         assert np.argwhere(~found.scan.defined).tolist() == [[3, 4], [3, 5], [3, 6]]
         assert any("3 points have" in note and "the mark of no data" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("kind", ["<f4", "<f8"])
+def test_every_mark_is_known_in_numbers_of_every_size_and_none_that_differs_from_it(kind):
+    rng = stream(1, "marks")
+    for mark in MARKS:
+        z = rng.standard_normal((64, 64)).astype(kind)
+        z[3, 4] = mark
+        assert np.argwhere(np.isnan(without_marks(z.astype(float))[0])).tolist() == [[3, 4]], mark
+        z[3, 4] = mark * (1 + 1e-6)
+        assert np.isfinite(without_marks(z.astype(float))[0]).all(), "control"
 
 
 def test_heights_that_only_look_like_a_mark_stay():

@@ -6,6 +6,8 @@ import numpy as np
 MARKS = [sign * number for number in (9999, 99999, 999999, 32767, 2147483647) for sign in (-1, 1)]
 MARKS += [-32768, 65535, -2147483648, -9999.99, 9999.99, -999.25, -999.99]
 _IMPOSSIBLE = 1e20
+#: Relative rounding of numbers of 32 bits, as which many programs save -999.99.
+_ROUNDING = 1e-7
 #: ASSUME: from how many equal values, more than of any other one, a mark among the heights is doubtful.
 _OFTEN = 3
 
@@ -34,7 +36,7 @@ def without_marks(heights: np.ndarray) -> tuple[np.ndarray, str]:
     ([[7, 8], [7, 9]], '2 points have -9999, the mark of no data, and count as undefined')
     """
     values, counts = np.unique(heights[np.isfinite(heights)], return_counts=True)
-    known = (np.abs(values) > _IMPOSSIBLE) | np.isclose(values[:, None], MARKS, rtol=1e-9, atol=0).any(axis=1)
+    known = (np.abs(values) > _IMPOSSIBLE) | np.isclose(values[:, None], MARKS, rtol=_ROUNDING, atol=0).any(axis=1)
     if not known.any() or known.all():
         return heights, ""
     rest, most = values[~known], int(counts[~known].max())
