@@ -1,22 +1,18 @@
 """Archives that a container is not: drawn damage, bombs and slow servers end in one sentence and leave no file."""
 
-import contextlib
 import io
-import json
 import os
 import random
 import shutil
-import threading
 import time
 import warnings
-from contextlib import contextmanager
-from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from zipfile import ZIP_DEFLATED, ZipFile
 
 import numpy as np
 import pytest
 import yaml
+from server import OK, page, server
 
 from stiction.command import container, main, published
 from stiction.command.last_lines import FAULT, Status
@@ -192,47 +188,17 @@ def test_a_map_that_reads_other_files_is_refused(tmp_path, monkeypatch, capsys, 
     assert "holds a.nc, which reads files outside of it" in outcome(tmp_path / "new", capsys)[1]
 
 
-@contextmanager
-def server(send):
-    """Server on this machine whose answers a function sends, and the address of a page."""
-
-    class Answer(BaseHTTPRequestHandler):
-        def do_GET(self):  # noqa: N802
-            with contextlib.suppress(OSError):
-                send(self)
-
-        def log_message(self, *_):
-            pass
-
-    serving = ThreadingHTTPServer(("127.0.0.1", 0), Answer)
-    threading.Thread(target=serving.serve_forever, daemon=True).start()
-    try:
-        yield f"http://127.0.0.1:{serving.server_port}/go/abc"
-    finally:
-        serving.shutdown()
-        serving.server_close()
-
-
-def page(request):
-    """Page of a publication; true if this was asked for."""
-    if request.path != "/go/abc":
-        return False
-    address = f"http://127.0.0.1:{request.server.server_port}/file.zip"
-    request.wfile.write(b"HTTP/1.0 200 OK\r\n\r\n" + json.dumps({"download_url": address}).encode())
-    return True
-
-
 def endless(request):
     """Send a container without end."""
     if not page(request):
-        request.wfile.write(b"HTTP/1.0 200 OK\r\n\r\n")
+        request.wfile.write(OK)
         while True:
             request.wfile.write(bytes(2**16))
 
 
 def endless_page(request):
     """Send a page without end."""
-    request.wfile.write(b"HTTP/1.0 200 OK\r\n\r\n[")
+    request.wfile.write(OK + b"[")
     while True:
         request.wfile.write(b"1," * 2**15)
 
@@ -240,7 +206,7 @@ def endless_page(request):
 def slow(request):
     """Send a container byte by byte."""
     if not page(request):
-        request.wfile.write(b"HTTP/1.0 200 OK\r\n\r\n")
+        request.wfile.write(OK)
         slowly(request)
 
 

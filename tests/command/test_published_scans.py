@@ -1,16 +1,13 @@
 """Containers written by SurfaceTopography, unpacked into scans: every map, its undefined points, no profile."""
 
-import json
-import threading
 import warnings
-from contextlib import contextmanager
-from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 from zipfile import ZipFile
 
 import numpy as np
 import pytest
 import yaml
+from server import OK, page, server
 
 from stiction.command import main, published
 from stiction.command.last_lines import Status
@@ -109,34 +106,10 @@ def test_the_study_names_the_scans_and_can_be_checked(tmp_path, two, capsys):
     assert config["surfaces"]["Surface_7_nm"]["scans"]["files"] == [str(tmp_path / "new" / "Surface_7_nm_1.nc")]
 
 
-@contextmanager
-def served(path):
-    """Server of a page of a published container: its metadata, and the container itself."""
-    content = path.read_bytes()
-
-    class Page(BaseHTTPRequestHandler):
-        def do_GET(self):  # noqa: N802
-            address = f"http://127.0.0.1:{self.server.server_port}/file.zip"
-            said = content if self.path == "/file.zip" else json.dumps({"download_url": address}).encode()
-            self.send_response(200)
-            self.end_headers()
-            self.wfile.write(said)
-
-        def log_message(self, *_):
-            pass
-
-    server = HTTPServer(("127.0.0.1", 0), Page)
-    threading.Thread(target=server.serve_forever, daemon=True).start()
-    try:
-        yield f"http://127.0.0.1:{server.server_port}/go/abc"
-    finally:
-        server.shutdown()
-        server.server_close()
-
-
 def test_a_published_container_is_fetched_by_its_address(tmp_path, two, monkeypatch):
     monkeypatch.setenv("NO_PROXY", "127.0.0.1")
-    with served(tmp_path / "two.zip") as address:
+    content = (tmp_path / "two.zip").read_bytes()
+    with server(lambda request: page(request) or request.wfile.write(OK + content)) as address:
         published.written(address, tmp_path / "fetched")
     published.written(two, tmp_path / "read")
     fetched, stored = (maps_in(tmp_path / name) for name in ("fetched", "read"))
