@@ -10,7 +10,7 @@ from scipy.special import ndtri
 from scipy.stats import norm, t
 
 from stiction.answer.data import Cause
-from stiction.answer.unknowns import Draws, Exact, Members, OfBudgets, OfTestBeams, Slopes, further, joint
+from stiction.answer.unknowns import Draws, Exact, Members, OfBudgets, OfTestBeams, Slopes, joint
 
 AT, MANY = (0.5, ARC), Draws(100_000, 3)
 NONE = frozenset()
@@ -88,7 +88,7 @@ def test_a_slope_that_is_not_known_is_that_of_the_most_uncertain_air():
 
 def test_further_members_of_a_kind_follow_student_and_covary_as_the_known_ones():
     shifts = np.array([[0.1, 0.5, -0.2, 0.0], [0.3, 0.2, -0.4, 0.1]])
-    drawn = np.array([further(row, MANY, "B2") for row in shifts])
+    drawn = np.array([Members("B2", row).further(MANY) for row in shifts])
     spread = shifts.std(axis=1, ddof=1) * np.sqrt(1 + 1 / 4)
     for row, one, scale in zip(drawn, shifts, spread, strict=True):
         for share in (0.05, 0.3, 0.9):

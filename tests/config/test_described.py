@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from stiction.config.files import load
 from stiction.config.merging import merged
-from stiction.config.surfaces import described, knowledge
+from stiction.config.surfaces import described, knowledge, members
 from stiction.config.units import in_si
 from stiction.plan.devices import DevicePlan
 from stiction.report.limits.words import texts
@@ -66,7 +66,7 @@ def test_a_surface_like_another_one_is_that_surface_with_another_rms():
 
 def test_what_a_surface_states_beside_the_typical_one_is_its_own():
     found = normal(LIKE | {"hurst": 0.8, "skewness": -0.2, "kurtosis": 3.05})
-    assert (found["skewness"], found["kurtosis"], found["unknown"]) == (-0.2, 3.05, ["corner"])
+    assert (found["skewness"], found["kurtosis"], found["unknown"]) == (-0.2, 3.05, ["corner", "cutoff"])
     assert_allclose(self_affine.hurst_of(in_si(CutoffSelfAffine, found["published_psd"]).slope), 0.8, rtol=1e-6)
 
 
@@ -80,7 +80,7 @@ def test_the_normal_form_is_valid_and_its_own_normal_form():
 @pytest.mark.parametrize(
     ("entry", "unknown"),
     [
-        (LIKE, ["skewness", "kurtosis", "corner", "hurst"]),
+        (LIKE, ["skewness", "kurtosis", "corner", "hurst", "cutoff"]),
         (STATED, ["skewness", "kurtosis"]),
         (STATED | {"skewness": 0, "kurtosis": 3}, None),
         (STATED | {"skewness": 0, "kurtosis": 3, "unknown": ["rms"]}, ["rms"]),
@@ -91,8 +91,8 @@ def test_what_a_surface_leaves_open_is_unknown(entry, unknown):
 
 
 def known(entry):
-    """What is known of the surface of a device, and its uncertain quantities."""
-    plan = DevicePlan(load(of(entry)))
+    """What is known of the surface of a device with test beams, and its uncertain quantities."""
+    plan = DevicePlan(merged(load(of(entry)), {"devices": {"C1": {"test_beams": ["T"]}}}))
     return plan.surface_errors("C1")["Mine"], [quantity for _, quantity in plan.quantities("C1")]
 
 
@@ -121,12 +121,12 @@ def test_a_device_on_such_a_surface_has_a_budget_and_one_on_surfaces_of_the_pape
 
 
 def test_readers_are_told_what_is_assumed_and_how_uncertain_it_is():
-    (said,) = texts(knowledge.limits("Mine", normal(STATED), LIBRARY))
-    assert said.startswith("surface Mine: not measured but assumed, with the scatter over 4 typical surfaces (B1, B2")
+    (said,) = texts(members.limits("Mine", normal(STATED), LIBRARY))
+    assert said.startswith("surface Mine: not measured but assumed, any of 4 typical surfaces (B1, B2")
     assert said.endswith("skewness -0.738 ± 0.32; kurtosis 4.17 ± 0.87")
-    assert knowledge.limits("B2", LIBRARY["B2"], LIBRARY) == []
+    assert members.limits("B2", LIBRARY["B2"], LIBRARY) == []
     both = {"skewness": 0.1, "kurtosis": 0.2}
-    assert knowledge.limits("Mine", normal(STATED | {"uncertainty": both}), LIBRARY) == []
+    assert members.limits("Mine", normal(STATED | {"uncertainty": both}), LIBRARY) == []
 
 
 @pytest.mark.parametrize(

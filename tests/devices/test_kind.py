@@ -94,6 +94,7 @@ def test_surfaces_of_a_kind_are_one_input_for_effects_and_advice():
     first, second = both.kinds
     assert_allclose([both.effect(first), both.effect(second)], [kind.scale, other.scale])
     assert_allclose(both.remaining(first), other.scale)
+    assert both.remaining([*first, *second]) == 0
     assert_allclose(both.uncorrelated.total, both.total)  # control: independent weights would not
     assert Budget(both.names, both.slopes, both.covariance).uncorrelated.total > 1.2 * both.total
 

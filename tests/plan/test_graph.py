@@ -53,6 +53,8 @@ OF_DRY_AIR = {"roughness_dry_contact", "roughness_dry_tip_contact", "full_contac
 OF_DRY_AIR |= {"tips_in_full_contact_dry"}
 #: Beams of a few sizes for many devices; `tests/stages/devices/test_cracks.py` runs them.
 OF_MANY = {"sizes"}
+#: Contacts on members of assumed surfaces; `tests/stages/devices/test_members_of_budgets.py` runs them.
+OF_MEMBERS = {"device_member_contact", "tip_member_contact"}
 
 
 def listed(names):
@@ -103,7 +105,7 @@ JOBS = reached()
 
 
 def test_every_stage_has_a_job():
-    assert {job.stage.name for job in JOBS.values()} | OF_SCANS | OF_DRY_AIR | OF_MANY >= {
+    assert {job.stage.name for job in JOBS.values()} | OF_SCANS | OF_DRY_AIR | OF_MANY | OF_MEMBERS >= {
         name for name, (stage, _) in stages().items() if stage.save is None
     } - {"slopes"}
 

@@ -19,6 +19,7 @@ import numpy as np
 from scipy.special import eval_hermitenorm
 
 from stiction.models import FAR_QUANTITIES, MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
+from stiction.surface import self_affine
 from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.feasible import largest_kurtosis, least_kurtosis
 from stiction.surface.spectrum import CutoffSelfAffine, Spectrum
@@ -141,6 +142,24 @@ def moved(surface: Description, errors: Mapping[str, float]) -> Description:
         corner = min(shape.corner * np.exp(errors.get("corner", 0.0)), shape.cutoff * np.exp(-STEPS["corner"]))
         changed = replace(changed, spectrum=_bent(shape, float(corner), errors.get("slope", 0.0)))
     return changed
+
+
+def like(surface: Description, member: Mapping[str, float]) -> Description:
+    """Surface with the quantities of another one among rms [m], skewness, kurtosis, corner, slope and cut-off.
+
+    Wave numbers are in rad m⁻¹; a changed spectrum is of the form of Eq. (7). With another cut-off, the waves have
+    other random numbers.
+
+    ASSUME: a corner beyond the cut-off comes with the nearest one below it.
+    """
+    changed = replace(surface, **{name: member[name] for name in MOMENT_QUANTITIES if name in member})
+    if member.keys() <= set(MOMENT_QUANTITIES):
+        return changed
+    slope, corner, cutoff = (
+        member.get(name, getattr(surface.spectrum, name)) for name in ("slope", "corner", "cutoff")
+    )
+    corner = corner if corner < cutoff else float(cutoff * np.exp(-STEPS["corner"]))
+    return replace(changed, spectrum=self_affine.spectrum(surface.rms, slope, corner, cutoff))
 
 
 def _around(value, step, largest=np.inf, least=-np.inf):

@@ -10,6 +10,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from stiction.devices.budget import Budget
 from stiction.streams import stream
 
 
@@ -47,6 +48,28 @@ class Members:
 
     surface: str
     shifts: np.ndarray  #: (m,)
+    errors: np.ndarray | float = 0.0  #: standard errors of the shifts (m,)
+
+    def further(self, draws: Draws, shape: str = "") -> np.ndarray:
+        r"""Draw shifts on further surfaces of the kind of which m are known (number,).
+
+        With m normal members the shift of another one is :math:`\bar s + s \sqrt{1 + 1/m}\, t_{m-1}`. The same member
+        numbers serve all airs and end states, so that their covariance is that of the members. Errors of the shifts are
+        those of an end state, and left out without one.
+
+        Examples
+        --------
+        >>> float(np.ptp(Members("B2", np.array([0.25, 0.25, 0.25, 0.25])).further(Draws(5, 0))))
+        0.0
+        """
+        m = len(self.shifts)
+        mixed, scale = _members(m, draws, self.surface)
+        shifts = self.shifts[:, None] + np.zeros((m, draws.number))
+        if shape and np.any(self.errors):
+            noise = [normal(draws, "member", self.surface, str(k), shape) for k in range(m)]
+            shifts += np.broadcast_to(self.errors, m)[:, None] * noise
+        mean = shifts.mean(axis=0)
+        return mean + np.sqrt(1 + 1 / m) * scale * ((shifts - mean) * mixed).sum(axis=0)
 
 
 @dataclass(frozen=True)
@@ -67,9 +90,14 @@ class Slopes:
         return float(np.sqrt(self.slopes @ self.covariance @ self.slopes))
 
     @property
+    def margin(self) -> float:
+        """Half of a margin for inputs with slopes, with their curvature, as of `Budget.unsafe_total` [-]."""
+        return Budget(self.names, self.slopes, self.covariance).unsafe_total(-self.bends)
+
+    @property
     def is_known(self) -> bool:
         """Whether enough devices stick to show what every input changes."""
-        return bool(np.isfinite(self.slopes).all())
+        return all(np.isfinite(values).all() for values in (self.slopes, *(one.shifts for one in self.members)))
 
 
 #: Group of the inputs that a scan of a surface determines together.
@@ -115,7 +143,7 @@ class OfBudgets:
                 shift += slope * errors[name] + min(budget.bends[k], 0.0) * errors[name] ** 2
         for members in budget.members:
             if _OF_SURFACE.format(members.surface) not in exact:
-                shift += further(members.shifts, draws, members.surface)
+                shift += members.further(draws, at[1] if self.own_errors else "")
         return shift
 
     def _errors(self, draws):
@@ -139,22 +167,6 @@ def joint(budgets: Sequence[Slopes]) -> tuple[list[str], np.ndarray]:
         places = [names.index(name) for name in budget.names]
         covariance[np.ix_(places, places)] = budget.covariance
     return names, covariance
-
-
-def further(shifts: np.ndarray, draws: Draws, surface: str) -> np.ndarray:
-    r"""Draw shifts on further surfaces of the kind of which m are known (number,).
-
-    With m normal members the shift of another one is :math:`\bar s + s \sqrt{1 + 1/m}\, t_{m-1}`. The same member
-    numbers serve all airs and end states, so that their covariance is that of the members.
-
-    Examples
-    --------
-    >>> float(np.ptp(further(np.array([0.2, 0.2, 0.2]), Draws(5, 0), "B2")))
-    0.0
-    """
-    m = len(shifts)
-    mixed, scale = _members(m, draws, surface)
-    return np.mean(shifts) + np.sqrt(1 + 1 / m) * scale * ((shifts - np.mean(shifts)) @ mixed)
 
 
 @lru_cache(maxsize=64)

@@ -20,7 +20,15 @@ _OF_PLAN = re.compile(r"\AError:\n  (\w+): (.*)\nWildcards:\n", re.DOTALL)
 _BUDGETS = {
     *("budget", "tip_budget", "test_beam_budget", "test_beam_tip_budget"),
     *("device_slope_contact", "tip_slope_contact", "device_choice_summits", "device_choice_contact"),
-    *("tip_choice_contact", "solid_contact", "tip_solid_contact", "tip_edge_contact", "slope_contact"),
+    *(
+        "device_member_contact",
+        "tip_member_contact",
+        "tip_choice_contact",
+        "solid_contact",
+        "tip_solid_contact",
+        "tip_edge_contact",
+        "slope_contact",
+    ),
 }
 
 

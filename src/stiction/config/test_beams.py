@@ -91,13 +91,13 @@ def counts_as_devices(config: Mapping) -> dict[str, dict]:
 
 
 def _cantilever(config, name, measured_at):
-    """Section of an array at some of its humidities."""
+    """Section of an array at some of its humidities, with itself as its test beams."""
     array = config["test_beams"][name]
     shared = {key: value for user in users(config, name).values() for key, value in shared_uncertainty(user).items()}
     if not any(measured_at):  # dry air has no humidity that could be uncertain
         shared = {key: value for key, value in shared.items() if key != "humidity"}
     sizes = {key: array[key] for key in _SIZES if key in array}
-    stated = {"humidities": measured_at, "uncertainty": shared | array.get("uncertainty", {})}
+    stated = {"humidities": measured_at, "uncertainty": shared | array.get("uncertainty", {}), "test_beams": [name]}
     return {"kind": "cantilever"} | sizes | stated
 
 

@@ -28,7 +28,7 @@ SUBTRACTED = 2.0
 #: Largest uncertainty of the logarithm of a length that allows a length to build. ASSUME: above it, where twice as much
 #: takes two thirds of the length, a budget that is linear does not say how much to subtract.
 LARGEST = 0.5
-#: Relative error of a slope below which all devices have the same slope, but for rounding.
+#: Relative error of a slope below which all devices have the same slope, but for rounding, and share of a variance.
 _ROUNDING = 1e-9
 
 
@@ -167,7 +167,8 @@ class Budget:
         of = self._places(group)
         shared = self.covariance[of] @ self.slopes
         known = shared @ np.linalg.pinv(self.covariance[np.ix_(of, of)], hermitian=True) @ shared
-        return float(np.sqrt(max(self.total**2 - known, 0.0)))
+        left = self.total**2 - known
+        return 0.0 if left < _ROUNDING * self.total**2 else float(np.sqrt(left))
 
     def _places(self, group):
         """Positions of inputs."""

@@ -16,7 +16,8 @@ from stiction.config.kinds import ROUGHNESSES, Kind, kind_of
 from stiction.config.materials import Materials
 from stiction.config.reading import is_stated, paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
-from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, uncertain
+from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, stated
+from stiction.config.surfaces.members import is_itself, like, members
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.materials import OF_CONTACT
 from stiction.contact.meniscus import flooded_energy, meniscus_height
@@ -252,7 +253,9 @@ class DevicePlan:
         area = area._replace(pair=PairInAir(area.pair).pair)
         users = [name for name in self.stoppers if self.ground(name) == area]
         slopes = sorted({slope for name in users for slope in self.slopes(name) if slope})
-        reach = max(map(self._reach, users)) + 3 * self._rms_of_both(area.pair) + min(slopes[-1] * area.length, FAR)
+        reach = (
+            max(map(self._reach, users)) + 3 * self._roughest_of_both(area.pair) + min(slopes[-1] * area.length, FAR)
+        )
         return {"slopes": slopes, "reach_nm": reach}
 
     # Tips of cantilevers
@@ -364,12 +367,18 @@ class DevicePlan:
         water = self.config["water"]
         film = from_si(float(meniscus_height(wettest, water["temperature_K"])), "nm") if wettest else 0.0
         adsorbed = water.get("adsorbed_nm", 0) if wettest else 0
-        least = film + adsorbed + 3 * self._rms_of_both(section["pair"])
+        least = film + adsorbed + 3 * self._roughest_of_both(section["pair"])
         return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
 
     def _rms_of_both(self, pair):
         """Standard deviation of the sum of the heights of both surfaces of a pair [nm]."""
         return math.hypot(*(self.rms(self.config["pairs"][pair][side]) for side in SIDES))
+
+    def _roughest_of_both(self, pair):
+        """As `_rms_of_both`, of the roughest members [nm]."""
+        names = [self.config["pairs"][pair][side] for side in SIDES]
+        others = [[member.get("rms", 0.0) for member in self.members_of(name).values()] for name in names]
+        return math.hypot(*(max(self.rms(name), *rms, 0.0) for name, rms in zip(names, others, strict=True)))
 
     def rms(self, surface: str) -> float:
         """Standard deviation of the heights of a surface, preliminary if it is described by scans [nm]."""
@@ -416,8 +425,8 @@ class DevicePlan:
     @cached_property
     def with_budget(self) -> list[str]:
         """Devices with an uncertain input: with a stated uncertainty, or on a surface described by scans."""
-        stated = {name: any(device.get("uncertainty", {}).values()) for name, device in self.sections.items()}
-        return [name for name in self.sections if stated[name] or self.quantities(name)]
+        given = {name: any(device.get("uncertainty", {}).values()) for name, device in self.sections.items()}
+        return [name for name in self.sections if given[name] or self.quantities(name) or self.members(name)]
 
     def uncertain_solids(self, device: str) -> list[str]:
         """Uncertain properties of the material of a device, keys of ``OF_CONTACT``."""
@@ -437,34 +446,80 @@ class DevicePlan:
             names += [case + part for part in parts for case in cases]
         return names
 
+    def members(self, device: str) -> dict[str, dict[str, dict[str, float]]]:
+        """Members in place of each partly assumed surface of a device, by surface, as of `members`.
+
+        None with test beams.
+
+        ASSUME: test beams correct the quantities of surfaces, about which whole surfaces say too little: devices with
+        test beams, and these, have slopes of assumed quantities, too.
+        """
+        if self.sections[device].get("test_beams"):
+            return {}
+        found = {name: self.members_of(name) for name in self._surfaces(device)}
+        return {name: others for name, others in found.items() if others}
+
+    def members_of(self, surface: str) -> dict[str, dict[str, float]]:
+        """Members in place of a surface, none if all of it is known."""
+        return self._members[surface]
+
+    @cached_property
+    def _members(self):
+        """Members in place of every surface."""
+        library, end = paper()["surfaces"], self.nyquist
+        return {name: members(entry, library, end) for name, entry in self.config["surfaces"].items()}
+
+    def is_itself(self, surface: str, member: str) -> bool:
+        """Whether a member of a surface is the surface as stated."""
+        return is_itself(self.config["surfaces"][surface], self.members_of(surface)[member])
+
+    @property
+    def nyquist(self) -> float:
+        """Largest wave number of the grid [rad/µm]."""
+        return math.pi * NM_PER_UM / self.config["sampling"]["spacing_nm"]
+
     def quantities(self, device: str) -> list[tuple[str, str]]:
         """Surfaces of a device and their uncertain quantities: from scans, or stated to be uncertain.
 
-        The heights of surfaces without scans are, too, if the size of one scan is stated.
+        The heights of surfaces without scans are, too, if the size of one scan is stated. Those that are assumed are,
+        unless there are `members`.
 
         ASSUME: without scans, a spectrum counts as exact unless its uncertainty is stated; the error of one scan's
         spectrum changes a length by 0.2 %.
         """
         of_heights = set(MOMENT_QUANTITIES if self.sections[device].get("uncertainty", {}).get("scan_um") else ())
+        errors = self.surface_errors(device)
         by_surface = {
             name: quantities(entry)
             if is_measured(entry)
-            else [one for one in ALL_QUANTITIES if one in of_heights.union(uncertain(entry))]
+            else [one for one in ALL_QUANTITIES if one in of_heights.union(errors[name].quantities)]
             for name, entry in self._surfaces(device).items()
         }
         return [(name, quantity) for name, of_surface in by_surface.items() for quantity in of_surface]
 
     def surface_errors(self, device: str) -> dict[str, Knowledge]:
-        """Stated errors of each surface of a device without scans."""
-        library = paper()["surfaces"]
+        """Errors of the quantities of each surface of a device without scans: stated ones, and of assumed quantities.
+
+        The latter have none where `members` are in their place.
+        """
+        library, by_members = paper()["surfaces"], self.members(device)
         return {
-            name: knowledge(entry, library) for name, entry in self._surfaces(device).items() if not is_measured(entry)
+            name: stated(entry) if name in by_members else knowledge(entry, library)
+            for name, entry in self._surfaces(device).items()
+            if not is_measured(entry)
         }
 
     def assumed_inputs(self, device: str) -> list[str]:
-        """Inputs of the budget of a device assumed without measurement, such as ``skewness of B2``."""
+        """Inputs of the budget of a device assumed without measurement, such as ``B2 like Sub1``."""
+        by_members = self.members(device)
         return [
-            f"{quantity} of {name}" for name, entry in self._surfaces(device).items() for quantity in assumed(entry)
+            *(like(name, other) for name, others in by_members.items() for other in others),
+            *(
+                f"{word} of {name}"
+                for name, entry in self._surfaces(device).items()
+                if name not in by_members
+                for word in assumed(entry)
+            ),
         ]
 
     def _surfaces(self, device):

@@ -14,7 +14,8 @@ from stiction.config.materials import Materials
 from stiction.config.merging import values
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
-from stiction.config.surfaces.knowledge import knowledge, limits, uncertain
+from stiction.config.surfaces.knowledge import knowledge, uncertain
+from stiction.config.surfaces.members import limits
 from stiction.config.test_beams import as_cantilevers
 from stiction.contact.materials import ELASTIC
 from stiction.models import BEAM_MODELS, FAR_QUANTITIES, MODE_QUANTITIES, SURFACE_MODELS
@@ -169,7 +170,8 @@ class Plan:
     def assumptions(self, *pairs: str) -> dict[str, list[dict[str, Any]]]:
         """Stored limits by assumed properties of the surfaces of some pairs, by pair, without empty ones."""
         library, entries = paper()["surfaces"], self.config["surfaces"]
-        by_surface = {name: limits(name, entries[name], library) for name in self.scans.others}
+        end = self.devices.nyquist
+        by_surface = {name: limits(name, entries[name], library, end) for name in self.scans.others}
         named = {pair: dict.fromkeys(self.sides(pair)) for pair in pairs}
         found = {
             pair: [limit.stored() for name in names for limit in by_surface.get(name, ())]

@@ -44,6 +44,7 @@ WILDCARDS = {
     "number": "[0-9]+",
     "moment": "|".join(MOMENT_QUANTITIES),
     "quantity": "|".join(dict.fromkeys((*MOMENT_QUANTITIES, *MODE_QUANTITIES, *SPECTRUM_QUANTITIES))),
+    "member": "[A-Za-z][A-Za-z0-9]*",
     "side": "|".join(SHIFTS),
     "solid_property": "|".join(OF_CONTACT),
     "choice": "|".join(ALTERNATIVES_OF_SCANS),

@@ -33,7 +33,7 @@ PLAN = Plan(load({"devices": DEVICES, "design": {"beams": 700}, "studies": {"slo
 SIDES = {GROUND: PLAN.devices.ground("C1")._asdict(), TIPS: PLAN.devices.tips("C1")._asdict(), STRIPS: {"pair": "b"}}
 SIDES |= {TILTED: PLAN.devices.ground("S1")._asdict()}
 OTHERS = {"surface": "B2", "quantity": "rms", "each": "rms_less", "choice": "beyond", "side": "less"}
-OTHERS |= {"solid_property": "modulus", "variant": "poisson_ratio_0.28"}
+OTHERS |= {"solid_property": "modulus", "variant": "poisson_ratio_0.28", "member": "Sub1"}
 CELLS = [(change, place) for change, row in TABLE.items() for place in row]
 
 

@@ -62,6 +62,7 @@ _LEAVES_OPEN = {
     "kurtosis": ("kurtosis",),
     "corner": ("corner_rad_per_um", "correlation_length_nm"),
     "hurst": ("hurst",),
+    "cutoff": ("cutoff_rad_per_um",),
 }
 
 

@@ -1,6 +1,7 @@
 """Errors of the quantities of surfaces without scans: as stated, or as typical surfaces scatter.
 
-The library of typical surfaces is given as sections of a configuration with moments and the parameters of Eq. (7).
+The library of typical surfaces is given as sections of a configuration with moments and the parameters of Eq. (7). The
+scatter is for test beams, which correct each quantity; others see whole typical surfaces (`members`).
 """
 
 from collections.abc import Collection, Mapping
@@ -8,12 +9,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from stiction.devices.limits.limit import Limit, Side
 from stiction.models import MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
-from stiction.surface import self_affine
 
 #: Quantities of `stiction.analysis.shifts` by the words of key ``unknown``, and by the keys of ``uncertainty``.
 _QUANTITIES = {"rms": "rms", "skewness": "skewness", "kurtosis": "kurtosis", "corner": "corner", "hurst": "slope"}
+_QUANTITIES |= {"cutoff": "cutoff"}  # which has no slope
 _OF_UNCERTAINTY = {"rms_nm": "rms", "skewness": "skewness", "kurtosis": "kurtosis"}
 _OF_UNCERTAINTY |= {"corner_rad_per_um": "corner", "hurst": "slope"}
 #: Quantities whose errors are independent of those of the others.
@@ -32,7 +32,7 @@ class Knowledge(NamedTuple):
     @property
     def section(self) -> dict[str, list]:
         """Settings of a job, with the same numbers on every machine."""
-        rounded = [list(map(_rounded, row)) for row in self.covariance]
+        rounded = [[float(f"{value:.9g}") for value in row] for row in self.covariance]
         return {"quantities": list(self.quantities), "covariance": rounded}
 
 
@@ -75,6 +75,13 @@ def knowledge(entry: Mapping[str, Any], library: Library) -> Knowledge:
     return Knowledge(names, covariance)
 
 
+def stated(entry: Mapping[str, Any]) -> Knowledge:
+    """Stated errors of the quantities of a surface without those of assumed ones."""
+    deviations = _deviations(entry)
+    names = tuple(name for name in _ALL if deviations.get(name))
+    return Knowledge(names, np.diag([deviations[name] ** 2 for name in names]).reshape(len(names), len(names)))
+
+
 def uncertain(entry: Mapping[str, Any]) -> tuple[str, ...]:
     """Uncertain quantities of the section of a surface: assumed, or with an uncertainty above zero."""
     unknown, deviations = assumed(entry), _deviations(entry)
@@ -113,22 +120,3 @@ def scatter(library: Library) -> np.ndarray:
     ]
     part = np.repeat(np.arange(len(_PARTS)), list(map(len, _PARTS)))
     return np.cov(np.transpose(rows)) * (part[:, None] == part)
-
-
-def limits(name: str, entry: Mapping[str, Any], library: Library) -> list[Limit]:
-    """Limit of a surface in normal form by its unknowns, or none. Their uncertainties are in the budgets."""
-    if not (unknown := assumed(entry)):
-        return []
-    known = knowledge(entry, library)
-    errors = dict(zip(known.quantities, np.sqrt(np.diag(known.covariance)).tolist(), strict=True))
-    values = {"rms": entry["rms_nm"], "skewness": entry["skewness"], "kurtosis": entry["kurtosis"]}
-    if psd := entry.get("published_psd"):
-        values |= {"corner": psd["corner_rad_per_um"], "hurst": self_affine.hurst_of(slope(psd))}
-    listed = [[word, _rounded(values.get(word)), _rounded(errors[quantity])] for quantity, word in unknown.items()]
-    numbers = {"surface": name, "library": list(library), "listed": listed}
-    return [Limit("assumed_surface", Side.EITHER, True, numbers=numbers)]
-
-
-def _rounded(value):
-    """Number with nine digits, the same on every machine, or None."""
-    return None if value is None else float(f"{value:.9g}")

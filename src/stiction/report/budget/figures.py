@@ -35,7 +35,7 @@ from stiction.report.style import (
     styled,
 )
 from stiction.stages.devices import device_warnings
-from stiction.stages.devices.budget import budget_of, budgets_of, groups_of
+from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, slope_errors_of
 
 _COLOUR = "#0072B2"
 #: Heights of a row of a budget, of everything else in its panel, and of the legend [in]; share of a row with bars.
@@ -160,7 +160,7 @@ def _measurements(cases):
     budgets = {humidity: budget_of(dataset) for humidity, dataset in cases.items()}
     groups = {name: inputs for dataset in cases.values() for name, inputs in groups_of(dataset).items()}
     everything = [name for inputs in groups.values() for name in inputs]
-    errors = [dataset.slope_error.values for dataset in cases.values()]
+    errors = list(map(slope_errors_of, cases.values()))
     rows = {
         name: [_both_sides(budget, inputs, error) for budget, error in zip(budgets.values(), errors, strict=True)]
         for name, inputs in (groups | {TOTAL: everything}).items()

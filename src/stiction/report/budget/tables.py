@@ -18,7 +18,7 @@ from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.table import DEVICE, Table, as_text, table_stage, with_list
 from stiction.stages.devices import device_warnings
-from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, response_of
+from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, response_of, slope_errors_of
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import FORCE
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end, shares_stuck
@@ -171,7 +171,8 @@ _WORST = {"worst RH": (worst_humidity, "worst_humidity", "worst_humidity_se", "w
 def budget(budgets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset] | None = None) -> Table:
     """Uncertainty of every device: effect of each measurement, total, scatter, choices of the model.
 
-    The numbers hold every input with its slope; the text is by measurement, with a sentence on what to measure better.
+    The numbers hold every input with its slope, and whole surfaces in place of assumed ones. The text is by
+    measurement, with a sentence on what to measure better.
     The budgets are by device, humidity and, for those of tips, ``tip``; the errors of the model by device.
     """
     frame = pd.DataFrame(
@@ -198,7 +199,7 @@ def budget(budgets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset]
         + (f" {column.caption(errors)}" if errors else ""),
         [*sentences, *omitted],
     )
-    return Table(frame, caption, as_text(frame[frame.part != "input"], _BUDGET))
+    return Table(frame, caption, as_text(frame[~frame.part.isin(["input", "member"])], _BUDGET))
 
 
 def what_to_measure(dataset: xr.Dataset) -> str:
@@ -242,12 +243,9 @@ def counted_as_exact(*datasets: xr.Dataset) -> str:
 
 def _budget_rows(device, humidity, dataset):
     """Numbers of one device at one humidity: inputs, measurements, totals, scatter, choices."""
-    uncertainty, errors = budget_of(dataset), dataset.slope_error.values
+    uncertainty, errors = budget_of(dataset), slope_errors_of(dataset)
     head = {"device": device, "relative_humidity": humidity, "held_by": END_STATES[response_of(dataset)[0]].by}
-    deviations = np.sqrt(np.diag(uncertainty.covariance))
-    for name, slope, error, deviation in zip(uncertainty.names, uncertainty.slopes, errors, deviations, strict=True):
-        numbers = {"slope": slope, "slope_se": error, "standard_uncertainty": deviation}
-        yield head | {"part": "input", "name": name} | numbers | _effect(uncertainty, [name], errors)
+    yield from (head | row for row in _input_rows(uncertainty, errors))
     for name, inputs in groups_of(dataset).items():
         left = {"remaining_percent": 100 * uncertainty.remaining(inputs)}
         yield head | {"part": "measurement", "name": name} | _effect(uncertainty, inputs, errors) | left
@@ -257,6 +255,17 @@ def _budget_rows(device, humidity, dataset):
     for name in dataset.choice.values:
         effect, error = (100 * float(dataset[key].sel(choice=name)) for key in ("effect", "effect_error"))
         yield head | {"part": "choice", "name": str(name), "effect_percent": effect, "effect_se_percent": error}
+
+
+def _input_rows(uncertainty, errors):
+    """Numbers of all inputs, and of whole surfaces, whose slopes are their shifts."""
+    members, deviations = sum(uncertainty.kinds, ()), np.sqrt(np.diag(uncertainty.covariance))
+    for name, slope, error, deviation in zip(uncertainty.names, uncertainty.slopes, errors, deviations, strict=True):
+        row = {"part": "input", "name": name, "slope": slope, "slope_se": error}
+        if name in members:
+            yield row | {"part": "member"}
+        else:
+            yield row | {"standard_uncertainty": deviation} | _effect(uncertainty, [name], errors)
 
 
 def _model_rows(device, humidity, dataset, errors):

@@ -268,30 +268,40 @@ def _flag(surface, flag):
     return f"surface {surface}: {flag}"
 
 
-#: Words of key ``unknown`` of a surface: name, unit, and whether its uncertainty is relative.
+#: Assumed quantities of a surface: name, unit, and whether their scatter is relative.
 _UNKNOWN = {
     "rms": ("rms", " nm", True),
     "skewness": ("skewness", "", False),
     "kurtosis": ("kurtosis", "", False),
     "corner": ("corner of the spectrum", " rad/µm", True),
     "hurst": ("Hurst exponent", "", False),
+    "cutoff": ("cut-off of the spectrum", " rad/µm", True),
 }
 
 
-def _assumption(word, value, error):
-    """Assumed value with its standard uncertainty. The Hurst exponent is half of the slope."""
+def _assumption(word, value, scatter):
+    """Assumed value, if it is known, with its scatter over typical surfaces, if there are any."""
     label, unit, relative = _UNKNOWN[word]
-    scale = 100 * error if relative else error / 2 if word == "hurst" else error
-    number = "" if value is None else f" {value:.3g}{unit}"
-    return f"{label}{number} ± {scale:.2g}{' %' if relative else ''}"
+    text = label + ("" if value is None else f" {value:.3g}{unit}")
+    if scatter is None:
+        return text
+    return f"{text} ± {100 * scatter:.2g} %" if relative else f"{text} ± {scatter:.2g}"
 
 
 def _assumed_surface(surface, library, listed):
-    assumed = [_assumption(*each) for each in listed]
-    return (
-        f"surface {surface}: not measured but assumed, with the scatter over {len(library)} typical surfaces "
-        f"({', '.join(library)}) as standard uncertainty: {'; '.join(assumed)}"
-    )
+    kind = f"any of {len(library)} typical surfaces ({', '.join(library)})"
+    if all(scatter is None for *_, scatter in listed):
+        kind = "without an uncertainty, for want of typical surfaces"
+    said = "; ".join(_assumption(*each) for each in listed)
+    return f"surface {surface}: not measured but assumed, {kind}: {said}"
+
+
+def _unlike_typical(surface, changed):
+    said = [
+        f"{_UNKNOWN[word][0]} {value:.3g}{_UNKNOWN[word][1]} in place of {typical:.3g}{_UNKNOWN[word][1]} of {other}"
+        for word, value, typical, other in changed
+    ]
+    return f"surface {surface}: what is stated allows no more than {'; '.join(said)}"
 
 
 # Test beams
@@ -389,6 +399,7 @@ SENTENCES: dict[str, Callable[..., str]] = {
     "stretched_bridge": _stretched_bridge,
     **dict.fromkeys(SIDES, _flag),
     "assumed_surface": _assumed_surface,
+    "unlike_typical": _unlike_typical,
     "test_beams_contradict": _test_beams_contradict,
     "model_explains_test_beams": _model_explains_test_beams,
     "cracks_beyond_test_beams": _cracks_beyond_test_beams,

@@ -17,7 +17,7 @@ from stiction.config.units import in_si
 from stiction.devices.budget import LARGEST
 from stiction.plan.stage import Stage, select
 from stiction.stages.answer import conditions
-from stiction.stages.devices.budget import budgets_of, largest_margin
+from stiction.stages.devices.budget import budgets_of
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import bounded_share
@@ -97,7 +97,8 @@ def _forbidden(data, unknowns):
     found = []
     if data.get("test_beams") is not None and not is_reliable(data["test_beams"]):
         found.append("test_beams_contradict")
-    if isinstance(unknowns, OfBudgets) and largest_margin(data["budgets"]) > LARGEST:
+    margins = [one.margin for one in unknowns.budgets.values()] if isinstance(unknowns, OfBudgets) else []
+    if max(filter(np.isfinite, margins), default=0.0) > LARGEST:
         found.append(INPUTS)
     return tuple(found)
 

@@ -12,7 +12,7 @@ from stiction.answer.unknowns import Exact, Members, OfBudgets, OfTestBeams, Slo
 from stiction.answer.worlds import Condition, Sampled, Stated
 from stiction.devices.risk import sampled_bound
 from stiction.life import holding
-from stiction.stages.devices.budget import response_of
+from stiction.stages.devices.budget import members_of, response_of
 from stiction.stages.devices.opening import EITHER, FORCE, DesignedBeam
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.life.answers import AT_VOLTAGE, COLLAPSE, VOLTAGE_ENERGY, answers_of
@@ -174,6 +174,8 @@ def _slopes(dataset, sign):
     numbers = sign * dataset.slope.values, dataset.slope_error.values, sign * dataset.bend.values
     members = ()
     if "member" in dataset.dims:
-        by_surface = dataset.member_shift.groupby("member_of")
-        members = tuple(Members(str(name), sign * shifts.values) for name, shifts in by_surface)
+        members = tuple(
+            Members(str(name), sign * part.member_shift.values, part.member_error.values)
+            for name, part in members_of(dataset).items()
+        )
     return Slopes(names, groups, *numbers, dataset.covariance.values, members)

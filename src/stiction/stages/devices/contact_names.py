@@ -9,6 +9,7 @@ from stiction.models import SHIFTS
 from stiction.plan.devices import Patch, patch
 from stiction.plan.stage import At
 from stiction.stages.contact.changes.edges import EDGE
+from stiction.stages.contact.changes.members import MEMBER
 from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS
 from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
@@ -90,7 +91,7 @@ def corrections_of(plan: Any, device: str, *humidities: float) -> dict[str, str]
 
 
 def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:
-    """Contact of the patch of a device, with less and more of every uncertain input, and under other choices."""
+    """Contact of the patch of a device, with less and more of every uncertain input, on members, and under choices."""
     device, patch = case.device, patch_of(plan, case)
     strips = STRIPS if plan.devices.has_strips_of_pair(device) else GROUND
     choices = plan.variants.choices_of_device(case)
@@ -98,12 +99,13 @@ def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:
         "contact": contact_of(plan, case),
         **corrections_of(plan, device, case.humidity),
         **_less_and_more(plan, device, patch, strips, GROUND),
+        "members": _members(plan, device, patch, GROUND),
         "choices": {name: file_of(VARIANT, GROUND, **patch._asdict(), variant=name) for name in choices},
     }
 
 
 def contacts_of_tip_budget(plan: Any, case: Case) -> dict[str, Any]:
-    """Contact of the tips of a cantilever, with less and more of every uncertain input, and under other choices."""
+    """Contact of the tips of a cantilever, with the changes of `contacts_of_budget`, and of the edge."""
     device, tips = case.device, patch_of_tips(plan, case)
     choices, changed = plan.variants.choices_of_solids(tips.pair), _less_and_more(plan, device, tips, TIPS, TIPS)
     if plan.devices.has_uncertain_edge(device):
@@ -113,7 +115,18 @@ def contacts_of_tip_budget(plan: Any, case: Case) -> dict[str, Any]:
     return {
         "contact": file_of(AS_IT_IS, TIPS, **tips._asdict()),
         **changed,
+        "members": _members(plan, device, tips, TIPS),
         "choices": {name: file_of(VARIANT_OF_SOLIDS, TIPS, **tips._asdict(), variant=name) for name in choices},
+    }
+
+
+def _members(plan, device, patch, place):
+    """Contacts of a patch with each other member in place of an assumed surface, by surface and member."""
+    return {
+        (surface, member): file_of(MEMBER, place, **patch._asdict(), surface=surface, member=member)
+        for surface, others in plan.devices.members(device).items()
+        for member in others
+        if not plan.devices.is_itself(surface, member)
     }
 
 

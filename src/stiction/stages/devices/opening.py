@@ -7,7 +7,7 @@ Random numbers have the address of the pair, not of the device, its dimensions o
 compared with common random numbers.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Protocol
@@ -124,6 +124,18 @@ def ground_of(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
     if device.strip > LONGER * device.opening.longest_strip(device, laws):
         return device.beam, 0
     return device.opening.resolved(device, laws)
+
+
+def around(grounds: Sequence[tuple[Beam, int]]) -> tuple[Beam, int]:
+    """Ground as of `ground_of`, as long as the longest of some, with elements as fine as the finest.
+
+    It has no strips if one of them has none.
+    """
+    part, strips = max(grounds, key=lambda ground: ground[1])
+    if not all(points for _, points in grounds):
+        return part, 0
+    finest = max(other.elements / points for other, points in grounds)
+    return replace(part, elements=round(finest * strips)), strips
 
 
 def least_length(device: DesignedBeam, laws: np.ndarray) -> float:

@@ -70,6 +70,13 @@ class Known:
     covariance: np.ndarray  #: of their errors (k, k)
 
 
+@dataclass(frozen=True)
+class Assumed:
+    """Assumed quantities of a surface with whole typical surfaces in its place."""
+
+    quantities: tuple[str, ...]  #: words of key ``unknown``
+
+
 class Block(NamedTuple):
     """Inputs with a common cause of their errors."""
 
@@ -178,6 +185,7 @@ class Settings:
         default_factory=dict
     )  #: by choices of the model that change attraction across gaps
     known: dict[str, Known] = field(default_factory=dict)  #: what is stated about surfaces without scans, by name
+    assumed: dict[str, Assumed] = field(default_factory=dict)  #: what is assumed of surfaces with members, by name
 
     def water_under(self, choice: str) -> Water:
         """Water, and attraction across gaps, under a choice of the model."""
@@ -226,10 +234,19 @@ def changed(state: State, errors: Mapping[str, float]) -> State:
 
 def countable(sizes: Sequence[str], settings: Settings) -> list[str]:
     """Names of all possible measurements of a device with these sizes."""
-    surfaces = [f"the {part} of {name}" for name in settings.surfaces for part in ("heights", "spectrum")]
+    surfaces = [part for name in settings.surfaces for part in _parts_of_surface(name, settings)]
     bodies = [entry.group for entry in (*OF_CONTACT.values(), *[EDGE_RADIUS] * bool(settings.edge_radius))]
     air = [entry.group or f"the {entry.name}" for entry in OF_AIR if settings.water.film(settings.humidity)[0]]
     return [*surfaces, *(f"the {name.replace('_', ' ')}" for name in sizes), *bodies, *dict.fromkeys(air)]
+
+
+def _parts_of_surface(name, settings):
+    """Names of the parts of a surface that measurements determine. Of a partly assumed one, its rms may be exact."""
+    if name not in settings.assumed:
+        return [f"the {part} of {name}" for part in ("heights", "spectrum")]
+    errors = settings.known[name].quantities if name in settings.known else ()
+    is_exact = "rms" not in (*settings.assumed[name].quantities, *errors) and not settings.uncertainty.scan
+    return [f"the rms of {name}"] * is_exact
 
 
 def surface_block(

@@ -10,6 +10,7 @@ from dataclasses import replace
 from stiction.plan.stage import Running, Stage
 from stiction.stages.contact import contact
 from stiction.stages.contact.changes.edges import EDGE
+from stiction.stages.contact.changes.members import MEMBER
 from stiction.stages.contact.changes.moments import MOMENTS
 from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS, Change, Place
 from stiction.stages.contact.changes.quantities import QUANTITY
@@ -35,6 +36,10 @@ TABLE = {
         STRIPS: ("slope_contact", "studies/slopes/contact"),
         GROUND: ("device_slope_contact", "devices/contact/slopes"),
         TIPS: ("tip_slope_contact", "devices/contact/tips/slopes"),
+    },
+    MEMBER: {
+        GROUND: ("device_member_contact", "devices/contact/members"),
+        TIPS: ("tip_member_contact", "devices/contact/tips/members"),
     },
     MOMENTS: {
         STRIPS: ("sensitivity_contact", "studies/sensitivity/contact"),

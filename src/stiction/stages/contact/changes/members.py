@@ -1,0 +1,89 @@
+"""Contact of a pair with a whole typical surface in place of one that is partly assumed.
+
+The member has what is stated of the surface, and all that is assumed from one typical surface
+(`stiction.config.surfaces.members`). The other surface has the same random numbers, and so has the member if its
+cut-off is that of the surface.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import xarray as xr
+
+from stiction.analysis.shifts import like
+from stiction.stages.contact import contact as stage_contact
+from stiction.stages.contact import pairs
+from stiction.stages.contact.changes.patches import Change
+from stiction.stages.surfaces.descriptions import description, drawn_as
+from stiction.stages.surfaces.rough_surfaces import both
+
+
+@dataclass(frozen=True)
+class Whole:
+    """Assumed quantities of a member."""
+
+    rms: float | None = None  #: [m]
+    skewness: float | None = None  #: [-]
+    kurtosis: float | None = None  #: [-]
+    corner: float | None = None  #: [rad m⁻¹]
+    slope: float | None = None  #: [-]
+    cutoff: float | None = None  #: [rad m⁻¹]
+
+    @property
+    def stated(self) -> dict[str, float]:
+        """Quantities with a value, by name."""
+        return {name: value for name, value in vars(self).items() if value is not None}
+
+
+@dataclass(frozen=True)
+class Settings(pairs.Settings):
+    """Settings of the contact, and the member."""
+
+    whole: Whole = Whole()
+
+
+def compute(
+    surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, surface: str, settings: Settings
+) -> xr.Dataset:
+    """Contact with the member in place of the named surface, on both sides of the pair if both have this surface.
+
+    The two surfaces and the pair are as in stage contact.
+    """
+    own = description(*surfaces[settings.surfaces.index(surface)])
+    member = drawn_as(like(own, settings.whole.stated), settings.sampling.spacing)
+    sides = [member if name == surface else same for name, same in zip(settings.surfaces, surfaces, strict=True)]
+    return stage_contact.compute(sides, pair, "NG", settings)
+
+
+def from_surfaces(data: Mapping[str, Any], pair: str, surface: str, settings: Settings) -> xr.Dataset:
+    """Compute from the datasets of both surfaces by stage."""
+    return compute(both(data), pair, surface, settings)
+
+
+#: Keys of settings by the words of assumed quantities.
+_KEYS = {
+    "rms": "rms_nm",
+    "skewness": "skewness",
+    "kurtosis": "kurtosis",
+    "corner": "corner_rad_per_um",
+    "hurst": "slope",
+    "cutoff": "cutoff_rad_per_um",
+}
+
+
+def _settings(plan, at, place):
+    """Settings of a patch, and the numbers of the member with as many digits as those of surfaces in normal form."""
+    member = plan.devices.members_of(at.surface)[at.member]
+    whole = {_KEYS[word]: float(f"{value:.9g}") for word, value in member.items()}
+    return place.settings(plan, at, place.fewer(plan, at)) | {"whole": whole}
+
+
+#: A whole typical surface in place of one surface.
+MEMBER = Change(
+    words="with {member} in place of what is assumed of {surface}",
+    end="_{surface}_like_{member}",
+    settings=_settings,
+    kind=Settings,
+    compute=from_surfaces,
+)
