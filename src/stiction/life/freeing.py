@@ -52,7 +52,7 @@ def stuck_after(probability: float | np.ndarray, touchdowns: int) -> float | np.
 
     Examples
     --------
-    >>> round(stuck_after(1e-3, 1000), 3)
+    >>> round(float(stuck_after(1e-3, 1000)), 3)
     0.632
     """
     with np.errstate(divide="ignore"):  # all stick

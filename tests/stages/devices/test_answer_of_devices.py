@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from ground import C1, R1, SLOPES, VECTORS, WATER, lognormal_cracks, wanted
-from numpy.testing import assert_equal
+from numpy.testing import assert_allclose, assert_equal
 from plans import job_settings
 
 from stiction.answer.data import Cause, Verdict
@@ -18,10 +18,10 @@ from stiction.contact.voltage import Capacitor, Dielectric
 from stiction.life.freeing import probability_for
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
-from stiction.stages.answer import answer
+from stiction.stages.answer import answer, conditions
 from stiction.stages.contact import curves
 from stiction.stages.devices import safe_lengths, stoppers
-from stiction.stages.devices.opening import ARC, FORCE, S_SHAPE
+from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE
 from stiction.stages.life import table
 from stiction.stages.life.answers import answers_of
 from stiction.stages.life.inputs import Errors, Liquid, OfBeam, OfStopper
@@ -160,6 +160,28 @@ def test_inputs_of_no_known_effect_are_left_out():
     assert "inputs" in answer.compute(data, settings).left_out
     data, settings = data_of_beam(budgets=CANTILEVER)
     assert answer.compute(data, settings).left_out == ()
+
+
+def test_a_voltage_that_nothing_bounds_is_left_out_by_name():
+    for device, left_out in ((R1, ("voltage",)), (C1, ())):
+        data, settings = data_of_beam(device, airs={0.67: 1.0}, voltage=3.0)
+        at_breakdown = answer.compute(data | {"biased": {}}, settings)
+        assert at_breakdown.left_out == left_out
+        assert (Cause.VOLTAGE in at_breakdown.included) is not bool(left_out)
+        assert answer.compute(data, settings).left_out == ()
+
+
+def test_whole_surfaces_of_a_budget_are_members_of_their_kind():
+    shifts, of = [0.0, 0.4, -0.5, 0.3, 0.0, 0.1, 0.05], ["B2"] * 4 + ["Sub1"] * 3
+    members = {"member_shift": ("member", shifts)}
+    budgets = [one.assign(members).assign_coords(member_of=("member", of)) for one in CANTILEVER]
+    found = answer.compute(*data_of_beam(budgets=budgets))
+    assert found.measure == "the surface B2"
+    assert found.build < found.if_measured
+    unknowns = conditions.of_budgets(budgets, (0.67, 0.67))
+    assert unknowns.groups == ("the surface B2", "the surface Sub1", "thickness", "gap")
+    (first, second) = unknowns.budgets[0.67, EITHER].members
+    assert_allclose([*first.shifts, *second.shifts], shifts)
 
 
 def test_inputs_that_are_too_uncertain_forbid_a_number():

@@ -46,8 +46,7 @@ def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
     found, question = _of_stopper(data) if settings.beam is None else _of_beam(data, settings)
     before = conditions.of_budgets(data["budgets"], settings.budgets)
     unknowns = conditions.of_test_beams(data.get("test_beams")) or before
-    left_out = (*settings.left_out, *(["inputs"] if _misses_inputs(unknowns, found) else []))
-    stated = {"touchdowns": settings.touchdowns, "left_out": left_out}
+    stated = {"touchdowns": settings.touchdowns, "left_out": (*settings.left_out, *_left_out(data, found, unknowns))}
     asked = Question(settings.name, settings.kind, forbidden=_forbidden(data, unknowns), **stated, **question)
     draws = Draws(DRAWS, settings.seed)
     return ladder.answer(asked, found, unknowns, draws, None if unknowns is before else before)
@@ -86,10 +85,16 @@ def _of_stopper(data):
     return found, {"share": share or float(stopper.share.max()), "unit": "N", "size": size}
 
 
-def _misses_inputs(unknowns, found):
-    """Whether too few devices stick in an end state to show in any air what its inputs change."""
+def _left_out(data, found, unknowns):
+    """Stated conditions and inputs that no dataset bounds.
+
+    That is a voltage on a bridge at which its dielectric breaks down, and inputs of end states in which too few devices
+    stick to show what they change.
+    """
+    is_biased = any(one.cause is Cause.VOLTAGE for one in found)
     at = {(one.humidity, one.shape) for one in found} & set(getattr(unknowns, "budgets", ()))
-    return any(unknowns.of(one) is None for one in at)
+    left_out = ["voltage"] if float(data["life"].potential) > 0 and not is_biased else []
+    return left_out + (["inputs"] if any(unknowns.of(one) is None for one in at) else [])
 
 
 def _forbidden(data, unknowns):
