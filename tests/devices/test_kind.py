@@ -8,7 +8,7 @@ from scipy.stats import norm, t
 from stiction.devices.budget import Budget, Kind, joined
 
 #: Drawn kinds of m surfaces, each with one further surface as the truth.
-KINDS, M = 4000, 4
+KINDS, M = 2000, 4
 LEVEL = 0.95
 #: Share of normal numbers beyond two standard deviations.
 BEYOND = norm.sf(2)

@@ -26,7 +26,7 @@ LIBRARY = ["B1", "B2", "Sub1", "Sub2"]
 
 
 def study(beam=LIKE, substrate=None, **more):
-    """Plan of a stopper on an etched surface, with few samples."""
+    """Plan of a stopper on an etched surface, with few samples and without variants of the model."""
     surfaces = {"Etched": beam} | ({"Grown": substrate} if substrate else {})
     config = {
         "run": {"pairs": [], "studies": []},
@@ -38,7 +38,9 @@ def study(beam=LIKE, substrate=None, **more):
         "studies": {"slopes": {"samples": SAMPLES}},
         "devices": {"S1": STOPPER},
     }
-    return Plan(load(merged(config, more)))
+    complete = load(merged(config, more))
+    variants = {key: value if isinstance(value, int) else [] for key, value in complete["studies"]["variants"].items()}
+    return Plan(merged(complete, {"studies": {"variants": variants}}))
 
 
 def budget_of(plan, case="S1_rh067"):
@@ -128,7 +130,7 @@ def test_stated_uncertainties_keep_their_slopes_beside_members():
 
 
 class Beams:
-    """Budget of beams of a study without choices of the model."""
+    """Beams of a study and its members."""
 
     def __init__(self, plan, case="Lever_rh067"):
         graph = Graph(plan)
