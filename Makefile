@@ -38,7 +38,6 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
-SNAKEMAKE := $(BIN)/snakemake
 STICTION := $(BIN)/stiction
 # The tests of a file share what they compute; the longest files come first, in the order of tests/conftest.py.
 WORKERS := --numprocesses auto --maxprocesses 4 --dist loadfile --no-loadscope-reorder
@@ -160,7 +159,6 @@ lint: $(VENV)/ready
 	$(BIN)/ruff format --check src tests workflow docs examples
 	$(BIN)/ruff check src tests workflow docs examples
 	$(BIN)/snakefmt --check Snakefile workflow
-	$(SNAKEMAKE) --lint
 
 format: $(VENV)/ready
 	$(BIN)/ruff format src tests workflow docs examples

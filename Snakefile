@@ -23,12 +23,16 @@ atexit.register(gc.freeze)
 configfile: str(BASE / "config.yaml")
 
 
-# Used only with --software-deployment-method apptainer; see workflow/stiction.def.
-container: "stiction.sif"
-
-
 include: "workflow/rules/common.smk"
-include: "workflow/rules/stages.smk"
+# The paper, from surfaces to crack lengths. All other rules read results of these eight.
+include: "workflow/rules/chain.smk"
+include: "workflow/rules/surfaces.smk"
+include: "workflow/rules/contact.smk"
+include: "workflow/rules/laws.smk"
+include: "workflow/rules/beams.smk"
+include: "workflow/rules/devices.smk"
+include: "workflow/rules/process.smk"
+include: "workflow/rules/report.smk"
 
 
 if is_main:
@@ -150,3 +154,6 @@ rule all:
     localrule: True
     message:
         "Tables, figures, checks, and what the configuration asks of devices."
+
+
+snakemake_patches.list_messages(workflow)

@@ -7,8 +7,8 @@
    folders of ``runs`` beside it.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture. The package
    receives the lengths from which runs of devices learn how far the model errs.
-3. The drawings are drawn, the table of keys is written, and the pages of ``docs`` and ``config/README.md`` are
-   generated from ``docs/templates``, with numbers and tables inserted.
+3. The drawings are drawn, the tables of keys and of rules and the files of ``workflow/rules`` are written, and the
+   pages of ``docs`` and ``config/README.md`` are generated from ``docs/templates``, with numbers and tables inserted.
 
 Steps 2 and 3 depend on ``docs`` alone: ``tests/test_docs.py`` repeats them and compares.
 """
@@ -44,11 +44,14 @@ from stiction.stages.laws.forces import vectors
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "tests")]
 import keys  # noqa: E402
 import quoted  # noqa: E402
+import rules  # noqa: E402
 from benchmarks import jobs  # noqa: E402
 from draw import drawings  # noqa: E402
 
 DOCS = Path(__file__).parent
 ROOT = DOCS.parent
+#: Parts of pages that are written from the schema, or from the declarations of the stages.
+MADE = {"keys": keys.page, "sections": keys.sections, "chain": rules.chain_table}
 #: Tables whose numbers are quoted; their Markdown files are also shown.
 TABLES = ("table_1", "table_2", "table_3", "fit_quality", "sensitivity", "variants", "resampling")
 #: Pictures that pages show, by their width there [pixels].
@@ -445,8 +448,8 @@ def shrink(picture, smaller, width):
 
 
 def tables():
-    """Path to text of every table that is written from the schema."""
-    return {DOCS / "tables" / "keys_of_the_simulation.md": keys.of_simulation() + "\n"}
+    """Path to text of every file that is written from the schema, or from the declarations of the stages."""
+    return {DOCS / "tables" / "keys_of_the_simulation.md": keys.of_simulation() + "\n"} | rules.written()
 
 
 def pages():
@@ -515,7 +518,7 @@ def quoted_numbers():
 
 def record(numbers):
     """Numbers quoted by the pages, and checksums of the tables and pictures that the pages are made of."""
-    quoted_names = {name for text in templates() for name in re.findall(r"{{ (\w+) }}", text)} - {"keys", "sections"}
+    quoted_names = {name for text in templates() for name in re.findall(r"{{ (\w+) }}", text)} - {*MADE}
     files = sorted(path for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir())
     return {
         "numbers": {name: numbers[name] for name in sorted(quoted_names)},
@@ -532,9 +535,9 @@ def filled(template, numbers):
     """Template with ``{{ name }}`` replaced by a number and ``{{ table: name }}`` by a table with its caption."""
     with_tables = re.sub(r"{{ table: (\w+) }}", lambda match: shown(DOCS / "tables" / f"{match[1]}.md"), template)
     with_keys = with_tables
-    for name, made in (("{{ keys }}", keys.page), ("{{ sections }}", keys.sections)):
-        if name in with_keys:
-            with_keys = with_keys.replace(name, made())
+    for name, made in MADE.items():
+        if f"{{{{ {name} }}}}" in with_keys:
+            with_keys = with_keys.replace(f"{{{{ {name} }}}}", made())
     return re.sub(r"{{ (\w+) }}", lambda match: numbers[match[1]], with_keys)
 
 

@@ -58,6 +58,9 @@ def written():
 WRITTEN = [
     *(DOCS / "pictures" / f"{name}.svg" for name in ("beam", "stopper_and_bridge", "method")),
     DOCS / "tables" / "keys_of_the_simulation.md",
+    *(ROOT / "workflow" / "rules" / f"{name}.smk" for name in ("chain", *update.rules.ROOMS)),
+    DOCS / "tables" / "rules.md",
+    DOCS / "pictures" / "chain.svg",
     DOCS / "results.json",
     prediction.PAPER_LENGTHS,
     *(update.page_of(path) for path in sorted((DOCS / "templates").glob("*.md"))),

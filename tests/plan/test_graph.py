@@ -5,8 +5,8 @@ import shutil
 from inspect import Parameter, signature
 from pathlib import Path
 
+import every_stage
 import pytest
-import yaml
 from snakemake.iocontainers import Namedlist
 
 from stiction.config.files import load
@@ -21,30 +21,7 @@ from stiction.run.disk_cache import DiskCache
 from stiction.run.fingerprint import PACKAGE, SILENT, fingerprint
 
 ROOT = Path(__file__).parents[2]
-#: The paper, and the devices of the examples, which need every stage that no measured surface needs.
-EXAMPLES = [
-    yaml.safe_load((ROOT / "examples" / f"{name}.yaml").read_text()) for name in ("devices", "test_beams", "roughness")
-]
-SECTIONS = [{key: one[key] for key in ("test_beams", "devices") if key in one} for one in EXAMPLES]
-#: Counts beside the crack lengths of an array of the examples.
-COUNTS = [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]
-#: Islands as a variant, which the paper does not run.
-ISLANDS = {"variants": {"asperity": ["island"]}}
-#: Voltage, dimples and tilt, which the devices of the examples do not have.
-BIASED = {"voltage_V": 5, "dielectric": {"thickness_nm": 100, "permittivity": 3.9}}
-DIMPLED = {
-    "length_um": 250,
-    "uncertainty": {"edge_radius_um": 0.03},
-    "dimples": {"number": 2, "at_um": [200], "height_um": 1, "contact_um": [2, 2]},
-}
-#: Process of a device of the examples, which have none of their own but one of drawn scans.
-ETCHED = [{"value": value, "rms_nm": value / 20, "uncertainty": {"rms_nm": 0.1}} for value in (30, 60, 90)]
-ETCH = {"variable": "etch_time_s", "surface": "B2", "settings": ETCHED}
-MORE = {"devices": {"C1": BIASED | DIMPLED, "S1": BIASED | {"tilt_deg": [0, 0.1]}, "Lever": {"process": "etch"}}}
-MORE["devices"]["Bump"] = {"process": "etch", "second_process": "deposition"}
-DEPOSITION = ETCH | {"variable": "deposition_time_min", "surface": "Sub1"}
-MORE |= {"studies": ISLANDS, "process": {"etch": ETCH, "deposition": DEPOSITION}}
-PLAN = Plan(load(*SECTIONS, {"test_beams": {"paperB": {"stuck": COUNTS}}} | MORE))
+PLAN = every_stage.of_paper_and_devices()
 GRAPH, SCHEMA = Graph(PLAN), schema()
 #: Stages of surfaces described by scans; `tests/workflow/test_from_scans.py` runs them.
 OF_SCANS = {"scan", "estimate", "heights_of_scans", "spectrum_of_scans", "choice_contact", "scan_uncertainty"}

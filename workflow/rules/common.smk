@@ -3,7 +3,7 @@
 import atexit
 import json
 import uuid
-from functools import cache
+from functools import cache, partial
 
 from snakemake.logging import logger
 
@@ -197,66 +197,98 @@ def end_of_run():
     index.write(Path("results"), planner.rules, RUN.unlike)
 
 
-# Rules of stages
+# Rules of stages: a declaration (`stiction.plan.stage`) is in the module of its stage, its name is that of the rule
 
 SCRIPT = code(BASE / "workflow" / "scripts" / "stage.py")
+#: Declared stages with files under this configuration, by name.
+DECLARED = {declared["name"]: declared for declared in planner.rules}
 
 
-def inputs_of(rule):
+def inputs_of(stage):
     """Input function of the rule of a stage."""
-    caption = caption_of(rule)
+    declared = DECLARED[stage]
+    caption = caption_of(declared)
 
     def inputs(wildcards):
-        files = planner.inputs(rule, dict(wildcards)) | caption
-        files |= {"before": ancient(planner.before_last)} if rule["last"] else {}
-        written = {file.format(**dict(wildcards)) for file in rule["files"].values()} if unusable() else set()
+        files = planner.inputs(declared, dict(wildcards)) | caption
+        files |= {"before": ancient(planner.before_last)} if declared["last"] else {}
+        written = {file.format(**dict(wildcards)) for file in declared["files"].values()} if unusable() else set()
         return files | {"stale": STALE} if written & unusable().keys() else files
 
     return inputs
 
 
-def caption_of(rule):
+def caption_of(declared):
     """Template of the caption of a figure, for the report and for the text beside the figure."""
-    caption = (rule["shown"] or {}).get("caption")
+    caption = (declared["shown"] or {}).get("caption")
     return {"caption": str(BASE / "workflow" / "report" / f"{caption}.rst")} if caption else {}
 
 
-def outputs_of(rule):
-    """Files of a rule by key."""
-    marked = {key: temp(file) if rule["temporary"] else file for key, file in rule["files"].items()}
-    if shown := rule["shown"]:
+def outputs_of(stage):
+    """Files of a stage by key."""
+    declared = DECLARED[stage]
+    marked = {key: temp(file) if declared["temporary"] else file for key, file in declared["files"].items()}
+    if shown := declared["shown"]:
         labels = {"shows": shown["title"]}
         marked[shown["file"]] = report(
-            marked[shown["file"]], category=shown["category"], labels=labels, **caption_of(rule)
+            marked[shown["file"]], category=shown["category"], labels=labels, **caption_of(declared)
         )
     return marked
-
-
-def of_job(rule, key):
-    """Function of wildcards that gives the structure of the inputs or the settings of a job."""
-    return lambda wildcards: planner.job(rule["name"], wildcards)[key]
 
 
 #: Memory of a job that draws the largest field [MB].
 MEMORY = memory.job_memory(config)
 
 
-def seconds_of(rule):
-    """Function of wildcards that gives the estimated CPU time of a job [s]."""
-    return lambda wildcards: round(planner.job(rule["name"], wildcards)["seconds"])
+def resources_of(stage):
+    """Functions that give the time, the memory and the CPU time to reserve for a job, see `stiction.plan.cost`."""
+    declared, job = DECLARED[stage], partial(planner.job, stage)
+    megabytes = max(MEMORY, round(declared["memory"]))
+    return {
+        "runtime": lambda wildcards, attempt: memory.for_attempt(
+            cost.minutes(job(wildcards)["seconds"], declared["minutes"]), attempt
+        ),
+        "mem_mb": lambda wildcards, attempt: memory.for_attempt(megabytes, attempt),
+        "cpu_s": lambda wildcards: round(job(wildcards)["seconds"]),
+    }
 
 
-def memory_of(rule):
-    """Function of the attempt that gives the memory to reserve for a job [MB]."""
-    megabytes = max(MEMORY, round(rule["memory"]))
-    return lambda wildcards, attempt: memory.for_attempt(megabytes, attempt)
+def params_of(stage):
+    """Structure of the inputs and settings of a job, as functions of its wildcards, and the fingerprint of its code."""
+    declared, job = DECLARED[stage], partial(planner.job, stage)
+    return {
+        "module": declared["module"],
+        "stage": stage,
+        "inputs": lambda wildcards: job(wildcards)["inputs"],
+        "settings": lambda wildcards: job(wildcards)["settings"],
+        "code": planner.code(declared) | SCRIPT,
+    }
 
 
-def minutes_of(rule):
-    """Function of wildcards and the attempt that gives the time to reserve for a job [min]."""
+def define(stage):
+    """Define the rule of a stage if it has files under this configuration. The rules of `chain.smk` are spelled out."""
+    if stage not in DECLARED:
+        return
+    declared = DECLARED[stage]
 
-    def minutes(wildcards, attempt):
-        seconds = planner.job(rule["name"], wildcards)["seconds"]
-        return memory.for_attempt(cost.minutes(seconds, rule["minutes"]), attempt)
-
-    return minutes
+    rule:
+        name:
+            stage
+        input:
+            unpack(inputs_of(stage)),
+        output:
+            **outputs_of(stage),
+        log:
+            declared["log"],
+        wildcard_constraints:
+            **declared["constraints"],
+        priority: declared["priority"]
+        localrule: not declared["cluster"]
+        resources:
+            **resources_of(stage),
+        params:
+            **params_of(stage),
+        message:
+            declared["message"]
+        script:
+            "../scripts/stage.py"

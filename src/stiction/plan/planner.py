@@ -39,7 +39,7 @@ class Planner:
 
     def __init__(self, config: dict, preliminary: Mapping[str, Any], remember: Callable, remember_jobs: Callable):
         self.plan, self._remember, self._remember_jobs = Plan(config, preliminary), remember, remember_jobs
-        self._codes, self._jobs, self._behind_datasets = {}, {}, {}
+        self._codes, self._jobs, self._behind_datasets, self._known = {}, {}, {}, {}
 
     @cached_property
     def _determined_by(self):
@@ -60,7 +60,9 @@ class Planner:
 
     def _kept(self, key, compute):
         """Value kept under a key, or computed now: plain numbers, strings, lists and dicts."""
-        return self._remember_jobs([self._determined_by, key], compute)
+        if key not in self._known:  # Snakemake asks five times for every job
+            self._known[key] = self._remember_jobs([self._determined_by, key], compute)
+        return self._known[key]
 
     @cached_property
     def _graph(self):

@@ -155,6 +155,13 @@ def remember_signatures() -> None:
         sys.modules[f"snakemake.{module}"].get_function_params = get_function_params
 
 
+def list_messages(workflow: Any) -> None:
+    """Let ``--list-rules`` show what each rule does. An unknown version lists names alone."""
+    for rule in getattr(workflow, "rules", ()):
+        if getattr(rule, "docstring", "") is None and isinstance(rule.message, str):
+            rule.docstring = rule.message.replace("{wildcards.", "{")
+
+
 def limit_timers(workflow: Any) -> None:
     """Let the scheduler of a run hold one timer at a time. An unknown scheduler keeps its timers, at some cost.
 

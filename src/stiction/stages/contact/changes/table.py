@@ -123,7 +123,7 @@ OF_PAIR = (
         kind=Settings,
         compute=contact.drawn_chunk,
         label="contact",
-        message="Contact of {model} surfaces of pair {pair}, chunk {chunk} of {number}.",
+        message="Contact of {model} surfaces of pair {pair}, chunk {chunk} of {number} (Sec. III-A).",
         running=Running(minutes=30, priority=1, temporary=True),
     ),
     Stage.writing(
