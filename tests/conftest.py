@@ -58,7 +58,15 @@ def spectra_on_grids():
 
 
 @pytest.fixture
-def through_a_file(tmp_path):
+def any_variable(monkeypatch):
+    """Datasets of made-up stages, whose variables have no row in the table."""
+    from stiction.run import variables
+
+    monkeypatch.setattr(variables, "_row", lambda stage, name: variables.Row("1", "", "", name or stage))
+
+
+@pytest.fixture
+def through_a_file(tmp_path, any_variable):  # noqa: ARG001
     """The dataset that comes back from the file of another."""
     from stiction.run import storage
 

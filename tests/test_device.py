@@ -36,7 +36,7 @@ def device():
 
 def test_strips_that_equal_those_of_the_pair_are_its_strips(device):
     xr.testing.assert_identical(device.contact, stiction.PairStudy.of(CONFIG, "b").contact)
-    assert device.tips.sizes["sample"] == 200
+    assert device.tips.sizes["strip"] == 200
     assert (device.tips.sizes["slope"] > 1) is True
 
 
@@ -81,7 +81,7 @@ def test_a_bridge_has_strips_of_its_own_width_and_no_tips():
         "heights": ["heights/B2", "heights/Sub1"],
         "spectrum": ["spectrum/B2", "spectrum/Sub1"],
     }
-    assert bridge.contact.sizes["sample"] == 40
+    assert bridge.contact.sizes["strip"] == 40
 
 
 def test_a_stopper_has_its_whole_area_and_the_forces_of_its_stage():

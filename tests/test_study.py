@@ -160,7 +160,7 @@ def test_force_curves_and_laws_have_labels_and_the_numbers_of_the_public_functio
     assert curves.sizes["curve"] == 40
     vectors, limit = forces.vectors(study.forces(HUMIDITY))
     lawful = forcelaw.admissible(vectors, limit)
-    assert_array_equal(laws.sample, np.flatnonzero(lawful))
+    assert_array_equal(laws.strip, np.flatnonzero(lawful))
     assert_array_equal(np.column_stack(list(laws.values())), forcelaw.coefficients(vectors[lawful], limit))
     assert [laws[name].units for name in laws] == ["Pa", "m", "m-1", "m-1"]
 

@@ -6,6 +6,7 @@ from stiction.config.cases import case_id as case_id
 from stiction.study import PairStudy as PairStudy
 from stiction.device import Device as Device
 from stiction.process import Process as Process
+from stiction.run.opened import open as open
 from stiction.progress import show_progress as show_progress
 
 # surfaces

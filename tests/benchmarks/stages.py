@@ -81,7 +81,7 @@ def contact_rows():
 def force_rows():
     """Force curves of one case and their parameters; the few samples drawn are repeated."""
     study, samples = PairStudy.of(CONFIG, "b"), 5000
-    contact = study.contact.isel(sample=np.arange(samples) % study.contact.sizes["sample"])
+    contact = study.contact.isel(strip=np.arange(samples) % study.contact.sizes["strip"])
     settings = forces.Settings(in_si(Water, Plan(CONFIG).air.water("b")), 0.67)
     water = film(settings.humidity, settings.water.temperature)
     yield side_by_side(

@@ -111,7 +111,7 @@ from stiction.run.logs import peak_memory
 from stiction.stages.contact import curves
 
 tips, contacts, path = int(sys.argv[1]), int(sys.argv[2]), sys.argv[3]
-rng, draw = np.random.default_rng(1), ("sample", "slope")
+rng, draw = np.random.default_rng(1), ("strip", "slope")
 found = xr.Dataset(
     {
         "solid_pressure": ((*draw, "distance"), rng.random((tips, 12, 488), dtype=np.float32)),
@@ -126,7 +126,7 @@ found = xr.Dataset(
     },
 )
 storage.save(found, path, "contact", {})
-curves.tip_forces(found.isel(sample=[0]), 0.67, Water(300.0))  # compiles, which takes memory of its own
+curves.tip_forces(found.isel(strip=[0]), 0.67, Water(300.0))  # compiles, which takes memory of its own
 del found
 before = peak_memory()
 held = [storage.load(path, "contact") for _ in range(contacts)]

@@ -17,6 +17,8 @@ from stiction.plan.stage import Shown, Stage
 from stiction.run import labels, storage
 from stiction.run.atomic import DataError
 
+pytestmark = pytest.mark.usefixtures("any_variable")
+
 
 def dataset(value):
     return xr.Dataset({"x": ("sample", np.full(3, float(value)))})

@@ -65,7 +65,7 @@ def character(strips, rms=1.7, exponent=1.0):
 
 
 def beams(*imbalance):
-    return xr.Dataset({"imbalance": ("sample", np.array(imbalance))})
+    return xr.Dataset({"imbalance": ("beam", np.array(imbalance))})
 
 
 def test_energy_that_grows_with_humidity_passes_and_the_same_energy_fails():
@@ -186,7 +186,7 @@ def test_strips_of_beams_with_scattered_dimensions_may_be_larger():
     allowed = allowed_imbalance(BEAM, float(samples["b", 0.67, "NG"].limit) * AREA)
 
     def passed(model, factor):
-        found = cracks(90).assign(imbalance=("sample", np.full(cracks(90).sizes["sample"], factor * allowed)))
+        found = cracks(90).assign(imbalance=("beam", np.full(cracks(90).sizes["beam"], factor * allowed)))
         return next(
             checks.beam_checks({("b", 0.67, model): found}, samples, {"b": BEAM}, STRIP, [], scatter=0.025)
         ).passed
@@ -200,7 +200,7 @@ def released(mean, n=400, stuck=1.0):
     """Beams of this mean crack length [µm], 5 % apart, of which a share sticks."""
     lengths = mean * 1e-6 * (1 + 0.05 * stream(3, "beams").standard_normal(n))
     state = np.where(np.arange(n) < stuck * n, 0, 1)
-    return xr.Dataset({"crack_length": ("sample", lengths), "state": ("sample", state)})
+    return xr.Dataset({"crack_length": ("beam", lengths), "state": ("beam", state)})
 
 
 def test_chaos_model_may_change_a_crack_length_by_one_per_cent_plus_errors():
@@ -224,7 +224,7 @@ def cracks(gamma, stuck=50, elements=200, error=0.01):
     energies = 1e-3 * gamma * (1 + error * stream(3, "cracks").standard_normal(50))
     state = np.where(np.arange(50) < stuck, 0, 1)
     return xr.Dataset(
-        {"adhesion_energy": ("sample", energies), "state": ("sample", state), "imbalance": ("sample", np.zeros(50))},
+        {"apparent_energy": ("beam", energies), "state": ("beam", state), "imbalance": ("beam", np.zeros(50))},
         coords={"node": np.linspace(0, BEAM.length, elements + 1)},
     )
 

@@ -324,7 +324,7 @@ def test_shares_are_labels_where_these_are_apart_and_panels_elsewhere(dry, apart
 
 
 def test_the_share_of_nearly_all_beams_is_not_stated_as_all():
-    nearly = released(0.5, 1).isel(sample=np.arange(1000) % 20)
+    nearly = released(0.5, 1).isel(beam=np.arange(1000) % 20)
     nearly.state[0] = 2
     figure = adhesion_energies({"p1": (BEAM, {(0.5, "G"): nearly}, bands())}, published(1), EVERY)
     assert [text.get_text() for text in figure.axes[0].texts] == ["> 99 %"]

@@ -44,8 +44,8 @@ def beams():
     nodes = np.linspace(0, 1.5e-3, 21)
     return xr.Dataset(
         {
-            "state": ("sample", [0, 0, 0, 2]),
-            "crack_length": ("sample", LENGTHS),
+            "state": ("beam", [0, 0, 0, 2]),
+            "crack_length": ("beam", LENGTHS),
             "deflection": (("beam", "node"), 2e-5 * np.minimum(nodes / LENGTHS[:3, None], 1)),
         },
         {"node": nodes},

@@ -360,7 +360,7 @@ def test_figure_5_marks_both_ends_of_the_law_states_its_error_and_follows_it_to_
     _, f_max, d_max, d_limit = stage_forces.vectors(forces)[0][k]
     (marked,) = (line.get_xydata() for line in axes.lines if line.get_marker() == "o")
     np.testing.assert_allclose(marked, [[1e9 * d_limit, 1e-6 * LIMIT], [1e9 * d_max, -1e-6 * f_max]])
-    error = 100 * float(fit.curve_error.sel(sample=k))
+    error = 100 * float(fit.curve_error.sel(strip=k))
     assert axes.get_legend().get_title().get_text() == f"sample {k}, error {error:.2g} %"
     assert curve(axes, "Eq. (12)")[1][-1] == pytest.approx(-1e-8 * f_max, rel=0.01)
 
@@ -453,7 +453,7 @@ def test_experiment_is_converted_by_eq_13_with_unequal_bars(drawn):
 
 def test_beams_show_mean_and_standard_deviation_of_the_s_shapes_alone(drawn, pairs):
     (humidity, mean), ((low, high),) = bars(drawn["15"].axes[0], "G: beams, mean ± std")
-    energies = 1e3 * pairs["b"][1][0.7, "G"].adhesion_energy.values[:3]
+    energies = 1e3 * pairs["b"][1][0.7, "G"].apparent_energy.values[:3]
     assert humidity == 0.7
     assert mean == pytest.approx(energies.mean())
     assert (high - low) / 2 == pytest.approx(energies.std(ddof=1))
@@ -590,9 +590,9 @@ def test_beams_in_dry_air_are_shown_whole_beside_the_axis(pairs, published):
 
 def test_energies_above_that_of_flat_surfaces_are_shown_with_their_deviation(pairs, published):
     beam, beams, axes = pairs["b"]
-    strong = {key: found.assign(adhesion_energy=100 * found.adhesion_energy) for key, found in beams.items()}
+    strong = {key: found.assign(apparent_energy=100 * found.apparent_energy) for key, found in beams.items()}
     panel = adhesion_energies({"b": (beam, strong, axes)}, published, EVERY).axes[0]
-    energies = 1e3 * strong[0.5, "GEO"].adhesion_energy.values
+    energies = 1e3 * strong[0.5, "GEO"].apparent_energy.values
     assert panel.get_ylim()[1] > energies.mean() + energies.std(ddof=1) > 288
 
 

@@ -33,9 +33,9 @@ ENERGIES = np.array([8e-3, 10e-3, 9e-3, 13e-3])
 def beams(*states):
     return xr.Dataset(
         {
-            "state": ("sample", np.array(states)),
-            "crack_length": ("sample", LENGTHS),
-            "adhesion_energy": ("sample", 1.0 / LENGTHS),
+            "state": ("beam", np.array(states)),
+            "crack_length": ("beam", LENGTHS),
+            "apparent_energy": ("beam", 1.0 / LENGTHS),
         }
     )
 
@@ -90,9 +90,9 @@ def test_a_small_share_of_beams_is_not_rounded_to_zero():
     key = ("b", 0.55, "G")
     few = xr.Dataset(
         {
-            "state": ("sample", [0] + 199 * [1]),
-            "crack_length": ("sample", np.full(200, 1e-3)),
-            "adhesion_energy": ("sample", np.full(200, 1e-3)),
+            "state": ("beam", [0] + 199 * [1]),
+            "crack_length": ("beam", np.full(200, 1e-3)),
+            "apparent_energy": ("beam", np.full(200, 1e-3)),
         }
     )
     assert " 0.5/99.5/0 |" in tables_beams.table_3({key: few}, {key: forces()}, PUBLISHED).markdown
@@ -214,7 +214,7 @@ def test_measured_statistics_are_those_of_the_configuration_and_those_estimated_
 
 
 def test_resampling_compares_the_means_of_stuck_beams_with_errors_of_the_beams():
-    longer = beams(0, 0, 0).assign(crack_length=("sample", np.array([630e-6, 650e-6, 670e-6])))
+    longer = beams(0, 0, 0).assign(crack_length=("beam", np.array([630e-6, 650e-6, 670e-6])))
     (found,) = tables_beams.resampling({("b", 0.8): beams(0, 0, 1)}, {("b", 0.8): longer}).frame.itertuples()
     assert_allclose((found.chaos_um, found.chaos_se_um, found.samples_um), (620, 20, 650))
     assert_allclose(found.difference_percent, 100 * (620 / 650 - 1))
@@ -247,7 +247,7 @@ def variant(*states):
     """Study variants of one humidity."""
     return xr.Dataset(
         {
-            "adhesion_energy": (("humidity", "sample"), ENERGIES[None]),
+            "adhesion_energy": (("humidity", "strip"), ENERGIES[None]),
             "crack_length": (("humidity", "beam"), LENGTHS[None]),
             "state": (("humidity", "beam"), np.array([states])),
         },

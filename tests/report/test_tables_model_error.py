@@ -31,7 +31,7 @@ def study(ratios=(0.6, 0.9, 1.0), strips=6):
 
 def beams(length=600e-6):
     lengths, states = np.array([length, length, np.nan]), [0, 0, 1]
-    return xr.Dataset({"crack_length": ("sample", lengths), "state": ("sample", states)})
+    return xr.Dataset({"crack_length": ("beam", lengths), "state": ("beam", states)})
 
 
 ALL = pair_model_error.Settings((0.45, 0.6, 0.7, 0.9))

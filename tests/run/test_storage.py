@@ -13,26 +13,26 @@ from stiction.run import atomic, storage
 
 
 def dataset():
-    return xr.Dataset({"x": ("sample", np.linspace(0, 1, 20_000), {"units": "m"})})
+    return xr.Dataset({"limit": ("strip", np.linspace(0, 1, 20_000))})
 
 
 def test_a_dataset_is_read_as_it_was_written_with_its_settings(tmp_path):
     storage.save(dataset(), tmp_path / "x.nc", "forces", {"seed": 1, "water": {"temperature_K": 300}})
     loaded = storage.load(tmp_path / "x.nc", "forces")
-    np.testing.assert_array_equal(loaded.x, dataset().x)
+    np.testing.assert_array_equal(loaded.limit, dataset().limit)
     assert loaded.attrs["settings"] == '{"seed": 1, "water": {"temperature_K": 300}}'
 
 
 def test_a_part_of_a_dataset_is_read_alone(tmp_path):
     storage.save(dataset(), tmp_path / "x.nc", "forces", {})
-    part = storage.load(tmp_path / "x.nc", "forces", sample=slice(5))
-    np.testing.assert_array_equal(part.x, dataset().x[:5])
+    part = storage.load(tmp_path / "x.nc", "forces", strip=slice(5))
+    np.testing.assert_array_equal(part.limit, dataset().limit[:5])
 
 
 def test_a_file_of_another_stage_without_the_dimension_is_rejected_by_name(tmp_path):
-    storage.save(dataset().rename(sample="node"), tmp_path / "x.nc", "beams", {})
+    storage.save(dataset().rename(strip="node"), tmp_path / "x.nc", "beams", {})
     with pytest.raises(storage.DataError, match=r"x\.nc holds beams of x, not forces of x"):
-        storage.load(tmp_path / "x.nc", "forces", sample=slice(5))
+        storage.load(tmp_path / "x.nc", "forces", strip=slice(5))
 
 
 def test_a_dataset_names_the_settings_of_its_inputs(tmp_path):
@@ -81,7 +81,7 @@ def test_a_foreign_file_is_rejected(tmp_path, stage):
 def test_a_failed_write_leaves_the_old_file_and_no_temporary_file(tmp_path):
     storage.save(dataset(), tmp_path / "x.nc", "forces", {})
     before = (tmp_path / "x.nc").read_bytes()
-    unwritable = xr.Dataset({"x": ("sample", np.array([object()], object))})
+    unwritable = xr.Dataset({"limit": ("strip", np.array([object()], object))})
     with pytest.raises((TypeError, ValueError)):
         storage.save(unwritable, tmp_path / "x.nc", "forces", {})
     assert (tmp_path / "x.nc").read_bytes() == before
@@ -129,8 +129,9 @@ from stiction.run import storage
 
 script, file, *moments = sys.argv[1:]
 fields = np.random.default_rng(1).standard_normal((5, 500_000))
-data = xr.Dataset({f"x{number}": ("sample", values) for number, values in enumerate(fields)})
-storage.save(data[["x0"]], file, "forces", {})
+names = ["limit", "rms", "film", "share", "plateau"]
+data = xr.Dataset({name: ("strip", values) for name, values in zip(names, fields)})
+storage.save(data[["rms"]], file, "forces", {})
 running.run = lambda job: storage.save(data, file, "forces", {})
 for moment in map(float, moments):
     before = set(Path(file).parent.glob(".*"))
@@ -146,7 +147,7 @@ for moment in map(float, moments):
     sent = time.perf_counter()
     _, status = os.waitpid(job, 0)
     print(os.waitstatus_to_exitcode(status), time.perf_counter() - sent)
-storage.save(data[["x1"]], file, "forces", {})
+storage.save(data[["limit"]], file, "forces", {})
 """
 
 
@@ -159,4 +160,4 @@ def test_a_job_that_is_interrupted_while_it_saves_ends_within_a_second_and_leave
     assert [int(status) for status, _ in ends] == [-signal.SIGINT] * len(moments)
     assert max(float(seconds) for _, seconds in ends) < 1
     assert {path.name for path in tmp_path.iterdir()} == {"x.nc", "x.nc.log"}
-    assert list(storage.load(tmp_path / "x.nc", "forces")) == ["x1"]
+    assert list(storage.load(tmp_path / "x.nc", "forces")) == ["limit"]

@@ -63,10 +63,10 @@ def test_sensitivity_is_that_of_the_energies_at_both_values(shifted):
         energies = [curves.energies(contact, h, WATER) for contact in shifted]
         assert_array_equal(found.adhesion_energy[:, k], energies)
     # The slope of the mean as Fig. 13 defines it, but for the square of the step times the slope.
-    less, more = found.adhesion_energy.mean("sample")
+    less, more = found.adhesion_energy.mean("strip")
     assert_allclose(found.slope.sel(statistic="mean"), np.log(more / less) / np.log(1.1 / 0.9), rtol=1e-6)
     # Differences to either side are those of the samples in common with the unchanged contact.
-    energies = found.adhesion_energy[:, :, :3].mean("sample")
+    energies = found.adhesion_energy[:, :, :3].mean("strip")
     here = np.mean([curves.energies(unchanged, h, WATER) for h in found.humidity.values], axis=1)
     assert_allclose(found.difference, [(energies[0] / here - 1) / -0.1, (energies[1] / here - 1) / 0.1], rtol=1e-9)
 
@@ -134,7 +134,7 @@ def test_the_mean_pressure_is_that_of_the_contact_at_the_same_distance_without_a
     found = plasticity.compute(small.surfaces(), "b", settings)
     of_pair = replace(small.settings_of(stage_contact, job_settings(small.PLAN, "contact/b_NG")), van_der_waals="none")
     there = stage_contact.compute(small.surfaces(), "b", "NG", of_pair, range(settings.strips))
-    pressure = float(there.solid_pressure.mean("sample").interp(distance=settings.distance))
+    pressure = float(there.solid_pressure.mean("strip").interp(distance=settings.distance))
     assert float(found.pressure) == pytest.approx(pressure, rel=0.01)
     closer = plasticity.compute(small.surfaces(), "b", replace(settings, distance=0.9 * settings.distance))
     assert float(closer.pressure) > 1.2 * pressure
@@ -160,16 +160,16 @@ def test_fit_compares_every_curve_that_has_a_law_with_its_law():
     settings = small.settings_of(study_fit, job_settings(small.PLAN, f"forces/{small.CASE}_NG"))
     found = study_fit.compute(small.contact_of_pair(), small.forces_of_case(), settings)
     vectors, limit = forces.vectors(small.forces_of_case())
-    assert_array_equal(found.sample, np.flatnonzero(admissible(vectors, limit)))
+    assert_array_equal(found.strip, np.flatnonzero(admissible(vectors, limit)))
     distance, curve, *_ = curves.force_curves(small.contact_of_pair(), small.HUMIDITY, WATER)
-    for sample in found.sample.values[[0, -1]]:
+    for sample in found.strip.values[[0, -1]]:
         used = distance >= vectors[sample, 3]
         law = coefficients(vectors[[sample]], limit)[0]
         force = curve(sample)[used]
         error = np.linalg.norm(pressure(law, distance[used]) - force) / np.linalg.norm(force)
-        assert_allclose(found.curve_error.sel(sample=sample), error, rtol=1e-9)
+        assert_allclose(found.curve_error.sel(strip=sample), error, rtol=1e-9)
     assert np.all(found.energy_error < 1e-9)
-    assert float(found.without_law) == pytest.approx(1 - len(found.sample) / 20)
+    assert float(found.without_law) == pytest.approx(1 - len(found.strip) / 20)
 
 
 def test_fit_leaves_out_samples_without_a_law():
@@ -177,10 +177,10 @@ def test_fit_leaves_out_samples_without_a_law():
     lawless = small.forces_of_case().copy(deep=True)
     lawless.adhesion_energy[:5] = 1e-6
     found = study_fit.compute(small.contact_of_pair(), lawless, settings)
-    assert found.sample.min() >= 5
+    assert found.strip.min() >= 5
     assert float(found.without_law) >= 0.25
     whole = study_fit.compute(small.contact_of_pair(), small.forces_of_case(), settings)
-    assert_array_equal(found.curve_error, whole.curve_error.sel(sample=found.sample))
+    assert_array_equal(found.curve_error, whole.curve_error.sel(strip=found.strip))
 
 
 # Humidity (Fig. 15)
@@ -372,7 +372,7 @@ def test_resampled_beams_are_released_on_laws_of_the_samples_from_streams_of_the
     found = resampling.compute(small.forces_of_case(), small.CASE, settings)
     vectors, limit = forces.vectors(small.forces_of_case())
     experiment = Experiment(cantilever(settings, "b"), 1000, lambda n, rng: resample_laws(vectors, limit, n, rng))
-    assert_array_equal(found.sample, range(3))
+    assert_array_equal(found.beam, range(3))
     for k in (0, 2):
         beam = release_beam(experiment, k, stream(small.SEED, "resampling", small.CASE, k))
         assert (found.state[k], found.crack_length[k]) == (beam.state, beam.crack_length)
@@ -398,8 +398,8 @@ def test_a_variant_is_the_chain_behind_its_contact(h):
 def test_a_variant_has_the_first_samples_of_a_larger_contact():
     settings = small.settings_of(variant_beams, job_settings(small.PLAN, f"studies/variants/{small.CASE}_base"))
     found = variant_beams.compute(small.contact_of_pair(), small.CASE, replace(settings, samples=18))
-    first = variant_beams.compute(small.contact_of_pair().isel(sample=range(18)), small.CASE, settings)
-    assert found.sizes["sample"] == 18
+    first = variant_beams.compute(small.contact_of_pair().isel(strip=range(18)), small.CASE, settings)
+    assert found.sizes["strip"] == 18
     for name in ("adhesion_energy", "crack_length", "state"):
         assert_array_equal(found[name], first[name])
 

@@ -48,5 +48,6 @@ def test_datasets_contain_settings_but_no_time_or_host(smoke):
     assert {"beams", "chaos", "character", "contact", "forces", "heights", "spectrum"} <= {p.parent.name for p in paths}
     for path in paths:
         with xr.open_dataset(path) as dataset:
-            assert set(dataset.attrs) == {"Conventions", "stage", "name", "settings", "before"}
+            own = {"stage", "name", "layout", "settings", "before"}
+            assert set(dataset.attrs) == own | {"Conventions", "title", "source", "references"}
             json.loads(dataset.attrs["settings"])

@@ -13,6 +13,7 @@ from stiction.config.cases import DRY_AIR
 from stiction.plan import cost
 from stiction.plan.plan import Plan
 from stiction.plan.stage import FOLDERS, WILDCARDS, At, File, Names, Stage, expression, stages_of
+from stiction.run.variables import described
 
 _PACKAGE = Path(__file__).parents[1]
 
@@ -166,7 +167,8 @@ class Results:
             return self._known[file]
         job = self.graph.job(file)
         result = job.compute(self.inputs(job))
-        datasets = dict(zip(job.names, result, strict=True)) if job.stage.each else {file: result}
+        parts = [described(dataset, job.stage.stage) for dataset in job.stage.datasets(result, job.at)]
+        datasets = dict(zip(job.names, parts, strict=True))
         if not job.stage.running.temporary:
             self._known.update(datasets)
         return datasets[file]

@@ -18,7 +18,8 @@ def run(job: Any) -> None:
     settings = stage.converted(stated)
     part = stage.running.first(settings) if stage.running.first else {}
     data = {name: _load_input(job.input.get(name, []), *how, part, stage) for name, how in job.params.inputs.items()}
-    result = stage.result(data, At(**job.wildcards), settings)
+    at = At(**job.wildcards)
+    result = stage.result(data, at, settings)
     if stage.save is not None:
         stage.save(result, dict(job.output.items()))
         if template := job.input.get("caption"):
@@ -26,7 +27,7 @@ def run(job: Any) -> None:
         note_origin(labels.origin(stated, _behind(stage, job)))
         return
     datasets = _inputs(job, of_datasets=True)
-    for dataset, path in zip(result if stage.each else [result], job.output, strict=True):
+    for dataset, path in zip(stage.datasets(result, at), job.output, strict=True):
         storage.save(dataset, path, stage.stage, stated, datasets)
 
 

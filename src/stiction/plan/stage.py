@@ -16,7 +16,7 @@ from inspect import signature
 from types import SimpleNamespace
 from typing import Any, get_args, get_origin, get_type_hints
 
-from stiction.config.cases import BEFORE_AIR, CASE, PAIR_IN_AIR, Case, PairInAir
+from stiction.config.cases import BEFORE_AIR, CASE, DRY_AIR, PAIR_IN_AIR, Case, PairInAir
 from stiction.config.units import in_si, without_unit
 from stiction.contact.materials import OF_CONTACT
 from stiction.models import (
@@ -52,6 +52,8 @@ WILDCARDS = {
     "length": "[0-9]+",
     "width": "[0-9]+",
 }
+#: Folders with files of devices, where a case is one of a device or of a patch.
+_OF_DEVICES = ("devices/", "process/")
 #: What a wildcard is, if it is more than a text.
 _KINDS = {"case": Case, "pair": PairInAir}
 
@@ -68,6 +70,22 @@ class At(SimpleNamespace):
     def __init__(self, **wildcards: str):
         known = {name: kind(wildcards[name]) for name, kind in _KINDS.items() if name in wildcards}
         super().__init__(**wildcards | known)
+
+    @property
+    def identity(self) -> dict[str, str | float]:
+        """Pair, relative humidity, surface, model and variant, as coordinates of the dataset of the job.
+
+        Examples
+        --------
+        >>> At(case="b_rh067", model="NG").identity, At(pair="b_dry").identity
+        ({'pair': 'b', 'relative_humidity': 0.67, 'model': 'NG'}, {'pair': 'b', 'relative_humidity': 0.0})
+        """
+        known, found = vars(self), {}
+        if contact := known.get("case", known.get("pair")):
+            found["pair"] = contact.pair
+        if "case" in known or getattr(contact, "medium", None):
+            found["relative_humidity"] = getattr(contact, "humidity", DRY_AIR.humidity)
+        return found | {name: known[name] for name in ("surface", "model", "variant") if name in known}
 
 
 class File(str):
@@ -215,6 +233,11 @@ class Stage:
         complete = self.complete(settings, data) if self.complete else settings
         known = vars(at) | {"settings": complete, "data": data, "at": at} | data
         return self.compute(**{name: known[name] for name in signature(self.compute).parameters if name in known})
+
+    def datasets(self, result: Any, at: At) -> list[Any]:
+        """Datasets of a result in the order of their files, with the identity of the job unless they are of devices."""
+        identity = {} if self.files["dataset"].startswith(_OF_DEVICES) else at.identity
+        return [dataset.assign_coords(identity) for dataset in (result if self.each else [result])]
 
     def patterns(self, plan: Any) -> dict[str, str]:
         """Names of all files of a job by key, with wildcards."""

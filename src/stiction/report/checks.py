@@ -223,7 +223,7 @@ def few_draws_rejected(case: str, chaos: xr.Dataset, forces: xr.Dataset, limit: 
     ASSUME: no limit for Gaussian surfaces: in dry air many of their samples adhere too weakly for Eq. (12); this is a
     result of the model, not a fault of the draws.
     """
-    rejected, n = float(chaos.rejected), forces.sizes["sample"]
+    rejected, n = float(chaos.rejected), forces.sizes["strip"]
     without = float(np.mean(~admissible(*stage_forces.vectors(forces))))
     error = np.sqrt(max(without * (1 - without), 1 / n) / n)
     passed = rejected <= limit + ALLOWED * error and abs(rejected - without) <= REJECTED_OFF + ALLOWED * error
@@ -235,7 +235,7 @@ def beams_are_in_equilibrium(case: str, outcomes: xr.Dataset, limit: float, beam
     """Check the equilibrium of every beam: dataset of stage beams, pull-off pressure [Pa], area of a strip [m²]."""
     allowed = allowed_imbalance(beam, limit * area)
     unbalanced = int(np.sum(~(outcomes.imbalance.values <= allowed)))
-    message = f"{unbalanced} of {outcomes.sizes['sample']} beams have a residual force of more than {allowed:.2g} N"
+    message = f"{unbalanced} of {outcomes.sizes['beam']} beams have a residual force of more than {allowed:.2g} N"
     return Check("beams are in equilibrium", case, unbalanced == 0, message)
 
 
@@ -316,7 +316,7 @@ def case_checks(
         case, chaos = _case(*key), chaoses[key]
         yield vectors_are_possible(case, samples)
         yield energies_are_bounded(case, samples, key[1], flooded[key[0]])
-        yield chaos_reproduces_input(case, chaos, samples.sizes["sample"])
+        yield chaos_reproduces_input(case, chaos, samples.sizes["strip"])
         yield few_draws_rejected(case, chaos, samples, REJECTED if key[2] == "NG" else 1.0)
 
 

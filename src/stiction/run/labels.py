@@ -12,6 +12,9 @@ from typing import Any, NamedTuple
 from stiction.regular_files import require_regular
 from stiction.run.atomic import DataError
 
+#: Version of the names of dimensions and variables in datasets. Files of other versions are computed anew.
+LAYOUT = 2
+
 
 class Label(NamedTuple):
     """Origin of a dataset."""
@@ -20,12 +23,13 @@ class Label(NamedTuple):
     name: str | None  #: name under which the file was written, without extension
     settings: dict[str, Any]  #: settings from which the dataset was computed
     before: dict[str, dict[str, Any]]  #: settings of all datasets on which it depends, by file
+    layout: int = LAYOUT  #: version of the names in the dataset
 
     @property
-    def attributes(self) -> dict[str, str]:
+    def attributes(self) -> dict[str, Any]:
         """Label as attributes of a dataset. Equal settings give equal text."""
         texts = {key: json.dumps(getattr(self, key), sort_keys=True) for key in ("settings", "before")}
-        return {"stage": self.stage, "name": self.name} | texts
+        return {"stage": self.stage, "name": self.name, "layout": self.layout} | texts
 
 
 def made_from(inputs: Iterable[str | Path], stage: str, name: str, settings: dict[str, Any]) -> Label:
@@ -74,12 +78,12 @@ def read(path: str | Path) -> Label:
         with netCDF4.Dataset(path) as file:
             attributes = {key: file.getncattr(key) for key in file.ncattrs()}
         settings, before = (json.loads(attributes.get(key, "{}")) for key in ("settings", "before"))
-    except (OSError, RuntimeError, ValueError, TypeError, RecursionError) as error:
+    except (OSError, RuntimeError, ValueError, TypeError, AttributeError, RecursionError) as error:
         raise unreadable(path, error) from error
     sections = [settings, before, *(before.values() if isinstance(before, dict) else ())]
     if not all(isinstance(section, dict) for section in sections):
         raise unreadable(path, ValueError("its label holds no settings"))
-    return Label(attributes.get("stage"), attributes.get("name"), settings, before)
+    return Label(attributes.get("stage"), attributes.get("name"), settings, before, int(attributes.get("layout", 1)))
 
 
 def unreadable(path: str | Path, reason: Exception) -> DataError:

@@ -47,6 +47,8 @@ def _difference(path, settings, expected, remember):
         return "cannot be read"
     if label.name != path.stem:
         return f"holds {label.stage} of {label.name}" if label.stage else "holds no result of this study"
+    if label.layout != labels.LAYOUT:
+        return "was written by another version"
     if differing := _first(label.settings, settings):
         return f"was computed with {differing}"
     for file, stored in label.before.items():

@@ -219,7 +219,7 @@ def test_the_contact_of_islands_under_a_variant_is_that_of_pairs_of_its_settings
 
 
 def test_the_contact_of_the_base_variant_is_that_of_the_pair():
-    found, pair = contact_under("base"), small.contact_of_pair().isel(sample=slice(3))
+    found, pair = contact_under("base"), small.contact_of_pair().isel(strip=slice(3))
     assert set(found) == set(pair)
     for name in [*found, *found.coords]:
         assert_array_equal(found[name], pair[name])

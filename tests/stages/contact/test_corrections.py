@@ -273,4 +273,4 @@ def test_the_contact_itself_does_not_know_of_the_correction():
     settings = [Graph(of).job("contact/b_NG/0-of-5").settings for of in (FULL, Plan(load()))]
     assert "model" not in settings[0]["contact"]
     assert settings[0]["contact"] == settings[1]["contact"]
-    assert contact.first(small.contact_of_pair(), 3).sizes["sample"] == 3
+    assert contact.first(small.contact_of_pair(), 3).sizes["strip"] == 3

@@ -53,7 +53,7 @@ def test_the_sum_over_summits_is_that_of_the_first_samples_of_the_contact():
 
 def test_a_sample_does_not_depend_on_the_others():
     alone = full_contact.compute(small.surfaces(), "b", replace(SETTINGS, strips=1))
-    assert alone.equals(study().isel(sample=slice(1)))
+    assert alone.equals(study().isel(strip=slice(1)))
 
 
 @pytest.mark.slow
@@ -63,8 +63,8 @@ def test_strips_are_drawn_until_both_accuracies_or_the_most(monkeypatch, of_rati
     monkeypatch.setattr(full_contact, "OF_LARGEST", of_largest)
     air = replace(SETTINGS, humidities=(0.92,), strips=4, most=9)
     found = full_contact.compute(small.surfaces(), "b", air)
-    assert found.sizes["sample"] == number
-    assert found.isel(sample=slice(2)).equals(study().isel(sample=slice(2)).sel(humidity=[0.92]))
+    assert found.sizes["strip"] == number
+    assert found.isel(strip=slice(2)).equals(study().isel(strip=slice(2)).sel(humidity=[0.92]))
 
 
 @pytest.mark.slow
@@ -102,7 +102,7 @@ def test_only_an_unstated_number_of_strips_in_dry_air_grows():
 
 
 def test_both_models_agree_in_wet_air_and_not_in_dry_air():
-    ratio = (study().adhesion_energy.mean("sample") / study().summit_energy.mean("sample")).values
+    ratio = (study().adhesion_energy.mean("strip") / study().summit_energy.mean("strip")).values
     assert abs(ratio[2] - 1) < 0.05 < abs(ratio[0] - 1)
 
 
@@ -113,7 +113,7 @@ def test_shares_count_the_elements_in_contact_above_a_pressure():
     assert np.all((study().contact_share > 0) & (study().contact_share < 0.1))
     soft = replace(bodies(SETTINGS)[0], hardness=3e9)
     yielding = replace(SETTINGS, strips=1, materials={"beam": soft}, humidities=(0.67,))
-    found = full_contact.compute(small.surfaces(), "b", yielding).isel(sample=0, humidity=0)
+    found = full_contact.compute(small.surfaces(), "b", yielding).isel(strip=0, humidity=0)
     assert float(found.onset_share) > float(found.hardness_share) > 0
     assert float(found.adhesion_energy) == float(study().adhesion_energy[0, 1])
 

@@ -45,13 +45,13 @@ def test_the_harder_surfaces_are_pressed_the_more_they_are_flattened_and_stick()
     for growing in (soft.pressure, soft.contact_share, soft.flattening, -soft.separation):
         assert np.all(growing.diff("step") > 0)
     assert soft.separation[0, -1] == pytest.approx(SETTINGS.distance)
-    in_dry_air = soft.pressed_energy.mean("sample").isel(humidity=0)
-    assert in_dry_air[-1] > 1.02 * soft.fresh_energy.mean("sample")[0]
+    in_dry_air = soft.pressed_energy.mean("strip").isel(humidity=0)
+    assert in_dry_air[-1] > 1.02 * soft.fresh_energy.mean("strip")[0]
 
 
 def test_a_film_that_floods_everything_does_not_feel_the_flattening():
     soft = study(2.0)
-    ratio = soft.pressed_energy.isel(step=-1).mean("sample") / soft.fresh_energy.mean("sample")
+    ratio = soft.pressed_energy.isel(step=-1).mean("strip") / soft.fresh_energy.mean("strip")
     assert abs(ratio[-1] - 1) < 0.1 * abs(ratio[0] - 1)
 
 

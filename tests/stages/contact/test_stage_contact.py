@@ -84,7 +84,7 @@ def test_a_dataset_gives_back_its_tables_in_single_precision():
     grid = DistanceGrid(0.5e-9, 3, 8)
     pressure, area = np.arange(16.0).reshape(2, 8), np.linspace(0, 1, 22).reshape(2, 11)
     found = contact.layout(pressure, area, grid, range(4, 6))
-    assert found.sample.values.tolist() == [4, 5]
+    assert found.strip.values.tolist() == [4, 5]
     solid, bearing, starts, step = contact.tables(found)
     assert_array_equal(solid, pressure.astype(np.float32))
     assert_array_equal(bearing, area.astype(np.float32))

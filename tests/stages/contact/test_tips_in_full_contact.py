@@ -61,11 +61,11 @@ def test_strips_have_the_width_the_slopes_and_the_edge_of_the_tips_and_their_num
 
 @pytest.mark.slow
 def test_the_study_has_both_models_at_every_slope_and_a_sample_does_not_depend_on_the_others():
-    assert few().sizes == {"sample": 3, "slope": 3, "humidity": 1}
+    assert few().sizes == {"strip": 3, "slope": 3, "humidity": 1}
     assert np.all(few().force > 0)
     assert np.all(few().summit_force > 0)
     alone = tips_in_full_contact.compute(both(results().inputs(job())), "b", replace(settings(), strips=1))
-    assert alone.equals(few().isel(sample=slice(1)))
+    assert alone.equals(few().isel(strip=slice(1)))
     assert len(np.unique(few().summit_force)) == few().summit_force.size
 
 
@@ -73,7 +73,7 @@ def test_strips_are_drawn_until_the_accuracy_or_the_most(monkeypatch):
     for accuracy, number in ((0.0, 5), (np.inf, 3)):
         monkeypatch.setattr(tips_in_full_contact, "ACCURACY", accuracy)
         at = replace(settings(), strips=3, most=5, tilt=replace(settings().tilt, slopes=(0.05,)))
-        assert tips_in_full_contact.compute(both(results().inputs(job())), "b", at).sizes["sample"] == number
+        assert tips_in_full_contact.compute(both(results().inputs(job())), "b", at).sizes["strip"] == number
 
 
 @pytest.mark.parametrize(("slope", "radius"), [(0.03, 0.1 * UM), (0.03, 1 * UM), (0.1, 0.1 * UM)])

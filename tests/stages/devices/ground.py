@@ -41,7 +41,7 @@ def contact():
     """Dataset of stage contact as far as the stages of devices look into it: bearing areas of normal heights."""
     height = 0.05e-9 * np.arange(-500, 501)
     area = np.tile(norm.sf(height, scale=RMS), (3, 1))
-    return xr.Dataset({"bearing_area": (("sample", "height"), area), "step": 0.05e-9}, coords={"height": height})
+    return xr.Dataset({"bearing_area": (("strip", "height"), area), "step": 0.05e-9}, coords={"height": height})
 
 
 VECTORS = sampled_vectors(400, 0.24)

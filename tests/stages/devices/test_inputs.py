@@ -142,11 +142,11 @@ def test_quantities_of_a_surface_keep_their_covariance_and_their_group():
 
 def test_quantities_that_are_shifted_by_a_large_uncertainty_have_a_middle_with_as_many_samples():
     contact = small.contact_of_pair()
-    pair = tuple(contact.isel(sample=slice(8)).assign(difference=((), 1.6)) for _ in range(2))
+    pair = tuple(contact.isel(strip=slice(8)).assign(difference=((), 1.6)) for _ in range(2))
     known, at = Known(("corner",), np.array([[0.64]])), replace(BASE, contact=contact)
     block = inputs.surface_block(at, "B2", {("B2", "corner"): pair}, known)
     (entry,) = block.inputs
-    assert entry.middle.contact.sizes["sample"] == 8 < contact.sizes["sample"]
+    assert entry.middle.contact.sizes["strip"] == 8 < contact.sizes["strip"]
     assert entry.middle.humidity == at.humidity
 
 

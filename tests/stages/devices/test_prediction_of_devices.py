@@ -32,7 +32,7 @@ EXAMPLES = Path(__file__).parents[3] / "examples"
 LENGTHS = pd.read_csv(prediction.PAPER_LENGTHS)
 KNOWN, MIDDLE = prediction.learnt(LENGTHS, prediction.TOUCHING)
 #: Contact of strips whose energies are given.
-STRIPS = xr.Dataset(coords={"sample": range(3)})
+STRIPS = xr.Dataset(coords={"strip": range(3)})
 PLACES = [-0.8, -0.3, 0.0, 0.2, 0.9]
 
 

@@ -30,7 +30,7 @@ PLAN = Plan(load())
 def beams(s_shaped, arc, crack=700 * UM):
     """Dataset of stage beams with numbers of S-shaped beams and of arcs."""
     state = np.repeat([0, 1], [s_shaped, arc])
-    return xr.Dataset({"state": ("sample", state), "crack_length": ("sample", np.where(state, 1500 * UM, crack))})
+    return xr.Dataset({"state": ("beam", state), "crack_length": ("beam", np.where(state, 1500 * UM, crack))})
 
 
 def in_words(limits):
@@ -181,8 +181,8 @@ def test_beams_of_pairs_a_and_b_at_the_humidities_of_the_paper_have_the_warnings
     for row in rows:
         shares = [float(row[f"share_{state}"]) for state in ("s_shape", "arc", "free")]
         mean = float(row["crack_length_um"] or "nan") * UM
-        ended = xr.Dataset({"state": ("sample", np.repeat([0, 1, 2], np.round(np.multiply(shares, 1000)).astype(int)))})
-        ended["crack_length"] = "sample", np.where(ended.state == 0, mean, 1500 * UM)
+        ended = xr.Dataset({"state": ("beam", np.repeat([0, 1, 2], np.round(np.multiply(shares, 1000)).astype(int)))})
+        ended["crack_length"] = "beam", np.where(ended.state == 0, mean, 1500 * UM)
         found = about_beams(ended, PAPER, 1.5 * UM)
         # Gaussian surfaces and all in the driest air adhere so little that some end as arcs: two sentences, else none.
         assert len(found) == (shares[1] > 0) + (0 < shares[0] < 1)

@@ -152,10 +152,10 @@ def test_a_surface_without_an_error_needs_no_scan_and_an_error_at_the_goal_no_fu
 def test_choices_are_compared_on_the_same_samples():
     base = small.contact_of_pair()
     stiff = base.assign(solid_pressure=1.2 * base.solid_pressure)
-    found = study(choices={"beyond": stiff.isel(sample=slice(10))})
+    found = study(choices={"beyond": stiff.isel(strip=slice(10))})
     assert list(found.choice.values) == ["beyond"]
     for k, h in enumerate(HUMIDITIES):
-        energies = [curves.energies(contact.isel(sample=slice(10)), h, WANTED.water) for contact in (stiff, base)]
+        energies = [curves.energies(contact.isel(strip=slice(10)), h, WANTED.water) for contact in (stiff, base)]
         assert_allclose([found.change[0, k], found.change_error[0, k]], relative_shift(*energies), rtol=1e-9)
     assert np.all(found.change < 0)
     assert np.all(found.change_error_scans == 0)

@@ -24,7 +24,7 @@ BEAM = DesignedBeam("cantilever", "b", 2.6 * UM, 20 * UM, 30 * UM, 164e9, 1.5 * 
 STATED = Uncertainty(thickness=0.05 * UM, gap=0.3 * UM, humidity=0.01)
 ERRORS = {"thickness": 0.1, "gap": -0.05, "humidity": 0.02}
 ENERGIES = 1e-3 * np.random.default_rng(3).lognormal(0, 0.2, 200)
-EMPTY = xr.Dataset(coords={"sample": range(3)})
+EMPTY = xr.Dataset(coords={"strip": range(3)})
 
 
 @dataclass(frozen=True)

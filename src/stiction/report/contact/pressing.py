@@ -36,7 +36,7 @@ def _rows(studies: Mapping[str, xr.Dataset]) -> Iterator[dict]:
     """One row for each pair, press and humidity. The first press is adhesion alone, without pressure."""
     for pair, study in studies.items():
         fresh = study.fresh_energy.values
-        after = [study.adhered_energy.values, *study.pressed_energy.transpose("step", "sample", "humidity").values]
+        after = [study.adhered_energy.values, *study.pressed_energy.transpose("step", "strip", "humidity").values]
         for number, energies in enumerate(after):
             press = {"pair": pair, "press": number, "strips": len(fresh)} | _press(study, number)
             of_both = np.hstack([energies, fresh])

@@ -32,8 +32,8 @@ _DOTTED = {"color": "0.3", "linestyle": ":", "linewidth": 0.8}
 def typical(fit: xr.Dataset, kept: int) -> int:
     """Number of the sample of median error among the first ``kept``."""
     # ASSUME: the paper's typical curve is one of median error.
-    errors = fit.curve_error.sel(sample=slice(0, kept - 1))
-    return int(errors.sample[np.argsort(errors.values)[errors.size // 2]])
+    errors = fit.curve_error.sel(strip=slice(0, kept - 1))
+    return int(errors.strip[np.argsort(errors.values)[errors.size // 2]])
 
 
 @styled
@@ -55,7 +55,7 @@ def fitted_curve(forces: xr.Dataset, fit: xr.Dataset) -> Figure:
     panel.set(xlim=TO_NM * distance[[0, -1]], ylim=TO_MPA * np.array([-1.2 * law[0], 1.3 * limit]))
     panel.set(xlabel=r"distance $\bar d$ [nm]", ylabel=r"force per area $\bar f$ [MPa]")
     _components(panel, vector, limit)
-    error = 100 * float(fit.curve_error.sel(sample=k))
+    error = 100 * float(fit.curve_error.sel(strip=k))
     panel.legend(title=f"sample {k}, error {in_percent(error / 100)}", loc="upper right")
     return figure
 

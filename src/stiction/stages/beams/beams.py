@@ -33,7 +33,7 @@ def compute(chaos: xr.Dataset, case: Case, settings: Settings, threads: int = 1)
     longest = releases.longest_strip(model, case, settings)
     if settings.sampling.strip_length <= settings.coarser_mesh * longest:
         return dataset
-    return dataset.assign(longest_strip=((), longest, {"units": "m"}))
+    return dataset.assign(longest_strip=longest)
 
 
 def layout(columns: dict[str, np.ndarray], nodes: np.ndarray) -> xr.Dataset:
@@ -41,18 +41,16 @@ def layout(columns: dict[str, np.ndarray], nodes: np.ndarray) -> xr.Dataset:
 
     From the arrays of `stiction.beam.montecarlo.columns` and the nominal positions of the nodes (n,) [m].
     """
-    flags = {"flag_values": np.arange(3, dtype=np.int8), "flag_meanings": " ".join(releases.STATES)}
-    energy = {"units": "J m-2", "long_name": "apparent adhesion energy of a beam, Eq. (13), S-shape only"}
     return xr.Dataset(
         {
-            "state": ("sample", np.asarray(columns["state"], np.int8), flags),
-            "crack_length": ("sample", columns["crack_length"], {"units": "m"}),
-            "adhesion_energy": ("sample", columns["energy"], energy),
-            "imbalance": ("sample", columns["imbalance"], {"units": "N"}),
-            "iterations": ("sample", columns["iterations"]),
-            "deflection": (("beam", "node"), np.asarray(columns["deflection"], np.float32), {"units": "m"}),
+            "state": ("beam", np.asarray(columns["state"], np.int8), releases.FLAGS),
+            "crack_length": ("beam", columns["crack_length"]),
+            "apparent_energy": ("beam", columns["energy"]),
+            "imbalance": ("beam", columns["imbalance"]),
+            "iterations": ("beam", columns["iterations"]),
+            "deflection": (("shape", "node"), np.asarray(columns["deflection"], np.float32)),
         },
-        coords={"sample": columns["sample"], "node": ("node", nodes, {"units": "m"})},
+        coords={"beam": columns["sample"], "node": nodes},
     )
 
 

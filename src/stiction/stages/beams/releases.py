@@ -28,6 +28,8 @@ from stiction.streams import stream
 _LAWS = 10_000
 #: End states of a beam, in the order of their numbers in datasets.
 STATES = tuple(state.label for state in EndState)
+#: Attributes of the numbers of end states, as in the CF conventions.
+FLAGS = {"flag_values": np.arange(len(STATES), dtype=np.int8), "flag_meanings": " ".join(STATES)}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -109,7 +111,7 @@ def stuck_lengths(beams: xr.Dataset) -> np.ndarray:
 
 def stuck_energies(beams: xr.Dataset) -> np.ndarray:
     """Apparent adhesion energies Γ, Eq. (13), of the S-shaped beams of stage beams (m,) [J m⁻²]."""
-    return beams.adhesion_energy.values[ends_as(beams, "S-shape")]
+    return beams.apparent_energy.values[ends_as(beams, "S-shape")]
 
 
 def sections(plan: Any, case: Case) -> dict[str, Any]:

@@ -32,10 +32,10 @@ def layout(columns: dict[str, np.ndarray]) -> xr.Dataset:
     """Dataset of the end state of every beam on resampled force laws. As `stiction.stages.beams.beams.layout`."""
     return xr.Dataset(
         {
-            "state": ("sample", np.asarray(columns["state"], np.int8)),
-            "crack_length": ("sample", columns["crack_length"], {"units": "m"}),
+            "state": ("beam", np.asarray(columns["state"], np.int8), releases.FLAGS),
+            "crack_length": ("beam", columns["crack_length"]),
         },
-        coords={"sample": columns["sample"]},
+        coords={"beam": columns["sample"]},
     )
 
 

@@ -41,9 +41,9 @@ def layout(humidities: Sequence[float], energies: Sequence, beams: Sequence[dict
     """
     return xr.Dataset(
         {
-            "adhesion_energy": (("humidity", "sample"), energies, {"units": "J m-2"}),
-            "crack_length": (("humidity", "beam"), [b["crack_length"] for b in beams], {"units": "m"}),
-            "state": (("humidity", "beam"), np.array([b["state"] for b in beams], np.int8)),
+            "adhesion_energy": (("humidity", "strip"), energies),
+            "crack_length": (("humidity", "beam"), [b["crack_length"] for b in beams]),
+            "state": (("humidity", "beam"), np.array([b["state"] for b in beams], np.int8), releases.FLAGS),
         },
         coords={"humidity": list(humidities)},
     )
@@ -95,7 +95,7 @@ STAGES = (
         inputs=_inputs,
         settings=_settings,
         kind=Settings,
-        running=Running(first=lambda settings: {"sample": slice(settings.samples)}),
+        running=Running(first=lambda settings: {"strip": slice(settings.samples)}),
         complete=corrections.with_all_corrections,
         compute=compute,
         message="Crack lengths of {case} under variant {variant}.",

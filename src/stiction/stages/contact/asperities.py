@@ -112,7 +112,7 @@ def layout(
     the last axis, are those at all humidities without drawing the strip [s]. Spacings of the grids [m]; attractions are
     media.
     """
-    over = ("spacing", "reading", "sample", "attraction")
+    over = ("spacing", "reading", "strip", "attraction")
     return xr.Dataset(
         {
             "adhesion_energy": ((*over, "humidity"), energies, {"units": "J m-2"}),
@@ -121,7 +121,7 @@ def layout(
         coords={
             "spacing": ("spacing", list(spacings), {"units": "m"}),
             "reading": list(READINGS),
-            "sample": np.arange(energies.shape[2], dtype=np.int32),
+            "strip": np.arange(energies.shape[2], dtype=np.int32),
             "attraction": list(attractions),
             "humidity": ("humidity", list(humidities), {"units": "1"}),
         },
@@ -135,7 +135,7 @@ def energies_of_readings(study: xr.Dataset) -> Iterator[tuple[dict, np.ndarray]]
     """
     for attraction, reading, spacing in product(study.attraction.values, study.reading.values, study.spacing.values):
         labels = {"spacing": float(spacing), "reading": str(reading), "attraction": str(attraction)}
-        values = study.adhesion_energy.sel(labels).transpose("sample", "humidity").values
+        values = study.adhesion_energy.sel(labels).transpose("strip", "humidity").values
         if len(computed := values[np.isfinite(values).all(axis=1)]):
             yield labels, computed
 

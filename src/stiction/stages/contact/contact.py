@@ -68,7 +68,7 @@ def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceG
     Solid pressures p_s are (n, n_solid) [Pa] and bearing areas A (n, n_bearing) [-], those of tips (n, n_slopes,
     n_solid) and so on; ``samples`` are their numbers within the study.
     """
-    over = ("sample", "slope") if np.ndim(solid_pressure) == 3 else ("sample",)
+    over = ("strip", "slope") if np.ndim(solid_pressure) == 3 else ("strip",)
     return xr.Dataset(
         {
             "solid_pressure": ((*over, "distance"), np.asarray(solid_pressure, np.float32), {"units": "Pa"}),
@@ -76,7 +76,7 @@ def layout(solid_pressure: np.ndarray, bearing_area: np.ndarray, grid: DistanceG
             "step": ((), grid.step, {"units": "m"}),
         },
         coords={
-            "sample": np.asarray(samples, np.int32),
+            "strip": np.asarray(samples, np.int32),
             "distance": ("distance", grid.solid, {"units": "m"}),
             "height": ("height", grid.bearing, {"units": "m"}),
         },
@@ -116,8 +116,8 @@ def join_chunks(chunks: Iterable[xr.Dataset], settings: Settings) -> xr.Dataset:
         if grid is None:
             grid = _grid(chunk)
             pressures, areas = (np.empty((samples, n), np.float32) for n in (grid.above, grid.below + grid.above))
-        here = slice(joined_samples, joined_samples + chunk.sizes["sample"])
-        if _grid(chunk) != grid or not np.array_equal(chunk.sample, np.arange(samples)[here]):
+        here = slice(joined_samples, joined_samples + chunk.sizes["strip"])
+        if _grid(chunk) != grid or not np.array_equal(chunk.strip, np.arange(samples)[here]):
             raise ValueError(f"the chunk after {joined_samples} of {samples} samples does not continue the contact")
         pressures[here], areas[here] = chunk.solid_pressure, chunk.bearing_area
         joined_samples = here.stop
@@ -134,7 +134,7 @@ def _grid(contact):
 
 def first(contact: xr.Dataset, samples: int) -> xr.Dataset:
     """Contact of the first samples alone."""
-    return contact.isel(sample=slice(samples))
+    return contact.isel(strip=slice(samples))
 
 
 def with_correlations(

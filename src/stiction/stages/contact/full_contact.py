@@ -226,7 +226,7 @@ def layout(
     Spacing of the elements [m], and energies and largest attractions of more samples on summits (N, n_humidity, 2).
     """
     columns = {
-        name: (("sample", "humidity"), values[..., i], {"units": unit, "long_name": meaning})
+        name: (("strip", "humidity"), values[..., i], {"units": unit, "long_name": meaning})
         for i, (name, (unit, meaning)) in enumerate(_VARIABLES.items())
     }
     if more is not None:
@@ -234,7 +234,7 @@ def layout(
     return xr.Dataset(
         columns | {"spacing": ((), spacing, {"units": "m"})},
         coords={
-            "sample": np.arange(len(values), dtype=np.int32),
+            "strip": np.arange(len(values), dtype=np.int32),
             "humidity": ("humidity", list(humidities), {"units": "1"}),
         },
     )

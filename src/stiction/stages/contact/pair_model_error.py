@@ -39,7 +39,7 @@ def compute(study: xr.Dataset, settings: Settings, tips: xr.Dataset | None = Non
         "pull_off_power": scatter_ratios(*pull_offs, *given),
         "length_factor": length_factors(*of_energy, *given),
     }
-    found = layout(ratios, at, at[np.isin(airs, computed)], study.sizes["sample"], settings.applied)
+    found = layout(ratios, at, at[np.isin(airs, computed)], study.sizes["strip"], settings.applied)
     return found if tips is None else found.assign(_of_tips(tips, given)).assign_coords(slope=tips.slope)
 
 

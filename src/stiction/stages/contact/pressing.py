@@ -110,12 +110,12 @@ def layout(energies: np.ndarray, presses: np.ndarray, humidities: Sequence[float
     """
     units = {"units": "J m-2"}
     columns = {
-        "fresh_energy": (("sample", "humidity"), energies[:, 0], units | {"long_name": "e before"}),
-        "adhered_energy": (("sample", "humidity"), energies[:, 1], units | {"long_name": "e after adhesion alone"}),
-        "pressed_energy": (("sample", "step", "humidity"), energies[:, 2:], units | {"long_name": "e after pressing"}),
+        "fresh_energy": (("strip", "humidity"), energies[:, 0], units | {"long_name": "e before"}),
+        "adhered_energy": (("strip", "humidity"), energies[:, 1], units | {"long_name": "e after adhesion alone"}),
+        "pressed_energy": (("strip", "step", "humidity"), energies[:, 2:], units | {"long_name": "e after pressing"}),
     }
     for i, (name, (unit, meaning)) in enumerate(_PRESSED.items()):
-        columns[name] = (("sample", "step"), presses[..., i], {"units": unit, "long_name": meaning})
+        columns[name] = (("strip", "step"), presses[..., i], {"units": unit, "long_name": meaning})
     return xr.Dataset(columns, coords={"humidity": ("humidity", list(humidities), {"units": "1"})})
 
 

@@ -105,7 +105,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
 
 def layout(rows: Sequence, settings: Settings) -> xr.Dataset:
     """Dataset of largest attractions per width by both models, full contact first, (n, slopes, humidities, 2) [N/m]."""
-    over = "sample", "slope", "humidity"
+    over = "strip", "slope", "humidity"
     full, summits = np.moveaxis(np.array(rows, float), -1, 0)
     return xr.Dataset(
         {
@@ -121,7 +121,7 @@ def layout(rows: Sequence, settings: Settings) -> xr.Dataset:
 
 def models(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Largest attractions in full contact and on summits, (n, humidities, slopes) each [N/m]."""
-    return tuple(study[name].transpose("sample", "humidity", "slope").values for name in ("force", "summit_force"))
+    return tuple(study[name].transpose("strip", "humidity", "slope").values for name in ("force", "summit_force"))
 
 
 def _stage(name, between, of_strips, forces):

@@ -167,7 +167,7 @@ def compute(
     slopes_with_errors = slopes(inputs, respond)
     changes = {}
     for name, changed in choices.items():
-        base = replace(state, contact=first(contact, changed.sizes["sample"]))
+        base = replace(state, contact=first(contact, changed.sizes["strip"]))
         with explain_errors(f"This is the contact under the choice {name}."):
             under = replace(state, contact=changed, water=settings.water_under(name))
             changes[name] = effect_if_known(base, under, respond)

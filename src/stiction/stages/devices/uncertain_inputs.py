@@ -260,7 +260,7 @@ def surface_block(
         states = tuple(replace(state, contact=contact) for contact in contacts)
         middle, of = None, contacts[0]
         if is_large(of, quantity):
-            middle = replace(state, contact=first(state.contact, of.sizes["sample"]))
+            middle = replace(state, contact=first(state.contact, of.sizes["strip"]))
         inputs.append(Input(f"{quantity} of {surface}", f"the {kind} of {surface}", states, difference(of), middle))
     return Block(inputs, known.covariance)
 

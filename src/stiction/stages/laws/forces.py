@@ -12,9 +12,8 @@ from stiction.plan.stage import Stage, select
 from stiction.stages.contact import corrections
 from stiction.stages.contact.curves import force_curves, parametrised
 
-#: Components of v, Eq. (11), and their units.
+#: Components of v, Eq. (11).
 COMPONENTS = ("adhesion_energy", "pull_off", "pull_off_distance", "limit_distance")
-_UNITS = ("J m-2", "Pa", "m", "m")
 #: Components and f_limit on summits, in datasets of what is corrected to full elastic contact.
 _ON_SUMMITS = {name: f"summit_{name}" for name in ("adhesion_energy", "pull_off", "limit")}
 #: Number of curves stored for Fig. 12.
@@ -53,17 +52,10 @@ def layout(vectors: np.ndarray, limit: float, distance: np.ndarray, curves: Sequ
 
     Vectors (n, 4) [SI], f_limit [Pa], distances (n_d,) [m] and forces of the first samples (k, n_d) [Pa].
     """
-    named = {
-        name: ("sample", vectors[:, i], {"units": unit, "long_name": f"{name.replace('_', ' ')} of a sample, Eq. (11)"})
-        for i, (name, unit) in enumerate(zip(COMPONENTS, _UNITS, strict=True))
-    }
     return xr.Dataset(
-        named
-        | {
-            "limit": ((), limit, {"units": "Pa"}),
-            "force": (("curve", "distance"), np.asarray(curves, np.float32), {"units": "Pa"}),
-        },
-        coords={"distance": ("distance", distance, {"units": "m"})},
+        {name: ("strip", column) for name, column in zip(COMPONENTS, vectors.T, strict=True)}
+        | {"limit": limit, "force": (("curve", "distance"), np.asarray(curves, np.float32))},
+        coords={"distance": distance, "strip": np.arange(len(vectors), dtype=np.int32)},
     )
 
 

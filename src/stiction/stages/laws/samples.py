@@ -26,6 +26,6 @@ def laws(forces: xr.Dataset) -> xr.Dataset:
     columns = coefficients(sampled[lawful], limit).T
     named = zip(_COEFFICIENTS.items(), columns, strict=True)
     return xr.Dataset(
-        {name: ("sample", column, {"units": unit, "long_name": words}) for (name, (unit, words)), column in named},
-        {"sample": lawful},
+        {name: ("strip", column, {"units": unit, "long_name": words}) for (name, (unit, words)), column in named},
+        {"strip": lawful},
     )

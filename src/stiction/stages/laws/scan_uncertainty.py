@@ -117,7 +117,7 @@ def _form(slopes, errors):
 
 def _changes(contact, base, settings):
     """Relative change of ē by a choice and its standard error, (n_rh, 2) [-]."""
-    same = first(base, contact.sizes["sample"])
+    same = first(base, contact.sizes["strip"])
     pairs = ([energies(of, h, settings.water) for of in (contact, same)] for h in settings.humidities)
     return [relative_shift(*pair) for pair in pairs]
 
@@ -213,7 +213,7 @@ def _inputs(plan, at):
 
 def _uncertainty(data, settings):
     """Uncertainty of a pair, with as many samples of the base as of the other evaluations."""
-    base = first(data["base"], max(choice.sizes["sample"] for choice in data["choices"].values()))
+    base = first(data["base"], max(choice.sizes["strip"] for choice in data["choices"].values()))
     errors = errors_by_surface(data["slopes"], data["estimates"])
     return compute(data["slopes"], errors, base, data["choices"], settings)
 

@@ -34,7 +34,7 @@ def compute(contacts: Sequence[xr.Dataset], unchanged: xr.Dataset, settings: Set
     """
     at = [moment(contact) for contact in contacts]
     changed = [[energies(contact, h, settings.water) for h in settings.humidities] for contact in contacts]
-    between = first(unchanged, contacts[0].sizes["sample"])
+    between = first(unchanged, contacts[0].sizes["strip"])
     base = np.array([energies(between, h, settings.water) for h in settings.humidities]).T
     means = np.array(changed)
     of_samples = means.swapaxes(1, 2)
@@ -53,7 +53,7 @@ def layout(
     (slopes, errors), (differences, their_errors) = estimate, sides
     return xr.Dataset(
         {
-            "adhesion_energy": (("moment", "humidity", "sample"), energies, {"units": "J m-2"}),
+            "adhesion_energy": (("moment", "humidity", "strip"), energies, {"units": "J m-2"}),
             "slope": (("statistic", "humidity"), slopes, {"units": "1", "long_name": "(|x|/y) dy/dx"}),
             "standard_error": (("statistic", "humidity"), errors, {"units": "1"}),
             "difference": (("side", "humidity"), differences, {"units": "1", "long_name": "(|x|/y) Δy/Δx"}),

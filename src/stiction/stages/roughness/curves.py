@@ -160,7 +160,7 @@ def compute(
         refused.append(reason)
     first = next(iter(contact.values()))
     said = {"flagged": ("humidity", flagged), "refused": ("humidity", refused)}
-    point = layout(responses, roughness_of(first), first.sizes["sample"], settings).assign(said)
+    point = layout(responses, roughness_of(first), first.sizes["strip"], settings).assign(said)
     return point.assign({name: first[name] for name in (*OTHERS, KURTOSIS) if name in first})
 
 

@@ -72,7 +72,7 @@ def change_of_response(
     own = dict(zip(map(str, budget.input.values), (errors[name] for name in result.names), strict=True))
     shifts = np.array(list(own.values()))
     linear = float(budget.slope.values @ shifts), float(np.linalg.norm(budget.slope_error.values * shifts))
-    state = settings.state(first(contact, moved_contact.sizes["sample"]))
+    state = settings.state(first(contact, moved_contact.sizes["strip"]))
     return *linear, *effect(state, changed(replace(state, contact=moved_contact), own), settings.responder(state))
 
 

@@ -158,9 +158,9 @@ def layout(summits: Sequence[Summits], bearing_areas: Sequence[np.ndarray], grid
         {
             "top": ("summit", tops.astype(np.float32), {"units": "m"}),  # drawn in single precision
             "curvature": ("summit", curvatures, {"units": "m-1"}),
-            "count": ("sample", np.array([kept.sum() for kept in above]), {"units": "1"}),
+            "count": ("strip", np.array([kept.sum() for kept in above]), {"units": "1"}),
             "area": ((), summits[0].area, {"units": "m2", "long_name": "area in which a point can be a summit"}),
-            "bearing_area": (("sample", "height"), np.array(bearing_areas, np.float32), {"units": "1"}),
+            "bearing_area": (("strip", "height"), np.array(bearing_areas, np.float32), {"units": "1"}),
             "step": ((), grid.step, {"units": "m"}),
             "below": ((), grid.below, {"units": "1", "long_name": "number of grid points with negative distance"}),
         },

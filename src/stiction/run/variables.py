@@ -1,0 +1,64 @@
+"""Units, symbols, equations and meanings of all variables in result files.
+
+``variables.csv`` has a row for each variable of some stages, or of all stages where none is named. A row without the
+name of a variable is the title of the files of a stage. Nothing is saved without its row.
+"""
+
+import csv
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import xarray as xr
+
+#: Unit in the table where the stage states it, because it depends on the configuration.
+_STATED = "stated"
+#: Names of the CF conventions, by symbol.
+_STANDARD_NAMES = {"RH": "relative_humidity"}
+
+
+class Row(NamedTuple):
+    """Attributes of a variable, empty where it has none."""
+
+    units: str  #: as UDUNITS spells it; empty for text and for mixed quantities
+    symbol: str  #: in the paper
+    equation: str  #: number in the paper
+    long_name: str
+
+
+@cache
+def rows() -> dict[tuple[str, str], Row]:
+    """Rows of the table by stage and variable. The stage is empty in rows for all stages."""
+    with Path(__file__).with_name("variables.csv").open(encoding="utf-8", newline="") as file:
+        _, *lines = csv.reader(file)
+    return {(stage, name): Row(*row) for stages, name, *row in lines for stage in stages.split() or [""]}
+
+
+def described(dataset: xr.Dataset, stage: str) -> xr.Dataset:
+    """Dataset of a stage with its title and the attributes of every variable.
+
+    Raises
+    ------
+    KeyError
+        If the table has no row for the stage or a variable. The message names it.
+    """
+    found = dataset.assign_attrs(title=_row(stage, "").long_name)
+    for name in found.variables:
+        found[name].attrs = _attributes(found[name].attrs, _row(stage, name))
+    return found
+
+
+def _row(stage, name):
+    """Row of a variable, of its stage or of all."""
+    known = rows()
+    if row := known.get((stage, name)) or known.get(("", name)):
+        return row
+    of = f"variable {name} of stage {stage}" if name else f"title of stage {stage}"
+    raise KeyError(f"run/variables.csv has no row for the {of}; add one")
+
+
+def _attributes(stated, row):
+    """Attributes of a variable: of its row, and others that the stage states."""
+    units = stated.get("units", "") if row.units == _STATED else row.units
+    own = row._asdict() | {"units": units, "standard_name": _STANDARD_NAMES.get(row.symbol, "")}
+    return {key: text for key, text in own.items() if text} | {k: v for k, v in stated.items() if k not in own}
