@@ -11,6 +11,7 @@ import pandas as pd
 
 from stiction.analysis import smooth_pairs
 from stiction.answer.data import Cause
+from stiction.beam.energy import apparent_adhesion_energy
 from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP
 from stiction.config.files import paper
 from stiction.config.units import in_si
@@ -35,6 +36,7 @@ def numbers(tables):
     """All numbers, from a dict of the name of each table to its frame."""
     texts = crack_lengths(tables["table_3"]) | deviations(tables["table_3"]) | energies(tables["table_3"])
     texts |= supplement(tables) | flat_tips(tables["flat_tips"]) | finer(tables["print_finer"])
+    texts |= statements(tables["table_3"], tables["variants"])
     texts |= intervals(tables["table_3"]) | printed(tables["print"], tables["print_studies"])
     texts |= surfaces(tables["table_1"]) | identification(tables["table_2"]) | fits(tables["fit_quality"])
     texts |= (
@@ -219,6 +221,34 @@ def deviations(table_3):
         off = rows.deviation_percent
         texts[f"published_{pair}"] = f"{off.min():+.0f} to {off.max():+.0f}"
         texts[f"measured_rms_{pair}"] = f"{np.sqrt(np.mean(rows.experiment_deviation_percent**2)):.1f}"
+    return texts
+
+
+def statements(table_3, variants):
+    """What our tables say about statements of the paper.
+
+    ``nearer_ng``: cases in which model NG is nearer to the measured length than model G, or G has no length;
+    ``nearer_ng_alone``: the latter; ``nearer_g``: the other cases; ``steadier_ng``: cases in which ē scatters less with
+    NG; ``with_summits_a``, ``without_summits_a``: deviation of pair a from measured lengths with the spectrum that has
+    the measured summits, and with the printed one [%]; ``printed_energies_c``: range of Γ by the
+    measured mean lengths of pair c, ``…_1`` by lengths a standard deviation beyond [mJ/m²].
+    """
+    models = table_3[table_3.experiment_um.notna()].pivot(index=["pair", "relative_humidity"], columns="model")
+    off = np.log(models.crack_length_um.div(models.experiment_um.NG, axis=0)).abs()
+    is_nearer, scatter = ~(off.G <= off.NG), models.meso_energy_cv
+    nearer_g = ", ".join(f"{pair} {humidity:.2f}" for pair, humidity in off.index[~is_nearer])
+    texts = {"nearer_ng": str(is_nearer.sum()), "nearer_ng_alone": str(off.G.isna().sum()), "nearer_g": nearer_g}
+    texts["steadier_ng"] = str((scatter.NG < scatter.G).sum())
+    for name, variant in (("with", "psd_identified"), ("without", "base")):
+        rows = variants[(variants.pair == "a") & (variants.variant == variant)]
+        texts[f"{name}_summits_a"] = f"{np.sqrt(np.mean(rows.experiment_deviation_percent**2)):.1f}"
+    beam = cantilever(in_si(Cantilevers, sections(Plan(paper()), "c")), "c")
+    of_c = table_3[(table_3.model == "NG") & (table_3.pair == "c")]
+    for name, deviations in (("", 0), ("_1", 1)):
+        longest = (of_c.experiment_um + deviations * of_c.experiment_std_um).max()
+        shortest = (of_c.experiment_um - deviations * of_c.experiment_std_um).min()
+        energies = TO_MJ * apparent_adhesion_energy(np.array([longest, shortest]) / TO_UM, beam)
+        texts[f"printed_energies_c{name}"] = "{:.2g} to {:.2g}".format(*energies)
     return texts
 
 
