@@ -212,15 +212,21 @@ class Inspection:
 
     @property
     def spectra_of_scans(self) -> list[tuple[float, float, float, float, float]]:
-        """Logarithm of the corner, slope, their variances and weight of each scan. One row if a scan has few rings."""
+        """Logarithm of the corner, slope, their variances and weight of each scan. One row if a scan has few rings.
+
+        Variances are those with which the mean has the error of the fit to all scans. Own errors of a scan that hardly
+        shows its plateau are a hundred times as large, and would hide that its corner is elsewhere.
+        """
         try:
             fits = [maps.fits(self.reach) for maps in self.counted]
         except ValueError:
             return [(0.0, 0.0, 1.0, 1.0, 1.0)]
+        shares = np.repeat(np.divide(self.weights, list(map(len, fits))), list(map(len, fits)))
+        variances = np.diag(self.fit.covariance)[1:] / shares[:, None]
+        alone = (one for of_size in fits for one in of_size)
         return [
-            (np.log(alone.corner), alone.slope, *np.diag(alone.covariance)[1:], weight / len(of_size))
-            for of_size, weight in zip(fits, self.weights, strict=True)
-            for alone in of_size
+            (np.log(one.corner), one.slope, *of_one, share)
+            for one, of_one, share in zip(alone, variances, shares, strict=True)
         ]
 
     @property
