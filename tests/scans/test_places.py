@@ -152,7 +152,7 @@ def test_errors_cover_a_fourth_place_as_often_as_those_of_drawn_numbers(kind):
     for column, quantity in enumerate(SCATTER):
         # Three scans of `drawn` have the variance 1.25 on average, the error of their mean is √(1.25 / 3).
         scatter = SCATTER[quantity] * (quantity == kind) * np.sqrt(1.25 / 3) / np.median(old[:, column])
-        share = drawn(rng, 3, scatter, 400)[:, 1].mean()
+        share = drawn(rng, 3, scatter, 2000)[:, 1].mean()
         assert is_likely(covered[column], share, sets), (quantity, share)
         if quantity == kind:
             assert not is_likely(before[column], share, sets), "control: the old rule"
