@@ -81,6 +81,7 @@ def read_configuration():
     # A workflow that uses this one as a module states its changes alone, and replaces the file of all keys by them.
     defaults = BASE / "config.yaml"
     config.update(merging.merged(contents.get(defaults) or files.read(defaults), config))
+    config.update(merging.without_inherited(config, files.paper(), list(contents.values())))
     for file in contents:  # files of scans and of test beams are relative to the first match
         config.update(scans.resolve_scan_paths(config, contents[file], file.parent))
         config.update(process.resolve_scan_paths(config, contents[file], file.parent))

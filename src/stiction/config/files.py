@@ -7,7 +7,7 @@ from typing import Any
 
 from stiction.config import test_beams
 from stiction.config.cases import in_numbers
-from stiction.config.merging import expanded, merged
+from stiction.config.merging import expanded, merged, without_inherited
 from stiction.config.reading import PAPER, paper, read
 from stiction.config.scans import complete, resolve_scan_paths
 from stiction.config.surfaces import described, process
@@ -43,8 +43,9 @@ def load(*overlays: str | Path | Mapping) -> dict:
 
 def joined(*overlays: str | Path | Mapping) -> dict:
     """Configuration of the paper, changed by overlays as in `load`, as it is: neither checked nor in normal form."""
-    changes = (_in_memory(one) if isinstance(one, Mapping) else located(one) for one in overlays)
-    return process.with_surfaces(expanded(functools.reduce(merged, changes, read(PAPER))))
+    changes = [_in_memory(one) if isinstance(one, Mapping) else located(one) for one in overlays]
+    whole = functools.reduce(merged, changes, read(PAPER))
+    return process.with_surfaces(expanded(without_inherited(whole, paper(), changes)))
 
 
 def _in_memory(overlay):

@@ -6,7 +6,7 @@ entries like any others: nothing else knows of the section but tables and figure
 """
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import chain
 from typing import Any
 
@@ -38,6 +38,32 @@ def merged(base: Any, overlay: Any) -> Any:
     if not (isinstance(base, Mapping) and isinstance(overlay, Mapping)):
         return overlay
     return {**base, **{key: merged(base.get(key), value) for key, value in overlay.items()}}
+
+
+#: Keys of a pair of the paper that make its results those of the paper. Attraction across gaps is left out, which is
+#: the unsafe side on other surfaces.
+_OF_PAPER = ("attraction", "coarser_mesh")
+
+
+def _is_named(overlay):
+    """Whether an overlay has pairs by name. Other things in their place are refused by the schema."""
+    return isinstance(overlay.get("pairs"), Mapping)
+
+
+def without_inherited(config: dict[str, Any], base: Mapping[str, Any], overlays: Sequence[Any]) -> dict[str, Any]:
+    """Configuration in which a pair of other surfaces than that of its name in ``base`` has no key for the paper alone.
+
+    What an overlay states itself stays.
+    """
+    stated = [overlay["pairs"] for overlay in overlays if isinstance(overlay, Mapping) and _is_named(overlay)]
+    pairs = dict(config["pairs"]) if isinstance(config.get("pairs"), Mapping) else {}
+    for name, known in base["pairs"].items():
+        own = {
+            key: value for pair in stated if isinstance(pair.get(name), Mapping) for key, value in pair[name].items()
+        }
+        if any(own.get(side, known[side]) != known[side] for side in ("beam", "substrate")):
+            pairs[name] = {key: value for key, value in pairs[name].items() if key in own or key not in _OF_PAPER}
+    return config | {"pairs": pairs} if pairs else config
 
 
 # Values of one key, or of several together, side by side
