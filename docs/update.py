@@ -44,6 +44,7 @@ from stiction.stages.laws.forces import vectors
 sys.path[:0] = [str(Path(__file__).parent), str(Path(__file__).parents[1] / "tests")]
 import keys  # noqa: E402
 import quoted  # noqa: E402
+import reruns  # noqa: E402
 import rules  # noqa: E402
 from benchmarks import jobs  # noqa: E402
 from draw import drawings  # noqa: E402
@@ -154,7 +155,7 @@ def main(results):
             print(f"{reason}: the docs keep their present numbers")  # noqa: T201
         else:
             collected(folder)
-    for written in (drawings, tables, pages):  # pages state checksums of drawings and tables
+    for written in (drawings, tables, reruns.written, pages):  # pages state checksums of drawings and tables
         for path, text in written().items():
             path.write_text(text, encoding="utf-8")
 

@@ -7,6 +7,7 @@ import pytest
 from conftest import ROOT
 
 sys.path.insert(0, str(ROOT / "docs"))
+import reruns  # noqa: E402
 import rules  # noqa: E402
 
 
@@ -55,3 +56,8 @@ def test_snakemake_finds_nothing_to_improve_but_environments(planner):
     _, printed = planner("--lint")
     faults = {*re.findall(r"^    \* (.*)$", printed, re.MULTILINE)}
     assert faults == {"Specify a conda environment or container for each rule.:"}
+
+
+@pytest.mark.slow
+def test_the_table_of_keys_and_the_rules_that_they_rerun_is_up_to_date():
+    assert reruns.TABLE.read_text() == reruns.table(), "run make numbers"
