@@ -151,13 +151,13 @@ def test_sentences_of_the_pages_with_test_beams_and_one_picture_are_copied(tmp_p
     folder, picture = tmp_path / "run", f"{update.TEST_BEAMS_PICTURE[0]}.png"
     assert "no finished run" in update.unfinished_devices("test_beams", update.TEST_BEAMS, folder)
     monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
-    said = {name: lambda found, name=name: f"{name}: {float(found.factor)}" for name in update.TEST_BEAMS_SAID}
+    said = {name: lambda found, name=name: f"{name}: {float(found.linear)}" for name in update.TEST_BEAMS_SAID}
     monkeypatch.setattr(update, "TEST_BEAMS_SAID", said)
     for part in ("docs/tables", "docs/pictures", "run/results/figures", "run/results/devices/test_beams/rerun"):
         (tmp_path / part).mkdir(parents=True)
     for device, factor in (("onB", 1.1), ("onA", 1.0)):
         path = folder / "results" / "devices" / "test_beams" / "rerun" / f"{device}.nc"
-        storage.save(xr.Dataset({"factor": factor}), path, "test_beams_rerun", {})
+        storage.save(xr.Dataset({"linear": factor}), path, "test_beams_rerun", {})
     Image.new("RGB", (20, 10)).save(folder / "results" / "figures" / picture)
     update.collect_test_beams(folder)
     assert {path.name for path in (tmp_path / "docs").rglob("*.*")} == {"test_beams.csv", picture}

@@ -255,7 +255,7 @@ class Tree:
         before = [f"results/{file}.nc" for file in read if not isinstance(file, File)]
         for file in before:
             self.place(file)
-        content = xr.Dataset({"noise": ("byte", NOISE)} if name == LARGE else {})
+        content = xr.Dataset({"limit": ("byte", NOISE)} if name == LARGE else {})
         storage.save(content, name, job.stage.stage, job.settings, before)
 
     def git(self, *command):

@@ -142,7 +142,11 @@ def _join(files: list[_File], axes: list[str]) -> xr.Dataset:
     for file, place in zip(files, places, strict=True):
         grid[tuple(of_axis.index(value) for of_axis, value in zip(values, place, strict=True))] = file.path
     first = files[0].coords
-    shared = [name for name in first.coords if all(first[name].equals(file.coords.get(name)) for file in files)]
+    shared = [
+        name
+        for name in first.coords
+        if name not in axes and all(first[name].equals(file.coords.get(name)) for file in files)
+    ]
     joined = {}
     for name in dict.fromkeys(name for file in files for name in _variables(file)):
         if name not in (*axes, *shared):
