@@ -159,7 +159,7 @@ class World:
         at, along = _pivots(tail.samples, tail.fitted, self.draws)
         slopes = slope / along
         intercepts = tail.intercept - at * slopes + of.surfaces_error * normal(self.draws, "surfaces")
-        order = np.argsort(intercepts + slopes * ndtri(self._once))[_ranks(self.draws)]
+        order = np.argsort(intercepts + slopes * ndtri(self._once))
         intercepts, slopes = _to_stated(of, self._once, intercepts, slopes)
         return intercepts[order], slopes[order]
 
@@ -246,12 +246,6 @@ class World:
 def _pivots(samples, fitted, draws):
     """Intercepts and slopes of lines through the lowest of normal samples (draws,) each."""
     return simulated_lines(samples, fitted, stream(draws.seed, "answer", "tail"), draws.number)
-
-
-@lru_cache(maxsize=8)
-def _ranks(draws):
-    """Rank of the error of the simulation in every draw (draws,)."""
-    return stream(draws.seed, "answer", "ranks").permutation(draws.number)
 
 
 @lru_cache(maxsize=8)
