@@ -80,6 +80,17 @@ def test_where_nothing_else_is_stated_the_size_is_the_least_stated_bound(seed, t
         assert_allclose(np.log([one.build, one.without_tip]), [min(own), own[0]], atol=1e-9)
 
 
+def test_equal_bounds_by_fits_of_other_numbers_of_devices_are_the_size():
+    """Whatever errors of two conditions have in common, both bounds hold if each does."""
+    values = lognormal(np.random.default_rng(12))
+    reach = float(np.sort(values)[19]) + 1e-6
+    few = np.where(values <= reach, values, np.inf)
+    first, second = air(values), air(few, 0.8, reach=float(np.exp(reach)))
+    assert (first.sampled.tail.fitted, second.sampled.tail.fitted) == (50, 20)
+    second = replace(second, sampled=replace(second.sampled, stated=first.sampled.stated, surfaces_error=0.05))
+    assert_allclose(built([first, second], Exact()), first.sampled.stated[0].bound, atol=1e-9)
+
+
 def test_a_bound_of_order_statistics_or_of_drier_air_is_kept():
     one = air(lognormal(np.random.default_rng(1)))
     (own,) = one.sampled.stated
