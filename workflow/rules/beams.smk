@@ -9,10 +9,6 @@ Written by docs/rules.py from the declarations of the stages: change these, then
 #   forces -> results/studies/mesh.nc
 define("mesh")
 
-# Where the results of pairs are beyond the model.
-#   beams, plasticity, estimate, spectrum -> results/warnings.md
-define("model_limits")
-
 # Release the beams of {case} on force laws resampled from the contact samples (App. B).
 #   forces -> results/studies/resampling/{case}.nc
 define("resampling")

@@ -34,6 +34,14 @@ define("device_slope_contact")
 #     results/devices/contact/tips/slopes/{pair}_{length}x{width}_{surface}_{quantity}_{each}.nc
 define("tip_slope_contact")
 
+# Contact of pair {pair}, {length} x {width} nm, with {member} in place of what is assumed of {surface}.
+#   no results -> results/devices/contact/members/{pair}_{length}x{width}_{surface}_like_{member}.nc
+define("device_member_contact")
+
+# Contact of pair {pair}, {length} x {width} nm, at the tips of beams, with {member} in place of what is assumed of {surface}.
+#   no results -> results/devices/contact/tips/members/{pair}_{length}x{width}_{surface}_like_{member}.nc
+define("tip_member_contact")
+
 # Contact of pair {pair} with less and more of each moment (Fig. 13).
 #   heights, spectrum -> results/studies/sensitivity/contact/{pair}_{each}.nc
 define("sensitivity_contact")

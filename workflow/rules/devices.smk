@@ -108,3 +108,8 @@ define("test_beams")
 #   test_beams, budget, test_beam_budget, contact, device_contact, heights, spectrum ->
 #     results/devices/test_beams/rerun/{device}.nc
 define("test_beams_rerun")
+
+# Answer about device {device}.
+#   budget, tip_budget, life, fast_strips, fast_tips, test_beams, safe_lengths, separation, stoppers,
+#     tilted_stoppers, at_voltage, stoppers_at_voltage, touchdowns -> results/devices/answer/{device}.nc
+define("answer")

@@ -5,6 +5,10 @@ Above each rule: what it does, the rules whose results it reads -> the files tha
 Written by docs/rules.py from the declarations of the stages: change these, then run make numbers.
 """
 
+# Devices: verdicts on all devices.
+#   answer, device_warnings -> results/tables/devices.{csv,md,html}
+define("table_devices")
+
 # Figure 14: shapes and crack lengths of beams.
 #   beams -> results/figures/figure_14.{pdf,png,txt}
 define("figure_14")
@@ -106,7 +110,7 @@ define("figure_pressing")
 #   safe_lengths, device_warnings -> results/figures/risk.{pdf,png,txt}
 define("figure_risk")
 
-# Chart: safe length against relative humidity.
+# Chart: simulated limit against relative humidity.
 #   chart, device_warnings -> results/figures/chart.{pdf,png,txt}
 define("figure_chart")
 
@@ -119,21 +123,21 @@ define("table_life")
 define("figure_life")
 
 # Page of device {device}.
-#   budget, tip_budget, device_warnings, life, test_beams_rerun, safe_lengths, roughness, stoppers,
+#   answer, life, budget, tip_budget, device_warnings, test_beams_rerun, safe_lengths, roughness, stoppers,
 #     tilted_stoppers, stoppers_at_voltage, process_curve, process_settings, process_law, chart, process_map,
 #     process_pairs, device_model_error -> results/devices/{device}.{html,txt}
 define("device_page")
 
-# Safe lengths: lengths of releasing beams.
+# Simulated limits of beams.
 #   safe_lengths, device_warnings, device_model_error -> results/tables/safe_lengths.{csv,md,html}
 define("table_safe_lengths")
 
-# Chart: safe length against relative humidity.
+# Chart: simulated limit against relative humidity.
 #   chart, device_warnings -> results/tables/chart.{csv,md,html}
 define("table_chart")
 
 # Where the results of devices are beyond the model.
-#   device_warnings, test_beams_rerun -> results/devices/warnings.md
+#   device_warnings, test_beams_rerun -> results/devices/warnings.{md,json}
 define("device_limits")
 
 # Figure 5: a force curve, its force law and its parameters.
@@ -143,6 +147,10 @@ define("figure_05")
 # Figure 12: computed and generated force curves.
 #   forces, chaos -> results/figures/figure_12.{pdf,png,txt}
 define("figure_12")
+
+# Where the results of pairs are beyond the model.
+#   beams, plasticity, estimate, spectrum -> results/warnings.{md,json}
+define("model_limits")
 
 # Model error: Table III under full elastic contact.
 #   pair_model_error, pair_model_error_across, beams, variant -> results/tables/model_error.{csv,md,html}
