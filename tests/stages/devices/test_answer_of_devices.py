@@ -34,8 +34,8 @@ SIGMA = 0.04
 
 @pytest.fixture(autouse=True)
 def few_draws(monkeypatch):
-    """Draws that leave 1 % in a size, or nothing where a stated bound decides."""
-    monkeypatch.setattr(answer, "DRAWS", 2000)
+    """Draws that leave 2 % in a size, or nothing where a stated bound decides."""
+    monkeypatch.setattr(answer, "DRAWS", 1000)
 
 
 @cache
