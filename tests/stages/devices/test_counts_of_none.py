@@ -5,11 +5,10 @@ import re
 import numpy as np
 import pytest
 import xarray as xr
+from answers import CANTILEVER, STOPPER, STOPPERS, of_length, stopper_dataset
 from hypothesis import given
 from hypothesis import strategies as st
-from test_pages import CANTILEVER, STOPPER, of_length
 from test_stage_life import STOPPER as IN_USE
-from test_tables_budget import STOPPERS, stopper_dataset
 
 from stiction.contact.correction import NONE
 from stiction.devices.risk import stuck_share, upper_bound

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 import small
 import xarray as xr
+from answers import BEAM, budget_dataset
 from ground import C1, R1, safe_with_tips
 from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
 from test_device_outputs import charted
-from test_tables_budget import BEAM, budget_dataset
 
 from stiction.beam.energy import arrest_length
 from stiction.config.cases import Case

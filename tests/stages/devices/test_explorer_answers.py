@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from test_pages import CANTILEVER, STOPPER, of_length, safe
+from answers import BUDGETS, C1, CANTILEVER, STOPPER, budget_dataset, of_length, safe, stopper_dataset
 from test_stage_stoppers import SETTINGS
-from test_tables_budget import BUDGETS, C1, budget_dataset, stopper_dataset
 
 from stiction.beam.cantilever import Beam
 from stiction.contact.voltage import Capacitor, Dielectric

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 import small
 import xarray as xr
+from answers import stopper_dataset
 from numpy.testing import assert_allclose
 from test_at_voltage import at
 from test_stage_life import STOPPER
-from test_tables_budget import stopper_dataset
 
 from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.environment import Gaps

@@ -5,9 +5,9 @@ from itertools import chain, combinations
 
 import numpy as np
 import pytest
+from answers import stopper_dataset
 from ground import C1, R1, safe_with_tips, safe_without_tips
 from test_stage_life import OF, STOPPER, UNSTATED
-from test_tables_budget import stopper_dataset
 
 from stiction.contact.voltage import Dielectric
 from stiction.devices.risk import samples_for

@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 import xarray as xr
-from test_pages import CANTILEVER, TIPS, budget_dataset, of_length, safe
+from answers import CANTILEVER, TIPS, budget_dataset, of_length, safe
 from test_stage_life import OF
 
 from stiction.report.devices import first_screen, life, own_length, sentences, tables

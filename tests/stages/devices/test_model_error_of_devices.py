@@ -2,9 +2,8 @@
 
 import numpy as np
 import pytest
+from answers import BUDGETS, CANTILEVER, STOPPER, STOPPERS, safe
 from ground import safe_with_tips
-from test_pages import CANTILEVER, STOPPER, safe
-from test_tables_budget import BUDGETS, STOPPERS
 
 from stiction.config.files import load
 from stiction.plan.graph import Graph

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 import small
 import xarray as xr
+from answers import stopper_dataset
 from ground import SURFACES, WATER, lognormal_cracks, smooth_tips, wanted
 from test_stage_life import OF, STOPPER, answers, at_voltage
-from test_tables_budget import stopper_dataset
 
 from stiction.config.files import load
 from stiction.contact.correction import NONE

@@ -4,13 +4,12 @@ import io
 
 import numpy as np
 import pytest
+from answers import BEAMS, BUDGETS, STOPPERS, safe
 from drawn_curves import etched, law_of, mapped, rough
 from matplotlib.image import imread
 from matplotlib.text import Text
 from test_device_outputs import charted
-from test_pages import safe
 from test_stage_life import OF
-from test_tables_budget import BEAMS, BUDGETS, STOPPERS
 
 from stiction.report.budget import figures as of_budgets
 from stiction.report.devices import figures as of_devices

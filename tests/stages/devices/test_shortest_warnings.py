@@ -4,8 +4,7 @@ import itertools
 
 import numpy as np
 import pytest
-from test_pages import CANTILEVER, safe
-from test_tables_budget import TIPS, budget_dataset
+from answers import CANTILEVER, TIPS, budget_dataset, safe
 
 from stiction.devices.limits import rules as limits
 from stiction.report.devices import pages, sentences

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from answers import stopper_dataset
 from ground import C1, R1, safe_with_tips, safe_without_tips
 from legends import covering
 from numpy.testing import assert_allclose
 from plans import job_settings
-from test_tables_budget import stopper_dataset
 
 from stiction.config.files import load
 from stiction.config.units import in_si

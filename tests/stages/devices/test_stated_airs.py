@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 import xarray as xr
-from test_pages import STOPPER
+from answers import STOPPER
 
 from stiction.config.files import joined
 from stiction.contact.environment import Water

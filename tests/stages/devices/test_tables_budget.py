@@ -2,57 +2,19 @@
 
 import numpy as np
 import pytest
+from answers import BEAMS, BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
 from legends import covering
 from matplotlib.lines import Line2D
 from noted import noted
 from numpy.testing import assert_allclose
 
 from stiction.config.files import load
-from stiction.contact.environment import Water
 from stiction.plan.plan import Plan
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.style import DOUBLE, humidity_colours, legend_below, panels, save, styled
-from stiction.stages.devices import budget as study_budget
-from stiction.stages.devices import stoppers as study_stoppers
-from stiction.stages.devices.budget import Responses
-from stiction.stages.devices.opening import DesignedBeam
-from stiction.stages.devices.uncertain_inputs import Input, State, Uncertainty
 
-STATE = State(None, 0.5, Water(300.0))
-NAMES = {"rms of B2": "heights of B2", "skewness of B2": "heights of B2", "thickness": "thickness"}
-COVARIANCE = np.array([[4e-4, -1e-4, 0], [-1e-4, 4e-4, 0], [0, 0, 1e-4]])
-
-
-C1 = DesignedBeam("cantilever", "b", 2.6e-6, 20e-6, 30e-6, 164e9, 1.5e-6)
-#: Settings of the budgets of a beam, of its tips and of a stopper.
-COMMON = 1, Water(300.0), 0.5, Uncertainty(), ("B2", "Sub1"), 164e9
-BEAM = study_budget.BeamBudget(*COMMON, device=C1, beams=0)
-TIPS = study_budget.TipBudget(*COMMON, device=C1, share=1e-3)
-PATCH = study_budget.PatchBudget(*COMMON, contact=(3e-6, 3e-6))
-
-
-def budget_dataset(factor=1.0, settings=BEAM):
-    """Budget of three inputs, two of them correlated, and one choice."""
-    inputs = [Input(name, group, (STATE, STATE), 0.1) for name, group in NAMES.items()]
-    slopes = np.array([[1.0, 0.02], [1.0, 0.03], [0.8, 0.01]]) * [factor, 1]
-    devices = Responses(np.array([[690e-6, 700e-6, 710e-6]]), np.mean)
-    return study_budget.layout(inputs, slopes, COVARIANCE, devices, {"van_der_waals_dry": (-0.042, 0.003)}, settings)
-
-
-def stopper_dataset(peak=0.7):
-    """400 patches that hold 0.05, 0.1, ..., 20 µN."""
-    settings = study_stoppers.Settings(1, Water(300.0), (3e-6, 3e-6), 18.99e-6, (0.44, 0.67), (0.4, 0.9))
-    forces, axis = 5e-8 * np.arange(1, 401), np.linspace(0.4, 0.9, 11)
-    peaks = peak + 0.04 * np.where(np.arange(400) % 2, 1, -1)
-    along = (1 - (axis[:, None] - peaks) ** 2) * 5e-6
-    return study_stoppers.layout(settings, np.stack([forces, 0.5 * forces]), axis, along)
-
-
-BEAMS = {("C1", 0.44): budget_dataset(2.0), ("C1", 0.67): budget_dataset()}
-BUDGETS = BEAMS | {("C1", 0.67, "tip"): budget_dataset(0.5, TIPS), ("S1", 0.67): budget_dataset(1, PATCH)}
 WARNINGS = {"S1": [], "S2": [noted("Beware.")]}
-STOPPERS = {"S1": stopper_dataset(), "S2": stopper_dataset(peak=1.0)}
 
 
 def part(frame, name, humidity=0.67, device="C1", held_by="beam"):

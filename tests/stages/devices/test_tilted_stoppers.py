@@ -6,10 +6,10 @@ from functools import cache
 import numpy as np
 import pytest
 import small
+from answers import stopper_dataset
 from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
 from test_stage_life import STOPPER
-from test_tables_budget import stopper_dataset
 
 from stiction.config.files import load
 from stiction.config.units import in_si

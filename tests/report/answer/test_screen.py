@@ -1,0 +1,325 @@
+"""The first screen of a page has one answer, which agrees with the datasets, or the limit that forbids it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from answers import (
+    BRIDGE,
+    BUDGETS,
+    CANTILEVER,
+    STOPPER,
+    STOPPERS,
+    TIPS,
+    beam_answer,
+    beam_page,
+    budget_dataset,
+    least,
+    of_length,
+    safe,
+    screen_of,
+    silent,
+    stopper_answer,
+    stopper_dataset,
+    stopper_page,
+)
+from drawn_curves import etched, law_of, rough
+
+from stiction.answer.data import Verdict
+from stiction.beam.cantilever import Beam
+from stiction.beam.energy import apparent_adhesion_energy
+from stiction.devices import limits
+from stiction.devices.budget import LARGEST
+from stiction.report.answer import words
+from stiction.report.page import Page, Section, Summary
+from stiction.report.process.section import with_process
+from stiction.stages.devices.budget import budget_of
+from stiction.stages.devices.opening import ARC, S_SHAPE
+from stiction.stages.test_beams.inference import shape_of
+
+UNSAFE = limits.plastic_contact(0.5, 1e8)
+OF_TIP = {(0.67, "tip"): BUDGETS["C1", 0.67, "tip"]}
+
+
+def with_total(budget, total):
+    """Budget of another total, with slopes that are known exactly."""
+    known = budget.assign(slope_error=0 * budget.slope_error)
+    return known.assign(covariance=known.covariance * (total / budget_of(known).total) ** 2)
+
+
+def test_without_a_length_the_answer_is_the_length_to_build_in_the_worst_air():
+    lengths = {0.44: safe(), 0.67: safe(longest=500e-6)}
+    answer = beam_answer(CANTILEVER, lengths)
+    shown = screen_of(answer, CANTILEVER)
+    # All inputs count as exact: the simulated limit of the worst air, as far as 4000 draws tell it.
+    assert answer.build == pytest.approx(least(lengths[0.67]), rel=5e-3)
+    assert (shown.tone, shown.sign) == ("good", "Length to build")
+    assert shown.answer == f"No longer than {1e6 * answer.build:.0f} µm."
+    assert shown.points["What decides"].startswith("RH 0.67, stuck by beam or tip.")
+    assert "at relative humidities of 0.44, 0.67 (95 % confidence)." in shown.basis[0]
+    assert "All inputs count as exact." in shown.basis[1]
+    assert shown.cells["RH"].tolist() == ["0.44", "0.67"]
+    alone = [1e6 * least(one) for one in lengths.values()]
+    np.testing.assert_allclose(shown.cells["length to build [µm]"].astype(float), alone, rtol=1e-2)
+
+
+@pytest.mark.parametrize(
+    ("length", "verdict", "sign"),
+    [(150, "safe", "Safe"), (281, "open", "Not shown to be safe"), (400, "bad", "Too long")],
+)
+def test_a_stated_length_is_judged_by_the_size_to_build_and_its_own_fraction(length, verdict, sign):
+    # All 400 devices stick between 280 and 420 µm, by beam or tip.
+    section = CANTILEVER | {"length_um": length}
+    answer = beam_answer(section, {0.67: of_length(1e-6 * length)})
+    shown = screen_of(answer, section)
+    assert (answer.verdict, shown.sign) == (Verdict(verdict), sign)
+    assert answer.stuck.value == pytest.approx(max(length - 280, 0) / 140, abs=0.01)
+    said = words.stuck_in_words(answer.stuck)
+    assert shown.answer.endswith(f"; with your {length:g} µm, {said} stick.")
+    assert shown.cells.iloc[0, -1] == said
+
+
+def test_dry_air_is_in_words():
+    forces = stopper_dataset().assign_coords(humidity=[0.0, 0.67]).assign(restoring_force=1e-9)
+    section = CANTILEVER | {"length_um": 400}
+    stopped = screen_of(stopper_answer(forces), STOPPER)
+    released = screen_of(beam_answer(section, {0.0: of_length(400e-6)}), section)
+    for shown in (stopped, released):
+        assert shown.points["What decides"].startswith("Dry air, ")
+        assert shown.cells.RH[0] == "dry"
+    assert " in dry air (95 % confidence)." in beam_page(CANTILEVER, {0.0: safe()}).summary.basis[0]
+
+
+def test_the_uncertainty_of_the_inputs_shortens_the_answer_and_names_what_to_measure():
+    exact, answer = (beam_answer(CANTILEVER, {0.67: safe()}, budgets) for budgets in ({}, OF_TIP))
+    assert answer.build < exact.build == pytest.approx(answer.exact)
+    assert answer.measure == "heights of B2"
+    assert answer.build < answer.if_measured < answer.exact
+    wide = {(0.67, "tip"): with_total(OF_TIP[0.67, "tip"], 0.2)}
+    answer = beam_answer(CANTILEVER, {0.67: safe()}, wide)
+    shown = screen_of(answer, CANTILEVER)
+    assert f"would be {1e6 * answer.if_measured:.0f} µm" in shown.points["What to measure"]
+    assert shown.points["What to measure"].startswith("Heights of B2: known exactly")
+    assert "uncertainty" in screen_of(exact, CANTILEVER).points["What to measure"]
+
+
+@pytest.mark.parametrize("own", [None, 50, 400])
+def test_inputs_that_leave_a_length_too_uncertain_allow_no_length_to_build(own):
+    section = CANTILEVER | ({"length_um": own} if own else {})
+    lengths = {0.67: of_length(own * 1e-6) if own else safe()}
+    above, below = (
+        beam_answer(section, lengths, {(0.67, "tip"): with_total(OF_TIP[0.67, "tip"], total * LARGEST)})
+        for total in (1.02, 0.98)
+    )
+    shown = screen_of(above, section)
+    assert above.verdict is Verdict.NONE
+    assert shown.sign == "Not known"
+    assert f"Were all exact, it would be {1e6 * above.exact:.0f} µm." in shown.answer
+    assert not any("95 % confidence" in text for text in shown.basis), "nothing is promised"
+    assert ("with your" in shown.answer) == bool(own)
+    assert screen_of(below, section).answer.startswith(f"No longer than {1e6 * below.build:.0f} µm")
+
+
+def test_devices_stick_for_certain_however_uncertain_the_inputs_are():
+    section = CANTILEVER | {"length_um": 5000}
+    answer = beam_answer(section, {0.67: of_length(5000e-6)}, {(0.67, "tip"): with_total(OF_TIP[0.67, "tip"], 0.6)})
+    assert answer.verdict is Verdict.BAD
+    assert screen_of(answer, section).sign == "Too long"
+
+
+def test_the_sizes_to_change_need_the_adhesion_energy_of_the_length_to_build():
+    section = CANTILEVER | {"length_um": 400}
+    answer = beam_answer(section, {0.67: of_length(400e-6)})
+    shown = screen_of(answer, section)
+    thickness, gap = (float(part.split()[0]) for part in shown.points["What to change"].split(" of ")[2:])
+
+    def energy(crack, thickness, gap):
+        beam = Beam(1500e-6, 30e-6, 1e-6 * thickness, 164e9, 1e-6 * gap, 200)
+        return apparent_adhesion_energy(1e-6 * crack, beam)
+
+    at_build = energy(1e6 * answer.build, CANTILEVER["thickness_um"], CANTILEVER["gap_um"])
+    np.testing.assert_allclose(energy(400, thickness, CANTILEVER["gap_um"]), at_build, rtol=0.02)
+    np.testing.assert_allclose(energy(400, CANTILEVER["thickness_um"], gap), at_build, rtol=0.02)
+
+
+@pytest.mark.parametrize("budgets", [{}, {(0.44,): BUDGETS["S1", 0.67]}])
+def test_a_stopper_suffices_if_and_only_if_it_has_the_force_to_build(budgets):
+    stopper = STOPPERS["S1"]
+    needed = stopper_answer(stopper, budgets).build
+    limit = float(stopper.safe_force.sel(part="safe", share=1e-2).max())
+    assert needed == pytest.approx(limit, rel=5e-3) if not budgets else needed > 1.005 * limit
+    for by, sign in ((2, "Suffices"), (1.001, "Suffices"), (0.999, "Not shown to suffice"), (0.1, "Too weak")):
+        answer = stopper_answer(stopper.assign(restoring_force=by * needed), budgets)
+        shown = screen_of(answer, STOPPER)
+        assert shown.sign == sign
+        own = f"with your {1e6 * by * needed:.4g} µN, {words.stuck_in_words(answer.stuck)} stick"
+        assert shown.answer == f"At least {1e6 * needed:.3g} µN; {own}."
+        build = "Nothing." if by > 1 else f"A restoring force of {1e6 * needed:.3g} µN."
+        assert shown.points["What to change"] == build
+
+
+def test_a_limit_on_the_unsafe_side_stands_in_place_of_the_number():
+    beam = beam_answer(CANTILEVER, {0.67: safe()}, forbidding=[UNSAFE])
+    stopped = stopper_answer(STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, [UNSAFE])
+    for answer, section in ((beam, CANTILEVER), (stopped, STOPPER)):
+        shown = screen_of(answer, section, [UNSAFE])
+        assert (shown.tone, shown.sign, shown.answer) == ("bad", "Do not rely on a number", UNSAFE)
+        assert (shown.cells.iloc[:, 1:] == "–").all(axis=None)
+    assert (
+        "No longer than"
+        in beam_page(CANTILEVER, {0.67: safe()}, warnings=silent({0.67: safe()}, said=["Steep."])).lines[0]
+    )
+
+
+# Test beams
+
+
+def updated_by_tests(responses, p_value=0.2):
+    """Update of one result for each response by test beams."""
+    number = len(responses)
+    before, shift, after = np.array([0.2, 0.1]), np.array([0.05, -0.02]), np.array([0.1, 0.04])
+    scores = np.linspace(-6, 6, 61)
+    return xr.Dataset(
+        {
+            "p_value": p_value,
+            "response": ("result", list(responses)),
+            "humidity_of_result": ("result", [0.67] * number),
+            "result_before": ("result", before[:number]),
+            "result_shift": ("result", shift[:number]),
+            "result_after": ("result", after[:number]),
+            "result_quantile": (("result", "score"), (shift[:, None] + np.outer(after, scores))[:number]),
+            "measured": ("datum", [np.nan]),
+            "stuck": ("count", []),
+        },
+        {"shape": list(map(shape_of, responses)), "score": scores},
+    )
+
+
+def of_tips(p_value=0.2):
+    return updated_by_tests([ARC, S_SHAPE], p_value)
+
+
+@pytest.mark.parametrize(("p_value", "forbidden"), [(1e-5, True), (0.2, False)])
+def test_test_beams_that_nothing_explains_forbid_the_number(p_value, forbidden, monkeypatch):
+    monkeypatch.setattr("stiction.report.devices.pages._test_beam_sections", lambda name, update: [])
+    monkeypatch.setattr("stiction.report.test_beams.tables.warnings", lambda update: [])
+    page = beam_page(CANTILEVER, {0.67: safe()}, test_beams=of_tips(p_value))
+    assert (page.summary.sign == "Do not rely on a number") == forbidden
+    assert ("rely neither on the update" in page.summary.answer) == forbidden
+
+
+def test_the_answer_of_a_device_with_test_beams_is_the_one_that_they_give():
+    dataset = safe()
+    answer = beam_answer(CANTILEVER, {0.67: dataset}, OF_TIP, test_beams=of_tips())
+    without = beam_answer(CANTILEVER, {0.67: dataset}, OF_TIP)
+    # The tip decides: its length moves by exp(0.05) with a standard deviation of 0.1, which is far more than the
+    # simulation leaves, so that its 5 % quantile is that of a lognormal length.
+    by_hand = float(dataset.estimate.sel(share=1e-3).min()) * np.exp(0.05 - 1.645 * 0.1)
+    assert answer.build == pytest.approx(by_hand, rel=0.02)
+    assert answer.without_test_beams == pytest.approx(without.build, rel=1e-12)
+    shown = screen_of(answer, CANTILEVER)
+    assert shown.answer == f"No longer than {1e6 * answer.build:.0f} µm."
+    assert f"Without the test beams, it would be {1e6 * without.build:.0f} µm." in shown.basis
+    assert shown.cells["length to build [µm]"].tolist() == [f"{1e6 * answer.build:.0f}"]
+
+
+# Pages with a limit that forbids a number
+
+
+def beam(section, warnings, **given):
+    """Page of a cantilever or bridge, with a warning about all shapes."""
+    is_bridge = section["kind"] == "bridge"
+    lengths = {rh: safe("bridge") if is_bridge else of_length(800e-6) for rh in (0.44, 0.67)}
+    return beam_page(section, lengths, {} if is_bridge else OF_TIP, warnings=silent(lengths, said=warnings), **given)
+
+
+def stopper(warnings, **given):
+    """Page of a stopper."""
+    answer = stopper_answer(STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, list(filter(limits.forbids, warnings)))
+    return stopper_page(STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, warnings, answer=answer, **given)
+
+
+def processed(warnings):
+    """Page of a stopper over a process."""
+    curve, settings = etched()
+    data = {"process": curve, "process_settings": settings, "process_laws": [law_of()]}
+    return with_process(stopper(warnings), "D", data)
+
+
+KINDS = {
+    "cantilever": lambda warnings: beam(CANTILEVER | {"length_um": 800}, warnings),
+    "bridge": lambda warnings: beam(BRIDGE, warnings),
+    "stopper": stopper,
+    "roughness": lambda warnings: stopper(warnings, roughness=rough()),
+    "process": processed,
+}
+
+
+@pytest.mark.parametrize("kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind != "bridge")) for kind in KINDS])
+def test_the_limit_that_forbids_a_number_stands_in_the_place_of_all_numbers_in_words(kind):
+    open_, shut = (replace(KINDS[kind](one), more=["More."], explorer={"name": kind}) for one in (["Steep."], [UNSAFE]))
+    assert len(open_.lines) > 1
+    assert shut.summary.answer.endswith(UNSAFE)
+    first, *others = shut.lines
+    assert first == f"Do not rely on a number: {shut.summary.answer}"
+    assert not any(character.isdigit() for line in others for character in line)
+    assert (open_.controls["forbidden"], shut.controls["forbidden"]) == ("", first)
+    assert "– means no number: the warning above forbids to rely on one." in shut.html
+    assert ("What to change" in open_.summary.points, "What to change" in shut.summary.points) == (True, False)
+    assert ("More in words" in open_.html, "More in words" in shut.html) == (True, False)
+
+
+def test_a_number_comes_with_the_error_of_the_model_or_says_that_it_is_not_stated():
+    for said, number in (([], 1), ([UNSAFE], 0)):
+        lengths = {0.67: safe()}
+        answer = beam_answer(CANTILEVER, lengths, forbidding=said)
+        page = beam_page(CANTILEVER, lengths, warnings=silent(lengths, said=said), answer=answer)
+        assert sum("error of the model" in text for text in page.summary.basis) == number
+
+
+def test_limits_forbid_a_number_only_on_the_unsafe_side():
+    forbidding = (
+        UNSAFE,
+        limits.spacer("FDTS", [limits.OF_COATINGS[limits.COATING]]),
+        limits.without_gaps({0.1: (-0.2, 0.01)}, shorter=True),
+        limits.wide_meniscus(1e-6, (3e-6, 3e-6)),
+    )
+    assert all(map(limits.forbids, forbidding))
+    others = limits.large_rotation(20e-6, 100e-6), limits.flat_patches(0.1), limits.stretched_bridge(2e-6, 2e-6)
+    assert not any(map(limits.forbids, others))
+
+
+@pytest.mark.parametrize("cell", ["–", "1"])
+def test_a_cell_without_a_number_is_explained_where_it_stands(cell):
+    cells = pd.DataFrame({"RH": [cell]})
+    summary = Summary("good", "Safe", "5 µm", (), {}, cells)
+    page = Page("C1", {}, ["Yes."], [Section("Table", (), cells, missing="no tip")], summary=summary).html
+    assert ("– means no number: no tip." in page) == (cell == "–")
+    assert page.count("– means no number") == 2 * (cell == "–")
+
+
+def test_the_longest_lengths_are_those_of_beams_whose_tip_cannot_touch():
+    dataset = safe()
+    answer = beam_answer(CANTILEVER, {0.67: dataset})
+    (air,) = answer.airs
+    assert air.without_tip == pytest.approx(float(dataset.safe_length.sel(share=1e-3, shape=S_SHAPE)), rel=5e-3)
+    shown = screen_of(answer, CANTILEVER)
+    assert shown.cells["if the tip cannot touch [µm]"].tolist() == [f"{1e6 * air.without_tip:.0f}"]
+    assert "if the tip cannot touch [µm]" not in screen_of(beam_answer(BRIDGE, {0.67: safe("bridge")}), BRIDGE).cells
+
+
+def test_what_decides_a_stopper_is_the_air_of_the_largest_force_in_its_table():
+    for humidities in ([0.0, 0.67], [0.67, 0.0]):
+        forces = stopper_dataset().assign_coords(humidity=humidities)
+        for force in (1e-9, 19e-6, 1.0):
+            shown = screen_of(stopper_answer(forces.assign(restoring_force=force)), STOPPER)
+            worst = shown.cells.RH[shown.cells["force to build [µN]"].astype(float).idxmax()]
+            assert shown.points["What decides"].startswith("Dry air, " if worst == "dry" else f"RH {worst}, ")
+
+
+def test_a_bridge_has_the_budget_of_its_middle_and_not_that_of_tips():
+    lengths = {0.67: safe("bridge")}
+    tip = beam_answer(BRIDGE, lengths, {(0.67, "tip"): budget_dataset(5.0, TIPS)})
+    assert tip.build == beam_answer(BRIDGE, lengths).build
