@@ -10,9 +10,11 @@ from ground import exactly
 
 from stiction.answer.data import Answer
 from stiction.contact.environment import Water
+from stiction.devices.limits.limit import Limit
 from stiction.report.answer import screen
-from stiction.report.answer.judged import with_limits
+from stiction.report.answer.judged import limits_of, with_limits
 from stiction.report.devices import pages
+from stiction.report.limits.words import texts
 from stiction.report.page import Page, Summary
 from stiction.stages.answer import answer as stage
 from stiction.stages.devices import budget, safe_lengths, sticking, stoppers
@@ -131,7 +133,7 @@ def beam_data(lengths, budgets=None, *, of=None, after=None, **more):
     return {"lengths": lengths, "budgets": list((budgets or {}).values()), "life": life, "biased": {}} | more
 
 
-def beam_answer(section, lengths, budgets=None, forbidding: Sequence[str] = (), **more) -> Answer:
+def beam_answer(section, lengths, budgets=None, limits: Sequence[Limit] = (), **more) -> Answer:
     """Answer about a beam of a section, from its safe lengths by humidity."""
     settings = stage.Settings(
         1,
@@ -144,10 +146,10 @@ def beam_answer(section, lengths, budgets=None, forbidding: Sequence[str] = (), 
         beam=designed(section["kind"]),
         budgets=tuple(humidity for humidity, *_ in budgets or {}),
     )
-    return with_limits(_computed(beam_data(lengths, budgets, **more), settings), forbidding)
+    return with_limits(_computed(beam_data(lengths, budgets, **more), settings), limits)
 
 
-def stopper_answer(stopper, budgets=None, forbidding: Sequence[str] = (), *, of=None, **more) -> Answer:
+def stopper_answer(stopper, budgets=None, limits: Sequence[Limit] = (), *, of=None, **more) -> Answer:
     """Answer about a stopper, from its forces."""
     force = float(stopper.restoring_force)
     of = of or OfStopper(restoring_force=force, contact=(3e-6, 3e-6))
@@ -155,7 +157,7 @@ def stopper_answer(stopper, budgets=None, forbidding: Sequence[str] = (), *, of=
     data = {"stopper": stopper, "budgets": list((budgets or {}).values()), "life": life} | more
     humidities = tuple(humidity for humidity, *_ in budgets or {})
     settings = stage.Settings(1, "S1", "stopper", touchdowns=of.touchdowns, budgets=humidities)
-    return with_limits(_computed(data, settings), forbidding)
+    return with_limits(_computed(data, settings), limits)
 
 
 def _computed(data, settings):
@@ -164,22 +166,24 @@ def _computed(data, settings):
         return stage.compute(data, settings)
 
 
-def screen_of(answer: Answer, section, forbidding: Sequence[str] = ()) -> Summary:
+def screen_of(answer: Answer, section, limits: Sequence[Limit] = ()) -> Summary:
     """First screen of a device."""
-    return screen.screen(answer, section, forbidding, "")
+    return screen.screen(answer, section, texts(limits), "")
 
 
 def beam_page(section, lengths, budgets=None, *, warnings=None, answer=None, name="C1", **data) -> Page:
     """Page of a beam, with the answer on its datasets unless another one is given."""
-    answer = answer or beam_answer(section, lengths, budgets, **_evidence(data))
-    own = {"safe_lengths": lengths, "budgets": budgets or {}, "warnings": warnings or silent(lengths, name)}
-    return pages.beam_page(name, section, own | data, replace(answer, device=name))
+    warnings = warnings or silent(lengths, name)
+    found = limits_of(name, warnings)
+    answer = answer or replace(beam_answer(section, lengths, budgets, found, **_evidence(data)), device=name)
+    own = {"safe_lengths": lengths, "budgets": budgets or {}, "warnings": warnings}
+    return pages.beam_page(name, section, own | data, answer)
 
 
-def stopper_page(section, stopper, budgets=None, warnings: Sequence[str] = (), *, answer=None, **data) -> Page:
+def stopper_page(section, stopper, budgets=None, limits: Sequence[Limit] = (), *, answer=None, **data) -> Page:
     """Page of a stopper, as of `beam_page`."""
-    answer = answer or stopper_answer(stopper, budgets, **_evidence(data))
-    own = {"stopper": stopper, "budgets": budgets or {}, "warnings": OfDevices({}, {}, {"S1": list(warnings)})}
+    answer = answer or stopper_answer(stopper, budgets, limits, **_evidence(data))
+    own = {"stopper": stopper, "budgets": budgets or {}, "warnings": OfDevices({}, {}, {"S1": list(limits)})}
     return pages.stopper_page("S1", section, own | data, answer)
 
 

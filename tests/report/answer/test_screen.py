@@ -1,5 +1,6 @@
 """The first screen of a page has one answer, which agrees with the datasets, or the limit that forbids it."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -30,16 +31,18 @@ from drawn_curves import etched, law_of, rough
 from stiction.answer.data import Verdict
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import apparent_adhesion_energy
-from stiction.devices import limits
 from stiction.devices.budget import LARGEST
+from stiction.devices.limits import rules as limits
 from stiction.report.answer import words
+from stiction.report.limits.words import text
 from stiction.report.page import Page, Section, Summary
 from stiction.report.process.section import with_process
+from stiction.report.test_beams import tables as tables_test_beams
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import ARC, S_SHAPE
 from stiction.stages.test_beams.inference import shape_of
 
-UNSAFE = limits.plastic_contact(0.5, 1e8)
+UNSAFE, STEEP = limits.plastic_contact(0.5, 1e8), limits.large_rotation(20e-6, 100e-6)
 OF_TIP = {(0.67, "tip"): BUDGETS["C1", 0.67, "tip"]}
 
 
@@ -67,7 +70,7 @@ def test_without_a_length_the_answer_is_the_length_to_build_in_the_worst_air():
 
 @pytest.mark.parametrize(
     ("length", "verdict", "sign"),
-    [(150, "safe", "Safe"), (281, "open", "Not shown to be safe"), (400, "bad", "Too long")],
+    [(150, "safe", "Safe"), (275, "open", "Not shown to be safe"), (400, "bad", "Too long")],
 )
 def test_a_stated_length_is_judged_by_the_size_to_build_and_its_own_fraction(length, verdict, sign):
     # All 400 devices stick between 280 and 420 µm, by beam or tip.
@@ -114,19 +117,12 @@ def test_inputs_that_leave_a_length_too_uncertain_allow_no_length_to_build(own):
         for total in (1.02, 0.98)
     )
     shown = screen_of(above, section)
-    assert above.verdict is Verdict.NONE
-    assert shown.sign == "Not known"
+    sign = "Too long" if own == 400 else "Not known"
+    assert (above.verdict, shown.sign) == (Verdict.BAD if own == 400 else Verdict.NONE, sign)
     assert f"Were all exact, it would be {1e6 * above.exact:.0f} µm." in shown.answer
     assert not any("95 % confidence" in text for text in shown.basis), "nothing is promised"
     assert ("with your" in shown.answer) == bool(own)
     assert screen_of(below, section).answer.startswith(f"No longer than {1e6 * below.build:.0f} µm")
-
-
-def test_devices_stick_for_certain_however_uncertain_the_inputs_are():
-    section = CANTILEVER | {"length_um": 5000}
-    answer = beam_answer(section, {0.67: of_length(5000e-6)}, {(0.67, "tip"): with_total(OF_TIP[0.67, "tip"], 0.6)})
-    assert answer.verdict is Verdict.BAD
-    assert screen_of(answer, section).sign == "Too long"
 
 
 def test_the_sizes_to_change_need_the_adhesion_energy_of_the_length_to_build():
@@ -161,15 +157,15 @@ def test_a_stopper_suffices_if_and_only_if_it_has_the_force_to_build(budgets):
 
 
 def test_a_limit_on_the_unsafe_side_stands_in_place_of_the_number():
-    beam = beam_answer(CANTILEVER, {0.67: safe()}, forbidding=[UNSAFE])
+    beam = beam_answer(CANTILEVER, {0.67: safe()}, limits=[UNSAFE])
     stopped = stopper_answer(STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, [UNSAFE])
     for answer, section in ((beam, CANTILEVER), (stopped, STOPPER)):
         shown = screen_of(answer, section, [UNSAFE])
-        assert (shown.tone, shown.sign, shown.answer) == ("bad", "Do not rely on a number", UNSAFE)
+        assert (shown.tone, shown.sign, shown.answer) == ("bad", "Do not rely on a number", text(UNSAFE))
         assert (shown.cells.iloc[:, 1:] == "–").all(axis=None)
     assert (
         "No longer than"
-        in beam_page(CANTILEVER, {0.67: safe()}, warnings=silent({0.67: safe()}, said=["Steep."])).lines[0]
+        in beam_page(CANTILEVER, {0.67: safe()}, warnings=silent({0.67: safe()}, said=[STEEP])).lines[0]
     )
 
 
@@ -204,7 +200,8 @@ def of_tips(p_value=0.2):
 @pytest.mark.parametrize(("p_value", "forbidden"), [(1e-5, True), (0.2, False)])
 def test_test_beams_that_nothing_explains_forbid_the_number(p_value, forbidden, monkeypatch):
     monkeypatch.setattr("stiction.report.devices.pages._test_beam_sections", lambda name, update: [])
-    monkeypatch.setattr("stiction.report.test_beams.tables.warnings", lambda update: [])
+    contradicted = [tables_test_beams.contradiction(of_tips(p_value))] * forbidden
+    monkeypatch.setattr(tables_test_beams, "warnings", lambda update: contradicted)
     page = beam_page(CANTILEVER, {0.67: safe()}, test_beams=of_tips(p_value))
     assert (page.summary.sign == "Do not rely on a number") == forbidden
     assert ("rely neither on the update" in page.summary.answer) == forbidden
@@ -237,8 +234,7 @@ def beam(section, warnings, **given):
 
 def stopper(warnings, **given):
     """Page of a stopper."""
-    answer = stopper_answer(STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, list(filter(limits.forbids, warnings)))
-    return stopper_page(STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, warnings, answer=answer, **given)
+    return stopper_page(STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, warnings, **given)
 
 
 def processed(warnings):
@@ -259,12 +255,12 @@ KINDS = {
 
 @pytest.mark.parametrize("kind", [pytest.param(kind, marks=[pytest.mark.slow] * (kind != "bridge")) for kind in KINDS])
 def test_the_limit_that_forbids_a_number_stands_in_the_place_of_all_numbers_in_words(kind):
-    open_, shut = (replace(KINDS[kind](one), more=["More."], explorer={"name": kind}) for one in (["Steep."], [UNSAFE]))
+    open_, shut = (replace(KINDS[kind](one), more=["More."], explorer={"name": kind}) for one in ([STEEP], [UNSAFE]))
     assert len(open_.lines) > 1
-    assert shut.summary.answer.endswith(UNSAFE)
+    assert shut.summary.answer.endswith(text(UNSAFE))
     first, *others = shut.lines
     assert first == f"Do not rely on a number: {shut.summary.answer}"
-    assert not any(character.isdigit() for line in others for character in line)
+    assert not any(re.search(r"\d (µm|µN|%)", line) for line in others)
     assert (open_.controls["forbidden"], shut.controls["forbidden"]) == ("", first)
     assert "– means no number: the warning above forbids to rely on one." in shut.html
     assert ("What to change" in open_.summary.points, "What to change" in shut.summary.points) == (True, False)
@@ -274,8 +270,7 @@ def test_the_limit_that_forbids_a_number_stands_in_the_place_of_all_numbers_in_w
 def test_a_number_comes_with_the_error_of_the_model_or_says_that_it_is_not_stated():
     for said, number in (([], 1), ([UNSAFE], 0)):
         lengths = {0.67: safe()}
-        answer = beam_answer(CANTILEVER, lengths, forbidding=said)
-        page = beam_page(CANTILEVER, lengths, warnings=silent(lengths, said=said), answer=answer)
+        page = beam_page(CANTILEVER, lengths, warnings=silent(lengths, said=said))
         assert sum("error of the model" in text for text in page.summary.basis) == number
 
 
@@ -286,9 +281,9 @@ def test_limits_forbid_a_number_only_on_the_unsafe_side():
         limits.without_gaps({0.1: (-0.2, 0.01)}, shorter=True),
         limits.wide_meniscus(1e-6, (3e-6, 3e-6)),
     )
-    assert all(map(limits.forbids, forbidding))
+    assert all(limit.forbids for limit in forbidding)
     others = limits.large_rotation(20e-6, 100e-6), limits.flat_patches(0.1), limits.stretched_bridge(2e-6, 2e-6)
-    assert not any(map(limits.forbids, others))
+    assert not any(limit.forbids for limit in others)
 
 
 @pytest.mark.parametrize("cell", ["–", "1"])

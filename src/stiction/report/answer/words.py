@@ -139,15 +139,18 @@ def decides(answer: Answer) -> str:
 
 
 def measure(answer: Answer) -> str:
-    """What to measure, and what it would be worth."""
+    """What to measure, and what it would be worth unless a limit forbids a number."""
     if Cause.TEST_BEAMS in answer.included:
         return "The section on test beams says which further ones help."
     if not answer.measure:
         return "State the uncertainties of the inputs in section uncertainty: the answer then says what to measure."
+    group = f"{answer.measure[0].upper()}{answer.measure[1:]}"
+    if is_forbidden(answer):
+        return f"{group}."
     left = size_in_words(answer, answer.if_measured)
     if abs(np.log(answer.if_measured / answer.build)) < 0.01:
         return f"Nothing: with {answer.measure} known exactly, it would still be {left}."
-    return f"{answer.measure[0].upper()}{answer.measure[1:]}: known exactly, it would be {left}."
+    return f"{group}: known exactly, it would be {left}."
 
 
 def reasons(answer: Answer) -> list[str]:
