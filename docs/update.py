@@ -95,7 +95,7 @@ ROUGHNESS_PICTURES = {"roughness_Bump": 700, "roughness_Lever": 1000, "roughness
 #: Sentences, and picture with its width [pixels], of ``make devices CONFIG=examples/test_beams.yaml``.
 TEST_BEAMS = "test_beams"
 TEST_BEAMS_SAID = {
-    "build": tables_test_beams.sizes_to_build,
+    "build": tables_test_beams.notes,
     "further": tables_test_beams.beams_to_add,
     "warned": lambda update: " ".join(words.texts(tables_test_beams.warnings(update))),
 }

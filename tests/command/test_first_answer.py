@@ -33,12 +33,14 @@ def written(folder, case="C1_rh067", estimate=280e-6, surfaces_error=np.nan):
 
 def test_a_length_is_said_with_its_errors_by_beams_and_surfaces_if_it_has_one(tmp_path):
     log = written(tmp_path / "both", surfaces_error=3e-6)
-    said = "First safe length: C1 at RH 0.67 can be 267 µm long (estimate 280 ± 5 µm) if at most 1 in 1000 may stick "
-    said += "and the measurements are exact."
+    said = "First number: by simulation alone, C1 at RH 0.67 can be 267 µm long (estimate 280 ± 5 µm) if at most 1 in "
+    said += "1000 may stick."
     assert first_answer(log, tmp_path / "both") == f"{said} The run goes on."
     assert "± 4 µm" in first_answer(written(tmp_path / "beams"), tmp_path / "beams")
     unknown = first_answer(written(tmp_path / "none", "L1_dry", np.inf), tmp_path / "none")
-    assert unknown.startswith("First safe length: L1 in dry air can be 267 µm long if at most 1 in 1000")
+    assert unknown.startswith(
+        "First number: by simulation alone, L1 in dry air can be 267 µm long if at most 1 in 1000"
+    )
 
 
 def test_a_share_of_stoppers_is_said_with_its_band_in_the_air_where_most_stick(tmp_path):
@@ -59,13 +61,13 @@ def test_it_is_said_once_after_the_end_of_its_job(stream, tmp_path, monkeypatch)
     monkeypatch.chdir(tmp_path / "study")
     display = Display(run, shown := stream(), tmp_path / "study")
     display(11)
-    assert "First safe length" not in shown.getvalue()
+    assert "First number" not in shown.getvalue()
     for number in (1, 2):
         run.hear(start(2, "safe_lengths", 12, log=(log.replace("C1", "C2"),)))
         run.hear(end(number, 20))
         display(20)
     display.close()
-    assert shown.getvalue().count("First safe length: C1 ") == shown.getvalue().count("First safe length") == 1
+    assert shown.getvalue().count("alone, C1 at") == shown.getvalue().count("First number") == 1
 
 
 def test_a_file_that_cannot_be_read_stops_no_run(tmp_path):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import small
 import xarray as xr
-from answers import BEAM, budget_dataset
+from answers import BEAM, beam_page, budget_dataset, stopper_page
 from ground import C1, R1, safe_with_tips
 from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
@@ -32,6 +32,7 @@ from stiction.report.devices import tables as tables_devices
 from stiction.report.format import airs
 from stiction.stages.contact import contact, curves
 from stiction.stages.devices import stoppers
+from stiction.stages.devices.device_warnings import OfDevices
 from stiction.stages.devices.sticking import flooded_lengths
 from stiction.stages.devices.uncertain_inputs import State, Uncertainty, countable, uncertain
 
@@ -221,11 +222,11 @@ def test_a_stopper_in_dry_air_alone_is_in_no_humid_air(grounds):
     assert_array_equal(found.axis, [0.0])
     assert stoppers.ends(found) == ()
     forces = 5e-8 * np.arange(1, 401)[None]
-    for restoring, verdict in ((1e-6, "does not suffice in dry air"), (21e-6, "suffices in dry air: at most 1 in 100")):
+    for restoring, sign in ((1e-6, "Too weak"), (21e-6, "Suffices")):
         settings = replace(SETTINGS, humidities=(0.0,), restoring_force=restoring)
         layout = stoppers.layout(settings, forces, np.array([0.0]), forces)
-        made = pages.stopper_page("S1", STOPPER | {"humidities": [0.0]}, layout, {}, [])
-        assert f"force of {1e6 * restoring:g} µN {verdict}" in made.answer[0]
+        made = stopper_page(STOPPER | {"humidities": [0.0]}, layout)
+        assert made.lines[0].startswith(f"{sign}: At least 20 µN; with your {1e6 * restoring:g} µN, ")
         page = made.html + " ".join(made.lines)
         assert "humidity of" not in page.replace("Humidity of the largest", "")
         assert "In dry air, " in page
@@ -316,7 +317,7 @@ def captions(datasets):
     return (
         tables_devices.safe_lengths({("C1", humidity): one for humidity, one in datasets.items()}, warnings).caption,
         tables_devices.chart({("C1", humidity): one for humidity, one in charts.items()}, warnings).caption,
-        pages.beam_page("C1", section, datasets, charts, {}, warnings).html,
+        beam_page(section, datasets, charts=charts, warnings=OfDevices(warnings, {}, {})).html,
     )
 
 

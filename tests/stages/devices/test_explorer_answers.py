@@ -6,14 +6,26 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
-from answers import BUDGETS, C1, CANTILEVER, STOPPER, budget_dataset, of_length, safe, stopper_dataset
+from answers import (
+    BUDGETS,
+    C1,
+    CANTILEVER,
+    STOPPER,
+    beam_answer,
+    budget_dataset,
+    of_length,
+    safe,
+    screen_of,
+    stopper_answer,
+    stopper_dataset,
+)
 from test_stage_stoppers import SETTINGS
 
 from stiction.beam.cantilever import Beam
 from stiction.contact.voltage import Capacitor, Dielectric
 from stiction.devices.risk import SCORES
 from stiction.life import holding
-from stiction.report.devices import explorer, first_screen, sentences, voltage_views
+from stiction.report.devices import explorer, sentences, voltage_views
 from stiction.report.format import fraction_with_band
 from stiction.stages.devices import stoppers
 from stiction.stages.devices.chart import largest_error_between
@@ -72,7 +84,7 @@ def test_the_controls_of_a_beam_begin_with_its_length_to_build(name):
     charts = {humidity: chart(one) for humidity, one in lengths.items() if humidity} if chart else {}
     view, *others = explorer.views_of_beam("C1", section, lengths, charts, budgets)
     assert len(others) == (name in ("other sizes", "dry worst"))
-    answer = first_screen.beam_screen(section, lengths, budgets, []).answer
+    answer = screen_of(beam_answer(section, lengths, budgets), section).answer
     total = view.margin.total if view.margin else 0.0
     assert bool(total) == bool(budgets)
     build = view.grid.safe_size(view.grid.start) * np.exp(-2 * total)
@@ -90,7 +102,7 @@ def test_the_controls_of_a_stopper_begin_with_the_force_that_it_needs(section, p
     stopper = stopper_dataset(peak)
     view, *others = explorer.views_of_stopper(section, stopper, budgets)
     assert not others
-    screen = first_screen.stopper_screen(section, stopper, budgets, [])
+    screen = screen_of(stopper_answer(stopper, budgets), section)
     needed = re.match(r"At least (\S+) µN needed", screen.answer)[1]
     added = np.exp(2 * view.margin.total) if budgets else 1.0
     assert f"{added * per * view.grid.safe_size(view.grid.start):.3g}" == needed
@@ -107,9 +119,9 @@ def test_the_controls_of_a_stopper_whose_worst_air_is_dry_begin_there():
     stopper = stoppers.layout(settings, chosen, np.append(0.0, axis), np.append(3, 2.5 - axis)[:, None] * forces)
     section = STOPPER | {"humidities": [0.67, 0.0, 0.88]}
     alone, over = explorer.views_of_stopper(section, stopper, {})
-    needed = re.match(r"At least (\S+) µN needed", first_screen.stopper_screen(section, stopper, {}, []).answer)[1]
+    needed = re.match(r"At least (\S+) µN needed", screen_of(stopper_answer(stopper, {}), section).answer)[1]
     assert f"{alone.grid.safe_size(alone.grid.start):.3g}" == needed
-    assert stated(first_screen.stopper_screen(section, stopper, {}, []).answer) == shown(alone.grid)
+    assert stated(screen_of(stopper_answer(stopper, {}), section).answer) == shown(alone.grid)
     assert (alone.grid.start["humidity"], over.grid.axes[0].values[0]) == (0.0, 0.5)
     assert f"{over.grid.safe_size(over.grid.start):.3g}" != needed
 

@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 import yaml
+from answers import beam_page
 from ground import C1, lognormal_cracks, safe_with_tips, safe_without_tips, wanted
 from numpy.testing import assert_allclose
 from test_dry_devices import ACROSS, plan_of
@@ -20,7 +21,7 @@ from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.beams.prediction import ENDS
 from stiction.report.beams.prediction import with_intervals as in_table_3
-from stiction.report.devices import pages, sentences
+from stiction.report.devices import sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.stages.contact import curves
 from stiction.stages.devices import prediction, safe_lengths
@@ -205,14 +206,14 @@ def test_the_answer_has_one_line_about_the_shortest_length_and_names_its_air(can
         f"At a relative humidity of 0.67, 1 in {1 / share:.0f} sticks along its beam at a length of "
     )
     assert f"this length lies between {low:.0f} and {high:.0f} µm (95 %)" in said
-    page = pages.beam_page("C1", SECTION, cases, {}, {}, SILENT)
+    page = beam_page(SECTION, cases)
     assert page.answer.count(said) == page.more.count(said) == 1
     assert said.replace("'", "&#39;") in page.html
 
 
 def test_without_intervals_neither_answer_nor_table_speaks_of_them(cantilever):
     cases = {0.44: cantilever, 0.67: cantilever}
-    page = pages.beam_page("C1", SECTION, cases, {}, {}, SILENT)
+    page = beam_page(SECTION, cases)
     assert not [line for line in page.lines if "errs" in line]
     table = tables_devices.safe_lengths({("C1", at): one for at, one in cases.items()}, SILENT)
     assert not [name for name in table.frame if name.startswith("prediction")]

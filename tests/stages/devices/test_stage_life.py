@@ -244,7 +244,7 @@ def test_strips_that_no_summits_stop_leave_a_beam_without_a_bound(lengths):
 def test_sentences_say_what_fast_separation_needs_if_it_is_more(lengths):
     beam = layout(beam_answers(lengths, {}, OF, separation=factors(np.array([[0.5, 0.5], [0.8, 0.9]]))), OF)
     (said,) = [one for one in report.sentences(beam) if "faster than water" in one]
-    assert "safe length can fall from" in said
+    assert "simulated limit can fall from" in said
     stopper = layout(stopper_answers(stopper_dataset(), STOPPER, separation=fast_forces(1.5, 1.0)), STOPPER)
     (said,) = [one for one in report.sentences(stopper) if "faster than water" in one]
     assert "it can need a restoring force of" in said
@@ -413,7 +413,7 @@ def test_sentences_say_below_which_voltage_and_shock_nothing_touches_and_what_dr
     assert " V or a half-sine shock of " in first
     assert "collapses when it is dried from water" in second
     assert "(water)" in third
-    assert often.startswith("For 50 touchdowns its safe length is ")
+    assert often.startswith("For 50 touchdowns its simulated limit is ")
     assert asking == "The adhesion energy that a voltage adds is unknown: state voltage_V and dielectric."
     short = layout(beam_answers(lengths, {}, replace(OF, length=60e-6)), OF, 60e-6)
     assert report.sentences(short)[1] == "At 60 µm it stands when it is dried from water and mine."
@@ -447,10 +447,10 @@ def test_the_texts_of_the_figure_stay_in_their_panels(found, count):
         assert ("axes differ" in panel.get_xlabel()) == (count > 1)
 
 
-def test_a_page_says_the_life_below_its_verdict_and_shows_all_answers(found):
+def test_a_page_says_the_life_and_shows_all_answers(found):
     page = Page("C1", {}, ["Build it so.", "Because."], [Section("First"), Section("Last")])
     shown = with_life(page, "C1", found["C1"])
-    assert shown.answer == ["Build it so.", *report.sentences(found["C1"]), "Because."]
+    assert shown.answer == [*report.sentences(found["C1"]), "Build it so.", "Because."]
     assert [section.title for section in shown.sections] == ["First", "From the first contact to the last", "Last"]
     assert len(shown.sections[1].cells) == found["C1"].sizes["answer"]
     assert "does not touch below" in shown.html

@@ -5,13 +5,11 @@ import re
 import numpy as np
 import pytest
 import xarray as xr
-from answers import STOPPER
+from answers import STOPPER, stopper_page
 
 from stiction.config.files import joined
 from stiction.contact.environment import Water
 from stiction.plan.plan import Plan
-from stiction.report.devices import pages
-from stiction.report.page import Page
 from stiction.stages.devices import device_warnings, stoppers
 from stiction.stages.life import table
 from stiction.stages.life.inputs import OfStopper
@@ -34,7 +32,7 @@ def dataset(airs, design):
 def said_of(airs, design):
     """Page of a stopper and its answers on life, as text."""
     found = dataset(airs, design)
-    page: Page = pages.stopper_page("S1", STOPPER | {"humidities": list(airs)}, found, {}, [])
+    page = stopper_page(STOPPER | {"humidities": list(airs)}, found)
     answers = table.stopper_answers(found, OfStopper(restoring_force=40e-6, contact=(3e-6, 3e-6)))
     return " ".join([*page.answer, *page.lines, page.html, *(answer.what for answer in answers)])
 

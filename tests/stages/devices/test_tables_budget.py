@@ -133,12 +133,14 @@ def test_a_worst_humidity_at_the_end_of_the_axis_may_lie_beyond_it():
 
 def test_a_safe_force_that_is_fitted_or_extrapolated_says_so():
     table = tables_budget.stoppers(STOPPERS, WARNINGS)
-    texts = {share: list(table.cells[f"safe force, {share} [µN]"]) for share in ("0.01", "0.001", "0.0001", "1e-06")}
+    texts = {
+        share: list(table.cells[f"simulated limit, {share} [µN]"]) for share in ("0.01", "0.001", "0.0001", "1e-06")
+    }
     assert all("(" not in text for text in texts["0.01"])
     assert all(text.endswith(" (fitted)") for text in texts["0.001"])
     assert all(text.endswith(" (extrapolated)") for share in ("0.0001", "1e-06") for text in texts[share])
     few = STOPPERS["S1"].assign(safe_force=STOPPERS["S1"].safe_force * np.nan, basis=("share", [""] * 4))
-    assert tables_budget.stoppers({"S1": few}, WARNINGS).cells["safe force, 1e-06 [µN]"][0] == "–"
+    assert tables_budget.stoppers({"S1": few}, WARNINGS).cells["simulated limit, 1e-06 [µN]"][0] == "–"
 
 
 def drawn(panel):

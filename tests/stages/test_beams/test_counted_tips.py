@@ -51,8 +51,6 @@ def test_what_is_known_without_test_beams_is_the_same_whatever_was_measured_or_c
     for found in before[1:]:
         for name in ("result_before", "result_of_inputs", "safe"):
             assert_allclose(found[name], before[0][name], rtol=1e-12)
-    sentences = [tables.sizes_to_build(found) for found in before if tables.is_reliable(found)]
-    assert len({one.partition("without them ")[2].partition(";")[0] for one in sentences}) == 1
 
 
 # Counts of tips learn it

@@ -70,9 +70,9 @@ CAPTION = (
     "most, which are equal where the model leaves nothing open. No bound is known where there is –, and none without "
     "the keys that a row asks for. The column ± has the standard uncertainty of the lower bound, due to the stated "
     "uncertainties of the device or to sampled surfaces. Voltage, shock, energy and force of a beam are those of its "
-    "length, which is stated or its least safe one. A liquid that dries is not humid air: it holds the whole area "
-    "that it wets. Lengths and forces are simulated limits: all inputs "
-    "count as exact. The answer of the device has everything inside."
+    "length, which is stated or its least simulated limit. A liquid that dries is not humid air: it holds the whole "
+    "area that it wets. Lengths and forces are simulated limits: all inputs count as exact. The answer of the device "
+    "has everything inside."
 )
 _COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#D55E00", "#CC79A7", "#009E73"), strict=True))
 #: Height of a row, and of everything else in a panel [in]. Size of text [points], mean width of its characters in

@@ -130,7 +130,7 @@ _STEPS: tuple[tuple[Callable[[float], list[str]], str, str, str], ...] = (
     (_forces, "4  Forces", "elastic contact, water and", "attraction, at each humidity"),
     (_scatter, "5  Random force laws", "a stochastic model of how", "strips differ"),
     (_beams, "6  Many devices", "each on its own random ground,", "until it sticks or releases"),
-    (_risk, "7  Risk", "probability of sticking, and", "the safe length"),
+    (_risk, "7  Risk", "probability of sticking, and", "the length to build"),
     (_budget, "8  Budget", "what is uncertain, and what to", "measure better"),
 )
 

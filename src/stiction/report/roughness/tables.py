@@ -256,7 +256,7 @@ def roughness(datasets: Mapping[str, xr.Dataset]) -> Table:
     sentences = [f"{device}: {sentence}" for device, dataset in datasets.items() for sentence in answers(dataset)]
     of_maps = any("other" in row for row in rows)
     caption = (
-        "Safe length of a beam, or safe restoring force of a stopper, against the roughness of a surface: with a "
+        "Simulated limit of a length, or of a restoring force, against the roughness of a surface: with a "
         "confidence of 95 % (of a stopper: given the drawn surfaces), at most a fraction p sticks. Estimate: a "
         "fraction p sticks, ± standard error due to the numbers of devices and of drawn surfaces. P(stuck): at the "
         f"required length or force, with its 95 % band. {form(*datasets.values())} Devices: number of simulated "
@@ -321,7 +321,7 @@ _COLUMNS = DEVICE | {
     KURTOSIS: (_kurtosis, KURTOSIS),
     "p": ("g", "share"),
     "unit": (str, "unit"),
-    "safe": (".4g", "safe"),
+    "simulated limit": (".4g", "safe"),
     "estimate": (with_error, "estimate", "estimate_se"),
     "required": ("g", "required"),
     "P(stuck) [%]": (with_band, "stuck_percent", "stuck_low_percent", "stuck_high_percent"),

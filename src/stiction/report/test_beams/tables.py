@@ -153,7 +153,9 @@ def stuck_sentences(update: xr.Dataset) -> list[str]:
     sentences = []
     every = (chosen.sel(humidity=humidity) for humidity in update.humidity.values)
     for at in (one for one in every if np.isfinite(one.updated_stuck)):
-        size = "at its restoring force" if shape == FORCE else f"of {TO_UM * float(at.safe):.0f} µm, the safe length,"
+        size = (
+            "at its restoring force" if shape == FORCE else f"of {TO_UM * float(at.safe):.0f} µm, the simulated limit,"
+        )
         sentences.append(
             f"{airs([float(at.humidity)]).capitalize()}, {in_percent(at.expected_stuck)} of the devices {size} are "
             f"expected to stick without the test beams and {in_percent(at.updated_stuck)} with them, averaged over the "
