@@ -16,7 +16,7 @@ from stiction.config.reading import paper
 from stiction.devices.risk import SCORES
 from stiction.report.devices import curve_views, explorer, voltage_views
 from stiction.report.devices.grid import Axis, Grid
-from stiction.report.page import FORBIDDEN, Page, Summary
+from stiction.report.page import Page, Summary
 
 pytestmark = [
     pytest.mark.slow,
@@ -72,7 +72,8 @@ def browser():
 def forbidden(views, tmp_path_factory):
     """Page with all these views and a warning in the place of its number."""
     content = explorer.content("D", STOPPER, list(views.values())) | {"study": {}}
-    summary = Summary("bad", FORBIDDEN, "It is plastic.", (), {}, pd.DataFrame({"RH": ["0.6"], "force [µN]": ["–"]}))
+    cells = pd.DataFrame({"RH": ["0.6"], "force [µN]": ["–"]})
+    summary = Summary("bad", "Do not rely on a number", "It is plastic.", (), {}, cells, is_forbidden=True)
     path = tmp_path_factory.mktemp("forbidden") / "D.html"
     page = Page("D: stopper", {}, ["It is safe up to 5 µm."], explorer=content, summary=summary)
     path.write_text(page.html, encoding="utf-8")

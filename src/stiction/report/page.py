@@ -15,8 +15,6 @@ from stiction.report.style import strips
 TEMPLATE, SCRIPT = "page.html", "explorer.js"
 #: Most rows of a table that is not folded.
 _ROWS = 30
-#: Sign of a first screen without a number.
-FORBIDDEN = "Do not rely on a number"
 
 
 @dataclass(frozen=True)
@@ -56,6 +54,7 @@ class Summary:
     points: Mapping[str, str]  #: what decides, what to change, what to measure
     cells: pd.DataFrame  #: one small table
     missing: str = "test beams contradict the model, or too few samples bound it"  #: why cells have no number
+    is_forbidden: bool = False  #: whether a limit stands in the place of all numbers in words
 
     @property
     def has_missing(self) -> bool:
@@ -66,11 +65,6 @@ class Summary:
     def line(self) -> str:
         """Answer in a line."""
         return f"{self.sign}: {self.answer}"
-
-    @property
-    def is_forbidden(self) -> bool:
-        """Whether a warning stands in the place of the number, here and wherever the page states one in words."""
-        return self.sign == FORBIDDEN
 
 
 @dataclass(frozen=True)

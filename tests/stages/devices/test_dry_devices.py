@@ -230,7 +230,7 @@ def test_a_stopper_in_dry_air_alone_is_in_no_humid_air(grounds):
         page = made.html + " ".join(made.lines)
         assert "humidity of" not in page.replace("Humidity of the largest", "")
         assert "In dry air, " in page
-        assert "orst" not in page
+        assert "orst humidity" not in page
     alone = tables_budget.stoppers({"S1": layout}, {"S1": []})
     assert list(alone.cells.RH) == ["dry"]
     assert "worst RH" not in alone.cells

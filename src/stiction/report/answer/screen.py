@@ -28,7 +28,8 @@ def screen(answer: Answer, section: Mapping[str, Any], forbidding: Sequence[str]
         said = " ".join(forbidding)
         cells = cells.assign(**dict.fromkeys(cells.columns[1:], MISSING))
         points = {"What to measure": points["What to measure"]}
-        return Summary("bad", words.NO_NUMBER, said, (), points, cells, "the warning above forbids to rely on one")
+        missing = "the warning above forbids to rely on one"
+        return Summary("bad", words.NO_NUMBER, said, (), points, cells, missing, is_forbidden=True)
     basis = [words.contains(answer), *words.by_test_beams(answer), of_model]
     basis = [words.promise(answer), *basis] if np.isfinite(answer.build) and not words.reasons(answer) else basis
     return Summary(*words.sign_of(answer), words.headline(answer), list(filter(None, basis)), points, cells)
