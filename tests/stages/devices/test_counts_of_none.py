@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 import xarray as xr
-from answers import CANTILEVER, STOPPER, STOPPERS, of_length, stopper_dataset
+from answers import CANTILEVER, STOPPER, STOPPERS, beam_page, of_length, silent, stopper_dataset, stopper_page
 from hypothesis import given
 from hypothesis import strategies as st
 from test_stage_life import STOPPER as IN_USE
@@ -13,10 +13,9 @@ from test_stage_life import STOPPER as IN_USE
 from stiction.contact.correction import NONE
 from stiction.devices.risk import stuck_share, upper_bound
 from stiction.report.budget import tables as tables_budget
-from stiction.report.devices import first_screen, own_length, pages, sentences
+from stiction.report.devices import sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.format import fraction_between, fraction_with_band
-from stiction.stages.devices.opening import EITHER, S_SHAPE
 from stiction.stages.devices.stoppers import stuck_with_band
 from stiction.stages.life.table import stopper_answers
 
@@ -71,20 +70,20 @@ def of_stopper(share):
     for name in ("stuck", "stuck_along"):
         shares = xr.zeros_like(found[name]) + xr.DataArray(list(band), dims="bound")
         found = found.assign({name: shares.transpose(*found[name].dims)})
-    page = pages.stopper_page("S1", STOPPER, found, {}, [])
-    screen = first_screen.stopper_screen(STOPPER, found, {}, [])
+    strong = 1.1 if share == 0 else 1e-3
+    page = stopper_page(STOPPER, found.assign(restoring_force=strong * found.pull_off.max()))
+    screen = page.summary
     cells = tables_budget.stoppers({"S1": found}, {"S1": []}).cells["P(stuck) [%]"]
     return [*page.lines, screen.answer, *screen.cells.iloc[:, 1], *cells, sentences.worst_sentence(found)]
 
 
 def of_beam(length):
     """Everything that is said of beams of a length of which none or all stick."""
-    cases, silent = {0.67: of_length(length)}, {("C1", 0.67, shape): [] for shape in (S_SHAPE, EITHER)}
-    stated = CANTILEVER | {"length_um": 1e6 * length}
-    page = pages.beam_page("C1", stated, cases, {}, {}, silent)
-    screen = first_screen.beam_screen(stated, cases, {}, [])
-    cells = tables_devices.safe_lengths({("C1", 0.67): cases[0.67]}, silent).cells["P(stuck) [%]"]
-    return [*page.lines, screen.answer, *screen.cells.iloc[:, -1], *cells, *own_length.sentences(cases, {})]
+    cases = {0.67: of_length(length)}
+    page = beam_page(CANTILEVER | {"length_um": 1e6 * length}, cases)
+    screen = page.summary
+    cells = tables_devices.safe_lengths({("C1", 0.67): cases[0.67]}, silent(cases).lengths).cells["P(stuck) [%]"]
+    return [*page.lines, screen.answer, *screen.cells.iloc[:, -1], *cells]
 
 
 @pytest.mark.parametrize("said", [of_stopper(0.0), of_stopper(1.0), of_beam(150e-6), of_beam(500e-6)])
