@@ -71,6 +71,7 @@ class InAir:
     stuck: Probability | None  #: at the stated size
     #: Expected fraction stuck, and ends of its band, at `Answer.sizes` (3, n) [-].
     curve: np.ndarray = field(default_factory=lambda: np.empty((3, 0)), compare=False)
+    first: float = field(default=np.nan, compare=False)  #: size at which the first simulated device sticks [m, N]
 
 
 @dataclass(frozen=True)
@@ -96,6 +97,10 @@ class Answer:
     spread_of_budget: float = 0.0  #: part of the size that the errors of the budget itself take [-]
     without_test_beams: float = np.nan  #: size to build without test beams, NaN if none say anything
     sizes: np.ndarray = field(default_factory=lambda: np.empty(0), compare=False)  #: of the curves (n,) [m, N]
+    #: As those of airs, in the worst of them (3, n) [-].
+    curve: np.ndarray = field(default_factory=lambda: np.empty((3, 0)), compare=False)
+    #: Largest fraction stuck at sizes at which no simulated device sticks [-].
+    unseen: float = field(default=0.0, compare=False)
 
     @property
     def more_is_better(self) -> bool:
@@ -129,6 +134,12 @@ class Answer:
     def largest_step(self) -> Step:
         """Step inside the size to build that changes it most."""
         return max(self.stated_steps[1:], key=lambda step: abs(np.log(step.factor)))
+
+    @property
+    def together(self) -> InAir:
+        """Answer for all stated airs, under the humidity of the one that decides."""
+        first = (max if self.more_is_better else min)((one.first for one in self.airs), default=np.nan)
+        return InAir(self.stated_steps[-1].humidity, self.build, np.nan, self.stuck, self.curve, first)
 
     @property
     def included(self) -> tuple[Cause, ...]:

@@ -8,9 +8,10 @@ import numpy as np
 from stiction.answer.data import Answer, Cause, InAir, Probability, Step, band
 from stiction.answer.unknowns import Draws, OfBudgets, OfTestBeams, Unknowns
 from stiction.answer.worlds import Condition, World
+from stiction.life.freeing import probability_for
 
-#: Points of a curve of P(stuck), and how far it goes below the size to build in ln size.
-_POINTS, _BELOW = 41, 0.25
+#: Points of a curve of P(stuck), how far it goes below the size to build in ln size, and the fraction at its end.
+_POINTS, _BELOW, _MOST = 41, 0.25, 0.99
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,8 @@ def answer(
         _spread_of_budget(world),
         np.nan if before is None else _without_test_beams(question, exact, before),
         sizes,
+        _curve(question, world, sizes),
+        world.unseen(),
     )
 
 
@@ -127,13 +130,16 @@ def _stuck(question, world):
 
 
 def _sizes(question, world):
-    """Sizes of the curves of P(stuck), from below the size to build to those at which most devices stick."""
-    ends = [float(one.sampled.values[int(0.9 * (len(one.sampled.values) - 1))]) for one in world.inside if one.sampled]
-    ends = [end for end in (*ends, *(one.sampled.reach for one in world.inside if one.sampled)) if np.isfinite(end)]
-    stated = [v for v in (world.size, question.v) if np.isfinite(v)]
-    if not ends + stated:
+    """Sizes of the curves of P(stuck), from below the size to build to those at which most stick in every air."""
+    ends: dict[float, float] = {}
+    share = probability_for(_MOST, question.touchdowns)
+    for one in (one for one in world.inside if one.sampled):
+        most = float(one.sampled.values[int(share * (len(one.sampled.values) - 1))])
+        ends[one.humidity] = min(most, one.sampled.reach, ends.get(one.humidity, np.inf))
+    known = [end for end in (*ends.values(), world.size, question.v) if np.isfinite(end)]
+    if not known:
         return np.empty(0)
-    low, high = min(stated + ends) - _BELOW, max([*stated, min(ends, default=-np.inf)]) + 0.02
+    low, high = min(known) - _BELOW, max(known) + 0.02
     return np.exp(question.sign * np.linspace(low, high, _POINTS))
 
 
@@ -149,9 +155,14 @@ def _in_air(question, world, humidity, sizes):
     if len(shapes) > 1:
         along = replace(own, conditions=tuple(one for one in own.conditions if one.shape != shapes[-1]))
         without_tip = question.size_of(along.size)
-    fractions = [own.stuck(v) for v in question.sign * np.log(sizes)]
-    curve = np.array([[some.mean(), *band(some)] for some in fractions]).reshape(-1, 3).T
-    return InAir(humidity, question.size_of(own.size), without_tip, _stuck(question, own), curve)
+    first, curve = question.size_of(own.first()), _curve(question, own, sizes)
+    return InAir(humidity, question.size_of(own.size), without_tip, _stuck(question, own), curve, first)
+
+
+def _curve(question, world, sizes):
+    """Expected fraction stuck at some sizes, and ends of its band (3, n) [-]."""
+    fractions = [world.stuck(v) for v in question.sign * np.log(sizes)]
+    return np.array([[some.mean(), *band(some)] for some in fractions]).reshape(-1, 3).T
 
 
 def _to_measure(question, world):

@@ -236,6 +236,10 @@ class World:
         """Largest number of simulated devices stuck at v in a condition, all inputs as stated."""
         return max(int(np.searchsorted(one.sampled.values, v - one.shift)) for one in self.inside if one.sampled)
 
+    def first(self) -> float:
+        """Threshold of the first simulated device that sticks in a condition, all inputs as stated."""
+        return min(float(one.sampled.values[0] + one.shift) for one in self.inside if one.sampled)
+
     def unseen(self) -> float:
         """Largest fraction stuck where no simulated device sticks, after all touchdowns (95 % confidence) [-]."""
         fewest = min(len(one.sampled.values) for one in self.inside if one.sampled)

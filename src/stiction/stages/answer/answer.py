@@ -111,12 +111,13 @@ def _forbidden(data, unknowns):
 # Dataset
 
 #: Fields of an answer that are numbers, with the unit of the size or none.
-_SIZES, _NUMBERS = ("build", "exact", "size", "if_measured", "without_test_beams"), ("share", "spread_of_budget")
+_SIZES = ("build", "exact", "size", "if_measured", "without_test_beams")
+_NUMBERS = ("share", "spread_of_budget", "unseen")
 _TEXTS, _LISTS = ("device", "kind", "measure"), ("left_out", "forbidden")
 _STUCK = ("value", "low", "high", "none_seen")
 #: Rows of an answer by the dimension of their dataset.
 _STEPS = {"size": True, "factor": False, "humidity": False, "shape": None, "source": None, "stated": None}
-_AIRS = {"build": True, "without_tip": True}
+_AIRS = ("build", "without_tip", "first")
 
 
 def layout(answer: Answer) -> xr.Dataset:
@@ -136,8 +137,8 @@ def layout(answer: Answer) -> xr.Dataset:
         at = [np.nan if one is None else float(getattr(one, name)) for one in (answer.stuck, *_of_airs(answer))]
         variables[f"stuck_{name}"] = ((), at[0], none)
         variables[f"air_stuck_{name}"] = ("air", at[1:], none)
-    curves = [one.curve for one in answer.airs]
-    variables["air_curve"] = ("air", "end", "point"), curves, none | {"long_name": "P(stuck) with its 95 % band"}
+    curves, note = [one.curve for one in answer.airs], none | {"long_name": "P(stuck) with its 95 % band"}
+    variables |= {"air_curve": (("air", "end", "point"), curves, note), "curve": (("end", "point"), answer.curve, note)}
     variables["curve_size"] = "point", answer.sizes, size
     coords = {"step": [str(step.cause) for step in answer.steps], "air": [one.humidity for one in answer.airs]}
     coords["end"] = ["value", "low", "high"]
@@ -163,9 +164,10 @@ def answer_of(dataset: xr.Dataset) -> Answer:
     airs = [
         InAir(
             float(row.air),
-            *(float(row[f"air_{name}"]) for name in _AIRS),
+            *(float(row[f"air_{name}"]) for name in ("build", "without_tip")),
             _probability(row, "air_stuck_"),
             row.air_curve.values,
+            float(row.air_first),
         )
         for row in (dataset.isel(air=k) for k in range(dataset.sizes["air"]))
     ]
@@ -180,6 +182,7 @@ def answer_of(dataset: xr.Dataset) -> Answer:
         touchdowns=int(dataset.touchdowns),
         extrapolated=bool(dataset.extrapolated),
         sizes=dataset["curve_size"].values,
+        curve=dataset["curve"].values,
     )
 
 
