@@ -1,32 +1,23 @@
-"""The controls of a page begin with the number of its answer, whatever the device."""
+"""The controls of a page are its answer in its own airs, whatever the device."""
 
-import re
 from dataclasses import replace
 
+import answered
 import numpy as np
 import pytest
 import xarray as xr
-from answers import (
-    BUDGETS,
-    C1,
-    CANTILEVER,
-    STOPPER,
-    beam_answer,
-    budget_dataset,
-    of_length,
-    safe,
-    screen_of,
-    stopper_answer,
-    stopper_dataset,
-)
+from scipy.special import ndtri
+from test_pages import CANTILEVER, STOPPER, of_length, safe
 from test_stage_stoppers import SETTINGS
+from test_tables_budget import C1, stopper_dataset
 
+from stiction.answer.data import Probability
 from stiction.beam.cantilever import Beam
 from stiction.contact.voltage import Capacitor, Dielectric
-from stiction.devices.risk import SCORES
+from stiction.devices.risk import SCORES, quantiles
 from stiction.life import holding
+from stiction.report.answer import words
 from stiction.report.devices import explorer, sentences, voltage_views
-from stiction.report.format import fraction_with_band
 from stiction.stages.devices import stoppers
 from stiction.stages.devices.chart import largest_error_between
 from stiction.stages.devices.safe_lengths import chosen_share
@@ -38,9 +29,6 @@ from stiction.stages.life.voltage import beam_at_voltage
 BRIDGE = CANTILEVER | {"kind": "bridge", "residual_stress_MPa": 10}
 SPRING = {key: value for key, value in STOPPER.items() if key != "restoring_force_uN"}
 SPRING |= {"stiffness_N_per_m": 10, "gap_um": 2}
-#: The most uncertain humidity is not the worst one.
-OF_BEAMS = {(0.44,): budget_dataset(2.0), (0.67,): budget_dataset(0.5)}
-OF_TIPS = {(*humidity, "tip"): budget for humidity, budget in OF_BEAMS.items()} | {(0.44,): budget_dataset(9.0)}
 
 
 def charted(dataset, own=2.6e-6):
@@ -52,64 +40,97 @@ def charted(dataset, own=2.6e-6):
 
 
 BEAMS = {
-    "cantilever": (CANTILEVER, {0.44: safe(), 0.67: safe(longest=500e-6)}, OF_TIPS, None),
-    "exact": (CANTILEVER, {0.67: safe()}, {}, None),
-    "bridge": (BRIDGE, {0.44: safe("bridge"), 0.67: safe("bridge", 500e-6)}, OF_BEAMS, None),
+    "cantilever": (CANTILEVER, {0.44: safe(), 0.67: safe(longest=500e-6)}, None),
+    "one air": (CANTILEVER, {0.67: safe()}, None),
+    "bridge": (BRIDGE, {0.44: safe("bridge"), 0.67: safe("bridge", 500e-6)}, None),
     "length": (
         CANTILEVER | {"length_um": 600},
         {0.44: of_length(600e-6), 0.67: of_length(600e-6, longest=500e-6)},
-        OF_TIPS,
         None,
     ),
-    "chart": (CANTILEVER, {0.44: safe(), 0.67: safe(longest=500e-6)}, OF_TIPS, charted),
-    "other sizes": (CANTILEVER, {0.44: safe(), 0.67: safe(longest=500e-6)}, OF_TIPS, lambda one: charted(one, 4e-6)),
-    "dry worst": (CANTILEVER, {0.0: safe(longest=400e-6), 0.44: safe(), 0.67: safe(longest=500e-6)}, OF_TIPS, charted),
+    "chart": (CANTILEVER, {0.44: safe(), 0.67: safe(longest=500e-6)}, charted),
+    "other sizes": (CANTILEVER, {0.44: safe(), 0.67: safe(longest=500e-6)}, lambda one: charted(one, 4e-6)),
+    "dry worst": (CANTILEVER, {0.0: safe(longest=400e-6), 0.44: safe(), 0.67: safe(longest=500e-6)}, charted),
 }
 
 
-def stated(answer):
-    """P(stuck) with its band in an answer, as text."""
-    return re.findall(r"(\S+ % \(.* %\)|at (?:most|least) \S+ %) stick", answer)
+def faces(grid, answer, per):
+    """P(stuck) at every size of an answer, in each of its airs: on the controls, and in the answer; and at its start."""
+    for air in (answer.together if one.humidity == answer.together.humidity else one for one in answer.airs):
+        for k, size in enumerate(answer.sizes):
+            found = replace(grid, first=None).stuck(grid.start | {"humidity": air.humidity, grid.size.key: size / per})
+            if not found.beyond and 1e-6 < air.curve[0, k] < 1 - 1e-6:
+                yield (found.share, found.low, found.high), air.curve[:, k]
 
 
-def shown(grid):
-    """P(stuck) with its band at the beginning of the controls, as text."""
-    stuck = grid.stuck(grid.start)
-    return [fraction_with_band(stuck.share, stuck.low, stuck.high, " %")]
+def deviations(pairs):
+    """Largest deviations of normal scores of fractions, those of all three layers within what is shown."""
+    scores = np.clip(ndtri(np.array(list(pairs))), -5, 5)
+    return np.abs(scores[:, 0] - scores[:, 1]).max(axis=0)
 
 
 @pytest.mark.parametrize("name", BEAMS)
-def test_the_controls_of_a_beam_begin_with_its_length_to_build(name):
-    section, lengths, budgets, chart = BEAMS[name]
+def test_the_controls_of_a_beam_are_its_answer_in_its_own_airs(name):
+    section, lengths, chart = BEAMS[name]
     charts = {humidity: chart(one) for humidity, one in lengths.items() if humidity} if chart else {}
-    view, *others = explorer.views_of_beam("C1", section, lengths, charts, budgets)
+    length = 1e-6 * section.get("length_um", np.nan)
+    answer = answered.of_beam(lengths, length, kind=section["kind"])
+    view, *others = explorer.views_of_beam("C1", section, lengths, charts, answer)
     assert len(others) == (name in ("other sizes", "dry worst"))
-    answer = screen_of(beam_answer(section, lengths, budgets), section).answer
-    total = view.margin.total if view.margin else 0.0
-    assert bool(total) == bool(budgets)
-    build = view.grid.safe_size(view.grid.start) * np.exp(-2 * total)
-    assert total <= view.words["largest"] == sentences.LARGEST
-    assert f"{build:.0f}" == re.match(r"Safe up to (\d+) µm", answer)[1]
-    assert stated(answer) == ([] if name != "length" else shown(view.grid))
-    if total:
-        assert (view.margin.low, view.margin.high) == (0.44, 0.67)
+    grid = view.grid
+    assert grid.safe_size(grid.start) == pytest.approx(1e6 * answer.build, rel=1e-6)
+    for one in answer.airs if answer.together.humidity else ():
+        if one.humidity not in (0, answer.together.humidity):
+            build = grid.safe_size(grid.start | {"humidity": one.humidity})
+            assert build == pytest.approx(1e6 * one.build, rel=1e-6)
+    assert deviations(faces(grid, answer, 1e-6)).max() < 0.1
+    if name == "length":
+        assert says(grid.stuck(grid.start)) == words.stuck_in_words(answer.stuck)
+    else:
+        assert 1e6 * answer.build >= grid.start["length_um"] > 0.998e6 * answer.build
 
 
-@pytest.mark.parametrize("budgets", [{}, {(0.67,): BUDGETS["S1", 0.67]}])
+def says(stuck):
+    """P(stuck) of the controls in the words of an answer."""
+    return words.stuck_in_words(Probability(stuck.share, stuck.low, stuck.high, none_seen=stuck.beyond < 0))
+
+
+@pytest.mark.parametrize("touchdowns", [1, 300])
+@pytest.mark.parametrize("length", [250e-6, 278e-6, 281e-6, 300e-6, 350e-6, 415e-6])
+def test_the_controls_begin_with_the_words_of_the_answer(length, touchdowns):
+    lengths = {0.44: safe(), 0.67: of_length(length)}  # they stick from 280 µm on
+    answer = answered.of_beam(lengths, length, touchdowns)
+    grid = explorer.views_of_beam("C1", CANTILEVER | {"length_um": 1e6 * length}, lengths, {}, answer)[0].grid
+    assert says(grid.stuck(grid.start)) == words.stuck_in_words(answer.stuck)
+    assert answer.stuck.none_seen == (length < 280e-6)
+
+
+def test_at_other_sizes_the_levels_keep_their_ratio_to_the_simulated_ones():
+    lengths = {0.67: safe()}
+    answer = answered.of_beam(lengths, touchdowns=100)
+    chart = charted(lengths[0.67])
+    scored = quantiles(lengths[0.67].sticking_length.isel(shape=-1).values)
+    chart["quantile"] = (
+        chart["quantile"].dims,
+        scored * np.array([0.5, 1.0])[:, None, None, None] + 0 * chart["quantile"].fillna(0).values,
+    )
+    grid = explorer.beam_view("C1", CANTILEVER, lengths, {0.67: chart}, answer).grid
+    for length in (250.0, 290.0, 330.0):
+        own = replace(grid, first=None).stuck(grid.start | {"length_um": length})
+        thin = replace(grid, first=None).stuck(grid.start | {"length_um": length / 2, "thickness_um": 2.0})
+        assert (thin.share, thin.low, thin.high) == pytest.approx((own.share, own.low, own.high), rel=1e-6)
+
+
 @pytest.mark.parametrize("peak", [0.7, 1.0])
-@pytest.mark.parametrize(("section", "per"), [(STOPPER, 1.0), (SPRING, 2.0)])
-def test_the_controls_of_a_stopper_begin_with_the_force_that_it_needs(section, per, peak, budgets):
+@pytest.mark.parametrize(("section", "per"), [(STOPPER, 1e-6), (SPRING, 2e-6)])
+def test_the_controls_of_a_stopper_are_its_answer_in_its_own_airs(section, per, peak):
     stopper = stopper_dataset(peak)
-    view, *others = explorer.views_of_stopper(section, stopper, budgets)
+    answer = answered.of_stopper(stopper)
+    view, *others = explorer.views_of_stopper(section, stopper, answer)
     assert not others
-    screen = screen_of(stopper_answer(stopper, budgets), section)
-    needed = re.match(r"At least (\S+) µN needed", screen.answer)[1]
-    added = np.exp(2 * view.margin.total) if budgets else 1.0
-    assert f"{added * per * view.grid.safe_size(view.grid.start):.3g}" == needed
-    assert stated(screen.answer) == shown(view.grid)
-    assert view.words["build"] == "at least", "the answer has the same margin"
-    assert any("dded for the measurements" in text for text in screen.basis)
-    assert bool(view.margin) == bool(budgets)
+    assert view.grid.safe_size(view.grid.start) == pytest.approx(answer.build / per, rel=1e-6)
+    assert says(view.grid.stuck(view.grid.start)) == words.stuck_in_words(answer.stuck)
+    assert deviations(faces(view.grid, answer, per)).max() < 0.1
 
 
 def test_the_controls_of_a_stopper_whose_worst_air_is_dry_begin_there():
@@ -117,13 +138,13 @@ def test_the_controls_of_a_stopper_whose_worst_air_is_dry_begin_there():
     settings = replace(SETTINGS, restoring_force=1e-6, humidities=(0.67, 0.0, 0.88))
     axis, chosen = np.linspace(0.5, 0.9, 5), np.stack([2 * forces, 3 * forces, forces])
     stopper = stoppers.layout(settings, chosen, np.append(0.0, axis), np.append(3, 2.5 - axis)[:, None] * forces)
-    section = STOPPER | {"humidities": [0.67, 0.0, 0.88]}
-    alone, over = explorer.views_of_stopper(section, stopper, {})
-    needed = re.match(r"At least (\S+) µN needed", screen_of(stopper_answer(stopper, {}), section).answer)[1]
-    assert f"{alone.grid.safe_size(alone.grid.start):.3g}" == needed
-    assert stated(screen_of(stopper_answer(stopper, {}), section).answer) == shown(alone.grid)
+    section = STOPPER | {"humidities": [0.67, 0.0, 0.88], "restoring_force_uN": 1}
+    answer = answered.of_stopper(stopper)
+    alone, over = explorer.views_of_stopper(section, stopper, answer)
+    assert alone.grid.safe_size(alone.grid.start) == pytest.approx(1e6 * answer.build, rel=1e-6)
+    assert says(alone.grid.stuck(alone.grid.start)) == words.stuck_in_words(answer.stuck)
     assert (alone.grid.start["humidity"], over.grid.axes[0].values[0]) == (0.0, 0.5)
-    assert f"{over.grid.safe_size(over.grid.start):.3g}" != needed
+    assert over.grid.safe_size(over.grid.start) < 0.9e6 * answer.build
 
 
 def ragged():
@@ -134,7 +155,7 @@ def ragged():
 
 def test_the_band_of_a_small_chart_is_that_of_the_figure():
     charts = ragged()
-    grid = explorer.beam_view("C1", CANTILEVER, {0.6: safe()}, charts, {}).grid
+    grid = explorer.beam_view("C1", CANTILEVER, {0.6: safe()}, charts, answered.of_beam({0.6: safe()})).grid
     of_axis = xr.concat([one.assign_coords(relative_humidity=rh) for rh, one in charts.items()], "relative_humidity")
     for thickness in (2.0, 2.6):
         for share in grid.share.values:
@@ -142,14 +163,16 @@ def test_the_band_of_a_small_chart_is_that_of_the_figure():
             found = grid.noise_at(grid.start | {"thickness_um": thickness, "share": share})
             assert found == pytest.approx(largest_error_between(one), rel=1e-9)
             assert 0.002 < found < 0.05
-    few = explorer.beam_view("C1", CANTILEVER, {0.6: safe()}, dict(list(charts.items())[:4]), {}).grid
+    few = explorer.beam_view(
+        "C1", CANTILEVER, {0.6: safe()}, dict(list(charts.items())[:4]), answered.of_beam({0.6: safe()})
+    ).grid
     assert np.isnan(few.noise_at(few.start))
 
 
 def test_a_cantilever_at_a_voltage_has_the_closed_form_of_flats_and_its_bound_of_life():
     section = CANTILEVER | {"voltage_V": 5, "offset_V": -0.5, "dielectric": {"thickness_nm": 100, "permittivity": 4.0}}
     lengths = {0.44: safe(), 0.67: safe(longest=500e-6)}
-    grid = voltage_views.beam_view("C1", section | {"young_modulus_GPa": 164}, lengths, {}).grid
+    grid = voltage_views.beam_view("C1", section | {"young_modulus_GPa": 164}, lengths).grid
     beam, oxide = Beam(1e-3, 30e-6, 2.6e-6, 164e9, 20e-6, 1), Dielectric(100e-9, 4.0)
     rng = np.random.default_rng(8)
     for volts, humidity, rank in zip(

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 
 from stiction.devices.roughness import LARGEST
-from stiction.report.devices.grid import Z95, Axis, hermite, nested_lists
+from stiction.report.devices.grid import Axis, hermite, nested_lists
+from stiction.report.devices.levels import Z95
 
 
 @dataclass(frozen=True)

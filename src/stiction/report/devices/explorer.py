@@ -12,11 +12,11 @@ from stiction.answer.data import Answer
 from stiction.config.kinds import kind_of
 from stiction.config.units import from_si
 from stiction.devices.risk import SCORES, quantiles
-from stiction.report.devices import sentences
+from stiction.report.devices import levels
 from stiction.report.devices.curves import Curves
 from stiction.report.devices.grid import Axis, Grid
+from stiction.report.devices.levels import Simulated
 from stiction.report.format import UM, UN
-from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import bounded_share
 
 #: Title of a view of a device in its own airs.
@@ -52,7 +52,7 @@ def views_of_beam(
     It is the one over the chart, or, if the chart has neither the device itself nor its worst air, the device alone.
     """
     view = beam_view(name, section, safe_lengths, charts, answer)
-    own = _worst(safe_lengths), section["thickness_um"], section["gap_um"]
+    own = answer.together.humidity, section["thickness_um"], section["gap_um"]
     if all(np.isclose(axis.values, value, rtol=1e-9).any() for axis, value in zip(view.grid.axes, own, strict=True)):
         return [view]
     return [replace(beam_view(name, section, safe_lengths, {}, answer), title=_ALONE), view]
@@ -65,14 +65,11 @@ def beam_view(
     charts: Mapping[float, xr.Dataset],
     answer: Answer,
 ) -> View:
-    """View of a cantilever or bridge, with its datasets by humidity. Charts may be empty.
-
-    ASSUME: at other sizes and in other airs, all causes inside the answer change lengths by as much as at its own.
-    """
+    """View of a cantilever or bridge, with its datasets by humidity. Charts may be empty."""
     humid = {humidity: chart for humidity, chart in sorted(charts.items()) if humidity > 0}
-    joined = _chart_views(humid) if humid else alone(section, safe_lengths)
-    worst = _worst(safe_lengths)
-    least, chart = float(sentences.safe_lengths_of(safe_lengths[worst]).min()), f"devices.{name}.chart"
+    itself = alone(section, safe_lengths)
+    joined = _chart_views(humid) if humid else itself
+    worst, chart = answer.together.humidity, f"devices.{name}.chart"
     axes = (
         humidity_axis(
             joined.humidity.values, worst, f"{chart}.humidities" if humid else f"devices.{name}.humidities", humid
@@ -80,28 +77,47 @@ def beam_view(
         _size_axis("thickness_um", "thickness", joined.thickness.values / UM, section, f"{chart}.thicknesses_um"),
         _size_axis("gap_um", "gap", joined.gap.values / UM, section, f"{chart}.gaps_um"),
     )
-    build, quantiles = answer.build / least * joined.safe_length.values / UM, joined["quantile"].values / UM
-    size = size_axis("length_um", "length", "µm", (build, quantiles), section.get("length_um", least / UM))
-    share = share_axis(joined.share.values, chosen_share(safe_lengths[worst]), "shares")
-    sizes = {"thickness_um": float(section["thickness_um"]), "gap_um": float(section["gap_um"])}
-    grid = Grid(axes, share, size, build, quantiles, int(joined.beams), False, counted(answer, size, sizes))
+    found = levels.of_answer(answer, joined.humidity.values, _simulated(joined, answer), _own(joined, itself, answer))
+    build, sizes = found.factor * joined.safe_length.values / UM, found.sizes / UM
+    start = section.get("length_um", _rounded_down(answer.build / UM, float(np.nanmin(joined.safe_length)) / UM))
+    size = size_axis("length_um", "length", "µm", (build, sizes[0]), start)
+    share = share_axis(joined.share.values, answer.share, "shares")
+    shown = {"scores": found.scores, "first": found.first / UM, "unseen": found.unseen}
+    grid = Grid(axes, share, size, build, sizes, int(joined.beams), False, **shown)
     words = {"what": "length", "safe": "Length to build", "bound": "to build"}
     words |= {"stick": "Devices of this length that stick"}
     return View("sizes and air", grid, words)
 
 
-def counted(answer: Answer, size: Axis, sizes: Mapping[str, float]) -> list[tuple]:
-    """States at the stated size in each air of an answer, with P(stuck) and its band."""
-    return [
-        ({"humidity": one.humidity, size.key: size.start} | sizes, one.stuck.value, one.stuck.low, one.stuck.high)
-        for one in answer.airs
-        if one.stuck is not None
-    ]
+def _rounded_down(build, otherwise):
+    """Length to build with four digits, not above it, or another one if none is known."""
+    if not np.isfinite(build):
+        return otherwise
+    digit = 10.0 ** (np.floor(np.log10(build)) - 3)
+    return digit * np.floor(build / digit)
 
 
-def _worst(safe_lengths):
-    """Humidity of the shortest safe length, which is that of the answer."""
-    return min(safe_lengths, key=lambda humidity: float(sentences.safe_lengths_of(safe_lengths[humidity]).min()))
+def _simulated(dataset, answer):
+    """Simulation of beams at the states of a dataset."""
+    return Simulated(dataset["quantile"].values, dataset.safe_length.sel(share=answer.share).values)
+
+
+def _own(joined, itself, answer):
+    """Simulation of the device itself in its airs, from the states if they have it. Dry air is beside humid ones."""
+    own = {}
+    for humidity in itself.humidity.values:
+        at = {"humidity": humidity, "thickness": itself.thickness.values[0], "gap": itself.gap.values[0]}
+        try:
+            own[float(humidity)] = _simulated(joined.sel(at, method="nearest", tolerance=1e-12), answer)
+        except KeyError:
+            own[float(humidity)] = _simulated(itself.isel(thickness=0, gap=0).sel(humidity=humidity), answer)
+    return _as_axis(own, joined.humidity.values)
+
+
+def _as_axis(own, humidities):
+    """Own airs that are humid if those of an axis are, all if none is."""
+    humid = {humidity: one for humidity, one in own.items() if humidity > 0}
+    return humid if humid and min(humidities) > 0 else own
 
 
 def _chart_views(charts):
@@ -137,14 +153,14 @@ def views_of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, answer: An
 
     It is the one over the humidity, or, if the worst of its airs is dry and others are humid, the device alone.
     """
-    view, worst = stopper_view(section, stopper, answer), sentences.worst_air(stopper)
+    view, worst = stopper_view(section, stopper, answer), answer.together.humidity
     if worst in view.grid.axes[0].values:
         return [view]
     own = stopper.sortby("humidity")
     axis = humidity_axis(own.humidity.values, worst, "humidities of the device", False)
     scored = np.array([quantiles(row) for row in own.pull_off.values])
-    alone = _force_view((axis,), own.safe_force.sel(part="safe", drop=True), scored, section, stopper)
-    return [replace(_to_build(alone, answer), title=_ALONE), view]
+    alone = (axis,), own.safe_force.sel(part="safe", drop=True), scored
+    return [replace(_to_build(alone, section, stopper, answer), title=_ALONE), view]
 
 
 def stopper_view(section: Mapping[str, Any], stopper: xr.Dataset, answer: Answer) -> View:
@@ -153,20 +169,26 @@ def stopper_view(section: Mapping[str, Any], stopper: xr.Dataset, answer: Answer
     safe, scored = _along(stopper)
     shown = safe.axis.values > 0 if is_humid else slice(None)
     key = "design.worst_humidities" if is_humid else "humidities of the device"
-    axis = humidity_axis(safe.axis.values[shown], sentences.worst_air(stopper), key, True)
-    return _to_build(_force_view((axis,), safe.isel(axis=shown), scored[shown], section, stopper), answer)
+    axis = humidity_axis(safe.axis.values[shown], answer.together.humidity, key, True)
+    return _to_build(((axis,), safe.isel(axis=shown), scored[shown]), section, stopper, answer)
 
 
-def _to_build(view, answer):
-    """View of forces to build in place of simulated limits, as `beam_view`."""
-    grid = view.grid
-    start = {axis.key: axis.start for axis in grid.axes} | {"share": answer.share}
-    is_known = np.isfinite(answer.build) and answer.share in grid.share.values
-    scale = grid.size.start / answer.size  # of forces, or of stiffnesses
-    factor = answer.build * scale / grid.safe_size(start) if is_known else np.nan
-    words = {**view.words, "safe": f"{grid.size.label.capitalize()} to build", "bound": "to build"}
-    grid = replace(grid, safe=factor * grid.safe, counted=counted(answer, grid.size, {}))
-    return replace(view, grid=grid, words=words)
+def _to_build(states, section, stopper, answer):
+    """View of forces to build over states, their simulated limits and quantiles, as `beam_view`."""
+    view, ((axis,), safe, scored) = _force_view(*states, section, stopper), states
+    safe, limits = safe.sel(share=answer.share), stopper.safe_force.sel(part="safe", share=answer.share)
+    own = {
+        float(one.humidity): Simulated(quantiles(one.values)[::-1], float(limits.sel(humidity=one.humidity)))
+        for one in stopper.pull_off.transpose("humidity", ...)
+    }
+    simulated = Simulated(scored[:, ::-1], safe.values)
+    found = levels.of_answer(answer, axis.values, simulated, _as_axis(own, axis.values))
+    grid, per = view.grid, answer.size / view.grid.size.start  # of forces, or of stiffnesses
+    build, sizes = found.factor * grid.safe, found.sizes / per
+    size = size_axis(grid.size.key, grid.size.label, grid.size.unit, (build, sizes[0]), grid.size.start)
+    shown = {"scores": found.scores, "first": found.first / per, "unseen": found.unseen}
+    words = {**view.words, "safe": f"{size.label.capitalize()} to build", "bound": "to build"}
+    return replace(view, grid=replace(grid, size=size, safe=build, levels=sizes, **shown), words=words)
 
 
 def _along(stopper):
@@ -205,7 +227,8 @@ def _force_view(axes, safe, scored, section, stopper):
     size = size_axis(key, label, unit, numbers, float(stopper.restoring_force) / per)
     least = bounded_share(stopper)
     share = share_axis(known.share.values, least if least in known.share.values else float(known.share[-1]), "")
-    grid = Grid(axes, share, size, *numbers, stopper.sizes["sample"], True)
+    layers = levels.counted(numbers[1][..., ::-1], stopper.sizes["sample"])
+    grid = Grid(axes, share, size, numbers[0], layers, stopper.sizes["sample"], True)
     words = {"what": label, "safe": f"{label.capitalize()} that simulation alone allows", "bound": "limit"}
     words |= {"stick": f"Stoppers with this {label} that stick"}
     return View("humidity", grid, words)
@@ -250,7 +273,7 @@ def size_axis(key: str, label: str, unit: str, computed: Sequence[np.ndarray], s
     numbers = np.concatenate([np.ravel(part) for part in computed])
     numbers = np.append(numbers[np.isfinite(numbers)], start)
     low, high = (float(f"{value:.3g}") for value in (numbers.min() * (1 - _ROOM), numbers.max() * (1 + _ROOM)))
-    reason = f"the simulated devices end between {low:g} and {high:g} {unit}"
+    reason = f"P(stuck) is known between {low:g} and {high:g} {unit}"
     return Axis(key, label, unit, "linear", (low, high), float(f"{start:.4g}"), True, reason, key)
 
 

@@ -5,19 +5,17 @@ are interpolated by monotone cubics, axis by axis. Nothing is extrapolated.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from functools import cached_property
 
 import numpy as np
 from scipy.special import ndtr, ndtri
 
 from stiction.devices.chart import error_between
-from stiction.devices.risk import SCORES
+from stiction.report.devices.levels import SHOWN
 
 #: Significant digits of the numbers in a page, and an error too small to show, which has a logarithm.
 _DIGITS, _EXACT = 7, 1e-9
-#: Normal score of a band of 95 %.
-Z95 = float(ndtri(0.975))
 #: Coordinate of a value along an axis, by its scale.
 _PLACES = {"linear": lambda value: value, "log": np.log, "score": ndtri}
 
@@ -60,14 +58,14 @@ class Stuck:
     """Fraction of stuck devices."""
 
     share: float  #: [-]; NaN if it is not known
-    low: float  #: lower end of the band of 95 % due to the number of devices
+    low: float  #: lower end of its band of 95 %
     high: float
-    beyond: int  #: -1 or 1 if the fraction is below or above ``share``, the last one that the devices show
+    beyond: int  #: -1 or 1 if only the upper or lower end is known
 
 
 @dataclass(frozen=True)
 class Grid:
-    """Safe sizes of a device, and quantiles of the sizes that stick, over its computed states.
+    """Sizes to build of a device, and levels of P(stuck), over its computed states.
 
     The size is the length of a beam, or the force or stiffness of a stopper.
     """
@@ -76,10 +74,12 @@ class Grid:
     share: Axis  #: fraction p that may stick
     size: Axis  #: its ends bound the control only
     safe: np.ndarray  #: over the axes and the shares, 95 % bounds
-    quantiles: np.ndarray  #: over the axes and the scores of `stiction.devices.risk`; NaN if unknown
+    levels: np.ndarray  #: layers of `stiction.report.devices.levels`, over the axes and scores; NaN if unknown
     samples: int  #: simulated devices of each state
     falls: bool  #: whether fewer stick at a larger size
-    counted: Sequence[tuple[Mapping[str, float], float, float, float]] = ()  #: states of tables, fraction and its band
+    scores: np.ndarray = field(default_factory=lambda: SHOWN)  #: of the levels
+    first: np.ndarray | None = None  #: size at which the first simulated device sticks, over the axes and once
+    unseen: float = 0.0  #: largest fraction stuck where none of them does
 
     def safe_size(self, state: Mapping[str, float]) -> float:
         """Safe size for the state's share."""
@@ -88,17 +88,24 @@ class Grid:
         )
 
     def stuck(self, state: Mapping[str, float]) -> Stuck:
-        """P(stuck) at the state's size: as in the tables if they have this state."""
-        for at, *found in self.counted:
-            if all(state[key] == value for key, value in at.items()):
-                return Stuck(*found, 0)
-        levels, scores = self._levels(state)
-        if not len(levels):
-            return Stuck(np.nan, np.nan, np.nan, 0)
-        at, sign = np.log(state[self.size.key]), -1 if self.falls else 1
-        beyond = sign * (int(at > levels[-1]) - int(at < levels[0]))
-        share = float(ndtr(sign * np.interp(at, levels, scores)))
-        return Stuck(share, *band(share, self.samples), beyond)
+        """P(stuck) at the state's size. Where no simulated device sticks, its upper end alone is known."""
+        sign = -1 if self.falls else 1
+        v = sign * np.log(state[self.size.key])
+        (share, beyond), (low, _), (high, _) = (
+            self._fraction(sign * self._at(layer, state, self.axes), v) for layer in self.levels
+        )
+        if self.first is None or share > self.unseen or v > sign * self._at(self.first, state, self.axes)[0]:
+            return Stuck(share, low, high, beyond)
+        is_enough = v <= sign * np.log(self.safe_size(state))
+        return Stuck(share, 0.0, min(max(high, self.unseen), state["share"] if is_enough else 1.0), -1)
+
+    def _fraction(self, levels, v):
+        """Fraction of a layer at v, and -1 or 1 below and above all known ones."""
+        known = np.isfinite(levels)
+        if not known.any():
+            return np.nan, 0
+        levels, scores = levels[known], self.scores[known]
+        return float(ndtr(np.interp(v, levels, scores))), int(v > levels[-1]) - int(v < levels[0])
 
     @cached_property
     def noise(self) -> np.ndarray:
@@ -114,12 +121,6 @@ class Grid:
         """Relative error of the safe size between computed values of the first axis, at the state's others."""
         found = self._at(self.noise, state, self.axes[1:])
         return float(np.exp(monotone(self.share.places, found, self.share.place(state["share"]))))
-
-    def _levels(self, state):
-        """Logarithms of the known quantiles at a state, and their normal scores."""
-        levels = self._at(self.quantiles, state, self.axes)
-        known = np.isfinite(levels)
-        return levels[known], SCORES[known]
 
     def _at(self, values, state, axes):
         """Logarithms of values over some axes at a state, over their last dimension."""
@@ -137,19 +138,8 @@ class Grid:
     @property
     def json(self) -> dict:
         """Content for a page."""
-        numbers = {name: nested_lists(getattr(self, name)) for name in ("safe", "quantiles", "noise")}
-        return asdict(self) | numbers | {"scores": SCORES.tolist()}
-
-
-def band(share: float, samples: int) -> tuple[float, float]:
-    """Band of 95 % of a fraction of samples, by Wilson [-].
-
-    >>> [round(end, 3) for end in band(0.5, 100)]
-    [0.404, 0.596]
-    """
-    part = Z95**2 / samples
-    half = Z95 * np.sqrt(share * (1 - share) / samples + part / (4 * samples))
-    return tuple(float((share + part / 2 + sign * half) / (1 + part)) for sign in (-1, 1))
+        names = ["safe", "levels", "noise", "scores", *(["first"] if self.first is not None else [])]
+        return asdict(self) | {name: nested_lists(getattr(self, name)) for name in names}
 
 
 def monotone(places: Sequence[float], values: np.ndarray, at: float) -> np.ndarray:

@@ -11,6 +11,7 @@ from stiction.config.units import to_si
 from stiction.contact.voltage import BREAKDOWN, Capacitor, Dielectric
 from stiction.devices.risk import quantiles, sampled_bound, samples_for
 from stiction.life import holding
+from stiction.report.devices import levels
 from stiction.report.devices.explorer import View, alone, humidity_axis, share_axis, size_axis
 from stiction.report.devices.grid import Axis, Grid
 from stiction.report.format import UM
@@ -50,7 +51,8 @@ def stopper_view(name: str, section: Mapping[str, Any], biased: xr.Dataset) -> V
         (humidity_axis(biased.humidity.values, worst, f"devices.{name}.humidities", False),),
         share_axis(shares, shares[0], ""),
         size_axis("voltage_V", "voltage", "V", (safe, scored[scored > _NEVER]), start),
-        *(safe, scored),
+        safe,
+        levels.counted(scored, volts.shape[1]),
         volts.shape[1],
         falls=False,
     )
@@ -93,7 +95,8 @@ def beam_view(name: str, section: Mapping[str, Any], safe_lengths: Mapping[float
         axes,
         share_axis(joined.share.values, share, "shares"),
         size_axis("length_um", "length", "µm", (safe, scored), length),
-        *(safe, scored),
+        safe,
+        levels.counted(scored, int(joined.beams)),
         int(joined.beams),
         falls=False,
     )

@@ -95,10 +95,14 @@ function opened(number) {
 
   const noiseAt = state => Math.exp(monotone(known.get("share"), at(grid.noise, state, grid.axes.slice(1)), score(state.share)));
 
+  /** Layers of P(stuck) and the ends of its band at a state: sizes as v, and their scores. */
+  const sign = grid.falls ? -1 : 1;
   function levelsOf(state) {
-    const found = at(grid.quantiles, state);
-    const keep = found.map(Number.isFinite);
-    return [found, grid.scores].map(part => part.filter((_, k) => keep[k]));
+    const layers = grid.levels.map(layer => {
+      const found = at(layer, state).map(value => sign * value), keep = found.map(Number.isFinite);
+      return [found, grid.scores].map(part => part.filter((_, k) => keep[k]));
+    });
+    return {layers, first: grid.first ? sign * at(grid.first, state)[0] : NaN, enough: sign * Math.log(safeSize(state))};
   }
 
   // Formulas of curves
@@ -133,22 +137,13 @@ function opened(number) {
     return y[y.length - 1];
   }
 
-  function band(share) {
-    const part = Z95 * Z95 / grid.samples;
-    const half = Z95 * Math.sqrt(share * (1 - share) / grid.samples + part / (4 * grid.samples));
-    return [-1, 1].map(sign => (share + part / 2 + sign * half) / (1 + part));
-  }
-
-  /** P(stuck) at a size and the other values of the state: as in the tables if they have it. */
-  function stuckAt(size, [levels, scores]) {
-    const here = {...state, [grid.size.key]: size};
-    const counted = grid.counted.find(([at]) => Object.entries(at).every(([key, value]) => here[key] === value));
-    if (counted) return {share: counted[1], low: counted[2], high: counted[3], beyond: 0};
-    if (!levels.length) return {share: NaN, low: NaN, high: NaN, beyond: 0};
-    const place = Math.log(size), sign = grid.falls ? -1 : 1;
-    const share = probability(sign * line(levels, scores, place));
-    const [low, high] = band(share);
-    return {share, low, high, beyond: sign * ((place > levels[levels.length - 1]) - (place < levels[0])) || 0};
+  /** P(stuck) at a size. Where no simulated device sticks, its upper end alone is known. */
+  function stuckAt(size, {layers, first, enough}) {
+    const v = sign * Math.log(size), [levels] = layers[0];
+    const [share, low, high] = layers.map(([some, scores]) => some.length ? probability(line(some, scores, v)) : NaN);
+    const beyond = levels.length ? (v > levels[levels.length - 1]) - (v < levels[0]) : 0;
+    if (!grid.first || share > grid.unseen || v > first) return {share, low, high, beyond};
+    return {share, low: 0, high: Math.min(Math.max(high, grid.unseen), v <= enough ? state.share : 1), beyond: -1};
   }
 
   // Texts
@@ -158,14 +153,21 @@ function opened(number) {
     const rounded = Number(value.toPrecision(digits)), size = Math.abs(rounded);
     return size >= 1e-4 && size < 1e6 || !size ? String(rounded) : value.toExponential(digits - 1);
   }
-  const percent = share => text(100 * share);
   const oneIn = share => `1 in ${text(1 / share)}`;
+
+  /** Fraction in percent with two digits, as an end of a band or alone, as in report/answer/words.py. */
+  function percent(share, isEnd) {
+    if (share < 1e-5) return isEnd ? "0 %" : "less than 0.001 %";
+    if (share > 1 - 1e-3) return isEnd ? "100 %" : "more than 99.9 %";
+    return `${Number((100 * share).toPrecision(2))} %`;
+  }
 
   function stuckText({share, low, high, beyond}) {
     if (Number.isNaN(share)) return MISSING;
-    if (beyond < 0 || !share) return `at most ${percent(high)} %`;
-    if (beyond || share === 1) return `at least ${text(100 - Number((100 * (1 - low)).toPrecision(2)), 9)} %`;
-    return `${percent(share)} % (${percent(low)} to ${percent(high)} %)`;
+    if (beyond < 0) return `at most ${percent(high, true)}`;
+    if (low > 1 - 1e-3) return percent(low);
+    if (beyond) return `at least ${percent(low, true)}`;
+    return `${percent(share)} (${percent(low, true).replace(" %", "")} to ${percent(high, true)})`;
   }
 
   const valueText = (axis, value) => axis.key === "humidity" && value === 0 ? "dry air" : `${text(value, DIGITS)}${axis.unit && ` ${axis.unit}`}`;
@@ -281,7 +283,7 @@ function opened(number) {
 
   // Charts
 
-  const [WIDTH, HEIGHT, LEFT, BOTTOM, TOP, RIGHT] = [400, 280, 58, 46, 12, 12];
+  const [WIDTH, HEIGHT, LEFT, BOTTOM, TOP, RIGHT] = [400, 280, 74, 46, 12, 12];
 
   function ticks(low, high) {
     const rough = (high - low) / 6, power = 10 ** Math.floor(Math.log10(rough));
@@ -290,14 +292,14 @@ function opened(number) {
     return found;
   }
 
-  function axesOf(parent, title, [x0, x1], [y0, y1], labels) {
+  function axesOf(parent, title, [x0, x1], [y0, y1], labels, rules = ticks(y0, y1).map(tick => [tick, text(tick)])) {
     const figure = make(parent, "figure"), svg = make(figure, "svg", {viewBox: `0 0 ${WIDTH} ${HEIGHT}`, role: "img", "aria-label": title});
     const x = value => LEFT + (WIDTH - LEFT - RIGHT) * (value - x0) / (x1 - x0);
     const y = value => HEIGHT - BOTTOM - (HEIGHT - BOTTOM - TOP) * (value - y0) / (y1 - y0);
     for (const tick of ticks(x0, x1)) make(svg, "text", {x: x(tick), y: HEIGHT - BOTTOM + 18, "text-anchor": "middle"}, text(tick));
-    for (const tick of ticks(y0, y1)) {
+    for (const [tick, label] of rules) {
       make(svg, "line", {x1: LEFT, x2: WIDTH - RIGHT, y1: y(tick), y2: y(tick), class: "rule"});
-      make(svg, "text", {x: LEFT - 8, y: y(tick) + 5, "text-anchor": "end"}, text(tick));
+      make(svg, "text", {x: LEFT - 8, y: y(tick) + 5, "text-anchor": "end"}, label);
     }
     make(svg, "text", {x: (LEFT + WIDTH - RIGHT) / 2, y: HEIGHT - 6, "text-anchor": "middle"}, labels[0]);
     make(svg, "text", {transform: `translate(14 ${(TOP + HEIGHT - BOTTOM) / 2}) rotate(-90)`, "text-anchor": "middle"}, labels[1]);
@@ -320,23 +322,40 @@ function opened(number) {
 
   /** Range of a chart around the known levels, the bound and the present size. */
   function rangeOf(levels, bound) {
-    const sizes = [state[grid.size.key], bound, ...levels.map(Math.exp)].filter(Number.isFinite);
+    const sizes = [state[grid.size.key], bound, ...levels.map(v => Math.exp(sign * v))].filter(Number.isFinite);
     return [0.95 * Math.min(...sizes), 1.05 * Math.max(...sizes)];
+  }
+
+  /** Ends of the axis of P(stuck), and its ticks. */
+  const LEAST = -6, DECADES = [[0, "100 %"], [-1, "10 %"], [-2, "1 %"], [-3, "0.1 %"], [-4, "0.01 %"], [-5, "0.001 %"]];
+
+  /** Names of the curve and its band, in the corner where neither is. */
+  function key(chart) {
+    const x = LEFT + 10, top = grid.falls ? HEIGHT - BOTTOM - 46 : TOP;
+    [["curve", 2, "expected"], ["band", 10, "95 % band"]].forEach(([name, height, label], k) => {
+      const y = top + 16 + 20 * k;
+      if (name === "curve") make(chart.svg, "path", {class: name, d: path([[x, y], [x + 22, y]])});
+      else make(chart.svg, "rect", {class: name, x, y: y - height / 2, width: 22, height});
+      make(chart.svg, "text", {x: x + 28, y: y + 5}, label);
+    });
   }
 
   function stuckChart(parent) {
     const {size} = grid, unit = size.unit, place = make(parent, "div");
     return () => {
-      const levels = levelsOf(state), bound = safeSize(state), ends = rangeOf(levels[0], bound);
+      const levels = levelsOf(state), bound = safeSize(state), ends = rangeOf(levels.layers[0][0], bound);
       place.replaceChildren();
-      const chart = axesOf(place, `P(stuck) against ${size.label}`, ends, [0, 100], [`${size.label} [${unit}]`, "P(stuck) [%]"]);
-      const points = spread(...ends).map(value => [value, stuckAt(value, levels)]).filter(([, one]) => !one.beyond && Number.isFinite(one.share));
-      const along = name => points.map(([value, one]) => [chart.x(value), chart.y(100 * one[name])]);
-      make(chart.svg, "path", {class: "band", d: path([...along("low"), ...along("high").reverse()])});
-      make(chart.svg, "path", {class: "curve", d: path(along("share"))});
+      const chart = axesOf(place, `P(stuck) against ${size.label}`, ends, [LEAST, 0], [`${size.label} [${unit}]`, "P(stuck)"], DECADES);
+      const height = share => chart.y(Math.max(Math.log10(share), LEAST));
+      const layers = levels.layers.map(([some, scores]) => spread(...ends).map(value => [value, sign * Math.log(value)])
+        .filter(([, v]) => some.length && v >= levels.layers[0][0][0] && v <= levels.layers[0][0].at(-1))
+        .map(([value, v]) => [chart.x(value), height(probability(line(some, scores, v)))]));
+      make(chart.svg, "path", {class: "band", d: path([...layers[1], ...layers[2].reverse()])});
+      make(chart.svg, "path", {class: "curve", d: path(layers[0])});
+      key(chart);
       if (Number.isFinite(bound)) make(chart.svg, "line", {class: "safe", x1: chart.x(bound), x2: chart.x(bound), y1: TOP, y2: HEIGHT - BOTTOM});
       const here = stuckAt(state[size.key], levels).share;
-      if (Number.isFinite(here)) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[size.key]), cy: chart.y(100 * here)});
+      if (Number.isFinite(here)) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[size.key]), cy: height(here)});
       const dashed = Number.isFinite(bound) ? ` Dashed: ${data.words.bound} for ${oneIn(state.share)}.` : "";
       hover(chart, ends, value => `At ${text(value)} ${unit}: ${stuckText(stuckAt(value, levels))}.${dashed}`, () => state[size.key])();
     };

@@ -1,0 +1,129 @@
+"""Levels of controls: sizes at which P(stuck), and both ends of its band, reach given fractions.
+
+Layers are P(stuck), the lower and the upper end of its 95 % band. Fractions are normal scores, which increase with
+P(stuck): the sizes of beams increase along them, the forces of stoppers fall.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+from stiction.answer.data import Answer, InAir
+from stiction.devices.risk import SCORES
+
+#: Normal scores of shown fractions, from 3e-7 on, and that of a band of 95 %.
+SHOWN, Z95 = np.linspace(-5, 5, 41), float(ndtri(0.975))
+#: Scores of fractions that are 0 or 1 as far as a double can tell.
+_NONE, _ALL = -37.0, 8.2
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """Simulation of one or several states of a device."""
+
+    quantiles: np.ndarray  #: sizes with P(stuck) at `SCORES`, NaN if unknown (..., scores)
+    limit: np.ndarray  #: simulated limit for the allowed fraction (...)
+
+
+@dataclass(frozen=True)
+class Levels:
+    """Levels of some states."""
+
+    scores: np.ndarray  #: increasing (n,)
+    sizes: np.ndarray  #: of the layers, NaN if unknown (3, ..., n)
+    first: np.ndarray  #: size at which the first simulated device sticks (..., 1)
+    factor: np.ndarray  #: size to build over the simulated limit (..., 1)
+    unseen: float = 0.0  #: largest fraction stuck where no simulated device sticks [-]
+
+
+def counted(quantiles: np.ndarray, samples: int) -> np.ndarray:
+    """Layers of simulated devices at `SHOWN` (3, ..., n), from sizes at `SCORES` (..., scores).
+
+    A band by Wilson: the fraction p is an end of that of a counted one if they differ by 1.96 sqrt(p (1 - p) / n).
+    """
+    shares = ndtr(SHOWN)
+    half = Z95 * np.sqrt(shares * (1 - shares) / samples)
+    at = [np.clip(shares + sign * half, 0, 1) for sign in (0, 1, -1)]
+    return np.array([np.exp(np.apply_along_axis(_at, -1, np.log(quantiles), ndtri(one))) for one in at])
+
+
+def _at(row, scores):
+    """Values of a row at `SCORES` (scores,) at others, NaN beyond the known ones."""
+    known = np.isfinite(row)
+    if not known.any():
+        return np.full(len(scores), np.nan)
+    return np.interp(scores, SCORES[known], row[known], left=np.nan, right=np.nan)
+
+
+def of_answer(answer: Answer, humidities: Sequence[float], states: Simulated, own: Mapping[float, Simulated]) -> Levels:
+    """Levels at states in some airs (m, ...) by an answer, and by the simulation of the device itself in its own airs.
+
+    In the air that decides, they are those of the answer for all airs together.
+
+    ASSUME: at other sizes, and in other air, all causes inside the answer change sizes by as much as at its own. What
+    they do in two stated airs is interpolated between them.
+    """
+    airs = sorted((_together(answer, one) for one in answer.airs if one.humidity in own), key=lambda one: one.humidity)
+    scores, stated = _scores(airs), [one.humidity for one in airs]
+    weights = [np.interp(humidities, stated, row) for row in np.eye(len(airs))]
+    ratios = [_ratio(states, own[humidity], scores) for humidity in stated]
+    inverted = [_inverted(answer, one, scores) for one in airs]
+    sizes = [_joined(weights, [np.log(rows[layer]) for rows in inverted], ratios) for layer in range(3)]
+    lowest = [ratio[..., :1] for ratio in ratios]
+    first = _joined(weights, [np.log(one.first) for one in airs], lowest)
+    beside = [np.log(one.build / own[one.humidity].limit) for one in airs]
+    factor = _joined(weights, beside, [0 * ratio for ratio in lowest])
+    return Levels(scores, np.array(sizes), first, factor, answer.unseen)
+
+
+def _together(answer: Answer, air: InAir) -> InAir:
+    """Answer for an air, or for all together in place of the one that decides."""
+    return answer.together if air.humidity == answer.together.humidity else air
+
+
+def _scores(airs):
+    """Scores of the levels, among them those at the stated size, so that it has exactly what the answer says."""
+    stated = [(one.stuck.value, one.stuck.low, one.stuck.high) for one in airs if one.stuck]
+    found = ndtri(np.ravel(stated))
+    return np.unique(np.append(SHOWN, found[np.abs(found) < SHOWN[-1]]))
+
+
+def _inverted(answer, air, scores):
+    """Sizes at which the layers of one air reach scores (3, n), NaN beyond its curve."""
+    if not len(answer.sizes):
+        return np.full((3, len(scores)), np.nan)
+    sign = -1 if answer.more_is_better else 1
+    v, rows = sign * np.log(answer.sizes), air.curve
+    if air.stuck is not None and not air.stuck.none_seen:
+        k = np.searchsorted(v, sign * np.log(answer.size))
+        rows = np.insert(rows, k, (air.stuck.value, air.stuck.low, air.stuck.high), axis=1)
+        v = np.insert(v, k, sign * np.log(answer.size))
+    heights = np.maximum.accumulate(np.clip(ndtri(rows), _NONE, _ALL), axis=1)
+    return np.exp([sign * np.interp(scores, row, v, left=np.nan, right=np.nan) for row in heights])
+
+
+def _ratio(states: Simulated, own: Simulated, scores: np.ndarray) -> np.ndarray:
+    """Logarithm of simulated sizes at states over those of the device itself, at scores (..., n).
+
+    Beyond the simulated fractions it is that of the last of them; without any, that of the limits.
+    """
+    ratios = np.log(states.quantiles) - np.log(own.quantiles)
+    found = np.apply_along_axis(_nearest, -1, ratios, scores)
+    return np.where(np.isnan(found), np.log(states.limit / own.limit)[..., None], found)
+
+
+def _nearest(row, scores):
+    """Values of a row at `SCORES` at others, beyond the known ones the last of them."""
+    known = np.isfinite(row)
+    return np.interp(scores, SCORES[known], row[known]) if known.any() else np.full(len(scores), np.nan)
+
+
+def _joined(weights, logarithms, ratios):
+    """Sizes at states (m, ..., n) from those in the stated airs and ratios to them, by the weights of these (m,)."""
+    total = 0.0
+    for weight, own, ratio in zip(weights, logarithms, ratios, strict=True):
+        weight = weight.reshape(-1, *[1] * (ratio.ndim - 1))
+        total = total + np.where(weight > 0, weight * (own + ratio), 0)
+    return np.exp(total)
