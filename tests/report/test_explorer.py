@@ -35,7 +35,7 @@ def device():
 def grid(device):
     charts = {humidity: device.chart(humidity) for humidity in np.linspace(*SIZES["humidities"], 5).round(4).tolist()}
     section = SMALL["devices"]["C1"]
-    return explorer.beam_view("C1", section, {0.67: device.safe_lengths(0.67)}, charts, {}).grid
+    return explorer.beam_view("C1", section, {0.67: device.safe_lengths(0.67)}, charts, device.answer()).grid
 
 
 def settings_of(device, humidity):

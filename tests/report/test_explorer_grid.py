@@ -11,7 +11,8 @@ from scipy.interpolate import PchipInterpolator
 from scipy.special import ndtr
 
 from stiction.devices.risk import SCORES
-from stiction.report.devices.grid import Axis, Grid, band, monotone
+from stiction.report.devices.grid import Axis, Grid, monotone
+from stiction.report.devices.levels import counted
 from stiction.report.page import Page
 
 RNG = np.random.default_rng(5)
@@ -31,7 +32,8 @@ def lognormal(falls=False):
     medians = 100 * np.array(THICKNESS.values)[:, None] ** 0.75
     safe = medians * np.exp(SLOPE * SHARE.places * (-1 if falls else 1))
     size = axis("length", (10.0, 1000.0), "linear")
-    return Grid((THICKNESS,), SHARE, size, safe, medians * np.exp(SLOPE * SCORES), DEVICES, falls)
+    known = medians * np.exp((-1 if falls else 1) * SLOPE * SCORES)
+    return Grid((THICKNESS,), SHARE, size, safe, counted(known, DEVICES), DEVICES, falls)
 
 
 def score_of(state):
@@ -64,7 +66,7 @@ def test_beyond_the_simulated_devices_a_fraction_is_a_bound(falls):
         found = grid.stuck(STATE | {"length": length})
         assert found.beyond == beyond
         assert found.share == pytest.approx(ndtr(SCORES[-1] * beyond))
-    assert np.isnan(replace(grid, quantiles=np.full_like(grid.quantiles, np.nan)).stuck(STATE).share)
+    assert np.isnan(replace(grid, levels=np.full_like(grid.levels, np.nan)).stuck(STATE).share)
 
 
 def test_no_state_beyond_the_computed_ones_has_an_answer():
@@ -76,12 +78,25 @@ def test_no_state_beyond_the_computed_ones_has_an_answer():
         replace(grid, axes=(axis("thickness", THICKNESS.values, between=False),)).safe_size(STATE)
 
 
-def test_the_band_holds_the_fraction_as_often_as_it_says():
-    share, samples = 0.03, 400
-    found = RNG.binomial(samples, share, 20_000) / samples
-    ends = np.array([band(one, samples) for one in np.unique(found)])
-    inside = dict(zip(np.unique(found), (ends[:, 0] <= share) & (share <= ends[:, 1]), strict=True))
-    assert np.mean([inside[one] for one in found]) == pytest.approx(0.95, abs=0.02)
+def test_the_band_of_counted_devices_is_that_of_wilson():
+    grid, factor = lognormal(), 1.959964**2 / DEVICES
+    for length in (190.0, 228.0, 260.0):
+        found = grid.stuck(STATE | {"length": length})
+        half = 1.959964 * np.sqrt(found.share * (1 - found.share) / DEVICES + factor / (4 * DEVICES))
+        ends = [(found.share + factor / 2 + sign * half) / (1 + factor) for sign in (-1, 1)]
+        assert (found.low, found.high) == pytest.approx(ends, rel=0.02)
+
+
+def test_where_no_simulated_device_sticks_a_fraction_is_at_most_what_their_number_allows():
+    grid = lognormal()
+    first = 100 * np.array(THICKNESS.values)[:, None] ** 0.75 * np.exp(-3 * SLOPE)
+    grid = replace(grid, first=first, unseen=2e-3)
+    below, safe = 0.99 * float(100 * 3**0.75 * np.exp(-3 * SLOPE)), grid.safe_size(STATE)
+    found = grid.stuck(STATE | {"length": below})
+    assert (found.low, found.high, found.beyond) == (0, 2e-3, -1), "the fraction allowed is larger"
+    assert grid.stuck(STATE | {"length": below, "share": 1.1e-3}).high == 1.1e-3, "a length to build is safe"
+    assert grid.stuck(STATE | {"length": 1.02 * below / 0.99}).beyond == 0
+    assert below < safe
 
 
 def test_no_text_of_a_grid_leaves_its_script():

@@ -2,7 +2,6 @@
 
 import contextlib
 import json
-import re
 import shutil
 import subprocess
 import tempfile
@@ -11,7 +10,8 @@ import urllib.error
 import urllib.request
 from importlib import resources
 
-import numpy as np
+from stiction.answer.data import Probability
+from stiction.report.answer import words
 
 #: Names of the browser on different systems.
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
@@ -24,19 +24,13 @@ _ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 
 
 def says_fraction(text, fraction, band, beyond=0):
-    """Whether a text ends in a fraction with its band, or in the end of it that bounds a count of none or of all.
+    """Whether a text ends in a fraction with its band as an answer says it, or in the end of it that alone is known.
 
-    All are between 0 and 1; ``beyond`` is -1 or 1 for sizes at which less or more stick than at any that was computed.
+    All are between 0 and 1; ``beyond`` is -1 or 1 where only the upper or lower end is known.
     """
-    behind = text.rpartition(": ")[2]
-    shown = [float(number) / 100 for number in re.findall(r"\d[\d.]*(?:e[+-]?\d+)?", behind)]
-    none, every = "at most" in behind, "at least" in behind
-    if beyond and (none, every) != (beyond < 0, beyond > 0) or none and not beyond and fraction > 1e-6:
-        return False
-    if every and not beyond and fraction < 1 - 1e-6:
-        return False
-    expected = [band[1]] if none else [band[0]] if every else [fraction, *band]
-    return len(shown) == len(expected) and np.allclose(shown, expected, rtol=1e-2, atol=1e-11)
+    least = f"at least {words.percent(band[0], 'low')}"
+    said = words.stuck_in_words(Probability(fraction, *band, none_seen=beyond < 0))
+    return text.rpartition(": ")[2] == (least if beyond > 0 and band[0] <= 1 - 1e-3 else said)
 
 
 def missing():

@@ -194,8 +194,9 @@ def grid_of(run, device):
     axes = [
         Axis(**one | {"values": tuple(one["values"])}) for one in (*content["axes"], content["share"], content["size"])
     ]
-    arrays = (np.array(content[name], float) for name in ("safe", "quantiles"))
-    return Grid(tuple(axes[:-2]), axes[-2], axes[-1], *arrays, content["samples"], content["falls"])
+    arrays = {name: np.array(content[name], float) for name in ("safe", "levels", "scores", "first")}
+    numbers = {name: content[name] for name in ("samples", "falls", "unseen")}
+    return Grid(tuple(axes[:-2]), axes[-2], axes[-1], **arrays, **numbers)
 
 
 def random_state(grid, rng):

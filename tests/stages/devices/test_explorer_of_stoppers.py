@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import answered
 import numpy as np
 import pytest
 import small
@@ -31,7 +32,7 @@ def stopper():
 
 @pytest.mark.parametrize(("stated", "unit"), [(STATED, 1e-6), (SPRING, 0.5e-6)])
 def test_a_stopper_has_at_every_humidity_the_forces_or_stiffnesses_of_its_stage(stopper, stated, unit):
-    grid = explorer.stopper_view(SECTION | stated, stopper, {}).grid
+    grid = explorer.stopper_view(SECTION | stated, stopper, answered.of_stopper(stopper)).grid
     key = next(iter(stated))
     assert grid.start[key] == pytest.approx(1e-6 / unit)
     assert grid.start["humidity"] == float(stopper.humidity[1]), "the stated one that holds most"
@@ -50,7 +51,9 @@ def test_a_stopper_with_few_patches_has_fractions_and_no_sufficient_force():
     few = FORCES[:60]
     settings = replace(SETTINGS, restoring_force=1e-6)
     found = stoppers.layout(settings, np.stack([few, 2 * few]), AXIS, FACTORS[:, None] * few)
-    grid = explorer.stopper_view(SECTION | STATED, found, {}).grid
+    with np.errstate(invalid="ignore"):  # no force is bounded
+        answer = answered.of_stopper(found)
+    grid = explorer.stopper_view(SECTION | STATED, found, answer).grid
     assert np.isnan(grid.safe_size(grid.start))
     assert 0 < grid.stuck(grid.start | {"humidity": 0.5, "restoring_force_uN": 1.5}).share < 1
 
@@ -112,7 +115,9 @@ def test_the_voltage_that_frees_a_stopper_is_that_of_its_life(stopper):
     grid = voltage_views.stopper_view("S1", SECTION | STATED | OXIDE, found).grid
     assert grid.start["share"] == 1e-3, "the smallest one with a bound"
     assert grid.safe_size(grid.start) == pytest.approx(answers["freeing_voltage"].high, rel=1e-9)
-    assert explorer.stopper_view(SECTION | STATED, stopper, {}).grid.share.setting == "", "a stopper has no key of it"
+    assert explorer.stopper_view(SECTION | STATED, stopper, answered.of_stopper(stopper)).grid.share.setting == "", (
+        "a stopper has no key of it"
+    )
 
 
 def test_no_voltage_beyond_breakdown_and_none_of_a_spring_that_is_too_weak_has_an_answer(stopper):

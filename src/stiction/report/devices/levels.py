@@ -46,7 +46,7 @@ def counted(quantiles: np.ndarray, samples: int) -> np.ndarray:
     shares = ndtr(SHOWN)
     half = Z95 * np.sqrt(shares * (1 - shares) / samples)
     at = [np.clip(shares + sign * half, 0, 1) for sign in (0, 1, -1)]
-    return np.array([np.exp(np.apply_along_axis(_at, -1, np.log(quantiles), ndtri(one))) for one in at])
+    return np.array([np.exp(np.apply_along_axis(_at, -1, np.log(quantiles), np.round(ndtri(one), 9))) for one in at])
 
 
 def _at(row, scores):
