@@ -9,6 +9,9 @@ import time
 import urllib.error
 import urllib.request
 from importlib import resources
+from itertools import product
+
+import numpy as np
 
 from stiction.answer.data import Probability
 from stiction.report.answer import words
@@ -26,11 +29,19 @@ _ELEMENT = "element-6066-11e4-a52e-4f735466cecf"
 def says_fraction(text, fraction, band, beyond=0):
     """Whether a text ends in a fraction with its band as an answer says it, or in the end of it that alone is known.
 
-    All are between 0 and 1; ``beyond`` is -1 or 1 where only the upper or lower end is known.
+    All are between 0 and 1; ``beyond`` is -1 or 1 where only the upper or lower end is known. The numbers of a page
+    have seven digits, which a steep curve makes an error of a thousandth.
     """
-    least = f"at least {words.percent(band[0], 'low')}"
-    said = words.stuck_in_words(Probability(fraction, *band, none_seen=beyond < 0))
-    return text.rpartition(": ")[2] == (least if beyond > 0 and band[0] <= 1 - 1e-3 else said)
+    factors = product((1, 1 - 1e-3, 1 + 1e-3), repeat=3)
+    near = (np.minimum(1, np.array([fraction, *band]) * some) for some in factors)
+    return any(text.rpartition(": ")[2] == _said(*some, beyond) for some in near)
+
+
+def _said(fraction, low, high, beyond):
+    """P(stuck) in the words of an answer."""
+    if beyond > 0 and low <= 1 - 1e-3:
+        return f"at least {words.percent(low, 'low')}"
+    return words.stuck_in_words(Probability(fraction, low, high, none_seen=beyond < 0))
 
 
 def missing():

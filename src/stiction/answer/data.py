@@ -142,6 +142,12 @@ class Answer:
         return InAir(self.stated_steps[-1].humidity, self.build, np.nan, self.stuck, self.curve, first)
 
     @property
+    def is_by_tip(self) -> bool:
+        """Whether the tip holds devices in the air that decides: without it, they may be longer by over 1 %."""
+        decides = [one for one in self.airs if one.humidity == self.stated_steps[-1].humidity]
+        return any(one.without_tip > 1.01 * one.build for one in decides)
+
+    @property
     def included(self) -> tuple[Cause, ...]:
         """Causes inside the size to build."""
         return tuple(step.cause for step in self.stated_steps[1:])

@@ -321,7 +321,7 @@ def _page(data, at, settings):
     return replace(
         page,
         not_modelled=not_modelled(**settings["not_modelled"]),
-        drawing=device_drawing(_with_force(settings)).svg,
+        drawing=device_drawing(_with_force(settings), answer.is_by_tip).svg,
         explorer=explorer.content(at.device, settings, views),
     )
 

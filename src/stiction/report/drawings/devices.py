@@ -70,6 +70,12 @@ def stuck_along(y: float, words: Mapping[str, str] = _NONE) -> list[str]:
     ]
 
 
+def held_by_tip(y: float, words: Mapping[str, str] = _NONE) -> list[str]:
+    """Cantilever stuck at its tip alone, with its sizes."""
+    own = [*_sizes(y, words), *measure((_CLAMP, y + 86), (_END, y + 86), words.get("length_um", "length"))]
+    return [*stuck_at_tip(y), *own]
+
+
 def stuck_at_tip(y: float) -> list[str]:
     """Cantilever stuck at its tip alone, on a ground at ``y``."""
     return [
@@ -214,9 +220,13 @@ _OF_KINDS: Mapping[str, tuple[Callable[..., list[str]], float, str]] = {
 }
 
 
-def device_drawing(section: Mapping) -> Drawing:
-    """Draw a device with its own sizes, from its section of the configuration."""
-    parts, y, description = _OF_KINDS[section["kind"]]
+#: The same for a cantilever that its tip holds.
+_BY_TIP = held_by_tip, 166, "A beam clamped on the left bends down over a gap. Only its free end touches the ground."
+
+
+def device_drawing(section: Mapping, by_tip: bool = False) -> Drawing:
+    """Draw a device with its own sizes, from its section of the configuration, perhaps stuck by its tip alone."""
+    parts, y, description = _BY_TIP if by_tip else _OF_KINDS[section["kind"]]
     words = {key: _label(key, section[key]) for key in KEYS if key in section}
     return Drawing(section["kind"], "The device, stuck", description, y + 124, parts(y, words))
 
