@@ -168,7 +168,7 @@ def test_a_page_answers_any_voltage_as_python_does(views, page, browser):
     grid, rng = views["voltage"].grid, np.random.default_rng(3)
     browser.open(page)
     for _ in range(50):
-        state = grid.start | {"voltage_V": float(f"{rng.uniform(0.1, grid.size.values[1]):.4g}")}
+        state = grid.start | {"voltage_V": float(f"{rng.uniform(*grid.size.values):.4g}")}
         state |= {"humidity": float(rng.choice(grid.axes[0].values))}
         shown, stuck = go_to(browser, list(views).index("voltage"), state), grid.stuck(state)
         assert says_fraction(shown["stuck"], stuck.share, (stuck.low, stuck.high), stuck.beyond)
