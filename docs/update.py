@@ -32,11 +32,13 @@ from stiction.config.files import paper
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.plan.plan import Plan
+from stiction.report.answer import words as answer_words
 from stiction.report.format import TO_UM, with_error
 from stiction.report.limits import words
 from stiction.report.process import tables as tables_process
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run.storage import load
+from stiction.stages.answer.answer import answer_of
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever, sections
 from stiction.stages.devices import prediction
 from stiction.stages.laws.forces import vectors
@@ -95,9 +97,11 @@ ROUGHNESS_PICTURES = {"roughness_Bump": 700, "roughness_Lever": 1000, "roughness
 #: Sentences, and picture with its width [pixels], of ``make devices CONFIG=examples/test_beams.yaml``.
 TEST_BEAMS = "test_beams"
 TEST_BEAMS_SAID = {
-    "build": tables_test_beams.notes,
-    "further": tables_test_beams.beams_to_add,
-    "warned": lambda update: " ".join(words.texts(tables_test_beams.warnings(update))),
+    "build": lambda update, answer: " ".join(
+        [answer_words.headline(answer), *answer_words.by_test_beams(answer), tables_test_beams.notes(update)]
+    ),
+    "further": lambda update, answer: tables_test_beams.beams_to_add(update),
+    "warned": lambda update, answer: " ".join(words.texts(tables_test_beams.warnings(update))),
 }
 TEST_BEAMS_PICTURE = ("test_beams_onB", 1100)
 #: Tables of studies with a command of their own: command, and width of the picture of the same name [pixels] or 0.
@@ -370,7 +374,9 @@ def collect_test_beams(folder):
     rows = []
     for path in sorted((folder / "results" / "devices" / "test_beams" / "rerun").glob("*.nc")):
         update = load(path, "test_beams_rerun")
-        rows += [{"device": path.stem, "name": name, "text": said(update)} for name, said in TEST_BEAMS_SAID.items()]
+        answer = answer_of(load(folder / "results" / "devices" / "answer" / path.name, "answer"))
+        said = {name: of(update, answer) for name, of in TEST_BEAMS_SAID.items()}
+        rows += [{"device": path.stem, "name": name, "text": text} for name, text in said.items()]
     pd.DataFrame(rows).to_csv(DOCS / "tables" / f"{TEST_BEAMS}.csv", index=False, lineterminator="\n")
     picture, width = TEST_BEAMS_PICTURE
     shrink(folder / "results" / "figures" / f"{picture}.png", DOCS / "pictures" / f"{picture}.png", width)
