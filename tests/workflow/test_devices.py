@@ -258,7 +258,7 @@ def test_the_numbers_of_a_page_are_those_of_its_tables(run, browser):
 def test_the_controls_begin_with_the_number_of_the_answer(run, browser, device):
     browser.open(page_of(run, device))
     screen, shown = browser.run("return document.querySelector('.answer').innerText"), answers(browser)
-    answer = re.search(r"(?:Safe up to|At least) (\S+)\s", screen)
+    answer = re.search(r"(?:No longer than|At least) (\S+)\s", screen)
     if not answer:
         is_unknown = "too few patches" in screen and "not known" in shown["safe"]
         is_uncertain = "too much for a" in screen and "too much for a" in shown["budget"]
@@ -373,7 +373,7 @@ def test_a_reader_without_scripts_has_the_whole_answer_and_no_empty_controls(run
     browser.open(tmp_path / "page.html")
     assert "Content Security Policy" in "".join(browser.errors()), "no other script runs"
     assert not browser.run("return document.querySelector('#explore').checkVisibility()")
-    assert "Safe up to" in browser.run("return document.querySelector('.answer').innerText")
+    assert "No longer than" in browser.run("return document.querySelector('.answer').innerText")
 
 
 @in_a_browser

@@ -65,7 +65,7 @@ def test_the_comparison_counts_differences_in_standard_deviations():
             "after": 640,
             "after_std": 30,
         }
-        for name, part in (("C1", "crack length [µm]"), ("C1", "safe length"), ("wafer", "crack length [µm]"))
+        for name, part in (("C1", "crack length [µm]"), ("C1", "simulated limit"), ("wafer", "crack length [µm]"))
     ]
     truth = pd.DataFrame({"humidity": [0.6], "crack_length_um": [610.0], "se_um": [2.0]})
     found = compare.compared(pd.DataFrame(rows), truth)
