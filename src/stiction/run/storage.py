@@ -36,8 +36,6 @@ def save(
     ------
     DataError
         If the disk is full, the folder cannot be written or an input cannot be read.
-    KeyError
-        If the table of variables lacks one.
     """
     path = Path(path)
     label = labels.made_from(inputs, stage, path.stem, settings)

@@ -1,10 +1,11 @@
 """Units, symbols, equations and meanings of all variables in result files.
 
 ``variables.csv`` has a row for each variable of some stages, or of all stages where none is named. A row without the
-name of a variable is the title of the files of a stage. Nothing is saved without its row.
+name of a variable is the title of the files of a stage.
 """
 
 import csv
+import warnings
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -37,24 +38,26 @@ def rows() -> dict[tuple[str, str], Row]:
 def described(dataset: xr.Dataset, stage: str) -> xr.Dataset:
     """Dataset of a stage with its title and the attributes of every variable.
 
-    Raises
-    ------
-    KeyError
-        If the table has no row for the stage or a variable. The message names it.
+    A variable without a row keeps what its stage states, with a warning, which fails every test: a description that is
+    missing is no reason to lose what a run has computed.
     """
-    found = dataset.assign_attrs(title=_row(stage, "").long_name)
+    found = dataset.copy()
+    if title := _row(stage, ""):
+        found.attrs["title"] = title.long_name
     for name in found.variables:
-        found[name].attrs = _attributes(found[name].attrs, _row(stage, name))
+        if row := _row(stage, name):
+            found[name].attrs = _attributes(found[name].attrs, row)
     return found
 
 
 def _row(stage, name):
-    """Row of a variable, of its stage or of all."""
+    """Row of a variable, of its stage or of all, or None with a warning."""
     known = rows()
     if row := known.get((stage, name)) or known.get(("", name)):
         return row
     of = f"variable {name} of stage {stage}" if name else f"title of stage {stage}"
-    raise KeyError(f"run/variables.csv has no row for the {of}; add one")
+    warnings.warn(f"run/variables.csv has no row for the {of}; add one", stacklevel=2)
+    return None
 
 
 def _attributes(stated, row):
