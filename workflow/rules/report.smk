@@ -106,8 +106,8 @@ define("table_pressing")
 #   pressed -> results/figures/pressing.{pdf,png,txt}
 define("figure_pressing")
 
-# Risk: share of stuck beams over their length.
-#   safe_lengths, device_warnings -> results/figures/risk.{pdf,png,txt}
+# Risk: P(stuck) of beams against their length, and lengths to build.
+#   safe_lengths, answer, device_warnings -> results/figures/risk.{pdf,png,txt}
 define("figure_risk")
 
 # Chart: simulated limit against relative humidity.

@@ -175,17 +175,6 @@ class Budget:
         return [self.names.index(name) for name in group]
 
 
-def part_left(total: float) -> float:
-    """Part of a safe length that is left to build at an uncertainty of its logarithm, NaN where that allows none [-].
-
-    Examples
-    --------
-    >>> round(part_left(0.1), 2), part_left(0.6)
-    (0.82, nan)
-    """
-    return float(np.exp(-SUBTRACTED * total)) if total <= LARGEST else np.nan
-
-
 def joined(budgets: Sequence[Budget]) -> Budget:
     """Budget of inputs from independent measurements."""
     names = tuple(name for budget in budgets for name in budget.names)

@@ -13,7 +13,7 @@ from stiction.stages.devices.end_states import END_STATES
 
 #: Causes in words: as the row of a ladder, and inside a sentence.
 CAUSES: Mapping[Cause, tuple[str, str]] = {
-    Cause.ESTIMATE: ("estimate, in the worst air", "the estimate"),
+    Cause.ESTIMATE: ("estimate", "the estimate"),
     Cause.SIMULATION: ("error of the simulation", "the simulation"),
     Cause.FAST: ("fast separation, as in a shock (not stated)", "fast separation"),
     Cause.TOUCHDOWNS: ("all touchdowns", "all touchdowns"),
@@ -22,6 +22,12 @@ CAUSES: Mapping[Cause, tuple[str, str]] = {
     Cause.DRYING: ("drying of the stated liquids", "the drying of the stated liquids"),
     Cause.INPUTS: ("uncertainty of the inputs", "the uncertainty of the inputs"),
     Cause.TEST_BEAMS: ("inputs and model, by the test beams", "the test beams"),
+}
+#: Stated conditions that are not inside, in words.
+_LEFT_OUT = {
+    "dimples": "its dimples (see its life below)",
+    "inputs": "the uncertainty of the inputs, because too few devices stick to show it",
+    "voltage": "its voltage, at which the dielectric breaks down",
 }
 #: Signs of verdicts with the tone of their box, for lengths and for forces.
 _SIGNS = {
@@ -120,7 +126,9 @@ def contains(answer: Answer) -> str:
     if Cause.INPUTS not in answer.included and Cause.TEST_BEAMS not in answer.included:
         said += " All inputs count as exact."
     if answer.left_out:
-        said += f" Stated, but not inside: {', '.join(answer.left_out)} (see below)."
+        said += f" Stated, but not inside: {', '.join(map(_LEFT_OUT.get, answer.left_out))}."
+    if answer.extrapolated:
+        said += " Such rare cases rest on a line through the tail beyond what was verified: either side."
     return said
 
 
@@ -128,6 +136,7 @@ def decides(answer: Answer) -> str:
     """Air and end state that decide, and the largest step."""
     last, largest = answer.stated_steps[-1], answer.largest_step
     held = END_STATES[last.shape].by if last.shape in END_STATES else "liquid that dries"
+    held = "tip" if answer.is_by_tip else held
     air = Air(last.humidity).words if last.humidity else "Dry air"
     said = f"{air}, stuck by {'the ' if held != 'beam or tip' else ''}{held}."
     change = largest.factor - 1

@@ -8,7 +8,7 @@ those of the samples. A partly assumed surface has no slopes: whole typical surf
 """
 
 import traceback
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, ClassVar
@@ -38,7 +38,6 @@ from stiction.stages.contact.error_notes import explain_errors
 from stiction.stages.devices.contact_names import contacts_of_budget, contacts_of_tip_budget
 from stiction.stages.devices.opening import (
     ARC,
-    EITHER,
     FORCE,
     DesignedBeam,
     addresses,
@@ -405,16 +404,6 @@ def margin_of(dataset: xr.Dataset) -> float:
     budget, bends = budget_of(dataset), dataset.bend.values
     side = 1 if dataset.centre.attrs["response"] == FORCE else -1
     return budget.unsafe_total(np.pad(bends, (0, len(budget.names) - len(bends))), side)
-
-
-def largest_margin(budgets: Iterable[xr.Dataset]) -> float:
-    """Largest known `margin_of` some budgets, 0 without any [-]."""
-    return max(filter(np.isfinite, map(margin_of, budgets)), default=0.0)
-
-
-def margin_of_shape(budgets: Mapping[tuple, xr.Dataset], shape: str) -> float:
-    """Largest known `margin_of` a beam in an end state, from its budgets as of `budgets_of` [-]."""
-    return largest_margin(budget for key, budget in budgets.items() if ("tip" in key) == (shape == EITHER))
 
 
 def groups_of(dataset: xr.Dataset) -> dict[str, list[str]]:
