@@ -3,13 +3,22 @@
 import json
 
 import pytest
+from answers import (
+    BRIDGE,
+    CANTILEVER,
+    STOPPER,
+    beam_answer,
+    beam_page,
+    safe,
+    screen_of,
+    silent,
+    stopper_dataset,
+    stopper_page,
+)
 from noted import save_page
-from test_first_screen import beam, stopper
-from test_pages import CANTILEVER, safe
 
 from stiction.command.last_lines import where_to_look
 from stiction.devices.limits import rules
-from stiction.report.devices import first_screen
 from stiction.report.limits import pages, words
 from stiction.stages.beams.pair_warnings import Subject
 
@@ -35,10 +44,16 @@ class Unread(str):
     __contains__ = partition = rpartition = split = splitlines = startswith = endswith = find = _refuse
 
 
+def _bridge(found):
+    """Page of a bridge with some limits."""
+    lengths = {0.67: safe("bridge")}
+    return beam_page(BRIDGE, lengths, warnings=silent(lengths, said=found))
+
+
 def decided(folder):
     """What pages, files and the terminal decide without limits, with some, and with all of them."""
     for found in ([], LIMITS[-2:], LIMITS):
-        for page in (beam("bridge", found), stopper(found)):
+        for page in (_bridge(found), stopper_page(STOPPER, stopper_dataset(), limits=found)):
             yield page.summary.sign, page.summary.tone, len(page.warnings), page.is_forbidden
         save_page(folder, *found)
         yield json.loads((folder / "warnings.json").read_text())
@@ -56,7 +71,7 @@ def test_decisions_are_those_with_a_placeholder_for_every_sentence(tmp_path, mon
 
 @pytest.mark.parametrize("limit", LIMITS, ids=lambda limit: limit.kind)
 def test_a_first_screen_has_no_number_where_a_limit_forbids_it_and_only_there(limit):
-    shown = first_screen.beam_screen(CANTILEVER, {0.67: safe()}, {}, [limit])
+    shown = screen_of(beam_answer(CANTILEVER, {0.67: safe()}, limits=[limit]), CANTILEVER, [limit])
     assert (shown.sign == "Do not rely on a number") == limit.forbids
 
 

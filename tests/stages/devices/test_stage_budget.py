@@ -225,7 +225,7 @@ def test_wetter_air_shortens_the_cracks_of_a_small_study(study):
 
 def test_a_budget_of_a_small_study_has_the_devices_of_all_its_samples(study):
     settings = replace(SETTINGS, seed=small.SEED, uncertainty=Uncertainty(gap=0.5e-6), device=R1, beams=4)
-    changed = study.isel(sample=slice(10))
+    changed = study.isel(strip=slice(10))
     found = budget.compute(study, {}, {}, {"half": changed}, {}, settings)
     assert list(found.input.values) == ["gap"]
     state = settings.state(study)
@@ -247,7 +247,7 @@ def test_the_budget_of_a_stopper_is_one_of_its_forces(study):
 
 def test_the_budget_of_tips_is_one_of_their_arcs(study, monkeypatch):
     monkeypatch.setattr(curves, "tip_forces", lambda *air: (SLOPES, curves.energies(*air)[:, None] / SLOPES))
-    many = study.isel(sample=np.arange(200) % study.sizes["sample"])
+    many = study.isel(strip=np.arange(200) % study.sizes["strip"])
     settings = replace(TipBudget(*COMMON, device=C1, share=0.01), uncertainty=Uncertainty(gap=0.5e-6, humidity=0.01))
     found = budget.compute(many, {}, {}, {}, {}, settings)
     assert (found.centre.attrs["units"], budget.response_of(found)) == ("m", (ARC, 0.01))

@@ -147,6 +147,7 @@ def test_beams_of_all_sizes_share_their_strips_and_those_of_one_slope_their_tips
 
 def test_a_dataset_comes_back_from_its_file(contacts, tmp_path):
     of_stopper = separation.of_stopper(contacts, separation.OfStopper(WATER, PATCH))
-    for found in (of_stopper, fast_strips(contacts, WATER)[0.44], fast_tips(wedges())):
-        storage.save(found, tmp_path / "one.nc", "separation", {})
-        assert storage.load(tmp_path / "one.nc", "separation").equals(found)
+    of_beam = {"fast_strips": fast_strips(contacts, WATER)[0.44], "fast_tips": fast_tips(wedges())}
+    for stage, found in ({"separation": of_stopper} | of_beam).items():
+        storage.save(found, tmp_path / "one.nc", stage, {})
+        assert storage.load(tmp_path / "one.nc", stage).equals(found)

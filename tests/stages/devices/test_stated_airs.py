@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 from answers import STOPPER, stopper_page
 
-from stiction.config.files import joined
+from stiction.config.files import load
 from stiction.contact.environment import Water
 from stiction.plan.plan import Plan
 from stiction.stages.devices import device_warnings, stoppers
@@ -68,7 +68,7 @@ def test_the_meniscus_is_wide_in_a_stated_air_alone(side, air):
     device = {"kind": "stopper", "pair": "b", "contact_um": [side, side], "restoring_force_uN": 20, "humidities": [air]}
     of = device_warnings.in_si(
         device_warnings.OfStopper,
-        device_warnings._settings(Plan(joined({"devices": {"D": device}, "run": {"pairs": []}})), Of("D"))["stopper"],
+        device_warnings._settings(Plan(load({"devices": {"D": device}, "run": {"pairs": []}})), Of("D"))["stopper"],
     )
     film = -2 * 0.072 * 1.8e-5 / (8.314 * 300 * np.log(air))
     wide = [one for one in device_warnings.stopper_warnings(ROUGH, of) if one.kind == "wide_meniscus"]

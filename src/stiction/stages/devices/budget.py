@@ -202,7 +202,7 @@ def shift(state: State, member: xr.Dataset, settings: AnyBudget) -> tuple[float,
     Compared are the lengths that few tips hold: whole surfaces move the lowest quarter of the tips by 0.02 to 0.05 less
     than the lowest 5 % (1000 tips on pair b).
     """
-    base, changed = replace(state, contact=first(state.contact, member.sizes["sample"])), replace(state, contact=member)
+    base, changed = replace(state, contact=first(state.contact, member.sizes["strip"])), replace(state, contact=member)
 
     def respond(states):
         """Responses of devices that are long enough for both."""
