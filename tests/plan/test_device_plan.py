@@ -223,7 +223,7 @@ def test_the_warnings_of_a_stopper_have_its_water_its_patch_and_all_humidities_t
 def test_the_page_of_a_device_has_its_section_and_its_warnings_alone():
     page = Graph(PLAN).job("devices/S1.html")
     assert page.settings.items() >= PLAN.config["devices"]["S1"].items()
-    assert page.inputs["warnings"] == {"S1": "results/devices/warnings/S1.json"}
+    assert page.inputs["warnings"] == "results/devices/warnings/S1.json"
 
 
 @pytest.mark.parametrize(

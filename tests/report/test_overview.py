@@ -46,7 +46,7 @@ def beams():
         {
             "state": ("beam", [0, 0, 0, 2]),
             "crack_length": ("beam", LENGTHS),
-            "deflection": (("beam", "node"), 2e-5 * np.minimum(nodes / LENGTHS[:3, None], 1)),
+            "deflection": (("shape", "node"), 2e-5 * np.minimum(nodes / LENGTHS[:3, None], 1)),
         },
         {"node": nodes},
     )

@@ -24,7 +24,7 @@ class Draws(NamedTuple):
 @lru_cache(maxsize=256)  # every step asks for the same
 def normal(draws: Draws, *key: str) -> np.ndarray:
     """Standard normal numbers of a key (number,)."""
-    return stream(draws.seed, "answer", *key).standard_normal(draws.number)
+    return stream(draws.seed, "error in answers", *key).standard_normal(draws.number)
 
 
 #: Humidity [-] and end state.

@@ -179,7 +179,7 @@ def test_a_voltage_that_nothing_bounds_is_left_out_by_name():
 
 def test_whole_surfaces_of_a_budget_are_members_of_their_kind():
     shifts, of = [0.0, 0.4, -0.5, 0.3, 0.0, 0.1, 0.05], ["B2"] * 4 + ["Sub1"] * 3
-    members = {"member_shift": ("member", shifts)}
+    members = {"member_shift": ("member", shifts), "member_error": ("member", np.zeros(len(shifts)))}
     budgets = [one.assign(members).assign_coords(member_of=("member", of)) for one in CANTILEVER]
     found = answer.compute(*data_of_beam(budgets=budgets))
     assert found.measure == "the surface B2"
@@ -236,7 +236,7 @@ def test_reliable_test_beams_take_the_place_of_the_inputs_and_contradicted_ones_
     assert found.without_test_beams == pytest.approx(without.build, rel=1e-9)
     assert np.exp(-0.05 - 2 * 0.02) < found.build / found.exact < np.exp(-0.05)
     against = answer.compute(data | {"test_beams": update(0.01)}, settings)
-    assert against.forbidden == ("test_beams",)
+    assert against.forbidden == ("test_beams_contradict",)
     assert against.verdict is Verdict.NONE
     assert against.included == without.included
 

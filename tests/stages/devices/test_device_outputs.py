@@ -103,7 +103,7 @@ def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
         for shape in dataset["shape"].values:
             for share in dataset.share.values:
                 assert (round(1e6 * float(dataset.safe_length.sel(shape=shape, share=share)), 6), share) in points
-    assert first.get_ylabel() == "P(stuck) [–]"
+    assert first.get_ylabel() == "P(stuck), simulated [–]"
     assert len(first.collections) == 4
     assert len(second.collections) == 1
     assert [text.get_text() for text in first.get_legend().get_texts()] == ["RH 0.44 (1) (2)", "RH 0.67 (2)"]

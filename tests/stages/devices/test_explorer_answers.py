@@ -6,10 +6,9 @@ import answered
 import numpy as np
 import pytest
 import xarray as xr
+from answers import C1, CANTILEVER, STOPPER, of_length, safe, stopper_dataset
 from scipy.special import ndtri
-from test_pages import CANTILEVER, STOPPER, of_length, safe
 from test_stage_stoppers import SETTINGS
-from test_tables_budget import C1, stopper_dataset
 
 from stiction.answer.data import Probability
 from stiction.beam.cantilever import Beam

@@ -574,8 +574,8 @@ def test_further_beams_like_the_device_help_more_where_the_device_is_known_least
 @pytest.mark.usefixtures("shapes")
 def test_the_dataset_is_stored_and_read_unchanged(tmp_path):
     found = computed(as_computed(1.1), stuck=counts(as_computed(0.7), [3, 4, 5], 20))
-    storage.save(found, tmp_path / "C1.nc", "test_beams", {})
-    xr.testing.assert_allclose(storage.load(tmp_path / "C1.nc", "test_beams"), found)
+    storage.save(found, tmp_path / "C1.nc", "test_beams_rerun", {})
+    xr.testing.assert_allclose(storage.load(tmp_path / "C1.nc", "test_beams_rerun"), found)
 
 
 # Sentences

@@ -100,7 +100,9 @@ def limits(name: str, entry: Mapping[str, Any], library: Library, end: float = n
     )
     listed = [[word, _rounded(own.get(word)), _scatter(word, others)] for word in words]
     numbers = {"surface": name, "library": list(library), "listed": listed}
-    found = [Limit("assumed_surface", Side.EITHER, bool(others), numbers=numbers)]
+    if not others:
+        return [Limit("assumed_without_scatter", Side.EITHER, False, numbers=numbers)]
+    found = [Limit("assumed_surface", Side.EITHER, True, numbers=numbers)]
     typical = {other: _shown(quantities(library[other])) for other in others}
     changed = [
         [word, _rounded(value), _rounded(typical[other][word]), other]

@@ -289,11 +289,14 @@ def _assumption(word, value, scatter):
 
 
 def _assumed_surface(surface, library, listed):
-    kind = f"any of {len(library)} typical surfaces ({', '.join(library)})"
-    if all(scatter is None for *_, scatter in listed):
-        kind = "without an uncertainty, for want of typical surfaces"
     said = "; ".join(_assumption(*each) for each in listed)
+    kind = f"any of {len(library)} typical surfaces ({', '.join(library)})"
     return f"surface {surface}: not measured but assumed, {kind}: {said}"
+
+
+def _assumed_without_scatter(surface, listed, **_):
+    said = "; ".join(_assumption(*each) for each in listed)
+    return f"surface {surface}: not measured but assumed, without an uncertainty, for want of typical surfaces: {said}"
 
 
 def _unlike_typical(surface, changed):
@@ -399,6 +402,7 @@ SENTENCES: dict[str, Callable[..., str]] = {
     "stretched_bridge": _stretched_bridge,
     **dict.fromkeys(SIDES, _flag),
     "assumed_surface": _assumed_surface,
+    "assumed_without_scatter": _assumed_without_scatter,
     "unlike_typical": _unlike_typical,
     "test_beams_contradict": _test_beams_contradict,
     "model_explains_test_beams": _model_explains_test_beams,
