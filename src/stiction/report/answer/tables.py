@@ -88,7 +88,6 @@ def steps(answer: Answer) -> pd.DataFrame:
             f"{what} after it": words.size_in_words(answer, step.size),
             "change [%]": number(100 * (step.factor - 1), "+.1f") if k else "",
             "air": "dry" if not step.humidity else f"RH {step.humidity:g}",
-            "from stage": step.source,
         }
         for k, step in enumerate(answer.steps)
     )

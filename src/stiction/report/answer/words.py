@@ -114,9 +114,11 @@ def headline(answer: Answer) -> str:
 def promise(answer: Answer) -> str:
     """What the size to build promises."""
     after = f" after {answer.touchdowns} touchdowns" * (answer.touchdowns > 1)
-    return (
-        f"At most {one_in(answer.share)} sticks{after} {airs([one.humidity for one in answer.airs])} (95 % confidence)."
-    )
+    where = airs([one.humidity for one in answer.airs])
+    said = f"At most {one_in(answer.share)} sticks{after} {where} (95 % confidence)."
+    if answer.stuck is None or not answer.is_enough or answer.stuck.value <= answer.share:
+        return said
+    return f"{said} In the other 5 % of all cases many can stick, so that more are expected on average."
 
 
 def contains(answer: Answer) -> str:
