@@ -15,8 +15,6 @@ from stiction.beam.energy import apparent_adhesion_energy
 from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP
 from stiction.config.files import paper
 from stiction.config.units import in_si
-from stiction.contact.meniscus import flooded_energy
-from stiction.devices.arcs import arc_length
 from stiction.devices.limits.rules import FILMS
 from stiction.plan.plan import Plan
 from stiction.report.beams import prediction
@@ -47,7 +45,7 @@ def numbers(tables):
     )
     texts |= life(tables["life"])
     texts |= safe_lengths(tables["safe_lengths"]) | stoppers(tables["stoppers"]) | budget(tables["budget"])
-    texts |= saturated() | answers(tables["devices"])
+    texts |= answers(tables["devices"])
     texts |= model_errors(tables["model_error"]) | attraction(tables["attraction"])
     texts |= readings(tables["asperities"]) | pressing(tables["pressing"])
     texts |= sealed(tables["sealed_safe_lengths"], tables["sealed_stoppers"])
@@ -603,12 +601,6 @@ def budget(table):
             quantity = entry.name.replace("'", "").replace(" ", "_")
             texts[f"slope_{name}_{quantity}"] = with_error(entry.slope, entry.slope_se)
     return texts
-
-
-def saturated():
-    """``saturated_C1``: length of C1, a beam of pair b, whose tip flats hold by water alone [µm]."""
-    beam = cantilever(in_si(Cantilevers, sections(Plan(paper()), "b")), "b")
-    return {"saturated_C1": f"{TO_UM * arc_length(flooded_energy(paper()['water']['temperature_K']), beam):.0f}"}
 
 
 def answers(table):

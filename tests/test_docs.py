@@ -17,6 +17,7 @@ import yaml
 from PIL import Image
 
 import stiction
+from stiction.answer.data import Cause
 from stiction.config.relations import schema
 from stiction.plan.graph import stages
 from stiction.report.checks import RESOLVED
@@ -151,13 +152,17 @@ def test_sentences_of_the_pages_with_test_beams_and_one_picture_are_copied(tmp_p
     folder, picture = tmp_path / "run", f"{update.TEST_BEAMS_PICTURE[0]}.png"
     assert "no finished run" in update.unfinished_devices("test_beams", update.TEST_BEAMS, folder)
     monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
-    said = {name: lambda found, name=name: f"{name}: {float(found.linear)}" for name in update.TEST_BEAMS_SAID}
+    said = {name: lambda found, _, name=name: f"{name}: {float(found.linear)}" for name in update.TEST_BEAMS_SAID}
+    monkeypatch.setattr(update, "answer_of", lambda found: found)
     monkeypatch.setattr(update, "TEST_BEAMS_SAID", said)
     for part in ("docs/tables", "docs/pictures", "run/results/figures", "run/results/devices/test_beams/rerun"):
         (tmp_path / part).mkdir(parents=True)
+    (folder / "results" / "devices" / "answer").mkdir()
     for device, factor in (("onB", 1.1), ("onA", 1.0)):
         path = folder / "results" / "devices" / "test_beams" / "rerun" / f"{device}.nc"
         storage.save(xr.Dataset({"linear": factor}), path, "test_beams_rerun", {})
+        of_answer = folder / "results" / "devices" / "answer" / path.name
+        storage.save(xr.Dataset({"share": 1e-3}), of_answer, "answer", {})
     Image.new("RGB", (20, 10)).save(folder / "results" / "figures" / picture)
     update.collect_test_beams(folder)
     assert {path.name for path in (tmp_path / "docs").rglob("*.*")} == {"test_beams.csv", picture}
@@ -210,22 +215,27 @@ def test_numbers_of_force_laws_are_those_of_the_table_of_their_script(tmp_path):
     }
 
 
-def test_drawn_lengths_are_those_of_the_tables_less_twice_the_largest_uncertainty():
-    safe = pd.DataFrame({"device": "C1", "held_by": ["beam", "beam or tip"], "relative_humidity": 0.92, "share": 1e-3})
-    totals = pd.DataFrame({"device": "C1", "held_by": ["beam", "tip", "tip"], "name": "total"})
-    found = quoted.drawn_lengths(
-        safe.assign(safe_length_um=[400.0, 250.0]), totals.assign(effect_percent=[9.0, 2.0, 5.0])
-    )
-    # (3 E t³ h² / 8 · 2 γ)^(1/4) with the surface energy of water at 300 K, γ = 72 mJ/m².
-    assert found == {"saturated_C1": "234", "least_C1": "250", "drawn_C1": "226", "largest_total_C1": "5"}
+def test_steps_of_answers_are_those_of_their_table_and_one_that_is_not_stated_stands_beside():
+    row = {f"after_{cause}": np.nan for cause in Cause} | {
+        "device": "C1",
+        "unit": "µm",
+        "to_build": 170.0,
+        "measure": "it",
+    }
+    row |= {"after_estimate": 200.0, "after_simulation": 190.0, "after_fast": 150.0, "after_inputs": 171.0}
+    found = quoted.answers(pd.DataFrame([row]))
+    assert found["build_C1"] == "170"
+    assert [found[f"change_C1_{cause}"] for cause in ("simulation", "fast", "inputs")] == ["−5.0", "−21.1", "−10.0"]
 
 
-def test_a_page_that_multiplies_states_the_numbers_that_give_its_product():
-    text = " ".join((DOCS / "devices.md").read_text(encoding="utf-8").split())
-    least, total, drawn = map(float, re.search(r"([\d.]+) µm × exp\(-2 × ([\d.]+) %\) = ([\d.]+) µm", text).groups())
-    assert (
-        abs(least * np.exp(-2 * total / 100) - drawn) < 0.5 + 0.5 * np.exp(-2 * total / 100) + 2 * least * 0.005 / 100
-    )
+def test_the_steps_of_the_page_lead_from_the_estimate_to_the_length_to_build():
+    text = (DOCS / "devices.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| [a-z ]+ \| \*{0,2}(\d+)\*{0,2} \| (−[\d.]+)? ?\|$", text, re.M)
+    sizes = [float(size) for size, _ in rows]
+    changes = [float(change.replace("−", "-")) for _, change in rows[1:]]
+    assert len(rows) == 4
+    for before, after, change in zip(sizes, sizes[1:], changes, strict=False):
+        assert abs(before * (1 + change / 100) - after) <= 1 + 5e-4 * before
 
 
 def test_nearest_feasible_moments_are_those_that_the_heights_get():
