@@ -91,7 +91,7 @@ class Slopes:
 
     @property
     def margin(self) -> float:
-        """Half of a margin for inputs with slopes, with their curvature, as of `Budget.unsafe_total` [-]."""
+        """Half of a margin for inputs with slopes, with their curvature, see `stiction.devices.budget` [-]."""
         return Budget(self.names, self.slopes, self.covariance).unsafe_total(-self.bends)
 
     @property

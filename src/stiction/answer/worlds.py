@@ -86,7 +86,7 @@ class Condition:
 
     humidity: float  #: [-]
     shape: str  #: end state
-    cause: Cause  #: `Cause.ESTIMATE` for a stated air; otherwise the step to which it belongs
+    cause: Cause  #: ``Cause.ESTIMATE`` for a stated air; otherwise the step to which it belongs
     source: str  #: dataset
     sampled: Sampled | None = None
     bound: float = np.nan  #: threshold of all devices, where none is sampled

@@ -1,7 +1,8 @@
 """Errors of the quantities of surfaces without scans: as stated, or as typical surfaces scatter.
 
 The library of typical surfaces is given as sections of a configuration with moments and the parameters of Eq. (7). The
-scatter is for test beams, which correct each quantity; others see whole typical surfaces (`members`).
+scatter is for test beams, which correct each quantity; others see whole typical surfaces
+(`stiction.config.surfaces.members`).
 """
 
 from collections.abc import Collection, Mapping

@@ -23,7 +23,7 @@ _NONE, _ALL = -37.0, 8.2
 class Simulated:
     """Simulation of one or several states of a device."""
 
-    quantiles: np.ndarray  #: sizes with P(stuck) at `SCORES`, NaN if unknown (..., scores)
+    quantiles: np.ndarray  #: sizes with P(stuck) at `stiction.devices.risk.SCORES`, NaN if unknown (..., scores)
     limit: np.ndarray  #: simulated limit for the allowed fraction (...)
 
 
@@ -39,7 +39,7 @@ class Levels:
 
 
 def counted(quantiles: np.ndarray, samples: int) -> np.ndarray:
-    """Layers of simulated devices at `SHOWN` (3, ..., n), from sizes at `SCORES` (..., scores).
+    """Layers of simulated devices at `SHOWN` (3, ..., n), from sizes at `stiction.devices.risk.SCORES` (..., scores).
 
     A band by Wilson: the fraction p is an end of that of a counted one if they differ by 1.96 sqrt(p (1 - p) / n).
     """
@@ -50,7 +50,7 @@ def counted(quantiles: np.ndarray, samples: int) -> np.ndarray:
 
 
 def _at(row, scores):
-    """Values of a row at `SCORES` (scores,) at others, NaN beyond the known ones."""
+    """Values of a row at `stiction.devices.risk.SCORES` (scores,) at others, NaN beyond the known ones."""
     known = np.isfinite(row)
     if not known.any():
         return np.full(len(scores), np.nan)
@@ -115,7 +115,7 @@ def _ratio(states: Simulated, own: Simulated, scores: np.ndarray) -> np.ndarray:
 
 
 def _nearest(row, scores):
-    """Values of a row at `SCORES` at others, beyond the known ones the last of them."""
+    """Values of a row at `stiction.devices.risk.SCORES` at others, beyond the known ones the last of them."""
     known = np.isfinite(row)
     return np.interp(scores, SCORES[known], row[known]) if known.any() else np.full(len(scores), np.nan)
 

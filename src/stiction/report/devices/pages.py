@@ -91,9 +91,9 @@ def _read(part):
 def beam_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], answer: Answer) -> Page:
     """Page of a cantilever or bridge, from its section of the configuration, its datasets and its answer.
 
-    Of the data, ``safe_lengths`` and ``charts`` are by humidity, ``budgets`` as of `budgets_of` without the name, and
-    ``warnings`` are those of `stiction.stages.devices.device_warnings.read`. Charts, budgets, ``test_beams``,
-    ``errors`` of the model and ``roughness`` may be missing.
+    Of the data, ``safe_lengths`` and ``charts`` are by humidity, ``budgets`` by humidity and more, and ``warnings`` are
+    those of `stiction.stages.devices.device_warnings.read`. Charts, budgets, ``test_beams``, ``errors`` of the model
+    and ``roughness`` may be missing.
     """
     lengths, warnings = data["safe_lengths"], data["warnings"].lengths | data["warnings"].curves
     cases = {(name, humidity): dataset for humidity, dataset in lengths.items()}
