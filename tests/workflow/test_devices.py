@@ -38,7 +38,7 @@ SMALL = {
 
 
 #: Tables of the run.
-TABLES = {"safe_lengths", "chart", "stoppers", "budget", "life"}
+TABLES = {"devices", "safe_lengths", "chart", "stoppers", "budget", "life"}
 
 
 def in_a_browser(test):

@@ -81,7 +81,8 @@ def read_configuration():
     # A workflow that uses this one as a module states its changes alone, and replaces the file of all keys by them.
     defaults = BASE / "config.yaml"
     config.update(merging.merged(contents.get(defaults) or files.read(defaults), config))
-    config.update(merging.without_inherited(config, files.paper(), list(contents.values())))
+    changes = [contents[file] for file in contents if file != defaults]
+    config.update(merging.without_inherited(config, files.paper(), changes))
     for file in contents:  # files of scans and of test beams are relative to the first match
         config.update(scans.resolve_scan_paths(config, contents[file], file.parent))
         config.update(process.resolve_scan_paths(config, contents[file], file.parent))

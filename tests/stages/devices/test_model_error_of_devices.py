@@ -2,14 +2,13 @@
 
 import numpy as np
 import pytest
-from answers import BUDGETS, CANTILEVER, STOPPER, STOPPERS, safe
+from answers import BUDGETS, CANTILEVER, STOPPER, STOPPERS, beam_page, safe, stopper_page
 from ground import safe_with_tips
 
 from stiction.config.files import load
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.budget import tables as tables_budget
-from stiction.report.devices import pages
 from stiction.report.devices import tables as tables_devices
 from stiction.report.model_error import sentences as model_errors
 from stiction.stages.contact import full_contact
@@ -88,18 +87,18 @@ def test_tips_of_corrected_devices_have_the_correction_of_their_pair():
 def test_a_page_says_by_how_much_and_which_side_is_safe():
     (dry, wet) = (safe(), safe(longest=500e-6))
     given = {"C1": CANTILEVER | {"humidities": [0.44, 0.67]}}
-    page = pages.beam_page("C1", given["C1"], {0.44: dry, 0.67: wet}, {}, {}, NONE, errors=ERRORS).html
+    page = beam_page(given["C1"], {0.44: dry, 0.67: wet}, errors=ERRORS).html
     assert "would change the lengths held by the beam by +11.0 ± 1.0 % at a relative humidity of 0.44" in page
     assert "It is not known for what the tip holds." in page
     applied = {"C1": ERRORS["C1"].assign(applied=("humidity", [True, True]))}
-    corrected = pages.beam_page("C1", given["C1"], {0.44: dry, 0.67: wet}, {}, {}, NONE, errors=applied).html
+    corrected = beam_page(given["C1"], {0.44: dry, 0.67: wet}, errors=applied).html
     assert "Tips have changed as tilted strips with their edge do" in corrected
     assert "It is not known for what the tip holds." not in corrected
     assert "What is stated is on the safe side" in page
-    stopper = pages.stopper_page("S1", STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, [], errors=ERRORS).html
+    stopper = stopper_page(STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, errors=ERRORS).html
     assert "the pull-off force by -30.0 ± 1.0 % at a relative humidity of 0.44" in stopper
     assert "model error: full elastic contact" in stopper
-    assert "Full elastic contact" not in pages.stopper_page("S1", STOPPER, STOPPERS["S1"], {}, []).html
+    assert "Full elastic contact" not in stopper_page(STOPPER, STOPPERS["S1"]).html
 
 
 @pytest.mark.parametrize(

@@ -88,8 +88,8 @@ def test_a_map_joins_all_its_points_with_slopes_by_both_laws(mapped):
     screen = Summary(
         "good", "Suffices", "It is safe.", (), {"What decides": "RH 0.6.", "What to change": "Less."}, None
     )
-    page = section.with_process(Page("Bump", {}, ["It is safe.", "Because."], summary=screen), "Bump", data)
-    assert page.answer == ["It is safe.", maps.briefly(pairs), "Because."]
+    page = section.with_process(Page("Bump", {}, ["Because."], summary=screen), "Bump", data)
+    assert page.answer == [maps.briefly(pairs), "Because."]
     assert page.summary.points == {"What decides": "RH 0.6.", "What to change": f"Less. {maps.briefly(pairs)}"}
     assert [one.title for one in page.sections] == [
         "Which settings of the two processes?",
