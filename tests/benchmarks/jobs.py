@@ -1,4 +1,4 @@
-"""Time and memory of the jobs of a run, rule by rule, from their logs: ``make jobs``. Prints a table."""
+"""CPU time and memory of the jobs of a run, rule by rule, from their logs: ``make jobs``. Prints a table."""
 
 import json
 import re
@@ -12,7 +12,7 @@ from stiction.plan.plan import Plan
 from stiction.plan.stage import WILDCARDS, expression
 
 ROOT = Path(__file__).parents[2]
-TOOK = re.compile(r"^took ([\d.]+) s, (\d+) MB$", re.MULTILINE)
+TOOK = re.compile(r"^took ([\d.]+) s of CPU time, [\d.]+ s in all, (\d+) MB$", re.MULTILINE)
 
 
 def rules(results):
@@ -25,7 +25,7 @@ def rules(results):
 
 
 def costs(results):
-    """For every rule that ran: name, jobs, most and all seconds, most memory [MB], requested MB and minutes."""
+    """For every rule that ran: name, jobs, most and all seconds of CPU time, most memory [MB], requested MB and minutes."""
     logs = {
         str(path.relative_to(results / "logs"))[:-4]: path.read_text() for path in (results / "logs").rglob("*.log")
     }
@@ -39,7 +39,7 @@ def costs(results):
 
 def table(results):
     """The table in Markdown."""
-    lines = ["| rule | jobs | longest [s] | all [s] | most memory [MB] | requested [MB] | requested [min] |"]
+    lines = ["| rule | jobs | longest [CPU s] | all [CPU s] | most memory [MB] | requested [MB] | requested [min] |"]
     lines += ["|---|---|---|---|---|---|---|"]
     for name, jobs, longest, seconds, megabytes, requested, minutes in costs(results):
         lines += [f"| {name} | {jobs} | {longest:.1f} | {seconds:.0f} | {megabytes:.0f} | {requested} | {minutes} |"]

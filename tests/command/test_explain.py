@@ -38,7 +38,7 @@ def test_causes_come_before_what_follows_from_them():
 def test_the_time_of_a_run_is_the_sum_of_its_jobs_and_its_memory_the_largest():
     jobs = [start(k) for k in range(3)]
     for job, megabytes in zip(jobs, (800, 1600, 800), strict=True):
-        job.resources = {"cpu_s": 300, "mem_mb": megabytes}
+        job.resources = {"cpu_ms": 300_000, "mem_mb": megabytes}
     (first, *_) = explained(heard(plan(beams=3), *jobs))
     assert first == "3 jobs would run, about 15 min of CPU time and 1600 MB for each job."
 

@@ -1,8 +1,11 @@
 """Logs of jobs."""
 
+import re
 import resource
 import subprocess
 import sys
+import threading
+import time
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -19,9 +22,36 @@ def test_a_successful_job_logs_progress_warnings_time_and_memory(tmp_path):
     log = (tmp_path / "logs" / "job.log").read_text()
     assert "rather small" in log
     assert "steps: 100%" in log
-    seconds, _, megabytes, _ = log.splitlines()[-1].removeprefix("took ").split()
-    assert float(seconds) >= 0
-    assert int(megabytes) > 20  # an interpreter with its libraries
+    took = re.fullmatch(r"took ([\d.]+) s of CPU time, ([\d.]+) s in all, (\d+) MB", log.splitlines()[-1])
+    assert float(took[1]) >= 0 <= float(took[2])
+    assert int(took[3]) > 20  # an interpreter with its libraries
+
+
+def test_cpu_time_is_that_of_work_in_this_process_its_threads_and_its_children_and_not_that_of_waiting(tmp_path):
+    def spent(work):
+        with logged(tmp_path / "job.log"):
+            work()
+        return tuple(map(float, re.findall(r"([\d.]+) s", (tmp_path / "job.log").read_text().splitlines()[-1])))
+
+    def busy(seconds=0.4):
+        start = time.thread_time()
+        while time.thread_time() - start < seconds:
+            pass
+
+    def threads():
+        for thread in (running := [threading.Thread(target=busy) for _ in range(2)]):
+            thread.start()
+        for thread in running:
+            thread.join()
+
+    def child():
+        subprocess.run([sys.executable, "-c", "import time\nwhile time.process_time() < 0.4: pass"], check=True)
+
+    assert spent(busy)[0] == pytest.approx(0.4, abs=0.15)
+    assert spent(threads)[0] == pytest.approx(0.8, abs=0.2)
+    assert 0.4 <= spent(child)[0] + 0.1 < 0.8
+    cpu, clock = spent(lambda: time.sleep(0.5))
+    assert cpu < 0.3 < 0.5 <= clock
 
 
 def test_a_log_records_the_checksums_of_the_final_results_of_its_job(tmp_path):

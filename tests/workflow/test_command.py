@@ -2,13 +2,14 @@
 
 import fcntl
 import os
+import re
 import signal
 import subprocess
 import sys
 import time
 
 import pytest
-from conftest import BEAMS, SMOKE, copied, datasets
+from conftest import BEAMS, ROOT, SMOKE, copied, datasets
 
 
 def words(folder, command, *arguments):
@@ -71,6 +72,18 @@ def test_a_run_in_a_folder_gives_the_files_of_snakemake_and_then_has_nothing_to_
         0,
         ["Nothing would be computed: all results are up to date."],
     )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("example", [SMOKE, ROOT / "examples" / "life.yaml"])
+def test_a_check_and_a_dry_run_of_the_same_file_forecast_the_same_time_and_memory(tmp_path, example):
+    _, checked = stiction(tmp_path, "check", example)
+    _, planned = stiction(tmp_path, "explain", example)
+    forecast = re.compile(r"about ([\d.]+) (\w+) of CPU time and (\d+) MB")
+    (said,) = filter(None, map(forecast.search, checked))
+    time, *others = forecast.search(planned[0]).groups()
+    assert others == [*said.groups()[1:]]
+    assert float(time) == pytest.approx(float(said[1]), rel=0.02)  # a dry run counts the job that says the verdict
 
 
 @pytest.mark.slow

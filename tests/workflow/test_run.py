@@ -168,7 +168,9 @@ def test_the_table_of_jobs_counts_each_job_once_and_no_job_of_the_smoke_run_besi
         for surface in ("B1", "B2"):
             log = results / "logs" / "heights" / f"{surface}.log"
             log.parent.mkdir(parents=True, exist_ok=True)
-            log.write_text(f"took 99.0 s, 1 MB\ntook {seconds} s, 300 MB\n")
+            log.write_text(
+                f"took 99.0 s of CPU time, 99.5 s in all, 1 MB\ntook {seconds} s of CPU time, 99.5 s in all, 300 MB\n"
+            )
     (tmp_path / "provenance.json").write_text(json.dumps([{}, {"config": files.load()}]))
     ((name, number, longest, total, *_),) = jobs.costs(tmp_path)
     assert (name, number, longest, total) == ("heights", 2, 1.5, 3.0)
@@ -180,7 +182,7 @@ def test_the_table_of_jobs_tells_budgets_of_tips_and_what_they_requested_from_th
     for end, size in (("", 300), ("_tip", 900)):
         log = tmp_path / "logs" / "devices" / "budget" / f"C1_rh067{end}.log"
         log.parent.mkdir(parents=True, exist_ok=True)
-        log.write_text(f"took 9.0 s, {size} MB\n")
+        log.write_text(f"took 9.0 s of CPU time, 9.5 s in all, {size} MB\n")
     found = {name: (used, requested) for name, *_, used, requested, _ in jobs.costs(tmp_path)}
     assert found["budget"] == (300, 800)
     assert found["tip_budget"][0] == 900 < found["tip_budget"][1] - 2 * 170

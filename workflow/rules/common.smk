@@ -251,7 +251,7 @@ def resources_of(stage):
             cost.minutes(job(wildcards)["seconds"], declared["minutes"]), attempt
         ),
         "mem_mb": lambda wildcards, attempt: memory.for_attempt(megabytes, attempt),
-        "cpu_s": lambda wildcards: round(job(wildcards)["seconds"]),
+        "cpu_ms": lambda wildcards: round(1000 * job(wildcards)["seconds"]),  # whole numbers alone are allowed
     }
 
 

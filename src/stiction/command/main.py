@@ -210,8 +210,10 @@ def _cost(config):
     from stiction.plan.planner import WHOLE
 
     preliminary, _ = preliminary_estimates(config)
-    jobs = Graph(Plan(config, preliminary)).needed(*WHOLE)
-    return cost.in_words(sum(job.seconds for job in jobs), memory.job_memory(config))
+    jobs = Graph(plan := Plan(config, preliminary)).needed(*WHOLE)
+    of_stages = {job.stage.name: needs(plan) for job in jobs if (needs := job.stage.running.memory)}
+    megabytes = max(memory.job_memory(config), *map(round, of_stages.values()), 0)
+    return cost.in_words(sum(job.seconds for job in jobs), megabytes)
 
 
 def _run(arguments, *targets):

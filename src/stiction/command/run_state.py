@@ -153,8 +153,10 @@ class Run:
         logs = tuple(map(str, record.log))
         message = " ".join(str(record.rule_msg or record.rule_name).split())
         asked = getattr(record, "resources", None) or {}
-        costs = (float(asked.get(name, 0)) for name in ("cpu_s", "mem_mb"))
-        self.jobs[record.jobid] = Job(record.rule_name, message, str(record.reason), logs, record.created, *costs)
+        seconds, megabytes = float(asked.get("cpu_ms", 0)) / 1000, float(asked.get("mem_mb", 0))
+        self.jobs[record.jobid] = Job(
+            record.rule_name, message, str(record.reason), logs, record.created, seconds, megabytes
+        )
         self.failures.pop(record.jobid, None)
 
     def _hear_end(self, record):

@@ -1,7 +1,8 @@
-"""Log of a job: progress, warnings, errors, run time and peak memory."""
+"""Log of a job: progress, warnings, errors, CPU time, run time and peak memory."""
 
 import contextlib
 import hashlib
+import os
 import re
 import resource
 import sys
@@ -21,9 +22,10 @@ _ORIGIN = re.compile(r"^made from settings ([0-9a-f]{64})$", re.MULTILINE)
 def logged(path: str | Path, results: Iterable[str] = ()) -> Iterator[None]:
     """Write warnings, progress and the traceback of an error to a log. Print one line about the error on the terminal.
 
-    The log of a successful job ends with the SHA-256 checksums of its results, its run time and its peak memory.
+    The log of a successful job ends with the SHA-256 checksums of its results, its CPU time, its run time and its peak
+    memory. On a loaded machine the run time says little about the job.
     """
-    start, failure = time.perf_counter(), None
+    start, cpu, failure = time.perf_counter(), cpu_time(), None
     Path(path).parent.mkdir(parents=True, exist_ok=True)
     Path(path).touch()
     # On a full disk the log is incomplete, but the line about the error is still printed on the terminal.
@@ -36,7 +38,8 @@ def logged(path: str | Path, results: Iterable[str] = ()) -> Iterator[None]:
             traceback.print_exc(file=log)
         else:
             log.writelines(f"{checksum(file)}  {file}\n" for file in results)
-            log.write(f"took {time.perf_counter() - start:.1f} s, {peak_memory():.0f} MB\n")
+            clock = time.perf_counter() - start
+            log.write(f"took {cpu_time() - cpu:.1f} s of CPU time, {clock:.1f} s in all, {peak_memory():.0f} MB\n")
     if failure:
         sys.exit(failure)
 
@@ -85,6 +88,11 @@ def _text(log):
         require_regular(log)
         return Path(log).read_text(encoding="utf-8", errors="replace")
     return ""
+
+
+def cpu_time() -> float:
+    """CPU time of this process so far, with all of its threads and the processes that it started and that ended [s]."""
+    return sum(os.times()[:4])
 
 
 def peak_memory() -> float:
