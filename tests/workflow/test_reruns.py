@@ -20,7 +20,7 @@ from planner import PILOT, Planner
 
 from stiction import accuracy
 from stiction.config.files import normalised, paper
-from stiction.config.merging import merged
+from stiction.config.merging import merged, without_inherited
 from stiction.config.scans import resolve_scan_paths
 from stiction.config.surfaces import process
 from stiction.plan.graph import Graph, stages, structured
@@ -227,7 +227,8 @@ class Tree:
         self.small = scratch / "small.yaml"
         self.small.write_text(config)
         named = yaml.safe_load(config)
-        whole = process.with_surfaces(resolve_scan_paths(merged(paper(), named), named, scratch))
+        joined = without_inherited(merged(paper(), named), paper(), [named])
+        whole = process.with_surfaces(resolve_scan_paths(joined, named, scratch))
         with patch.object(accuracy, "PILOT", PILOT):
             self.graph = Graph(Plan(accuracy.decided(normalised(whole))))
         self.overlay = scratch / "overlay.yaml"
