@@ -99,6 +99,19 @@ def test_where_no_simulated_device_sticks_a_fraction_is_at_most_what_their_numbe
     assert below < safe
 
 
+@pytest.mark.parametrize("falls", [False, True])
+def test_an_end_of_a_band_beyond_its_levels_is_no_narrower_than_known(falls):
+    grid, sign = lognormal(falls), -1 if falls else 1
+    half = replace(grid, levels=grid.levels.copy())
+    half.levels[1, ..., : len(grid.scores) // 2] = np.nan  # below the middle, a lower end is not known
+    half.levels[2, ..., len(grid.scores) // 2 :] = np.nan  # above it, an upper end is not
+    few, many = (half.stuck(STATE | {"length": 228 * np.exp(2 * sign * step * SLOPE)}) for step in (-1, 1))
+    assert (few.low, many.high) == (0, 1)
+    assert few.high == grid.stuck(STATE | {"length": 228 * np.exp(-2 * sign * SLOPE)}).high
+    none = replace(grid, levels=np.stack([grid.levels[0], *np.full_like(grid.levels[1:], np.nan)])).stuck(STATE)
+    assert (none.low, none.high) == (0, 1)
+
+
 def test_no_text_of_a_grid_leaves_its_script():
     content = {"name": HOSTILE, "study": {HOSTILE: HOSTILE}, "grid": lognormal().json}
     page = Page(HOSTILE, {}, [HOSTILE], explorer=content).html

@@ -16,6 +16,8 @@ from stiction.report.devices.levels import SHOWN
 
 #: Significant digits of the numbers in a page, and an error too small to show, which has a logarithm.
 _DIGITS, _EXACT = 7, 1e-9
+#: Fractions of layers where they have no levels: nothing is known, or no more than that a fraction is from 0 to 1.
+_UNKNOWN = np.nan, 0.0, 1.0
 #: Coordinate of a value along an axis, by its scale.
 _PLACES = {"linear": lambda value: value, "log": np.log, "score": ndtri}
 
@@ -92,19 +94,25 @@ class Grid:
         sign = -1 if self.falls else 1
         v = sign * np.log(state[self.size.key])
         (share, beyond), (low, _), (high, _) = (
-            self._fraction(sign * self._at(layer, state, self.axes), v) for layer in self.levels
+            self._fraction(sign * self._at(layer, state, self.axes), v, unknown)
+            for layer, unknown in zip(self.levels, _UNKNOWN, strict=True)
         )
         if self.first is None or share > self.unseen or v > sign * self._at(self.first, state, self.axes)[0]:
             return Stuck(share, low, high, beyond)
         is_enough = v <= sign * np.log(self.safe_size(state))
         return Stuck(share, 0.0, min(max(high, self.unseen), state["share"] if is_enough else 1.0), -1)
 
-    def _fraction(self, levels, v):
-        """Fraction of a layer at v, and -1 or 1 below and above all known ones."""
+    def _fraction(self, levels, v, unknown):
+        """Fraction of a layer at v, and -1 or 1 below and above all known ones.
+
+        Below a lower end, and above an upper end, it is the one of an unknown layer, not the nearest known one.
+        """
         known = np.isfinite(levels)
         if not known.any():
-            return np.nan, 0
+            return unknown, 0
         levels, scores = levels[known], self.scores[known]
+        if (unknown == 0 and v < levels[0]) or (unknown == 1 and v > levels[-1]):
+            return unknown, 0
         return float(ndtr(np.interp(v, levels, scores))), int(v > levels[-1]) - int(v < levels[0])
 
     @cached_property

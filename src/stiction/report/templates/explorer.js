@@ -137,10 +137,16 @@ function opened(number) {
     return y[y.length - 1];
   }
 
+  /** Fractions of the layers at v; where an end has no levels, no more than that it is from 0 to 1. */
+  const fractionsAt = (layers, v) => layers.map(([levels, scores], k) => {
+    const isOpen = !levels.length || (k === 1 && v < levels[0]) || (k === 2 && v > levels[levels.length - 1]);
+    return isOpen ? [NaN, 0, 1][k] : probability(line(levels, scores, v));
+  });
+
   /** P(stuck) at a size. Where no simulated device sticks, its upper end alone is known. */
   function stuckAt(size, {layers, first, enough}) {
     const v = sign * Math.log(size), [levels] = layers[0];
-    const [share, low, high] = layers.map(([some, scores]) => some.length ? probability(line(some, scores, v)) : NaN);
+    const [share, low, high] = fractionsAt(layers, v);
     const beyond = levels.length ? (v > levels[levels.length - 1]) - (v < levels[0]) : 0;
     if (!grid.first || share > grid.unseen || v > first) return {share, low, high, beyond};
     return {share, low: 0, high: Math.min(Math.max(high, grid.unseen), v <= enough ? state.share : 1), beyond: -1};
@@ -347,9 +353,10 @@ function opened(number) {
       place.replaceChildren();
       const chart = axesOf(place, `P(stuck) against ${size.label}`, ends, [LEAST, 0], [`${size.label} [${unit}]`, "P(stuck)"], DECADES);
       const height = share => chart.y(Math.max(Math.log10(share), LEAST));
-      const layers = levels.layers.map(([some, scores]) => spread(...ends).map(value => [value, sign * Math.log(value)])
-        .filter(([, v]) => some.length && v >= levels.layers[0][0][0] && v <= levels.layers[0][0].at(-1))
-        .map(([value, v]) => [chart.x(value), height(probability(line(some, scores, v)))]));
+      const known = levels.layers[0][0], within = v => v >= known[0] && v <= known[known.length - 1];
+      const points = spread(...ends).map(value => [value, sign * Math.log(value)]).filter(([, v]) => within(v))
+        .map(([value, v]) => [chart.x(value), fractionsAt(levels.layers, v)]);
+      const layers = [0, 1, 2].map(k => points.map(([x, fractions]) => [x, height(fractions[k])]));
       make(chart.svg, "path", {class: "band", d: path([...layers[1], ...layers[2].reverse()])});
       make(chart.svg, "path", {class: "curve", d: path(layers[0])});
       key(chart);
