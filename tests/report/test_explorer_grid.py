@@ -112,6 +112,16 @@ def test_an_end_of_a_band_beyond_its_levels_is_no_narrower_than_known(falls):
     assert (none.low, none.high) == (0, 1)
 
 
+@pytest.mark.parametrize("falls", [False, True])
+def test_a_fraction_grows_with_the_size_also_where_its_levels_do_not(falls):
+    grid, sign = lognormal(falls), -1 if falls else 1
+    ragged = replace(grid, levels=grid.levels * np.exp(0.5 * SLOPE * RNG.normal(size=grid.levels.shape[1:])))
+    lengths = 228 * np.exp(sign * SLOPE * np.linspace(-3, 3, 41))
+    found = np.array([[one.low, one.share, one.high] for one in (ragged.stuck(STATE | {"length": x}) for x in lengths)])
+    assert (np.diff(found, axis=0) >= 0).all()
+    assert (np.diff(found, axis=1) >= 0).all(), "in its band"
+
+
 def test_no_text_of_a_grid_leaves_its_script():
     content = {"name": HOSTILE, "study": {HOSTILE: HOSTILE}, "grid": lognormal().json}
     page = Page(HOSTILE, {}, [HOSTILE], explorer=content).html

@@ -132,6 +132,8 @@ def test_a_browser_shows_the_answer_and_the_figures_of_a_page(run, device):
 
 # Controls
 
+#: Largest page [bytes]: a table and eleven panels of at most 16 kB, and 70 kB of controls.
+LARGEST = 300_000
 #: Numbers of a text of the page.
 NUMBER = re.compile(r"\d[\d.]*")
 #: Elements that a reader sees but cannot read or tell apart: text on its ground, controls and pictures without a name.
@@ -167,12 +169,24 @@ const charts = [...document.querySelectorAll(".charts svg")]
   .map(([scale, text]) => scale * parseFloat(getComputedStyle(text).fontSize));
 return Math.min(...charts, ...[...document.images].map(one => one.getBoundingClientRect().width / 3 / 72 * 7));
 """
-#: Share of the width that the widest row of pictures takes, of each figure.
+#: Share of the width that pictures take together with texts and tables beside them, of each part with pictures.
 ROWS = """
-const width = boxes => Math.max(...boxes.map(one => one.right)) - Math.min(...boxes.map(one => one.left));
-const whole = width([document.querySelector("main").getBoundingClientRect()]);
-return [...document.querySelectorAll(".panels")]
-  .map(one => width([...one.querySelectorAll("img")].map(all => all.getBoundingClientRect())) / whole);
+const boxes = (part, those) => [...part.querySelectorAll(those)].map(one => one.getBoundingClientRect());
+const width = some => Math.max(...some.map(one => one.right)) - Math.min(...some.map(one => one.left));
+const whole = width(boxes(document, "main"));
+return [...document.querySelectorAll(".part")].map(part => {
+  const pictures = boxes(part, "img"), isBeside = one => pictures.some(to => one.top < to.bottom && to.top < one.bottom);
+  return pictures.length ? width([...pictures, ...boxes(part, ".said p, .said table").filter(isBeside)]) / whole : 1;
+});
+"""
+#: Share of the width that texts take outside of parts with pictures, and the widest line of text [heights of text].
+LINES = """
+const whole = document.querySelector("main").clientWidth;
+const width = one => Math.max(...[...one.children].map(part => part.getBoundingClientRect().right)) - one.getBoundingClientRect().left;
+const texts = [...document.querySelectorAll(".text")].filter(one => one.children.length > 1);
+const alone = texts.filter(one => !one.parentElement.parentElement.querySelector("img"));
+return [Math.min(1, ...alone.map(one => width(one) / whole)),
+  Math.max(...texts.flatMap(one => [...one.children]).map(one => one.getBoundingClientRect().width / 15))];
 """
 LEVELS = "return [...document.querySelectorAll('h1, h2, h3, h4')].map(head => Number(head.tagName[1]))"
 
@@ -387,7 +401,7 @@ def test_a_reader_without_scripts_has_the_whole_answer_and_no_empty_controls(run
 @pytest.mark.parametrize("device", ["C1", "R1", "S1"])
 def test_a_page_is_one_small_file_that_everyone_can_use(run, browser, device):
     path = page_of(run, device)
-    assert path.stat().st_size < 1_000_000
+    assert path.stat().st_size < LARGEST
     browser.open(path)
     for width in (1440, 768, 390):
         browser.resize(width)
@@ -395,6 +409,9 @@ def test_a_page_is_one_small_file_that_everyone_can_use(run, browser, device):
         assert browser.run("return document.querySelector('#explorer').getBoundingClientRect().width") > 0.85 * width
         assert browser.run(TEXT) >= 11
         assert min(browser.run(ROWS)) > 0.85
+        filled, longest = browser.run(LINES)
+        assert filled > 0.85
+        assert longest < 52, "a line of 105 characters"
     assert (
         browser.run("return performance.getEntriesByType('resource').filter(one => !one.name.startsWith('data:'))")
         == []

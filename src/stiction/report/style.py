@@ -20,10 +20,10 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
 from matplotlib.figure import Figure, FigureBase
-from matplotlib.image import imsave
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
+from PIL import Image
 
 from stiction.config.cases import DRY
 from stiction.plan.stage import File, Shown, Stage, stage_name, title_of, without_wildcards
@@ -49,6 +49,8 @@ PAGE = 3.0
 _ON_A_PAGE = ContextVar("on a page", default=False)
 #: Space around a strip of a figure [in].
 _AROUND = 0.04
+#: Levels of red, green and blue in a picture of a page, which err by half of their step, and most colours of a palette.
+_LEVELS, _MOST_COLOURS = 16, 256
 #: Points of an inch; height of the labels below a panel, in points.
 _POINTS, _LABELLED = 72, 24
 #: Mean width of a character and of a handle with its space, in units of the size of the text of a legend.
@@ -381,9 +383,10 @@ def png(figure: Figure) -> bytes:
 
 @styled
 def strips(figure: Figure) -> list[bytes]:
-    """PNG files of the panels of a figure that was drawn for a page, from top to bottom, and of its legends.
+    """PNG files of the panels of a figure that was drawn for a page, from top to bottom.
 
-    A page arranges them in as many columns as fit.
+    A legend of the figure is part of the panel below it, or of the last one. A page arranges the panels in as many
+    columns as fit.
     """
     canvas = FigureCanvasAgg(figure)
     for panel in figure.axes:
@@ -391,20 +394,48 @@ def strips(figure: Figure) -> list[bytes]:
             text.set_wrap(True)
     canvas.draw()
     pixels, around = np.asarray(canvas.buffer_rgba()), _AROUND * figure.dpi
-    boxes = [part.get_tightbbox(canvas.get_renderer()) for part in _parts(figure)]
+    shown, legends = ([_ends(canvas, part) for part in parts] for parts in (figure.axes, _legends(figure)))
     found = []
-    for low, high in _joined([(box.y0, box.y1) for box in boxes]):
+    for low, high in _with_legends(_joined(shown), legends):
         ends = len(pixels) - np.array([high + around, low - around])
         top, bottom = np.clip(ends, 0, len(pixels)).round().astype(int)
-        content = io.BytesIO()
-        imsave(content, pixels[top:bottom], format="png", pil_kwargs={"optimize": True})
-        found.append(content.getvalue())
+        found.append(small_png(pixels[top:bottom, :, :3]))
     return found
 
 
-def _parts(figure):
-    """Panels and legends of a figure and its parts."""
-    return [*figure.axes, *figure.legends, *chain.from_iterable(part.legends for part in figure.subfigs)]
+def small_png(pixels: np.ndarray) -> bytes:
+    """Content of a PNG file of pixels (rows, columns, 3), with a palette of `_LEVELS` levels of each colour."""
+    step = 255 / (_LEVELS - 1)
+    levels = np.rint(np.rint(pixels / step) * step).astype(np.uint8)
+    colours, numbers = np.unique(levels.reshape(-1, 3), axis=0, return_inverse=True)
+    if len(colours) <= _MOST_COLOURS:
+        image = Image.fromarray(numbers.reshape(levels.shape[:2]).astype(np.uint8))
+        image.putpalette(colours.tobytes())
+    else:
+        image = Image.fromarray(levels)
+    content = io.BytesIO()
+    image.save(content, "png", optimize=True)
+    return content.getvalue()
+
+
+def _ends(canvas, part):
+    """Lower and upper end of a part of a figure [pixels]."""
+    box = part.get_tightbbox(canvas.get_renderer())
+    return box.y0, box.y1
+
+
+def _legends(figure):
+    """Legends of a figure and its parts that are outside of panels."""
+    return [*figure.legends, *chain.from_iterable(part.legends for part in figure.subfigs)]
+
+
+def _with_legends(strips, legends):
+    """Strips from top to bottom, each with the legends between it and the one above; the last with those below it."""
+    strips = [list(ends) for ends in strips]
+    for low, high in legends:
+        below = next((strip for strip in strips if strip[0] < low), strips[-1])
+        below[:] = min(low, below[0]), max(high, below[1])
+    return strips
 
 
 def _joined(intervals):

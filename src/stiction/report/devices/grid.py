@@ -105,12 +105,15 @@ class Grid:
     def _fraction(self, levels, v, unknown):
         """Fraction of a layer at v, and -1 or 1 below and above all known ones.
 
-        Below a lower end, and above an upper end, it is the one of an unknown layer, not the nearest known one.
+        Below a lower end, and above an upper end, it is the one of an unknown layer, not the nearest known one. Where few
+        samples leave levels that fall with the score, a lower end is less and everything else more.
         """
         known = np.isfinite(levels)
         if not known.any():
             return unknown, 0
         levels, scores = levels[known], self.scores[known]
+        rising = np.maximum.accumulate(levels), np.minimum.accumulate(levels[::-1])[::-1]
+        levels = rising[unknown != 0]
         if (unknown == 0 and v < levels[0]) or (unknown == 1 and v > levels[-1]):
             return unknown, 0
         return float(ndtr(np.interp(v, levels, scores))), int(v > levels[-1]) - int(v < levels[0])

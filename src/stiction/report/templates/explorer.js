@@ -98,9 +98,11 @@ function opened(number) {
   /** Layers of P(stuck) and the ends of its band at a state: sizes as v, and their scores. */
   const sign = grid.falls ? -1 : 1;
   function levelsOf(state) {
-    const layers = grid.levels.map(layer => {
+    const layers = grid.levels.map((layer, n) => {
       const found = at(layer, state).map(value => sign * value), keep = found.map(Number.isFinite);
-      return [found, grid.scores].map(part => part.filter((_, k) => keep[k]));
+      const [levels, scores] = [found, grid.scores].map(part => part.filter((_, k) => keep[k]));
+      const rising = n === 1 ? levels.map((_, k) => Math.max(...levels.slice(0, k + 1))) : levels.map((_, k) => Math.min(...levels.slice(k)));
+      return [rising, scores];
     });
     return {layers, first: grid.first ? sign * at(grid.first, state)[0] : NaN, enough: sign * Math.log(safeSize(state))};
   }

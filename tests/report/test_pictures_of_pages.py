@@ -1,0 +1,46 @@
+"""Pictures of a page: each panel with its legend in a file of its own, with few levels of each colour."""
+
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from stiction.report.style import columns_of_panels, legend_outside, on_a_page, small_png, strips, styled
+
+RNG = np.random.default_rng(11)
+
+
+def decoded(content):
+    return np.asarray(Image.open(io.BytesIO(content)).convert("RGB"), int)
+
+
+@pytest.mark.parametrize("colours", [2, 100, 5000])
+def test_no_colour_of_a_picture_changes_by_more_than_half_a_level(colours):
+    drawn = RNG.integers(0, 256, (colours, 3), dtype=np.uint8)[RNG.integers(0, colours, (80, 90))]
+    drawn[:2] = 0
+    drawn[2:4] = 255
+    shown = decoded(small_png(drawn))
+    assert np.abs(shown - drawn).max() <= 255 / 15 / 2 + 0.5
+    assert (shown[:2] == 0).all()
+    assert (shown[2:4] == 255).all()
+
+
+@styled
+@on_a_page()
+def figure_of(panels, place):
+    figure, columns, _ = columns_of_panels(panels, 1, lambda across: across, 2.0)
+    for panel in columns[:, 0]:
+        panel.plot([0, 1], [0, 1], color="black")
+    lines = columns[0, 0].plot([], [], color="#ff0000", linewidth=6)
+    legend_outside(figure, (lines, ["all"]), place, 1)
+    return figure
+
+
+@pytest.mark.parametrize(("place", "owner"), [("upper", 0), ("lower", -1)])
+def test_a_legend_is_part_of_the_panel_next_to_it(place, owner):
+    pictures = list(map(decoded, strips(figure_of(3, place))))
+    has_legend = [bool(((picture[..., 0] > 250) & (picture[..., 1] < 5)).any()) for picture in pictures]
+    assert len(pictures) == 3
+    assert has_legend.count(True) == 1
+    assert has_legend[owner]
