@@ -87,7 +87,7 @@ DRAWN_BEAMS = "drawn_beams"
 MEASURED_BEAMS = "measured_beams"
 #: Tables and pictures of ``make devices``; pictures by their width [pixels].
 DEVICE_TABLES = ("devices", "safe_lengths", "stoppers", "budget", "life")
-DEVICE_PICTURES = {"risk": 1000, "chart": 1200, "stoppers": 700, "budget_C1": 1000, "life": 1200}
+DEVICE_PICTURES = {"risk": 1400, "chart": 1200, "stoppers": 700, "budget_C1": 1000, "life": 1200}
 #: Table, and pictures by their width [pixels], of ``make devices CONFIG=examples/roughness.yaml``.
 ROUGHNESS = "roughness"
 #: Table, sentences and pictures of ``make example-process``.

@@ -111,13 +111,13 @@ class Device:
         return stuck.stuck_stoppers(self.forces(), in_numbers(humidity))
 
     def plot(self) -> "Figure":
-        """Figure of P(stuck) at all humidities: with the safe lengths of a beam, or the forces of a stopper."""
+        """Figure of P(stuck) by simulation alone, at all humidities: over lengths of beams, or forces of stoppers."""
         from stiction.report.budget.figures import stoppers
-        from stiction.report.devices.figures import risk
+        from stiction.report.devices.figures import simulated
 
         if not self.kind.is_beam:
             return stoppers({self.name: self.forces()}, {})
-        return risk(
+        return simulated(
             {(self.name, humidity): self.safe_lengths(humidity) for humidity in self._section["humidities"]}, {}
         )
 

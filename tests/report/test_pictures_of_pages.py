@@ -26,6 +26,16 @@ def test_no_colour_of_a_picture_changes_by_more_than_half_a_level(colours):
     assert (shown[2:4] == 255).all()
 
 
+def test_colours_of_areas_and_lines_stay():
+    drawn = np.full((100, 100, 3), 255, np.uint8)
+    drawn[10:40] = 211, 231, 230
+    drawn[50, :20] = 0, 114, 178
+    drawn[70, 3] = 100, 100, 100
+    shown = decoded(small_png(drawn))
+    assert (shown[:60] == drawn[:60]).all()
+    assert (shown[70, 3] == 102).all(), "a single pixel has the nearest level"
+
+
 @styled
 @on_a_page()
 def figure_of(panels, place):

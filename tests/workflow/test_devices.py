@@ -175,18 +175,20 @@ const boxes = (part, those) => [...part.querySelectorAll(those)].map(one => one.
 const width = some => Math.max(...some.map(one => one.right)) - Math.min(...some.map(one => one.left));
 const whole = width(boxes(document, "main"));
 return [...document.querySelectorAll(".part")].map(part => {
-  const pictures = boxes(part, "img"), isBeside = one => pictures.some(to => one.top < to.bottom && to.top < one.bottom);
+  const pictures = boxes(part, "img");
+  const isBeside = one => pictures.some(to => one.top < to.bottom && to.top < one.bottom);
   return pictures.length ? width([...pictures, ...boxes(part, ".said p, .said table").filter(isBeside)]) / whole : 1;
 });
 """
 #: Share of the width that texts take outside of parts with pictures, and the widest line of text [heights of text].
 LINES = """
 const whole = document.querySelector("main").clientWidth;
-const width = one => Math.max(...[...one.children].map(part => part.getBoundingClientRect().right)) - one.getBoundingClientRect().left;
+const box = one => one.getBoundingClientRect();
+const width = one => Math.max(...[...one.children].map(part => box(part).right)) - box(one).left;
 const texts = [...document.querySelectorAll(".text")].filter(one => one.children.length > 1);
 const alone = texts.filter(one => !one.parentElement.parentElement.querySelector("img"));
 return [Math.min(1, ...alone.map(one => width(one) / whole)),
-  Math.max(...texts.flatMap(one => [...one.children]).map(one => one.getBoundingClientRect().width / 15))];
+  Math.max(...texts.flatMap(one => [...one.children]).map(one => box(one).width / 15))];
 """
 LEVELS = "return [...document.querySelectorAll('h1, h2, h3, h4')].map(head => Number(head.tagName[1]))"
 

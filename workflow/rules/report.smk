@@ -5,6 +5,10 @@ Above each rule: what it does, the rules whose results it reads -> the files tha
 Written by docs/rules.py from the declarations of the stages: change these, then run make numbers.
 """
 
+# Risk: P(stuck) of devices against their size, and what to build.
+#   answer, device_warnings -> results/figures/risk.{pdf,png,txt}
+define("figure_risk")
+
 # Devices: verdicts on all devices.
 #   answer, device_warnings -> results/tables/devices.{csv,md,html}
 define("table_devices")
@@ -105,10 +109,6 @@ define("table_pressing")
 # Pressing: adhesion after surfaces were pressed together.
 #   pressed -> results/figures/pressing.{pdf,png,txt}
 define("figure_pressing")
-
-# Risk: P(stuck) of beams against their length, and lengths to build.
-#   safe_lengths, answer, device_warnings -> results/figures/risk.{pdf,png,txt}
-define("figure_risk")
 
 # Chart: simulated limit against relative humidity.
 #   chart, device_warnings -> results/figures/chart.{pdf,png,txt}

@@ -19,6 +19,7 @@ from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure, FigureBase
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
@@ -49,8 +50,9 @@ PAGE = 3.0
 _ON_A_PAGE = ContextVar("on a page", default=False)
 #: Space around a strip of a figure [in].
 _AROUND = 0.04
-#: Levels of red, green and blue in a picture of a page, which err by half of their step, and most colours of a palette.
-_LEVELS, _MOST_COLOURS = 16, 256
+#: Levels of red, green and blue of rare colours in a picture of a page, which err by half of their step; most colours
+#: of a palette; part of the pixels that a common colour has.
+_LEVELS, _MOST_COLOURS, _COMMON = 16, 256, 1e-3
 #: Points of an inch; height of the labels below a panel, in points.
 _POINTS, _LABELLED = 72, 24
 #: Mean width of a character and of a handle with its space, in units of the size of the text of a legend.
@@ -63,6 +65,8 @@ MODELS = {
     "GEO": {"color": "#0072B2", "linestyle": "-", "label": "non-Gaussian, scattered geometry"},
 }
 
+#: Part of the scale of colours from which the contrast to white is 3, and the colour of dry air.
+DISTINCT, _DRY_AIR = 0.41, "#8C510A"
 #: Colour of published values.
 PUBLISHED = "#D55E00"
 _MARKERS = ("o", "s", "^", "v", "D", "P", "X", "<", ">", "p")
@@ -93,10 +97,19 @@ def shades(count: int, lightest: float = 0.15) -> np.ndarray:
     return colormaps["viridis_r"](np.linspace(lightest, 1, count))
 
 
-def humidity_colours(humidities: Iterable[float]) -> dict[float, np.ndarray]:
-    """Colour of every relative humidity, the same in all figures with these humidities."""
-    ordered = sorted(set(humidities))
-    return dict(zip(ordered, shades(len(ordered), 0.25), strict=True))
+def humidity_colour(humidity: float) -> tuple[float, float, float, float]:
+    """Colour of a relative humidity, the same in all figures of devices, with a contrast of at least 3 to white.
+
+    It darkens with the square of the humidity, because devices are mostly in air above 0.4. Dry air is brown.
+    """
+    if not humidity:
+        return to_rgba(_DRY_AIR)
+    return colormaps["viridis_r"](DISTINCT + (1 - DISTINCT) * humidity**2)
+
+
+def humidity_colours(humidities: Iterable[float]) -> dict[float, tuple[float, float, float, float]]:
+    """Colour of every relative humidity, in their order."""
+    return {humidity: humidity_colour(humidity) for humidity in sorted(set(humidities))}
 
 
 @contextmanager
@@ -404,15 +417,21 @@ def strips(figure: Figure) -> list[bytes]:
 
 
 def small_png(pixels: np.ndarray) -> bytes:
-    """Content of a PNG file of pixels (rows, columns, 3), with a palette of `_LEVELS` levels of each colour."""
-    step = 255 / (_LEVELS - 1)
-    levels = np.rint(np.rint(pixels / step) * step).astype(np.uint8)
-    colours, numbers = np.unique(levels.reshape(-1, 3), axis=0, return_inverse=True)
-    if len(colours) <= _MOST_COLOURS:
-        image = Image.fromarray(numbers.reshape(levels.shape[:2]).astype(np.uint8))
-        image.putpalette(colours.tobytes())
+    """Content of a PNG file of pixels (rows, columns, 3), with a palette if it suffices.
+
+    Colours of areas and lines stay. Those of few pixels, at edges and in letters, have `_LEVELS` levels of each part.
+    """
+    codes, places, counts = np.unique(pixels @ np.array([1 << 16, 1 << 8, 1]), return_inverse=True, return_counts=True)
+    colours, step = np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=1), 255 / (_LEVELS - 1)
+    is_common = counts > _COMMON * counts.sum()
+    colours = np.where(is_common[:, None], colours, np.rint(np.rint(colours / step) * step)).astype(np.uint8)
+    palette, numbers = np.unique(colours, axis=0, return_inverse=True)
+    shape = pixels.shape[:2]
+    if len(palette) <= _MOST_COLOURS:
+        image = Image.fromarray(numbers[places].reshape(shape).astype(np.uint8))
+        image.putpalette(palette.tobytes())
     else:
-        image = Image.fromarray(levels)
+        image = Image.fromarray(colours[places].reshape(*shape, 3))
     content = io.BytesIO()
     image.save(content, "png", optimize=True)
     return content.getvalue()

@@ -87,7 +87,7 @@ def test_a_table_without_warnings_does_not_speak_of_them(found):
 
 
 def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
-    figure = figures_devices.risk(found, WARNINGS)
+    figure = figures_devices.simulated(found, WARNINGS)
     first, second = figure.axes
     lines = [line for line in first.lines if len(line.get_xdata()) > 1]
     one = found["C1", 0.44].isel(shape=0)
@@ -113,7 +113,7 @@ def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
 
 
 def test_a_humidity_has_one_colour_in_all_panels(found):
-    figure = figures_devices.risk(
+    figure = figures_devices.simulated(
         {("C1", 0.44): found["C1", 0.44], ("C1", 0.67): found["C1", 0.67], ("R1", 0.67): found["C1", 0.67]}, {}
     )
     first, second = ([line.get_color() for line in panel.get_legend().get_lines()] for panel in figure.axes)
@@ -127,14 +127,14 @@ def looks(legend):
 
 
 def test_entries_of_a_legend_look_different(found):
-    (legend,) = figures_devices.risk(found, WARNINGS).legends
+    (legend,) = figures_devices.simulated(found, WARNINGS).legends
     assert len(set(looks(legend))) == len(looks(legend)) > 3
     assert "held by beam or tip / the middle" in [text.get_text() for text in legend.get_texts()]
 
 
 def test_the_risk_can_be_read_at_the_length_of_the_device(found):
     own = safe_lengths.at_length(exactly(np.linspace(200e-6, 400e-6, 100)), 300e-6)
-    figure = figures_devices.risk({("C1", 0.44): found["C1", 0.44].assign(own)}, WARNINGS)
+    figure = figures_devices.simulated({("C1", 0.44): found["C1", 0.44].assign(own)}, WARNINGS)
     (panel,) = figure.axes
     share = 100 * float(own["stuck_at_length"][1][-1, 0])
     assert panel.get_legend().get_texts()[0].get_text() == f"RH 0.44: {share:.3g} % at 300 µm (1) (2)"
@@ -249,7 +249,7 @@ def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count):
     warned = dict.fromkeys(
         product(*map(dict.fromkeys, zip(*cases, strict=True)), (S_SHAPE, EITHER)), [noted("Too wet.")]
     )
-    assert covering(figures_devices.risk(cases, warned)) == []
+    assert covering(figures_devices.simulated(cases, warned)) == []
     axes = {(f"C{k}", rh): charted(rh) for k in range(count) for rh in (0.4, 0.5)}
     assert covering(figures_devices.chart(axes, {})) == []
 
@@ -258,7 +258,7 @@ def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count):
 def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found):
     cases = {(f"C{k}", rh): found["C1", 0.44] for k in range(20) for rh in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)}
     warned = {(*case, shape): [noted(f"{case} is too wet.")] for case in cases for shape in (S_SHAPE, EITHER)}
-    figure = figures_devices.risk(cases, warned)
+    figure = figures_devices.simulated(cases, warned)
     assert figure._supxlabel.get_text() == "(1) to (120): beyond a limit of the model"
     assert named(figure.axes[0])[1] == "RH 0.5 (2)"
     assert "(2) surface B2: ('C0', 0.5) is too wet." in tables_devices.safe_lengths(cases, warned).caption
@@ -268,7 +268,7 @@ def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found
 
 
 def test_a_legend_within_a_panel_is_found(found):
-    figure = figures_devices.risk(found, WARNINGS)
+    figure = figures_devices.simulated(found, WARNINGS)
     panel = figure.axes[0]
     panel.legend(handles=panel.get_legend().legend_handles, labels=["first", "second"], loc="lower right")
     assert covering(figure) == ["first"]
@@ -308,6 +308,6 @@ def test_the_chart_has_numbers_of_warnings_beside_the_thickness():
 @pytest.mark.slow
 def test_equal_data_give_equal_files(found, tmp_path):
     for name in ("one", "two"):
-        save(figures_devices.risk(found, WARNINGS), tmp_path / f"{name}.png", tmp_path / f"{name}.pdf")
+        save(figures_devices.simulated(found, WARNINGS), tmp_path / f"{name}.png", tmp_path / f"{name}.pdf")
     for kind in ("png", "pdf"):
         assert (tmp_path / f"one.{kind}").read_bytes() == (tmp_path / f"two.{kind}").read_bytes()

@@ -1,48 +1,135 @@
-"""Picture of an answer: the steps from the estimate to the size to build."""
+"""Pictures of answers: the steps from the estimate to the size to build, and P(stuck) around it."""
+
+from collections.abc import Mapping
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from stiction.answer.data import Answer
-from stiction.report.answer import words
+from stiction.answer.data import Answer, Cause
+from stiction.config.cases import Air
+from stiction.devices.risk import one_in
+from stiction.plan.names import by_name
+from stiction.report.answer import tables, words
 from stiction.report.format import UM, UN
-from stiction.report.style import OUTLINED, SINGLE, panels, styled
+from stiction.report.style import (
+    OUTLINED,
+    SINGLE,
+    at_most_double,
+    columns_of_panels,
+    figure_stage,
+    humidity_colour,
+    letter_lines,
+    panels,
+    styled,
+)
+from stiction.stages.devices import device_warnings
 
 #: Colours of steps that are inside the answer, of those beside it, and of the answer [Okabe and Ito].
 _INSIDE, _BESIDE, _ANSWER = "#0072B2", "0.6", "#D55E00"
-#: Height of a row, and of the rest [in].
-_ROW, _AROUND = 0.42, 0.6
-
-
-@styled
-def ladder(answer: Answer) -> Figure:
-    """Draw the steps from the estimate to the size to build, one row each, with its size and change."""
-    scale, unit = (UN, "µN") if answer.more_is_better else (UM, "µm")
-    figure, grid = panels(1, 1, (SINGLE, _AROUND + _ROW * len(answer.steps)))
-    panel, before = grid[0, 0], answer.steps[0].size / scale
-    for row, step in enumerate(answer.steps):
-        size, colour = step.size / scale, _INSIDE if step.stated else _BESIDE
-        panel.plot([before, size], [row, row], color=colour, linewidth=5, solid_capstyle="butt")
-        panel.plot(size, row, "|", color=colour, markersize=11)
-        change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""
-        said = f"{words.CAUSES[step.cause][0]}: {words.size_in_words(answer, step.size)}{change}"
-        panel.annotate(said, (0.02, row - 0.2), **_LABEL)
-        before = size if step.stated else before
-    _answer_and_stated(panel, answer, scale)
-    what = "restoring force" if answer.more_is_better else "length"
-    panel.set(xlabel=f"{what} [{unit}]", yticks=[], ylim=(len(answer.steps) - 0.6, -0.75))
-    panel.margins(x=0.1)
-    return figure
-
-
+#: Height of a row of steps, of the rest, and of a panel of P(stuck) [in].
+_ROW, _AROUND, _PANEL = 0.42, 0.6, 2.7
+#: Label of the axis of P(stuck), and its lower end over the allowed fraction.
+_STUCK, _LOWEST = "P(stuck) [–]", 1 / 30
 #: Place of the label of a step.
 _LABEL = {"xycoords": ("axes fraction", "data"), "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
 
 
-def _answer_and_stated(panel, answer, scale):
-    """Lines at the size to build, and at the stated size unless it is far away."""
+@styled
+def ladder(answer: Answer) -> Figure:
+    """Draw the steps from the estimate to the size to build, one row each, and beside them P(stuck)."""
+    figure, grid = panels(1, 2, (2 * SINGLE, _AROUND + _ROW * len(answer.steps)))
+    _steps(grid[0, 0], answer)
+    _stuck(grid[0, 1], answer)
+    grid[0, 1].set_ylabel(_STUCK)
+    return figure
+
+
+def _steps(panel: Axes, answer):
+    """Steps from the estimate to the size to build, one row each, with its size and change."""
+    (scale, label), before = _axis(answer), answer.steps[0].size
+    for row, step in enumerate(answer.steps):
+        colour, ends = _INSIDE if step.stated else _BESIDE, np.array([before, step.size]) / scale
+        panel.plot(ends, [row, row], color=colour, linewidth=5, solid_capstyle="butt")
+        panel.plot(ends[1], row, "|", color=colour, markersize=11)
+        change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""
+        said = f"{words.CAUSES[step.cause][0]}: {words.size_in_words(answer, step.size)}{change}"
+        panel.annotate(said, (0.02, row - 0.2), **_LABEL)
+        before = step.size if step.stated else before
     ends = [step.size for step in answer.steps]
     if np.isfinite(answer.build):
         panel.axvline(answer.build / scale, color=_ANSWER, linewidth=1.2, zorder=0)
     if 0.5 * min(ends) < answer.size < 2 * max(ends):
         panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, zorder=0)
+    panel.set(xlabel=label, yticks=[], ylim=(len(answer.steps) - 0.6, -0.75))
+    panel.margins(x=0.1)
+
+
+def _axis(answer):
+    """Unit of the sizes of an answer, and the label of their axis."""
+    return (UN, "restoring force [µN]") if answer.more_is_better else (UM, "length [µm]")
+
+
+@styled
+def risk(answers: Mapping[str, Answer]) -> Figure:
+    """P(stuck) with all that is unknown inside, against the size, one panel for each device."""
+    figure, columns, lines = columns_of_panels(len(answers), 1, at_most_double(SINGLE), _PANEL)
+    for panel, answer in zip(columns[:, 0], answers.values(), strict=True):
+        _stuck(panel, answer)
+    for line in lines:
+        line[0, 0].set_ylabel(_STUCK)
+    letter_lines(lines, [f"{name}, {answer.kind}" for name, answer in answers.items()])
+    return figure
+
+
+def _stuck(panel: Axes, answer):
+    """Expected P(stuck) in all stated airs with its band, pale in each of the others, and the size to build."""
+    scale, label = _axis(answer)
+    panel.set_xlabel(label)
+    if words.is_forbidden(answer) or not answer.sizes.size:
+        panel.set(xticks=[], yticks=[])
+        panel.text(0.5, 0.5, words.sign_of(answer)[1], ha="center", transform=panel.transAxes)
+        return
+    sizes, (expected, *band) = answer.sizes / scale, answer.curve
+    for air in answer.airs:
+        if air.humidity != answer.together.humidity:
+            colour = humidity_colour(air.humidity)
+            panel.plot(sizes, air.curve[0], color=colour, alpha=0.45, linewidth=0.8, label=Air(air.humidity).words)
+    colour, decides = humidity_colour(answer.together.humidity), Air(answer.together.humidity).words
+    said = f"all airs, {decides} decides" if len(answer.airs) > 1 else decides
+    panel.plot(sizes, expected, color=colour, linewidth=1.6, label=said)
+    panel.fill_between(sizes, *band, color=colour, alpha=0.2, linewidth=0, label="95 % band")
+    panel.axhline(answer.share, color="0.4", linestyle=":", linewidth=0.8)
+    panel.annotate(one_in(answer.share), (0.99, answer.share), ha="right", **_LABEL)
+    _size_to_build(panel, answer, scale)
+    panel.set(yscale="log", xlim=(sizes.min(), sizes.max()), ylim=(_LOWEST * answer.share, 1.3))
+    panel.legend(loc="lower left" if answer.more_is_better else "lower right", frameon=True, edgecolor="none")
+
+
+def _size_to_build(panel, answer, scale):
+    """Vertical band from the simulated limit to the size to build, with its number, and the stated size."""
+    if np.isfinite(answer.build):
+        (limit,) = (step.size for step in answer.steps if step.cause is Cause.SIMULATION)
+        panel.axvspan(limit / scale, answer.build / scale, color=_ANSWER, alpha=0.15, linewidth=0)
+        panel.axvline(answer.build / scale, color=_ANSWER, linewidth=1.5)
+        place = {"xytext": (3, -3), "textcoords": "offset points", "va": "top", "rotation": 90, "color": _ANSWER}
+        said = f"build {words.size_in_words(answer, answer.build)}"
+        panel.annotate(said, (answer.build / scale, 1), xycoords=("data", "axes fraction"), **place)
+    if answer.sizes.min() < answer.size < answer.sizes.max():
+        panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, label="stated size")
+
+
+STAGES = (
+    figure_stage(
+        "risk",
+        "P(stuck) of devices against their size, and what to build",
+        "Devices",
+        inputs=lambda plan, at: {
+            "answers": by_name("devices/answer", plan.devices.sections),
+            "warnings": device_warnings.files_of(*plan.devices.sections),
+        },
+        compute=lambda data: risk(tables.of_datasets(data["answers"], data["warnings"])),
+        jobs=lambda plan: [{}] if plan.devices.sections else [],
+        targets=("devices",),
+    ),
+)

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterable, Mapping
 from itertools import product
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -11,15 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stiction.answer.data import Answer
 from stiction.config.cases import Air
 from stiction.devices.chart import FEWEST_HUMIDITIES, between, error_between
 from stiction.devices.limits.limit import Limit
-from stiction.plan.names import by_case, by_name
-from stiction.report.answer.judged import judged
 from stiction.report.format import TO_UM, fraction_with_band
 from stiction.report.limits.words import numbered, with_numbers
 from stiction.report.style import (
+    DISTINCT,
     SINGLE,
     at_most_double,
     columns_of_panels,
@@ -42,14 +39,10 @@ from stiction.stages.devices.end_states import END_STATES
 
 #: Marker of each basis of a safe length.
 _BASES = {"sampled": "o", "fitted": "s", "extrapolated": "x", "longest": ">", "flat": "|"}
-#: Colour of a length to build [Okabe and Ito].
-_BUILD = "#D55E00"
 #: Height of a line of panels, and of an entry of the legends below them [in].
 _PANEL, _ENTRY = 3.3, 0.12
 #: Points of a curve between computed humidities.
 _POINTS = 200
-#: Lightest colour of a curve.
-_LIGHTEST = 0.25
 #: Space above the longest curve of a chart, in units of the range of its lengths.
 _ROOM = 0.05
 
@@ -63,14 +56,12 @@ def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[Limit]]) -> No
 
 
 @styled
-def risk(
-    datasets: Mapping[tuple[str, float], xr.Dataset],
-    warnings: Mapping[tuple[str, float, str], list],
-    answers: Mapping[str, Answer] = MappingProxyType({}),
+def simulated(
+    datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, str], list]
 ) -> Figure:
     """P(stuck) of beams by simulation alone against their length, one panel for each device.
 
-    It has bands of 95 %, simulated limits and, where there is an answer about a device, its length to build.
+    It has bands of 95 % and simulated limits.
 
     A humidity has the same colour in all panels.
     The numbers of the warnings, which are by name, humidity and shape, mark the curves.
@@ -89,8 +80,6 @@ def risk(
             named.append(Line2D([], [], color=colours[humidity], linewidth=3, label=label))
         legend_below(panel, named)
         _own_length(panel, dataset)
-        if name in answers and np.isfinite(answers[name].build):
-            panel.axvline(TO_UM * answers[name].build, color=_BUILD, linewidth=1.5)
         shares = np.concatenate([dataset.share.values for dataset in cases.values()])
         panel.set(
             yscale="log", ylim=(shares.min() / 2, 1.3), xlabel=on_own_axes("length of the device [µm]", columns.T)
@@ -99,8 +88,6 @@ def risk(
         line[0, 0].set_ylabel("P(stuck), simulated [–]")
     letter_lines(lines, names)
     _explain(columns[0, 0], datasets)
-    if answers:
-        columns[0, 0].plot([], [], "-", color=_BUILD, linewidth=1.5, label="length to build, all inside")
     legend_outside(figure, handles(columns[0, 0]), "upper", 4 if len(names) > 1 else 3)
     refer_to_warnings(figure, warnings)
     return figure
@@ -211,7 +198,7 @@ def _thicknesses(panel, whole, shape, marks, placed):
     share, named = whole.share.values[len(whole.share) // 2], []
     state = END_STATES[shape]
     line, dotted = state.lines
-    for thickness, shade, mark in zip(whole.thickness.values, shades(len(marks), _LIGHTEST), marks, strict=True):
+    for thickness, shade, mark in zip(whole.thickness.values, shades(len(marks), DISTINCT), marks, strict=True):
         for part, styles in _parts(whole.sel(thickness=thickness, share=share), (line, dotted)):
             at = [placed[humidity] for humidity in part.relative_humidity.values]
             by_law, lengths = part.by_elements.values == 0, TO_UM * part.safe_length
@@ -251,26 +238,7 @@ def _parts(whole, lines):
     return [(part, styles) for part, styles in parts if part.sizes["relative_humidity"]]
 
 
-def _risk_of(data, warnings):
-    """Figure `risk` of the datasets of its stage. Where a limit forbids a number, it has no length to build."""
-    answers = {name: judged(dataset, warnings) for name, dataset in data["answers"].items()}
-    return risk(data["lengths"], warnings.lengths, {name: one for name, one in answers.items() if not one.forbidden})
-
-
 STAGES = (
-    figure_stage(
-        "risk",
-        "P(stuck) of beams against their length, and lengths to build",
-        "Devices",
-        inputs=lambda plan, at: {
-            "lengths": by_case("devices/safe_lengths", plan.devices.cases),
-            "answers": by_name("devices/answer", plan.devices.beams),
-            "warnings": device_warnings.files_of(*plan.devices.beams),
-        },
-        compute=lambda data: _risk_of(data, device_warnings.read(data["warnings"])),
-        jobs=lambda plan: [{}] if plan.devices.cases else [],
-        targets=("devices",),
-    ),
     figure_stage(
         "chart",
         "simulated limit against relative humidity",

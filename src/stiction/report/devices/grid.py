@@ -105,8 +105,8 @@ class Grid:
     def _fraction(self, levels, v, unknown):
         """Fraction of a layer at v, and -1 or 1 below and above all known ones.
 
-        Below a lower end, and above an upper end, it is the one of an unknown layer, not the nearest known one. Where few
-        samples leave levels that fall with the score, a lower end is less and everything else more.
+        Below a lower end, and above an upper end, it is the one of an unknown layer, not the nearest known one. Where
+        few samples leave levels that fall with the score, a lower end is less and everything else more.
         """
         known = np.isfinite(levels)
         if not known.any():

@@ -98,7 +98,7 @@ def beam_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], an
     lengths, warnings = data["safe_lengths"], data["warnings"].lengths | data["warnings"].curves
     cases = {(name, humidity): dataset for humidity, dataset in lengths.items()}
     table = tables_devices.safe_lengths(cases, warnings, data.get("errors")).cells.drop(columns="device")
-    pictures = figures_devices.risk(cases, {}, {} if answer.forbidden else {name: answer})
+    pictures = figures_devices.simulated(cases, {})
     sections = [Section("By simulation alone", (_SIMULATED,), table, pictures, _MISSING_LENGTHS)]
     if data.get("charts"):
         axis = {(name, humidity): dataset for humidity, dataset in data["charts"].items()}

@@ -1,0 +1,71 @@
+"""The pictures of an answer show its numbers: curves, the size to build, and no number where one is forbidden."""
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgb
+from scipy.special import ndtr
+
+from stiction.answer.data import Answer, Cause, InAir, Step
+from stiction.report.answer.figures import ladder, risk
+from stiction.report.style import humidity_colour
+
+SIZES = np.linspace(100e-6, 300e-6, 41)
+
+
+def curve(median):
+    """P(stuck) and its band of lognormal lengths."""
+    return np.array([ndtr(np.log(SIZES / median) / 0.1 + shift) for shift in (0, -0.5, 0.5)])
+
+
+def answered(**changed):
+    airs = tuple(InAir(rh, np.nan, np.nan, None, curve(m)) for rh, m in ((0.44, 260e-6), (0.92, 200e-6)))
+    sizes = {Cause.ESTIMATE: 160e-6, Cause.SIMULATION: 155e-6, Cause.INPUTS: 140e-6}
+    steps = tuple(Step(cause, size, 0.9, 0.92, "S-shape", "safe_lengths") for cause, size in sizes.items())
+    known = {"share": 1e-3, "unit": "m", "build": 140e-6, "exact": 155e-6, "size": 250e-6}
+    return Answer("C1", "cantilever", steps=steps, airs=airs, sizes=SIZES, curve=curve(199e-6), **known | changed)
+
+
+def lines_of(panel):
+    """Curves of a panel by their label."""
+    return {line.get_label(): line for line in panel.lines if len(line.get_xdata()) > 2}
+
+
+def test_what_decides_is_in_full_colour_and_the_other_airs_are_pale():
+    answer = answered()
+    (panel,) = risk({"C1": answer}).axes
+    found = lines_of(panel)
+    decides, pale = found["all airs, RH 0.92 decides"], found["RH 0.44"]
+    np.testing.assert_allclose(decides.get_xydata(), np.transpose([1e6 * SIZES, answer.curve[0]]))
+    np.testing.assert_allclose(pale.get_ydata(), answer.airs[0].curve[0])
+    assert len(found) == 2, "the air that decides is the curve of all"
+    for line, humidity in ((decides, 0.92), (pale, 0.44)):
+        assert to_rgb(line.get_color()) == humidity_colour(humidity)[:3]
+    assert pale.get_alpha() < 0.5
+    assert decides.get_alpha() is None
+    assert panel.get_yscale() == "log"
+    assert panel.get_title(loc="left") == "C1, cantilever"
+
+
+def test_a_band_leads_from_the_simulated_limit_to_the_size_to_build_which_is_stated():
+    (panel,) = risk({"C1": answered()}).axes
+    (band,) = panel.patches
+    assert (band.get_x(), band.get_x() + band.get_width()) == pytest.approx((155, 140))
+    assert "build 140 µm" in [text.get_text() for text in panel.texts]
+    upright = [line.get_xdata()[0] for line in panel.lines if len(set(line.get_xdata())) == 1]
+    assert sorted(upright) == pytest.approx([140, 250]), "to build, and stated"
+
+
+def test_a_forbidden_number_is_not_drawn():
+    (panel,) = risk({"C1": answered(forbidden=("gap",))}).axes
+    assert not panel.lines
+    assert [text.get_text() for text in panel.texts] == ["Do not rely on a number"]
+
+
+def test_the_ladder_has_a_row_for_each_step_and_the_curve_beside_it():
+    steps, stuck = ladder(answered()).axes
+    assert [text.get_text().partition(":")[0] for text in steps.texts] == [
+        "estimate",
+        "error of the simulation",
+        "uncertainty of the inputs",
+    ]
+    assert "all airs, RH 0.92 decides" in lines_of(stuck)
