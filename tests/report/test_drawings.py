@@ -1,5 +1,6 @@
 """Drawings are complete SVG with a text alternative, legible in light and dark, and their texts lie apart."""
 
+import re
 import xml.etree.ElementTree as ET
 from itertools import combinations
 
@@ -81,6 +82,19 @@ def test_points_lie_within_the_drawing(drawing):
             x, y = map(float, point.split(","))
             assert 0 <= x <= WIDTH
             assert 0 <= y <= drawing.height
+
+
+@each_drawing
+def test_every_shape_has_its_colour_without_variables(drawing):
+    root = ET.fromstring(drawing.svg)
+    light, dark = root.find(f"{SVG}style").text.split("@media (prefers-color-scheme: dark)")
+    assert "var(" not in drawing.svg, "librsvg would draw it black"
+    for looks, own, others in ((light, LIGHT, DARK), (dark, DARK, LIGHT)):
+        colours = dict(re.findall(r"[ .](\S+) { [^}]*(#[0-9a-f]{6})", looks))
+        shapes = {element.get("class") for element in root.iter() if element.tag != f"{SVG}text"} - {None, "drawing"}
+        assert shapes | {"text"} <= {name.rpartition(".")[2] for name in colours}
+        assert set(own.values()) >= {*colours.values()}
+        assert not {*colours.values()} & (set(others.values()) - set(own.values()))
 
 
 def luminance(colour):

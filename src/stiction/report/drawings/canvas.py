@@ -7,9 +7,10 @@ Lengths are in pixels of a drawing that is 640 wide, with y downwards. On a phon
 high.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from html import escape
+from string import Template
 
 import numpy as np
 
@@ -36,29 +37,29 @@ DARK = {
     "mark": "#7cc0ff",
     "warn": "#ffa066",
 }
-#: Looks of shapes and texts, in the colours above.
-_LOOKS = f"""
-.drawing rect.paper {{ fill: var(--paper) }}
-.drawing .solid {{ fill: var(--body); stroke: var(--ink); stroke-width: 2; stroke-linejoin: round }}
-.drawing .ground {{ fill: var(--ground); stroke: var(--ink); stroke-width: 2; stroke-linejoin: round }}
-.drawing .water {{ fill: var(--water) }}
-.drawing .line {{ fill: none; stroke: var(--ink); stroke-width: 2; stroke-linejoin: round; stroke-linecap: round }}
-.drawing .ghost {{ fill: none; stroke: var(--quiet); stroke-width: 2; stroke-dasharray: 7 6 }}
-.drawing .curve {{ fill: none; stroke: var(--mark); stroke-width: 3; stroke-linejoin: round; stroke-linecap: round }}
-.drawing .faint {{ fill: none; stroke: var(--mark); stroke-width: 2; opacity: .55 }}
-.drawing .bar {{ fill: var(--mark) }}
-.drawing .measure {{ fill: none; stroke: var(--quiet); stroke-width: 1.5 }}
-.drawing .head {{ fill: var(--quiet) }}
-.drawing .ink-head {{ fill: var(--ink) }}
-.drawing .pull {{ fill: none; stroke: var(--warn); stroke-width: 3 }}
-.drawing .pull-head {{ fill: var(--warn) }}
-.drawing text {{ font: {TEXT}px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif }}
-.drawing text {{ fill: var(--ink) }}
-.drawing text.title {{ font-weight: 600 }}
-.drawing text.quiet {{ fill: var(--quiet) }}
-.drawing text.mark {{ fill: var(--mark); font-weight: 600 }}
-.drawing text.warn {{ fill: var(--warn); font-weight: 600 }}
-"""
+#: Looks of shapes and texts. Colours are written out, because not every viewer of SVG knows variables of CSS.
+_LOOKS = Template("""
+.drawing rect.paper { fill: $paper }
+.drawing .solid { fill: $body; stroke: $ink; stroke-width: 2; stroke-linejoin: round }
+.drawing .ground { fill: $ground; stroke: $ink; stroke-width: 2; stroke-linejoin: round }
+.drawing .water { fill: $water }
+.drawing .line { fill: none; stroke: $ink; stroke-width: 2; stroke-linejoin: round; stroke-linecap: round }
+.drawing .ghost { fill: none; stroke: $quiet; stroke-width: 2; stroke-dasharray: 7 6 }
+.drawing .curve { fill: none; stroke: $mark; stroke-width: 3; stroke-linejoin: round; stroke-linecap: round }
+.drawing .faint { fill: none; stroke: $mark; stroke-width: 2; opacity: .55 }
+.drawing .bar { fill: $mark }
+.drawing .measure { fill: none; stroke: $quiet; stroke-width: 1.5 }
+.drawing .head { fill: $quiet }
+.drawing .ink-head { fill: $ink }
+.drawing .pull { fill: none; stroke: $warn; stroke-width: 3 }
+.drawing .pull-head { fill: $warn }
+.drawing text { font: ${size}px system-ui, -apple-system, "Segoe UI", Roboto, "DejaVu Sans", sans-serif }
+.drawing text { fill: $ink }
+.drawing text.title { font-weight: 600 }
+.drawing text.quiet { fill: $quiet }
+.drawing text.mark { fill: $mark; font-weight: 600 }
+.drawing text.warn { fill: $warn; font-weight: 600 }
+""")
 
 #: A point, or a displacement.
 Point = tuple[float, float]
@@ -90,14 +91,9 @@ class Drawing:
 
 
 def _style():
-    """Colours in light and dark, and the looks."""
-    light, dark = (f".drawing {{ {_variables(colours)} }}" for colours in (LIGHT, DARK))
-    return f"\n{light}\n@media (prefers-color-scheme: dark) {{ {dark} }}{_LOOKS}"
-
-
-def _variables(colours: Mapping[str, str]) -> str:
-    """Colours as variables of CSS."""
-    return "; ".join(f"--{name}: {colour}" for name, colour in colours.items())
+    """Looks in light and in dark."""
+    light, dark = (_LOOKS.substitute(colours, size=TEXT) for colours in (LIGHT, DARK))
+    return f"{light}@media (prefers-color-scheme: dark) {{{dark}}}\n"
 
 
 def _text(number: float) -> str:
