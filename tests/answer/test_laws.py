@@ -183,7 +183,7 @@ def test_where_none_sticks_the_probability_has_an_upper_end_and_no_lower_one(tou
     found = asked([one], size=0.9, touchdowns=touchdowns).stuck
     assert found.none_seen
     assert found.low == 0
-    assert_allclose(found.high, stuck_after(-np.expm1(np.log(0.025) / 1000), touchdowns), rtol=1e-6)
+    assert_allclose(found.high, stuck_after(-np.expm1(np.log(0.05) / 1000), touchdowns), rtol=1e-6)
     assert 0 < found.value <= found.high
 
 

@@ -11,7 +11,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.special import ndtr
 
 from stiction.devices.risk import SCORES
-from stiction.report.devices.grid import Axis, Grid, monotone
+from stiction.report.devices.grid import Axis, Grid, Stuck, monotone
 from stiction.report.devices.levels import counted
 from stiction.report.page import Page
 
@@ -87,16 +87,16 @@ def test_the_band_of_counted_devices_is_that_of_wilson():
         assert (found.low, found.high) == pytest.approx(ends, rel=0.02)
 
 
-def test_where_no_simulated_device_sticks_a_fraction_is_at_most_what_their_number_allows():
+def test_below_a_size_the_upper_end_of_a_fraction_alone_is_known():
     grid = lognormal()
     first = 100 * np.array(THICKNESS.values)[:, None] ** 0.75 * np.exp(-3 * SLOPE)
-    grid = replace(grid, first=first, unseen=2e-3)
-    below, safe = 0.99 * float(100 * 3**0.75 * np.exp(-3 * SLOPE)), grid.safe_size(STATE)
-    found = grid.stuck(STATE | {"length": below})
-    assert (found.low, found.high, found.beyond) == (0, 2e-3, -1), "the fraction allowed is larger"
-    assert grid.stuck(STATE | {"length": below, "share": 1.1e-3}).high == 1.1e-3, "a length to build is safe"
-    assert grid.stuck(STATE | {"length": 1.02 * below / 0.99}).beyond == 0
-    assert below < safe
+    below = 0.99 * float(100 * 3**0.75 * np.exp(-3 * SLOPE))
+    band = grid.stuck(STATE | {"length": below})
+    bounded = replace(grid, first=first)
+    assert bounded.stuck(STATE | {"length": below}) == Stuck(band.share, 0.0, band.high, -1)
+    above = STATE | {"length": 1.02 * below / 0.99}
+    assert bounded.stuck(above) == grid.stuck(above)
+    assert grid.stuck(above).beyond == 0
 
 
 @pytest.mark.parametrize("falls", [False, True])

@@ -211,7 +211,7 @@ def grid_of(run, device):
         Axis(**one | {"values": tuple(one["values"])}) for one in (*content["axes"], content["share"], content["size"])
     ]
     arrays = {name: np.array(content[name], float) for name in ("safe", "levels", "scores", "first")}
-    numbers = {name: content[name] for name in ("samples", "falls", "unseen")}
+    numbers = {name: content[name] for name in ("samples", "falls")}
     return Grid(tuple(axes[:-2]), axes[-2], axes[-1], **arrays, **numbers)
 
 

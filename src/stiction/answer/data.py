@@ -53,7 +53,11 @@ class Step:
 
 @dataclass(frozen=True)
 class Probability:
-    """Expected fraction of stuck devices, and a band of the fraction that contains all that is unknown."""
+    """Expected fraction of stuck devices, and a band of the fraction that contains all that is unknown.
+
+    Where no simulated device sticks, the upper end is a bound with 95 % confidence. It is the allowed fraction at the
+    size to build.
+    """
 
     value: float
     low: float
@@ -71,7 +75,7 @@ class InAir:
     stuck: Probability | None  #: at the stated size
     #: Expected fraction stuck, and ends of its band, at `Answer.sizes` (3, n) [-].
     curve: np.ndarray = field(default_factory=lambda: np.empty((3, 0)), compare=False)
-    first: float = field(default=np.nan, compare=False)  #: size at which the first simulated device sticks [m, N]
+    first: float = field(default=np.nan, compare=False)  #: size from which a lower end is known [m, N]
 
 
 @dataclass(frozen=True)
@@ -99,8 +103,6 @@ class Answer:
     sizes: np.ndarray = field(default_factory=lambda: np.empty(0), compare=False)  #: of the curves (n,) [m, N]
     #: As those of airs, in the worst of them (3, n) [-].
     curve: np.ndarray = field(default_factory=lambda: np.empty((3, 0)), compare=False)
-    #: Largest fraction stuck at sizes at which no simulated device sticks [-].
-    unseen: float = field(default=0.0, compare=False)
 
     @property
     def more_is_better(self) -> bool:

@@ -8,6 +8,7 @@ import numpy as np
 from stiction.answer.data import Answer, Cause, InAir, Probability, Step, band
 from stiction.answer.unknowns import Draws, OfBudgets, OfTestBeams, Unknowns
 from stiction.answer.worlds import Condition, World
+from stiction.devices.risk import CONFIDENCE
 from stiction.life.freeing import probability_for
 
 #: Points of a curve of P(stuck), how far it goes below the size to build in ln size, and the fraction at its end.
@@ -81,7 +82,6 @@ def answer(
         np.nan if before is None else _without_test_beams(question, exact, before),
         sizes,
         _curve(question, world, sizes),
-        world.unseen(),
     )
 
 
@@ -114,19 +114,20 @@ def _present(question, world):
 
 
 def _stuck(question, world):
-    """P(stuck) at the stated size, none without one.
+    """P(stuck) at the stated size, none without one."""
+    return None if np.isnan(question.size) else probability(world, question.v)
 
-    Where no simulated device sticks, the count bounds it, and so does the size to build if the stated one is within it.
+
+def probability(world: World, v: float) -> Probability:
+    """P(stuck) at v.
+
     A few draws of which all devices stick can raise the expectation above the band, which then ends there.
     """
-    if np.isnan(question.size):
-        return None
-    fractions = world.stuck(question.v)
-    value, (low, high), unseen = float(fractions.mean()), band(fractions), world.unseen()
-    if world.seen(question.v) or value > unseen:
-        return Probability(value, min(low, value), max(high, value))
-    most = min(max(high, unseen), question.share if question.v <= world.size else 1.0)
-    return Probability(value, 0.0, max(most, value), none_seen=True)
+    fractions, none_seen = world.stuck(v), v < world.first
+    value, (low, high) = float(fractions.mean()), band(fractions)
+    if none_seen:
+        low, high = 0.0, float(np.quantile(fractions, CONFIDENCE, method="lower"))
+    return Probability(value, min(low, value), max(high, value, world.least_bound(v)), none_seen)
 
 
 def _sizes(question, world):
@@ -155,14 +156,14 @@ def _in_air(question, world, humidity, sizes):
     if len(shapes) > 1:
         along = replace(own, conditions=tuple(one for one in own.conditions if one.shape != shapes[-1]))
         without_tip = question.size_of(along.size)
-    first, curve = question.size_of(own.first()), _curve(question, own, sizes)
+    first, curve = question.size_of(own.first), _curve(question, own, sizes)
     return InAir(humidity, question.size_of(own.size), without_tip, _stuck(question, own), curve, first)
 
 
 def _curve(question, world, sizes):
     """Expected fraction stuck at some sizes, and ends of its band (3, n) [-]."""
-    fractions = [world.stuck(v) for v in question.sign * np.log(sizes)]
-    return np.array([[some.mean(), *band(some)] for some in fractions]).reshape(-1, 3).T
+    found = [probability(world, v) for v in question.sign * np.log(sizes)]
+    return np.array([[one.value, one.low, one.high] for one in found]).reshape(-1, 3).T
 
 
 def _to_measure(question, world):

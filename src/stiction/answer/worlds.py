@@ -12,6 +12,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
+from scipy.optimize import brentq
 from scipy.special import betaincinv, expit, logit, ndtr, ndtri
 
 from stiction.answer.data import Cause
@@ -168,7 +169,7 @@ class World:
         """Thresholds of the allowed fraction in every condition and draw (conditions, draws)."""
         score, rows = ndtri(self._once), []
         for k, one in enumerate(self.inside):
-            if self._has_line(k):
+            if k in self._by_line:
                 intercepts, slopes = self._lines[k]
                 rows.append(np.maximum(intercepts + slopes * score, one.sampled.floor))
             else:
@@ -176,12 +177,11 @@ class World:
                 rows.append(np.full(self.draws.number, bound))
         return np.array(rows) + self._shifts
 
-    def _has_line(self, k):
-        """Whether the line of a condition gives the threshold of the allowed fraction."""
-        if k not in self._lines:
-            return False
-        stated = self.inside[k].sampled.stated_for(self._once)
-        return stated is None or bool(np.isfinite(stated.estimate))
+    @cached_property
+    def _by_line(self):
+        """Conditions of which a line gives the threshold of the allowed fraction."""
+        stated = {k: self.inside[k].sampled.stated_for(self._once) for k in self._lines}
+        return frozenset(k for k, one in stated.items() if one is None or np.isfinite(one.estimate))
 
     @cached_property
     def _size(self):
@@ -206,7 +206,7 @@ class World:
     @property
     def is_extrapolated(self) -> bool:
         """Whether the size rests on a line beyond the fractions and the samples for which it was verified."""
-        if not self._has_line(self._size[1]):
+        if self._size[1] not in self._by_line:
             return False
         return self._once < VERIFIED or len(self.decides.sampled.values) * self._once < DECADE
 
@@ -229,21 +229,47 @@ class World:
             end = of.values[of.tail.fitted - 1]
             line = ndtr((np.minimum(at, end) - intercepts) / slopes)
             share = np.where(at > end, np.maximum(share, line), line)
+        if k not in self._by_line:
+            share = np.where(at <= of.bound_for(self._once), np.minimum(share, self._once), share)
         share = np.where(at < of.floor, 0.0, share)
         return np.where((at > of.reach) & (normal(self.draws, "beyond") > 0), 1.0, share)
 
-    def seen(self, v: float) -> int:
-        """Largest number of simulated devices stuck at v in a condition, all inputs as stated."""
-        return max(int(np.searchsorted(one.sampled.values, v - one.shift)) for one in self.inside if one.sampled)
-
+    @cached_property
     def first(self) -> float:
-        """Threshold of the first simulated device that sticks in a condition, all inputs as stated."""
-        return min(float(one.sampled.values[0] + one.shift) for one in self.inside if one.sampled)
+        """Value of v from which the fraction stuck has a lower end.
 
-    def unseen(self) -> float:
-        """Largest fraction stuck where no simulated device sticks, after all touchdowns (95 % confidence) [-]."""
+        Below it no simulated device sticks, all inputs as stated, and the band ends before that of one that does.
+        """
+        two_sided = (1 + CONFIDENCE) / 2
         fewest = min(len(one.sampled.values) for one in self.inside if one.sampled)
-        return float(stuck_after(upper_bound(0, fewest, (1 + CONFIDENCE) / 2), self._repeats))
+        of_one = stuck_after(upper_bound(1, fewest, two_sided), self._repeats)
+
+        def excess(v):
+            """Upper end of the band at v above that of one device of all."""
+            return np.quantile(self.stuck(v), two_sided) - of_one
+
+        ends = [min(one.sampled.values[0], one.sampled.reach) + one.shift for one in self.inside if one.sampled]
+        last = float(min(ends))
+        if not np.isfinite(last) or excess(last) <= 0:
+            return last
+        low = last - 1
+        while excess(low) > 0:
+            low -= 1
+        return float(brentq(excess, low, last))
+
+    def least_bound(self, v: float) -> float:
+        """Fraction below which no upper end goes at v, after all touchdowns [-].
+
+        ASSUME: neither a line nor a bound by other routes states less than the fraction that was verified, or than the
+        allowed one. Elsewhere none of n devices leave 3 / n (95 % confidence).
+        """
+        least = 0.0
+        for k, one in enumerate(self.inside):
+            if one.sampled:
+                count = upper_bound(0, len(one.sampled.values))
+                is_stated = k in self._by_line or v <= _least(self.thresholds[k])
+                least = max(least, min(VERIFIED, self._once, count) if is_stated else count)
+        return float(stuck_after(least, self._repeats))
 
 
 @lru_cache(maxsize=8)  # all airs and end states, and every step, ask for the same

@@ -82,7 +82,7 @@ def beam_view(
     start = section.get("length_um", _rounded_down(answer.build / UM, float(np.nanmin(joined.safe_length)) / UM))
     size = size_axis("length_um", "length", "µm", (build, sizes[0]), start)
     share = share_axis(joined.share.values, answer.share, "shares")
-    shown = {"scores": found.scores, "first": found.first / UM, "unseen": found.unseen}
+    shown = {"scores": found.scores, "first": found.first / UM}
     grid = Grid(axes, share, size, build, sizes, int(joined.beams), False, **shown)
     words = {"what": "length", "safe": "Length to build", "bound": "to build"}
     words |= {"stick": "Devices of this length that stick"}
@@ -186,7 +186,7 @@ def _to_build(states, section, stopper, answer):
     grid, per = view.grid, answer.size / view.grid.size.start  # of forces, or of stiffnesses
     build, sizes = found.factor * grid.safe, found.sizes / per
     size = size_axis(grid.size.key, grid.size.label, grid.size.unit, (build, sizes[0]), grid.size.start)
-    shown = {"scores": found.scores, "first": found.first / per, "unseen": found.unseen}
+    shown = {"scores": found.scores, "first": found.first / per}
     words = {**view.words, "safe": f"{size.label.capitalize()} to build", "bound": "to build"}
     return replace(view, grid=replace(grid, size=size, safe=build, levels=sizes, **shown), words=words)
 

@@ -80,8 +80,7 @@ class Grid:
     samples: int  #: simulated devices of each state
     falls: bool  #: whether fewer stick at a larger size
     scores: np.ndarray = field(default_factory=lambda: SHOWN)  #: of the levels
-    first: np.ndarray | None = None  #: size at which the first simulated device sticks, over the axes and once
-    unseen: float = 0.0  #: largest fraction stuck where none of them does
+    first: np.ndarray | None = None  #: size from which a lower end of P(stuck) is known, over the axes and once
 
     def safe_size(self, state: Mapping[str, float]) -> float:
         """Safe size for the state's share."""
@@ -97,10 +96,9 @@ class Grid:
             self._fraction(sign * self._at(layer, state, self.axes), v, unknown)
             for layer, unknown in zip(self.levels, _UNKNOWN, strict=True)
         )
-        if self.first is None or share > self.unseen or v > sign * self._at(self.first, state, self.axes)[0]:
+        if self.first is None or v >= sign * self._at(self.first, state, self.axes)[0]:
             return Stuck(share, low, high, beyond)
-        is_enough = v <= sign * np.log(self.safe_size(state))
-        return Stuck(share, 0.0, min(max(high, self.unseen), state["share"] if is_enough else 1.0), -1)
+        return Stuck(share, 0.0, high, -1)
 
     def _fraction(self, levels, v, unknown):
         """Fraction of a layer at v, and -1 or 1 below and above all known ones.

@@ -33,9 +33,8 @@ class Levels:
 
     scores: np.ndarray  #: increasing (n,)
     sizes: np.ndarray  #: of the layers, NaN if unknown (3, ..., n)
-    first: np.ndarray  #: size at which the first simulated device sticks (..., 1)
+    first: np.ndarray  #: size from which a lower end is known (..., 1)
     factor: np.ndarray  #: size to build over the simulated limit (..., 1)
-    unseen: float = 0.0  #: largest fraction stuck where no simulated device sticks [-]
 
 
 def counted(quantiles: np.ndarray, samples: int) -> np.ndarray:
@@ -75,7 +74,7 @@ def of_answer(answer: Answer, humidities: Sequence[float], states: Simulated, ow
     first = _joined(weights, [np.log(one.first) for one in airs], lowest)
     beside = [np.log(one.build / own[one.humidity].limit) for one in airs]
     factor = _joined(weights, beside, [0 * ratio for ratio in lowest])
-    return Levels(scores, np.array(sizes), first, factor, answer.unseen)
+    return Levels(scores, np.array(sizes), first, factor)
 
 
 def _together(answer: Answer, air: InAir) -> InAir:
@@ -96,7 +95,7 @@ def _inverted(answer, air, scores):
         return np.full((3, len(scores)), np.nan)
     sign = -1 if answer.more_is_better else 1
     v, rows = sign * np.log(answer.sizes), air.curve
-    if air.stuck is not None and not air.stuck.none_seen:
+    if air.stuck is not None:
         k = np.searchsorted(v, sign * np.log(answer.size))
         rows = np.insert(rows, k, (air.stuck.value, air.stuck.low, air.stuck.high), axis=1)
         v = np.insert(v, k, sign * np.log(answer.size))

@@ -104,7 +104,7 @@ function opened(number) {
       const rising = n === 1 ? levels.map((_, k) => Math.max(...levels.slice(0, k + 1))) : levels.map((_, k) => Math.min(...levels.slice(k)));
       return [rising, scores];
     });
-    return {layers, first: grid.first ? sign * at(grid.first, state)[0] : NaN, enough: sign * Math.log(safeSize(state))};
+    return {layers, first: grid.first ? sign * at(grid.first, state)[0] : NaN};
   }
 
   // Formulas of curves
@@ -146,12 +146,11 @@ function opened(number) {
   });
 
   /** P(stuck) at a size. Where no simulated device sticks, its upper end alone is known. */
-  function stuckAt(size, {layers, first, enough}) {
+  function stuckAt(size, {layers, first}) {
     const v = sign * Math.log(size), [levels] = layers[0];
     const [share, low, high] = fractionsAt(layers, v);
     const beyond = levels.length ? (v > levels[levels.length - 1]) - (v < levels[0]) : 0;
-    if (!grid.first || share > grid.unseen || v > first) return {share, low, high, beyond};
-    return {share, low: 0, high: Math.min(Math.max(high, grid.unseen), v <= enough ? state.share : 1), beyond: -1};
+    return !grid.first || v >= first ? {share, low, high, beyond} : {share, low: 0, high, beyond: -1};
   }
 
   // Texts

@@ -112,7 +112,7 @@ def _forbidden(data, unknowns):
 
 #: Fields of an answer that are numbers, with the unit of the size or none.
 _SIZES = ("build", "exact", "size", "if_measured", "without_test_beams")
-_NUMBERS = ("share", "spread_of_budget", "unseen")
+_NUMBERS = ("share", "spread_of_budget")
 _TEXTS, _LISTS = ("device", "kind", "measure"), ("left_out", "forbidden")
 _STUCK = ("value", "low", "high", "none_seen")
 #: Rows of an answer by the dimension of their dataset.
