@@ -95,8 +95,8 @@ define("fast_strips")
 define("fast_tips")
 
 # Life of device {device}.
-#   fast_strips, fast_tips, safe_lengths, stoppers, separation, at_voltage, stoppers_at_voltage,
-#     tilted_stoppers, touchdowns, dimples -> results/devices/life/{device}.nc
+#   fast_strips, fast_tips, safe_lengths, touchdowns, at_voltage, stoppers_at_voltage, dimples, stoppers,
+#     separation, tilted_stoppers -> results/devices/life/{device}.nc
 define("life")
 
 # Test beams of device {device}.
@@ -110,6 +110,6 @@ define("test_beams")
 define("test_beams_rerun")
 
 # Answer about device {device}.
-#   budget, tip_budget, life, fast_strips, fast_tips, test_beams, safe_lengths, separation, stoppers,
-#     tilted_stoppers, at_voltage, stoppers_at_voltage, touchdowns -> results/devices/answer/{device}.nc
+#   budget, tip_budget, life, fast_strips, fast_tips, test_beams, safe_lengths, touchdowns, at_voltage,
+#     stoppers_at_voltage, separation, stoppers, tilted_stoppers -> results/devices/answer/{device}.nc
 define("answer")

@@ -137,7 +137,7 @@ define("table_safe_lengths")
 define("table_chart")
 
 # Where the results of devices are beyond the model.
-#   device_warnings, test_beams_rerun -> results/devices/warnings.{md,json}
+#   device_warnings, test_beams_rerun, answer -> results/devices/warnings.{md,json}
 define("device_limits")
 
 # Figure 5: a force curve, its force law and its parameters.

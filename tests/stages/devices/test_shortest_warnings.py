@@ -1,12 +1,17 @@
 """Warnings of a page hold for the shortest length that it states: to build, or the device's own."""
 
+from dataclasses import replace
+
+import answered
 import numpy as np
 import pytest
-from answers import BRIDGE, CANTILEVER, TIPS, beam_page, budget_dataset, least, safe
+from answers import BRIDGE, CANTILEVER, TIPS, beam_page, budget_dataset, least, safe, silent
 
 from stiction.devices.limits import rules as limits
-from stiction.report.devices import sentences
+from stiction.report.devices import sentences, warnings_page
+from stiction.report.limits import pages
 from stiction.report.limits.words import text, texts
+from stiction.stages.answer.answer import layout
 
 
 def steepest(gap, arm):
@@ -22,7 +27,8 @@ def test_a_length_to_build_with_a_slope_beyond_the_linear_theory_is_flagged(sect
         lengths = {0.67: safe(section["kind"], longest)}
         for factor in (0.5, 0.9, 0.99):
             built = factor * least(lengths[0.67])
-            said = [one for one in texts(sentences.shortest_warnings(section, lengths, built)) if "slope" in one]
+            answer = replace(answered.of_beam(lengths, kind=section["kind"]), build=built)
+            said = [one for one in texts(sentences.shortest_warnings(section, answer)) if "slope" in one]
             slope = steepest(20e-6, built / arms)
             assert bool(said) == (slope > limits.ROTATION)
             assert all(f"a slope of {slope:.3g}" in one and f"of {built / arms * 1e6:.0f} µm" in one for one in said)
@@ -33,8 +39,9 @@ def test_a_length_to_build_with_a_slope_beyond_the_linear_theory_is_flagged(sect
 def test_the_length_of_the_device_counts_if_it_is_shorter():
     lengths = {0.67: safe(longest=900e-6)}
     limit = least(lengths[0.67])
-    assert sentences.shortest_warnings(CANTILEVER, lengths, limit) == []
-    (said, *_) = sentences.shortest_warnings(CANTILEVER | {"length_um": 0.2e6 * limit}, lengths, limit)
+    answer = replace(answered.of_beam(lengths), build=limit)
+    assert sentences.shortest_warnings(CANTILEVER, answer) == []
+    (said, *_) = sentences.shortest_warnings(CANTILEVER | {"length_um": 0.2e6 * limit}, answer)
     assert f"slope of {steepest(20e-6, 0.2 * limit):.3g}" in text(said)
 
 
@@ -51,3 +58,12 @@ def test_the_page_of_a_device_lists_them():
         if "a slope of" in one
     ]
     assert any(abs(slope / steepest(20e-6, 1e-6 * built) - 1) < 0.01 for slope in slopes)
+
+
+def test_the_index_and_the_last_lines_count_the_warnings_of_the_page():
+    lengths = {0.67: safe(longest=400e-6)}
+    built = replace(answered.of_beam(lengths), build=0.5 * least(lengths[0.67]))
+    page = beam_page(CANTILEVER, lengths, answer=built)
+    of_model = warnings_page.together(silent(lengths), {})
+    counted = of_model | warnings_page.of_lengths({"C1": CANTILEVER}, {"C1": layout(built)})
+    assert len(pages.by_limit(counted)) == len(page.warnings) > len(pages.by_limit(of_model))

@@ -105,7 +105,7 @@ def beam_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], an
         table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
     said = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
-    listed = with_numbers(warnings) + texts(sentences.shortest_warnings(section, lengths, answer.build))
+    listed = with_numbers(warnings) + texts(sentences.shortest_warnings(section, answer))
     return _page_of(name, section, data, answer, (sections, said, listed, _words_of_beam(data)))
 
 

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from stiction.answer.data import Answer, Cause
 from stiction.config.units import to_si
 from stiction.devices.limits import rules
 from stiction.devices.limits.limit import Limit
@@ -18,16 +19,14 @@ from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import bounded_share, ends, in_any_air, is_at_an_end
 
 
-def shortest_warnings(
-    section: Mapping[str, Any], safe_lengths: Mapping[float, xr.Dataset], build: float
-) -> list[Limit]:
-    """Limits of the length to build [m], or the stated one, if it is below all simulated limits.
+def shortest_warnings(section: Mapping[str, Any], answer: Answer) -> list[Limit]:
+    """Limits of the length to build of a beam, or the stated one, if it is below all simulated limits.
 
     Those have limits of their own.
     """
-    least = min(float(safe_lengths_of(dataset).min()) for dataset in safe_lengths.values())
-    shortest = np.nanmin([build, to_si(section.get("length_um", math.inf), "um")])
-    if not shortest < least:
+    least = next(step.size for step in answer.steps if step.cause is Cause.SIMULATION)
+    shortest = np.nanmin([answer.build, to_si(section.get("length_um", math.inf), "um")])
+    if not shortest < least * (1 - 1e-9):
         return []
     sizes = (to_si(section[key], "um") for key in ("gap_um", "width_um", "thickness_um"))
     return rules.length_warnings(*sizes, shortest / BEAMS[section["kind"]].arms)

@@ -1,13 +1,16 @@
 """Page of all limits of devices, counted by the last lines of a run: of the model, and of test beams."""
 
 from collections.abc import Mapping
+from typing import Any
 
 import xarray as xr
 
 from stiction.plan.names import by_name
 from stiction.plan.stage import Stage
+from stiction.report.devices.sentences import shortest_warnings
 from stiction.report.limits import pages
 from stiction.report.test_beams import tables as tables_test_beams
+from stiction.stages.answer.answer import answer_of
 from stiction.stages.beams.pair_warnings import Limits, Subject
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.device_warnings import OfDevices, subjects
@@ -19,6 +22,18 @@ def together(found: OfDevices, test_beams: Mapping[str, xr.Dataset]) -> Limits:
     return subjects(found) | {Subject(name, ("test beams",)): limits for name, limits in of_test_beams.items()}
 
 
+def of_lengths(beams: Mapping[str, Any], answers: Mapping[str, xr.Dataset]) -> Limits:
+    """Limits of the lengths to build, or the stated ones, from sections of beams and their answers by name."""
+    found = {name: shortest_warnings(section, answer_of(answers[name])) for name, section in beams.items()}
+    return {Subject(name, ("length",)): limits for name, limits in found.items() if limits}
+
+
+def _beams(plan):
+    """Sections of all beams by name."""
+    sections = plan.devices.sections
+    return {name: section for name, section in sections.items() if plan.devices.kind(name).is_beam}
+
+
 STAGES = (
     Stage(
         name="device_limits",
@@ -26,10 +41,15 @@ STAGES = (
         inputs=lambda plan, at: {
             "warnings": device_warnings.files_of(*plan.devices.sections),
             "test_beams": by_name("devices/test_beams/rerun", plan.devices.with_test_beams),
+            "answers": by_name("devices/answer", _beams(plan)),
         },
-        settings=lambda plan, at: {"not_modelled": device_warnings.not_modelled(plan, *plan.devices.sections)},
+        settings=lambda plan, at: {
+            "not_modelled": device_warnings.not_modelled(plan, *plan.devices.sections),
+            "beams": _beams(plan),
+        },
         compute=lambda data, settings: (
-            together(device_warnings.read(data["warnings"]), data["test_beams"]),
+            together(device_warnings.read(data["warnings"]), data["test_beams"])
+            | of_lengths(settings["beams"], data["answers"]),
             settings["not_modelled"],
         ),
         save=pages.save,
