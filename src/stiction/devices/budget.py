@@ -6,8 +6,8 @@ inputs, the relative variance of the length is :math:`g^T C g`. Inputs from one 
 of skewness and kurtosis from one scan cancel by half, and taking them as independent doubles the result.
 
 Large errors of stated surfaces are not linear: the margin of a length to build has their curvature. What is assumed of
-a surface is that of one of m typical surfaces, on each of which the response is computed (`Kind`). Among the inputs,
-these surfaces are m weights of their shifts. With 1/m expected of each, and the covariance of `Kind.weights`, they have
+a surface is that of one of m typical surfaces, on each of which the response is computed. Among the inputs, these
+surfaces are m weights of their shifts. With 1/m expected of each, and the covariance of `weights_of_kind`, they have
 mean and variance of a further surface of the kind.
 
 The scatter from beam to beam is no uncertainty of the length and is stated apart, as are choices of the model, which
@@ -16,11 +16,9 @@ have no distribution.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 from scipy.linalg import block_diag
-from scipy.special import ndtr, stdtrit
 
 #: Standard uncertainties that are subtracted from a length to build: normal errors exceed them on the unsafe side with
 #: a probability of 2 %.
@@ -32,53 +30,17 @@ LARGEST = 0.5
 _ROUNDING = 1e-9
 
 
-@dataclass(frozen=True)
-class Kind:
-    r"""Shift of the logarithm of a response by a further surface of the kind of m whole surfaces.
+def weights_of_kind(m: int) -> np.ndarray:
+    """Covariance of the weights of m surfaces of one kind, whose sum is exact (m, m) [-].
 
-    Whole surfaces are a sample of their kind. A further surface from it, normal with unknown mean and scatter, is
-    at
-
-    .. math:: \bar d + s \sqrt{1 + 1/m} \; t_{m-1}
-
-    with the mean and the standard deviation s of their shifts, and Student's t: this law holds for any true mean and
-    scatter.
+    Raises
+    ------
+    ValueError
+        If there are fewer than two surfaces.
     """
-
-    shifts: np.ndarray  #: on each surface, over the response on the surface as stated (m,) [-]
-
-    def __post_init__(self):
-        if len(self.shifts) < 2:
-            raise ValueError(f"a kind needs two surfaces or more, got {len(self.shifts)}")
-
-    @property
-    def freedom(self) -> int:
-        """Degrees of freedom of the scatter."""
-        return len(self.shifts) - 1
-
-    @property
-    def mean(self) -> float:
-        """Mean shift [-]."""
-        return float(np.mean(self.shifts))
-
-    @property
-    def scale(self) -> float:
-        """Scale of Student's t: scatter of the shifts times sqrt(1 + 1/m) [-]."""
-        return float(np.std(self.shifts, ddof=1) * np.sqrt(1 + 1 / len(self.shifts)))
-
-    @staticmethod
-    def weights(m: int) -> np.ndarray:
-        """Covariance of the weights of m surfaces, whose sum is exact (m, m) [-]."""
-        return (np.eye(m) - 1 / m) * (1 + 1 / m) / (m - 1)
-
-    def draws(self, rng: np.random.Generator, number: int) -> np.ndarray:
-        """Shifts of further surfaces (number,). Equal streams give the same surfaces at every humidity [-]."""
-        return self.mean + self.scale * rng.standard_t(self.freedom, number)
-
-    @property
-    def reach(self) -> float:
-        """Distance from the mean that a shift exceeds on one side as rarely as a normal one `SUBTRACTED` errors [-]."""
-        return self.scale * float(stdtrit(self.freedom, ndtr(SUBTRACTED)))
+    if m < 2:
+        raise ValueError(f"a kind needs two surfaces or more, got {m}")
+    return (np.eye(m) - 1 / m) * (1 + 1 / m) / (m - 1)
 
 
 @dataclass(frozen=True)
@@ -112,38 +74,17 @@ class Budget:
             kept[np.ix_(*[self._places(kind)] * 2)] = True
         return replace(self, covariance=np.where(kept, self.covariance, 0.0))
 
-    @cached_property
-    def _of_kinds(self):
-        """Kinds of surfaces, and the places of all their inputs."""
-        places = [self._places(kind) for kind in self.kinds]
-        return [Kind(self.slopes[of]) for of in places], sum(places, [])
-
-    def unsafe_total(self, bends: np.ndarray, side: int = 1) -> float:
+    def unsafe_total(self, bends: np.ndarray) -> float:
         r"""Half of a margin that keeps its probability where the response is curved [-].
 
-        With :math:`g_k x + b_k x^2` an error of two standard uncertainties moves the response by
-        :math:`2 \sigma_k (|g_k| + 2 b_k \sigma_k)` to its unsafe side, and all curvatures move its mean by
+        With :math:`g_k x + b_k x^2` and b (k,) [1 / unit of x²], an error of two standard uncertainties moves the
+        response by :math:`2 \sigma_k (|g_k| + 2 b_k \sigma_k)` to its unsafe side, and all curvatures move its mean by
         :math:`\sum b_k \sigma_k^2`. What is curved to the safe side counts as linear: the margin is then too large.
-
-        A `Kind` of surfaces has quantiles of Student's t and a mean. ASSUME: quantiles of independent errors add up as
-        standard deviations do, which is exact for normal ones. A mean on the safe side reduces the margin, to 0 at
-        least.
-
-        Parameters
-        ----------
-        bends : array
-            b of each input (k,), those of kinds 0 [1 / unit of x²].
-        side : int
-            Sign of a shift to the unsafe side.
         """
-        kinds, of_kinds = self._of_kinds
-        deviations, curved = np.sqrt(np.diag(self.covariance)), np.maximum(side * bends, 0.0)
+        deviations, curved = np.sqrt(np.diag(self.covariance)), np.maximum(bends, 0.0)
         steeper = SUBTRACTED * curved * deviations
         slopes = self.slopes + np.where(self.slopes < 0, -steeper, steeper)
-        slopes[of_kinds] = 0.0
-        reach = np.linalg.norm([SUBTRACTED * replace(self, slopes=slopes).total, *(kind.reach for kind in kinds)])
-        mean = curved @ deviations**2 + side * sum(kind.mean for kind in kinds)
-        return max(float(reach + mean), 0.0) / SUBTRACTED
+        return replace(self, slopes=slopes).total + float(curved @ deviations**2) / SUBTRACTED
 
     def effect(self, group: Sequence[str]) -> float:
         """Relative standard uncertainty of the length due to some inputs together, the others being exact [-]."""

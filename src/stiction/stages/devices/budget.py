@@ -24,7 +24,7 @@ from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.contact.tilt import EDGE_RADIUS
 from stiction.devices import arcs
-from stiction.devices.budget import Budget, Kind, choice_effect, joined, log_slope
+from stiction.devices.budget import Budget, choice_effect, joined, log_slope, weights_of_kind
 from stiction.devices.stoppers import pull_off_force
 from stiction.devices.strips import resampled
 from stiction.devices.tail import FEWEST, TAIL, fit_tail
@@ -389,7 +389,7 @@ def budget_of(dataset: xr.Dataset) -> Budget:
     parts = [Budget(names, dataset.slope.values, dataset.covariance.values)]
     for surface, part in members_of(dataset).items():
         kind = tuple(like(surface, str(member)) for member in part.member.values)
-        parts.append(Budget(kind, part.member_shift.values, Kind.weights(len(kind)), (kind,)))
+        parts.append(Budget(kind, part.member_shift.values, weights_of_kind(len(kind)), (kind,)))
     return joined(parts)
 
 
@@ -397,13 +397,6 @@ def slope_errors_of(dataset: xr.Dataset) -> np.ndarray:
     """Standard errors of the slopes of all inputs of `budget_of` (k,)."""
     of_members = [part.member_error.values for part in members_of(dataset).values()]
     return np.concatenate([dataset.slope_error.values, *of_members])
-
-
-def margin_of(dataset: xr.Dataset) -> float:
-    """Half of what the margin of a length or force takes from its logarithm: the total with its curvature [-]."""
-    budget, bends = budget_of(dataset), dataset.bend.values
-    side = 1 if dataset.centre.attrs["response"] == FORCE else -1
-    return budget.unsafe_total(np.pad(bends, (0, len(budget.names) - len(bends))), side)
 
 
 def groups_of(dataset: xr.Dataset) -> dict[str, list[str]]:
