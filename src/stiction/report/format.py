@@ -1,6 +1,6 @@
 """Units of tables and axes, and numbers as text: with a standard error, as a deviation, or alone."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -51,6 +51,18 @@ def humidity_text(value: float) -> str:
     ('0.67', 'dry', '–')
     """
     return number(value, "g") if value else DRY_AIR.name
+
+
+def listed(names: Sequence[str]) -> str:
+    """Names in a sentence.
+
+    Examples
+    --------
+    >>> listed(["a"]), listed(["a", "b"]), listed(["a", "b", "c"])
+    ('a', 'a and b', 'a, b and c')
+    """
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
 
 
 def airs(humidities: Collection[float]) -> str:

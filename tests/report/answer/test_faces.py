@@ -210,12 +210,12 @@ def test_a_count_of_none_is_an_upper_bound_also_after_touchdowns(touchdowns):
     strong = stopper_dataset().assign(restoring_force=2e-5 * 1.0001)
     of = OfStopper(restoring_force=float(strong.restoring_force), contact=(3e-6, 3e-6), touchdowns=touchdowns)
     answer = stopper_answer(strong, of=of)
-    # A fraction p of which none of 400 shows up in 2.5 % of all runs, after n touchdowns on other summits each.
-    most = 1 - 0.025 ** (touchdowns / 400)
+    # A fraction p of which none of 400 shows up in 5 % of all runs, after n touchdowns on other summits each.
+    most = 1 - 0.05 ** (touchdowns / 400)
     assert answer.stuck.none_seen
     assert answer.stuck.low == 0
     assert answer.stuck.high >= (min(most, answer.share) if answer.is_enough else most) * (1 - 1e-9)
-    assert words.stuck_in_words(answer.stuck).startswith("at most ")
+    assert words.stuck_in_words(answer.stuck).startswith("0 to 100 %" if most > 0.999 else "at most ")
     assert " 0 %" not in words.headline(answer)
 
 

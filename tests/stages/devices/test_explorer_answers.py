@@ -197,3 +197,15 @@ def test_a_cantilever_at_a_voltage_has_the_closed_form_of_flats_and_its_bound_of
 def least_of(dataset):
     """Safe length of the middle one of the shares, as in stage life."""
     return least_safe(dataset, chosen_share(dataset))
+
+
+def test_a_view_of_the_simulation_alone_names_the_size_to_build_beside_its_limits():
+    section = CANTILEVER | {"voltage_V": 5, "dielectric": {"thickness_nm": 100, "permittivity": 4.0}}
+    lengths = {0.67: safe()}
+    view = voltage_views.beam_view("C1", section | {"young_modulus_GPa": 164}, lengths)
+    answer = answered.of_beam(lengths, touchdowns=100)
+    beside = explorer.beside(view, answer)
+    assert view.words["safe"] in beside.words["safe"]
+    assert words.size_in_words(answer, answer.build) in beside.words["safe"]
+    assert beside.grid is view.grid
+    assert explorer.beside(view, replace(answer, forbidden=("x",))) is view

@@ -11,6 +11,7 @@ from legends import covering
 from numpy.testing import assert_allclose
 from plans import job_settings
 
+from stiction.answer.data import Answer
 from stiction.config.files import load
 from stiction.config.units import in_si
 from stiction.contact.voltage import Capacitor, Dielectric
@@ -449,8 +450,11 @@ def test_the_texts_of_the_figure_stay_in_their_panels(found, count):
 
 def test_a_page_says_the_life_and_shows_all_answers(found):
     page = Page("C1", {}, ["Build it so.", "Because."], [Section("First"), Section("Last")])
-    shown = with_life(page, "C1", found["C1"])
-    assert shown.answer == [*report.sentences(found["C1"]), "Build it so.", "Because."]
+    built = Answer("C1", "cantilever", 1e-3, "m", 5e-5, 6e-5, (), ())
+    shown = with_life(page, "C1", found["C1"], built)
+    assert shown.answer == [*report.sentences(found["C1"], 5e-5), "Build it so.", "Because."]
+    assert shown.answer[0].startswith("The length to build, 50 µm, ")
+    assert "50 µm" not in with_life(page, "C1", found["C1"], replace(built, forbidden=("x",))).answer[0]
     assert [section.title for section in shown.sections] == ["First", "From the first contact to the last", "Last"]
     assert len(shown.sections[1].cells) == found["C1"].sizes["answer"]
     assert "does not touch below" in shown.html

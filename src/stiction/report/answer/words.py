@@ -75,7 +75,7 @@ def stuck_in_words(stuck: Probability) -> str:
     ('18 % (0 to 95 %)', 'at most 0.37 %')
     """
     if stuck.none_seen:
-        return f"at most {percent(stuck.high, 'high')}"
+        return "0 to 100 %" if stuck.high > 1 - 1e-3 else f"at most {percent(stuck.high, 'high')}"
     if stuck.low > 1 - 1e-3:
         return percent(stuck.low)
     low, high = percent(stuck.low, "low").removesuffix(" %"), percent(stuck.high, "high")
@@ -130,7 +130,9 @@ def contains(answer: Answer) -> str:
     if answer.left_out:
         said += f" Stated, but not inside: {', '.join(map(_LEFT_OUT.get, answer.left_out))}."
     if answer.extrapolated:
-        said += " Such rare cases rest on a line through the tail beyond what was verified: either side."
+        said += (
+            " The simulation is extrapolated to such rare cases, beyond what was verified: the size can err either way."
+        )
     return said
 
 
@@ -156,7 +158,7 @@ def measure(answer: Answer) -> str:
     if not answer.measure:
         return "State the uncertainties of the inputs in section uncertainty: the answer then says what to measure."
     group = f"{answer.measure[0].upper()}{answer.measure[1:]}"
-    if is_forbidden(answer):
+    if is_forbidden(answer) or np.isnan(answer.if_measured):
         return f"{group}."
     left = size_in_words(answer, answer.if_measured)
     if abs(np.log(answer.if_measured / answer.build)) < 0.01:

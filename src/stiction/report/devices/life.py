@@ -13,7 +13,7 @@ from stiction.config.units import from_si
 from stiction.constants import FREE_FALL
 from stiction.contact.voltage import BREAKDOWN
 from stiction.plan.names import by_name
-from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN, fraction_between
+from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN, fraction_between, listed
 from stiction.report.style import (
     OUTLINED,
     SINGLE,
@@ -129,17 +129,26 @@ def significant(value: float) -> str:
 # Sentences
 
 
-def sentences(dataset: xr.Dataset) -> list[str]:
-    """Life of a device in words: causes of contact, drying, and many touchdowns."""
+def sentences(dataset: xr.Dataset, build: float = np.nan) -> list[str]:
+    """Life of a device in words: causes of contact, drying, and many touchdowns, beside its size to build [m, N]."""
     answers = {answer.name: answer for answer in answers_of(dataset) if not answer.needs}
     unknown = [answer for answer in answers_of(dataset) if answer.needs]
     length = float(dataset.length)
     at = f"At {TO_UM * length:.0f} µm{_limit(answers, length)} it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
-    said = [*_touching(answers, at), *_asking(one for one in unknown if one.question == TOUCH)]
+    said = [*_beside(build, np.isfinite(length)), *_touching(answers, at)]
+    said += _asking(one for one in unknown if one.question == TOUCH)
     said += [*_pulled_in(answers, potential), *_drying(answers, at, length), *_on_dimples(answers), *_at_tilts(answers)]
     said += [*_at_voltage(answers, potential), *_fast(answers), *_often(answers, int(dataset.touchdowns))]
     return [*said, *_asking(one for one in unknown if one.question != TOUCH)]
+
+
+def _beside(build, is_beam):
+    """Note on the difference of simulated limits from the size to build."""
+    if not 0 < build < np.inf:
+        return []
+    size = f"length to build, {TO_UM * build:.0f} µm" if is_beam else f"force to build, {TO_UN * build:.3g} µN"
+    return [f"The {size}, has everything inside. Simulated limits below have one cause each and exact inputs."]
 
 
 def _limit(answers, length):
@@ -174,15 +183,10 @@ def _on_dimples(answers):
         return []
     pulls, holds = answers[PULLED], answers[DIMPLES]
     often = max((one for one in answers.values() if one.name.startswith(f"{ON_DIMPLES}_")), key=lambda one: one.high)
-    rows, fraction = (
-        pulls.what.rpartition(" at its ")[2],
-        f"{fraction_between(often.low, often.high, ' %')} of the beams stick",
+    said = (
+        f"The {pulls.what} is at least {_low(pulls)} µN. A row is held by {_low(holds)} µN on average: "
+        f"{fraction_between(often.low, often.high, ' %')} of the beams stick on dimples in the worst of their air."
     )
-    said = f"Its {rows} is pulled off by {_low(pulls)} µN and held by {_low(holds)} µN on average: {fraction} on it"
-    if rows != "row of dimples":
-        said = f"At least {_low(pulls)} µN pull at one of its {rows}, each held by {_low(holds)} µN on average: "
-        said += f"{fraction} on them"
-    said += " in the worst of their air."
     if answers[BESIDE].low > 0:
         tension = from_si(answers[TENSION_BESIDE].low, "mN_per_m")
         volts = f"a slowly raised voltage of {_low(answers[VOLTAGE_BESIDE])} V"
@@ -223,11 +227,10 @@ def _at_voltage(answers, potential):
 
 def _release_voltage(one):
     """Voltage below which the spring of a stopper frees it."""
-    fraction = one.what.rpartition("frees ")[2]
     if not max(one.low, one.high) > 0:
-        return f"Its spring does not free {fraction} without voltage, either."
+        return f"There is no {one.what}: without voltage it does not free them, either."
     ends = " to ".join(dict.fromkeys(text for text in (_low(one), _high(one)) if text != MISSING))
-    return f"Below {ends} V, its spring frees {fraction}."
+    return f"The {one.what} is {ends} V."
 
 
 def _drying(answers, at, length):
@@ -236,7 +239,7 @@ def _drying(answers, at, length):
     if not standing:
         return []
     fates = {liquid: _fate(one, length) for liquid, one in standing.items()}
-    now = [f"{_FATES[fate]} from {' and '.join(names)}" for fate, names in _inverted(fates).items()]
+    now = [f"{_FATES[fate]} from {listed(names)}" for fate, names in _inverted(fates).items()]
     limits = ", ".join(f"{_low(one)} and {_high(one)} µm ({liquid})" for liquid, one in standing.items())
     free = ", ".join(f"{_high(one)} µm ({liquid})" for liquid, one in _liquids(answers, RELEASED).items())
     return [

@@ -6,6 +6,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import xarray as xr
 import yaml
@@ -317,7 +318,7 @@ def _page(data, at, settings):
     make, views = (stopper_page, _views_of_stopper) if "stopper" in data else (beam_page, _views_of_beam)
     page = make(at.device, settings, data, answer)
     views = [*views(at.device, settings, data, answer), *curve_views.views(at.device, settings, data)]
-    page = process_section.with_process(with_life(page, at.device, data["life"]), at.device, data)
+    page = process_section.with_process(with_life(page, at.device, data["life"], answer), at.device, data)
     return replace(
         page,
         not_modelled=not_modelled(**settings["not_modelled"]),
@@ -330,9 +331,9 @@ def _views_of_stopper(name, section, data, answer):
     """Views of a stopper."""
     stopper, views = data["stopper"], explorer.views_of_stopper(section, data["stopper"], answer)
     if "tilted" in data:
-        views.append(explorer.tilted_view(name, section, data["tilted"], stopper))
+        views.append(explorer.beside(explorer.tilted_view(name, section, data["tilted"], stopper), answer))
     if "biased" in data:
-        views.append(voltage_views.stopper_view(name, section, data["biased"]))
+        views.append(explorer.beside(voltage_views.stopper_view(name, section, data["biased"]), answer))
     return views
 
 
@@ -340,16 +341,17 @@ def _views_of_beam(name, section, data, answer):
     """Views of a cantilever or bridge."""
     views = explorer.views_of_beam(name, section, data["safe_lengths"], data["charts"], answer)
     if "young_modulus_GPa" in section:
-        views.append(voltage_views.beam_view(name, section, data["safe_lengths"]))
+        views.append(explorer.beside(voltage_views.beam_view(name, section, data["safe_lengths"]), answer))
     return views
 
 
-def with_life(page: Page, name: str, answers: xr.Dataset) -> Page:
+def with_life(page: Page, name: str, answers: xr.Dataset, answer: Answer) -> Page:
     """Page with the life of its device: in words, and after the first section as table and figure."""
     first, *others = page.sections
     cells = life.table({name: answers}).cells.drop(columns="device")
     section = Section("From the first contact to the last", (life.CAPTION,), cells, life.figure({name: answers}))
-    said, sections = life.sentences(answers), [first, section, *others]
+    build = np.nan if answer.forbidden else answer.build
+    said, sections = life.sentences(answers, build), [first, section, *others]
     return replace(page, answer=[*said, *page.answer], more=[*said, *page.more], sections=sections)
 
 

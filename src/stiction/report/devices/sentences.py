@@ -121,7 +121,11 @@ def worst_sentence(stopper: xr.Dataset) -> str:
     """Worst humidity of a stopper in words."""
     worst = float(stopper.worst_humidity)
     share, *band = in_any_air(stopper)[0]
-    stuck = f" In the worst air of this range, {fraction_with_band(share, *band, ' %')} stick." if share < 1 else ""
+    stuck = (
+        f" In the worst air of this range, {fraction_with_band(share, *band, ' %')} stick at one touchdown."
+        if share < 1
+        else ""
+    )
     if is_at_an_end(stopper):
         low, high = ends(stopper)
         return f"Between relative humidities of {low:g} and {high:g}, the stopper holds most at {worst:g}.{stuck}"

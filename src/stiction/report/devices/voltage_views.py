@@ -58,7 +58,7 @@ def stopper_view(name: str, section: Mapping[str, Any], biased: xr.Dataset) -> V
     )
     words = {
         "what": "voltage",
-        "safe": "Safe voltage",
+        "safe": "Voltage that simulation alone allows",
         "stick": "Stoppers that stick while this voltage is on",
         "bound": "safe",
         "none": "none: too few patches, or its spring does not free them without voltage",

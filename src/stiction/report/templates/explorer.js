@@ -171,7 +171,7 @@ function opened(number) {
 
   function stuckText({share, low, high, beyond}) {
     if (Number.isNaN(share)) return MISSING;
-    if (beyond < 0) return `at most ${percent(high, true)}`;
+    if (beyond < 0) return high > 1 - 1e-3 ? "0 to 100 %" : `at most ${percent(high, true)}`;
     if (low > 1 - 1e-3) return percent(low);
     if (beyond) return `at least ${percent(low, true)}`;
     return `${percent(share)} (${percent(low, true).replace(" %", "")} to ${percent(high, true)})`;
