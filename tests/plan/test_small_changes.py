@@ -7,7 +7,10 @@ import pytest
 
 from stiction.config.files import load
 from stiction.config.merging import merged
+from stiction.config.messages import ConfigError, schema_problems
 from stiction.config.reading import paper
+from stiction.config.relations import schema
+from stiction.config.validation import validate
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 
@@ -28,9 +31,13 @@ MORE = {
     },
     "run": {"pairs": ["a", "b", "c", "mine"]},
 }
-#: Lengths of grids. A change leaves no whole number of points, and is refused.
-ON_GRIDS = r"beam\.(length|width)_um|sampling\..*|identification\.patch_um|character\.spacing_nm|devices\.C1\.width_um"
-ON_GRIDS += r"|studies\.(mesh|variants)\..*"
+#: Lengths of grids. A change leaves no whole number of points.
+ON_GRIDS = r"beam\.(length|width)_um|sampling\.(spacing_nm|strip_length_um)|identification\.patch_um"
+ON_GRIDS += r"|character\.spacing_nm|devices\.C1\.width_um|studies\.variants\.spacing_nm"
+#: Lengths of a study of grids, which leaves out those that do not divide each other.
+OF_MESHES = r"studies\.mesh\..*"
+#: The share of all samples.
+ALL = ("studies", "sample_shares", 4)
 #: Endings of keys with numbers that are no counts.
 UNITS = ("um", "nm", "um2", "nm4", "K", "GPa")
 
@@ -44,10 +51,24 @@ def numbers(value, path=()):
             yield from numbers(inner, (*path, key))
 
 
+def keys_of(path):
+    """Names of the keys of a number."""
+    return [key for key in path if isinstance(key, str)]
+
+
+def of_pattern(path, pattern):
+    """Whether a pattern matches the full key of a number."""
+    return bool(re.fullmatch(pattern, ".".join(keys_of(path))))
+
+
+def is_measured(path, value):
+    """Whether a number is no count."""
+    return isinstance(value, float) or path == ALL or any(key.endswith(UNITS) for key in keys_of(path))
+
+
 def can_change(path, value):
-    """Whether a number is no count and no length of a grid."""
-    names = [key for key in path if isinstance(key, str)]
-    return (isinstance(value, float) or names[-1].endswith(UNITS)) and not re.fullmatch(ON_GRIDS, ".".join(names))
+    """Whether a number is no count, no length of a grid and no largest value."""
+    return is_measured(path, value) and not of_pattern(path, f"{ON_GRIDS}|{OF_MESHES}") and path != ALL
 
 
 def is_humidity(path):
@@ -55,22 +76,25 @@ def is_humidity(path):
     return {"humidity", "humidities"} & {*path} and path[0] in ("pairs", "figures", "devices")
 
 
-def shifted(value, keys, path=()):
-    """Configuration with slightly larger numbers at some paths."""
-    if isinstance(value, dict):
-        return {key: shifted(inner, keys, (*path, key)) for key, inner in value.items()}
-    if isinstance(value, list):
-        return [shifted(inner, keys, (*path, key)) for key, inner in enumerate(value)]
-    if path not in keys:
-        return value
+def slightly_larger(path, value):
+    """Slightly larger number."""
     return round(value + OF_HUMIDITY, 4) if is_humidity(path) else value * (1 + STEP)
 
 
+def shifted(value, keys, path=(), change=slightly_larger):
+    """Configuration with other numbers at some paths."""
+    if isinstance(value, dict):
+        return {key: shifted(inner, keys, (*path, key), change) for key, inner in value.items()}
+    if isinstance(value, list):
+        return [shifted(inner, keys, (*path, key), change) for key, inner in enumerate(value)]
+    return change(path, value) if path in keys else value
+
+
 def settings(config):
-    """Settings of all jobs of a run in the order of their files, without the humidities in these."""
+    """Settings of all jobs of a run in the order of their files, without the numbers in these."""
     jobs = Graph(Plan(load(config))).needed("tables", "figures", "devices", "all")
     by_file = sorted((job.names[0], job.settings) for job in jobs if job.names)
-    return [(re.sub(r"_rh\d+", "", name), found) for name, found in by_file]
+    return [(re.sub(r"_rh\d+|(?<=poisson_ratio_)[\d.]+", "", name), found) for name, found in by_file]
 
 
 def differences(value, other, step, path=()):
@@ -99,6 +123,19 @@ def test_small_changes_of_all_numbers_are_small_changes_of_all_settings(of_humid
     before, after = settings(CONFIG), settings(shifted(CONFIG, keys))
     assert [name for name, _ in before] == [name for name, _ in after]
     assert differences(before, after, step) == []
+
+
+@pytest.mark.parametrize("path", [path for path, _ in numbers(CONFIG) if of_pattern(path, ON_GRIDS) or path == ALL])
+def test_a_length_that_fits_no_grid_is_refused(path):
+    with pytest.raises(ConfigError, match="multiple|whole|at most 1"):
+        validate(shifted(CONFIG, {path}))
+
+
+def test_all_other_numbers_are_whole():
+    counts = {path for path, value in numbers(CONFIG) if not is_measured(path, value)}
+    halves = shifted(CONFIG, counts, change=lambda path, value: value + 0.5)
+    assert {problem.path for problem in schema_problems(halves, schema())} == counts
+    assert len(counts) > 30
 
 
 @pytest.mark.parametrize("change", [{"beam": {"thickness_um": 2.7}}, {"pairs": {"b": {"attraction": "all"}}}])
