@@ -100,7 +100,16 @@ def _labels(read):
 
 
 def texts() -> dict[Path, str]:
-    """Text of every file of rules that is written from the declarations."""
+    """Text of every file of rules that is written from the declarations.
+
+    Raises
+    ------
+    ValueError
+        If no file has the rule of a stage.
+    """
+    placed = {*CHAIN}.union(*map(_names_in, ROOMS))
+    if left_out := [f"{name} ({module})" for name, (_, module) in stages().items() if name not in placed]:
+        raise ValueError(f"no file of rules has {', '.join(left_out)}: add the folder of the module to ROOMS")
     return {FOLDER / "chain.smk": chain()} | {FOLDER / f"{room}.smk": _room(room) for room in ROOMS}
 
 

@@ -33,6 +33,17 @@ def test_every_rule_reads_what_its_text_says(graph):
     assert drawn <= stated
 
 
+def test_every_stage_is_in_one_file_of_rules(monkeypatch):
+    text = "".join(path.read_text() for path in (ROOT / "workflow" / "rules").glob("*.smk"))
+    assert sorted(re.findall(r'^(?:rule (\w+):|define\("(\w+)"\))', text, re.MULTILINE)) == sorted(
+        (name, "") if name in rules.CHAIN else ("", name) for name in rules.stages()
+    )
+    rooms = {room: place for room, place in rules.ROOMS.items() if room != "laws"}
+    monkeypatch.setattr(rules, "ROOMS", rooms)
+    with pytest.raises(ValueError, match=r"no file of rules has .*fit \(stiction.stages.laws.fit\)"):
+        rules.texts()
+
+
 @pytest.mark.slow
 def test_the_picture_has_the_chain_of_the_graph(graph):
     chained = {(first, second) for first, second in graph if {first, second} <= {*rules.CHAIN}}
