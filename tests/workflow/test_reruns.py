@@ -365,6 +365,33 @@ def test_switching_to_another_branch_and_back_reruns_nothing(tree):
     assert tree.rerun() == {}
 
 
+@pytest.mark.slow
+def test_results_beside_a_new_checkout_are_up_to_date_and_see_its_files(tree, tmp_path):
+    moved = tmp_path / "moved"
+    shutil.copytree(tree.folder, moved, symlinks=True)
+    for path in [*moved.glob("src/**/*.*"), *moved.glob("workflow/**/*.*")]:
+        path.touch()
+    planner = Planner(moved, tmp_path)
+
+    def rerun():
+        outputs = planner.outputs(*tree.targets, config=[tree.small])
+        return {rule for rule, again in outputs.values() if again}
+
+    try:
+        assert rerun() == set()
+        for changed in ("src/stiction/report/resources/table_3.csv", "workflow/report/figure_05.rst"):
+            with (moved / changed).open("a") as file:
+                file.write("\n")
+        beside_published = {"table_3", "table_variants", "figure_15", "figure_variants", "figure_overview"}
+        assert (
+            beside_published | {"figure_05"}
+            <= rerun() & {*stages()}
+            <= beside_published | {*("figure_05", "checks", "verdict")}
+        )
+    finally:
+        planner.close()
+
+
 #: Modules, the rules that a change of the module must rerun and those that it must not, listed by hand.
 SPOTS = [
     (

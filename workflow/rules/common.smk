@@ -1,6 +1,7 @@
 """Configuration and plan of a run, and what the rules of all stages share."""
 
 import atexit
+import hashlib
 import json
 import uuid
 from functools import cache, partial
@@ -213,6 +214,7 @@ def inputs_of(stage):
 
     def inputs(wildcards):
         files = planner.inputs(declared, dict(wildcards)) | caption
+        files |= {name: ancient(paths) for name, paths in files.items() if own_files(paths)}
         files |= {"before": ancient(planner.before_last)} if declared["last"] else {}
         written = {file.format(**dict(wildcards)) for file in declared["files"].values()} if unusable() else set()
         return files | {"stale": STALE} if written & unusable().keys() else files
@@ -224,6 +226,21 @@ def caption_of(declared):
     """Template of the caption of a figure, for the report and for the text beside the figure."""
     caption = (declared["shown"] or {}).get("caption")
     return {"caption": str(BASE / "workflow" / "report" / f"{caption}.rst")} if caption else {}
+
+
+def own_files(paths):
+    """Files of this checkout among some inputs: captions, styles, templates, published tables.
+
+    Their content is a parameter of the jobs. Their times say nothing, because those of a new checkout are new.
+    """
+    listed = [paths] if isinstance(paths, str) else paths
+    return [file for file in listed if file.startswith((str(PACKAGE), str(BASE / "workflow")))]
+
+
+@cache
+def digest(file):
+    """First digits of the hash of a file."""
+    return hashlib.sha256(Path(file).read_bytes()).hexdigest()[:8]
 
 
 def outputs_of(stage):
@@ -258,12 +275,19 @@ def resources_of(stage):
 def params_of(stage):
     """Structure of the inputs and settings of a job, as functions of its wildcards, and the fingerprint of its code."""
     declared, job = DECLARED[stage], partial(planner.job, stage)
+    code, caption = planner.code(declared) | SCRIPT, caption_of(declared)
+
+    def texts(wildcards):
+        """Own files that a job reads, by name."""
+        read = (job(wildcards)["files"] | caption).values()
+        return {f"stiction.{Path(file).name}": digest(file) for paths in read for file in own_files(paths)}
+
     return {
         "module": declared["module"],
         "stage": stage,
         "inputs": lambda wildcards: job(wildcards)["inputs"],
         "settings": lambda wildcards: job(wildcards)["settings"],
-        "code": planner.code(declared) | SCRIPT,
+        "code": lambda wildcards: code | texts(wildcards),
     }
 
 

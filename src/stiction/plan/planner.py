@@ -49,7 +49,8 @@ class Planner:
         scans = [Path(file) for surface in self.plan.scans.surfaces for file in self.plan.scans.files(surface).values()]
         states = [(str(file), *_state(file)) for file in scans]
         known = dict(self.plan.preliminary or {})
-        text = json.dumps([code, self.plan.config, states, known], sort_keys=True, default=str)
+        # Files of the package are inputs by their paths, which are others in another checkout.
+        text = json.dumps([str(PACKAGE), code, self.plan.config, states, known], sort_keys=True, default=str)
         return hashlib.sha256(text.encode()).hexdigest()
 
     def _code(self, file):
