@@ -84,7 +84,7 @@ def selected_pairs_exist(config):
 
 @relation
 def pair_of_the_figures_is_defined(config):
-    """References must be to defined names."""
+    """Require a defined pair for the figures."""
     yield "figures.pair", undefined(config["figures.pair"], config.names("pairs"))
 
 
@@ -170,7 +170,7 @@ def scans_stand_alone(config):
 
 @relation
 def spectra_suit_their_surfaces(config):
-    """Scans give a spectrum themselves."""
+    """Require fitted or tabulated spectra for scans, and others for numbers."""
     for name, psd in config.entries("surfaces", "psd"):
         keys = config.names(f"surfaces.{name}")
         if "scans" not in keys:

@@ -497,7 +497,7 @@ def _agree(*devices):
 
 @relation
 def arrays_have_data(config):
-    """Something was measured on an array."""
+    """Require crack lengths or counts of each array."""
     for name, _ in config.entries("test_beams", "pair"):
         if not set(DATA) & set(config.names(f"test_beams.{name}")):
             yield f"test_beams.{name}.pair", f"must come with {', '.join(DATA)} or file"

@@ -1,6 +1,6 @@
 """Air around the pairs of a configuration: condensation of water, and the medium of attraction.
 
-The one module that decides which contacts a pair has in its airs. Their names, and the words of a user for its
+Decides which contact a pair has at each humidity. The names of airs, and the words of a user for its
 humidities, are in `stiction.config.cases`.
 """
 

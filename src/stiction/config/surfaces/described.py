@@ -193,7 +193,7 @@ def _refusals_of_described(entry, library):
 
 
 def _refusals_of_uncertainty(entry):
-    """Yield the same for the known errors of the quantities of a surface."""
+    """Yield key and reason for each stated error of a quantity of a surface that cannot be used."""
     for key in ("unknown", "uncertainty"):
         if key in entry and "scans" in entry:
             yield key, "must not be given beside scans, which give the errors of the surface"

@@ -54,7 +54,7 @@ class Responses:
     """Lengths [m] or forces [N] of the same devices at several states, and their common part."""
 
     values: np.ndarray  #: (states, devices); infinite where a beam has no S-shaped crack
-    centre: Callable[[np.ndarray], float]  #: the number that stands for all devices of a state
+    centre: Callable[[np.ndarray], float]  #: statistic of all devices of a state, such as the mean length
     shared: np.ndarray | None = None  #: of the samples that all beams share (states, m, ...): energies, for example
     length: Callable[[np.ndarray], float] | None = None  #: length on the mean of the samples (m, ...) [m]
     compared: Callable[[np.ndarray], float] | None = None  #: stands for all where two states are compared; else centre
@@ -62,7 +62,7 @@ class Responses:
 
     @property
     def centre_of_slopes(self) -> Callable[[np.ndarray], float]:
-        """The number that stands for all devices of a state beside another state."""
+        """Statistic of all devices of a state, for its comparison with another state."""
         return self.compared or self.centre
 
 

@@ -55,7 +55,7 @@ class Input:
     """One uncertain input of a device and the states around its value."""
 
     name: str  #: for reading
-    group: str  #: what a measurement determines, this input and perhaps others, for reading
+    group: str  #: measurement that would determine this input, shown in tables
     states: tuple[State, State]  #: with less and with more of the input
     step: float  #: difference of the input between both
     #: State between both, if they are as far around it as the uncertainty of the input and its curvature counts.
