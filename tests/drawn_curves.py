@@ -6,7 +6,7 @@ from stiction.analysis.process_law import fit, grid
 from stiction.contact.environment import Water
 from stiction.stages.devices import stoppers
 from stiction.stages.process import curves as of_process
-from stiction.stages.process import law, maps, recommended
+from stiction.stages.process import law, recommended
 from stiction.stages.roughness import curves as of_roughness
 
 SETTINGS, VARIABLE, SHARE = np.array([30.0, 60.0, 90.0, 120.0]), "etch_time_s", 0.01
@@ -59,7 +59,7 @@ def etched(is_beam=False, unknown=()):
     ]
     known = law_of()
     curve = of_process.compute(
-        [one.assign(slopes) for one in points], [known], of_process.Settings(VARIABLE, ("etch",), ("B2",))
+        [one.assign(slopes) for one in points], [known], of_process.Settings((VARIABLE,), ("etch",), ("B2",))
     )
     return curve, recommended.compute({"D": curve}, {"etch": known}, VARIABLE, 1)
 
@@ -74,9 +74,9 @@ def mapped():
         for second in map(float, grid(seconds, 4))
         for value in map(float, grid(SETTINGS))
     ]
-    settings = of_process.Settings(VARIABLE, ("etch", "bake"), ("B2", "Sub1"))
-    found = maps.compute(points, laws, settings)
-    return found, maps.recommended(found, laws, "D", 1)
+    settings = of_process.Settings((VARIABLE, "bake_min"), ("etch", "bake"), ("B2", "Sub1"))
+    found = of_process.compute(points, laws, settings)
+    return found, recommended.of_pairs(found, laws, "D", 1)
 
 
 def rough(is_beam=False, unknown=(), others=()):

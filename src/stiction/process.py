@@ -75,7 +75,7 @@ class Process:
         """Margins of one of its devices over the variable. Dataset of `stiction.stages.process.curves`.
 
         The first call computes the device at seven values or more, a minute or two for a stopper of 5 µm. Over two
-        processes it is a dataset of `stiction.stages.process.maps`, and takes five to seven times as long.
+        processes it has an axis for each, and takes five to seven times as long.
         """
         self._must_have(device)
         if device in self._mapped:
@@ -95,7 +95,7 @@ class Process:
     def pairs(self, device: str) -> xr.Dataset:
         """Pairs of settings of two processes that suffice for a device with ``second_process``, and the best pair.
 
-        Dataset of `stiction.stages.process.maps`.
+        Dataset of `stiction.stages.process.recommended`.
         """
         if device not in self._mapped:
             raise ValueError(f"device {device} has no second_process beside {self.name}")

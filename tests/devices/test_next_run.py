@@ -10,7 +10,7 @@ import pytest
 
 from stiction.analysis import process_law
 from stiction.analysis.process_law import fit, grid
-from stiction.devices.process import SETTINGS, Curve, recommended, run_error
+from stiction.devices.process import SETTINGS, Margins, recommended, run_error
 
 SCATTER, ERROR, VALUES = 0.1, 0.014, np.array([30.0, 50.0, 70.0, 90.0])
 ERRORS = np.full((len(VALUES), 1, 1), ERROR**2)
@@ -27,7 +27,7 @@ def drawn(bend, rng):
     runs = true_margin(VALUES, bend) + SCATTER * rng.standard_normal(4) + ERROR * rng.standard_normal(4)
     law = fit(VALUES, runs[:, None], ERRORS)
     points = grid(VALUES)
-    curve = Curve(points, law.at(points)[:, 0], np.ones((len(points), 1)), np.zeros(len(points)))
+    curve = Margins((points,), law.at(points)[:, 0], np.ones((len(points), 1)), np.zeros(len(points)))
     return recommended([curve], [law], [ERRORS[0]], rng), law
 
 
@@ -41,12 +41,12 @@ def covered(studies):
         bend = number % 2
         found, _ = drawn(bend, rng)
         at = SETTINGS // 6
-        true = true_margin(found.settings, bend)
+        true = true_margin(found.axes[0], bend)
         run = true + SCATTER * rng.standard_normal()
         low, high = found.band[:, at]
         rows.append((low <= true[at] <= high, found.safe_mean[at] > true[at], found.safe[at] > run[at]))
         for ends in found.sufficient[:1]:
-            claimed.append(np.interp(ends[0], found.settings, run) < 0)
+            claimed.append(np.interp(ends[0], found.axes[0], run) < 0)
     return *np.mean(rows, axis=0), np.mean(claimed)
 
 
@@ -102,7 +102,7 @@ def test_a_run_scatters_about_the_mean_process_and_is_never_known_exactly():
     assert exact.scatter[0] > 1e-3
     found, law = drawn(0, np.random.default_rng(5))
     assert np.all(found.safe < found.safe_mean)
-    curve = Curve(VALUES, law.at(VALUES)[:, 0], np.full((4, 1), 2.0), np.zeros(4))
+    curve = Margins((VALUES,), law.at(VALUES)[:, 0], np.full((4, 1), 2.0), np.zeros(4))
     np.testing.assert_allclose(run_error(curve, [law]), 2 * law.scatter[0])
     _, runs = law.drawn(40_000, np.random.default_rng(6))
     np.testing.assert_allclose(runs.std(), law.scatter[0], rtol=0.05)

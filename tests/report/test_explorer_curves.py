@@ -13,7 +13,7 @@ from stiction.report.devices import curve_views, curves, explorer
 from stiction.report.page import Page
 from stiction.report.process import maps, tables
 from stiction.report.roughness import tables as tables_roughness
-from stiction.stages.process.curves import curves_of
+from stiction.stages.process.curves import margins_of
 
 DEVICES = [(False, STOPPER), (True, BEAM)]
 
@@ -74,10 +74,10 @@ def test_a_page_has_at_the_points_of_a_roughness_the_numbers_of_its_table(is_bea
 def test_between_settings_the_margin_is_the_one_behind_the_recommendation():
     curve, settings = etched()
     grid = curve_views.process_view("D", STOPPER, curve, settings).grid
-    values, known = np.linspace(SETTINGS[0], SETTINGS[-1], 77), {rh: one for rh, _, one in curves_of(curve)}
+    values, known = np.linspace(SETTINGS[0], SETTINGS[-1], 77), {at["humidity"]: one for at, one in margins_of(curve)}
     for humidity, one in known.items():
         found = [grid.at(grid.start | {"etch_time_s": value, "humidity": humidity})["margin"] for value in values]
-        assert_allclose(found, one.at(values).margin, atol=1e-12)
+        assert_allclose(found, one.at([values]).margin, atol=1e-12)
     enough = [grid.suffices(grid.start | {"etch_time_s": value}) for value in values]
     own = settings.sel(who="D")
     safe = np.interp(values, own["value"], own.safe)

@@ -34,17 +34,13 @@ define("roughness")
 #   process_point, process_law -> results/process/curves/{device}.nc
 define("process_curve")
 
-# Law of process {process}.
-#   no results -> results/process/laws/{process}.nc
-define("process_law")
-
 # Device {device} over two processes.
 #   process_point, process_law -> results/process/maps/{device}.nc
 define("process_map")
 
-# Recommended pairs of settings for {device}.
-#   process_map, process_law -> results/process/pairs/{device}.nc
-define("process_pairs")
+# Law of process {process}.
+#   no results -> results/process/laws/{process}.nc
+define("process_law")
 
 # Device {device} at value {number} of its process.
 #   heights, spectrum, process_law -> results/process/points/{device}_{number}.nc
@@ -53,3 +49,7 @@ define("process_point")
 # Recommended {variable}.
 #   process_curve, process_law -> results/process/settings/{variable}.nc
 define("process_settings")
+
+# Recommended pairs of settings for {device}.
+#   process_map, process_law -> results/process/pairs/{device}.nc
+define("process_pairs")

@@ -1,16 +1,17 @@
 r"""Risk over a process variable: settings that leave few enough devices stuck, the best one, and the next to measure.
 
 The margin of a device to its requirement (`stiction.devices.roughness.margins`) is known on the law of the process at
-some settings, with its slopes by the quantities of the surfaces. Off the law, it is linear in them. The margin of
-several devices is their smallest one. Laws as likely as the law itself are drawn, and so are the errors of the
-simulation and of the model, each common to all settings of a curve: every draw has its own margins and best setting.
+some settings, or on the laws of two processes at pairs of settings, with its slopes by the quantities of the surfaces.
+Off the law, it is linear in them. The margin of several devices is their smallest one. Laws as likely as the law itself
+are drawn, and so are the errors of the simulation and of the model, each common to all settings of a device: every draw
+has its own margins and best setting.
 
 These are the margins of the mean process. What is built is one run, the next one, which scatters about it: settings
 suffice if the next run does.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.interpolate import Akima1DInterpolator
@@ -27,212 +28,158 @@ INTERVAL, CONFIDENCE = (0.025, 0.975), 0.95
 
 
 @dataclass(frozen=True)
-class Curve:
-    """Margin of a device, at one humidity and against one end state, over settings on a law."""
+class Margins:
+    """Margin of a device, at one humidity and against one end state, over settings on laws.
 
-    settings: np.ndarray  #: (p,) values of the variable, increasing
-    margin: np.ndarray  #: (p,) [-]
-    slopes: np.ndarray  #: (p, q) by the scaled quantities of all laws, one law after the other
-    error: np.ndarray  #: (p,) standard error of the margin on the law: of the simulation and of the model
-    second: float | None = None  #: setting of a second process, whose law is the second one
+    The last axis has the settings of the first process. A second process has the axis before it; without one, further
+    laws are those of other surfaces at the same settings.
+    """
 
-    def at(self, values: np.ndarray) -> "Curve":
-        """Curve at other settings within its own."""
-        margin = np.clip(Akima1DInterpolator(self.settings, self.margin)(values), -LARGEST, LARGEST)
-        return Curve(
-            values, margin, _between(self.settings, self.slopes, values), np.interp(values, self.settings, self.error)
-        )
+    axes: tuple[np.ndarray, ...]  #: values of the variables, increasing
+    margin: np.ndarray  #: (axes...) [-]
+    slopes: np.ndarray  #: (axes..., q) by the scaled quantities of all laws, one law after the other
+    error: np.ndarray  #: (axes...) standard error of the margin on the laws: of the simulation and of the model
 
-    def places(self, number: int) -> np.ndarray:
-        """Settings of the process of a law, (p,)."""
-        return np.full(len(self.settings), self.second) if number and self.second is not None else self.settings
+    def at(self, axes: Sequence[np.ndarray]) -> "Margins":
+        """Margins at other settings within their own."""
+        margin, slopes, error = self.margin, self.slopes, self.error
+        for axis, places in enumerate(zip(self.axes, axes, strict=True)):
+            margin = np.apply_along_axis(_smooth, axis, margin, *places)
+            slopes, error = (np.apply_along_axis(_linear, axis, values, *places) for values in (slopes, error))
+        return Margins(tuple(axes), np.clip(margin, -LARGEST, LARGEST), slopes, error)
+
+    def settings(self, number: int) -> np.ndarray:
+        """Settings of the process of a law, (axes...)."""
+        return np.meshgrid(*self.axes, indexing="ij")[max(-1 - number, -len(self.axes))]
 
 
-@dataclass(frozen=True)
-class Map:
-    """Margins as of `Curve`, over the settings of two processes on their laws."""
+def _smooth(values, places, others):
+    """Values (n,) at places (n,), smoothly between them at others (m,)."""
+    return Akima1DInterpolator(places, values)(others)
 
-    settings: np.ndarray  #: (p,) of the first process, increasing
-    seconds: np.ndarray  #: (r,) of the second process, increasing
-    margin: np.ndarray  #: (r, p) [-]
-    slopes: np.ndarray  #: (r, p, q)
-    error: np.ndarray  #: (r, p)
 
-    def at(self, values: np.ndarray, seconds: np.ndarray) -> list[Curve]:
-        """Curves along the first process at settings of the second one."""
-        margin = Akima1DInterpolator(self.seconds, self.margin)(seconds)
-        slopes, error = (_between(self.seconds, one, seconds) for one in (self.slopes, self.error))
-        rows = zip(margin, slopes, error, seconds, strict=True)
-        return [replace(Curve(self.settings, *row).at(values), second=float(second)) for *row, second in rows]
+def _linear(values, places, others):
+    """Values (n,) at places (n,), linearly between them at others (m,)."""
+    return np.interp(others, places, values)
 
 
 @dataclass(frozen=True)
 class Recommendation:
-    """Settings for some devices together."""
+    """Settings of one process for some devices together, or of two processes for one."""
 
-    settings: np.ndarray  #: (n,) values of the variable
-    margin: np.ndarray  #: (n,) smallest margin of all devices [-]
-    band: np.ndarray  #: (2, n) ends of the 95 % band of the mean process
-    safe: np.ndarray  #: (n,) margin of the next run with 95 % confidence
-    safe_mean: np.ndarray  #: (n,) margin of the mean process with 95 % confidence
-    sufficient: list[tuple[float, float]]  #: ranges of settings with a safe margin above zero
-    sufficient_mean: list[tuple[float, float]]  #: ranges with a safe margin of the mean process above zero
-    crossings: list[Crossing]  #: settings with a margin of zero
-    best: float  #: setting of the largest margin
-    error: float  #: standard error of the best setting
-    interval: tuple[float, float]  #: its 95 % interval
-    next: float  #: setting whose measurement shrinks an error most, NaN if none does
-    again: bool  #: whether all surfaces are measured there already
+    axes: tuple[np.ndarray, ...]  #: values of the variables, in the order of `Margins`
+    margin: np.ndarray  #: (axes...) smallest margin of all devices [-]
+    spread: np.ndarray  #: (axes...) standard error of the margin of the mean process
+    band: np.ndarray  #: (2, axes...) ends of its 95 % band
+    safe: np.ndarray  #: (axes...) margin of the next run with 95 % confidence
+    safe_mean: np.ndarray  #: (axes...) margin of the mean process with 95 % confidence
+    best: np.ndarray  #: (processes,) setting of each process with the largest margin
+    error: np.ndarray  #: (processes,) standard error of the best setting
+    interval: np.ndarray  #: (processes, 2) its 95 % interval
+    next: np.ndarray  #: (processes,) setting whose measurement shrinks an error most, NaN if none does
+    again: np.ndarray  #: (processes,) whether all surfaces are measured there already
     subject: str  #: what errs less then: the ``best`` setting, or else the length of the ``range`` that suffices
-    before: float  #: standard error of the subject
-    after: float  #: expected standard error after that measurement
+    before: np.ndarray  #: (processes,) standard error of the subject
+    after: np.ndarray  #: (processes,) expected standard error after that measurement
+
+    @property
+    def sufficient(self) -> list[tuple[float, float]]:
+        """Ranges of settings of one process with a safe margin above zero."""
+        return sufficient(*self.axes, self.safe)
+
+    @property
+    def sufficient_mean(self) -> list[tuple[float, float]]:
+        """Ranges with a safe margin of the mean process above zero."""
+        return sufficient(*self.axes, self.safe_mean)
+
+    @property
+    def crossings(self) -> list[Crossing]:
+        """Settings of one process with a margin of zero."""
+        return crossings(*self.axes, self.margin, self.spread)
 
 
 def recommended(
-    curves: Sequence[Curve], laws: Sequence[Law], errors: Sequence[np.ndarray], rng: np.random.Generator
+    devices: Sequence[Margins], laws: Sequence[Law], errors: Sequence[np.ndarray], rng: np.random.Generator
 ) -> Recommendation:
     """Settings that suffice for all devices, the best one, and the next to measure.
 
     Parameters
     ----------
-    curves : sequence of Curve
+    devices : sequence of Margins
         Of all devices, humidities and end states.
     laws : sequence of Law
-        Of all surfaces of the process.
+        Of all surfaces of the process, or of both processes.
     errors : sequence of (q, q) array
         Covariance of the errors of one setting, of each law.
     rng : numpy.random.Generator
     """
-    low, high = max(curve.settings[0] for curve in curves), min(curve.settings[-1] for curve in curves)
-    values = np.linspace(low, high, SETTINGS)
-    parts, runs = _drawn(laws, rng)
-    drawn, here = np.concatenate(parts, axis=1), [curve.at(values) for curve in curves]
-    margin = np.min([curve.margin for curve in here], axis=0)
-    of_mean = [_drawn_margins(curve, laws, drawn, rng.standard_normal((DRAWS, 1))) for curve in here]
-    of_run = [one + runs @ curve.slopes.T for one, curve in zip(of_mean, here, strict=True)]
-    margins = np.min(of_mean, axis=0)
-    best = np.array([_best(values, one) for one in margins])
-    safe, safe_mean = (np.quantile(np.min(each, axis=0), 1 - CONFIDENCE, axis=0) for each in (of_run, of_mean))
-    subject = "best" if best.std() else "range"
-    wanted = best if best.std() else (margins >= 0).mean(axis=1) * (high - low)
-    following, after = _next(laws, errors, drawn, wanted)
-    return Recommendation(
-        settings=values,
-        margin=margin,
-        band=np.quantile(margins, INTERVAL, axis=0),
-        safe=safe,
-        safe_mean=safe_mean,
-        sufficient=sufficient(values, safe),
-        sufficient_mean=sufficient(values, safe_mean),
-        crossings=crossings(values, margin, margins.std(axis=0)),
-        best=_best(values, margin),
-        error=float(best.std()),
-        interval=tuple(map(float, np.quantile(best, INTERVAL))),
-        next=following,
-        again=all(following in law.settings for law in laws),
-        subject=subject,
-        before=float(wanted.std()),
-        after=after,
-    )
-
-
-@dataclass(frozen=True)
-class Pairs:
-    """Pairs of settings of two processes for one device."""
-
-    settings: np.ndarray  #: (n,) of the first process
-    seconds: np.ndarray  #: (m,) of the second process
-    margin: np.ndarray  #: (m, n) smallest margin at all humidities and against all end states [-]
-    safe: np.ndarray  #: (m, n) margin of the next runs with 95 % confidence
-    safe_mean: np.ndarray  #: (m, n) margin of the mean processes with 95 % confidence
-    best: np.ndarray  #: (2,) pair of the largest margin
-    error: np.ndarray  #: (2,) its standard errors
-    interval: np.ndarray  #: (2, 2) ends of the 95 % interval of each of its settings
-    next: np.ndarray  #: (2,) setting of each process whose measurement shrinks its error most, NaN if none does
-    again: np.ndarray  #: (2,) whether its surface is measured there already
-    after: np.ndarray  #: (2,) expected standard error after that measurement
-
-
-def recommended_pairs(
-    maps: Sequence[Map], laws: Sequence[Law], errors: Sequence[np.ndarray], rng: np.random.Generator
-) -> Pairs:
-    """Pairs of settings that suffice for a device, the best one, and the settings to measure next.
-
-    Parameters
-    ----------
-    maps : sequence of Map
-        At all humidities and against all end states.
-    laws : sequence of Law
-        Of both processes.
-    errors : sequence of (q, q) array
-        Covariance of the errors of one setting, of each law.
-    rng : numpy.random.Generator
-    """
-    values, steps = (np.linspace(*law.ends, PAIRS) for law in laws)
-    seconds = np.union1d(steps, laws[1].settings)
-    parts, runs = _drawn(laws, rng)
+    axes, (parts, runs) = _compared(devices, laws), _drawn(laws, rng)
     drawn, margin, margins, of_run = np.concatenate(parts, axis=1), np.inf, np.inf, np.inf
-    for one in maps:
-        rows, common = one.at(values, seconds), rng.standard_normal((DRAWS, 1))
-        margin = np.minimum(margin, [row.margin for row in rows])
-        of_mean = np.stack([_drawn_margins(row, laws, drawn, common) for row in rows], axis=1)
-        margins = np.minimum(margins, of_mean)
-        of_run = np.minimum(of_run, of_mean + np.stack([runs @ row.slopes.T for row in rows], axis=1))
-    best = np.array([_best_pair(values, seconds, one) for one in margins])
-    of_each = zip(laws, errors, parts, best.T, strict=True)
-    following, after = np.transpose([_next([law], [error], part, wanted) for law, error, part, wanted in of_each])
-    return Pairs(
-        settings=values,
-        seconds=seconds,
+    for device in devices:
+        here = device.at(axes)
+        of_mean, of_next = _drawn_margins(here, laws, drawn, runs, rng.standard_normal((DRAWS, 1)))
+        margin, margins = np.minimum(margin, here.margin), np.minimum(margins, of_mean)
+        of_run = np.minimum(of_run, of_next)
+    best = np.array([_best(axes, values) for values in margins])
+    is_certain = len(axes) == 1 and not best.std()
+    wanted = (margins >= 0).mean(axis=1)[:, None] * np.ptp(axes[0]) if is_certain else best
+    groups = [[number] for number in range(len(laws))] if len(axes) > 1 else [list(range(len(laws)))]
+    advice = [
+        _next([laws[k] for k in group], [errors[k] for k in group], [parts[k] for k in group], values)
+        for group, values in zip(groups, wanted.T, strict=True)
+    ]
+    following, again, before, after = map(np.array, zip(*advice, strict=True))
+    return Recommendation(
+        axes=axes,
         margin=margin,
+        spread=margins.std(axis=0),
+        band=np.quantile(margins, INTERVAL, axis=0),
         safe=np.quantile(of_run, 1 - CONFIDENCE, axis=0),
         safe_mean=np.quantile(margins, 1 - CONFIDENCE, axis=0),
-        best=_best_pair(values, seconds, margin),
+        best=_best(axes, margin),
         error=best.std(axis=0),
         interval=np.quantile(best, INTERVAL, axis=0).T,
         next=following,
-        again=np.array([value in law.settings for value, law in zip(following, laws, strict=True)]),
+        again=again,
+        subject="range" if is_certain else "best",
+        before=before,
         after=after,
     )
 
 
-def _best_pair(values, seconds, margin):
-    """Pair of settings of the largest margin, the middle of several."""
-    rows, columns = np.nonzero(margin >= margin.max() - 1e-12)
-    return np.array([values[columns].mean(), seconds[rows].mean()])
+def unknown(*axes: np.ndarray) -> Recommendation:
+    """Recommendation for devices of which too little is known, at settings in the order of `Margins`."""
+    grid, each = np.full(list(map(len, axes)), np.nan), np.full(len(axes), np.nan)
+    numbers = dict.fromkeys(("margin", "spread", "safe", "safe_mean"), grid)
+    numbers |= dict.fromkeys(("best", "error", "next", "before", "after"), each)
+    ends = {"band": np.array([grid, grid]), "interval": np.stack([each, each], axis=-1)}
+    return Recommendation(axes, **numbers, **ends, again=np.zeros(len(axes), bool), subject="best")
 
 
-def unknown(settings: np.ndarray, seconds: np.ndarray | None = None) -> Recommendation | Pairs:
-    """Recommendation for devices of which too little is known, at settings (n,) of one process.
-
-    Over two processes, it is that of the pairs with the settings (m,) of the second one.
-    """
-    none = float("nan")
-    if seconds is not None:
-        nothing = np.full((len(seconds), len(settings)), none)
-        best, error, interval, following, after = (np.full(shape, none) for shape in (2, 2, (2, 2), 2, 2))
-        again = np.zeros(2, bool)
-        return Pairs(settings, seconds, nothing, nothing, nothing, best, error, interval, following, again, after)
-    nothing = np.full(len(settings), none)
-    arrays = {"settings": settings, "band": np.array([nothing, nothing])}
-    arrays |= dict.fromkeys(("margin", "safe", "safe_mean"), nothing) | {"sufficient": [], "sufficient_mean": []}
-    numbers = dict.fromkeys(("best", "error", "next", "before", "after"), none)
-    return Recommendation(**arrays, **numbers, interval=(none, none), crossings=[], again=False, subject="best")
-
-
-def law_error(curve: Curve, laws: Sequence[Law]) -> np.ndarray:
-    """Standard error of the margins of a curve due to the laws, (p,) [-]."""
-    variance, first = np.zeros(len(curve.settings)), 0
+def law_error(margins: Margins, laws: Sequence[Law]) -> np.ndarray:
+    """Standard error of margins due to the laws, (axes...) [-]."""
+    variance, first = np.zeros(margins.margin.size), 0
     for number, law in enumerate(laws):
-        slopes = curve.slopes[:, first : first + len(law.coefficients)]
-        variance += np.einsum("pq,pqr,pr->p", slopes, law.covariance_at(curve.places(number)), slopes)
+        slopes = margins.slopes[..., first : first + len(law.coefficients)].reshape(len(variance), -1)
+        covariance = law.covariance_at(margins.settings(number).ravel())
+        variance += np.einsum("pq,pqr,pr->p", slopes, covariance, slopes)
         first += len(law.coefficients)
-    return np.sqrt(variance)
+    return np.sqrt(variance).reshape(margins.margin.shape)
 
 
-def run_error(curve: Curve, laws: Sequence[Law]) -> np.ndarray:
-    """Standard deviation of the margins of one run about those of the mean process, (p,) [-]."""
-    return np.sqrt(curve.slopes**2 @ np.concatenate([law.scatter for law in laws]) ** 2)
+def run_error(margins: Margins, laws: Sequence[Law]) -> np.ndarray:
+    """Standard deviation of the margins of one run about those of the mean process, (axes...) [-]."""
+    return np.sqrt(margins.slopes**2 @ np.concatenate([law.scatter for law in laws]) ** 2)
+
+
+def _compared(devices, laws):
+    """Settings at which margins are compared, in the order of `Margins`: of a second process also the measured ones."""
+    of_axes = zip(*(device.axes for device in devices), strict=True)
+    spans = [(max(values[0] for values in axis), min(values[-1] for values in axis)) for axis in of_axes]
+    if len(spans) == 1:
+        return (np.linspace(*spans[0], SETTINGS),)
+    seconds, values = (np.linspace(*span, PAIRS) for span in spans)
+    return np.union1d(seconds, laws[1].settings), values
 
 
 def _drawn(laws, rng):
@@ -241,35 +188,40 @@ def _drawn(laws, rng):
     return [errors.reshape(DRAWS, -1) for errors, _ in drawn], np.concatenate([runs for _, runs in drawn], axis=1)
 
 
-def _between(places, values, others):
-    """Values (p, ...) at places (p,), linearly between them at others (n,), (n, ...)."""
-    flat = np.reshape(values, (len(places), -1))
-    return np.transpose([np.interp(others, places, column) for column in flat.T]).reshape(-1, *values.shape[1:])
+def _drawn_margins(margins, laws, drawn, runs, common):
+    """Margins on drawn laws, whose coefficients differ by ``drawn`` (draws, all): of mean and run, (draws, axes...).
 
-
-def _drawn_margins(curve, laws, drawn, common):
-    """Margins of a curve on drawn laws, whose coefficients differ by ``drawn`` (draws, all), (draws, n).
-
-    Errors ``common`` (draws, 1) are those of simulation and model [standard errors].
+    A run differs by ``runs`` (draws, q). Errors ``common`` (draws, 1) are those of simulation and model [standard
+    errors].
     """
-    sizes = np.cumsum([len(law.coefficients) for law in laws])[:-1]
-    slopes = enumerate(zip(laws, np.split(curve.slopes, sizes, axis=1), strict=True))
-    parts = [(of[:, :, None] * law.basis(curve.places(k))[:, None]).reshape(len(of), -1) for k, (law, of) in slopes]
-    return curve.margin + drawn @ np.concatenate(parts, axis=1).T + common * curve.error
+    sizes, shape = np.cumsum([len(law.coefficients) for law in laws])[:-1], margins.margin.shape
+    parts = []
+    for number, (law, of) in enumerate(zip(laws, np.split(margins.slopes, sizes, axis=-1), strict=True)):
+        basis = law.basis(margins.settings(number).ravel()).reshape(*shape, -1)
+        parts.append((of[..., None] * basis[..., None, :]).reshape(*shape, -1))
+    by_coefficients = np.concatenate(parts, axis=-1)
+    of_mean, of_run = np.empty((2, DRAWS, *shape))
+    for row in np.ndindex(shape[:-1]):
+        at = (slice(None), *row)
+        of_mean[at] = margins.margin[row] + drawn @ by_coefficients[row].T + common * margins.error[row]
+        of_run[at] = of_mean[at] + runs @ margins.slopes[row].T
+    return of_mean, of_run
 
 
-def _best(values, margin):
-    """Setting of the largest margin, the middle of several."""
-    return float(values[margin >= margin.max() - 1e-12].mean())
+def _best(axes, margin):
+    """Setting of each process with the largest margin, the middle of several, (processes,)."""
+    places = np.nonzero(margin >= margin.max() - 1e-12)
+    return np.array([axis[at].mean() for axis, at in zip(axes, places, strict=True)][::-1])
 
 
 def _next(laws, errors, drawn, wanted):
-    """Setting whose measurement shrinks the error of a wanted number most, and the error then.
+    """Setting whose measurement shrinks the error of a wanted number most.
 
-    The number, one of each draw, is taken as linear in the coefficients of the laws, as far as the draws show.
+    Returns the setting, whether it is measured already, and the errors before and after. The number, one of each draw,
+    is taken as linear in the coefficients of the laws, as far as the draws show.
     """
     before, ends = float(wanted.std()), [law.ends for law in laws]
-    slopes, *_ = np.linalg.lstsq(drawn, wanted - wanted.mean(), rcond=1e-9)
+    slopes, *_ = np.linalg.lstsq(np.concatenate(drawn, axis=1), wanted - wanted.mean(), rcond=1e-9)
     parts = np.split(slopes, np.cumsum([law.coefficients.size for law in laws])[:-1])
     settings = np.unique(np.concatenate([law.settings for law in laws]))
     candidates = np.sort([*settings, *(settings[1:] + settings[:-1]) / 2])
@@ -284,8 +236,10 @@ def _next(laws, errors, drawn, wanted):
     ]
     most = int(np.argmax(gained))
     if not before or gained[most] <= 0:
-        return float("nan"), before
-    return float(candidates[most]), float(np.sqrt(max(before**2 - gained[most], 0.0)))
+        return float("nan"), False, before, before
+    following = float(candidates[most])
+    again = all(following in law.settings for law in laws)
+    return following, again, before, float(np.sqrt(max(before**2 - gained[most], 0.0)))
 
 
 def _gain(law, slopes, value, error):

@@ -4,18 +4,19 @@ import re
 
 import numpy as np
 import pytest
+import xarray as xr
 from legends import covering
 from test_process_stages import BARE, BUMP, ETCH, SECTIONS, SHARE, setting
 
 import stiction
 from stiction.analysis import process_law
 from stiction.analysis.process_law import fit, grid
-from stiction.devices.process import Curve, Map, law_error, recommended, recommended_pairs, unknown
+from stiction.devices.process import Margins, law_error, recommended, unknown
 from stiction.plan.graph import Results
 from stiction.report.page import Page, Summary
 from stiction.report.process import figures, maps, section
 from stiction.report.style import png
-from stiction.stages.process import maps as stage
+from stiction.stages.process import recommended as stage
 from stiction.stages.process.points import points_of
 
 #: Smooth substrates, rougher with the time of a deposition.
@@ -26,6 +27,7 @@ DEPOSITION = {
 }
 RMS = ETCH | {"settings": [setting(30, rms_nm=2.0), setting(90, rms_nm=8.0)]}
 SMALL = {"contact": {"samples": 60}, "studies": {"slopes": {"samples": 60}}}
+VARIABLES = {"variable": "etch_time_s", "second_variable": "deposition_time_min"}
 BOTH = BUMP | {"process": "etch", "second_process": "deposition"}
 
 
@@ -152,12 +154,12 @@ def plane(a=1.0, b=1.0, c=0.0, common=0.0):
     x, y = (values - 60) / 30, (seconds - 12.5) / 7.5
     margin = a * x + b * y[:, None] + c
     slopes = np.broadcast_to([a, b], (*margin.shape, 2))
-    return Map(values, seconds, margin, slopes, np.full(margin.shape, common))
+    return Margins((seconds, values), margin, slopes, np.full(margin.shape, common))
 
 
 def test_pairs_that_suffice_are_beyond_the_line_of_the_requirement_by_the_error_of_both_laws():
-    found = recommended_pairs([plane()], LAWS, ERRORS, np.random.default_rng(1))
-    x, y = (found.settings - 60) / 30, (found.seconds[:, None] - 12.5) / 7.5
+    found = recommended([plane()], LAWS, ERRORS, np.random.default_rng(1))
+    x, y = (found.axes[1] - 60) / 30, (found.axes[0][:, None] - 12.5) / 7.5
     np.testing.assert_allclose(found.margin, x + y, atol=1e-9)
     variance = [0.1**2 * ((1 - one) ** 2 + (1 + one) ** 2) / 4 for one in (x, y)]  # of a line through both settings
     np.testing.assert_allclose(found.safe, x + y - 1.645 * np.sqrt(sum(variance)), atol=0.03)
@@ -166,7 +168,7 @@ def test_pairs_that_suffice_are_beyond_the_line_of_the_requirement_by_the_error_
 
 def test_the_best_pair_of_two_maps_is_on_their_common_line():
     maps_of = [plane(1, 0, 0.2), plane(-1, 0, 0.2)]
-    found = recommended_pairs(maps_of, LAWS, ERRORS, np.random.default_rng(2))
+    found = recommended(maps_of, LAWS, ERRORS, np.random.default_rng(2))
     np.testing.assert_allclose(found.best, [60, 12.5], atol=1e-6)  # any second setting, hence the middle
     np.testing.assert_allclose(found.error[0], 30 * 0.1 / np.sqrt(2), rtol=0.1)
     assert found.interval[0, 0] < 60 < found.interval[0, 1]
@@ -174,22 +176,22 @@ def test_the_best_pair_of_two_maps_is_on_their_common_line():
 
 def test_the_error_of_simulation_and_model_is_common_to_all_pairs():
     laws = [straight(30.0, 90.0, 1e-9), straight(5.0, 20.0, 1e-9)]
-    found = recommended_pairs([plane(common=0.5)], laws, ERRORS, np.random.default_rng(3))
+    found = recommended([plane(common=0.5)], laws, ERRORS, np.random.default_rng(3))
     np.testing.assert_allclose(found.margin - found.safe, 1.645 * 0.5, atol=0.06)
     assert np.ptp(found.margin - found.safe) < 1e-6
     assert found.error.tolist() == [0, 0]
 
 
 def test_the_row_of_a_map_is_the_curve_of_one_process_and_the_second_one_adds_its_error():
-    (row,) = plane().at(grid([30.0, 90.0]), np.array([12.5]))
-    alone = Curve(row.settings, row.margin, row.slopes[:, :1], row.error)
-    both, first = law_error(row, LAWS), law_error(alone, LAWS[:1])
+    row = plane().at([np.array([12.5]), grid([30.0, 90.0])])
+    alone = Margins(row.axes[1:], row.margin[0], row.slopes[0, :, :1], row.error[0])
+    both, first = law_error(row, LAWS)[0], law_error(alone, LAWS[:1])
     np.testing.assert_allclose(both**2 - first**2, 0.1**2 / 2)
     exact = [LAWS[0], straight(5.0, 20.0, 1e-9)]
-    pairs = recommended_pairs([plane()], exact, ERRORS, np.random.default_rng(4))
+    pairs = recommended([plane()], exact, ERRORS, np.random.default_rng(4))
     one = recommended([alone], LAWS[:1], [np.array([[0.01]])], np.random.default_rng(4))
-    middle = list(pairs.seconds).index(12.5)
-    np.testing.assert_allclose(pairs.safe[middle], np.interp(pairs.settings, one.settings, one.safe), atol=0.02)
+    middle = list(pairs.axes[0]).index(12.5)
+    np.testing.assert_allclose(pairs.safe[middle], np.interp(pairs.axes[1], one.axes[0], one.safe), atol=0.02)
 
 
 def bent(quantity):
@@ -208,8 +210,11 @@ def drawn_pair(rng, number=4, error=0.06):
     (first, a), (second, b) = (bent(law.at(at)[:, 0]) for law, at in zip(laws, (values, seconds), strict=True))
     margin = first + second[:, None]
     slopes = np.stack(np.broadcast_arrays(a, b[:, None]), axis=-1)
-    return recommended_pairs(
-        [Map(values, seconds, margin, slopes, np.full(margin.shape, 0.02))], laws, [np.array([[error**2]])] * 2, rng
+    return recommended(
+        [Margins((seconds, values), margin, slopes, np.full(margin.shape, 0.02))],
+        laws,
+        [np.array([[error**2]])] * 2,
+        rng,
     )
 
 
@@ -219,18 +224,16 @@ def test_the_next_setting_of_each_process_is_that_of_this_process_alone_where_th
     (first, a), (second, b) = (bent(law.at(at)[:, 0]) for law, at in zip(laws, (values, seconds), strict=True))
     slopes = np.stack(np.broadcast_arrays(a, b[:, None]), axis=-1)
     none = np.zeros(slopes.shape[:2])
-    found = recommended_pairs(
-        [Map(values, seconds, first + second[:, None], slopes, none)], laws, ERRORS, np.random.default_rng(6)
+    found = recommended(
+        [Margins((seconds, values), first + second[:, None], slopes, none)], laws, ERRORS, np.random.default_rng(6)
     )
-    curves = Curve(values, first, a[:, None], none[0]), Curve(seconds, second, b[:, None], none[:, 0])
+    curves = Margins((values,), first, a[:, None], none[0]), Margins((seconds,), second, b[:, None], none[:, 0])
     for k, (curve, law) in enumerate(zip(curves, laws, strict=True)):
         alone = recommended([curve], [law], ERRORS[:1], np.random.default_rng(7))
-        assert (found.next[k], found.again[k]) == (alone.next, alone.again)
-        np.testing.assert_allclose([found.error[k], found.after[k]], [alone.before, alone.after], rtol=0.2)
+        assert (found.next[k], found.again[k]) == (alone.next[0], alone.again[0])
+        np.testing.assert_allclose([found.error[k], found.after[k]], [alone.before[0], alone.after[0]], rtol=0.2)
         assert found.after[k] < found.error[k]
-    names = {"variable": "etch_time_s", "second_variable": "deposition_time_min"}
-    settings = stage.xr.Dataset({"share": 0.05}, attrs=names)
-    *_, last = maps.answers(stage.layout(found, settings, laws[1].settings))
+    *_, last = maps.answers(laid_out(found, laws[1].settings))
     when = "again" if found.again[1] else "next"
     assert last.startswith(f"Deposition time: measure {found.next[1]:g} min {when}: this is expected to shrink")
 
@@ -255,21 +258,24 @@ def test_the_best_pair_of_known_processes_is_in_its_intervals():
     assert np.all(np.mean([np.ptp(one.interval, axis=1) for one in found], axis=0) < [30, 7.5])
 
 
+def laid_out(pairs, measured):
+    """Dataset of pairs with the measured settings of the second process."""
+    return stage.layout(pairs).assign(second_settings=("setting", measured), share=0.05).assign_attrs(VARIABLES)
+
+
 # Answers
 
 
 def told(c=0.0, known=True):
     """Recommended pairs as a dataset, and their map."""
     found = plane(c=c)
-    names = {"variable": "etch_time_s", "second_variable": "deposition_time_min"}
-    settings = stage.xr.Dataset({"share": 0.05}, attrs=names)
     pairs = (
-        recommended_pairs([found], LAWS, ERRORS, np.random.default_rng(1))
+        recommended([found], LAWS, ERRORS, np.random.default_rng(1))
         if known
-        else unknown(np.linspace(30, 90, 5), LAWS[1].settings)
+        else unknown(LAWS[1].settings, np.linspace(30, 90, 5))
     )
-    coords = {"value": found.settings, "second": found.seconds}
-    return stage.layout(pairs, settings, LAWS[1].settings), stage.xr.Dataset(coords=coords, attrs=names)
+    coords = dict(zip(("second", "value"), found.axes, strict=True))
+    return laid_out(pairs, LAWS[1].settings), xr.Dataset(coords=coords, attrs=VARIABLES)
 
 
 def test_answers_name_the_pairs_that_suffice_and_the_best_one():

@@ -213,7 +213,7 @@ def test_the_error_of_the_model_is_its_change_or_if_applied_the_error_of_that(et
         {"shape": ["force"], "humidity": [0.6]},
     )
     at = [etched.results[f"process/points/Bump_{number}"] for number in range(7)]
-    settings = curves.Settings("etch_time_s", ("etch",), ("B2",))
+    settings = curves.Settings(("etch_time_s",), ("etch",), ("B2",))
     with_model, without = (curves.compute(at, [etched.law], settings, error) for error in (model, None))
     np.testing.assert_allclose(with_model.model_error, expected)
     assert np.all(without.model_error == 0)
@@ -234,7 +234,7 @@ def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_wit
     slopes = {"slopes": (("humidity", "shape", "law_quantity"), np.full((1, 1, 1), np.nan))}
     known = Results.of(config(RMS, Bump=BUMP | {"process": "etch"}))["process/laws/etch"]
     at = [refused.assign(value=float(value)).assign(slopes) for value in (30, 60, 90)]
-    curve = curves.compute(at, [known], curves.Settings("etch_time_s", ("etch",), ("B2",)))
+    curve = curves.compute(at, [known], curves.Settings(("etch_time_s",), ("etch",), ("B2",)))
     found = recommended.compute({"Bump": curve}, {"etch": known}, "etch_time_s", 1)
     assert tables.answers(found, "Bump") == [
         "Settings of the etch time that suffice are not known: too few could be computed."
@@ -249,9 +249,11 @@ ENDS = [(120.0, "above", 30.0), (30.0, "below", 120.0)]
 def _known(best, sufficient, following=np.nan, again=False, ends=(30, 120)):
     """Recommendation with a best setting that is certain."""
     values = np.linspace(*ends, 7)
-    found = replace(unknown(values), best=best, error=0.0, interval=(best, best), sufficient=sufficient)
-    found = replace(found, next=following, again=again, before=2.0, after=1.0, subject="range")
-    layout = recommended.layout(found).assign(share=SHARE).expand_dims(who=["Bump"])
+    numbers = {"best": [best], "error": [0.0], "interval": [[best, best]], "before": [2.0], "after": [1.0]}
+    numbers |= {"next": [following], "again": [again]}
+    found = replace(unknown(values), **{name: np.array(one) for name, one in numbers.items()}, subject="range")
+    ranges = {"sufficient": (("range", "end"), np.reshape(sufficient, (-1, 2))), "share": SHARE}
+    layout = recommended.layout(found).drop_dims("range").assign(ranges).expand_dims(who=["Bump"])
     return layout.assign_attrs(variable="etch_time_s")
 
 

@@ -17,7 +17,7 @@ from stiction.report.devices.explorer import View, humidity_axis
 from stiction.report.devices.grid import Axis
 from stiction.report.format import UM
 from stiction.report.roughness.tables import in_unit, name_of
-from stiction.stages.process.maps import settings_of_processes
+from stiction.stages.process.recommended import settings_of_processes
 from stiction.stages.roughness.curves import curves_of
 
 #: Parts of the standard error of a margin over a process.

@@ -1,4 +1,4 @@
-"""Stage process_curve: margins of a device over a process variable, with the errors of simulation, law and model."""
+"""Stages process_curve, process_map: margins of a device over one process or two, with their errors by source."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -9,18 +9,23 @@ import xarray as xr
 from scipy.special import ndtri
 
 from stiction.config.surfaces import process
-from stiction.devices.process import CONFIDENCE, Curve, law_error, run_error
+from stiction.devices.process import CONFIDENCE, Margins, law_error, run_error
 from stiction.devices.roughness import margins
 from stiction.plan.stage import Stage
 from stiction.stages.process.law import law_inputs, law_of
 from stiction.stages.process.points import points_of
 
+#: Dimensions of settings, of one process or two, in the order of `stiction.devices.process.Margins`.
+_DIMENSIONS = ("second", "value")
+#: Variables of a device that all its points share.
+_SHARED = ["required", "share", "samples"]
+
 
 @dataclass(frozen=True)
 class Settings:
-    """Process behind a curve."""
+    """Processes behind a curve or a map."""
 
-    variable: str  #: name with its unit
+    variables: tuple[str, ...]  #: of the axes, names with their units
     processes: tuple[str, ...]  #: one for each of the laws
     surfaces: tuple[str, ...]  #: that they make
 
@@ -28,87 +33,98 @@ class Settings:
 def compute(
     points: Sequence[xr.Dataset], laws: Sequence[xr.Dataset], settings: Settings, model_error: xr.Dataset | None = None
 ) -> xr.Dataset:
-    """Join the points, with the margins to the requirement and the parts of their standard errors.
+    """Join the points, with the margins to the requirement, their slopes and the parts of their standard errors.
 
     The error of the model is that of full elastic contact, if it is known.
     """
-    curve = join_points(points, "value", model_error).assign(slopes=_slopes(points))
-    known, dims = [law_of(one) for one in laws], ("value", "humidity", "shape")
-    of_law, of_run = (np.full(curve.margin.shape, np.nan) for _ in range(2))
-    for humidity, shape, one in curves_of(curve):
-        at = dict(humidity=humidity, shape=shape)
-        places = np.isin(curve.value.values, one.settings)
-        of_law[places, *_indices(curve, at)] = law_error(one, known)
-        of_run[places, *_indices(curve, at)] = run_error(one, known)
-    curve = curve.assign(law_error=(dims, of_law), run_error=(dims, of_run)).assign_coords(labels_of(laws, settings))
-    return curve.assign_attrs(variable=settings.variable, surface=" and ".join(settings.surfaces))
+    over = [dimension for dimension in _DIMENSIONS if dimension in points[0]]
+    found = joined([point.drop_vars(["roughness", "slopes"], errors="ignore") for point in points], *over)
+    found = _with_margins(found, (*over, "humidity", "shape"), model_error)
+    found = found.assign(slopes=_slopes(points, found, over)).assign_coords(_labels(laws, settings))
+    known = [law_of(one) for one in laws]
+    errors = {"law_error": xr.full_like(found.margin, np.nan), "run_error": xr.full_like(found.margin, np.nan)}
+    for at, one in margins_of(found):
+        places = at | dict(zip(over, one.axes, strict=True))
+        errors["law_error"].loc[places] = law_error(one, known)
+        errors["run_error"].loc[places] = run_error(one, known)
+    variables = dict(zip(("variable", "second_variable"), settings.variables, strict=False))
+    return found.assign(errors).assign_attrs(variables | {"surface": " and ".join(settings.surfaces)})
 
 
-def join_points(points: Sequence[xr.Dataset], along: str, model_error: xr.Dataset | None) -> xr.Dataset:
-    """Points along a dimension, without slopes, with their margins and the errors of simulation and model."""
-    shared = ["required", "share", "samples"]
-    over = [point.drop_vars([*shared, "roughness", "slopes"], errors="ignore").set_coords("value") for point in points]
-    curve = xr.concat(over, along).assign(points[0][shared])
-    required, more_is_better = float(curve.required), curve.required.attrs["units"] == "m"
-    margin, safe = (margins(curve[name].values, required, more_is_better) for name in ("estimate", "safe"))
-    dims = (along, "humidity", "shape")
+def joined(points: Sequence[xr.Dataset], *dimensions: str) -> xr.Dataset:
+    """Points along the last dimension, in rows along the one before it if there is one."""
+    *rows, along = dimensions
+    if not rows:
+        over = [point.drop_vars(_SHARED).set_coords(along) for point in points]
+        return xr.concat(over, along).assign(points[0][_SHARED])
+    values = list(dict.fromkeys(float(point[rows[0]]) for point in points))
+    of_each = [[point.drop_vars(rows) for point in points if float(point[rows[0]]) == value] for value in values]
+    curves = [joined(each, along) for each in of_each]
+    varied = [name for name in curves[0].data_vars if along in curves[0][name].dims]
+    found = xr.concat(curves, rows[0], data_vars=varied, coords="minimal", compat="equals", join="exact")
+    return found.assign_coords({rows[0]: values})
+
+
+def _with_margins(found, dims, model_error):
+    """Points with their margins and the errors of simulation and model."""
+    required, more_is_better = float(found.required), found.required.attrs["units"] == "m"
+    margin, safe = (margins(found[name].values, required, more_is_better) for name in ("estimate", "safe"))
     # The bound of a safe value is one-sided: the errors of simulation alone leave it as it is.
-    parts = {"simulation": (margin - safe) / ndtri(CONFIDENCE), "model": _model_error(curve, model_error)}
-    return curve.assign({"margin": (dims, margin)} | {f"{name}_error": (dims, one) for name, one in parts.items()})
+    parts = {"simulation": (margin - safe) / ndtri(CONFIDENCE), "model": _model_error(found, model_error)}
+    return found.assign({"margin": (dims, margin)} | {f"{name}_error": (dims, part) for name, part in parts.items()})
 
 
-def labels_of(laws: Sequence[xr.Dataset], settings: Settings) -> dict[str, Any]:
+def _labels(laws: Sequence[xr.Dataset], settings: Settings) -> dict[str, Any]:
     """Process and quantity of each slope."""
     names = [name for name, law in zip(settings.processes, laws, strict=True) for _ in law["quantity"].values]
     quantities = [str(one) for law in laws for one in law["quantity"].values]
     return {"law_process": ("law_quantity", names), "law_quantity": quantities}
 
 
-def _indices(curve, at):
-    """Numbers of a humidity and an end state."""
-    return tuple(list(curve[name].values).index(value) for name, value in at.items())
+def _slopes(points, found, over):
+    """Slopes at all points, linear between those at which they are known. Unknown if they are so everywhere."""
+    known = [point for point in points if "slopes" in point]
+    axes = [np.unique([float(point[dimension]) for point in known]) for dimension in over]
+    slopes = np.reshape([point.slopes.values for point in known], (*map(len, axes), *known[0].slopes.shape))
+    for number, (places, dimension) in enumerate(zip(axes, over, strict=True)):
+        slopes = np.apply_along_axis(_between, number, slopes, places, found[dimension].values)
+    dims = (*over, "humidity", "shape", "law_quantity")
+    return dims, slopes, {"long_name": "of the margin by scaled quantities"}
 
 
-def _slopes(points):
-    """Slopes at all points, between those at which they are known. Unknown if they are so everywhere."""
-    values = np.array([float(point.value) for point in points])
-    known = [(float(point.value), point.slopes.values) for point in points if "slopes" in point]
-    places, found = np.array([value for value, _ in known]), np.array([slopes for _, slopes in known])
-    flat = found.reshape(len(places), -1)
-    filled = np.full((len(values), flat.shape[1]), np.nan)
-    for k, column in enumerate(flat.T):
-        finite = np.isfinite(column)
-        if finite.any():
-            filled[:, k] = np.interp(values, places[finite], column[finite])
-    dims = ("value", "humidity", "shape", "law_quantity")
-    return dims, filled.reshape(len(values), *found.shape[1:]), {"long_name": "of the margin by scaled quantities"}
+def _between(values, places, others):
+    """Values (n,) at places (n,), linearly between the known ones at others (m,)."""
+    known = np.isfinite(values)
+    return np.interp(others, places[known], values[known]) if known.any() else np.full(len(others), np.nan)
 
 
-def _model_error(curve, model_error):
+def _model_error(found, model_error):
     """Standard error of the margins due to the model: full elastic contact changes them, or errs itself if applied."""
-    shape = curve.estimate.shape
+    shape = found.estimate.shape
     if model_error is None:
         return np.zeros(shape)
-    own = model_error.sel(humidity=curve.humidity, shape=curve["shape"]).transpose("humidity", "shape", ...)
+    own = model_error.sel(humidity=found.humidity, shape=found["shape"]).transpose("humidity", "shape", ...)
     relative = own.factor_error / own.factor
     change = np.log(own.factor).where(~own.applied, 0.0)
     return np.broadcast_to(np.nan_to_num(np.hypot(change, relative).values), shape)
 
 
-def curves_of(curve: xr.Dataset) -> Iterator[tuple[float, str, Curve]]:
-    """Yield humidity, end state and curve wherever at least two neighbouring margins are known.
+def margins_of(found: xr.Dataset) -> Iterator[tuple[dict[str, Any], Margins]]:
+    """Yield coordinates of humidity and end state with the margins at all pairs, or at two settings or more.
 
     ASSUME: an unknown margin between known ones is on a smooth curve through them. Those at the ends are left out.
     """
-    for humidity in curve.humidity.values:
-        for shape in curve["shape"].values:
-            one = curve.sel(humidity=humidity, shape=shape)
+    over = [dimension for dimension in _DIMENSIONS if dimension in found.dims]
+    for humidity in found.humidity.values:
+        for shape in found["shape"].values:
+            at = {"humidity": float(humidity), "shape": str(shape)}
+            one = found.sel(at)
             known = np.isfinite(one.margin.values + one.simulation_error.values + one.slopes.values.sum(axis=-1))
-            if known.sum() > 1:
-                one = one.isel(value=known)
+            one = one.isel(value=known) if known.ndim == 1 else one
+            if known.all() or one.sizes["value"] > 1 == known.ndim:
                 error = np.hypot(one.simulation_error.values, one.model_error.values)
-                arrays = one.value.values, one.margin.values, one.slopes.values, error
-                yield float(humidity), str(shape), Curve(*arrays)
+                axes = tuple(one[dimension].values for dimension in over)
+                yield at, Margins(axes, one.margin.values, one.slopes.values, error)
 
 
 def inputs(plan: Any, at: Any) -> dict[str, Any]:
@@ -124,21 +140,26 @@ def inputs(plan: Any, at: Any) -> dict[str, Any]:
 
 
 def settings_of(plan: Any, at: Any) -> dict[str, Any]:
-    """Processes of a device."""
+    """Processes of a device, which have the same variable unless it has two axes."""
     named = process.processes_of(plan.config, at.device)
     sections = [plan.config["process"][name] for name in named]
     surfaces = [section["surface"] for section in sections]
-    return {"variable": sections[0]["variable"], "processes": named, "surfaces": surfaces}
+    axes = 1 + process.is_mapped(plan.config, at.device)
+    variables = [section["variable"] for section in sections[:axes]]
+    return {"variables": variables, "processes": named, "surfaces": surfaces}
 
 
-STAGES = (
-    Stage.writing(
-        "process_curve",
-        "process/curves/{device}",
+def _stage(name, folder, over):
+    """Stage of the margins of a device over one process or two."""
+    return Stage.writing(
+        name,
+        f"process/{folder}/{{device}}",
         inputs=inputs,
         settings=settings_of,
         kind=Settings,
         compute=compute,
-        message="Device {device} over its process.",
-    ),
-)
+        message=f"Device {{device}} over {over}.",
+    )
+
+
+STAGES = (_stage("process_curve", "curves", "its process"), _stage("process_map", "maps", "two processes"))
