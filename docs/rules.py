@@ -45,7 +45,7 @@ ROOMS = {
         "Devices: safe lengths, stoppers, budgets, life, test beams.",
         ["stages.devices", "stages.life", "stages.test_beams", "stages.answer"],
     ),
-    "process": ("Devices against roughness and process.", ["stages.roughness", "stages.process"]),
+    "process": ("Devices against roughness and process.", ["stages.axes"]),
     "report": ("Tables, figures and pages, and the checks of a run.", ["report"]),
 }
 READING = "Above each rule: what it does, the rules whose results it reads -> the files that it writes."

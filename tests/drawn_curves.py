@@ -4,10 +4,10 @@ import numpy as np
 
 from stiction.analysis.process_law import fit, grid
 from stiction.contact.environment import Water
+from stiction.stages.axes import law, recommended, requirement
+from stiction.stages.axes import margins as of_process
+from stiction.stages.axes import roughness as of_roughness
 from stiction.stages.devices import stoppers
-from stiction.stages.process import curves as of_process
-from stiction.stages.process import law, recommended
-from stiction.stages.roughness import curves as of_roughness
 
 SETTINGS, VARIABLE, SHARE = np.array([30.0, 60.0, 90.0, 120.0]), "etch_time_s", 0.01
 #: Required force [N] and length [m].
@@ -28,7 +28,7 @@ def law_of(settings=SETTINGS, variable=VARIABLE, surface="B2"):
 def _point(margin, refused, is_beam, **coords):
     """Point of a curve with these margins at two humidities."""
     common = {"seed": 1, "water": Water(300.0), "humidities": (0.8, 0.6), "share": SHARE}
-    settings = of_roughness.OfStopper(**common, contact=(3e-6, 3e-6), restoring_force=REQUIRED[False])
+    settings = requirement.OfStopper(**common, contact=(3e-6, 3e-6), restoring_force=REQUIRED[False])
     rows = []
     for one in margin:
         size, risky = (
@@ -36,9 +36,9 @@ def _point(margin, refused, is_beam, **coords):
             np.nan if refused else 1 / (1 + np.exp(20 * one)),
         )
         safe = size * np.exp(-0.08 if is_beam else 0.08)
-        rows.append([of_roughness.Response(safe, size, 0.05 * size, np.nan, (risky, 0.8 * risky, 1.2 * risky))])
+        rows.append([requirement.Response(safe, size, 0.05 * size, np.nan, (risky, 0.8 * risky, 1.2 * risky))])
     said = {"flagged": ("humidity", [""] * 2), "refused": ("humidity", [refused] * 2)}
-    point = of_roughness.layout(rows, 1.0, 400, settings).assign(said)
+    point = requirement.layout(rows, 400, settings).assign(said)
     required = point.required.copy(data=REQUIRED[is_beam]).assign_attrs(units="m" if is_beam else "N")
     return point.assign(required=required, **coords)
 

@@ -204,7 +204,7 @@ class Device:
     def roughness(self) -> xr.Dataset:
         """Safe length or force along the roughness of a surface, and roughnesses sufficient for its requirement.
 
-        Dataset of `stiction.stages.roughness.curves`. The first call draws the surfaces at eight roughnesses.
+        Dataset of `stiction.stages.axes.roughness`. The first call draws the surfaces at eight roughnesses.
         """
         self._must_state("roughness", self._section.get("roughness"))
         return self.results[f"devices/roughness/{self.name}"]

@@ -11,8 +11,8 @@ import xarray as xr
 from stiction.config.surfaces import process
 from stiction.plan.graph import Results
 from stiction.report.process import maps, tables
-from stiction.stages.process.law import at_value
-from stiction.stages.process.recommended import devices_over
+from stiction.stages.axes.law import at_value
+from stiction.stages.axes.recommended import devices_over
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -51,7 +51,7 @@ class Process:
 
     @property
     def law(self) -> xr.Dataset:
-        """Settings and the law through them. Dataset of `stiction.stages.process.law`."""
+        """Settings and the law through them. Dataset of `stiction.stages.axes.law`."""
         return self.results[f"process/laws/{self.name}"]
 
     def at(self, value: float) -> xr.Dataset:
@@ -72,7 +72,7 @@ class Process:
         return devices_over(self._plan, self._section["variable"]) + self._mapped
 
     def margins(self, device: str) -> xr.Dataset:
-        """Margins of one of its devices over the variable. Dataset of `stiction.stages.process.curves`.
+        """Margins of one of its devices over the variable. Dataset of `stiction.stages.axes.margins`.
 
         The first call computes the device at seven values or more, a minute or two for a stopper of 5 µm. Over two
         processes it has an axis for each, and takes five to seven times as long.
@@ -85,7 +85,7 @@ class Process:
     def settings(self) -> xr.Dataset:
         """Settings that suffice for each device and for all, the best, and the next to measure.
 
-        Dataset of `stiction.stages.process.recommended`. The first call computes all devices.
+        Dataset of `stiction.stages.axes.recommended`. The first call computes all devices.
         """
         if not devices_over(self._plan, self._section["variable"]):
             alone = " alone" if self._mapped else ""
@@ -95,7 +95,7 @@ class Process:
     def pairs(self, device: str) -> xr.Dataset:
         """Pairs of settings of two processes that suffice for a device with ``second_process``, and the best pair.
 
-        Dataset of `stiction.stages.process.recommended`.
+        Dataset of `stiction.stages.axes.recommended`.
         """
         if device not in self._mapped:
             raise ValueError(f"device {device} has no second_process beside {self.name}")

@@ -25,9 +25,8 @@ PLAN = every_stage.of_paper_and_devices()
 GRAPH, SCHEMA = Graph(PLAN), schema()
 #: Stages of surfaces described by scans; `tests/workflow/test_from_scans.py` runs them.
 OF_SCANS = {"scan", "estimate", "heights_of_scans", "spectrum_of_scans", "choice_contact", "scan_uncertainty"}
-#: Contacts of curves of roughness in dry air; `tests/stages/roughness` runs them.
-OF_DRY_AIR = {"roughness_dry_contact", "roughness_dry_tip_contact", "full_contact_dry", "pair_model_error_dry"}
-OF_DRY_AIR |= {"tips_in_full_contact_dry"}
+#: Corrections of curves of roughness in dry air; `tests/stages/axes` runs them.
+OF_DRY_AIR = {"full_contact_dry", "pair_model_error_dry", "tips_in_full_contact_dry"}
 #: Beams of a few sizes for many devices; `tests/stages/devices/test_cracks.py` runs them.
 OF_MANY = {"sizes"}
 #: Contacts on members of assumed surfaces; `tests/stages/devices/test_members_of_budgets.py` runs them.

@@ -105,7 +105,7 @@ def test_every_file_has_one_job_whose_wildcards_are_names_of_the_configuration(g
         "variant",
         "process_point",
         "test_beam_tip_budget",
-        "roughness_dry_contact",
+        "roughness_point",
     }
     named = {"surface": config["surfaces"], "device": config["devices"], "process": config["process"]}
     named |= {"pair": config["pairs"], "case": config["pairs"] | config["devices"] | config["test_beams"]}

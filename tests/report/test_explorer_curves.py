@@ -13,7 +13,7 @@ from stiction.report.devices import curve_views, curves, explorer
 from stiction.report.page import Page
 from stiction.report.process import maps, tables
 from stiction.report.roughness import tables as tables_roughness
-from stiction.stages.process.curves import margins_of
+from stiction.stages.axes.margins import margins_of
 
 DEVICES = [(False, STOPPER), (True, BEAM)]
 

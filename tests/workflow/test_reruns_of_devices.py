@@ -196,7 +196,7 @@ LAYOUTS |= {
     "stages/devices/cracks": {"cracks", "safe_lengths"},
     "stages/devices/safe_lengths": {"safe_lengths"},
 }
-LAYOUTS |= {"stages/process/law": {"process_law"}, "stages/process/recommended": {"process_settings"}}
+LAYOUTS |= {"stages/axes/law": {"process_law"}, "stages/axes/recommended": {"process_settings"}}
 LAYOUTS |= {"stages/life/answers": {"life"}, "stages/life/separation": {"separation", "fast_strips", "fast_tips"}}
 
 

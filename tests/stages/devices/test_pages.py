@@ -35,11 +35,11 @@ from stiction.report.devices import pages, sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.page import Page, Section, Summary
 from stiction.report.surfaces.words import surface_in_words
+from stiction.stages.axes import requirement, roughness
+from stiction.stages.axes.requirement import OfStopper, Response
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.device_warnings import OfDevices
 from stiction.stages.devices.opening import EITHER, S_SHAPE
-from stiction.stages.roughness import curves
-from stiction.stages.roughness.curves import OfStopper, Response
 
 
 @pytest.fixture(scope="module")
@@ -96,8 +96,10 @@ def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_sec
         rms: Response(1.1 * force, force, 0.03 * force, np.nan, (0.1, 0.05, 0.15)) for rms, force in forces.items()
     }
     said = {name: ("humidity", [""]) for name in ("flagged", "refused")}
-    points = [curves.layout([[one]], rms, 400, asked).assign(said) for rms, one in responses.items()]
-    rough = curves.join_points(points, "rms_nm", "B2")
+    points = [
+        requirement.layout([[one]], 400, asked).assign(said | {"roughness": rms}) for rms, one in responses.items()
+    ]
+    rough = roughness.curve_or_map(points, "B2", "rms_nm")
     section = STOPPER | {"requirement": {"share": 0.05}, "roughness": {"surface": "B2", "rms_nm": [2, 8]}}
     page = stopper_page(section, STOPPERS["S1"], roughness=rough)
     assert "<td>requirement</td><td>at most 1 in 20 sticks</td>" in page.html

@@ -17,8 +17,8 @@ from stiction.report.devices.explorer import View, humidity_axis
 from stiction.report.devices.grid import Axis
 from stiction.report.format import UM
 from stiction.report.roughness.tables import in_unit, name_of
-from stiction.stages.process.recommended import settings_of_processes
-from stiction.stages.roughness.curves import curves_of
+from stiction.stages.axes.recommended import settings_of_processes
+from stiction.stages.axes.roughness import curves_of
 
 #: Parts of the standard error of a margin over a process.
 _PARTS = ("simulation_error", "law_error", "model_error")

@@ -24,9 +24,9 @@ from stiction.report.style import (
     plain_log,
     styled,
 )
+from stiction.stages.axes.law import law_of, plain
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import FORCE
-from stiction.stages.process.law import law_of, plain
 
 #: Quantities of a surface on an axis: words and function of the unscaled quantity.
 _SHOWN = {

@@ -11,8 +11,8 @@ from stiction.devices.roughness import sufficient
 from stiction.plan.names import by_name
 from stiction.report.process import tables
 from stiction.report.table import Table, table_stage, with_list
-from stiction.stages.process.law import law_inputs
-from stiction.stages.process.recommended import settings_of_processes
+from stiction.stages.axes.law import law_inputs
+from stiction.stages.axes.recommended import settings_of_processes
 
 # Sentences
 

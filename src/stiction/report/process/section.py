@@ -9,7 +9,7 @@ import xarray as xr
 from stiction.config.surfaces import process
 from stiction.report.page import Page, Section
 from stiction.report.process import figures, maps, tables
-from stiction.stages.process.recommended import ALL
+from stiction.stages.axes.recommended import ALL
 
 #: Point of the first screen that has the settings.
 CHANGE = "What to change"

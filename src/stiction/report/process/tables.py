@@ -12,8 +12,8 @@ from stiction.plan.names import by_name
 from stiction.report.format import UM, with_band, with_error
 from stiction.report.roughness.tables import said_of_point
 from stiction.report.table import DEVICE, Table, table_stage, with_list
+from stiction.stages.axes.recommended import ALL, variables
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.process.recommended import ALL, variables
 
 
 def answers(recommended: xr.Dataset, who: str) -> list[str]:

@@ -23,9 +23,9 @@ from stiction.report.style import (
     plain_log,
     styled,
 )
+from stiction.stages.axes.roughness import KURTOSIS, curves_of
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import FORCE
-from stiction.stages.roughness.curves import KURTOSIS, curves_of
 
 #: What meets a requirement with confidence, and what is expected to.
 _VALUES = ("safe", "estimate")

@@ -14,9 +14,9 @@ from stiction.report.format import UM, airs, fraction_with_band, with_band, with
 from stiction.report.limits import words
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.run.stored_limits import of_text
+from stiction.stages.axes.roughness import KURTOSIS, curves_of
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import FORCE
-from stiction.stages.roughness.curves import KURTOSIS, curves_of
 
 #: Standard errors beyond which two forces count as different.
 DIFFERENT = 3

@@ -22,10 +22,10 @@ from stiction.report.roughness import figures as figures_roughness
 from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import png
 from stiction.run.stored_limits import as_text, of_text
+from stiction.stages.axes import points, requirement, roughness
+from stiction.stages.axes.roughness import POINTS, Varied
 from stiction.stages.devices import sticking
 from stiction.stages.devices.opening import S_SHAPE
-from stiction.stages.roughness import contacts, curves
-from stiction.stages.roughness.contacts import POINTS, Varied
 from stiction.surface.feasible import largest_kurtosis
 
 SAMPLES, SHARE = 200, 0.05
@@ -63,8 +63,6 @@ def test_the_curve_of_a_stopper_at_the_given_roughness_is_todays_result(stopper)
     found, today = stopper.roughness(), stopper.forces()
     given = found.sel(roughness=float(found.given))
     np.testing.assert_array_equal(given.stuck[:, 0], today.stuck.T)
-    contact = stopper.results[f"devices/contact/roughness/S1_{POINTS - 1}"]
-    xr.testing.assert_identical(contact.drop_vars(["roughness", "kurtosis", "correlations"]), stopper.contact)
     assert float(found.given) == float(stopper.results["heights/B2"].rms)
 
 
@@ -108,7 +106,7 @@ def test_smooth_stoppers_in_dry_air_are_held_more_than_rough_ones_and_the_page_s
     first, second, flag = tables_roughness.answers(found)
     assert first.startswith("For a restoring force of 0.2 µN, in dry air, ")
     assert "(dry)" in flag
-    assert text(curves.SMOOTHER) in flag
+    assert text(requirement.SMOOTHER) in flag
     assert "at a relative humidity of 0.6" in second
     figure = figures_roughness.roughness(found)
     assert "dry, estimate and 95 % band" in {text.get_text() for text in figure.legends[0].get_texts()}
@@ -130,7 +128,7 @@ def test_surfaces_that_no_water_wets_are_held_at_any_humidity_as_in_dry_air():
 @pytest.mark.slow
 def test_the_legend_of_a_cantilever_names_the_bounds_of_beam_and_tip(cantilever):
     given = cantilever.results[f"devices/roughness/points/C1_{POINTS - 1}"]
-    figure = figures_roughness.roughness(curves.join_points([given.assign(roughness=2e-9), given], "rms_nm", "B2"))
+    figure = figures_roughness.roughness(joined([given.assign(roughness=2e-9), given]))
     assert {"flat surfaces, beam", "flat surfaces, beam or tip"} < {
         text.get_text() for text in figure.legends[0].get_texts()
     }
@@ -166,17 +164,16 @@ def test_water_alone_holds_smooth_stoppers_by_its_tension_and_rough_ones_less():
     assert float(found.estimate[-1]) < 0.5 * flooded
 
 
-def test_contacts_of_a_curve_are_deleted_once_they_have_been_read():
-    assert all(stage.running.temporary for stage in contacts.STAGES)
-
-
 def test_a_share_that_needs_more_stoppers_than_were_drawn_has_them():
     more = Plan(stiction.load(SECTIONS, {"devices": {"S1": {"requirement": {"share": 1e-3}}}}))
-    settings = Graph(more).job("devices/contact/roughness/S1_0").settings
-    assert settings["contact"]["contact"]["samples"] == 2995
-    assert (
-        Graph(Plan(CONFIG)).job("devices/contact/roughness/S1_0").settings["contact"]["contact"]["samples"] == SAMPLES
-    )
+    assert patches(more) == 2995
+    assert patches(Plan(CONFIG)) == SAMPLES
+
+
+def patches(plan):
+    """Number of patches at a point of the stopper."""
+    contacts = Graph(plan).job("devices/roughness/points/S1_0").settings["device"]["humid"]
+    return contacts["contact"]["contact"]["samples"]
 
 
 def test_points_are_spaced_by_equal_factors_or_evenly_and_the_last_one_is_the_given_surface():
@@ -189,7 +186,7 @@ def test_points_are_spaced_by_equal_factors_or_evenly_and_the_last_one_is_the_gi
 
 def test_a_range_that_ends_at_the_given_roughness_has_it_once():
     points = [point(value) for value in (1e-9, 2e-9, 3.4e-9, 3.4e-9 * (1 + 1e-15))]
-    found = curves.join_points(points, "rms_nm", "B2")
+    found = joined(points)
     np.testing.assert_array_equal(found.roughness, [1e-9, 2e-9, 3.4e-9 * (1 + 1e-15)])
 
 
@@ -198,13 +195,18 @@ WATER = Water(300.0)
 
 def point(rms, refused="", force=None, flagged="", water=WATER):
     """Point of a curve of a stopper with the force 1e-6 (4 nm / rms)³, or with another one [N]."""
-    settings = curves.OfStopper(
+    settings = requirement.OfStopper(
         seed=1, water=water, humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
     )
     force = 1e-6 * (4e-9 / rms) ** 3 if force is None else force
-    response = curves.Response(1.1 * force, force, 0.03 * force, np.nan, (0.1, 0.05, 0.15))
+    response = requirement.Response(1.1 * force, force, 0.03 * force, np.nan, (0.1, 0.05, 0.15))
     said = {"flagged": ("humidity", [flagged]), "refused": ("humidity", [refused])}
-    return curves.layout([[response]], rms, 400, settings).assign(said)
+    return requirement.layout([[response]], 400, settings).assign(said | {"roughness": rms})
+
+
+def joined(points, key="rms_nm"):
+    """Curve over a quantity of B2."""
+    return roughness.curve_or_map(points, "B2", key)
 
 
 RANGE = np.geomspace(1e-9, 8e-9, POINTS - 1)
@@ -212,7 +214,7 @@ RANGE8 = [*RANGE, 3.4e-9]
 
 
 def test_page_and_table_say_which_roughness_suffices_with_its_error():
-    found = curves.join_points([*map(point, RANGE), point(3.4e-9)], "rms_nm", "B2")
+    found = joined([*map(point, RANGE), point(3.4e-9)])
     (sentence,) = tables_roughness.answers(found)
     assert "at most 1 in 20 sticks where the rms of B2 is 4.13 to 8 nm" in sentence  # 4 nm (1.1)^(1/3)
     assert "exactly 1 in 20 sticks at 4.000 ± 0.040 nm." in sentence
@@ -235,21 +237,23 @@ def test_page_and_table_say_which_roughness_suffices_with_its_error():
 )
 def test_none_and_all_of_a_range_are_answers(force, said):
     points = [point(rms, force=force) for rms in (*RANGE, 3.4e-9)]
-    (sentence,) = tables_roughness.answers(curves.join_points(points, "rms_nm", "B2"))
+    (sentence,) = tables_roughness.answers(joined(points))
     assert said in sentence
 
 
 def test_a_beam_that_sticks_at_no_length_is_an_answer():
     device = SimpleNamespace(opening=SimpleNamespace(shapes=(S_SHAPE,)))
     common = {"seed": 1, "chaos": None, "water": WATER, "humidities": (0.6,), "device": device, "beams": 100}
-    beam = curves.OfBeam(**common, share=SHARE, length=1e-4, edge_radius=0.0)
+    beam = requirement.OfBeam(**common, share=SHARE, length=1e-4, edge_radius=0.0)
     known, lengths = Known(2e-4, 5e-5, 5e-5), np.full(100, np.inf)
     never = beam._response(lengths, *sticking.safe_lengths(lengths, beam, known), known)
     points = [
-        curves.layout([[never]], rms, 100, beam).assign(flagged=("humidity", [""]), refused=("humidity", [""]))
+        requirement.layout([[never]], 100, beam).assign(
+            flagged=("humidity", [""]), refused=("humidity", [""]), roughness=rms
+        )
         for rms in RANGE
     ]
-    found = curves.join_points(points, "rms_nm", "B2")
+    found = joined(points)
     (sentence,) = tables_roughness.answers(found)
     assert "at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm" in sentence
     assert "at 8 nm, at most " in sentence
@@ -262,34 +266,32 @@ def test_a_beam_that_sticks_at_no_length_is_an_answer():
 def test_a_margin_errs_by_the_relative_error_of_its_length_and_not_at_all_where_no_beam_sticks():
     lengths = {"estimate": ("point", [5e-5, np.inf]), "error": ("point", [1e-6, np.nan])}
     curve = xr.Dataset(lengths | {"required": ((), 1e-4, {"units": "m"})})
-    np.testing.assert_allclose(curves._margins(curve, "estimate")[1], [0.02, 0])
+    np.testing.assert_allclose(requirement.relative_errors(curve), [0.02, 0])
 
 
 def test_a_stopper_that_is_held_most_inside_the_range_has_a_worst_roughness():
     forces = 4e-6 * np.exp(-(np.log(RANGE / 2e-9) ** 2))
-    found = curves.join_points(
-        [*map(point, RANGE, [""] * len(RANGE), forces), point(3.4e-9, force=3e-6)], "rms_nm", "B2"
-    )
+    found = joined([*map(point, RANGE, [""] * len(RANGE), forces), point(3.4e-9, force=3e-6)])
     (sentence,) = tables_roughness.answers(found)
     assert "The worst rms of B2 is inside this range, near 2 nm: less and more of it hold less." in sentence
-    (monotone,) = tables_roughness.answers(curves.join_points([*map(point, RANGE), point(3.4e-9)], "rms_nm", "B2"))
+    (monotone,) = tables_roughness.answers(joined([*map(point, RANGE), point(3.4e-9)]))
     assert "worst" not in monotone
 
 
 def test_what_cannot_be_computed_is_named_with_its_reason_and_leaves_the_rest():
     points = [point(RANGE[0], "too smooth", np.nan), *map(point, RANGE[1:]), point(3.4e-9)]
-    sentence, refusal = tables_roughness.answers(curves.join_points(points, "rms_nm", "B2"))
+    sentence, refusal = tables_roughness.answers(joined(points))
     assert "where the rms of B2 is 4.13 to 8 nm" in sentence
     assert "computed for 1.41 to 8 nm" in sentence
     assert refusal == "Not computed where the rms of B2 is 1 nm (RH 0.6): too smooth."
     nowhere = [point(rms, "too smooth", np.nan) for rms in RANGE8]
-    sentence, _ = tables_roughness.answers(curves.join_points(nowhere, "rms_nm", "B2"))
+    sentence, _ = tables_roughness.answers(joined(nowhere))
     assert "nothing is computed" in sentence
 
 
 def test_what_is_less_accurate_is_named_with_its_place():
     points = [point(RANGE[0], flagged=as_text([noted("Strips are long.")])), *map(point, RANGE[1:]), point(3.4e-9)]
-    _, flag = tables_roughness.answers(curves.join_points(points, "rms_nm", "B2"))
+    _, flag = tables_roughness.answers(joined(points))
     assert flag == "Where the rms of B2 is 1 nm (RH 0.6): surface B2: Strips are long."
 
 
@@ -298,12 +300,12 @@ def test_smoother_surfaces_than_those_of_full_contact_are_flagged_and_no_others(
     full = replace(WATER, correction=Correction(np.array([0.5, 0.8]), Change(1.2), Change(1.3)))
     values = [*RANGE, 3.4e-9]
     points = [point(value, flagged=as_text([noted("Long.")] * (k == 0)), water=full) for k, value in enumerate(values)]
-    flags = curves.join_points(points, "rms_nm", "B2").flagged.sel(humidity=0.6)
-    assert of_text(flags.values[0]) == [noted("Long."), curves.SMOOTHER]
+    flags = joined(points).flagged.sel(humidity=0.6)
+    assert of_text(flags.values[0]) == [noted("Long."), requirement.SMOOTHER]
     for flag, rms in zip(flags.values, flags.roughness.values, strict=True):
-        assert (curves.SMOOTHER in of_text(flag)) == (rms < 3.4e-9)
+        assert (requirement.SMOOTHER in of_text(flag)) == (rms < 3.4e-9)
     for key, water in (("skewness", full), ("rms_nm", WATER)):
-        others = curves.join_points([point(value, water=water) for value in values], key, "B2")
+        others = joined([point(value, water=water) for value in values], key)
         assert not others.flagged.values.any()
 
 
@@ -318,7 +320,7 @@ MAP = FEW | {"devices": {"S1": {"humidities": [0.6], "roughness": {"skewness": [
 def mapped():
     """A device with a map of three curves."""
     device = stiction.Device("S1", Results.of(stiction.load(SECTIONS, MAP)))
-    with patch.object(contacts, "CURVES", 3):
+    with patch.object(roughness, "CURVES", 3):
         device.roughness()
     return device
 
@@ -328,10 +330,10 @@ def test_the_curve_of_a_map_at_the_given_second_quantity_is_that_of_one_quantity
     plain = stiction.load(SECTIONS, FEW, {"devices": {"S1": {"humidities": [0.6]}}})
     alone = stiction.Device("S1", Results.of(plain)).roughness()
     found = mapped.roughness()
-    (row,) = [one for one in curves.curves_of(found) if one.other == found.other_given]
+    (row,) = [one for one in roughness.curves_of(found) if one.other == found.other_given]
     own = row[list(alone.variables)].drop_vars(["other"], errors="ignore")
     xr.testing.assert_equal(own, alone)
-    assert not alone.estimate.equals(curves.curves_of(found)[0].estimate.drop_vars("other"))
+    assert not alone.estimate.equals(roughness.curves_of(found)[0].estimate.drop_vars("other"))
 
 
 @pytest.mark.slow
@@ -382,22 +384,21 @@ def test_a_skewness_comes_with_the_largest_kurtosis_up_to_that_of_the_surface_an
     section = {"surface": "B2"} | varied
     plan = Plan(stiction.load({"devices": {"S1": S1 | {"roughness": section, "humidities": [0.6]}}}))
     seen = []
-    with patch.object(contacts.stage_contact, "compute", lambda surfaces, *_: seen.append(surfaces) or xr.Dataset()):
-        for number in contacts.points_of(plan, "S1")[:: POINTS if len(varied) > 1 else 3]:
-            job = Graph(plan).job(f"devices/contact/roughness/S1_{number}")
+    with patch.object(points.Device, "on", lambda *given: seen.append(given[2][0]["B2"]) or [xr.Dataset()]):
+        for number in roughness.points_of(plan, "S1")[:: POINTS if len(varied) > 1 else 3]:
+            job = Graph(plan).job(f"devices/roughness/points/S1_{number}")
             found = job.compute(Results(Graph(plan)).inputs(job))
-            skewness = seen[-1][0][0].skewness
-            assert float(found.kurtosis) == float(seen[-1][0][0].kurtosis)
-            assert float(found.kurtosis) == pytest.approx(min(3.9, largest_kurtosis(abs(float(skewness)))), rel=1e-6)
-    assert len({float(surfaces[0][0].kurtosis) for surfaces in seen}) > 1  # control: it does change
+            assert float(found.kurtosis) == seen[-1].kurtosis
+            assert seen[-1].kurtosis == pytest.approx(min(3.9, largest_kurtosis(abs(seen[-1].skewness))), rel=1e-6)
+    assert len({surface.kurtosis for surface in seen}) > 1  # control: it does change
 
 
 def test_the_kurtosis_stands_beside_every_skewness_in_sentences_tables_and_figures():
-    over_both = curves.curve_or_map(
+    over_both = roughness.curve_or_map(
         [skewed(rms, value) for value in (0, -1, 0.5) for rms in RANGE8], "B2", "rms_nm", "skewness"
     )
     alone = [point(3e-9).assign(roughness=value, kurtosis=3 + value**2) for value in (-1.0, 0.5, 0.0)]
-    over_one = curves.join_points(alone, "skewness", "B2")
+    over_one = joined(alone, "skewness")
     for found, axis in ((over_both, "yaxis"), (over_one, "xaxis")):
         draw = figures_roughness.roughness_map if "other" in found.dims else figures_roughness.roughness
         labels = [text.get_text() for text in getattr(draw(found).axes[0], axis).get_ticklabels()]
@@ -411,21 +412,21 @@ def test_the_kurtosis_stands_beside_every_skewness_in_sentences_tables_and_figur
         "Where the skewness of B2 is 0 and the kurtosis 3, as given",
         "Where the skewness of B2 is 0.5 and the kurtosis 3.25",
     ]
-    plain = curves.join_points([point(rms) for rms in RANGE8], "rms_nm", "B2")  # control: nothing of it elsewhere
+    plain = joined([point(rms) for rms in RANGE8])  # control: nothing of it elsewhere
     assert "kurtosis" not in tables_roughness.roughness({"S1": plain}).caption + tables_roughness.form(plain)
 
 
 def test_a_second_value_that_is_the_given_one_is_there_once():
     points = [skewed(rms, value) for value in (0, -1, -0.5, 1e-14, 1) for rms in RANGE8]
     points[:POINTS] = [point(rms).assign(kurtosis=3.0) for rms in RANGE8]
-    found = curves.curve_or_map(points, "B2", "rms_nm", "skewness")
+    found = roughness.curve_or_map(points, "B2", "rms_nm", "skewness")
     assert found.other.values.tolist() == [-1, -0.5, 0, 1]
-    assert [len(one.crossing) for one in curves.curves_of(found)] == [1] * 4
+    assert [len(one.crossing) for one in roughness.curves_of(found)] == [1] * 4
 
 
 def test_a_map_of_a_stopper_has_positive_margins_where_the_restoring_force_exceeds_the_adhesion():
     points = [skewed(rms, value) for value in (0, -1) for rms in RANGE8]
-    figure = figures_roughness.roughness_map(curves.curve_or_map(points, "B2", "rms_nm", "skewness"))
+    figure = figures_roughness.roughness_map(roughness.curve_or_map(points, "B2", "rms_nm", "skewness"))
     panel, bar = figure.axes
     assert bar.get_ylabel() == "lg (restoring force / force needed)"
     margins = panel.collections[0]
@@ -456,8 +457,6 @@ def test_rare_shares_of_stoppers_need_no_more_patches_than_the_rarest_that_was_v
         asked = {"requirement": {"share": share}, "roughness": {"surface": "B2", "rms_nm": [1, 8]}}
         bump = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 1, "humidities": [0.5]}
         few = {"contact": {"samples": 100}, "run": {"pairs": []}}
-        plan = Plan(stiction.load(few, {"devices": {"S1": bump | asked}}))
-        settings = Graph(plan).job("devices/contact/roughness/S1_0").settings
-        return settings["contact"]["contact"]["samples"]
+        return patches(Plan(stiction.load(few, {"devices": {"S1": bump | asked}})))
 
     assert [samples(share) for share in (0.05, 1e-3, 1e-4, 1e-5, 1e-6)] == [100, 2995, 29_956, 29_956, 29_956]

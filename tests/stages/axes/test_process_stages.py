@@ -18,8 +18,7 @@ from stiction.plan.graph import Results
 from stiction.report.devices import pages
 from stiction.report.process import section, tables
 from stiction.report.style import png
-from stiction.stages.process import curves, law, points, recommended
-from stiction.stages.roughness import curves as roughness
+from stiction.stages.axes import law, margins, recommended, requirement
 from stiction.stages.surfaces.descriptions import description
 
 SAMPLES, SHARE = 200, 0.05
@@ -86,11 +85,13 @@ def test_settings_smoother_than_the_surfaces_of_full_contact_are_flagged_and_no_
     for number, water in itertools.product((0, 6), (None, full)):
         job = results.graph.job(f"process/points/Bump_{number}")
         settings = job.stage.converted(job.settings | {"samples": 0})
-        stopper = replace(settings.stopper, water=replace(settings.stopper.water, correction=water))
-        found = job.stage.result(results.inputs(job), job.at, replace(settings, stopper=stopper))
+        stopper = settings.device.stopper
+        stopper = replace(stopper, water=replace(stopper.water, correction=water))
+        settings = replace(settings, device=replace(settings.device, stopper=stopper))
+        found = job.stage.result(results.inputs(job), job.at, settings)
         smoother = {0: 2.0e-9, 6: 8.0e-9}[number] < given
         assert smoother == (number == 0)
-        assert (roughness.SMOOTHER.kind in str(found.flagged.values)) == (smoother and water is full)
+        assert (requirement.SMOOTHER.kind in str(found.flagged.values)) == (smoother and water is full)
 
 
 @pytest.mark.slow
@@ -213,8 +214,8 @@ def test_the_error_of_the_model_is_its_change_or_if_applied_the_error_of_that(et
         {"shape": ["force"], "humidity": [0.6]},
     )
     at = [etched.results[f"process/points/Bump_{number}"] for number in range(7)]
-    settings = curves.Settings(("etch_time_s",), ("etch",), ("B2",))
-    with_model, without = (curves.compute(at, [etched.law], settings, error) for error in (model, None))
+    settings = margins.Settings(("etch_time_s",), ("etch",), ("B2",))
+    with_model, without = (margins.compute(at, [etched.law], settings, error) for error in (model, None))
     np.testing.assert_allclose(with_model.model_error, expected)
     assert np.all(without.model_error == 0)
     wide, narrow = (
@@ -225,16 +226,16 @@ def test_the_error_of_the_model_is_its_change_or_if_applied_the_error_of_that(et
 
 
 def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_without_any():
-    settings = points.OfStopper(
+    settings = requirement.OfStopper(
         seed=1, water=Water(300.0), humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
     )
-    none = points.curves.Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)
+    none = requirement.Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)
     said = {"flagged": ("humidity", [""]), "refused": ("humidity", ["too smooth"])}
-    refused = points.curves.layout([[none]], 30.0, 200, settings).assign(said)
+    refused = requirement.layout([[none]], 200, settings).assign(said)
     slopes = {"slopes": (("humidity", "shape", "law_quantity"), np.full((1, 1, 1), np.nan))}
     known = Results.of(config(RMS, Bump=BUMP | {"process": "etch"}))["process/laws/etch"]
     at = [refused.assign(value=float(value)).assign(slopes) for value in (30, 60, 90)]
-    curve = curves.compute(at, [known], curves.Settings(("etch_time_s",), ("etch",), ("B2",)))
+    curve = margins.compute(at, [known], margins.Settings(("etch_time_s",), ("etch",), ("B2",)))
     found = recommended.compute({"Bump": curve}, {"etch": known}, "etch_time_s", 1)
     assert tables.answers(found, "Bump") == [
         "Settings of the etch time that suffice are not known: too few could be computed."

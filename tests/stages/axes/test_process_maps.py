@@ -16,8 +16,8 @@ from stiction.plan.graph import Results
 from stiction.report.page import Page, Summary
 from stiction.report.process import figures, maps, section
 from stiction.report.style import png
-from stiction.stages.process import recommended as stage
-from stiction.stages.process.points import points_of
+from stiction.stages.axes import recommended as stage
+from stiction.stages.axes.process import points_of
 
 #: Smooth substrates, rougher with the time of a deposition.
 DEPOSITION = {

@@ -13,8 +13,8 @@ from stiction.devices.process import PAIRS, SETTINGS, Recommendation, recommende
 from stiction.devices.roughness import sufficient
 from stiction.plan.names import by_name
 from stiction.plan.stage import Stage
-from stiction.stages.process.curves import margins_of
-from stiction.stages.process.law import law_inputs, law_of
+from stiction.stages.axes.law import law_inputs, law_of
+from stiction.stages.axes.margins import margins_of
 from stiction.streams import stream
 
 #: All devices of a variable together, beside each of them.

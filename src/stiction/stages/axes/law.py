@@ -167,7 +167,7 @@ def on_law(given: Description, dataset: xr.Dataset, value: float) -> Description
     nearest one.
     """
     cutoff = given.spectrum.cutoff
-    own = np.array([np.log(given.rms), given.skewness, given.kurtosis, np.log(given.spectrum.corner), _slope(given)])
+    own = np.array([np.log(given.rms), given.skewness, given.kurtosis, np.log(given.spectrum.corner), slope_of(given)])
     changed, names = scaled(own), list(map(str, dataset["quantity"].values))
     changed[[QUANTITIES.index(name) for name in names]] = law_of(dataset).at(value)[0]
     ln_rms, skewness, kurtosis, ln_corner, slope = unscaled(changed)
@@ -185,7 +185,7 @@ def on_law(given: Description, dataset: xr.Dataset, value: float) -> Description
     return surface
 
 
-def _slope(surface):
+def slope_of(surface: Description) -> float:
     """Slope of the spectrum of a surface. Tables have none."""
     return getattr(surface.spectrum, "slope", _ANY[1])
 

@@ -10,15 +10,14 @@ from scipy.special import ndtri
 
 from stiction.config.surfaces import process
 from stiction.devices.process import CONFIDENCE, Margins, law_error, run_error
-from stiction.devices.roughness import margins
 from stiction.plan.stage import Stage
-from stiction.stages.process.law import law_inputs, law_of
-from stiction.stages.process.points import points_of
+from stiction.stages.axes import requirement
+from stiction.stages.axes.law import law_inputs, law_of
+from stiction.stages.axes.points import joined
+from stiction.stages.axes.process import points_of
 
 #: Dimensions of settings, of one process or two, in the order of `stiction.devices.process.Margins`.
 _DIMENSIONS = ("second", "value")
-#: Variables of a device that all its points share.
-_SHARED = ["required", "share", "samples"]
 
 
 @dataclass(frozen=True)
@@ -38,7 +37,7 @@ def compute(
     The error of the model is that of full elastic contact, if it is known.
     """
     over = [dimension for dimension in _DIMENSIONS if dimension in points[0]]
-    found = joined([point.drop_vars(["roughness", "slopes"], errors="ignore") for point in points], *over)
+    found = joined([point.drop_vars("slopes", errors="ignore") for point in points], *over)
     found = _with_margins(found, (*over, "humidity", "shape"), model_error)
     found = found.assign(slopes=_slopes(points, found, over)).assign_coords(_labels(laws, settings))
     known = [law_of(one) for one in laws]
@@ -51,24 +50,9 @@ def compute(
     return found.assign(errors).assign_attrs(variables | {"surface": " and ".join(settings.surfaces)})
 
 
-def joined(points: Sequence[xr.Dataset], *dimensions: str) -> xr.Dataset:
-    """Points along the last dimension, in rows along the one before it if there is one."""
-    *rows, along = dimensions
-    if not rows:
-        over = [point.drop_vars(_SHARED).set_coords(along) for point in points]
-        return xr.concat(over, along).assign(points[0][_SHARED])
-    values = list(dict.fromkeys(float(point[rows[0]]) for point in points))
-    of_each = [[point.drop_vars(rows) for point in points if float(point[rows[0]]) == value] for value in values]
-    curves = [joined(each, along) for each in of_each]
-    varied = [name for name in curves[0].data_vars if along in curves[0][name].dims]
-    found = xr.concat(curves, rows[0], data_vars=varied, coords="minimal", compat="equals", join="exact")
-    return found.assign_coords({rows[0]: values})
-
-
 def _with_margins(found, dims, model_error):
     """Points with their margins and the errors of simulation and model."""
-    required, more_is_better = float(found.required), found.required.attrs["units"] == "m"
-    margin, safe = (margins(found[name].values, required, more_is_better) for name in ("estimate", "safe"))
+    margin, safe = (requirement.margins_of(found, name) for name in ("estimate", "safe"))
     # The bound of a safe value is one-sided: the errors of simulation alone leave it as it is.
     parts = {"simulation": (margin - safe) / ndtri(CONFIDENCE), "model": _model_error(found, model_error)}
     return found.assign({"margin": (dims, margin)} | {f"{name}_error": (dims, part) for name, part in parts.items()})

@@ -1,0 +1,152 @@
+"""Points of an axis: a device on changed surfaces of its pair, with the same random numbers on all of them."""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import xarray as xr
+
+from stiction.analysis.shifts import Description
+from stiction.devices.risk import VERIFIED, samples_for
+from stiction.devices.tail import FEWEST, TAIL
+from stiction.plan.stage import At
+from stiction.stages.axes import requirement
+from stiction.stages.axes.requirement import OfBeam, OfStopper
+from stiction.stages.contact import contact as stage_contact
+from stiction.stages.contact import pairs
+from stiction.stages.contact.changes.patches import GROUND, TIPS
+from stiction.stages.contact.corrections import with_correction
+from stiction.stages.devices.contact_names import corrections_of
+from stiction.stages.surfaces.descriptions import description, drawn_as
+from stiction.stages.surfaces.rough_surfaces import surface_inputs
+
+#: Fewest patches of which a safe force can be fitted.
+FEWEST_OF_FIT = round(FEWEST / TAIL)
+#: Variables of a device that all its points share.
+_SHARED = ["required", "share", "samples"]
+
+#: Datasets of heights and spectrum of both surfaces of a pair, that of the beam first.
+Surfaces = Sequence[tuple[xr.Dataset, xr.Dataset]]
+
+
+@dataclass(frozen=True)
+class Contacts:
+    """Settings of the contacts of a device in one air."""
+
+    contact: pairs.Settings  #: of its patch
+    tips: pairs.Settings | None = None  #: of the tips of a cantilever
+
+
+@dataclass(frozen=True)
+class Device:
+    """Settings of a device at a point, without the surfaces."""
+
+    pair: str  #: part of the addresses of random numbers
+    beam: OfBeam | None = None
+    stopper: OfStopper | None = None
+    humid: Contacts | None = None  #: contacts in humid air
+    dry: Contacts | None = None  #: contacts in dry air
+
+    @property
+    def airs(self) -> dict[bool, Contacts]:
+        """Contacts in humid air (true) and in dry air."""
+        return {is_humid: found for is_humid, found in ((True, self.humid), (False, self.dry)) if found}
+
+    @property
+    def patch(self) -> pairs.Settings:
+        """Settings of the contact of its patch in any air."""
+        return next(iter(self.airs.values())).contact
+
+    def described(self, surfaces: Surfaces) -> dict[str, Description]:
+        """Surfaces of the pair by name."""
+        return {name: description(*one) for name, one in zip(self.patch.surfaces, surfaces, strict=True)}
+
+    def on(self, surfaces: Surfaces, changed: Sequence[Mapping[str, Description]]) -> Iterator[xr.Dataset]:
+        """Yield the device on the surfaces of the pair, with changed ones by name."""
+        names, spacing = self.patch.surfaces, self.patch.sampling.spacing
+        drawn = {id(one): drawn_as(one, spacing) for some in changed for one in some.values()}
+        alternatives = [
+            [drawn[id(some[name])] if name in some else same for name, same in zip(names, surfaces, strict=True)]
+            for some in changed
+        ]
+        patches = {humid: self._contacts(alternatives, of.contact) for humid, of in self.airs.items()}
+        tips = {humid: self._contacts(alternatives, of.tips) for humid, of in self.airs.items() if of.tips}
+        for number in range(len(changed)):
+            at, tip = ({humid: some[number] for humid, some in of.items()} for of in (patches, tips))
+            yield requirement.compute(at, self.beam or self.stopper, tip)
+
+    def _contacts(self, alternatives, of):
+        """Contacts of one kind on alternative surfaces."""
+        contacts = stage_contact.compute_each(alternatives, self.pair, "NG", of)
+        sides = pairs.sides_of_strip(of)
+        return [stage_contact.with_correlations(*one, sides) for one in zip(contacts, alternatives, strict=True)]
+
+    def with_samples(self, number: int) -> "Device":
+        """Device with fewer patches, and as many tips."""
+
+        def few(of):
+            """Contacts with fewer patches."""
+            samples = min(max(number, FEWEST_OF_FIT), of.contact.contact.samples)
+            return replace(of, contact=replace(of.contact, contact=replace(of.contact.contact, samples=samples)))
+
+        return replace(self, **{name: few(of) for name, of in (("humid", self.humid), ("dry", self.dry)) if of})
+
+    def corrected(self, data: Mapping[str, Any]) -> "Device":
+        """Device with the correction to full elastic contact from its input."""
+        return replace(
+            self, **{name: with_correction(of, data) for name in ("beam", "stopper") if (of := getattr(self, name))}
+        )
+
+
+def joined(points: Sequence[xr.Dataset], *dimensions: str) -> xr.Dataset:
+    """Points along the last dimension, in rows along the one before it if there is one."""
+    *rows, along = dimensions
+    if not rows:
+        over = [point.drop_vars(_SHARED).set_coords(along) for point in points]
+        return xr.concat(over, along).assign(points[0][_SHARED])
+    values = list(dict.fromkeys(float(point[rows[0]]) for point in points))
+    of_each = [[point.drop_vars(rows) for point in points if float(point[rows[0]]) == value] for value in values]
+    curves = [joined(each, along) for each in of_each]
+    varied = [name for name in curves[0].data_vars if along in curves[0][name].dims]
+    found = xr.concat(curves, rows[0], data_vars=varied, coords="minimal", compat="equals", join="exact")
+    return found.assign_coords({rows[0]: values})
+
+
+# Plan
+
+
+def inputs(plan: Any, device: str) -> dict[str, Any]:
+    """Surfaces of the pair of a device, and its correction.
+
+    ASSUME: a correction to full elastic contact is that of the given surfaces at every point.
+    """
+    return surface_inputs(plan, plan.config["devices"][device]["pair"]) | corrections_of(plan, device)
+
+
+def settings_of(plan: Any, device: str, rough: Any) -> dict[str, Any]:
+    """Settings of a device. A plan with the changed surfaces is ``rough``: the reach of tips depends on them."""
+    section, kind = plan.config["devices"][device], plan.devices.kind(device)
+    settings = {"pair": section["pair"], "beam" if kind.is_beam else "stopper": requirement.settings_of(plan, device)}
+    for humidity in section["humidities"]:
+        pair = plan.air_of_devices.contact(section["pair"], humidity)
+        tips = {"tips": _of_tips(rough, pair, device)} if kind.has_tip else {}
+        settings["humid" if humidity > 0 else "dry"] = {"contact": _of_patch(plan, pair, device)} | tips
+    return settings
+
+
+def _of_patch(plan, pair, device):
+    """Settings of the contact of the patch of a device, with as many stoppers as its share of stuck ones needs.
+
+    Those of smaller shares than have been verified are extrapolated. The pair is that of the device in its air.
+    """
+    ground, share = plan.devices.ground(device), plan.config["devices"][device]["requirement"]["share"]
+    samples = plan.devices.samples(ground)
+    if not plan.devices.kind(device).is_beam:
+        samples = max(samples, samples_for(max(share, VERIFIED)))
+    return GROUND.settings(plan, At(**ground._replace(pair=pair)._asdict()), samples)
+
+
+def _of_tips(plan, pair, device):
+    """Settings of the tips of a cantilever, see `_of_patch`."""
+    tips = plan.devices.tips(device)._replace(pair=pair)
+    return TIPS.settings(plan, At(**tips._asdict()), plan.config["design"]["beams"])

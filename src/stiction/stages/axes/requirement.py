@@ -1,0 +1,192 @@
+"""Requirement of a device on surfaces in contact: its length or force with the allowed fraction stuck, in all airs."""
+
+import traceback
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from stiction.chaos.model import Truncation
+from stiction.config.kinds import restoring_force
+from stiction.contact.correction import NONE
+from stiction.contact.environment import Water
+from stiction.devices import risk
+from stiction.devices.limits.limit import Limit, Side
+from stiction.devices.limits.rules import long_strips, triggered
+from stiction.devices.roughness import margins
+from stiction.errors import NotConverged
+from stiction.plan.stage import select
+from stiction.run.stored_limits import as_text, of_text
+from stiction.stages.devices import sticking, stoppers
+from stiction.stages.devices.opening import FORCE, DesignedBeam, section_of_beam
+
+#: Limit of surfaces smoother than those on which full elastic contact was computed, where they change more.
+SMOOTHER = Limit("smoother_than_full_contact", Side.UNSAFE, False)
+
+
+class Response(NamedTuple):
+    """Length [m], or restoring force [N], with the allowed fraction p stuck, and the fraction stuck at another."""
+
+    safe: float  #: one-sided 95 % bound
+    estimate: float  #: infinite if no device sticks at any length
+    error: float  #: standard error of the estimate
+    bound: float  #: shortest length that sticks on any surface; NaN of a force
+    stuck: tuple[float, float, float]  #: P(stuck) at the required length or force, with the ends of its 95 % band
+
+
+#: Responses at a humidity by shape, and limits of all of them.
+Found = tuple[list[Response], list[Limit]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfBeam:
+    """Settings of a beam with a required length, without its contacts."""
+
+    seed: int
+    chaos: Truncation
+    water: Water
+    humidities: tuple[float, ...]  #: [-]
+    device: DesignedBeam
+    beams: int
+    share: float  #: p [-]
+    length: float  #: required [m]
+    edge_radius: float  #: of tips, for the bound of flats [m]
+
+    @property
+    def required(self) -> tuple[float, str]:
+        """Required number, with its unit."""
+        return self.length, "m"
+
+    @property
+    def shares(self) -> tuple[float, ...]:
+        """Fractions, as in other settings of safe lengths."""
+        return (self.share,)
+
+    @property
+    def shapes(self) -> tuple[str, ...]:
+        """End states of a stuck device."""
+        return self.device.opening.shapes
+
+    def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> Found:
+        """Safe lengths at a humidity by shape, and the limit of strips that are too long."""
+        met = sticking.ground(contact, tips, humidity, self)
+        beams = sticking.release_beams(self.device, met, self)
+        known = sticking.lengths_without_samples(self.device, self.water, humidity, self.edge_radius, beams.reach)
+        safe = sticking.by_shape(beams, self, known)
+        limit = long_strips(
+            self.device.strip, self.device.opening.longest_strip(self.device, met.laws), self.device.opening.arms == 2
+        )
+        found = [self._response(held, *safe[shape], known[shape]) for shape, held in beams.lengths.items()]
+        return found, triggered(limit)
+
+    def _response(self, lengths, safe, known):
+        """Response from stuck lengths (n,) [m], their safe length and other known lengths."""
+        shares = risk.stuck_share(np.array([self.length]), lengths, known.reach)
+        error = np.sqrt(np.nansum(np.square([safe.error, safe.surfaces_error])))
+        return Response(safe.length, safe.estimate, float(error), known.flat, tuple(float(part[0]) for part in shares))
+
+
+@dataclass(frozen=True, kw_only=True)
+class OfStopper:
+    """Settings as of `OfBeam`, of a stopper with a restoring force."""
+
+    seed: int
+    water: Water
+    humidities: tuple[float, ...]  #: [-]
+    contact: tuple[float, float]  #: sides of the patch [m]
+    share: float  #: p [-]
+    restoring_force: float  #: [N]
+
+    shapes = (FORCE,)
+
+    @property
+    def required(self) -> tuple[float, str]:
+        """Required number, with its unit."""
+        return self.restoring_force, "N"
+
+    def responses(self, contact: xr.Dataset, _tips: None, humidity: float) -> Found:
+        """Safe force at a humidity, without limits of strips."""
+        forces = stoppers.forces(contact, humidity, self)
+        change = self.water.changes(humidity)[1]
+        stuck = tuple(stoppers.stuck_with_band(forces, self.restoring_force, change))
+        (safe,) = stoppers.safe_forces_of(forces[None], self.share, self.seed, [change])
+        return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)], []
+
+
+def compute(
+    contact: Mapping[bool, xr.Dataset], settings: OfBeam | OfStopper, tips: Mapping[bool, xr.Dataset] | None = None
+) -> xr.Dataset:
+    """Lengths or forces at all humidities, or the reason against them.
+
+    The contacts are those in humid air (true) and in dry air, of tips if there are any.
+    """
+    responses, flagged, refused = [], [], []
+    for humidity in settings.humidities:
+        met, air = (contact[humidity > 0], (tips or {}).get(humidity > 0)), settings.water.at(humidity)
+        try:
+            found, limits = replace(settings, water=air).responses(*met, humidity)
+            reason = ""
+        except (ValueError, NotConverged) as error:
+            traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code
+            found, limits = [Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes), []
+            reason = str(error)
+        responses.append(found)
+        flagged.append(as_text(limits))
+        refused.append(reason)
+    said = {"flagged": ("humidity", flagged), "refused": ("humidity", refused)}
+    return layout(responses, next(iter(contact.values())).sizes["strip"], settings).assign(said)
+
+
+def layout(responses: Sequence[Sequence[Response]], samples: int, settings: OfBeam | OfStopper) -> xr.Dataset:
+    """Dataset of a device: responses by humidity and shape."""
+    required, unit = settings.required
+    over, note = ("humidity", "shape"), {"units": unit}
+    columns = {name: [[getattr(one, name) for one in row] for row in responses] for name in Response._fields}
+    return xr.Dataset(
+        {name: (over, columns[name], note) for name in ("safe", "estimate", "error", "bound")}
+        | {
+            "stuck": ((*over, "end"), columns["stuck"], {"units": "1"}),
+            "samples": ((), samples if isinstance(settings, OfStopper) else settings.beams),
+            "required": ((), required, note),
+            "share": ((), settings.share, {"units": "1"}),
+            "corrected": ("humidity", [settings.water.changes(rh) != (NONE, NONE) for rh in settings.humidities]),
+        },
+        coords={
+            "humidity": list(settings.humidities),
+            "shape": list(settings.shapes),
+            "end": ["estimate", "low", "high"],
+        },
+    )
+
+
+def margins_of(found: xr.Dataset, name: str = "estimate") -> np.ndarray:
+    """Margins of a variable of devices to their requirement, of its shape [-]."""
+    return margins(found[name].values, float(found.required), found.required.attrs["units"] == "m")
+
+
+def relative_errors(found: xr.Dataset) -> np.ndarray:
+    """Standard errors of the margins of estimates due to the simulation: none where no device sticks [-]."""
+    known = np.isfinite(found.estimate.values) & (found.estimate.values > 0)
+    return np.divide(found.error.values, found.estimate.values, out=np.zeros(known.shape), where=known)
+
+
+def flagged(points: xr.Dataset, smoother: xr.DataArray | bool) -> xr.Dataset:
+    """Points with a flag where they are corrected, and ``smoother`` than where full elastic contact was computed."""
+    joined = np.vectorize(lambda flag, is_beyond: as_text([*of_text(flag), *[SMOOTHER] * is_beyond]), otypes=[object])
+    flags = xr.apply_ufunc(joined, points.flagged, points.corrected & smoother)
+    return points.assign(flagged=flags).drop_vars("corrected")
+
+
+def settings_of(plan: Any, device: str) -> dict[str, Any]:
+    """Requirement of a device, and settings of its length or force, without the contact."""
+    section = plan.config["devices"][device]
+    air = plan.air_of_devices
+    wettest = air.contact(section["pair"], max(section["humidities"]))
+    own = plan.config["design"] | section | section["requirement"] | {"water": air.water(wettest)}
+    if not plan.devices.kind(device).is_beam:
+        return select(OfStopper, own | {"seed": plan.config["seed"]} | {"restoring_force_uN": restoring_force(section)})
+    common = {key: plan.config[key] for key in ("seed", "chaos")}
+    edge = {"edge_radius_um": plan.devices.edge_radius(device)}
+    return select(OfBeam, own | common | edge | {"device": section_of_beam(plan, device)})

@@ -1,1 +1,0 @@
-"""Stages of processes: laws of surfaces, devices over a process variable, and recommended settings."""

@@ -1,1 +1,0 @@
-"""Stages of roughness: devices along the roughness of a surface, and sufficient roughnesses."""
