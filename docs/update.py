@@ -33,9 +33,9 @@ from stiction.config.units import in_si
 from stiction.contact import forcelaw
 from stiction.plan.plan import Plan
 from stiction.report.answer import words as answer_words
+from stiction.report.axes import process as sentences_process
 from stiction.report.format import TO_UM, with_error
 from stiction.report.limits import words
-from stiction.report.process import tables as tables_process
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run.storage import load
 from stiction.stages.answer.answer import answer_of
@@ -364,7 +364,7 @@ def collect_process(folder):
     rows = [
         {"device": who.replace(" ", "_"), "name": number, "text": text}
         for who in map(str, settings.who.values)
-        for number, text in enumerate(tables_process.answers(settings, who), 1)
+        for number, text in enumerate(sentences_process.answers(settings, who), 1)
     ]
     pd.DataFrame(rows).to_csv(tables / f"{PROCESS_SAID}.csv", index=False, lineterminator="\n")
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from stiction.config.surfaces import process
 from stiction.plan.graph import Results
-from stiction.report.process import maps, tables
+from stiction.report.axes import process as sentences
 from stiction.stages.axes.law import at_value
 from stiction.stages.axes.recommended import devices_over
 
@@ -104,15 +104,15 @@ class Process:
     def answers(self, device: str) -> list[str]:
         """Settings that suffice for one of its devices, or for ``all devices`` if there are several, in sentences."""
         if device in self._mapped:
-            return maps.answers(self.pairs(device))
+            return sentences.answers_of_pairs(self.pairs(device))
         settings = self.settings()
         if device not in settings.who.values:
             self._must_have(device)
-        return tables.answers(settings, device)
+        return sentences.answers(settings, device)
 
     def plot(self, device: str | None = None) -> "Figure":
         """Figure of the law, or of one of its devices over the variable."""
-        from stiction.report.process import figures
+        from stiction.report.axes import figures
 
         if device in self._mapped:
             return figures.process_map(self.margins(device), self.pairs(device))

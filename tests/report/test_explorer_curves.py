@@ -9,10 +9,9 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import PchipInterpolator
 
 from stiction.devices.roughness import LARGEST
+from stiction.report.axes import tables
 from stiction.report.devices import curve_views, curves, explorer
 from stiction.report.page import Page
-from stiction.report.process import maps, tables
-from stiction.report.roughness import tables as tables_roughness
 from stiction.stages.axes.margins import margins_of
 
 DEVICES = [(False, STOPPER), (True, BEAM)]
@@ -41,7 +40,7 @@ def are_those_of_the_table(grid, state, row):
 def test_a_page_has_at_the_settings_of_a_process_the_numbers_of_its_table(is_beam, section):
     curve, settings = etched(is_beam)
     grid = curve_views.process_view("D", section, curve, settings).grid
-    for state, row in states(grid, tables.table({"D": curve}, [], {"D": []}).frame):
+    for state, row in states(grid, tables.of_processes({"D": curve}, [], {"D": []}).frame):
         are_those_of_the_table(grid, state, row)
         assert grid.at(state)["margin"] == pytest.approx(row["margin"], abs=1e-12)
         assert grid.at(state)["error"] == pytest.approx(row["margin_se"], rel=1e-9)
@@ -52,7 +51,7 @@ def test_a_page_has_at_the_settings_of_a_process_the_numbers_of_its_table(is_bea
 def test_a_page_has_at_the_pairs_of_two_processes_the_numbers_of_their_table():
     found, pairs = mapped()
     grid = curve_views.map_view("D", STOPPER, found, pairs).grid
-    for state, row in states(grid, maps.table({"D": found}, {}, {"D": []}).frame, "bake_min"):
+    for state, row in states(grid, tables.of_pairs({"D": found}, {}, {"D": []}).frame, "bake_min"):
         are_those_of_the_table(grid, state, row)
 
 
@@ -61,7 +60,7 @@ def test_a_page_has_at_the_pairs_of_two_processes_the_numbers_of_their_table():
 def test_a_page_has_at_the_points_of_a_roughness_the_numbers_of_its_table(is_beam, section, others):
     found = rough(is_beam, others=others)
     grid = curve_views.roughness_view("D", section, found).grid
-    frame = tables_roughness.roughness({"D": found}).frame
+    frame = tables.of_roughness({"D": found}).frame
     frame["value"] = frame["value"].map(lambda value: min(grid.axes[0].values, key=lambda one: abs(one - value)))
     frame = frame.rename(columns={"other_value": "second_value"})
     for state, row in states(grid, frame, *(["skewness"] if others else [])):

@@ -13,6 +13,38 @@ define("figure_risk")
 #   answer, device_warnings -> results/tables/devices.{csv,md,html}
 define("table_devices")
 
+# Roughness {device}: how rough the surfaces of {device} must be.
+#   roughness -> results/figures/roughness_{device}.{pdf,png,txt}
+define("figure_roughness")
+
+# Roughness map {device}: how rough the surfaces of {device} must be, over two quantities.
+#   roughness -> results/figures/roughness_map_{device}.{pdf,png,txt}
+define("figure_roughness_map")
+
+# Process {device}: which settings of its process leave {device} free.
+#   process_curve, process_settings -> results/figures/process_{device}.{pdf,png,txt}
+define("figure_process")
+
+# Process law {process}: surface over the variable of process {process}.
+#   process_law -> results/figures/process_law_{process}.{pdf,png,txt}
+define("figure_process_law")
+
+# Process map {device}: which pairs of settings of two processes leave {device} free.
+#   process_map, process_pairs -> results/figures/process_map_{device}.{pdf,png,txt}
+define("figure_process_map")
+
+# Roughness: how rough a surface must be.
+#   roughness -> results/tables/roughness.{csv,md,html}
+define("table_roughness")
+
+# Process: which settings of a process suffice.
+#   process_curve, process_settings, process_law -> results/tables/process.{csv,md,html}
+define("table_process")
+
+# Process map: which pairs of settings of two processes suffice.
+#   process_map, process_pairs, process_law -> results/tables/process_map.{csv,md,html}
+define("table_process_map")
+
 # Figure 14: shapes and crack lengths of beams.
 #   beams -> results/figures/figure_14.{pdf,png,txt}
 define("figure_14")
@@ -159,38 +191,6 @@ define("table_model_error")
 # Model error: crack lengths under full elastic contact.
 #   pair_model_error, pair_model_error_across, beams, variant -> results/figures/model_error.{pdf,png,txt}
 define("figure_model_error")
-
-# Process {device}: which settings of its process leave {device} free.
-#   process_curve, process_settings -> results/figures/process_{device}.{pdf,png,txt}
-define("figure_process")
-
-# Process law {process}: surface over the variable of process {process}.
-#   process_law -> results/figures/process_law_{process}.{pdf,png,txt}
-define("figure_process_law")
-
-# Process map {device}: which pairs of settings of two processes leave {device} free.
-#   process_map, process_pairs -> results/figures/process_map_{device}.{pdf,png,txt}
-define("figure_process_map")
-
-# Process map: which pairs of settings of two processes suffice.
-#   process_map, process_pairs, process_law -> results/tables/process_map.{csv,md,html}
-define("table_process_map")
-
-# Process: which settings of a process suffice.
-#   process_curve, process_settings, process_law -> results/tables/process.{csv,md,html}
-define("table_process")
-
-# Roughness {device}: how rough the surfaces of {device} must be.
-#   roughness -> results/figures/roughness_{device}.{pdf,png,txt}
-define("figure_roughness")
-
-# Roughness map {device}: how rough the surfaces of {device} must be, over two quantities.
-#   roughness -> results/figures/roughness_map_{device}.{pdf,png,txt}
-define("figure_roughness_map")
-
-# Roughness: how rough a surface must be.
-#   roughness -> results/tables/roughness.{csv,md,html}
-define("table_roughness")
 
 # Surface sheet {surface}: scans of {surface}.
 #   estimate, spectrum -> results/figures/surface_sheet_{surface}.{pdf,png,txt}

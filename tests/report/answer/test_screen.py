@@ -34,9 +34,9 @@ from stiction.beam.energy import apparent_adhesion_energy
 from stiction.devices.budget import LARGEST
 from stiction.devices.limits import rules as limits
 from stiction.report.answer import words
+from stiction.report.axes.section import with_process
 from stiction.report.limits.words import text
 from stiction.report.page import Page, Section, Summary
-from stiction.report.process.section import with_process
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import ARC, S_SHAPE

@@ -13,8 +13,9 @@ from stiction.analysis import process_law
 from stiction.analysis.process_law import fit, grid
 from stiction.devices.process import Margins, law_error, recommended, unknown
 from stiction.plan.graph import Results
+from stiction.report.axes import figures, section, tables
+from stiction.report.axes import process as sentences
 from stiction.report.page import Page, Summary
-from stiction.report.process import figures, maps, section
 from stiction.report.style import png
 from stiction.stages.axes import recommended as stage
 from stiction.stages.axes.process import points_of
@@ -80,19 +81,22 @@ def test_a_map_joins_all_its_points_with_slopes_by_both_laws(mapped):
     inside = (found["value"].values[:, None] == pairs["value"].values).any(axis=0)
     shown = pairs.margin.sel(value=pairs["value"][inside], second=found.second)
     np.testing.assert_allclose(shown, rough[:, np.isin(found["value"], pairs["value"])], atol=1e-9)
-    assert maps.answers(pairs) == mapped.answers("Bump")
+    assert sentences.answers_of_pairs(pairs) == mapped.answers("Bump")
     assert png(mapped.plot("Bump"))[:4] == b"\x89PNG"
     laws = [mapped.law, stiction.Process.of(config(), "deposition").law]
-    table = maps.table({"Bump": found}, {"Bump": pairs}, {"Bump": laws})
+    table = tables.of_pairs({"Bump": found}, {"Bump": pairs}, {"Bump": laws})
     assert len(table.frame) == len(points)
-    assert "Bump: " + maps.briefly(pairs) in table.caption
+    assert "Bump: " + sentences.pairs_briefly(pairs) in table.caption
     data = {"process_map": found, "process_pairs": pairs, "process_laws": laws}
     screen = Summary(
         "good", "Suffices", "It is safe.", (), {"What decides": "RH 0.6.", "What to change": "Less."}, None
     )
     page = section.with_process(Page("Bump", {}, ["Because."], summary=screen), "Bump", data)
-    assert page.answer == [maps.briefly(pairs), "Because."]
-    assert page.summary.points == {"What decides": "RH 0.6.", "What to change": f"Less. {maps.briefly(pairs)}"}
+    assert page.answer == [sentences.pairs_briefly(pairs), "Because."]
+    assert page.summary.points == {
+        "What decides": "RH 0.6.",
+        "What to change": f"Less. {sentences.pairs_briefly(pairs)}",
+    }
     assert [one.title for one in page.sections] == [
         "Which settings of the two processes?",
         "Law of B2",
@@ -233,7 +237,7 @@ def test_the_next_setting_of_each_process_is_that_of_this_process_alone_where_th
         assert (found.next[k], found.again[k]) == (alone.next[0], alone.again[0])
         np.testing.assert_allclose([found.error[k], found.after[k]], [alone.before[0], alone.after[0]], rtol=0.2)
         assert found.after[k] < found.error[k]
-    *_, last = maps.answers(laid_out(found, laws[1].settings))
+    *_, last = sentences.answers_of_pairs(laid_out(found, laws[1].settings))
     when = "again" if found.again[1] else "next"
     assert last.startswith(f"Deposition time: measure {found.next[1]:g} min {when}: this is expected to shrink")
 
@@ -279,7 +283,7 @@ def told(c=0.0, known=True):
 
 
 def test_answers_name_the_pairs_that_suffice_and_the_best_one():
-    first, *more = maps.answers(told()[0])
+    first, *more = sentences.answers_of_pairs(told()[0])
     assert first.startswith(
         "Pairs of the etch time and the deposition time leave at most 1 in 20 stuck in the next runs (95 % confidence)"
     )
@@ -293,7 +297,7 @@ def test_answers_name_the_pairs_that_suffice_and_the_best_one():
 
 
 def test_without_pairs_that_suffice_the_best_is_named_and_settings_beyond_it():
-    assert maps.answers(told(c=-4.0)[0]) == [
+    assert sentences.answers_of_pairs(told(c=-4.0)[0]) == [
         "No pair of the etch time from 30 to 90 s and the deposition time from 5 to 20 min is sure to leave at most "
         "1 in 20 stuck in the next runs (deposition time, mean process: none); the best is 90 s with 20 min.",
         "Etch time: the best setting is the end of the measured range: measure settings above 90 s.",
@@ -302,7 +306,7 @@ def test_without_pairs_that_suffice_the_best_is_named_and_settings_beyond_it():
 
 
 def test_where_a_margin_is_unknown_no_pair_is():
-    (said,) = maps.answers(told(known=False)[0])
+    (said,) = sentences.answers_of_pairs(told(known=False)[0])
     assert (
         said == "Pairs of the etch time and the deposition time that suffice are not known: not all could be computed."
     )

@@ -15,8 +15,9 @@ from stiction.contact.correction import Change, Correction
 from stiction.contact.environment import Water
 from stiction.devices.process import unknown
 from stiction.plan.graph import Results
+from stiction.report.axes import process as sentences
+from stiction.report.axes import section, tables
 from stiction.report.devices import pages
-from stiction.report.process import section, tables
 from stiction.report.style import png
 from stiction.stages.axes import law, margins, recommended, requirement
 from stiction.stages.surfaces.descriptions import description
@@ -179,7 +180,7 @@ def test_answers_name_the_settings_the_best_and_the_next(etched):
 
 def test_tables_figures_and_pages_show_them(etched):
     curve, settings = etched.margins("Bump"), etched.settings()
-    table = tables.table({"Bump": curve}, [settings], {"Bump": [etched.law]})
+    table = tables.of_processes({"Bump": curve}, [settings], {"Bump": [etched.law]})
     assert list(table.frame.value) == list(curve.value)
     assert "Bump: " + etched.answers("Bump")[0] in table.caption
     for figure in (etched.plot(), etched.plot("Bump")):
@@ -237,10 +238,10 @@ def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_wit
     at = [refused.assign(value=float(value)).assign(slopes) for value in (30, 60, 90)]
     curve = margins.compute(at, [known], margins.Settings(("etch_time_s",), ("etch",), ("B2",)))
     found = recommended.compute({"Bump": curve}, {"etch": known}, "etch_time_s", 1)
-    assert tables.answers(found, "Bump") == [
+    assert sentences.answers(found, "Bump") == [
         "Settings of the etch time that suffice are not known: too few could be computed."
     ]
-    assert "Not computed where the etch time is 30 s, 60 s, 90 s: too smooth." in tables.notes(curve, [known])
+    assert "Not computed where the etch time is 30 s, 60 s, 90 s: too smooth." in sentences.notes(curve, [known])
 
 
 #: Best setting, end that it is in every draw, and the other end.
@@ -261,22 +262,22 @@ def _known(best, sufficient, following=np.nan, again=False, ends=(30, 120)):
 @pytest.mark.parametrize(("best", "side", "other"), ENDS)
 def test_where_no_setting_suffices_and_an_end_is_the_best_settings_beyond_it_are_advised(best, side, other):
     beyond = f"The best setting is the end of the measured range: measure settings {side} {best:g} s."
-    assert tables.answers(_known(best, []), "Bump")[1:] == [beyond]
-    enough = tables.answers(_known(best, [tuple(sorted((best, best + (other - best) / 9)))]), "Bump")
-    inside = tables.answers(_known(75.0, []), "Bump")
+    assert sentences.answers(_known(best, []), "Bump")[1:] == [beyond]
+    enough = sentences.answers(_known(best, [tuple(sorted((best, best + (other - best) / 9)))]), "Bump")
+    inside = sentences.answers(_known(75.0, []), "Bump")
     assert beyond not in enough + inside
 
 
 @pytest.mark.parametrize(("again", "when"), [(True, "again"), (False, "next")])
 def test_a_setting_that_is_measured_already_is_advised_again(again, when):
-    *_, last = tables.answers(_known(75.0, [(60.0, 90.0)], 60.0, again), "Bump")
+    *_, last = sentences.answers(_known(75.0, [(60.0, 90.0)], 60.0, again), "Bump")
     assert last.startswith(f"Measure 60 s {when}: ")
 
 
 @pytest.mark.parametrize(("low", "high"), [(0.03, 0.12), (30.0, 120.0), (1000.0, 1050.0), (120_000.0, 300_000.0)])
 def test_settings_are_shown_as_closely_as_their_range_is_wide(low, high):
     exact = [low + part * (high - low) for part in (0.3147, 0.6853, 0.5219, 0.8141)]
-    said = " ".join(tables.answers(_known(exact[2], [tuple(exact[:2])], exact[3], ends=(low, high)), "Bump"))
+    said = " ".join(sentences.answers(_known(exact[2], [tuple(exact[:2])], exact[3], ends=(low, high)), "Bump"))
     found = re.search(r"from (\S+) to (\S+) s leave .*, best (\S+) s.*Measure (\S+) s", said).groups()
     np.testing.assert_allclose(list(map(float, found)), exact, rtol=0, atol=0.005 * (high - low))
     assert all(len(one.replace(".", "").lstrip("0")) <= 6 for one in found)

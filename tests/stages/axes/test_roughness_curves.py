@@ -17,9 +17,10 @@ from stiction.devices import stoppers
 from stiction.devices.risk import Known
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
+from stiction.report.axes import figures as figures_roughness
+from stiction.report.axes import roughness as sentences
+from stiction.report.axes import tables
 from stiction.report.limits.words import text
-from stiction.report.roughness import figures as figures_roughness
-from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import png
 from stiction.run.stored_limits import as_text, of_text
 from stiction.stages.axes import points, requirement, roughness
@@ -103,7 +104,7 @@ def test_points_at_the_given_roughness_are_todays_results_in_dry_and_in_humid_ai
 def test_smooth_stoppers_in_dry_air_are_held_more_than_rough_ones_and_the_page_says_what_suffices(dry):
     found = stiction.Device("S1", dry).roughness()
     assert np.all(np.diff(found.estimate.sel(humidity=0, shape="force")) < 0)
-    first, second, flag = tables_roughness.answers(found)
+    first, second, flag = sentences.answers(found)
     assert first.startswith("For a restoring force of 0.2 µN, in dry air, ")
     assert "(dry)" in flag
     assert text(requirement.SMOOTHER) in flag
@@ -215,11 +216,11 @@ RANGE8 = [*RANGE, 3.4e-9]
 
 def test_page_and_table_say_which_roughness_suffices_with_its_error():
     found = joined([*map(point, RANGE), point(3.4e-9)])
-    (sentence,) = tables_roughness.answers(found)
+    (sentence,) = sentences.answers(found)
     assert "at most 1 in 20 sticks where the rms of B2 is 4.13 to 8 nm" in sentence  # 4 nm (1.1)^(1/3)
     assert "exactly 1 in 20 sticks at 4.000 ± 0.040 nm." in sentence
     assert "at 3.4 nm, 10 % (5 to 15 %) stick" in sentence
-    table = tables_roughness.roughness({"S1": found})
+    table = tables.of_roughness({"S1": found})
     assert sentence in table.caption
     np.testing.assert_allclose(table.frame.value, np.sort([*(1e9 * RANGE), 3.4]))
     np.testing.assert_allclose(table.frame.required, 1)
@@ -237,7 +238,7 @@ def test_page_and_table_say_which_roughness_suffices_with_its_error():
 )
 def test_none_and_all_of_a_range_are_answers(force, said):
     points = [point(rms, force=force) for rms in (*RANGE, 3.4e-9)]
-    (sentence,) = tables_roughness.answers(joined(points))
+    (sentence,) = sentences.answers(joined(points))
     assert said in sentence
 
 
@@ -254,10 +255,10 @@ def test_a_beam_that_sticks_at_no_length_is_an_answer():
         for rms in RANGE
     ]
     found = joined(points)
-    (sentence,) = tables_roughness.answers(found)
+    (sentence,) = sentences.answers(found)
     assert "at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm" in sentence
     assert "at 8 nm, at most " in sentence
-    frame = tables_roughness.roughness({"C1": found}).frame
+    frame = tables.of_roughness({"C1": found}).frame
     np.testing.assert_allclose(frame.required, 100)
     assert set(frame.unit) == {"µm"}
     assert png(figures_roughness.roughness(found))[:4] == b"\x89PNG"
@@ -272,26 +273,26 @@ def test_a_margin_errs_by_the_relative_error_of_its_length_and_not_at_all_where_
 def test_a_stopper_that_is_held_most_inside_the_range_has_a_worst_roughness():
     forces = 4e-6 * np.exp(-(np.log(RANGE / 2e-9) ** 2))
     found = joined([*map(point, RANGE, [""] * len(RANGE), forces), point(3.4e-9, force=3e-6)])
-    (sentence,) = tables_roughness.answers(found)
+    (sentence,) = sentences.answers(found)
     assert "The worst rms of B2 is inside this range, near 2 nm: less and more of it hold less." in sentence
-    (monotone,) = tables_roughness.answers(joined([*map(point, RANGE), point(3.4e-9)]))
+    (monotone,) = sentences.answers(joined([*map(point, RANGE), point(3.4e-9)]))
     assert "worst" not in monotone
 
 
 def test_what_cannot_be_computed_is_named_with_its_reason_and_leaves_the_rest():
     points = [point(RANGE[0], "too smooth", np.nan), *map(point, RANGE[1:]), point(3.4e-9)]
-    sentence, refusal = tables_roughness.answers(joined(points))
+    sentence, refusal = sentences.answers(joined(points))
     assert "where the rms of B2 is 4.13 to 8 nm" in sentence
     assert "computed for 1.41 to 8 nm" in sentence
     assert refusal == "Not computed where the rms of B2 is 1 nm (RH 0.6): too smooth."
     nowhere = [point(rms, "too smooth", np.nan) for rms in RANGE8]
-    sentence, _ = tables_roughness.answers(joined(nowhere))
+    sentence, _ = sentences.answers(joined(nowhere))
     assert "nothing is computed" in sentence
 
 
 def test_what_is_less_accurate_is_named_with_its_place():
     points = [point(RANGE[0], flagged=as_text([noted("Strips are long.")])), *map(point, RANGE[1:]), point(3.4e-9)]
-    _, flag = tables_roughness.answers(joined(points))
+    _, flag = sentences.answers(joined(points))
     assert flag == "Where the rms of B2 is 1 nm (RH 0.6): surface B2: Strips are long."
 
 
@@ -358,16 +359,16 @@ def test_peaks_of_a_skewed_surface_keep_stoppers_apart(mapped):
 @pytest.mark.slow
 def test_a_map_is_told_curve_by_curve_and_drawn(mapped):
     found = mapped.roughness()
-    said = tables_roughness.answers(found)
+    said = sentences.answers(found)
     assert len(said) == found.sizes["other"] == 3
     assert said[0].startswith(
         "Where the skewness of B2 is -1 and the kurtosis 3.9: For a restoring force of 3 µN, at a relative humidity of "
         "0.6, "
     )
     given = [sentence.partition(", as given: ")[2] for sentence in said if ", as given: " in sentence]
-    assert len(given) == len(tables_roughness.briefly(found)) == 1
-    assert given[0].startswith(tables_roughness.briefly(found)[0].removesuffix("."))
-    table = tables_roughness.roughness({"S1": found})
+    assert len(given) == len(sentences.briefly(found)) == 1
+    assert given[0].startswith(sentences.briefly(found)[0].removesuffix("."))
+    table = tables.of_roughness({"S1": found})
     assert len(table.frame) == POINTS * 3
     assert "and" in table.cells
     for drawn in (figures_roughness.roughness_map, figures_roughness.roughness):
@@ -403,17 +404,17 @@ def test_the_kurtosis_stands_beside_every_skewness_in_sentences_tables_and_figur
         draw = figures_roughness.roughness_map if "other" in found.dims else figures_roughness.roughness
         labels = [text.get_text() for text in getattr(draw(found).axes[0], axis).get_ticklabels()]
         assert labels == ["-1\n(4)", "0\n(3)", "0.5\n(3.25)"]
-        table = tables_roughness.roughness({"S1": found})
+        table = tables.of_roughness({"S1": found})
         assert set(table.cells["kurtosis"]) == {"4", "3", "3.25"}
         assert "kurtosis" in table.caption
-        assert "kurtosis" in tables_roughness.form(found)
-    assert [sentence.partition(": ")[0] for sentence in tables_roughness.answers(over_both)] == [
+        assert "kurtosis" in sentences.form(found)
+    assert [sentence.partition(": ")[0] for sentence in sentences.answers(over_both)] == [
         "Where the skewness of B2 is -1 and the kurtosis 4",
         "Where the skewness of B2 is 0 and the kurtosis 3, as given",
         "Where the skewness of B2 is 0.5 and the kurtosis 3.25",
     ]
     plain = joined([point(rms) for rms in RANGE8])  # control: nothing of it elsewhere
-    assert "kurtosis" not in tables_roughness.roughness({"S1": plain}).caption + tables_roughness.form(plain)
+    assert "kurtosis" not in tables.of_roughness({"S1": plain}).caption + sentences.form(plain)
 
 
 def test_a_second_value_that_is_the_given_one_is_there_once():
@@ -447,7 +448,7 @@ def test_a_stopper_of_30_micronewton_sticks_at_3_4_nm_and_not_at_5_nm():
 @pytest.mark.parametrize(("share", "samples"), [(1e-6, 29_956), (1e-3, 2995), (1e-4, 1000), (1e-6, 2_995_731)])
 def test_a_share_beyond_samples_and_verification_is_called_extrapolated(share, samples):
     found = xr.Dataset({"share": share, "samples": samples})
-    (said,) = tables_roughness.note_on_extrapolation(found) or [""]
+    (said,) = sentences.note_on_extrapolation(found) or [""]
     assert said.startswith("The result for 1 in 1000000 is extrapolated from 29956") == (samples == 29_956)
     assert bool(said) == (samples == 29_956)
 

@@ -11,11 +11,10 @@ from matplotlib.text import Text
 from test_device_outputs import charted
 from test_stage_life import OF
 
+from stiction.report.axes import figures as of_axes
 from stiction.report.budget import figures as of_budgets
 from stiction.report.devices import figures as of_devices
 from stiction.report.devices import life
-from stiction.report.process import figures as of_process
-from stiction.report.roughness import figures as of_roughness
 from stiction.report.style import PAGE, on_a_page, panels, strips, styled
 from stiction.stages.life.answers import layout
 from stiction.stages.life.table import beam_answers
@@ -30,11 +29,11 @@ FIGURES = {
     "stoppers": (2, lambda: of_budgets.stoppers({"S1": STOPPERS["S1"]}, {})),
     "budget": (4, lambda: of_budgets.budget(BEAMS | {key: one for key, one in BUDGETS.items() if "tip" in key})),
     "life": (1, lambda: life.figure({"C1": layout(beam_answers({0.67: safe()}, {}, OF), OF)})),
-    "roughness": (1, lambda: of_roughness.roughness(rough())),
-    "map": (2, lambda: of_roughness.roughness_map(rough(others=(-0.5, 0.0, 0.5)))),
-    "process": (1, lambda: of_process.devices(*etched(), "D")),
-    "process map": (1, lambda: of_process.process_map(*mapped())),
-    "law": (1, lambda: of_process.laws(law_of())),
+    "roughness": (1, lambda: of_axes.roughness(rough())),
+    "map": (2, lambda: of_axes.roughness_map(rough(others=(-0.5, 0.0, 0.5)))),
+    "process": (1, lambda: of_axes.devices(*etched(), "D")),
+    "process map": (1, lambda: of_axes.process_map(*mapped())),
+    "law": (1, lambda: of_axes.laws(law_of())),
 }
 
 

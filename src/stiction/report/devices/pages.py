@@ -24,6 +24,10 @@ from stiction.report import html
 from stiction.report.answer import figures as figures_answer
 from stiction.report.answer import judged, screen
 from stiction.report.answer import tables as tables_answer
+from stiction.report.axes import figures as figures_axes
+from stiction.report.axes import roughness as sentences_roughness
+from stiction.report.axes import section as process_section
+from stiction.report.axes import tables as tables_axes
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import curve_views, explorer, life, sentences, voltage_views
@@ -34,9 +38,6 @@ from stiction.report.format import MISSING, humidity_text
 from stiction.report.limits.words import not_modelled, texts, with_numbers
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
-from stiction.report.process import section as process_section
-from stiction.report.roughness import figures as figures_roughness
-from stiction.report.roughness import tables as tables_roughness
 from stiction.report.style import STYLE, on_a_page
 from stiction.report.surfaces.words import surface_in_words
 from stiction.report.test_beams import figures as figures_test_beams
@@ -239,19 +240,19 @@ def _test_beam_sections(name, update):
 
 def _rough_enough(roughness):
     """Sufficient roughness, among the first sentences, or nothing without a requirement."""
-    return [] if roughness is None else tables_roughness.briefly(roughness)
+    return [] if roughness is None else sentences_roughness.briefly(roughness)
 
 
 def _how_rough(name, roughness):
     """Section on how rough a surface must be, none without a requirement."""
     if roughness is None:
         return []
-    cells = tables_roughness.roughness({name: roughness}).cells.drop(columns="device")
+    cells = tables_axes.of_roughness({name: roughness}).cells.drop(columns="device")
     of_map = "other" in roughness.dims
-    said = [*tables_roughness.answers(roughness), tables_roughness.form(roughness)]
-    sections = [Section("How rough must it be?", said, cells, figures_roughness.roughness(roughness))]
+    said = [*sentences_roughness.answers(roughness), sentences_roughness.form(roughness)]
+    sections = [Section("How rough must it be?", said, cells, figures_axes.roughness(roughness))]
     if of_map:
-        sections.append(Section("Over two quantities", _OF_MAPS, None, figures_roughness.roughness_map(roughness)))
+        sections.append(Section("Over two quantities", _OF_MAPS, None, figures_axes.roughness_map(roughness)))
     return sections
 
 

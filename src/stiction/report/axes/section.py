@@ -7,8 +7,9 @@ from typing import Any
 import xarray as xr
 
 from stiction.config.surfaces import process
+from stiction.report.axes import figures, tables
+from stiction.report.axes import process as sentences
 from stiction.report.page import Page, Section
-from stiction.report.process import figures, maps, tables
 from stiction.stages.axes.recommended import ALL
 
 #: Point of the first screen that has the settings.
@@ -37,13 +38,11 @@ def with_process(page: Page, device: str, data: Mapping[str, Any]) -> Page:
         return page
     laws = data["process_laws"]
     if "process_map" in data:
-        own, answer = (
-            _map_answers(device, data["process_map"], data["process_pairs"], laws),
-            maps.briefly(data["process_pairs"]),
-        )
+        own = _of_pairs(device, data["process_map"], data["process_pairs"], laws)
+        answer = sentences.pairs_briefly(data["process_pairs"])
     else:
         own = _section(device, data["process"], data["process_settings"], laws)
-        answer = tables.briefly(data["process_settings"], device)
+        answer = sentences.briefly(data["process_settings"], device)
     pictures = [Section(f"Law of {law.surface}", (), None, figures.laws(law)) for law in laws]
     summary = page.summary
     if summary and not page.is_forbidden:
@@ -57,16 +56,17 @@ def _with_advice(points, answer):
     return points | {CHANGE: " ".join(filter(None, [points.get(CHANGE, ""), answer]))}
 
 
-def _map_answers(device, found, pairs, laws):
+def _of_pairs(device, found, pairs, laws):
     """Answers about a device over two processes, with table and figure."""
-    cells = maps.table({device: found}, {}, {device: laws}).cells.drop(columns="device")
-    said = [*maps.answers(pairs), *maps.notes(found, laws)]
+    cells = tables.of_pairs({device: found}, {}, {device: laws}).cells.drop(columns="device")
+    said = [*sentences.answers_of_pairs(pairs), *sentences.notes(found, laws)]
     return Section("Which settings of the two processes?", said, cells, figures.process_map(found, pairs))
 
 
 def _section(device: str, curve: xr.Dataset, settings: xr.Dataset, laws: Sequence[xr.Dataset]) -> Section:
     """Answers about one device and about all devices of its process, with table and figure."""
-    together = tables.answers(settings, ALL) if ALL in settings.who.values else []
-    said = [*tables.answers(settings, device), *together, *tables.notes(curve, laws)]
-    cells = tables.table({device: curve}, [], {device: laws}).cells.drop(columns="device")
-    return Section("Which setting of the process?", said, cells, figures.devices(curve, settings, device))
+    who = [device, *([ALL] if ALL in settings.who.values else [])]
+    said = [sentence for one in who for sentence in sentences.answers(settings, one)]
+    cells = tables.of_processes({device: curve}, [], {device: laws}).cells.drop(columns="device")
+    figure = figures.devices(curve, settings, device)
+    return Section("Which setting of the process?", [*said, *sentences.notes(curve, laws)], cells, figure)

@@ -1,0 +1,280 @@
+"""Figures along an axis: curves of a device with bands, maps of its margin over two axes, and laws of surfaces."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.colors import CenteredNorm
+from matplotlib.figure import Figure
+
+from stiction.config.cases import Air
+from stiction.config.surfaces import process
+from stiction.report.axes.axis import axes_of
+from stiction.report.format import TO_NM, TO_UM
+from stiction.report.style import (
+    DOUBLE,
+    INTERVAL,
+    SINGLE,
+    columns_of_panels,
+    figure_stage,
+    handles,
+    humidity_colours,
+    legend_outside,
+    letter,
+    panels,
+    plain_log,
+    styled,
+)
+from stiction.stages.axes.law import law_of, plain
+from stiction.stages.axes.requirement import margins_of
+from stiction.stages.axes.roughness import KURTOSIS, curves_of
+from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.devices.opening import FORCE
+
+#: Quantities of a surface on an axis: words and function of the unscaled quantity.
+_SHOWN = {
+    "rms": ("rms [nm]", lambda values: TO_NM * np.exp(values)),
+    "skewness": ("skewness", lambda values: values),
+    "kurtosis": ("kurtosis", lambda values: values),
+    "corner": ("corner [rad/µm]", lambda values: np.exp(values) / TO_UM),
+    "slope": ("slope of the spectrum", lambda values: values),
+}
+#: Number of values along a law.
+_POINTS = 101
+#: Parts of the error of the mean process.
+_PARTS = ("simulation", "law", "model")
+
+
+# Curves
+
+
+@styled
+def roughness(dataset: xr.Dataset) -> Figure:
+    """Estimate with its band of 95 %, safe value and crossings with the required one. A panel for each end state.
+
+    Of a map, the curve with the second quantity as given is drawn.
+    """
+    as_given = (one for one in curves_of(dataset) if "other" not in one.coords or one.other == one.other_given)
+    curve = next(as_given)
+    given = axes_of(curve)[0].in_unit(float(curve.given))
+    return _curves(curve, _simulated, lambda panel: panel.axvline(given, color="0.6", linestyle=":", label="as given"))
+
+
+@styled
+def devices(curve: xr.Dataset, recommended: xr.Dataset, device: str) -> Figure:
+    """Estimate of a device over a process variable, with its 95 % band, the required value and the best setting.
+
+    A panel for each end state. Grey: the settings that suffice at all humidities and against all end states.
+    """
+    one = recommended.sel(who=device)
+    best, (low, high), required = float(one.best), map(float, one.best_interval), TO_UM * float(curve.required)
+    reach = np.maximum([[best - low], [high - best]], 0)
+
+    def marks(panel):
+        """Settings that suffice, and the best one."""
+        for ends in one.sufficient.values[np.isfinite(one.sufficient.values[:, 0])]:
+            panel.axvspan(*ends, color="0.9", zorder=0, label="next run suffices, 95 %")
+        label = "best and 95 % interval"
+        panel.errorbar(best, required, xerr=reach, fmt="D", color="black", markersize=4, label=label)
+
+    return _curves(curve, _band, marks)
+
+
+def _curves(curve, draw, mark):
+    """Figure of a curve, ``draw`` its line at a humidity and ``mark`` what is common to a panel."""
+    shapes = list(map(str, curve["shape"].values))
+    figure, axes = panels(1, len(shapes), (min(DOUBLE, 1.3 * SINGLE * len(shapes)), 3.0))
+    own, along = ("restoring force", "force needed [µN]") if shapes == [FORCE] else ("required length", "length [µm]")
+    for panel, shape in zip(axes[0], shapes, strict=True):
+        for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
+            draw(panel, curve.sel(humidity=humidity, shape=shape), colour)
+        panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label=own)
+        mark(panel)
+        panel.set_yscale("log")
+        plain_log(panel.yaxis)
+        _show(panel.xaxis, panel.set_xscale, curve, axes_of(curve)[0])
+    axes[0, 0].set_ylabel(f"{along}, p = {float(curve.share):g}")
+    letter(axes, [END_STATES[shape].by for shape in shapes])
+    legend_outside(figure, handles(*axes[0]), "lower", 2 * len(shapes))
+    return figure
+
+
+def _simulated(panel, line, colour):
+    """Estimate along a roughness with its band, safe values, and crossings with their 95 % intervals."""
+    axis, shape = axes_of(line)[0], str(line["shape"].values)
+    x, estimate = axis.in_unit(line.roughness.values), TO_UM * line.estimate.values
+    reach = INTERVAL * TO_UM * line.error.values
+    panel.fill_between(x, estimate - reach, estimate + reach, color=colour, alpha=0.2, linewidth=0)
+    panel.plot(x, estimate, ".-", color=colour, label=f"{Air(float(line.humidity)).words}, estimate and 95 % band")
+    panel.plot(x, TO_UM * line.safe.values, "_", color=colour, markersize=8, label="safe, 95 % confidence")
+    if np.isfinite(line.bound.values).any():
+        style, label = END_STATES[shape].lines[1], f"flat surfaces, {END_STATES[shape].by}"
+        panel.plot(x, TO_UM * line.bound.values, style, color=colour, linewidth=0.8, label=label)
+    own = (line.crossing_humidity.values == float(line.humidity)) & (line.crossing_shape.values == shape)
+    if own.any():
+        places, errors = (axis.in_unit(line[name].values[own]) for name in ("crossing_place", "crossing_error"))
+        height = np.full(len(places), TO_UM * float(line.required))
+        panel.errorbar(places, height, xerr=INTERVAL * errors, fmt="o", color=colour, fillstyle="none", zorder=3)
+
+
+def _band(panel, line, colour):
+    """Estimate over a process, with the bands of the mean process and, wider, of the next run."""
+    x, estimate = line.value.values, TO_UM * line.estimate.values
+    for names in (_PARTS, (*_PARTS, "run")):
+        factor = np.exp(INTERVAL * np.sqrt(sum(line[f"{name}_error"].values ** 2 for name in names)))
+        panel.fill_between(x, estimate / factor, estimate * factor, color=colour, alpha=0.15, linewidth=0)
+    label = f"{Air(float(line.humidity)).words}, estimate, 95 % bands of mean and next run"
+    panel.plot(x, estimate, ".-", color=colour, label=label)
+
+
+def _show(side, scale, data, axis):
+    """Scale and label of an axis. A skewness has its kurtosis in brackets at every computed value."""
+    side.set_label_text(axis.label)
+    if axis.logarithmic:
+        scale("log")
+        plain_log(side)
+    if axis.name == "skewness":
+        along = data[KURTOSIS].isel({other: 0 for other in data[KURTOSIS].dims if other != axis.dimension})
+        pairs = zip(axis.values, along.values, strict=True)
+        side.set_ticks(axis.values, [f"{at:.3g}\n({kurtosis:.3g})" for at, kurtosis in pairs])
+        side.set_label_text(f"{axis.label} (kurtosis)")
+
+
+# Maps
+
+
+@styled
+def roughness_map(data: xr.Dataset) -> Figure:
+    """Margin to the requirement, and lines of zero margin, against the two quantities of a dataset of stage roughness.
+
+    The panels are by humidity and end state.
+    """
+    humidities, shapes = data.humidity.values, list(map(str, data["shape"].values))
+    size = min(DOUBLE, 1.3 * SINGLE * len(shapes)), 2.8 * len(humidities)
+    figure, axes = panels(len(humidities), len(shapes), size)
+    is_beam = data.required.attrs["units"] == "m"
+    margin = "length / required length" if is_beam else "restoring force / force needed"
+    along, across = axes_of(data)
+    for row, humidity in zip(axes, humidities, strict=True):
+        for panel, shape in zip(row, shapes, strict=True):
+            curve = data.sel(humidity=humidity, shape=shape).transpose("other", "roughness", ...)
+            _filled(panel, data, margins_of(curve), margins_of(curve, "safe"), f"lg ({margin})")
+            panel.plot(along.in_unit(float(data.given)), across.in_unit(float(data.other_given)), "k+")
+            panel.set_title(f"{END_STATES[shape].by}, {Air(humidity).words}")
+    return figure
+
+
+@styled
+def process_map(found: xr.Dataset, pairs: xr.Dataset) -> Figure:
+    """Smallest margin of a device over two processes, with its lines of zero margin and the best pair."""
+    figure, ((panel,),) = panels(1, 1, (1.5 * SINGLE, 3.4))
+    _filled(panel, found, pairs.margin.values, pairs.safe.values, "lg (smallest margin)", pairs)
+    best, interval = pairs.best.values, pairs.best_interval.values
+    across, up = np.abs(interval - best[:, None])[..., None]
+    marks = {"fmt": "D", "color": "black", "markersize": 4, "label": "best, 95 % intervals", "clip_on": False}
+    panel.errorbar(*best, xerr=across, yerr=up, **marks)
+    legend_outside(figure, handles(panel), "lower", 2)
+    return figure
+
+
+def _filled(panel, computed, margin, safe, label, shown=None):
+    """Map of a margin with its lines of zero and the computed points. Margins are at these, or at other ones shown."""
+    x, y = (axis.in_unit(axis.values) for axis in axes_of(computed if shown is None else shown))
+    levels = np.ma.masked_invalid(margin / np.log(10))
+    if levels.count():
+        colours = panel.contourf(x, y, levels, 12, cmap="RdBu", norm=CenteredNorm())
+        panel.figure.colorbar(colours, ax=panel, label=label)
+    for values, line, words in ((margin, "-", "estimate meets the requirement"), (safe, "--", "with 95 % confidence")):
+        if np.nanmin(values, initial=np.inf) < 0 < np.nanmax(values, initial=-np.inf):
+            panel.contour(x, y, np.ma.masked_invalid(values), [0], colors="black", linestyles=line)
+            panel.plot([], [], line, color="black", label=words)
+    axes = axes_of(computed)
+    points = np.meshgrid(*(axis.in_unit(axis.values) for axis in axes))
+    panel.plot(*map(np.ravel, points), ".", color="0.3", markersize=2, label="computed")
+    for side, scale, axis in zip((panel.xaxis, panel.yaxis), (panel.set_xscale, panel.set_yscale), axes, strict=True):
+        _show(side, scale, computed, axis)
+
+
+# Laws
+
+
+@styled
+def laws(law: xr.Dataset) -> Figure:
+    """Quantities of a surface over a process variable: settings with their errors, and the law with its 95 % band."""
+    fitted, names = law_of(law), list(map(str, law["quantity"].values))
+    figure, columns, _ = columns_of_panels(len(names), 1, lambda count: min(DOUBLE, 2.4 * count), 2.2)
+    values = np.linspace(*fitted.ends, _POINTS)
+    curves = plain(fitted.at(values), fitted.covariance_at(values), names)
+    points = plain(law.measured.values, law.errors.values, names)
+    for k, (name, (panel, *_)) in enumerate(zip(names, columns, strict=True)):
+        words, shown = _SHOWN[name]
+        low, line, high = (shown(curves[0][:, k] + INTERVAL * sign * curves[1][:, k]) for sign in (-1, 0, 1))
+        below, at, above = (shown(points[0][:, k] + INTERVAL * sign * points[1][:, k]) for sign in (-1, 0, 1))
+        panel.fill_between(values, low, high, color="0.85", linewidth=0, label="95 % band of the law")
+        panel.plot(values, line, color="black", label="law")
+        panel.errorbar(
+            law.setting.values, at, yerr=[at - below, above - at], fmt="o", markersize=3, label="settings, 95 %"
+        )
+        panel.set_xlabel(f"{process.words_of(law.variable)} [{process.unit_of(law.variable)}]")
+        panel.set_ylabel(words)
+    legend_outside(figure, handles(columns[0][0]), "lower", 3)
+    return figure
+
+
+def _stage(name, shows, inputs, draw, names, wildcard="device"):
+    """Stage for a figure of each of some devices or processes of a plan."""
+    return figure_stage(
+        f"{name}_{{{wildcard}}}",
+        shows,
+        "Devices",
+        inputs=inputs,
+        compute=draw,
+        jobs=lambda plan: [{wildcard: one} for one in names(plan)],
+        targets=("devices",),
+    )
+
+
+def _roughness(_plan, at):
+    """Dataset of a device over a roughness."""
+    return {"roughness": f"devices/roughness/{at.device}"}
+
+
+STAGES = (
+    _stage(
+        "roughness",
+        "how rough the surfaces of {device} must be",
+        _roughness,
+        lambda data: roughness(data["roughness"]),
+        lambda plan: plan.devices.over_roughness,
+    ),
+    _stage(
+        "roughness_map",
+        "how rough the surfaces of {device} must be, over two quantities",
+        _roughness,
+        lambda data: roughness_map(data["roughness"]),
+        lambda plan: plan.devices.over_two_quantities,
+    ),
+    _stage(
+        "process",
+        "which settings of its process leave {device} free",
+        lambda plan, at: {
+            "curve": f"process/curves/{at.device}",
+            "recommended": f"process/settings/{process.variable_of(plan.config, at.device)}",
+        },
+        devices,
+        lambda plan: plan.devices.over_process,
+    ),
+    _stage(
+        "process_law",
+        "surface over the variable of process {process}",
+        lambda plan, at: {"law": f"process/laws/{at.process}"},
+        laws,
+        lambda plan: process.used_processes(plan.config),
+        "process",
+    ),
+    _stage(
+        "process_map",
+        "which pairs of settings of two processes leave {device} free",
+        lambda plan, at: {"map": f"process/maps/{at.device}", "pairs": f"process/pairs/{at.device}"},
+        lambda data: process_map(data["map"], data["pairs"]),
+        lambda plan: plan.devices.processed_twice,
+    ),
+)

@@ -1,0 +1,147 @@
+"""Sentences on sufficient roughnesses of a surface."""
+
+import numpy as np
+import xarray as xr
+
+from stiction.devices.risk import VERIFIED, one_in, samples_for
+from stiction.report.axes.axis import Axis, axes_of, notes, subjects
+from stiction.report.format import UM, airs, fraction_with_band
+from stiction.stages.axes.roughness import KURTOSIS, curves_of
+from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.devices.opening import FORCE
+
+#: Standard errors beyond which two forces count as different.
+DIFFERENT = 3
+
+
+def form(*datasets: xr.Dataset) -> str:
+    """Constants while the quantities of some curves and maps are varied, and their changes."""
+    varied = (
+        "Two quantities of one surface are varied."
+        if any("other" in dataset.dims for dataset in datasets)
+        else "One quantity of one surface is varied."
+    )
+    stays = "The form of its heights and the shape of its spectrum stay"
+    if any(KURTOSIS in dataset for dataset in datasets):
+        stays = (
+            "A skewness comes with the kurtosis of the surface. If no density of maximum entropy has both, it comes "
+            "with the largest kurtosis of such a density, shown beside it. All else of the form of its heights and the "
+            "shape of its spectrum stays"
+        )
+    return f"{varied} {stays}; a process that changes one of them usually changes all."
+
+
+def answers(dataset: xr.Dataset) -> list[str]:
+    """Sufficient roughnesses, one sentence for each humidity and end state, and reasons against others.
+
+    Those of a map are about each of its curves.
+    """
+    said = []
+    for curve in curves_of(dataset):
+        of_curve = [*(_answer(curve, *subject) for subject in subjects(curve)), *notes(curve)]
+        said += [_at_other(curve) + sentence for sentence in of_curve]
+    return said + note_on_extrapolation(dataset)
+
+
+def briefly(dataset: xr.Dataset) -> list[str]:
+    """Places of sufficient roughness, one sentence for each humidity and end state, of a map at its given value."""
+    curves = [curve for curve in curves_of(dataset) if not _is_changed(curve)]
+    said = [f"{_enough(curve, *subject)}." for curve in curves for subject in subjects(curve)]
+    return said + note_on_extrapolation(dataset)
+
+
+def note_on_extrapolation(dataset: xr.Dataset) -> list[str]:
+    """Note on an extrapolated fraction, beyond the bound from the devices and beyond verification."""
+    share, samples = float(dataset.share), int(dataset.samples)
+    if share >= VERIFIED or samples >= samples_for(share):
+        return []
+    return [
+        f"The result for {one_in(share)} is extrapolated from {samples} simulated devices, by a line through the 5 % "
+        f"that stick most easily. The line was verified down to {one_in(VERIFIED)}."
+    ]
+
+
+def _at_other(curve):
+    """Beginning of the sentences on a curve of a map, nothing for others."""
+    if "other" not in curve.coords:
+        return ""
+    other, given = axes_of(curve)[1], "" if _is_changed(curve) else ", as given"
+    kurtosis = f" and the kurtosis {float(curve[KURTOSIS][0]):.3g}" if other.name == "skewness" else ""
+    return f"Where the {other.words} is {other.at(curve.other)}{kurtosis}{given}: "
+
+
+def _is_changed(curve):
+    """Whether the second quantity of a curve differs from the surface's."""
+    return "other" in curve.coords and float(curve.other) != float(curve.other_given)
+
+
+def _answer(curve, humidity, shape):
+    """Sufficient roughness at a humidity against one end state."""
+    rows = _rows(curve, "crossing", humidity, shape)
+    places = [axes_of(curve)[0].at(*row) for row in zip(rows.crossing_place, rows.crossing_error, strict=True)]
+    exactly = f"; exactly {one_in(float(curve.share))} sticks at {' and at '.join(places)}" if places else ""
+    more = _worst(curve, humidity, shape) + _stuck_as_given(curve, humidity, shape)
+    return f"{_enough(curve, humidity, shape)}{exactly}. {more}"
+
+
+def _enough(curve, humidity, shape):
+    """Place of the requirement on the safe values at a humidity against one end state."""
+    required = f"{float(curve.required) / UM:g} {required_unit(curve)}"
+    wanted = (
+        f"a restoring force of {required}" if shape == FORCE else f"a length of {required} ({END_STATES[shape].by})"
+    )
+    rows = _rows(curve, "range", humidity, shape)
+    ranges = axes_of(curve)[0].ranges(np.stack([rows.range_low, rows.range_high], axis=-1))
+    where = _where(curve.sel(humidity=humidity, shape=shape), axes_of(curve)[0], ranges)
+    return f"For {wanted}, {airs([humidity])}, {where}"
+
+
+def _where(curve, axis: Axis, ranges):
+    """Roughness with the safe value of a curve at the requirement."""
+    known = axis.values[curve.safe.notnull().values]
+    if not len(known):
+        return "nothing is computed"
+    share, (whole,) = one_in(float(curve.share)), axis.ranges([(known[0], known[-1])])
+    if not ranges:
+        return f"no {axis.words} of {whole} suffices: nowhere there is it certain that at most {share} sticks"
+    of_beam = curve.required.attrs["units"] == "m"  # bounds of beams allow for the number of drawn surfaces
+    sure = "95 % confidence" if of_beam else "95 % confidence, given the drawn surfaces"
+    if ranges == [whole]:
+        return f"at most {share} sticks at any {axis.words} of {whole} ({sure})"
+    return f"at most {share} sticks where the {axis.words} is {' or '.join(ranges)} ({sure}; computed for {whole})"
+
+
+def _worst(curve, humidity, shape):
+    """Roughness of strongest adhesion of a stopper if it is inside the range, beyond the errors of both ends."""
+    known, axis = curve.sel(humidity=humidity, shape=shape).dropna("roughness", subset=["estimate"]), axes_of(curve)[0]
+    forces, errors = known.estimate.values, known.error.values
+    if shape != FORCE or not len(forces):
+        return ""
+    most = int(np.argmax(forces))
+    apart = [forces[most] - forces[end] > DIFFERENT * np.hypot(errors[most], errors[end]) for end in (0, -1)]
+    if not all(apart):
+        return ""
+    place = axis.at(known.roughness[most])
+    return f"The worst {axis.words} is inside this range, near {place}: less and more of it hold less. "
+
+
+def _stuck_as_given(curve, humidity, shape):
+    """P(stuck) on the surfaces as they are given, if it is known."""
+    given, axis = curve.sel(humidity=humidity, shape=shape, roughness=float(curve.given)), axes_of(curve)[0]
+    stuck = given.stuck.values.tolist()
+    where = f"At the given {axis.words}" if _is_changed(curve) else "On the surfaces as they are given"
+    if np.isnan(stuck[0]):
+        return f"{where}, it is not computed."
+    return f"{where}, at {axis.at(curve.given)}, {fraction_with_band(*stuck, ' %')} stick."
+
+
+def _rows(curve, dimension, humidity, shape):
+    """Crossings or ranges of a humidity and end state."""
+    names = [f"{dimension}_humidity", f"{dimension}_shape"]
+    own = (curve[names[0]].values == humidity) & (curve[names[1]].values == shape)
+    return curve.isel({dimension: np.flatnonzero(own)})
+
+
+def required_unit(dataset: xr.Dataset) -> str:
+    """Unit of the requirement, as shown."""
+    return "µN" if dataset.required.attrs["units"] == "N" else "µm"
