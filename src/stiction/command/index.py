@@ -102,14 +102,15 @@ def index(folder: Path, rules: Iterable[Mapping[str, Any]], unlike: Collection[s
     """Page with the results of the last run of a folder, without the files ``unlike`` this run."""
     runs, results = recorded_runs(folder / "provenance.json"), Present(folder, unlike)
     last, config, found = runs[-1], runs[-1]["config"], list(items(results, rules))
+    shown = _computed(results, config)
     changes, checks = differing(config, paper()), list(csv.DictReader(results.text("checks.csv").splitlines()))
     return rendered(
         "index.html",
-        title=front_page.subjects(config) or f"surfaces {', '.join(_surfaces_of_run(config))}",
+        title=front_page.subjects(shown) or f"surfaces {', '.join(_surfaces_of_run(shown))}",
         made=f"Last run: {start_of(last)}, {next(code_of(last))}.",
         devices=list(_devices(results, config, found)),
         pairs=list(front_page.pair_answers(results, config)),
-        surfaces=list(_surfaces(results, config)),
+        surfaces=list(_surfaces(results, shown)),
         figures=_by_category(item for item in found if item.shown.endswith(".png")),
         tables=[item for item in found if item.category == "Tables"],
         verdict=results.text("verdict.txt").strip() or _failed(checks),
@@ -119,6 +120,13 @@ def index(folder: Path, rules: Iterable[Mapping[str, Any]], unlike: Collection[s
         provenance=list(front_page.provenance(last, len(runs))),
         changes=yaml.safe_dump(changes, allow_unicode=True, sort_keys=False) if changes else "",
     )
+
+
+def _computed(results, config):
+    """Configuration without its pairs if a run of devices left them out."""
+    if results.text("tables/table_3.csv") or not config.get("devices"):
+        return config
+    return config | {"run": config["run"] | {"pairs": []}}
 
 
 def _failed(checks):
@@ -155,12 +163,13 @@ def _devices(results: Present, config: Mapping, found: Sequence[Item]) -> Iterat
     """Devices with their first answer, their page and the number of warnings."""
     pages = {item.shown for item in found}
     found_limits = list(front_page.limits(results, config))
+    verdicts = {row["device"]: row for row in csv.DictReader(results.text("tables/devices.csv").splitlines())}
     for name, section in config.get("devices", {}).items():
         page, (answer, *_) = f"devices/{name}.html", [*results.text(f"devices/{name}.txt").splitlines(), ""]
         yield {
             "name": name,
             "kind": kind_of(section).words,
-            "drawing": device_drawing(section).svg,
+            "drawing": device_drawing(section, verdicts.get(name, {}).get("by_tip") == "True").svg,
             "page": page if page in pages else "",
             "answer": answer,
             "warnings": sum(name in {one.name for one in subjects} for _, subjects in found_limits),

@@ -65,6 +65,7 @@ def _row(answer):
         **{f"after_{step.cause}": known * step.size / scale for step in answer.steps},
         "relative_humidity": last.humidity,
         "held_by": END_STATES[last.shape].by if last.shape in END_STATES else last.shape,
+        "by_tip": answer.is_by_tip,
         "largest_step": str(answer.largest_step.cause),
         "measure": answer.measure,
         "if_measured": known * answer.if_measured / scale,
