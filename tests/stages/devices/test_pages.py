@@ -128,9 +128,11 @@ def test_advice_warnings_and_what_is_not_modelled_are_shown(stopper):
 
 def test_sentences_on_safe_forces_begin_with_the_humidities_of_the_stopper():
     found = STOPPERS["S1"]
-    assert sentences.safe_force_sentences(found)[0].startswith("At all these humidities, a restoring force of")
+    assert sentences.safe_force_sentences(found)[0].startswith(
+        "By simulation alone, at all these humidities, a restoring force of"
+    )
     single = sentences.safe_force_sentences(found.sel(humidity=[0.67]))
-    assert single[0].startswith("At a relative humidity of 0.67, a restoring force of")
+    assert single[0].startswith("By simulation alone, at a relative humidity of 0.67, a restoring force of")
 
 
 def test_a_page_explains_the_terms_that_it_uses_and_no_others():

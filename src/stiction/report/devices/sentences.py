@@ -102,14 +102,14 @@ _ON = {
 
 
 def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
-    """Sufficient restoring forces at the humidities of a stopper, and in any air of its fine axis.
+    """Simulated restoring forces that suffice at the humidities of a stopper, and in any air of its fine axis.
 
     For the shares that its patches can bound.
     """
     stated = stopper.safe_force.sel(part="safe").max("humidity").assign_coords(basis=stopper.basis)
-    where = "At all these humidities" if stopper.sizes["humidity"] > 1 else _at(float(stopper.humidity[0]))
+    where = "at all these humidities" if stopper.sizes["humidity"] > 1 else airs([float(stopper.humidity[0])])
     return [
-        f"{where}, a restoring force of {float(force) / UN:.3g} µN leaves at most "
+        f"By simulation alone, {where}, a restoring force of {float(force) / UN:.3g} µN leaves at most "
         f"{one_in(float(force.share))} stuck ({_ON[str(force.basis.values)]})"
         + (f"; at any humidity{_range(stopper)}, {float(more) / UN:.3g} µN are needed." if ends(stopper) else ".")
         for force, more in zip(stated, in_any_air(stopper)[1], strict=True)
