@@ -50,7 +50,7 @@ READ_BY = {
     "device_warnings": "table_safe_lengths figure_risk table_chart figure_chart table_stoppers figure_stoppers"
     " device_limits device_page table_devices",
     "cracks": "safe_lengths",
-    "safe_lengths": "answer table_safe_lengths figure_risk device_warnings device_page life",
+    "safe_lengths": "answer table_safe_lengths device_warnings device_page life",
     "touchdowns": "answer life",
     "separation": "answer life",
     "fast_strips": "answer life",
@@ -78,7 +78,7 @@ RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
 COMPUTING = set(READ_BY)
 #: Rules of one kind of device.
 OF_STOPPERS = {"stoppers", "separation", "table_stoppers", "figure_stoppers"}
-SHOWN = {"table_safe_lengths", "figure_risk"}
+SHOWN = {"table_safe_lengths"}
 OF_CHARTS = {"chart", "table_chart", "figure_chart"}
 OF_BEAMS = {"ground", "cracks", "safe_lengths", "fast_strips", "fast_tips"} | SHOWN | OF_CHARTS
 BODY = "surfaces: {B2: {material: Other}}\nmaterials: {Other: "
@@ -86,7 +86,7 @@ BODY = "surfaces: {B2: {material: Other}}\nmaterials: {Other: "
 #: Description of a change; overlay; rules that it affects directly, whose readers rerun as well; rules excepted because
 #: their files do not depend on it; pattern of files that must not rerun.
 MATRIX = [
-    ("restoring force", "devices: {S1: {restoring_force_uN: 30}}", "stoppers", ("table_safe_lengths", "figure_risk", "table_chart", "figure_chart"), "C1|R1|budget"),
+    ("restoring force", "devices: {S1: {restoring_force_uN: 30}}", "stoppers", ("table_safe_lengths", "table_chart", "figure_chart"), "C1|R1|budget"),
     ("uncertainty of a dimension", "devices: {C1: {uncertainty: {gap_um: 0.5}}}", "budget tip_budget life", (),
      "R1|S1|contact|chart"),
     ("tension of a liquid", "liquids: {Mine: {surface_tension_mN_per_m: 30}}", "life", (), "S1|contact|cracks|safe"),
@@ -94,17 +94,17 @@ MATRIX = [
     ("voltage of a beam", "devices: {C1: {voltage_V: 3, dielectric: {thickness_nm: 100, permittivity: 4}}}", "at_voltage", (),
      "R1|S1|contact|cracks|safe"),
     ("voltage of a stopper", "devices: {S1: {voltage_V: 3, dielectric: {thickness_nm: 100, permittivity: 4}}}",
-     "stoppers_at_voltage", {"figure_risk"}, "R1|C1|contact|devices/stoppers/"),
-    ("tilt of a stopper", "devices: {S1: {tilt_deg: [0, 0.1]}}", "tilted_contact", {"figure_risk"}, "R1|C1|devices/contact/b|devices/stoppers/"),
+     "stoppers_at_voltage", (), "R1|C1|contact|devices/stoppers/"),
+    ("tilt of a stopper", "devices: {S1: {tilt_deg: [0, 0.1]}}", "tilted_contact", (), "R1|C1|devices/contact/b|devices/stoppers/"),
     ("dimples of a bridge", "devices: {R1: {length_um: 200, dimples: {number: 2, at_um: [100], height_um: 1, contact_um: [3, 3]}}}",
      "dimples safe_lengths", OF_STOPPERS | OF_CHARTS, "C1|S1|contact|cracks"),
     ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget", (), "R1|S1|contact|chart"),
-    ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", {"figure_risk"},
+    ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", (),
      "C1|R1|slopes/contact|stoppers"),
     ("a quantity of a surface becomes uncertain", "surfaces: {B2: {uncertainty: {skewness: 0.1}}}",
      "device_slope_contact device_choice_summits budget tip_budget", (), "heights|spectrum/|cracks|safe_lengths|chart|devices/stoppers"),
     ("another property of the solids becomes uncertain", "devices: {S1: {uncertainty: {poisson_ratio: 0.02}}}",
-     "solid_contact budget", {"figure_risk"}, "C1|R1|modulus|hamaker|slopes|choices|heights|spectrum|contact/b|stoppers"),
+     "solid_contact budget", (), "C1|R1|modulus|hamaker|slopes|choices|heights|spectrum|contact/b|stoppers"),
     ("another property of the solids of a cantilever becomes uncertain",
      "devices: {C1: {uncertainty: {poisson_ratio: 0.02}}}",
      "solid_contact tip_solid_contact budget tip_budget", (),
@@ -166,7 +166,7 @@ MATRIX = [
     ("setting of a process", f"process: {{etch: {{settings: {SETTINGS.replace('90', '80')}}}}}",
      "process_law process_point", (), "C1|R1|S1|contact|stoppers|heights"),
     ("requirement of a device over a process", "devices: {E1: {restoring_force_uN: 30}}", "stoppers process_point",
-     {"table_safe_lengths", "figure_risk", "table_chart", "figure_chart"}, "C1|R1|S1|contact|laws"),
+     {"table_safe_lengths", "table_chart", "figure_chart"}, "C1|R1|S1|contact|laws"),
     ("hardness of a body", BODY + "{hardness_GPa: 9}}", "plasticity", (), "contact|cracks|stoppers/|budget"),
 ]  # fmt: skip
 # One row of each kind is fast; these are slow tests.
