@@ -93,9 +93,10 @@ def test_life_frees_all_but_a_share_between_flats_and_rough_patches(offset):
         added = Capacitor(OXIDE, one.low + abs(offset)).largest_pressure * AREA
         assert (stopper_dataset().pull_off + added > strong).mean("sample").max() < 0.01
     said = report.sentences(layout(stopper_answers(stopper_dataset(), of, biased), of))
-    assert any(
-        sentence.startswith("The voltage below which its spring frees all but 1 in 100 is ") for sentence in said
-    )
+    what = "voltage below which its spring frees all but 1 in 100"
+    assert any(sentence.startswith(f"The {what} is ") for sentence in said)
+    blank = [each._replace(what="@") for each in stopper_answers(stopper_dataset(), of, biased)]
+    assert any(sentence.startswith("The @ is ") for sentence in report.sentences(layout(blank, of))), "no text decides"
 
 
 def test_a_spring_too_weak_without_voltage_frees_at_none():

@@ -427,6 +427,17 @@ def test_sentences_say_below_which_voltage_and_shock_nothing_touches_and_what_dr
     assert stopper.startswith("It does not touch below ")
 
 
+def test_no_text_of_a_row_decides_about_a_sentence(found):
+    """With a placeholder in place of every text, sentences say the same but for that text."""
+    for dataset in found.values():
+        texts = sorted(map(str, dataset.what.values), key=len, reverse=True)
+        blank = dataset.assign(what=("answer", ["@"] * len(texts)))
+        expected = report.sentences(dataset)
+        for text in texts:
+            expected = [sentence.replace(text, "@") for sentence in expected]
+        assert report.sentences(blank) == expected
+
+
 def test_the_figure_has_a_bar_for_every_length_and_covers_nothing(found):
     figure = report.figure(found)
     for panel, dataset, unit in zip(figure.axes, found.values(), "mN", strict=True):
