@@ -125,6 +125,23 @@ def test_a_beam_is_within_all_that_stage_life_says_of_stated_conditions(name):
     assert_equal(astuple(answer.answer_of(answer.layout(found))), astuple(found))
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(6))
+def test_no_drawn_beam_is_longer_than_what_stage_life_says_of_its_stated_conditions(seed):
+    rng = np.random.default_rng(seed)
+    airs = dict(zip((0.45, 0.67, 0.9), rng.uniform(0.5, 2.0, rng.integers(1, 4)), strict=False))
+    stated = {"touchdowns": int(10 ** rng.integers(0, 5)), "voltage": float(rng.choice([0.0, rng.uniform(1, 6)]))}
+    budgets = CANTILEVER if rng.uniform() < 0.5 else ()
+    device = {} if budgets or rng.uniform() < 0.5 else {"device": R1}
+    data, settings = data_of_beam(airs=airs, budgets=budgets, **device, **stated)
+    settings, of_life = replace(settings, liquids=("mine",)), rows(data)
+    names = ("after", "at_voltage", "collapse_mine")
+    limits = [row.low for key, row in of_life.items() if key.startswith("safe_length_") or key in names]
+    found, most = answer.compute(data, settings), np.nanmin(limits)
+    assert 0 < found.build <= most * (1 + 1e-9)
+    assert found.steps[0].size > most, "control: the estimate is longer"
+
+
 def test_no_margin_is_twice_in_the_length_at_a_voltage_and_after_touchdowns():
     """The inputs alone take what they do without these conditions."""
     plain, more = (
