@@ -61,7 +61,7 @@ READ_BY = {
     "tilted_contact": "tilted_stoppers",
     "tilted_stoppers": "answer life device_page",
     "life": "answer table_life figure_life device_page",
-    "answer": "table_devices figure_risk device_page",
+    "answer": "table_devices figure_risk device_page device_limits",
     "chart": "table_chart figure_chart device_warnings device_page",
     "tip_slope_contact": "tip_budget",
     "tip_choice_contact": "tip_budget",
