@@ -53,6 +53,16 @@ def test_a_variable_or_stage_without_a_row_is_named_and_saved(tmp_path, stage, n
     assert xr.load_dataset(tmp_path / "a.nc")[name] == 1.0
 
 
+def test_files_of_all_stages_follow_the_conventions(tmp_path):
+    for kind in {stage for stage, _ in ROWS} - {""}:
+        named = {name: row.units for (stage, name), row in ROWS.items() if stage in ("", kind) and name}
+        units = {name: {"units": "1"} if unit == "stated" else {} for name, unit in named.items()}
+        storage.save(
+            xr.Dataset({name: ((), np.nan, attrs) for name, attrs in units.items()}), tmp_path / "a.nc", kind, {}
+        )
+        assert faults(tmp_path / "a.nc") == [], kind
+
+
 def some_beams():
     """A dataset with a flag, a scalar coordinate, a coordinate without unit and unknown numbers."""
     return xr.Dataset(

@@ -4,6 +4,7 @@ import csv
 import re
 from urllib.parse import unquote
 
+import conventions
 import pytest
 from conftest import snakemake
 from numpy.testing import assert_allclose, assert_array_equal
@@ -56,6 +57,13 @@ def test_a_run_gives_table_figures_and_warnings(finished):
     assert not (results / "warnings.md").exists()  # of the pairs that run
     for name in ("risk", "chart"):
         assert (results / "figures" / f"{name}.pdf").stat().st_size > 5000
+
+
+@pytest.mark.slow
+def test_all_files_follow_the_conventions(finished):
+    paths = sorted((finished[0] / "results").rglob("*.nc"))
+    assert len(paths) > 10
+    assert {path.name: found for path in paths if (found := conventions.faults(path))} == {}
 
 
 @pytest.mark.slow

@@ -5,6 +5,7 @@ import json
 import math
 import re
 
+import conventions
 import numpy as np
 import pytest
 import xarray as xr
@@ -73,6 +74,12 @@ def test_every_device_has_a_page_and_every_table_and_figure_is_there(run):
     assert {path.stem for path in (results / "tables").glob("*.html")} == TABLES
     figures = {"risk", "chart", "stoppers", "life", *(f"budget_{device}" for device in ("C1", "R1", "S1"))}
     assert {path.stem for path in (results / "figures").glob("*.png")} == figures
+
+
+def test_all_files_follow_the_conventions(run):
+    paths = sorted((run / "results").rglob("*.nc"))
+    assert len({path.parent for path in paths}) > 10
+    assert {path.name: found for path in paths if (found := conventions.faults(path))} == {}
 
 
 def test_every_page_states_the_run_and_the_commit_that_made_it(run):
