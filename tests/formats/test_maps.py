@@ -39,6 +39,15 @@ def test_a_simple_field_without_units_asks_for_them(tmp_path):
         read(tmp_path / "scan.gsf")
 
 
+def test_a_simple_field_whose_sides_have_no_unit_takes_the_stated_size(tmp_path):
+    (tmp_path / "scan.gsf").write_bytes(gsf(XYUnits=""))
+    with pytest.raises(ScanError, match="size_um: scan.gsf has no size"):
+        read(tmp_path / "scan.gsf")
+    same(read(tmp_path / "scan.gsf", Source(size=SIZE)).scan, 1e-15)
+    with pytest.raises(ScanError, match="in no unit of length"):
+        read(tmp_path / "scan.gsf", Source(size=(SIZE[0], 2 * SIZE[1])))
+
+
 # Nanonis
 
 

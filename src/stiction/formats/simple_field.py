@@ -5,6 +5,7 @@ and the rows from the top, least significant byte first.
 """
 
 import re
+from dataclasses import replace
 
 import numpy as np
 
@@ -33,11 +34,12 @@ def channels(content: bytes) -> list[Channel]:
     points, start = (int(head["XRes"]), int(head["YRes"])), end + 4 - end % 4
     if min(points) < 1 or content[end:start].strip(b"\0") or len(content) != start + points[0] * points[1] * 4:
         raise ValueError("its data are not those that its head describes")
-    unit = head.get("XYUnits", "")
-    if unit not in STORED or not {"XReal", "YReal"} <= head.keys():
-        raise ValueError("its sides have no unit of length")
-    sides = tuple(UNITS[unit] * float(head[key]) for key in ("XReal", "YReal"))
+    unit = head.get("XYUnits") or None
+    if unit and (unit not in STORED or not {"XReal", "YReal"} <= head.keys()):
+        raise ValueError("its sides are no lengths")
+    sides = tuple(UNITS.get(unit, 1.0) * float(head.get(key, 1.0)) for key in ("XReal", "YReal"))
     values = np.frombuffer(content, _NUMBER, offset=start).reshape(points[::-1])
     name, measured = head.get("Title") or "Default", head.get("ZUnits", "")
-    scale = UNITS.get(measured, 1.0)
-    return numbered([Channel(name, measured, points, sides, lambda: scale * values[::-1].T.astype(float))])
+    scale = UNITS.get(measured, 1.0) if unit else 1.0
+    channel = Channel(name, measured, points, sides, lambda: scale * values[::-1].T.astype(float))
+    return numbered([channel if unit else replace(channel, unit=None)])
