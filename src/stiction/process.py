@@ -78,9 +78,7 @@ class Process:
         processes it has an axis for each, and takes five to seven times as long.
         """
         self._must_have(device)
-        if device in self._mapped:
-            return self.results[f"process/maps/{device}"]
-        return self.results[f"process/curves/{device}"]
+        return self.results[f"process/{'maps' if device in self._mapped else 'curves'}/{device}"]
 
     def settings(self) -> xr.Dataset:
         """Settings that suffice for each device and for all, the best, and the next to measure.
@@ -116,9 +114,9 @@ class Process:
 
         if device in self._mapped:
             return figures.process_map(self.margins(device), self.pairs(device))
-        return (
-            figures.laws(self.law) if device is None else figures.devices(self.margins(device), self.settings(), device)
-        )
+        if device is None:
+            return figures.laws(self.law)
+        return figures.devices(self.margins(device), self.settings(), device)
 
     def __repr__(self):
         section = self._section

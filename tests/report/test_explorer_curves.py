@@ -55,7 +55,7 @@ def test_a_page_has_at_the_pairs_of_two_processes_the_numbers_of_their_table():
         are_those_of_the_table(grid, state, row)
 
 
-@pytest.mark.parametrize("others", [(), (-0.5, 0.0, 0.5)])
+@pytest.mark.parametrize("others", [(), (0.0, -0.5, 0.5)])
 @pytest.mark.parametrize(("is_beam", "section"), DEVICES)
 def test_a_page_has_at_the_points_of_a_roughness_the_numbers_of_its_table(is_beam, section, others):
     found = rough(is_beam, others=others)

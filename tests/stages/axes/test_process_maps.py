@@ -18,7 +18,6 @@ from stiction.report.axes import process as sentences
 from stiction.report.page import Page, Summary
 from stiction.report.style import png
 from stiction.stages.axes import recommended as stage
-from stiction.stages.axes.process import points_of
 
 #: Smooth substrates, rougher with the time of a deposition.
 DEPOSITION = {
@@ -66,7 +65,7 @@ def test_a_point_of_a_map_is_that_of_a_curve_with_the_other_surface_as_the_secon
 @pytest.mark.slow
 def test_a_map_joins_all_its_points_with_slopes_by_both_laws(mapped):
     found = mapped.margins("Bump")
-    points = [mapped.results[f"process/points/Bump_{number}"] for number in points_of(mapped._plan, "Bump")]
+    points = [mapped.results[f"process/points/Bump_{number}"] for number in range(35)]
     for point in points:
         at = found.sel(value=float(point["value"]), second=float(point.second))
         np.testing.assert_array_equal(at.estimate, point.estimate)

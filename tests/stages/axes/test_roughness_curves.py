@@ -24,7 +24,7 @@ from stiction.report.limits.words import text
 from stiction.report.style import png
 from stiction.run.stored_limits import as_text, of_text
 from stiction.stages.axes import points, requirement, roughness
-from stiction.stages.axes.roughness import POINTS, Varied
+from stiction.stages.axes.roughness import POINTS
 from stiction.stages.devices import sticking
 from stiction.stages.devices.opening import S_SHAPE
 from stiction.surface.feasible import largest_kurtosis
@@ -178,10 +178,10 @@ def patches(plan):
 
 
 def test_points_are_spaced_by_equal_factors_or_evenly_and_the_last_one_is_the_given_surface():
-    values = [Varied("B2", "rms_nm", 1, 8).value(k) for k in range(POINTS)]
-    np.testing.assert_allclose(np.diff(np.log(values[:-1])), np.log(8) / (POINTS - 2), rtol=1e-8)
+    (values,) = roughness.axes_of(Plan(CONFIG), "S1").values()
     assert values[-1] is None
-    skewness = [Varied("B2", "skewness", -1, 0.5).value(k) for k in range(POINTS - 1)]
+    np.testing.assert_allclose(np.diff(np.log(values[:-1])), np.log(8 / 2) / (POINTS - 2), rtol=1e-8)
+    skewness = roughness.spaced("skewness", -1, 0.5, POINTS - 1)
     np.testing.assert_allclose(np.diff(skewness), 1.5 / (POINTS - 2), rtol=1e-8)
 
 
@@ -386,7 +386,7 @@ def test_a_skewness_comes_with_the_largest_kurtosis_up_to_that_of_the_surface_an
     plan = Plan(stiction.load({"devices": {"S1": S1 | {"roughness": section, "humidities": [0.6]}}}))
     seen = []
     with patch.object(points.Device, "on", lambda *given: seen.append(given[2][0]["B2"]) or [xr.Dataset()]):
-        for number in roughness.points_of(plan, "S1")[:: POINTS if len(varied) > 1 else 3]:
+        for number in range(0, 40, POINTS) if len(varied) > 1 else (0, 3, 6):
             job = Graph(plan).job(f"devices/roughness/points/S1_{number}")
             found = job.compute(Results(Graph(plan)).inputs(job))
             assert float(found.kurtosis) == seen[-1].kurtosis
@@ -419,7 +419,6 @@ def test_the_kurtosis_stands_beside_every_skewness_in_sentences_tables_and_figur
 
 def test_a_second_value_that_is_the_given_one_is_there_once():
     points = [skewed(rms, value) for value in (0, -1, -0.5, 1e-14, 1) for rms in RANGE8]
-    points[:POINTS] = [point(rms).assign(kurtosis=3.0) for rms in RANGE8]
     found = roughness.curve_or_map(points, "B2", "rms_nm", "skewness")
     assert found.other.values.tolist() == [-1, -0.5, 0, 1]
     assert [len(one.crossing) for one in roughness.curves_of(found)] == [1] * 4

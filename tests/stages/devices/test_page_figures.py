@@ -30,7 +30,7 @@ FIGURES = {
     "budget": (4, lambda: of_budgets.budget(BEAMS | {key: one for key, one in BUDGETS.items() if "tip" in key})),
     "life": (1, lambda: life.figure({"C1": layout(beam_answers({0.67: safe()}, {}, OF), OF)})),
     "roughness": (1, lambda: of_axes.roughness(rough())),
-    "map": (2, lambda: of_axes.roughness_map(rough(others=(-0.5, 0.0, 0.5)))),
+    "map": (2, lambda: of_axes.roughness_map(rough(others=(0.0, -0.5, 0.5)))),
     "process": (1, lambda: of_axes.devices(*etched(), "D")),
     "process map": (1, lambda: of_axes.process_map(*mapped())),
     "law": (1, lambda: of_axes.laws(law_of())),

@@ -24,10 +24,9 @@ from stiction.report.style import (
     styled,
 )
 from stiction.stages.axes.law import law_of, plain
-from stiction.stages.axes.requirement import margins_of
+from stiction.stages.axes.requirement import margins_of, size_of
 from stiction.stages.axes.roughness import KURTOSIS, curves_of
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.opening import FORCE
 
 #: Quantities of a surface on an axis: words and function of the unscaled quantity.
 _SHOWN = {
@@ -82,16 +81,16 @@ def _curves(curve, draw, mark):
     """Figure of a curve, ``draw`` its line at a humidity and ``mark`` what is common to a panel."""
     shapes = list(map(str, curve["shape"].values))
     figure, axes = panels(1, len(shapes), (min(DOUBLE, 1.3 * SINGLE * len(shapes)), 3.0))
-    own, along = ("restoring force", "force needed [µN]") if shapes == [FORCE] else ("required length", "length [µm]")
+    size = size_of(curve)
     for panel, shape in zip(axes[0], shapes, strict=True):
         for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
             draw(panel, curve.sel(humidity=humidity, shape=shape), colour)
-        panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label=own)
+        panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label=size.required)
         mark(panel)
         panel.set_yscale("log")
         plain_log(panel.yaxis)
         _show(panel.xaxis, panel.set_xscale, curve, axes_of(curve)[0])
-    axes[0, 0].set_ylabel(f"{along}, p = {float(curve.share):g}")
+    axes[0, 0].set_ylabel(f"{size.response} [{size.unit}], p = {float(curve.share):g}")
     letter(axes, [END_STATES[shape].by for shape in shapes])
     legend_outside(figure, handles(*axes[0]), "lower", 2 * len(shapes))
     return figure
@@ -150,13 +149,11 @@ def roughness_map(data: xr.Dataset) -> Figure:
     humidities, shapes = data.humidity.values, list(map(str, data["shape"].values))
     size = min(DOUBLE, 1.3 * SINGLE * len(shapes)), 2.8 * len(humidities)
     figure, axes = panels(len(humidities), len(shapes), size)
-    is_beam = data.required.attrs["units"] == "m"
-    margin = "length / required length" if is_beam else "restoring force / force needed"
     along, across = axes_of(data)
     for row, humidity in zip(axes, humidities, strict=True):
         for panel, shape in zip(row, shapes, strict=True):
             curve = data.sel(humidity=humidity, shape=shape).transpose("other", "roughness", ...)
-            _filled(panel, data, margins_of(curve), margins_of(curve, "safe"), f"lg ({margin})")
+            _filled(panel, data, margins_of(curve), margins_of(curve, "safe"), f"lg ({size_of(data).ratio})")
             panel.plot(along.in_unit(float(data.given)), across.in_unit(float(data.other_given)), "k+")
             panel.set_title(f"{END_STATES[shape].by}, {Air(humidity).words}")
     return figure

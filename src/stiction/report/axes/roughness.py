@@ -6,9 +6,9 @@ import xarray as xr
 from stiction.devices.risk import VERIFIED, one_in, samples_for
 from stiction.report.axes.axis import Axis, axes_of, notes, subjects
 from stiction.report.format import UM, airs, fraction_with_band
+from stiction.stages.axes.requirement import size_of
 from stiction.stages.axes.roughness import KURTOSIS, curves_of
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.opening import FORCE
 
 #: Standard errors beyond which two forces count as different.
 DIFFERENT = 3
@@ -86,10 +86,10 @@ def _answer(curve, humidity, shape):
 
 def _enough(curve, humidity, shape):
     """Place of the requirement on the safe values at a humidity against one end state."""
-    required = f"{float(curve.required) / UM:g} {required_unit(curve)}"
-    wanted = (
-        f"a restoring force of {required}" if shape == FORCE else f"a length of {required} ({END_STATES[shape].by})"
-    )
+    size = size_of(curve)
+    required = f"{float(curve.required) / UM:g} {size.unit}"
+    by_beam = f"a {size.name} of {required} ({END_STATES[shape].by})"
+    wanted = by_beam if size.more_is_better else f"a {size.required} of {required}"
     rows = _rows(curve, "range", humidity, shape)
     ranges = axes_of(curve)[0].ranges(np.stack([rows.range_low, rows.range_high], axis=-1))
     where = _where(curve.sel(humidity=humidity, shape=shape), axes_of(curve)[0], ranges)
@@ -104,8 +104,8 @@ def _where(curve, axis: Axis, ranges):
     share, (whole,) = one_in(float(curve.share)), axis.ranges([(known[0], known[-1])])
     if not ranges:
         return f"no {axis.words} of {whole} suffices: nowhere there is it certain that at most {share} sticks"
-    of_beam = curve.required.attrs["units"] == "m"  # bounds of beams allow for the number of drawn surfaces
-    sure = "95 % confidence" if of_beam else "95 % confidence, given the drawn surfaces"
+    # Bounds of beams allow for the number of drawn surfaces.
+    sure = "95 % confidence" if size_of(curve).more_is_better else "95 % confidence, given the drawn surfaces"
     if ranges == [whole]:
         return f"at most {share} sticks at any {axis.words} of {whole} ({sure})"
     return f"at most {share} sticks where the {axis.words} is {' or '.join(ranges)} ({sure}; computed for {whole})"
@@ -115,7 +115,7 @@ def _worst(curve, humidity, shape):
     """Roughness of strongest adhesion of a stopper if it is inside the range, beyond the errors of both ends."""
     known, axis = curve.sel(humidity=humidity, shape=shape).dropna("roughness", subset=["estimate"]), axes_of(curve)[0]
     forces, errors = known.estimate.values, known.error.values
-    if shape != FORCE or not len(forces):
+    if size_of(curve).more_is_better or not len(forces):
         return ""
     most = int(np.argmax(forces))
     apart = [forces[most] - forces[end] > DIFFERENT * np.hypot(errors[most], errors[end]) for end in (0, -1)]
@@ -140,8 +140,3 @@ def _rows(curve, dimension, humidity, shape):
     names = [f"{dimension}_humidity", f"{dimension}_shape"]
     own = (curve[names[0]].values == humidity) & (curve[names[1]].values == shape)
     return curve.isel({dimension: np.flatnonzero(own)})
-
-
-def required_unit(dataset: xr.Dataset) -> str:
-    """Unit of the requirement, as shown."""
-    return "µN" if dataset.required.attrs["units"] == "N" else "µm"

@@ -9,11 +9,11 @@ import xarray as xr
 from stiction.plan.names import by_name
 from stiction.report.axes import process, roughness
 from stiction.report.axes.axis import axes_of
-from stiction.report.axes.roughness import required_unit
 from stiction.report.format import UM, with_band, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.axes.law import law_inputs
 from stiction.stages.axes.recommended import ALL, variables
+from stiction.stages.axes.requirement import size_of
 from stiction.stages.axes.roughness import KURTOSIS
 from stiction.stages.devices.end_states import END_STATES
 
@@ -101,7 +101,7 @@ def _row(device, point, along):
         }
         | ({"varied": along.label} if is_rough else {"variable": along.name})
         | {"value": float(along.in_unit(point[along.dimension])), "share": float(point.share)}
-        | {"unit": required_unit(point)}
+        | {"unit": size_of(point).unit}
         | ({"safe": float(point.safe) / UM} if is_rough else {})
         | {"estimate": float(point.estimate) / UM, "estimate_se": float(point.error) / UM}
         | {"required": float(point.required) / UM}
@@ -176,37 +176,27 @@ _OF_PROCESSES = DEVICE | {
 }
 
 
-def _inputs(devices, curves, recommended):
-    """Inputs of a table of margins: datasets of its devices by name, recommended settings, and laws of each device."""
-
-    def inputs(plan, _at):
-        names = devices(plan)
-        laws = {f"laws_{name}": law_inputs(plan, name)["laws"] for name in names}
-        return {"found": by_name(curves, names), "recommended": recommended(plan, names)} | laws
-
-    return inputs
-
-
 def _stage(name, shows, devices, inputs, compute):
-    """Stage of a table of some devices of a plan."""
+    """Stage of a table of some devices of a plan, with inputs by the plan and the names of the devices."""
     return table_stage(
         name,
         shows,
-        inputs=inputs,
+        inputs=lambda plan, _at: inputs(plan, devices(plan)),
         compute=compute,
         jobs=lambda plan: [{}] if devices(plan) else [],
         targets=("devices",),
     )
 
 
-def _stage_of_margins(name, shows, devices, curves, recommended, table):
-    """Stage of a table of margins over processes."""
-    return _stage(
-        name,
-        shows,
-        devices,
-        _inputs(devices, curves, recommended),
-        lambda data: table(data["found"], data["recommended"], {name: data[f"laws_{name}"] for name in data["found"]}),
+def _laws(plan, names):
+    """Inputs of the laws of each device."""
+    return {f"laws_{name}": law_inputs(plan, name)["laws"] for name in names}
+
+
+def _of_laws(table):
+    """Table of margins from the data of its inputs."""
+    return lambda data: table(
+        data["found"], data["recommended"], {name: data[f"laws_{name}"] for name in data["found"]}
     )
 
 
@@ -215,23 +205,28 @@ STAGES = (
         "roughness",
         "how rough a surface must be",
         lambda plan: plan.devices.over_roughness,
-        lambda plan, at: {"roughness": by_name("devices/roughness", plan.devices.over_roughness)},
+        lambda _plan, names: {"roughness": by_name("devices/roughness", names)},
         lambda data: of_roughness(data["roughness"]),
     ),
-    _stage_of_margins(
+    _stage(
         "process",
         "which settings of a process suffice",
         lambda plan: plan.devices.over_process,
-        "process/curves",
-        lambda plan, _names: [f"process/settings/{variable}" for variable in variables(plan)],
-        of_processes,
+        lambda plan, names: (
+            {"found": by_name("process/curves", names)}
+            | {"recommended": [f"process/settings/{variable}" for variable in variables(plan)]}
+            | _laws(plan, names)
+        ),
+        _of_laws(of_processes),
     ),
-    _stage_of_margins(
+    _stage(
         "process_map",
         "which pairs of settings of two processes suffice",
         lambda plan: plan.devices.processed_twice,
-        "process/maps",
-        lambda _plan, names: by_name("process/pairs", names),
-        of_pairs,
+        lambda plan, names: (
+            {"found": by_name("process/maps", names), "recommended": by_name("process/pairs", names)}
+            | _laws(plan, names)
+        ),
+        _of_laws(of_pairs),
     ),
 )

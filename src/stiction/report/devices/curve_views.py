@@ -16,7 +16,7 @@ from stiction.report.devices.explorer import View, humidity_axis
 from stiction.report.devices.grid import Axis
 from stiction.report.format import UM
 from stiction.stages.axes.recommended import settings_of_processes
-from stiction.stages.axes.requirement import margins_of, relative_errors
+from stiction.stages.axes.requirement import margins_of, relative_errors, size_of
 from stiction.stages.axes.roughness import curves_of
 
 #: Parts of the standard error of a margin over a process.
@@ -34,7 +34,7 @@ class _Required:
     @property
     def falls(self) -> bool:
         """Whether a larger size sticks less often."""
-        return self.dataset.required.attrs["units"] == "N"
+        return not size_of(self.dataset).more_is_better
 
     @property
     def share(self) -> Axis:
@@ -45,11 +45,13 @@ class _Required:
     @property
     def size(self) -> Axis:
         """Required length, or restoring force."""
-        key, label, unit = ("force", "restoring force", "µN") if self.falls else ("length", "required length", "µm")
+        size = size_of(self.dataset)
         keys = ("restoring_force_uN", "stiffness_N_per_m") if self.falls else ("requirement.length_um",)
         stated = next((one for one in keys if one in self.section), keys[0])
         reason = f"it is that of the device; devices.{self.name}.{stated} changes this"
-        return _one(key, label, unit, "linear", float(f"{float(self.dataset.required) / UM:.9g}"), reason)
+        return _one(
+            size.name, size.required, size.unit, "linear", float(f"{float(self.dataset.required) / UM:.9g}"), reason
+        )
 
     @property
     def humidity(self) -> Axis:
@@ -65,8 +67,8 @@ class _Required:
         return {
             "yes": f"suffices {where}: at most {few} sticks with {size} (95 % confidence)",
             "no": f"not sure to suffice {where}",
-            "size": f"{'Force needed' if self.falls else 'Length'} for {few}",
-            "stick": f"{'Stoppers' if self.falls else 'Devices'} with {size} that stick",
+            "size": f"{size_of(self.dataset).response.capitalize()} for {few}",
+            "stick": f"{size_of(self.dataset).devices.capitalize()} with {size} that stick",
             "copied": copied,
         }
 

@@ -11,10 +11,10 @@ from scipy.special import ndtri
 from stiction.config.surfaces import process
 from stiction.devices.process import CONFIDENCE, Margins, law_error, run_error
 from stiction.plan.stage import Stage
-from stiction.stages.axes import requirement
+from stiction.stages.axes import points, requirement
 from stiction.stages.axes.law import law_inputs, law_of
 from stiction.stages.axes.points import joined
-from stiction.stages.axes.process import points_of
+from stiction.stages.axes.process import axes_of
 
 #: Dimensions of settings, of one process or two, in the order of `stiction.devices.process.Margins`.
 _DIMENSIONS = ("second", "value")
@@ -117,7 +117,7 @@ def inputs(plan: Any, at: Any) -> dict[str, Any]:
     is_stated = plan.states_model_error(section["pair"], section["humidities"])
     errors = {"model_error": f"devices/model_error/{at.device}"} if is_stated else {}
     return (
-        {"points": [f"process/points/{at.device}_{number}" for number in points_of(plan, at.device)]}
+        {"points": points.names("process/points", at.device, axes_of(plan, at.device))}
         | law_inputs(plan, at.device)
         | errors
     )

@@ -1,6 +1,7 @@
 """Points of an axis: a device on changed surfaces of its pair, with the same random numbers on all of them."""
 
-from collections.abc import Iterator, Mapping, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -113,6 +114,21 @@ def joined(points: Sequence[xr.Dataset], *dimensions: str) -> xr.Dataset:
 
 
 # Plan
+
+
+def names(folder: str, device: str, axes: Iterable[Sequence]) -> list[str]:
+    """Names of the points of a device, along the first axis at one value of the second after the other."""
+    return [f"{folder}/{device}_{number}" for number in range(math.prod(map(len, axes)))]
+
+
+def places(number: str, axes: Sequence[Sequence]) -> list[int]:
+    """Number of the value of a point along each axis, see `names`."""
+    return list(divmod(int(number), len(axes[0])))[::-1][: len(axes)]
+
+
+def values_at(number: str, axes: Sequence[Sequence]) -> list:
+    """Value of a point along each axis, see `names`."""
+    return [axis[place] for axis, place in zip(axes, places(number, axes), strict=True)]
 
 
 def inputs(plan: Any, device: str) -> dict[str, Any]:

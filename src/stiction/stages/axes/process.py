@@ -3,7 +3,6 @@
 At some values, its slopes by the quantities of the law are computed as well.
 """
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -91,26 +90,15 @@ def axes_of(plan: Any, device: str) -> list[list[float]]:
     return [grid(first).tolist(), grid(second, SECOND).tolist()]
 
 
-def points_of(plan: Any, device: str) -> range:
-    """Numbers of the points of a device, at one value of a second process after the other."""
-    return range(math.prod(map(len, axes_of(plan, device))))
-
-
 def _settings(plan, at):
     """Settings of a point of a device."""
     axes = axes_of(plan, at.device)
-    row, column = divmod(int(at.number), len(axes[0]))
-    numbers = list(zip(axes, (column, row), strict=False))
-    values = [axis[number] for axis, number in numbers]
+    values = points.values_at(at.number, axes)
     settings = {"device": points.settings_of(plan, at.device, _as_rough(plan, at.device, values[0], values[-1]))}
     settings |= dict(zip(("value", "second"), values, strict=False))
-    has_slopes = all(number in _places(axis) for axis, number in numbers)
+    pairs = zip(axes, points.places(at.number, axes), strict=True)
+    has_slopes = all(place in (0, (len(axis) - 1) // 2, len(axis) - 1) for axis, place in pairs)
     return settings | ({"samples": plan.config["studies"]["slopes"]["samples"]} if has_slopes else {})
-
-
-def _places(axis):
-    """Numbers of the values with slopes."""
-    return 0, (len(axis) - 1) // 2, len(axis) - 1
 
 
 def _as_rough(plan, device, *at):

@@ -7,7 +7,7 @@ heights and shape of the spectrum stay.
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import product
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -37,30 +37,13 @@ _TABLES = ("crossing", "range")
 # Points
 
 
-class Varied(NamedTuple):
-    """Varied quantity: one key of section ``roughness`` of a device."""
+@dataclass(frozen=True)
+class Quantities:
+    """Values of quantities of a surface, none as they are given."""
 
-    surface: str
-    key: str  #: of `stiction.config.kinds.ROUGHNESSES`
-    low: float  #: ends of the range, in the unit of the key
-    high: float
-
-    def value(self, number: int) -> float | None:
-        """Value of a point in the unit of the key, ``None`` as it is given. Evenly spaced, or by equal factors."""
-        return None if number == POINTS - 1 else self._spaced(number, POINTS - 1)
-
-    def value_of_curve(self, number: int) -> float | None:
-        """Value of a curve of a map, see `value`."""
-        return None if number == 0 else self._spaced(number - 1, CURVES - 1)
-
-    def _spaced(self, number, count):
-        spaced = np.geomspace if ROUGHNESSES[self.key].logarithmic else np.linspace
-        return float(spaced(self.low, self.high, count)[number].round(9))
-
-    def named(self, name: str, value: float | None) -> dict[str, float | None]:
-        """Value by a name with the unit of the key."""
-        unit = self.key.removeprefix(without_unit(self.key))
-        return {name + unit * (value is not None): value}
+    rms: float | None = None  #: [m]
+    skewness: float | None = None
+    corner: float | None = None  #: [rad m⁻¹]
 
 
 @dataclass(frozen=True)
@@ -69,52 +52,52 @@ class Settings:
 
     device: Device
     surface: str  #: the one that is changed; on both sides of the pair if both have it
-    quantity: str  #: rms, skewness or corner
-    value: float | None  #: [SI]; none for the surface as it is given
-    other: str = ""  #: another quantity that is changed as well
-    other_value: float | None = None  #: [SI]
+    varied: tuple[str, ...]  #: quantities along a curve and, for a map, from curve to curve
+    values: Quantities
 
 
 def compute(surfaces: Surfaces, settings: Settings) -> xr.Dataset:
-    """Device at a point, with the value of the quantity, and of an unchanged second one, as variables.
+    """Device at a point, with the varied quantities of the surface as variables, that of a map also as it is given.
 
     So is the kurtosis, which may change with the skewness, see `stiction.analysis.shifts.with_value`.
     """
     given = changed = settings.device.described(surfaces)[settings.surface]
-    for quantity, value in ((settings.quantity, settings.value), (settings.other, settings.other_value)):
-        if value is not None:
-            changed = with_value(changed, quantity, value)
+    for quantity, value in vars(settings.values).items():
+        changed = changed if value is None else with_value(changed, quantity, value)
     (point,) = settings.device.on(surfaces, [{} if changed is given else {settings.surface: changed}])
-    values = {"roughness": value_of(changed, settings.quantity), KURTOSIS: changed.kurtosis}
-    if settings.other:
-        values |= {name: value_of(of, settings.other) for name, of in (("other", changed), ("other_given", given))}
+    along, *others = settings.varied
+    values = {"roughness": value_of(changed, along), KURTOSIS: changed.kurtosis}
+    for other in others:
+        values |= {"other": value_of(changed, other), "other_given": value_of(given, other)}
     return point.assign({name: float(value) for name, value in values.items()})
 
 
-def varied_quantities(plan: Any, device: str) -> list[Varied]:
-    """Varied quantities of the surfaces of a device: along its curves and, for a map, from curve to curve."""
+def axes_of(plan: Any, device: str) -> dict[str, list[float | None]]:
+    """Values by key of section ``roughness``, in its unit: along a curve and, for a map, from curve to curve.
+
+    None is as given: the last point of a curve, and the first curve of a map.
+    """
     section = plan.config["devices"][device]["roughness"]
-    return [Varied(section["surface"], key, *section[key]) for key in ROUGHNESSES if key in section]
+    first, *others = [key for key in ROUGHNESSES if key in section]
+    axes = {first: [*spaced(first, *section[first], POINTS - 1), None]}
+    return axes | {other: [None, *spaced(other, *section[other], CURVES - 1)] for other in others}
 
 
-def points_of(plan: Any, device: str) -> range:
-    """Numbers of the points of a device, curve by curve."""
-    return range(POINTS * (CURVES if len(varied_quantities(plan, device)) > 1 else 1))
+def spaced(key: str, low: float, high: float, number: int) -> list[float]:
+    """Values of a quantity between the ends of its range, evenly spaced or by equal factors."""
+    between = np.geomspace if ROUGHNESSES[key].logarithmic else np.linspace
+    return between(low, high, number).round(9).tolist()
 
 
 def _settings(plan, at):
     """Settings of a point of a device, with its values of the varied quantities."""
-    what, *others = varied_quantities(plan, at.device)
-    curve, number = divmod(int(at.number), POINTS)
-    values = [(what, what.value(number)), *((other, other.value_of_curve(curve)) for other in others)]
-    own = plan.config["surfaces"][what.surface]
-    changed = {varied.key: value for varied, value in values if value is not None and varied.key in own}
-    rough = replace(plan, config=merged(plan.config, {"surfaces": {what.surface: changed}})) if changed else plan
-    settings = {"device": points.settings_of(plan, at.device, rough), "surface": what.surface}
-    settings |= {"quantity": without_unit(what.key)} | what.named("value", values[0][1])
-    for other, value in values[1:] if curve else ():
-        settings |= {"other": without_unit(other.key)} | other.named("other_value", value)
-    return settings
+    axes, surface = axes_of(plan, at.device), plan.config["devices"][at.device]["roughness"]["surface"]
+    values = zip(axes, points.values_at(at.number, list(axes.values())), strict=True)
+    values = {key: value for key, value in values if value is not None}
+    own = {key: value for key, value in values.items() if key in plan.config["surfaces"][surface]}
+    rough = replace(plan, config=merged(plan.config, {"surfaces": {surface: own}})) if own else plan
+    settings = {"device": points.settings_of(plan, at.device, rough), "surface": surface}
+    return settings | {"varied": list(map(without_unit, axes)), "values": values}
 
 
 # Curves and maps
@@ -153,13 +136,11 @@ def _apart(row):
 
 
 def _rows_apart(rows):
-    """Curves of a map, each point with its second quantity: the first as given, and others apart from it."""
-    given, others = float(rows[-1][-1].other_given), [float(row[0].other) for row in rows[1:]]
-    largest, values = max(map(abs, others)), zip(others, rows[1:], strict=True)
-    kept = [(given, rows[0]), *((value, row) for value, row in values if not is_equal(value, given, largest))]
-    return [
-        [point.drop_vars("other_given", errors="ignore").assign(other=value) for point in row] for value, row in kept
-    ]
+    """Curves of a map whose second quantity differs from that of the first curve, and this one."""
+    (given, *_), *others = rows
+    largest = max(abs(float(row[0].other)) for row in others)
+    apart = [row for row in others if not is_equal(row[0].other, given.other_given, largest)]
+    return [[point.drop_vars("other_given") for point in row] for row in (rows[0], *apart)]
 
 
 def _with_tables(found):
@@ -194,10 +175,10 @@ def curves_of(found: xr.Dataset) -> list[xr.Dataset]:
     return [found.sel(other=value).isel(rows) for value, rows in zip(found.other.values, own, strict=True)]
 
 
-def _what(plan, device):
+def _what(plan, at):
     """Varied quantities, and their surface."""
-    first, *others = varied_quantities(plan, device)
-    return {"key": first.key, "surface": first.surface} | ({"other": others[0].key} if others else {})
+    what = {"surface": plan.config["devices"][at.device]["roughness"]["surface"]}
+    return what | dict(zip(("key", "other"), axes_of(plan, at.device), strict=False))
 
 
 STAGES = (
@@ -216,9 +197,9 @@ STAGES = (
         "roughness",
         "devices/roughness/{device}",
         inputs=lambda plan, at: {
-            "points": [f"devices/roughness/points/{at.device}_{number}" for number in points_of(plan, at.device)]
+            "points": points.names("devices/roughness/points", at.device, axes_of(plan, at.device).values())
         },
-        settings=lambda plan, at: _what(plan, at.device),
+        settings=_what,
         compute=lambda data, settings: curve_or_map(data["points"], **settings),
         message="Roughness that device {device} needs.",
     ),
