@@ -10,6 +10,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from logging import WARNING, LogRecord
 
+from stiction.config.units import to_si
+
 #: First line of an error of Snakemake, and the places in files that follow the message.
 _ORIGIN = re.compile(r"\A\w+( in rule \S+)?( in file \"[^\n]*)?:\n|(\n  File \"[^\n]*)+\s*\Z")
 
@@ -153,7 +155,7 @@ class Run:
         logs = tuple(map(str, record.log))
         message = " ".join(str(record.rule_msg or record.rule_name).split())
         asked = getattr(record, "resources", None) or {}
-        seconds, megabytes = float(asked.get("cpu_ms", 0)) / 1000, float(asked.get("mem_mb", 0))
+        seconds, megabytes = to_si(float(asked.get("cpu_ms", 0)), "ms"), float(asked.get("mem_mb", 0))
         self.jobs[record.jobid] = Job(
             record.rule_name, message, str(record.reason), logs, record.created, seconds, megabytes
         )

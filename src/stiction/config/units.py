@@ -29,6 +29,7 @@ _POWERS = {
     "V": 0,
     "K": 0,
     "MB": 6,
+    "ms": -3,
 }
 _TO_SI = {unit: float(f"1e{power}") for unit, power in _POWERS.items()} | {"deg": math.pi / 180}
 #: Not one over the factors to SI: 1 / 1e-9 is not 1e9.
