@@ -36,7 +36,6 @@ include: "workflow/rules/report.smk"
 
 
 if is_main:
-    remember.save()
     remember_code.save()
 
 

@@ -13,7 +13,7 @@ from stiction.config.merging import merged
 from stiction.config.messages import ConfigError
 from stiction.config.relations import schema
 from stiction.config.surfaces.grid import completed
-from stiction.config.validation import validate
+from stiction.config.validation import checked
 from stiction.surface import maxent
 
 ROOT = Path(__file__).parents[1]
@@ -31,7 +31,7 @@ def problems(config):
     """Problems of a configuration, one line each; empty if it is valid."""
     try:
         with patch.object(maxent, "solve", SOLVED_ONCE):
-            validate(config)
+            checked(config)
     except ConfigError as error:
         return error.problems
     return ()

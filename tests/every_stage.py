@@ -5,7 +5,8 @@ from pathlib import Path
 
 import yaml
 
-from stiction.config.files import joined, load, normalised
+from stiction.config.files import joined, load
+from stiction.config.validation import normalised
 from stiction.plan.devices import MANY
 from stiction.plan.graph import Graph, Job, stages
 from stiction.plan.plan import Plan

@@ -11,9 +11,9 @@ from configurations import problems as invalid
 import stiction
 from stiction import accuracy
 from stiction.config.cases import case_id
-from stiction.config.files import normalised
 from stiction.config.merging import merged
 from stiction.config.units import in_si
+from stiction.config.validation import normalised
 from stiction.devices.numbers import MOST_BEAMS, Spread
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan

@@ -21,9 +21,9 @@ from written_scans import etched, scans_of
 from stiction import pilot
 from stiction.chaos.model import draw_laws
 from stiction.config import scans
-from stiction.config.files import normalised
 from stiction.config.merging import merged
 from stiction.config.units import in_si
+from stiction.config.validation import normalised
 from stiction.contact import forcelaw
 from stiction.contact.environment import ForceCurves
 from stiction.contact.forcelaw import coefficients

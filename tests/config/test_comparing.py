@@ -123,17 +123,19 @@ def test_copies_take_the_place_of_what_runs_and_of_nothing_else():
 @pytest.mark.parametrize(
     ("path", "entries"),
     [
-        (
-            "beam.thickness_um",
-            "materials.NAME.KEY with NAME Oxide; surfaces.NAME.KEY with NAME B1 or .*; devices.NAME.KEY",
-        ),
+        ("run.pairs.b", "materials.NAME.KEY with NAME Oxide; surfaces.NAME.KEY with NAME B1 or .*; devices.NAME.KEY"),
         ("surfaces.B9.rms_nm", "surfaces.NAME.KEY with NAME B1 or B2 or [^;]*$"),
-        ("devices.C1", "devices.NAME.KEY with NAME S1 or C1$"),
-        ("run.pairs.b", "materials.NAME.KEY"),
+        ("devices.C9.gap_um", "devices.NAME.KEY with NAME S1 or C1$"),
     ],
 )
 def test_a_key_of_no_entry_is_refused_with_the_names_of_entries(path, entries):
     with pytest.raises(ConfigError, match=f"^compare.{path} is no key of an entry that exists, must be {entries}"):
+        load(BASE, {"compare": {path: [1, 2]}})
+
+
+@pytest.mark.parametrize("path", ["beam.thickness_um", "devices.C1", "seed"])
+def test_a_key_that_is_not_below_an_entry_is_refused_with_an_example(path):
+    with pytest.raises(ConfigError, match=f"^compare.'?{path}'? is no key, must be the section, the name of an entry"):
         load(BASE, {"compare": {path: [1, 2]}})
 
 

@@ -11,9 +11,10 @@ from hypothesis import strategies as st
 from snakemake.utils import update_config
 
 from stiction.config import files, reading
-from stiction.config.files import load, normalised
+from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.messages import ConfigError
+from stiction.config.validation import normalised
 
 
 @given(*[st.recursive(st.integers(), lambda inner: st.dictionaries(st.sampled_from("abc"), inner, min_size=1))] * 2)

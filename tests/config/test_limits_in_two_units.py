@@ -28,7 +28,7 @@ SCANNED |= {"end_rad_per_um": 1e9, "correlation_um": {"fitted": 0.1}}
 
 def refusals(relation, **sections):
     """Problems that one relation has with sections of a configuration."""
-    return list(Relations([relation]).problems(Keys(sections, [])))
+    return list(Relations([relation]).problems(Keys(sections)))
 
 
 def grid_of(spacing):
@@ -102,8 +102,11 @@ def test_uncertain_humidities_within_those_of_full_contact_are_corrected():
         stated = {"humidities": [float(low + deviation)], "uncertainty": {"humidity": float(deviation)}}
         sections = {
             "contact": {"model": "full"},
-            "surfaces": {},
-            "pairs": {"b": {"humidities": [float(low), float(high)]}},
+            "figures": {"humidity": float(high)},
+            "run": {"pairs": []},
+            "materials": {},
+            "surfaces": {"B2": {}},
+            "pairs": {"b": {"beam": "B2", "substrate": "B2", "humidities": [float(low), float(high)]}},
         }
         device = {"kind": "cantilever", "pair": "b"} | stated
         relation = meetings.corrections_are_not_extrapolated

@@ -16,11 +16,9 @@ from plans import job_settings
 from published import SURFACES
 from written_scans import BAD, SIDE, bad_files, etched, scans_of, write
 
-from stiction.config import files, scans
+from stiction.config import files, scans, validation
 from stiction.config.merging import merged
-from stiction.config.surfaces.grid import completed
 from stiction.config.units import in_si
-from stiction.config.validation import validate
 from stiction.errors import ScanError
 from stiction.plan import memory
 from stiction.plan.devices import DevicePlan
@@ -74,7 +72,7 @@ def test_the_choices_of_the_schema_are_those_of_the_code():
 
 
 def test_keys_that_are_not_given_have_their_defaults(folder):
-    entry = files.normalised(configured(*both(folder)))["surfaces"]["Etched"]
+    entry = validation.normalised(configured(*both(folder)))["surfaces"]["Etched"]
     assert entry == {"beyond": "cut", "heights": "moments", "psd": "fitted", "scans": entry["scans"]}
     assert {key: entry["scans"][key] for key in ("fast_axis", "level", "lines")} == {
         "fast_axis": "x",
@@ -84,7 +82,7 @@ def test_keys_that_are_not_given_have_their_defaults(folder):
     assert in_si(Source, scans.source(entry)) == Source()
     assert in_si(estimate.Settings, scans.evaluation(entry, PAPER["scans"])) == estimate.Settings()
     given = configured(*both(folder), level="quadratic", lines="bow", fast_axis="y", heights="measured")
-    again = files.normalised(given)["surfaces"]["Etched"]
+    again = validation.normalised(given)["surfaces"]["Etched"]
     assert (again["scans"]["level"], again["heights"]) == ("quadratic", "measured")
     assert in_si(estimate.Settings, scans.evaluation(again, PAPER["scans"])).levelling == Levelling("quadratic", "bow")
 
@@ -112,7 +110,7 @@ def test_files_are_relative_to_the_folder_of_the_configuration_file_that_names_t
 
 
 def test_preliminary_numbers_are_those_of_the_scans(folder):
-    found = validate(configured(*both(folder)))["Etched"]
+    found = validation.checked(configured(*both(folder))).estimates["Etched"]
     published_scans = published("B2", SIDE, 2)
     pooled = estimate.inspect(published_scans, estimate.Settings())
     assert np.log(1e-9 * found["rms_nm"]) == pytest.approx(pooled.moments[0], rel=1e-9)
@@ -142,7 +140,7 @@ def test_preliminary_numbers_are_those_of_the_scans(folder):
 def test_measured_surfaces_keep_their_material_and_make_devices_uncertain():
     found = {"rms_nm": 3.0, "end_rad_per_um": 125.0, "plateau_nm4": 500.0, "corner_rad_per_um": 30.0, "slope": -4.0}
     found |= {"feasible": [-0.5, 3.5], "correlation_um": {"fitted": 0.3, "tabulated": 0.3}}
-    devices = {name: {"kind": "stopper", "pair": name} for name in ("a", "b", "c")} | {"lost": {"pair": "d"}}
+    devices = {name: {"kind": "stopper", "pair": name} for name in ("a", "b", "c")}
     devices["uncertain"] = {"pair": "a", "uncertainty": {"humidity": 0.01}}
     pairs = {"a": {"beam": "Etched"}, "b": {"beam": "B2", "substrate": "Etched"}}
     config = merged(configured("any.gwy"), {"devices": devices, "pairs": pairs})
@@ -150,7 +148,7 @@ def test_measured_surfaces_keep_their_material_and_make_devices_uncertain():
     seen = scans.with_preliminary_estimates(config, {"Etched": found})
     assert seen["surfaces"]["Etched"]["material"] == "Gold"
     stated = {name: device.get("uncertainty") for name, device in seen["devices"].items()}
-    assert stated == {"a": {}, "b": {}, "c": None, "lost": None, "uncertain": {"humidity": 0.01}}
+    assert stated == {"a": {}, "b": {}, "c": None, "uncertain": {"humidity": 0.01}}
     assert "devices" not in scans.with_preliminary_estimates(configured("any.gwy"), {"Etched": found})
 
 
@@ -172,13 +170,13 @@ def test_a_configuration_with_good_scans_is_valid_and_its_surfaces_are_shifted_l
 def test_settings_know_a_file_by_content_and_name_and_not_by_folder(folder, tmp_path):
     copy = shutil.copy(both(folder)[0], tmp_path)
     first, second, other = (
-        job_settings(Plan(files.normalised(configured(path))), "scan/Etched_0")
+        job_settings(Plan(validation.normalised(configured(path))), "scan/Etched_0")
         for path in (*both(folder)[:1], copy, both(folder)[1])
     )
     assert first == second
     assert first["sha256"] != other["sha256"]
     with pytest.raises(KeyError):
-        job_settings(Plan(files.normalised(configured(copy))), "scan/Etched_1")
+        job_settings(Plan(validation.normalised(configured(copy))), "scan/Etched_1")
 
 
 def test_stages_take_exactly_the_settings_of_their_jobs(folder):
@@ -242,7 +240,7 @@ def test_no_gaussian_scan_is_refused_before_a_run_or_in_it(tmp_path, number):
     distances = []
     for k, drawn in enumerate(gaussian(4e-6, number)):
         path = write(tmp_path / f"{k}.gwy", drawn.heights, drawn.size)
-        (found,) = validate(configured(path)).values()
+        (found,) = validation.checked(configured(path)).estimates.values()
         assert found["feasible"] is not None
         read = scan.layout(ScanFile(drawn, "Height", "nm", ()))
         estimated = stage_estimate.compute([read], "Etched", stage_estimate.Settings(1, estimate.Settings(), 8))
@@ -258,8 +256,7 @@ def test_surfaces_whose_moments_have_no_density_get_the_measured_one(tmp_path):
     dirty[::50, ::50] += 60e-9
     for name, z, source in (("dirt", dirty, "measured"), ("clean", clean, "moments")):
         config = configured(write(tmp_path / f"{name}.gwy", z))
-        found = completed(config, validate(config))
-        assert files.normalised(found)["surfaces"]["Etched"]["heights"] == source
+        assert validation.checked(config).config["surfaces"]["Etched"]["heights"] == source
 
 
 def test_a_power_law_that_no_pixel_resolves_does_not_go_on(tmp_path):
@@ -289,7 +286,7 @@ def test_scans_of_two_heights_have_their_measured_density_or_are_refused_before_
             assert any("of its points undefined (" in line or "equal" in line for line in found)
             ends.append("refused")
             continue
-        entry = files.normalised(completed(config, validate(config)))["surfaces"]["Etched"]
+        entry = validation.checked(config).config["surfaces"]["Etched"]
         read = scan.layout(ScanFile(replace(drawn, heights=z), "Height", "nm", ()))
         estimated = stage_estimate.compute([read], "Etched", stage_estimate.Settings(1, estimate.Settings(), 8))
         heights.compute(estimated, heights.Settings("Etched", entry["heights"]))
@@ -442,12 +439,10 @@ def test_files_of_equal_names_are_told_apart_by_their_folders(bad, folder, tmp_p
 def test_problems_of_several_surfaces_are_found_at_once(bad):
     config = configured(bad[0] / "empty.spm")
     config["surfaces"]["Other"] = {"scans": {"files": [str(bad[0] / "missing.spm")]}}
-    lines = problems(config | {"seed": -1})
-    assert [line.split()[0] for line in lines] == [
-        "seed",
-        "surfaces.Etched.scans.files[0]",
-        "surfaces.Other.scans.files[0]",
-    ]
+    lines = problems(config)
+    assert [line.split()[0] for line in lines] == ["surfaces.Etched.scans.files[0]", "surfaces.Other.scans.files[0]"]
+    (line,) = problems(config | {"seed": -1})
+    assert line.startswith("seed is -1"), "no file is read for a configuration of the wrong form"
 
 
 #: Folder of files of real microscopes, which are not part of the project.
@@ -464,7 +459,7 @@ def test_a_real_file_gives_heights_and_a_spectrum_or_is_refused_in_sentences_tha
     if lines := problems(config):
         assert all(path.name in line and line.count("\n") == 0 and len(line) < 400 for line in lines)
     else:
-        plan = Plan(files.normalised(config))
+        plan = Plan(validation.normalised(config))
         read = scan.compute(path, in_si(scan.Settings, job_settings(plan, "scan/Etched_0")))
         found = stage_estimate.compute(
             [read], "Etched", in_si(stage_estimate.Settings, job_settings(plan, "estimate/Etched"))
@@ -481,9 +476,10 @@ def test_a_real_file_gives_heights_and_a_spectrum_or_is_refused_in_sentences_tha
 
 CHECK = """
 import json, sys
+from pathlib import Path
 from stiction.config import files, validation
 config = json.loads(sys.stdin.read())
-validation.validate(config, kept=sys.argv[1])
+validation.checked(config, Path(sys.argv[1]))
 print("SurfaceTopography" in sys.modules, any(name.startswith("stiction.scans") for name in sys.modules))
 """
 
@@ -527,16 +523,16 @@ def test_a_configuration_without_scans_imports_nothing_of_them(tmp_path):
 def test_numbers_that_cannot_be_kept_are_used_all_the_same(folder, tmp_path, monkeypatch):
     (tmp_path / "kept").touch()  # no folder
     monkeypatch.setattr(scans, "_KNOWN", {})
-    assert validate(configured(both(folder)[0]), kept=tmp_path / "kept")
+    assert validation.checked(configured(both(folder)[0]), tmp_path / "kept").estimates
 
 
 def test_another_version_of_the_library_reads_the_files_again(folder, monkeypatch):
     config = configured(both(folder)[0])
-    validate(config)
+    validation.checked(config)
     known = set(scans._KNOWN)
     monkeypatch.setattr(scans, "version_of", lambda library: f"another {library}")
     scans._code.cache_clear()
-    validate(config)
+    validation.checked(config)
     scans._code.cache_clear()
     assert len(set(scans._KNOWN) - known) == 1
 
@@ -550,7 +546,7 @@ def test_another_evaluation_reads_the_files_again(folder, monkeypatch, changed):
     for code in (lambda _: "the same", fingerprint):
         monkeypatch.setattr(scans, "fingerprint", code)
         scans._code.cache_clear()
-        validate(config)
+        validation.checked(config)
         sizes.append(len(scans._KNOWN))
     scans._code.cache_clear()
     assert sizes[1] == sizes[0] + 1
@@ -559,6 +555,6 @@ def test_another_evaluation_reads_the_files_again(folder, monkeypatch, changed):
 def test_other_content_in_the_same_file_is_read_again(folder, tmp_path):
     path = tmp_path / "a.gwy"
     shutil.copy(both(folder)[0], path)
-    before = validate(configured(path))["Etched"]
+    before = validation.checked(configured(path)).estimates["Etched"]
     shutil.copy(both(folder)[1], path)
-    assert validate(configured(path))["Etched"]["rms_nm"] != before["rms_nm"]
+    assert validation.checked(configured(path)).estimates["Etched"]["rms_nm"] != before["rms_nm"]

@@ -33,7 +33,7 @@ def with_setting(number, **changed):
 def test_a_process_without_unit_is_refused_by_its_relations_alone():
     config = stiction.load(RUN, {"process": {"etch": ETCH}})
     config["process"]["etch"]["variable"] = "etch_time"
-    (found,) = process_relations.relation.problems(Keys(config, []))
+    (found,) = process_relations.relation.problems(Keys(config))
     assert "must end in its unit" in str(found)
 
 
@@ -201,7 +201,7 @@ def test_files_of_scans_are_relative_to_the_configuration(tmp_path):
     (tmp_path / "mine.yaml").write_text(
         "process: {etch: {variable: etch_time_s, surface: B2, settings: [{value: 30, scans: [a.x3p]}]}}"
     )
-    found = stiction.config.files.located(tmp_path / "mine.yaml")
+    found = stiction.config.files.read_located(tmp_path / "mine.yaml")
     assert found["process"]["etch"]["settings"][0]["scans"] == [str(tmp_path / "a.x3p")]
 
 

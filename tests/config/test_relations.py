@@ -4,6 +4,7 @@ import copy
 import re
 
 import pytest
+import yaml
 from configurations import LEAVES, NUMBERS, PAPER, ROOT, SCHEMA, changed, problems, without
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
@@ -82,28 +83,36 @@ def test_values_at_the_limit_of_a_relation_are_valid(overlay):
     assert problems(changed(overlay)) == ()
 
 
-def test_all_problems_are_found_at_once_and_each_only_once():
-    lines = problems(
-        changed(
-            "surfaces: {B1: {rms_nm: -1}, B2: {kurtosis: 1.5}}\npairs: {a: {beam: B9, gap: 3}}\n"
-            "contact: {chunks: 1.0}\nchaos: {order: 20}"
-        )
-    )
-    keys = {line.split()[0] for line in lines}
-    expected = {
-        "surfaces.B1.rms_nm",
-        "surfaces.B2.kurtosis",
-        "pairs.a.beam",
-        "pairs.a.gap",
-        "contact.chunks",
-        "chaos.order",
-    }
-    assert (keys, len(lines)) == (expected, 6)
+#: Wrong keys of one configuration, each with another value, by the steps of its check: form, names, values.
+STEPS = [
+    {
+        "surfaces.B1.rms_nm": "surfaces: {B1: {rms_nm: -1}}",
+        "pairs.a.gap": "pairs: {a: {gap: 3}}",
+        "contact.chunks": "contact: {chunks: 1.0}",
+        "chaos.order": "chaos: {order: 20}",
+    },
+    {"pairs.a.beam": "pairs: {a: {beam: B9}}", "figures.pair": "figures: {pair: d}"},
+    {
+        "surfaces.B2.kurtosis": "surfaces: {B2: {kurtosis: 1.5}}",
+        "pairs.b.humidities": "pairs: {b: {humidities: [0.5, 0.5]}}",
+    },
+]
+
+
+@pytest.mark.parametrize("step", range(len(STEPS)))
+def test_all_problems_of_a_step_are_found_at_once_and_each_only_once(step):
+    """Those of later steps appear when they are corrected."""
+    config = PAPER
+    for wrong in STEPS[step:]:
+        for overlay in wrong.values():
+            config = merged(config, yaml.safe_load(overlay))
+    lines = problems(config)
+    assert sorted(line.split()[0] for line in lines) == sorted(STEPS[step])
 
 
 def violated(config, files):
     """Violated relations of a configuration whose measured surfaces have these files."""
-    return list(map(str, validation.RELATIONS.problems(Keys(validation._OPTIONAL | config, [], files))))
+    return list(map(str, validation.RELATIONS.problems(Keys(validation._OPTIONAL | config, files))))
 
 
 def test_a_problem_of_a_device_or_a_pair_names_the_files_of_its_own_surfaces():
@@ -117,17 +126,17 @@ def test_a_problem_of_a_device_or_a_pair_names_the_files_of_its_own_surfaces():
         assert not any("B1.spm" in line for line in lines)
 
 
-def test_a_key_that_is_wrong_is_unknown_as_are_the_sections_around_it_and_the_keys_in_it():
-    config = Keys({"pairs": {"a": {"gap_um": 20}, "b": {"gap_um": [-1, 2]}}, "seed": 1}, [("pairs", "b", "gap_um", 0)])
+def test_a_key_that_is_not_given_is_unknown():
+    config = Keys({"pairs": {"a": {"gap_um": 20}, "b": {"gaps_um": [1, 2]}}, "seed": 1})
     assert config["pairs.a.gap_um"] == 20
-    assert config["pairs.b.gap_um.1"] == 2
-    for key in ("pairs", "pairs.b", "pairs.b.gap_um", "pairs.b.gap_um.0", "pairs.c", "seed.a", "pairs.a.gap_um.0"):
+    assert config["pairs.b.gaps_um.1"] == 2
+    for key in ("pairs.b.gap_um", "pairs.c", "seed.a", "pairs.a.gap_um.0", "pairs.b.gaps_um.2"):
         with pytest.raises(Unknown):
             config[key]
     assert config.names("pairs") == ["a", "b"]
     assert list(config.entries("pairs", "gap_um")) == [("a", 20)]
-    assert list(config.items("pairs.b.gap_um")) == [("pairs.b.gap_um.1", 2)]
-    assert list(config.valid("seed", "sead", "pairs")) == [("seed", 1)]
+    assert list(config.items("pairs.b.gaps_um")) == [("pairs.b.gaps_um.0", 1), ("pairs.b.gaps_um.1", 2)]
+    assert list(config.given("seed", "sead")) == [("seed", 1)]
 
 
 def test_numbers_of_measured_surfaces_are_named_by_their_files():
@@ -163,8 +172,8 @@ def test_no_relation_is_checked_for_a_key_that_is_invalid_or_inside_an_invalid_s
     assert len(problems(changed(overlay))) == 1
 
 
-def test_references_are_checked_against_all_validly_named_entries():
-    lines = problems(changed("surfaces: {1: {}}\npairs: {a: {beam: B9}}\nfigures: {pair: d}"))
+def test_references_are_checked_against_all_entries():
+    lines = problems(changed("pairs: {a: {beam: B9}}\nfigures: {pair: d}"))
     assert "figures.pair is 'd', must be one of a, b, c" in lines
     assert "pairs.a.beam is 'B9', must be one of B1, B2, Sub1, Sub2" in lines
 
@@ -223,7 +232,7 @@ def test_water_condenses_up_to_contact_angles_that_add_up_to_180_degrees(more, w
     angles = {"One": {"contact_angle_deg": 100}, "Other": {"contact_angle_deg": 70}}
     surfaces = {name: {"rms_nm": 1, "material": name} for name in angles}
     pairs = {"d": {"beam": "One", "substrate": "Other"}}
-    config = Keys({"run": {"pairs": ["d"]}, "pairs": pairs, "surfaces": surfaces, "materials": angles}, [])
+    config = Keys({"run": {"pairs": ["d"]}, "pairs": pairs, "surfaces": surfaces, "materials": angles})
     (meeting,) = meetings.pair_meetings(config)
     assert bool(meeting.wetting(more)) == wet
 

@@ -11,13 +11,14 @@ import pytest
 from configurations import PAPER, changed, problems
 from plans import job_settings
 
-from stiction.config.files import load, normalised
+from stiction.config.files import load
 from stiction.config.kinds import KEYS
 from stiction.config.memory import field_memory
 from stiction.config.merging import merged
 from stiction.config.messages import ConfigError
 from stiction.config.test_beams import counts_as_devices
 from stiction.config.units import in_si
+from stiction.config.validation import normalised
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import meniscus_height
 from stiction.contact.tilt import length_of_edge
@@ -627,7 +628,7 @@ def test_the_axis_of_the_worst_humidity_holds_no_air_that_is_too_dry_for_a_stopp
 
 
 def test_a_configuration_is_checked_for_devices_whatever_was_imported_before():
-    code = "import json, sys; from stiction.config.validation import validate; validate(json.load(sys.stdin))"
+    code = "import json, sys; from stiction.config.validation import checked; checked(json.load(sys.stdin))"
     broken = json.dumps(with_device(pair="d"))
     run = subprocess.run([sys.executable, "-c", code], input=broken, text=True, capture_output=True, check=False)
     assert "devices.C1.pair is 'd', must be one of a, b, c" in run.stderr

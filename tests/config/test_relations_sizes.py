@@ -111,7 +111,7 @@ def configured(number):
 def refused(number, relations=SIZES):
     """Sentences of relations between sizes about a drawn device."""
     return list(
-        map(str, relations.problems(Keys({"materials": {}, "test_beams": {}, "process": {}} | configured(number), [])))
+        map(str, relations.problems(Keys({"materials": {}, "test_beams": {}, "process": {}} | configured(number))))
     )
 
 

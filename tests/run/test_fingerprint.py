@@ -76,9 +76,18 @@ def test_a_module_that_is_not_imported_does_not_count(package):
     assert of_script(package) == before
 
 
-def test_a_module_that_does_not_affect_results_does_not_count(package, monkeypatch):
-    monkeypatch.setattr(fingerprint, "SILENT", {"stiction.folder.far"})
-    assert list(of_script(package)) == ["script.py", "stiction.near"]
+def test_a_module_that_does_not_affect_results_does_not_count(package):
+    script = package / "scripts" / "script.py"
+    assert list(fingerprint.fingerprint(script, silent={"stiction.folder.far"})) == ["script.py", "stiction.near"]
+
+
+def test_what_only_a_check_imports_does_not_count_in_results_and_decides_whether_a_configuration_is_valid():
+    """One door leads to the relations: no list of modules has to be kept."""
+    relations = {f"stiction.config.{name}" for name in ("keys", "meetings", "relations", "relations_devices")}
+    stages = [path for path in fingerprint.PACKAGE.glob("stages/**/*.py") if path.name != "__init__.py"]
+    assert relations.isdisjoint(name for path in stages for name in fingerprint.fingerprint(path))
+    check = fingerprint.PACKAGE / "config" / "validation.py"
+    assert relations < set(fingerprint.fingerprint(check, silent=()))
 
 
 def test_neither_declarations_nor_settings_of_jobs_count_for_any_figure_or_table():

@@ -19,10 +19,11 @@ from conftest import ROOT
 from planner import PILOT, Planner
 
 from stiction import accuracy
-from stiction.config.files import normalised, paper
+from stiction.config.files import paper
 from stiction.config.merging import merged, without_inherited
 from stiction.config.scans import resolve_scan_paths
 from stiction.config.surfaces import process
+from stiction.config.validation import normalised
 from stiction.plan.graph import Graph, stages, structured
 from stiction.plan.plan import Plan
 from stiction.plan.stage import File

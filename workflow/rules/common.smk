@@ -8,17 +8,16 @@ from functools import cache, partial
 
 from snakemake.logging import logger
 
+from stiction.command.prepared import prepared, problems_of_samples
 from stiction.command.run_state import RUN
-from stiction.config import files, merging, messages, scans, test_beams
-from stiction.config.surfaces import process
+from stiction.config import files, merging, messages
 from stiction.plan import cost, memory
-from stiction.plan.devices import DevicePlan
 from stiction.plan.planner import WHOLE, Planner
 from stiction.plan.stage import WILDCARDS
 from stiction.run import provenance, run_lock, snakemake_patches, stale_results
 from stiction.run.atomic import DataError, save_text
-from stiction.run.disk_cache import DiskCache, SharedCache
-from stiction.run.fingerprint import PACKAGE, fingerprint
+from stiction.run.disk_cache import DiskCache, Kept, SharedCache
+from stiction.run.fingerprint import fingerprint
 
 
 wildcard_constraints:
@@ -33,7 +32,6 @@ except RuntimeError as error:
 snakemake_patches.compare_without_pandas()
 snakemake_patches.look_for_scripts_once()
 snakemake_patches.remember_signatures()
-remember = DiskCache(".snakemake/planning.json")
 remember_code = SharedCache(".snakemake/code.json")
 is_main = snakemake_patches.is_main(workflow)
 if not is_main:
@@ -45,99 +43,49 @@ def code(file):
     return fingerprint(file, remember_code)
 
 
-def validated():
-    """Preliminary numbers of the measured surfaces of a valid configuration, and the sections that follow from them."""
-    from stiction.config.surfaces.grid import completed
-    from stiction.config.validation import validate
-
-    preliminary = validate(config, kept=".snakemake/scans")
-    normal = files.normalised(config)
-    complete = completed(normal, preliminary)
-    return [preliminary, {key: complete[key] for key in complete if complete[key] != normal[key]}]
-
-
-def rules_of_the_configuration():
-    """Code and schema that decide whether a configuration is valid."""
-    folder = PACKAGE / "config"
-    modules = [
-        code(folder / f"{name}.py")
-        for name in (
-            "validation",
-            "surfaces/grid",
-            "surfaces/process_relations",
-            "keys",
-            "meetings",
-            "relations",
-            "relations_devices",
-            "messages",
-        )
-    ]
-    return [*modules, (folder / "schema.yaml").read_text(encoding="utf-8")]
-
-
-def read_configuration():
-    """Files of the configuration, read strictly, checked and made complete; and the numbers of measured surfaces."""
-    # Read again, because Snakemake silently uses the last of duplicate keys.
+def stated():
+    """Configuration as its files state it, read strictly. Snakemake silently uses the last of duplicate keys."""
     contents = {file: files.read(file) for file in snakemake_patches.files_of_configuration(workflow)}
     # A workflow that uses this one as a module states its changes alone, and replaces the file of all keys by them.
     defaults = BASE / "config.yaml"
-    config.update(merging.merged(contents.get(defaults) or files.read(defaults), config))
+    whole = merging.merged(contents.get(defaults) or files.read(defaults), config)
     changes = [contents[file] for file in contents if file != defaults]
-    config.update(merging.without_inherited(config, files.paper(), changes))
+    whole = merging.without_inherited(whole, files.paper(), changes)
     for file in contents:  # files of scans and of test beams are relative to the first match
-        config.update(scans.resolve_scan_paths(config, contents[file], file.parent))
-        config.update(process.resolve_scan_paths(config, contents[file], file.parent))
-        config.update(test_beams.with_files(config, contents[file], file.parent))
-    config.update(process.with_surfaces(merging.expanded(config)))
-    scanned = scans.has_scans(config)
-    preliminary, following = (
-        validated() if scanned else remember(["valid", config, rules_of_the_configuration()], validated)
-    )
-    config.update(files.normalised(config))
-    config.update(following)
-    config.update(files.normalised(config))
-    return dict(config), preliminary
+        whole = files.located(whole, contents[file], file.parent)
+    return whole
+
+
+#: What one plan finds out for the next.
+KEPT = Kept(Path(".snakemake"), remember_code)
+
+
+def complete():
+    """Complete configuration and numbers of measured surfaces. Names the numbers that it leaves open."""
+    ready = prepared(stated(), KEPT)
+    if ready.numbers:
+        logger.warning(str(ready.numbers))
+    return ready.config, ready.estimates
 
 
 #: Complete configuration and numbers of measured surfaces, which a run hands to the jobs that plan it again.
 PLANNED = ".snakemake/configuration.json"
 
 try:
-    complete, preliminary = config["planned"] if "planned" in config and not is_main else read_configuration()
+    planned, preliminary = config["planned"] if "planned" in config and not is_main else complete()
 except messages.ConfigError as error:
     raise WorkflowError(f"The configuration is invalid:\n{error}")
 
 config.clear()
-config.update(complete)
+config.update(planned)
 
 
 def refuse_what_samples_show():
     """Refuse a configuration whose first samples show that a job would fail."""
-    from stiction import pilot
-
-    shown = DiskCache(".snakemake/pilot.json")
-    problems = pilot.problems(config, preliminary, code(PACKAGE / "pilot.py"), shown)
-    shown.save()
-    if problems:
+    if problems := problems_of_samples(config, preliminary, KEPT):
         raise WorkflowError("The configuration is invalid:\n" + "\n".join(map(str, problems)))
 
 
-def decide_numbers():
-    """Add the numbers of beams and samples for the errors of the lengths of devices, and name them."""
-    from stiction import accuracy
-
-    if "accuracy" in config["design"]:  # whose pilot takes longer
-        refuse_what_samples_show()
-    known = DiskCache(".snakemake/accuracy.json")
-    numbers = accuracy.numbers(config, preliminary, code(PACKAGE / "accuracy.py"), known)
-    known.save()
-    if numbers:
-        logger.warning(str(numbers))
-        config.update(numbers.within(config))
-
-
-if DevicePlan(config).has_open_numbers:
-    decide_numbers()
 remember_jobs = DiskCache(".snakemake/jobs.json")
 planner = Planner(config, preliminary, remember_code, remember_jobs)
 

@@ -164,34 +164,23 @@ def _text(content):
 
 def _check(arguments):
     """Check files."""
-    from stiction import accuracy, pilot  # imports the physics
-    from stiction.config.files import load
-    from stiction.config.scans import preliminary_estimates
-    from stiction.run.disk_cache import DiskCache
-    from stiction.run.fingerprint import fingerprint
+    from stiction.command.prepared import prepared
+    from stiction.config.files import joined
+    from stiction.run.disk_cache import NOWHERE, Kept
 
     directory = Path(arguments.directory)
     launch.require_folder(directory)
-    config, shown = load(*arguments.files), DiskCache(directory / ".snakemake" / "pilot.json")
-    preliminary = preliminary_estimates(config)[0]
-    problems = pilot.problems(config, preliminary, fingerprint(pilot.__file__, shown), shown)
-    if directory.is_dir():
-        shown.save()
-    if problems:
-        raise ConfigError(*map(str, problems))
-    known = DiskCache(directory / ".snakemake" / "accuracy.json")
-    numbers = accuracy.numbers(config, preliminary, fingerprint(accuracy.__file__, known), known)
-    if directory.is_dir():
-        known.save()
-    config = numbers.within(config) if numbers else config
+    kept = Kept(directory / ".snakemake") if directory.is_dir() else NOWHERE
+    ready = prepared(joined(*arguments.files), kept, with_samples=True)
+    config = ready.config
     pairs, devices = config["run"]["pairs"], config.get("devices", {})
     scanned = [name for name, entry in config["surfaces"].items() if "scans" in entry]
     named = {f"pair{'s' * (len(pairs) > 1)}": pairs, "devices": devices, "scans of": scanned}
     parts = [f"{what} {', '.join(names)}" for what, names in named.items() if names]
     say(f"{' '.join(arguments.files)} can run: {' and '.join(parts) or 'nothing'}.")
-    if numbers:
-        say(str(numbers))
-    say(f"It takes {_cost(config)}, less for results that are already there.")
+    if ready.numbers:
+        say(str(ready.numbers))
+    say(f"It takes {_cost(ready)}, less for results that are already there.")
     of_pairs = {name: {pair[side] for side in SIDES} for name, pair in config["pairs"].items()}
     if long := [name for name, device in devices.items() if of_pairs[device["pair"]] & {*scanned}]:
         say(
@@ -201,18 +190,16 @@ def _check(arguments):
     return Status.DONE
 
 
-def _cost(config):
+def _cost(ready):
     """CPU time and memory of the whole run of a configuration, in words."""
-    from stiction.config.scans import preliminary_estimates
     from stiction.plan import cost, memory
     from stiction.plan.graph import Graph
     from stiction.plan.plan import Plan
     from stiction.plan.planner import WHOLE
 
-    preliminary, _ = preliminary_estimates(config)
-    jobs = Graph(plan := Plan(config, preliminary)).needed(*WHOLE)
+    jobs = Graph(plan := Plan(ready.config, ready.estimates)).needed(*WHOLE)
     of_stages = {job.stage.name: needs(plan) for job in jobs if (needs := job.stage.running.memory)}
-    megabytes = max(memory.job_memory(config), *map(round, of_stages.values()), 0)
+    megabytes = max(memory.job_memory(ready.config), *map(round, of_stages.values()), 0)
     return cost.in_words(sum(job.seconds for job in jobs), megabytes)
 
 

@@ -9,7 +9,9 @@ import yaml
 
 from stiction.config import files, scans
 from stiction.config.keys import Keys, Relations
+from stiction.config.merging import expanded
 from stiction.config.messages import ConfigError, schema_problems
+from stiction.config.reading import paper
 from stiction.config.relations import schema
 from stiction.config.surfaces import process
 from stiction.config.surfaces.process_relations import surfaces_of_processes_are_defined
@@ -17,6 +19,8 @@ from stiction.run.atomic import save_text
 
 #: Configuration of the surfaces, and folder of their preliminary numbers, below the folder of a run.
 _CONFIGURATION, _KEPT = Path(".snakemake", "scans.yaml"), Path(".snakemake", "scans")
+#: Sections of a configuration that say what its surfaces are.
+_ABOUT_SURFACES = ("surfaces", "scans", "seed", "process", "compare")
 
 
 @dataclass(frozen=True)
@@ -40,15 +44,11 @@ def alone(overlays: Iterable[str], directory: Path) -> Alone:
     Raises
     ------
     ConfigError
-        If a key of these surfaces or of a process is wrong on its own, or a process has no surface.
+        If a key of a surface or of a process is wrong on its own, or a process has no surface.
     """
-    config = files.joined(*overlays)
+    config = _of_surfaces(files.joined(*overlays))
     measured = {name: _entry(entry) for name, entry in config["surfaces"].items() if scans.is_measured(entry)}
     overlay = {"surfaces": measured, "scans": config["scans"], "seed": config["seed"], "run": {"pairs": []}}
-    processes = {"process": config["process"]} if "process" in config else {}
-    faults = schema_problems(files.joined(overlay) | processes, schema())
-    if faults := faults or list(Relations([surfaces_of_processes_are_defined]).problems(Keys(config, []))):
-        raise ConfigError(*process.in_settings(faults, config))
     used, refused = {}, {}
     for name, entry in measured.items():
         usable, reasons = scans.usable(entry, config["scans"], directory / _KEPT)
@@ -57,6 +57,24 @@ def alone(overlays: Iterable[str], directory: Path) -> Alone:
         else:
             used[name] = usable
     return Alone(overlay | {"surfaces": used}, refused)
+
+
+def _of_surfaces(stated):
+    """Sections of the paper, with those about surfaces from a configuration, and all surfaces that it makes."""
+    sections = paper() | {key: stated[key] for key in _ABOUT_SURFACES if key in stated} | {"run": {"pairs": []}}
+    if faults := schema_problems(sections, schema()):
+        raise ConfigError(*map(str, faults))
+    if compare := sections.pop("compare", None):
+        changed = {path: values for path, values in compare.items() if path.partition(".")[0] in _ABOUT_SURFACES}
+        sections |= {"compare": changed} if changed else {}
+    config = process.with_surfaces(expanded(sections))
+    faults = [
+        *schema_problems(config, schema()),
+        *Relations([surfaces_of_processes_are_defined]).problems(Keys({"process": {}} | config)),
+    ]
+    if faults:
+        raise ConfigError(*process.in_settings(faults, config))
+    return config
 
 
 def _entry(entry: Mapping[str, Any]) -> dict[str, Any]:

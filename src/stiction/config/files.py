@@ -1,16 +1,14 @@
-"""Configuration files: reading, overlays on the configuration of the paper, and the normal form."""
+"""Configuration files: reading, and overlays on the configuration of the paper."""
 
 import functools
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from stiction.config import test_beams
-from stiction.config.cases import in_numbers
-from stiction.config.merging import expanded, merged, without_inherited
+from stiction.config import scans, test_beams
+from stiction.config.merging import merged, without_inherited
 from stiction.config.reading import PAPER, paper, read
-from stiction.config.scans import complete, resolve_scan_paths
-from stiction.config.surfaces import described, process
+from stiction.config.surfaces import process
 
 
 def load(*overlays: str | Path | Mapping) -> dict:
@@ -32,20 +30,16 @@ def load(*overlays: str | Path | Mapping) -> dict:
     >>> load({"run": {"pairs": ["b"]}})["run"]
     {'pairs': ['b']}
     """
-    # Imports the physics, which reading alone does not need.
-    from stiction.config.surfaces.grid import completed
-    from stiction.config.validation import validate
+    from stiction.config.validation import checked  # imports the physics, which reading alone does not need
 
-    config = joined(*overlays)
-    estimates = validate(config)
-    return normalised(completed(normalised(config), estimates))
+    return checked(joined(*overlays)).config
 
 
 def joined(*overlays: str | Path | Mapping) -> dict:
-    """Configuration of the paper, changed by overlays as in `load`, as it is: neither checked nor in normal form."""
-    changes = [_in_memory(one) if isinstance(one, Mapping) else located(one) for one in overlays]
+    """Configuration of the paper, changed by overlays as in `load`, as it is stated: not checked."""
+    changes = [_in_memory(overlay) if isinstance(overlay, Mapping) else read_located(overlay) for overlay in overlays]
     whole = functools.reduce(merged, changes, read(PAPER))
-    return process.with_surfaces(expanded(without_inherited(whole, paper(), changes)))
+    return without_inherited(whole, paper(), changes)
 
 
 def _in_memory(overlay):
@@ -66,8 +60,8 @@ def plain(value: Any) -> Any:
     return list(map(plain, value)) if isinstance(value, list | tuple) or hasattr(value, "ndim") else value
 
 
-def located(path: str | Path) -> dict:
-    """Mapping in one YAML file, with the files of scans relative to its folder and the data of test beams in files.
+def read_located(path: str | Path) -> dict:
+    """Mapping in one YAML file, with its files as of `located`.
 
     Raises
     ------
@@ -75,31 +69,13 @@ def located(path: str | Path) -> dict:
         As `stiction.config.reading.read`.
     """
     content = read(path)
-    folder = Path(path).parent
-    located = process.resolve_scan_paths(resolve_scan_paths(content, content, folder), content, folder)
-    return test_beams.with_files(located, content, folder)
+    return located(content, content, Path(path).parent)
 
 
-def normalised(config: dict) -> dict:
-    """Complete and valid configuration in normal form: equivalent settings are equal, whatever their order in the file.
+def located(config: dict, named: Mapping[str, Any], folder: str | Path) -> dict:
+    """Configuration, valid or not, with the files that one of its files names.
 
-    Keys are sorted, so that the parameters of a rule do not depend on their order. The humidities of each pair and
-    device are sorted as well, so that tables and curves begin with the lowest. Surfaces by scans, or described as in
-    papers, get all their keys. Dry air has the humidity 0. Data of test beams are without the files of their beams.
+    Those of scans are in the folder of this file, in place of relative to it. Test beams have the data in their files.
     """
-    config = in_numbers(test_beams.without_files(config))
-    named = {section: config[section] for section in ("pairs", "devices") if section in config}
-    library = paper()["surfaces"]
-    surfaces = {name: complete(described.complete(entry, library)) for name, entry in config["surfaces"].items()}
-    in_order = {section: _sorted(entries) for section, entries in named.items()}
-    return _in_order(config | in_order | {"surfaces": surfaces})
-
-
-def _sorted(entries):
-    """Pairs or devices with their humidities sorted."""
-    return {name: entry | {"humidities": sorted(entry["humidities"])} for name, entry in entries.items()}
-
-
-def _in_order(value):
-    """Value with the keys of all nested sections sorted."""
-    return {key: _in_order(value[key]) for key in sorted(value)} if isinstance(value, dict) else value
+    config = scans.resolve_scan_paths(config, named, folder)
+    return test_beams.with_files(process.resolve_scan_paths(config, named, folder), named, folder)

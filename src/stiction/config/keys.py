@@ -3,6 +3,8 @@
 from collections.abc import Callable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import reduce
+from operator import getitem
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +13,7 @@ from stiction.config.messages import Problem, dotted, one_line
 
 
 class Unknown(LookupError):
-    """Key not given, or wrong on its own. Relations on it are not checked."""
+    """Key not given. Relations on it are not checked."""
 
 
 class Relations(list):
@@ -26,7 +28,7 @@ class Relations(list):
         return relation
 
     def problems(self, config: "Keys") -> Iterator[Problem]:
-        """Yield violated relations between keys valid on their own."""
+        """Yield violated relations."""
         for relation in self:
             with suppress(Unknown):
                 for key, refusal, *given in relation(config):
@@ -40,37 +42,29 @@ class Keys:
 
     Examples
     --------
-    >>> config = Keys({"pairs": {"a": {"gap_um": 20}, "b": {"gap_um": -1}}}, [("pairs", "b", "gap_um")])
+    >>> config = Keys({"pairs": {"a": {"gap_um": 20}, "b": {}}})
     >>> config["pairs.a.gap_um"], config.names("pairs"), list(config.entries("pairs", "gap_um"))
     (20, ['a', 'b'], [('a', 20)])
     """
 
     config: dict
-    faults: list[tuple]  #: paths that are wrong on their own
     files: dict[str, list] = field(default_factory=dict)  #: of the scans of measured surfaces, by name
     origins: dict[tuple, tuple] = field(default_factory=dict)  #: paths and values that users stated, by what follows
 
     def __getitem__(self, key: str) -> Any:
-        """Value of a key. Raises `Unknown` if it is not given, or wrong on its own, as a whole or in part."""
-        path = _path(key)
-        if any(path[: len(fault)] == fault[: len(path)] for fault in self.faults):
-            raise Unknown(key)
-        return self._value(path)
+        """Value of a key. Raises `Unknown` if it is not given."""
+        try:
+            return reduce(getitem, _path(key), self.config)
+        except (LookupError, TypeError):  # a name with a dot, such as b.gap_um
+            raise Unknown(key) from None
 
     def names(self, section: str) -> list[str]:
-        """Names in a section or indices of a list, also of wrong entries. Raises `Unknown` if it is wrong itself."""
-        path = _path(section)
-        if any(path[: len(fault)] == fault for fault in self.faults):
-            raise Unknown(section)
-        value = self._value(path)
-        return (
-            [name for name in value if isinstance(name, str)]
-            if isinstance(value, dict)
-            else [*map(str, range(len(value)))]
-        )
+        """Names in a section or indices of a list."""
+        value = self[section]
+        return list(value) if isinstance(value, dict) else [*map(str, range(len(value)))]
 
-    def valid(self, *keys: str) -> Iterator[tuple[str, Any]]:
-        """Yield (key, value) for every valid key."""
+    def given(self, *keys: str) -> Iterator[tuple[str, Any]]:
+        """Yield (key, value) for every given key."""
         for key in keys:
             with suppress(Unknown):
                 yield key, self[key]
@@ -78,15 +72,14 @@ class Keys:
     def items(self, listed: str) -> Iterator[tuple[str, Any]]:
         """Keys of the items of a list, with their values."""
         with suppress(Unknown):
-            yield from self.valid(*(f"{listed}.{index}" for index in self.names(listed)))
+            yield from self.given(*(f"{listed}.{index}" for index in self.names(listed)))
 
     def entries(self, section: str, *keys: str) -> Iterator[tuple]:
-        """Yield the name of every entry of a section with all these keys valid, and their values."""
-        with suppress(Unknown):
-            for name in self.names(section):
-                values = dict(self.valid(*(f"{section}.{name}.{key}" for key in keys)))
-                if len(values) == len(keys):
-                    yield name, *values.values()
+        """Yield the name of every entry of a section with all these keys, and their values."""
+        for name in self.names(section):
+            values = dict(self.given(*(f"{section}.{name}.{key}" for key in keys)))
+            if len(values) == len(keys):
+                yield name, *values.values()
 
     def scanned(self, *surfaces: str) -> list[str]:
         """Keys of measured surfaces. A problem with them names the files of their scans."""
@@ -108,16 +101,7 @@ class Keys:
             return self.origins[path]
         if path[0] == "surfaces" and path[1] in self.files:
             return (*path[:2], "scans", "files"), [Path(file).name for file in self.files[path[1]]]
-        return path, in_words(self._value(path), path)
-
-    def _value(self, path):
-        value = self.config
-        try:
-            for key in path:
-                value = value[key]
-        except (LookupError, TypeError):
-            raise Unknown(path) from None
-        return value
+        return path, in_words(self[key], path)
 
 
 def _path(key):

@@ -30,7 +30,7 @@ class Meeting:
     """Two surfaces in contact, over some gaps and in some air."""
 
     config: Keys
-    pair: str  #: need not be defined
+    pair: str
     airs: list[str]  #: keys of humidities
     gaps: list[tuple[str, str]]  #: keys of gaps, each with that of the humidities at this gap
     stated: list[str]  #: keys that say what meets
@@ -43,14 +43,14 @@ class Meeting:
         return [*self.asked, *more, *self.stated]
 
     @cached_property
-    def surfaces(self) -> list[str | None]:
-        """Names of both surfaces, not necessarily defined."""
+    def surfaces(self) -> list[str]:
+        """Names of both surfaces."""
         return surfaces_of(self.pair, self.config)
 
     @cached_property
     def sides(self) -> list[dict]:
-        """Sections of both surfaces. Empty if one is not defined or has no numbers (yet)."""
-        return sides_of(*self.surfaces, self.config["surfaces"])
+        """Sections of both surfaces."""
+        return [self.config["surfaces"][name] for name in self.surfaces]
 
     @property
     def rms(self) -> float:
@@ -61,21 +61,17 @@ class Meeting:
     @cached_property
     def materials(self) -> list[dict]:
         """Stated properties of the material of each surface. Empty for the solid of both bodies."""
-        sections = [self.config["surfaces"].get(name, {}) for name in self.surfaces]
-        return [material_of(self.config["materials"], section) for section in sections]
+        return [material_of(self.config["materials"], side) for side in self.sides]
 
     def wetting(self, more: float = 0) -> tuple[float, ...]:
-        """Contact angles [rad], empty without surfaces or without water. Other relations report these.
-
-        ``more`` degrees are added to both angles.
-        """
+        """Contact angles [rad], empty without water. ``more`` degrees are added to both angles."""
         angles = [to_si(material.get("contact_angle_deg", 0) + more, "deg") for material in self.materials]
-        return tuple(angles) if self.sides and is_wetted(angles) else ()
+        return tuple(angles) if is_wetted(angles) else ()
 
     @property
     def is_wetted(self) -> bool:
-        """Whether water condenses in humid air, or nothing is known of it."""
-        return not self.sides or bool(self.wetting())
+        """Whether water condenses in humid air."""
+        return bool(self.wetting())
 
     def too_dry(self, humidities: float | list, more: float = 0, warmer: float = 0) -> str | None:
         """Refusal of the lowest humidity if the film is no liquid there, at larger angles [degrees] or warmer [K]."""
@@ -83,15 +79,9 @@ class Meeting:
         return dry_air(min(humid), self.config[TEMPERATURE] + warmer, angles) if angles and humid else None
 
 
-def surfaces_of(pair: str, config: Keys) -> list[str | None]:
-    """Names of the surfaces of a pair, not necessarily defined."""
-    return [config["pairs"].get(pair, {}).get(side) for side in SIDES]
-
-
-def sides_of(beam: str, substrate: str, surfaces: dict) -> list[dict]:
-    """Sections of the surfaces of a pair. Empty if one is not defined or has no numbers (yet)."""
-    sides = [surfaces.get(name, {}) for name in (beam, substrate)]
-    return sides if all("rms_nm" in surface and "scans" not in surface for surface in sides) else []
+def surfaces_of(pair: str, config: Keys) -> list[str]:
+    """Names of the surfaces of a pair. Raises `Unknown` if it is not defined, which another relation reports."""
+    return [config[f"pairs.{pair}.{side}"] for side in SIDES]
 
 
 def above_zero(humidities: float | list) -> list[float]:
@@ -108,9 +98,8 @@ def meetings(config: Keys) -> Iterator[Meeting]:
 
 def pair_meetings(config: Keys) -> Iterator[Meeting]:
     """Yield the meetings of the pairs in the run."""
-    running = [pair for _, pairs in config.valid("run.pairs") for pair in pairs]
     for pair, *surfaces in config.entries("pairs", *SIDES):
-        if pair in running:
+        if pair in config["run.pairs"]:
             section, shown = f"pairs.{pair}", "figures.humidity"
             airs = [f"{section}.humidities", shown]
             stated = [*(f"{section}.{side}" for side in SIDES), *config.scanned(*surfaces)]
@@ -122,11 +111,10 @@ def device_meeting(name: str, config: Keys) -> Meeting:
     section = f"devices.{name}"
     pair, humidities = config[f"{section}.pair"], f"{section}.humidities"
     airs, gaps = [humidities], [(f"{section}.gap_um", humidities)]
-    for _, chart in config.valid(f"{section}.chart"):
+    for _, chart in config.given(f"{section}.chart"):
         airs.append(f"{section}.chart.humidities")
         gaps.append((f"{section}.{'chart.gaps_um' if 'gaps_um' in chart else 'gap_um'}", airs[-1]))
-    known = dict(config.valid(f"{section}.kind", humidities))
-    if len(known) == 2 and not KINDS[known[f"{section}.kind"]].is_beam and any(known[humidities]):
+    if not KINDS[config[f"{section}.kind"]].is_beam and any(config[humidities]):
         airs.append("design.worst_humidities")
     scanned = config.scanned(*surfaces_of(pair, config))
     return Meeting(config, pair, airs, gaps, scanned, deviation=f"{section}.uncertainty.humidity")
@@ -141,14 +129,15 @@ def gaps_are_far_above_the_film(config):
     for meeting in meetings(config):
         refused = {}
         for gap, air in meeting.gaps:
-            values = dict(config.valid(gap, air))
-            if len(values) == 2 and meeting.sides:
-                adsorbed = dict(config.valid(ADSORBED))
+            values = dict(config.given(gap, air))
+            if len(values) == 2:
+                adsorbed = dict(config.given(ADSORBED))
                 least, refusal = least_gap(values[air], meeting)
-                found = least, gap, refusal, air, *meeting.keys_behind(TEMPERATURE, *adsorbed)
+                refusal_at_air = least, gap, refusal, air, *meeting.keys_behind(TEMPERATURE, *adsorbed)
                 if np.min(values[gap]) < least:
-                    refused[gap] = max(refused.get(gap, found), found, key=operator.itemgetter(0))
-        yield from (found[1:] for found in refused.values())
+                    largest = refused.get(gap, refusal_at_air)
+                    refused[gap] = max(largest, refusal_at_air, key=operator.itemgetter(0))
+        yield from (refusal[1:] for refusal in refused.values())
 
 
 def with_rms(config: Keys, device: str, rms: Mapping[str, float]) -> Meeting:
@@ -156,11 +145,9 @@ def with_rms(config: Keys, device: str, rms: Mapping[str, float]) -> Meeting:
     return replace(device_meeting(device, config), others=tuple(rms.items()))
 
 
-def least_gap(humidities: float | list, meeting: Meeting) -> tuple[float, str] | None:
-    """Smallest gap [µm] far above the film at the highest humidity, and its message. None without known surfaces."""
-    if not meeting.sides:
-        return None
-    adsorbed = sum(value for _, value in meeting.config.valid(ADSORBED))
+def least_gap(humidities: float | list, meeting: Meeting) -> tuple[float, str]:
+    """Smallest gap [µm] far above the film at the highest humidity, and its message."""
+    adsorbed = sum(value for _, value in meeting.config.given(ADSORBED))
     angles, humid = meeting.wetting(), above_zero(humidities)
     wet = angles and humid
     heights = meniscus_height(humid, meeting.config[TEMPERATURE], angles) + to_si(adsorbed, "nm") if wet else 0.0
@@ -177,7 +164,7 @@ def coatings_leave_a_gap(config):
     """Require both coatings together to be thinner than the gap."""
     for meeting in meetings(config):
         coatings = sum(material.get(COATING, 0) for material in meeting.materials)
-        for key, gap in config.valid(*dict.fromkeys(gap for gap, _ in meeting.gaps)):
+        for key, gap in config.given(*dict.fromkeys(gap for gap, _ in meeting.gaps)):
             if np.min(gap) * NM_PER_UM <= coatings:
                 message = f"must be above the thickness of the coatings of both surfaces, {coatings:g} nm"
                 yield key, message, *meeting.keys_behind()
@@ -188,7 +175,7 @@ def water_is_a_liquid(config):
     """Require air humid enough for a film of liquid water. The humidity of the figures is refused once."""
     refused = {}
     for meeting in meetings(config):
-        for key, humidities in config.valid(*meeting.airs):
+        for key, humidities in config.given(*meeting.airs):
             if refusal := meeting.too_dry(humidities):
                 refused.setdefault(key, (key, refusal, *meeting.keys_behind(TEMPERATURE)))
     yield from refused.values()
@@ -205,12 +192,12 @@ _TOO_SHORT = {
 def attraction_reaches_across_dry_gaps(config):
     """Require attraction across gaps in dry air. There surfaces attract each other mostly out of contact."""
     for meeting in meetings(config):
-        dry = [key for key, humidities in config.valid(*meeting.airs) if np.min(humidities) == 0]
+        dry = [key for key, humidities in config.given(*meeting.airs) if np.min(humidities) == 0]
         if meeting.is_wetted and not dry:
             continue
         angles = " and ".join(f"{material.get('contact_angle_deg', 0):g}" for material in meeting.materials)
         why = "in dry air" if meeting.is_wetted else f"where no water condenses at contact angles of {angles} degrees"
-        for key, value in config.valid(*_TOO_SHORT):
+        for key, value in config.given(*_TOO_SHORT):
             refused, allowed = _TOO_SHORT[key]
             if value == refused:
                 yield (
@@ -229,20 +216,20 @@ def corrections_are_not_extrapolated(config):
     for name, _ in config.entries("devices", "pair"):
         meeting = device_meeting(name, config)
         of_pair, (own, *others) = f"pairs.{meeting.pair}.humidities", meeting.airs
-        shown = [air for _, air in config.valid("figures.humidity") if meeting.pair in config["run.pairs"]]
-        known, uncertain = [*config[of_pair], *shown], dict(config.valid(meeting.deviation))
-        for key, humidities in config.valid(own, *others):
+        shown = [config["figures.humidity"]] * (meeting.pair in config["run.pairs"])
+        covered, uncertain = [*config[of_pair], *shown], dict(config.given(meeting.deviation))
+        for key, humidities in config.given(own, *others):
             more = sum(uncertain.values()) if key == own else 0
-            if not meeting.is_wetted or _is_within(humidities, more, known):
+            if not meeting.is_wetted or _is_within(humidities, more, covered):
                 continue
             words = ", with its uncertainty," if more else ""
             restricted = "to which the correction of contact.model full is restricted"
             yield key, f"must be{words} within the humidities of pair {meeting.pair}, {restricted}", of_pair
 
 
-def _is_within(humidities, more, known):
-    """Whether humidities, with their uncertainty, are within known ones: dry air is one of these or not."""
-    humid, of_pair = above_zero(humidities), above_zero(known)
-    if np.min(humidities) == 0 and min(known) > 0 or humid and not of_pair:
+def _is_within(humidities, more, covered):
+    """Whether humidities, with their uncertainty, are within covered ones: dry air is one of these or not."""
+    humid, of_pair = above_zero(humidities), above_zero(covered)
+    if np.min(humidities) == 0 and min(covered) > 0 or humid and not of_pair:
         return False
     return not humid or is_at_most(min(of_pair), min(humid) - more) and is_at_most(max(humid) + more, max(of_pair))

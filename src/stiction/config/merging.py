@@ -5,12 +5,13 @@ on B2, and so on. Several keys change together, each copy with the values at one
 entries like any others: nothing else knows of the section but tables and figures.
 """
 
-import re
 from collections.abc import Mapping, Sequence
+from functools import reduce
 from itertools import chain
+from operator import getitem
 from typing import Any
 
-from stiction.config.messages import ConfigError, is_number
+from stiction.config.messages import ConfigError
 from stiction.config.units import without_unit
 
 #: Sections whose entries may be copied, each after those that it names, and the keys by which it names these.
@@ -28,9 +29,6 @@ _NAMED = {
         "second_process": "process",
     },
 }
-
-#: Key below an entry.
-_KEY = re.compile(r"[A-Za-z0-9_]+([.][A-Za-z0-9_]+)*")
 
 
 def merged(base: Any, overlay: Any) -> Any:
@@ -101,8 +99,7 @@ def _end(number):
 def expanded(config: dict[str, Any]) -> dict[str, Any]:
     """Configuration with a copy of each entry for each value of section ``compare``. Itself without such a section.
 
-    Copies take the place of pairs that run and of devices, which all run. A section that the schema refuses is left to
-    it.
+    Copies take the place of pairs that run and of devices, which all run.
 
     Raises
     ------
@@ -110,12 +107,9 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
         If a key does not describe an entry of one of the sections whose entries are copied, or if an entry has the name
         of a copy.
     """
-    compare = config.get("compare")
-    if not (isinstance(compare, dict) and all(isinstance(path, str) for path in compare)):
+    if "compare" not in config:
         return config
     paths = [_parts_of_path(config, path) for path, _ in _compared_keys(config)]
-    if not all(map(_is_listed, compare.values())) or not all(_KEY.fullmatch(keys) for _, _, keys in paths):
-        return config
     copied, stated, ends = _users_of(config, *((section, name) for section, name, _ in paths)), config, values(config)
     for end, numbers in ends.items():
         config = _with_copies(config, copied, end)
@@ -130,18 +124,17 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
 def _changed_entries(before, after):
     """Yield dotted names of entries different in two configurations, also below studies."""
     for place in _places(before):
-        entries, now = _section(before, *place), _section(after, *place)
+        entries, now = reduce(getitem, place, before), reduce(getitem, place, after)
         yield from (".".join((*place, name)) for name in now if name in entries and entries[name] != now[name])
 
 
 def _in_place(config, copied, ends):
     """Configuration with copies in place of pairs in the run and of devices."""
-    runs, devices = _section(config, "run").get("pairs"), _section(config, "devices")
-    if isinstance(runs, list):
-        copies = ([pair + end for end in ends] if pair in copied["pairs"] else [pair] for pair in runs)
-        config = merged(config, {"run": {"pairs": list(chain.from_iterable(copies))}})
+    copies = ([pair + end for end in ends] if pair in copied["pairs"] else [pair] for pair in config["run"]["pairs"])
+    config = merged(config, {"run": {"pairs": list(chain.from_iterable(copies))}})
     if copied["devices"]:
-        config = config | {"devices": {name: devices[name] for name in devices if name not in copied["devices"]}}
+        devices = {name: device for name, device in config["devices"].items() if name not in copied["devices"]}
+        config = config | {"devices": devices}
     return config
 
 
@@ -149,26 +142,12 @@ def _parts_of_path(config, path):
     """Section, name of the entry, and key below it of a compared key. Raises a ConfigError without such an entry."""
     section, _, rest = path.partition(".")
     name, _, keys = rest.partition(".")
-    entries = config.get(section) if section in _NAMED else None
-    if isinstance(entries, dict) and isinstance(entries.get(name), dict) and keys:
+    sections = {kind: config[kind] for kind in _NAMED if kind in config}
+    if name in sections.get(section, ()):
         return section, name, keys
-    known = {kind: config[kind] for kind in _NAMED if isinstance(config.get(kind), dict)}
-    if isinstance(entries, dict):
-        known = {section: entries}
-    listed = "; ".join(f"{kind}.NAME.KEY with NAME {' or '.join(map(str, names))}" for kind, names in known.items())
+    allowed = {section: sections[section]} if section in sections else sections
+    listed = "; ".join(f"{kind}.NAME.KEY with NAME {' or '.join(names)}" for kind, names in allowed.items())
     raise ConfigError(f"compare.{path} is no key of an entry that exists, must be {listed}")
-
-
-def _is_listed(values):
-    """Whether compared values are several numbers."""
-    return isinstance(values, list) and len(values) > 1 and all(map(is_number, values))
-
-
-def _section(config, *place):
-    """Nested section of a configuration, valid or not, empty if missing."""
-    for name in place:
-        config = config.get(name) if isinstance(config, dict) else None
-    return config if isinstance(config, dict) else {}
 
 
 def _only_at(value, *place):
@@ -180,27 +159,24 @@ def _only_at(value, *place):
 
 def _places(config):
     """Yield places of sections with entries to copy, and of sections keyed by the name of a pair."""
-    yield from ((section,) for section in _NAMED)
-    yield from (
-        ("studies", study, key) for study in _section(config, "studies") for key in _section(config, "studies", study)
-    )
+    yield from ((section,) for section in _NAMED if section in config)
+    studies = {study: section for study, section in config["studies"].items() if isinstance(section, dict)}
+    for study, section in studies.items():
+        yield from (("studies", study, key) for key, value in section.items() if isinstance(value, dict))
 
 
 def _users_of(config, *entries):
     """Names by section of some entries and of all their users."""
     copied = {kind: list(dict.fromkeys(name for section, name in entries if section == kind)) for kind in _NAMED}
     for kind in _NAMED:
-        for other, entry in _section(config, kind).items():
-            uses = isinstance(other, str) and _with_suffixes(entry, kind, copied, "x") != entry
-            if uses and other not in copied[kind]:
+        for other, entry in config.get(kind, {}).items():
+            if other not in copied[kind] and _with_suffixes(entry, kind, copied, "x") != entry:
                 copied[kind].append(other)
     return copied
 
 
 def _with_suffixes(entry, section, copied, end):
     """Append a suffix to the names of copied entries in an entry, nested sections included."""
-    if not isinstance(entry, dict):
-        return entry
 
     def new(key, value):
         """Value with the suffix on names of copies, nested sections and lists included."""
@@ -223,7 +199,7 @@ def _with_copies(config, copied, end):
     }
     config = merged(config, added)
     for place in _places(config):
-        stated = _section(config, *place) if place[0] == "studies" else {}
+        stated = reduce(getitem, place, config) if place[0] == "studies" else {}
         if of_copies := {name + end: stated[name] for name in copied["pairs"] if name in stated}:
             config = merged(config, _only_at(of_copies, *place))
     return config

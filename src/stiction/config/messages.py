@@ -42,11 +42,6 @@ class Problem:
         return f"{dotted(self.path)} {self.message}"
 
 
-def faulty(faults: Iterable[tuple], section: str) -> set[str]:
-    """Names of the entries of a section with one of the faults, paths of wrong keys."""
-    return {path[1] for path in faults if path[:1] == (section,) and len(path) > 1}
-
-
 def schema_problems(config: object, schema: dict) -> list[Problem]:
     """Problems of single keys, found with the schema."""
     try:

@@ -2,7 +2,7 @@
 
 The schema bounds every key on its own. Every condition between keys is one of the generators below, which yields a
 problem for each entry that violates it; the message is the end of a sentence about the offending key. Values keep the
-units of their keys.
+units of their keys. Relations between names come first: where they hold, the others find what is named.
 """
 
 import contextlib
@@ -39,15 +39,17 @@ def schema() -> dict:
     return yaml.load(text, getattr(yaml, "CSafeLoader", yaml.SafeLoader))  # in C where PyYAML was built with it
 
 
+#: Relations between names, and between keys that are given or not.
+relation_of_names = Relations()
 #: Relations between the keys of surfaces, pairs and the sizes of computations.
 relation = Relations()
 
 
-@relation
+@relation_of_names
 def lists_have_no_duplicates(config):
     """Require each pair, study, scan and fraction once in its list."""
     scans = [f"surfaces.{name}.scans.files" for name, _ in config.entries("surfaces", "scans.files")]
-    for key, values in config.valid("design.shares", *scans, "run.studies", "run.pairs"):
+    for key, values in config.given("design.shares", *scans, "run.studies", "run.pairs"):
         if repeated := duplicates(values):
             yield key, f"must list each value once; {one_line(repeated[0])} is listed twice"
 
@@ -63,32 +65,31 @@ def compared_values_make_different_copies(config):
         yield "compare", f"must list each copy once; {', '.join(map(one_line, twice))} is listed twice"
 
 
-@relation
+@relation_of_names
 def something_is_computed(config):
     """Require something to compute: pairs, devices, or scans to evaluate."""
-    names, devices, surfaces = config["run.pairs"], config["devices"], config["surfaces"].values()
-    if not (names or devices or config.files or any("scans" in surface for surface in surfaces)):
+    if not (config["run.pairs"] or config["devices"] or any(config.entries("surfaces", "scans"))):
         yield "run.pairs", "must name a pair: there are neither devices nor scans"
 
 
-@relation
+@relation_of_names
 def selected_pairs_exist(config):
     """Require pairs in the run to be defined."""
     pairs = config.names("pairs")
-    for key, names in config.valid(
+    for key, names in config.given(
         *(f"studies.{name}.distance_nm" for name in ("plasticity", "pressing")), "run.pairs"
     ):
         if strange := [name for name in names if name not in pairs]:
             yield key, f"{undefined(strange[0], pairs)}; {one_line(strange[0])} is not"
 
 
-@relation
+@relation_of_names
 def pair_of_the_figures_is_defined(config):
     """Require a defined pair for the figures."""
     yield "figures.pair", undefined(config["figures.pair"], config.names("pairs"))
 
 
-@relation
+@relation_of_names
 def surfaces_of_pairs_are_defined(config):
     """Require both surfaces of every pair to be defined."""
     for side in reversed(SIDES):
@@ -107,7 +108,7 @@ def undefined(name: str, defined: Iterable[str]) -> str | None:
     return None if name in defined else f"must be one of {', '.join(defined)}{did_you_mean(name, defined)}"
 
 
-@relation
+@relation_of_names
 def materials_are_defined(config):
     """Require materials to be defined in their own section. The paper has none."""
     none = "must be the name of a section of materials, where no material is described"
@@ -159,7 +160,7 @@ def humidity_of_the_figures_has_a_name(config):
 _NUMBERS = ("rms_nm", "skewness", "kurtosis", "mean_summit_radius_um", "summit_density_per_um2", "published_psd")
 
 
-@relation
+@relation_of_names
 def scans_stand_alone(config):
     """Require a surface to have either scans or numbers."""
     for name, _ in config.entries("surfaces", "scans"):
@@ -168,9 +169,9 @@ def scans_stand_alone(config):
             yield f"surfaces.{name}.scans", message
 
 
-@relation
+@relation_of_names
 def spectra_suit_their_surfaces(config):
-    """Require fitted or tabulated spectra for scans, and others for numbers."""
+    """Require fitted or tabulated spectra for scans, others for numbers."""
     for name, psd in config.entries("surfaces", "psd"):
         keys = config.names(f"surfaces.{name}")
         if "scans" not in keys:
@@ -183,7 +184,7 @@ def spectra_suit_their_surfaces(config):
             yield f"surfaces.{name}.psd", f"must be {' or '.join(sources)} for a surface {which} scans"
 
 
-@relation
+@relation_of_names
 def only_scans_leave_a_choice(config):
     """Other surfaces have the heights of their moments and a spectrum with a cut-off."""
     for choice in ("beyond", "heights"):
@@ -311,7 +312,7 @@ def lengths_exceed_the_correlation(config):
     lengths = {"sampling.margin_um": ("published_psd",)}
     if spectra_are_identified(config):
         lengths["identification.patch_um"] = ("published_psd", "summit_density_per_um2")
-    for key, length in config.valid(*lengths):
+    for key, length in config.given(*lengths):
         for name, psd, *_ in _drawn_surfaces(config, *lengths[key]):
             yield key, correlated(length, psd), *(f"surfaces.{name}.{stated}" for stated in lengths[key])
 
@@ -330,7 +331,7 @@ def lengths_can_exceed_the_correlation(config):
     """Require lengths above the estimated correlation of an identified spectrum. The jobs check the spectrum itself."""
     keys = "psd", "rms_nm", "mean_summit_radius_um", "summit_density_per_um2"
     spacing = config["character.spacing_nm"]
-    for key, length in config.valid("sampling.margin_um", "identification.patch_um"):
+    for key, length in config.given("sampling.margin_um", "identification.patch_um"):
         for name, psd, *summits in _drawn_surfaces(config, *keys):
             if psd == "identified" and (refusal := correlated_as_estimated(length, *summits, spacing)):
                 given = [f"surfaces.{name}.{stated}" for stated in keys]
@@ -374,7 +375,7 @@ def strips_are_whole_under_a_variant(config):
     """Require whole strips for the step in grid points times the grid spacing, with either changed by a variant."""
     sides = "sampling.strip_length_um", *(["beam.width_um"] * pairs_run(config))
     variants = {"sampling.spacing_nm": "studies.variants.every", "contact.every": "studies.variants.spacing_nm"}
-    for other, step in config.valid(*variants):
+    for other, step in config.given(*variants):
         for key, changed in config.items(variants[other]):
             if any(off_grid(config[side], changed, step) for side in sides):
                 yield key, "must divide both sides of a strip into whole contact points", other, *sides
@@ -406,7 +407,7 @@ def strips_can_hold_a_summit(config):
     """Require strips with room for a summit and its eight neighbours."""
     coarse = config["character.spacing_nm"]
     width = ["beam.width_um"] * pairs_run(config)
-    for key, side in config.valid(*width, "sampling.strip_length_um", "identification.patch_um"):
+    for key, side in config.given(*width, "sampling.strip_length_um", "identification.patch_um"):
         if not is_at_most(3 * coarse, side * NM_PER_UM):
             yield "character.spacing_nm", f"must be at most a third of a side of {side} µm", key
 
@@ -505,11 +506,10 @@ def studies_in_humid_air_have_some(config):
     That of the sensitivity is about the pair of the figures.
     """
     humid = {
-        meeting.pair: above_zero(humidities) and meeting.is_wetted
+        meeting.pair: above_zero(config[f"pairs.{meeting.pair}.humidities"]) and meeting.is_wetted
         for meeting in pair_meetings(config)
-        for _, humidities in config.valid(f"pairs.{meeting.pair}.humidities")
     }
-    running = [pair for pair in config["run.pairs"] if pair in humid]
+    running = config["run.pairs"]
     shown = [pair for pair in running if pair == config["figures.pair"]] or running[:1]
     for name in config["run.studies"]:
         if name in IN_HUMID_AIR and not any(humid.values()):
@@ -533,7 +533,7 @@ def _without(study, why):
 def beam_is_slender(config):
     """Require a beam longer than its width, thickness and deflection (Euler-Bernoulli)."""
     gaps = [f"pairs.{pair}.gap_um" for pair, _ in config.entries("pairs", "gap_um")]
-    for key, size in config.valid("beam.thickness_um", "beam.width_um", *gaps):
+    for key, size in config.given("beam.thickness_um", "beam.width_um", *gaps):
         if size >= config["beam.length_um"]:
             yield key, "must be below the length of the beam", "beam.length_um"
 
@@ -545,7 +545,7 @@ def strips_fit_into_memory(config):
     given = "sampling.strip_length_um", "sampling.margin_um", "beam.width_um"
     length, margin, width = (config[key] for key in given)
     grids = [key for key, _ in config.items("studies.variants.spacing_nm") if variants_of_pairs_run(config)]
-    for key, spacing in config.valid(*grids, "sampling.spacing_nm"):
+    for key, spacing in config.given(*grids, "sampling.spacing_nm"):
         yield from fields_too_large(config, key, (length + margin, width + margin), spacing, *given)
 
 

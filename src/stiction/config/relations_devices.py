@@ -11,14 +11,13 @@ import numpy as np
 from stiction.config import memory
 from stiction.config.cases import Air
 from stiction.config.keys import Relations
-from stiction.config.kinds import KEYS, KINDS, KNOWN, ROUGHNESSES, kind_of
+from stiction.config.kinds import KEYS, KINDS, ROUGHNESSES, kind_of
 from stiction.config.materials import hamaker_constant, material_of
 from stiction.config.meetings import (
     TEMPERATURE,
     above_zero,
     device_meeting,
     least_gap,
-    sides_of,
     surfaces_of,
     with_rms,
 )
@@ -46,6 +45,8 @@ from stiction.surface.feasible import largest_kurtosis
 #: Least standard deviation of crack lengths, in parts of their mean. ASSUME: beams differ by more than 1 nm in 10 µm.
 LEAST_SCATTER = 1e-4
 
+#: Relations between the names of devices, and between their keys that are given or not.
+relation_of_names = Relations()
 #: Relations between the keys of devices.
 relation = Relations()
 #: Relations between the sizes of all tips, those of counted test beams among them.
@@ -56,7 +57,7 @@ _GRID = "sampling.spacing_nm", "contact.every"
 _STRIP = "sampling.strip_length_um"
 
 
-relation(partial(references_are_defined, section="devices", key="pair", to="pairs"))
+relation_of_names(partial(references_are_defined, section="devices", key="pair", to="pairs"))
 relation(partial(cases_have_unique_names, section="devices"))
 
 
@@ -74,7 +75,7 @@ def strips_and_patches_are_whole_on_the_grid(config):
     """Sides of strips, and of the area of a stopper, are multiples of the distance between contact points."""
     sides = ("strip_um", "width_um", "contact_um")
     of_devices = [f"devices.{name}.{key}" for key in sides for name, _ in config.entries("devices", key)]
-    for key, stated in config.valid(*["beam.width_um"] * pairs_run(config), _STRIP, *of_devices):
+    for key, stated in config.given(*["beam.width_um"] * pairs_run(config), _STRIP, *of_devices):
         refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(stated))
         yield key, next(filter(None, refusals), None), *_GRID
 
@@ -92,14 +93,11 @@ def strips_of_bridges_are_whole_on_the_grid(config):
             yield f"devices.{name}.kind", message, _STRIP, *_GRID
 
 
-@relation
+@relation_of_names
 def devices_have_the_keys_of_their_kind(config):
-    """Require all keys of the kind of a device, and none of another kind. Keys of no kind may be misspelt."""
+    """Require all keys of the kind of a device, and none of another kind."""
     for name, kind in config.entries("devices", "kind"):
-        refusal = KINDS[kind].refusal(config.names(f"devices.{name}"))
-        if any(fault[:2] == ("devices", name) and len(fault) == 3 and fault[2] not in KNOWN for fault in config.faults):
-            continue
-        yield f"devices.{name}.kind", refusal
+        yield f"devices.{name}.kind", KINDS[kind].refusal(config.names(f"devices.{name}"))
 
 
 @relation
@@ -170,7 +168,7 @@ def dimples_are_under_their_beam(config):
 @relation
 def asperities_of_devices_are_summits(config):
     """Require summits for tips of beams and for the budgets of devices."""
-    for name, _ in config.entries("devices", "pair"):
+    for name in config["devices"]:
         if config["contact.asperity"] != "summit":
             message = "must be summit, or the devices left out: their contact has summits"
             yield "contact.asperity", message, f"devices.{name}.pair"
@@ -183,7 +181,7 @@ def axes_increase(config):
     charts = [f"devices.{name}.{axis}" for axis in axes for name, _ in config.entries("devices", axis)]
     tilts = [f"devices.{name}.tilt_deg" for name, _ in config.entries("devices", "tilt_deg")]
     rows = [f"devices.{name}.dimples.at_um" for name, _ in config.entries("devices", "dimples.at_um")]
-    for key, values in config.valid(*charts, *tilts, *rows, "design.worst_humidities"):
+    for key, values in config.given(*charts, *tilts, *rows, "design.worst_humidities"):
         if any(low >= high for low, high in zip(values, values[1:], strict=False)):
             yield key, "must be in increasing order, each value once"
 
@@ -212,13 +210,12 @@ def devices_fit_into_memory(config):
     """Require the fields around all patches of surface to fit into the memory of a job."""
     others = "studies.variants.spacing_nm"
     for name, device in config["devices"].items():
-        if set(kind_of(device).keys) <= set(device):
-            refused = {}
-            for key, sides, spacing in memory.fields_of(device, config["sampling"], config[others]):
-                given = [] if "dimples" in key else [others]
-                for found, *refusal in fields_too_large(config, f"devices.{name}.{key}", sides, spacing, *given):
-                    refused.setdefault(found, refusal)
-            yield from ((key, *refusal) for key, refusal in refused.items())
+        refused = {}
+        for key, sides, spacing in memory.fields_of(device, config["sampling"], config[others]):
+            given = [] if "dimples" in key else [others]
+            for refused_key, *refusal in fields_too_large(config, f"devices.{name}.{key}", sides, spacing, *given):
+                refused.setdefault(refused_key, refusal)
+        yield from ((key, *refusal) for key, refusal in refused.items())
 
 
 @relation
@@ -348,12 +345,7 @@ def uncertainties_are_those_of_the_kind(config):
 def _material(config, name):
     """Properties of the material of the beam or stopper of a device."""
     beam, _ = surfaces_of(config["devices"][name]["pair"], config)
-    return config["solid"] | material_of(config["materials"], config["surfaces"].get(beam, {}))
-
-
-def _sides(config, name):
-    """Sections of the surfaces of a device, empty if one is not defined. Another relation reports it."""
-    return sides_of(*surfaces_of(config["devices"][name]["pair"], config), config["surfaces"])
+    return config["solid"] | material_of(config["materials"], config["surfaces"][beam])
 
 
 def _keys_of_scans(config, name):
@@ -387,7 +379,7 @@ def requirements_are_those_of_the_kind(config):
             yield f"devices.{name}.requirement", f"must come {words}", f"devices.{name}.kind"
 
 
-@relation
+@relation_of_names
 def varied_surfaces_are_in_the_pair(config):
     """Require one or two varied quantities, of a surface of the pair."""
     for name, roughness, pair in config.entries("devices", "roughness", "pair"):
@@ -395,18 +387,25 @@ def varied_surfaces_are_in_the_pair(config):
         if len(stated) not in (1, 2):
             message = f"must have one or two of {', '.join(ROUGHNESSES)}, and has {', '.join(stated) or 'none'}"
             yield f"devices.{name}.roughness", message
-        if _sides(config, name) and roughness["surface"] not in (sides := surfaces_of(pair, config)):
+        if roughness["surface"] not in (sides := surfaces_of(pair, config)):
             message = f"must be a surface of pair {pair}, {' or '.join(dict.fromkeys(sides))}"
             yield f"devices.{name}.roughness.surface", message, f"devices.{name}.pair"
+
+
+@relation_of_names
+def varied_skewnesses_are_those_of_moments(config):
+    """Require heights by their moments for a range of the skewness."""
+    for name, surface, _ in config.entries("devices", "roughness.surface", "roughness.skewness"):
+        if config["surfaces"][surface].get("heights") == "measured":
+            message = f"must be left out: surface {surface} has the measured form of its heights"
+            yield f"devices.{name}.roughness.skewness", message
 
 
 @relation
 def varied_skewnesses_have_a_density(config):
     """Require a density at both ends of the skewness, at the kurtosis of the surface or less."""
     for name, ends, surface in config.entries("devices", "roughness.skewness", "roughness.surface"):
-        key, section = f"devices.{name}.roughness.skewness", config["surfaces"].get(surface, {})
-        if section.get("heights") == "measured":
-            yield key, f"must be left out: surface {surface} has the measured form of its heights"
+        key, section = f"devices.{name}.roughness.skewness", config["surfaces"][surface]
         for skewness in ends if "kurtosis" in section else ():
             kurtosis = min(section["kurtosis"], largest_kurtosis(abs(skewness)))
             if refusal := without_density(skewness, kurtosis):
@@ -418,7 +417,7 @@ def varied_skewnesses_have_a_density(config):
 def varied_corners_are_those_of_spectra(config):
     """Require corners below the cut-off, and patches wide enough for the lowest one, at the same slope."""
     for name, ends, surface in config.entries("devices", "roughness.corner_rad_per_um", "roughness.surface"):
-        key, section = f"devices.{name}.roughness.corner_rad_per_um", config["surfaces"].get(surface, {})
+        key, section = f"devices.{name}.roughness.corner_rad_per_um", config["surfaces"][surface]
         if section.get("psd") != "published":
             continue
         psd, (low, high) = section["published_psd"], ends
@@ -436,14 +435,14 @@ def varied_corners_are_those_of_spectra(config):
 # Test beams, for which the relations of devices hold as well: see stiction.config.validation
 
 
-@relation
+@relation_of_names
 def arrays_of_devices_are_defined(config):
     """Require existing test beams for a device, each once."""
     arrays = config.names("test_beams")
     for name, used in config.entries("devices", "test_beams"):
         if unknown := [array for array in used if array not in arrays]:
-            known = ", ".join(arrays) or "the arrays of section test_beams"
-            yield f"devices.{name}.test_beams", f"must be among {known}: {unknown[0]} is not there"
+            defined = ", ".join(arrays) or "the arrays of section test_beams"
+            yield f"devices.{name}.test_beams", f"must be among {defined}: {unknown[0]} is not there"
         elif len(set(used)) < len(used):
             yield f"devices.{name}.test_beams", "must contain each array once"
 
@@ -454,19 +453,14 @@ def arrays_have_the_materials_of_their_devices(config):
     arrays = config["test_beams"]
     for name, used in config.entries("devices", "test_beams"):
         wanted = _names_of_materials(config, config["devices"][name]["pair"])
-        others = (
-            array
-            for array in used
-            if array in arrays and _names_of_materials(config, arrays[array].get("pair")) != wanted
-        )
-        if other := next(others, None):
+        if other := next((one for one in used if _names_of_materials(config, arrays[one]["pair"]) != wanted), None):
             message = f"must have the materials of the device: those of {other} differ"
             yield f"devices.{name}.test_beams", message, *_keys_of_scans(config, name)
 
 
 def _names_of_materials(config, pair):
     """Names of the materials of both sides of a pair, None if not stated."""
-    return [config["surfaces"].get(surface, {}).get("material") for surface in surfaces_of(pair, config)]
+    return [config["surfaces"][surface].get("material") for surface in surfaces_of(pair, config)]
 
 
 @relation
@@ -495,7 +489,7 @@ def _agree(*devices):
     return first == second
 
 
-@relation
+@relation_of_names
 def arrays_have_data(config):
     """Require crack lengths or counts of each array."""
     for name, _ in config.entries("test_beams", "pair"):
@@ -659,11 +653,11 @@ def uncertain_stresses_are_tensile(config):
 def gaps_are_far_above_varied_surfaces(config):
     """Require the gap far above the film and the roughest surface of a range, as above the given one."""
     for name, key, surface, rms in _varied_surfaces(config):
-        for _, gap, humidities in (one for one in config.entries("devices", "gap_um", "humidities") if one[0] == name):
-            least = least_gap(humidities, with_rms(config, name, {surface: rms}))
-            if least is not None and gap < least[0]:
-                message = f"must leave a gap at the rms of {rms:g} nm, where gap_um {least[1]}"
-                yield f"devices.{name}.{key}", message, f"devices.{name}.gap_um", f"devices.{name}.humidities"
+        device = config["devices"][name]
+        least, refusal = least_gap(device["humidities"], with_rms(config, name, {surface: rms}))
+        if device.get("gap_um", math.inf) < least:
+            message = f"must leave a gap at the rms of {rms:g} nm, where gap_um {refusal}"
+            yield f"devices.{name}.{key}", message, f"devices.{name}.gap_um", f"devices.{name}.humidities"
 
 
 def _varied_surfaces(config):
@@ -673,9 +667,7 @@ def _varied_surfaces(config):
     for key in ("process", "second_process"):
         for name, process in config.entries("devices", key):
             made = process_surfaces.names(config.config, process)
-            rms = [config["surfaces"][one]["rms_nm"] for one in made if "rms_nm" in config["surfaces"].get(one, {})]
-            for _, surface in (one for one in config.entries("process", "surface") if one[0] == process and rms):
-                yield name, key, surface, max(rms)
+            yield name, key, config["process"][process]["surface"], max(config["surfaces"][at]["rms_nm"] for at in made)
 
 
 @relation_of_tips

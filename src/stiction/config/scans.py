@@ -10,15 +10,15 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from stiction.config.memory import GRID
-from stiction.config.messages import Problem, faulty
-from stiction.config.surfaces.knowledge import with_uncertain_devices
+from stiction.config.messages import Problem
+from stiction.config.surfaces.knowledge import with_uncertainty
 from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
 from stiction.errors import ScanError
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
@@ -125,19 +125,15 @@ def _digest(path, _modified, _size):
 
 
 def preliminary_estimates(
-    config: dict[str, Any], faults: Collection[tuple] = (), kept: str | Path | None = None
+    config: dict[str, Any], kept: str | Path | None = None
 ) -> tuple[dict[str, dict], list[Problem]]:
     """Preliminary numbers of the measured surfaces by name, and problems of the others.
 
-    Surfaces with keys that are wrong on their own, the ``faults``, are left out; between processes, the numbers are
-    kept in a folder, if one is named.
+    Between processes, the numbers are kept in a folder, if one is named.
     """
     estimates, problems = {}, []
-    if _unusable(faults):
-        return estimates, problems
-    wrong = faulty(faults, "surfaces")
     for name, entry in config["surfaces"].items():
-        if name not in wrong and is_measured(entry):
+        if is_measured(entry):
             try:
                 estimates[name] = _preliminary_numbers(complete(entry), config["scans"], kept)
                 problems += _without_power_law(name, entry, estimates[name])
@@ -147,13 +143,8 @@ def preliminary_estimates(
 
 
 def simulates(config: Mapping[str, Any]) -> bool:
-    """Whether a configuration, valid or not, simulates anything.
-
-    Rules of strips, grids and densities hold for nothing else.
-    """
-    run = config.get("run")
-    none = isinstance(run, dict) and run.get("pairs") == []
-    return not none or bool(config.get("devices") or config.get("test_beams"))
+    """Whether a configuration simulates anything. Rules of strips, grids and densities hold for nothing else."""
+    return bool(config["run"]["pairs"] or config.get("devices") or config.get("test_beams"))
 
 
 def usable(
@@ -193,12 +184,6 @@ def readable(entry: dict[str, Any]) -> Any:
         with contextlib.suppress(ScanError):
             return _scan(path, label, source(entry))
     return None
-
-
-def _unusable(faults):
-    """Whether a section needed by the evaluation is wrong, apart from single surfaces."""
-    sections = {fault[:1] for fault in faults if len(fault) < 2 or fault[0] != "surfaces"}
-    return bool(sections & {(), ("surfaces",), ("scans",), ("sampling",)})
 
 
 def _preliminary_numbers(entry, section, kept):
@@ -358,7 +343,7 @@ def with_preliminary_estimates(config: dict[str, Any], estimates: Mapping[str, d
     """
     spacing = config["sampling"]["spacing_nm"]
     described = {name: _by_numbers(complete(config["surfaces"][name]), estimates[name], spacing) for name in estimates}
-    return with_uncertain_devices(config | {"surfaces": config["surfaces"] | described}, described)
+    return with_uncertainty(config | {"surfaces": config["surfaces"] | described}, described)
 
 
 def _by_numbers(entry, preliminary, spacing):

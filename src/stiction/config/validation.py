@@ -1,88 +1,92 @@
-"""Validation of a whole configuration: schema, relations between its keys, files of scans."""
+"""Validation of a whole configuration: schema, relations between its keys, files of scans.
 
+Each step ends the check if it refuses something, so that the next one sees sections as it needs them: of the right
+types, then with names of what exists, then with surfaces by numbers.
+"""
+
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any, NamedTuple
 
 from stiction.config import meetings, relations, relations_devices, scans, test_beams
 from stiction.config.cases import in_numbers, in_words
 from stiction.config.keys import Keys, Relations
-from stiction.config.messages import ConfigError, schema_problems
+from stiction.config.merging import expanded
+from stiction.config.messages import ConfigError, Problem, schema_problems
 from stiction.config.reading import paper
 from stiction.config.relations import schema
 from stiction.config.surfaces import described, grid, process, process_relations
 
-#: Relations between the keys of devices, and of arrays of test beams in their place.
+#: Relations between the names and the keys of devices, then between their values. Those of arrays of test beams, too.
+_NAMES_OF_DEVICES = relations_devices.relation_of_names
 _OF_DEVICES = Relations([*meetings.relation, *relations_devices.relation])
-#: All relations between keys.
-RELATIONS = Relations(
-    [*relations.relation, *_OF_DEVICES, *relations_devices.relation_of_tips, *process_relations.relation]
-)
+#: Relations between names and keys that are given or not, and those between values, where the first hold.
+NAMES = Relations([*relations.relation_of_names, *_NAMES_OF_DEVICES, *process_relations.relation])
+RELATIONS = Relations([*relations.relation, *_OF_DEVICES, *relations_devices.relation_of_tips])
 #: Sections that a configuration need not have.
 _OPTIONAL = {"materials": {}, "devices": {}, "test_beams": {}, "process": {}}
 
 
-def validate(config: dict, kept: str | Path | None = None) -> dict[str, dict]:
-    """Check a configuration against the schema and the relations between its keys, and the files of its scans.
+class Checked(NamedTuple):
+    """Valid configuration."""
 
-    Measured surfaces are checked with their preliminary estimates.
+    config: dict[str, Any]  #: complete and in normal form
+    estimates: dict[str, dict]  #: of its measured surfaces, see `stiction.config.scans.preliminary_estimates`
 
-    Parameters
-    ----------
-    config : dict
-        Complete configuration.
-    kept : path, optional
-        Folder in which the preliminary numbers of measured surfaces are kept between processes.
 
-    Returns
-    -------
-    dict
-        Preliminary numbers of the measured surfaces by name, see `stiction.config.scans.preliminary_estimates`.
+def checked(stated: Any, kept: Path | None = None) -> Checked:
+    """Check and complete a configuration, as its files state it. The numbers of its scans are kept in a folder.
 
     Raises
     ------
     ConfigError
-        If the configuration is invalid; one line per problem: full key, value, allowed values.
+        If it is invalid; one line per problem: full key, value, allowed values.
     """
-    stated = config
-    config = in_numbers(test_beams.without_files(config))
-    faults = schema_problems(config, schema())
-    wrong = [path for fault in faults for path in (fault.path, *fault.others)]
-    surfaces, incomplete, origins = _completed(config, wrong)
-    sections = grid.completed(surfaces, {}, wrong)
-    wrong += [problem.path for problem in incomplete]
-    broken = _broken(sections, wrong, origins=origins)
-    of_surfaces = [problem.path for problem in broken if problem.path[0] == "surfaces"]
-    estimates, refused = scans.preliminary_estimates(config, wrong + of_surfaces, kept)
-    problems = faults + incomplete + broken + refused
-    if estimates and scans.simulates(sections):
-        files = {name: config["surfaces"][name]["scans"]["files"] for name in estimates}
-        on_grid = grid.completed(surfaces, estimates, wrong)
-        problems += _broken(scans.with_preliminary_estimates(on_grid, estimates), wrong, files, origins)
-    if problems:
-        said = process.in_settings(problems, config if isinstance(config, dict) else {})
-        raise ConfigError(*dict.fromkeys(test_beams.in_files(problem, stated) for problem in said))
-    return estimates
+    _refuse(schema_problems(sections := _plain(stated), schema()), stated, {})
+    stated = process.with_surfaces(expanded(stated))
+    if (whole := _plain(stated)) != sections:  # with copies and surfaces of settings
+        _refuse(schema_problems(whole, schema()), stated, whole)
+    library = paper()["surfaces"]
+    _refuse(_broken(NAMES, _NAMES_OF_DEVICES, Keys(_OPTIONAL | whole)), stated, whole)
+    _refuse(described.problems(whole, library), stated, whole)
+    estimates, unusable = scans.preliminary_estimates(whole, kept)
+    _refuse(unusable, stated, whole)
+    config = grid.completed(described.completed(whole, library), estimates)
+    _refuse(_broken(RELATIONS, _OF_DEVICES, _by_numbers(config, estimates, described.origins(whole))), stated, whole)
+    return Checked(normalised(config), estimates)
 
 
-def _completed(config, faults):
-    """Configuration with all sections and complete surfaces, its problems, and the source keys of surfaces."""
-    if any(len(fault) < 2 and fault[:1] in ((), ("surfaces",)) for fault in faults):
-        return _OPTIONAL | config if isinstance(config, dict) else config, [], {}
-    sections, problems = described.completed(_OPTIONAL | config, paper()["surfaces"], faults)
-    return sections, problems, described.origins(config)
+def _plain(stated):
+    """Configuration without the files of test beams and without the word for dry air."""
+    return in_numbers(test_beams.without_files(stated))
 
 
-def _broken(config, faults, files=None, origins=None):
-    """Violated relations. Those of devices hold for the arrays of test beams."""
-    files, origins = files or {}, origins or {}
-    broken = list(RELATIONS.problems(Keys(config, faults, files, origins)))
-    if any(path[:1] in ((), ("devices",), ("test_beams",)) for path in faults):
-        return broken  # sections that are wrong on their own
+def _refuse(problems: Iterable[Problem], stated: Any, whole: dict[str, Any]) -> None:
+    """Raise problems with the keys and files of the user, each once."""
+    lines = [test_beams.in_files(line, stated) for line in process.in_settings(problems, whole)]
+    if lines:
+        raise ConfigError(*dict.fromkeys(lines))
+
+
+def _by_numbers(config, estimates, origins):
+    """Configuration in which numbers describe all surfaces that are simulated."""
+    estimates = estimates if scans.simulates(config) else {}
+    files = {name: config["surfaces"][name]["scans"]["files"] for name in estimates}
+    uncertain = described.with_uncertain_devices(config)
+    return Keys(_OPTIONAL | scans.with_preliminary_estimates(uncertain, estimates), files, origins)
+
+
+def _broken(relations: Relations, of_devices: Relations, keys: Keys) -> Iterator[Problem]:
+    """Yield violated relations. Those of devices hold for the arrays of test beams."""
+    yield from relations.problems(keys)
+    config = keys.config
     single = [
-        _KeysOfArrays(config | {"devices": beams, "run": {"pairs": []}}, faults, files, origins, config["devices"])
+        _KeysOfArrays(config | {"devices": beams, "run": {"pairs": []}}, keys.files, keys.origins, config["devices"])
         for beams in test_beams.at_single_humidities(config)
     ]
-    return broken + [problem for one in _OF_DEVICES for problem in _problems_of_arrays(one, single)]
+    for relation in of_devices:
+        yield from _problems_of_arrays(relation, single)
 
 
 def _problems_of_arrays(relation, single):
@@ -113,3 +117,30 @@ class _KeysOfArrays(Keys):
         if below[0] == "uncertainty" and below[-1] not in array.get("uncertainty", {}):
             return ("devices", next(iter(test_beams.users({"devices": self.devices}, name))), *below), value
         return ("test_beams", name, *below), value
+
+
+# Normal form
+
+
+def normalised(config: dict) -> dict:
+    """Complete and valid configuration in normal form: equivalent settings are equal, whatever their order in the file.
+
+    Keys are sorted, so that the parameters of a rule do not depend on their order. The humidities of each pair and
+    device are sorted as well, so that tables and curves begin with the lowest. Surfaces by scans, or described as in
+    papers, get all their keys. Dry air has the humidity 0. Data of test beams are without the files of their beams.
+    """
+    config = described.completed(_plain(config), paper()["surfaces"])
+    named = {section: config[section] for section in ("pairs", "devices") if section in config}
+    surfaces = {name: scans.complete(entry) for name, entry in config["surfaces"].items()}
+    in_order = {section: _sorted(entries) for section, entries in named.items()}
+    return _in_order(config | in_order | {"surfaces": surfaces})
+
+
+def _sorted(entries):
+    """Pairs or devices with their humidities sorted."""
+    return {name: entry | {"humidities": sorted(entry["humidities"])} for name, entry in entries.items()}
+
+
+def _in_order(value):
+    """Value with the keys of all nested sections sorted."""
+    return {key: _in_order(value[key]) for key in sorted(value)} if isinstance(value, dict) else value

@@ -6,12 +6,14 @@ Planning a run again takes half of the time.
 import contextlib
 import hashlib
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from stiction.regular_files import require_regular
 from stiction.run.atomic import DataError, save_text
+from stiction.run.fingerprint import not_kept
 from stiction.temporary import own_folder
 
 
@@ -56,6 +58,27 @@ def _stored(path):
 def _checksum(text):
     """SHA-256 of a text."""
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+@dataclass(frozen=True)
+class Kept:
+    """What is kept for the next process that reads the same configuration; nothing without a folder."""
+
+    folder: Path | None = None
+    code: Callable = not_kept  #: keeps the fingerprints of modules, see `stiction.run.fingerprint.fingerprint`
+
+    @contextlib.contextmanager
+    def cache(self, name: str) -> Iterator[Callable]:
+        """Results in a file of the folder, which keeps those that are used."""
+        if self.folder is None:
+            yield not_kept
+        else:
+            yield (remember := DiskCache(self.folder / name))
+            remember.save()
+
+
+#: Nothing is kept.
+NOWHERE = Kept()
 
 
 class SharedCache(DiskCache):

@@ -7,7 +7,7 @@ directly or through other modules. This module uses only the standard library.
 import ast
 import hashlib
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -20,27 +20,34 @@ SILENT |= {"stiction.plan.stage", "stiction.plan.names"}
 SILENT |= {
     f"stiction.stages.{name}" for name in ("contact.changes.patches", "contact.changes.table", "devices.contact_names")
 }
-SILENT |= {f"stiction.config.{name}" for name in ("keys", "meetings", "relations", "relations_devices", "validation")}
+#: Checks of a configuration. What only they import is left out with them.
+SILENT |= {"stiction.config.validation"}
 #: Kinds of nodes that may begin with a docstring.
 _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
-def _compute(_determined_by, compute):
-    """Result of a function, without keeping it."""
+def not_kept(_determined_by: object, compute: Callable[[], Any]) -> Any:
+    """Return the result of a function without keeping it."""
     return compute()
 
 
-def fingerprint(script: str | Path, remember: Callable[[object, Callable[[], Any]], Any] = _compute) -> dict[str, str]:
+def fingerprint(
+    script: str | Path,
+    remember: Callable[[object, Callable[[], Any]], Any] = not_kept,
+    silent: Collection[str] = frozenset(SILENT),
+) -> dict[str, str]:
     """Hash a script and every imported module of the package, directly or through other modules.
 
-    The hashes do not depend on comments, docstrings and formatting, and the modules in ``SILENT`` are left out, so that
-    such changes rerun nothing. Versions of Python print syntax trees differently, so another one reruns everything.
+    The hashes do not depend on comments, docstrings and formatting, and ``silent`` modules are left out, so that such
+    changes rerun nothing. Versions of Python print syntax trees differently, so another one reruns everything.
 
     Parameters
     ----------
     script : path
     remember : callable
         Keeps what is found in a file of the same content, see `stiction.run.disk_cache.DiskCache`.
+    silent : collection of str
+        Modules that do not affect the result. Modules that only they import are left out as well.
 
     Returns
     -------
@@ -53,7 +60,7 @@ def fingerprint(script: str | Path, remember: Callable[[object, Callable[[], Any
         name, path = unread.pop()
         if name not in reached:
             reached[name], imports = _read(path, path.stat().st_mtime_ns, remember)
-            unread += imports
+            unread += [(name, module) for name, module in imports if name not in silent]
     return dict(sorted(reached.items()))
 
 
@@ -71,7 +78,7 @@ def _read(path, _modified, remember):
     determined_by = [_this_module(), sys.implementation.cache_tag, hashlib.sha256(text).hexdigest()]
     hashed, names = remember(determined_by, lambda: _parsed(text))
     modules = {place: file for name in names for place, file in files_of(name).items()}
-    return hashed, [(name, module) for name, module in modules.items() if name not in SILENT]
+    return hashed, list(modules.items())
 
 
 @cache

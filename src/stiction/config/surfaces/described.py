@@ -10,13 +10,14 @@ is negative. Gaussian heights would stick less, which is not the safe side.
 """
 
 import math
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Iterator, Mapping
+from itertools import chain, islice
 from typing import Any
 
 import numpy as np
 
-from stiction.config.messages import Problem, did_you_mean, faulty, one_line
-from stiction.config.surfaces.knowledge import Library, slope, with_uncertain_devices
+from stiction.config.messages import Problem, did_you_mean, one_line
+from stiction.config.surfaces.knowledge import Library, slope, with_uncertainty
 from stiction.config.units import from_si, to_si
 from stiction.surface import self_affine
 
@@ -112,27 +113,25 @@ def _uncertainty(entry, psd):
 # Checks
 
 
-def completed(
-    config: dict[str, Any], library: Library, faults: Collection[tuple]
-) -> tuple[dict[str, Any], list[Problem]]:
-    """Configuration with complete surfaces, and the problems of incomplete ones.
-
-    Surfaces with keys that are wrong on their own, the ``faults``, stay as they are. A device on a surface that is not
-    known exactly has a section of its uncertainty.
-    """
-    wrong, surfaces, problems = faulty(faults, "surfaces"), {}, []
+def problems(config: Mapping[str, Any], library: Library) -> list[Problem]:
+    """Problems of the surfaces that cannot be completed, or have impossible uncertainties, one of each."""
+    found = []
     for name, entry in config["surfaces"].items():
-        refused = None if name in wrong else next(_refusals(entry, library), None)
-        surfaces[name] = entry if refused or name in wrong else complete(entry, library)
-        if not refused and name not in wrong:
-            refused = next(_impossible_uncertainties(entry, surfaces[name]), None)
-        problems += [_problem(name, entry, *refused)] if refused else []
-    uncertain = [name for name, entry in surfaces.items() if name not in wrong and _is_uncertain(entry)]
-    return with_uncertain_devices(config | {"surfaces": surfaces}, uncertain), problems
+        refusals = chain(_refusals(entry, library), _impossible_uncertainties(entry, library))
+        found += [_problem(name, entry, *refusal) for refusal in islice(refusals, 1)]
+    return found
 
 
-def _is_uncertain(entry):
-    return bool(entry.get("unknown") or entry.get("uncertainty"))
+def completed(config: dict[str, Any], library: Library) -> dict[str, Any]:
+    """Configuration with complete surfaces."""
+    return config | {"surfaces": {name: complete(entry, library) for name, entry in config["surfaces"].items()}}
+
+
+def with_uncertain_devices(config: dict[str, Any]) -> dict[str, Any]:
+    """Configuration in which devices on surfaces that are not known exactly have a section of their uncertainty."""
+    surfaces = config["surfaces"].items()
+    uncertain = [name for name, entry in surfaces if entry.get("unknown") or entry.get("uncertainty")]
+    return with_uncertainty(config, uncertain)
 
 
 def _problem(name, entry, key, message):
@@ -205,19 +204,20 @@ def _refusals_of_uncertainty(entry):
             yield f"uncertainty.{key}", "must come with published_psd, or with the spectrum as papers state it"
 
 
-def _impossible_uncertainties(entry, complete):
-    """Yield keys of uncertainties beyond their quantities, with refusals, from a section as stated and as completed.
+def _impossible_uncertainties(entry, library):
+    """Yield keys of uncertainties beyond their quantities of a surface that can be completed, with refusals.
 
     Any distribution has a kurtosis above its skewness² + 1, so that the mean of kurtoses is above the mean skewness²,
     its variance and 1 together.
     """
-    stated, psd = entry.get("uncertainty", {}), complete.get("published_psd", {})
-    sizes = {key: complete.get(key, entry.get(key, psd.get(key))) for key in _POSITIVE}
+    whole = complete(entry, library)
+    stated, psd = entry.get("uncertainty", {}), whole.get("published_psd", {})
+    sizes = {key: whole.get(key, entry.get(key, psd.get(key))) for key in _POSITIVE}
     for key, value in sizes.items():
         if key in stated and value is not None and stated[key] >= value:
             yield f"uncertainty.{key}", f"must be below {key} itself, {value:g}"
-    if set(_FORM) <= set(complete):
-        skewness, kurtosis = (complete[key] for key in _FORM)
+    if set(_FORM) <= set(whole):
+        skewness, kurtosis = (whole[key] for key in _FORM)
         if kurtosis - stated.get("kurtosis", 0) < 1:
             yield "uncertainty.kurtosis", f"must be at most {kurtosis - 1:g}: the kurtosis, {kurtosis:g}, is above 1"
         room = kurtosis - 1 - skewness**2
@@ -235,7 +235,7 @@ def origins(config: Mapping[str, Any]) -> dict[tuple, tuple]:
     """Keys stated by users, as paths with their values, by the keys of complete surfaces derived from them."""
     found = {}
     for name, entry in config["surfaces"].items():
-        if isinstance(entry, dict) and is_described(entry):
+        if is_described(entry):
             for key, sources in _SOURCES.items():
                 source = next((source for source in (*sources, "like") if source in entry), "rms_nm")
                 found["surfaces", name, *key] = ("surfaces", name, source), entry.get(source)

@@ -10,12 +10,12 @@ Devices alone have a chaos model of the paper's order, or of the largest one tha
 
 import functools
 import math
-from collections.abc import Collection, Iterator, Mapping
-from itertools import chain, count
+from collections.abc import Iterator, Mapping
+from itertools import count
 from typing import Any
 
 from stiction.config import memory, scans
-from stiction.config.messages import faulty
+from stiction.config.merging import merged
 from stiction.config.reading import paper
 from stiction.config.surfaces import process
 from stiction.config.units import NM_PER_UM, from_si, in_si
@@ -27,21 +27,16 @@ from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
 _SPACING, _MARGIN, _STEP = memory.GRID["spacing_nm"], memory.GRID["margin_um"], 0.5
 
 
-def completed(config: dict[str, Any], estimates: Mapping[str, dict], faults: Collection[tuple] = ()) -> dict[str, Any]:
-    """Configuration, valid or not, with all keys of section ``sampling``, a chaos model, and heights with a density.
+def completed(config: dict[str, Any], estimates: Mapping[str, dict]) -> dict[str, Any]:
+    """Configuration with all keys of section ``sampling``, a chaos model, and heights with a density.
 
     Variants on grids that are not finer than one that follows the surfaces, or whose fields do not fit into memory with
-    a margin that does, are left out. The estimates are the preliminary numbers of measured surfaces. Surfaces with one
-    of the faults, keys that are wrong on their own, do not count.
+    a margin that does, are left out. The estimates are the preliminary numbers of measured surfaces.
     """
-    sampling = config.get("sampling") if isinstance(config, dict) else None
-    if not isinstance(sampling, dict):
-        return config
-    config = _with_carried_order(scans.with_heights(config, estimates))
+    config, sampling = _with_carried_order(scans.with_heights(config, estimates)), config["sampling"]
     if {"spacing_nm", "margin_um"} <= set(sampling):
         return config
-    wrong = faulty(faults, "surfaces")
-    waves = [_waves(config, name, estimates) for name in dict.fromkeys(used_surfaces(config)) if name not in wrong]
+    waves = [_waves(config["surfaces"][name], estimates.get(name)) for name in dict.fromkeys(used_surfaces(config))]
     waves = list(filter(None, waves))
     chosen = {"margin_um": max((_margin(length) for _, length in waves), default=_MARGIN)} | sampling
     config = config | {"sampling": {"spacing_nm": _SPACING} | chosen}
@@ -68,45 +63,30 @@ def carried(order: int, samples: int) -> int:
 
 def _with_carried_order(config):
     """Configuration with an order that the samples carry, if it has no pairs and states no order of its own."""
-    chaos, samples = _section(config, "chaos"), _section(config, "contact").get("samples")
     order = paper()["chaos"]["order"]
-    if _section(config, "run").get("pairs") != [] or chaos.get("order") != order or not isinstance(samples, int):
+    if config["run"]["pairs"] or config["chaos"]["order"] != order:
         return config
-    return config | {"chaos": chaos | {"order": carried(order, max(samples, 5))}}
-
-
-def _section(config, *place):
-    """Nested section of a configuration, empty if missing."""
-    for name in place:
-        config = config.get(name) if isinstance(config, dict) and isinstance(name, str) else None
-    return config if isinstance(config, dict) else {}
+    return config | {"chaos": config["chaos"] | {"order": carried(order, max(config["contact"]["samples"], 5))}}
 
 
 def used_surfaces(config: Mapping[str, Any]) -> Iterator[str]:
     """Names of the surfaces of pairs in the run, of devices and of test beams, as often as they occur."""
-    running = _section(config, "run").get("pairs")
-    devices = chain.from_iterable(_section(config, section).values() for section in ("devices", "test_beams"))
-    pairs = [
-        *(running if isinstance(running, list) else ()),
-        *(_section({"": entry}, "").get("pair") for entry in devices),
-    ]
-    for pair in pairs:
-        sides = (_section(config, "pairs", pair).get(side) for side in SIDES)
-        yield from (name for name in sides if isinstance(name, str))
+    users = (*config.get("devices", {}).values(), *config.get("test_beams", {}).values())
+    for pair in (*config["run"]["pairs"], *(user["pair"] for user in users)):
+        yield from (config["pairs"][pair][side] for side in SIDES)
     yield from process.all_names(config)
 
 
-def _waves(config, name, estimates):
+def _waves(entry, estimate):
     """Largest wave number of a surface [rad/µm] and correlation length [µm], ``None`` if unknown."""
-    entry = _section(config, "surfaces", name)
-    if name in estimates:
-        return estimates[name]["end_rad_per_um"], estimates[name]["correlation_um"][scans.complete(entry)["psd"]]
-    if entry.get("psd") != "published":
+    if estimate:
+        return estimate["end_rad_per_um"], estimate["correlation_um"][scans.complete(entry)["psd"]]
+    if entry["psd"] != "published":
         return None
     try:
         return float(entry["published_psd"]["cutoff_rad_per_um"]), published_correlation(**entry["published_psd"])
-    except (KeyError, TypeError, ValueError):
-        return None  # relations report what is missing or out of range
+    except ValueError:
+        return None  # a relation reports a spectrum that does not decay
 
 
 @functools.cache
@@ -139,21 +119,14 @@ def _memory(config, spacing):
 def _areas(config):
     """Areas of the drawn fields [µm²]."""
     yield memory.FIELD_UM**2
-    sampling, width = config["sampling"], _section(config, "beam").get("width_um")
-    try:
-        yield float((sampling["strip_length_um"] + sampling["margin_um"]) * (width + sampling["margin_um"]))
-        for device in _section(config, "devices").values():
-            for _, sides, _ in memory.fields_of(device, sampling):
-                yield float(math.prod(sides))
-    except (KeyError, TypeError, ValueError, OverflowError):
-        return  # other relations report what is missing or out of range
+    sampling, width = config["sampling"], config["beam"]["width_um"]
+    yield float((sampling["strip_length_um"] + sampling["margin_um"]) * (width + sampling["margin_um"]))
+    for device in config.get("devices", {}).values():
+        for _, sides, _ in memory.fields_of(device, sampling):
+            yield float(math.prod(sides))
 
 
 def _with_variants(config, kept):
     """Configuration with the variants on grids whose distance between heights [nm] meets a condition."""
-    studies, variants = _section(config, "studies"), _section(config, "studies", "variants")
-    listed = variants.get("spacing_nm")
-    if not isinstance(listed, list):
-        return config
-    chosen = {"variants": variants | {"spacing_nm": list(filter(kept, listed))}}
-    return config | {"studies": studies | chosen}
+    listed = config["studies"]["variants"]["spacing_nm"]
+    return merged(config, {"studies": {"variants": {"spacing_nm": list(filter(kept, listed))}}})

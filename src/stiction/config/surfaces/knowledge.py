@@ -37,21 +37,14 @@ class Knowledge(NamedTuple):
         return {"quantities": list(self.quantities), "covariance": rounded}
 
 
-def with_uncertain_devices(config: dict[str, Any], surfaces: Collection[str]) -> dict[str, Any]:
+def with_uncertainty(config: dict[str, Any], surfaces: Collection[str]) -> dict[str, Any]:
     """Configuration with a section of uncertainty in every device on one of these surfaces."""
-    devices = config.get("devices")
-    if not (surfaces and isinstance(devices, dict)):
-        return config
-    return config | {"devices": {name: _with_uncertainty(device, config, surfaces) for name, device in devices.items()}}
-
-
-def _with_uncertainty(device, config, surfaces):
-    """Section of a device with a section of its uncertainty, if one of its surfaces is among these."""
-    try:
-        is_uncertain = any(config["pairs"][device["pair"]][side] in surfaces for side in SIDES)
-    except (KeyError, TypeError):
-        return device  # other relations report what is missing
-    return {"uncertainty": {}} | device if is_uncertain else device
+    uncertain = {
+        name: {"uncertainty": {}} | device
+        for name, device in config.get("devices", {}).items()
+        if any(config["pairs"][device["pair"]][side] in surfaces for side in SIDES)
+    }
+    return config | {"devices": config["devices"] | uncertain} if uncertain else config
 
 
 def slope(psd: Mapping[str, float]) -> float:

@@ -64,13 +64,12 @@ def words_of(variable: str) -> str:
 
 def names(config: Mapping[str, Any], process: str) -> list[str]:
     """Names of the surfaces at the settings of a process, in the order of the file."""
-    settings = _settings(_section(config.get("process")).get(process))
-    return [f"{process}-{number}" for number in range(1, len(settings) + 1)]
+    return [f"{process}-{number}" for number in range(1, len(config["process"][process]["settings"]) + 1)]
 
 
 def all_names(config: Mapping[str, Any]) -> list[str]:
-    """Names of the surfaces at all settings of all processes of a configuration, valid or not."""
-    return [name for process in _section(_section(config).get("process")) for name in names(config, process)]
+    """Names of the surfaces at all settings of all processes."""
+    return [name for process in config.get("process", {}) for name in names(config, process)]
 
 
 def has_scans(config: Mapping[str, Any]) -> bool:
@@ -109,21 +108,18 @@ def used_processes(config: Mapping[str, Any]) -> list[str]:
 
 
 def with_surfaces(config: dict[str, Any]) -> dict[str, Any]:
-    """Configuration, valid or not, with a surface for each setting of each process.
+    """Configuration with a surface for each setting of each process of an existing surface.
 
     Raises
     ------
     ConfigError
         If a surface has the name of one of a process.
     """
-    surfaces, added = config.get("surfaces"), {}
-    for process, section in _section(config.get("process")).items():
-        base = [one for name, one in _section(surfaces).items() if name == _section(section).get("surface")]
-        if not (isinstance(process, str) and base and isinstance(base[0], dict)):
-            continue
-        for number, setting in enumerate(_settings(section), 1):
-            if isinstance(setting, dict):
-                added[f"{process}-{number}"] = _surface(base[0], setting)
+    surfaces, added = config["surfaces"], {}
+    for process, section in config.get("process", {}).items():
+        if section["surface"] in surfaces:
+            made = (_surface(surfaces[section["surface"]], setting) for setting in section["settings"])
+            added |= dict(zip(names(config, process), made, strict=True))
     for name in added:
         if surfaces.get(name, added[name]) != added[name]:
             raise ConfigError(f"surfaces.{name} must have another name: process makes a surface of this name")
@@ -131,23 +127,17 @@ def with_surfaces(config: dict[str, Any]) -> dict[str, Any]:
 
 
 def in_settings(problems: Iterable[Problem], config: Mapping[str, Any]) -> Iterator[str]:
-    """Yield problems in words, those of the surface of a setting as problems of the setting.
-
-    Where keys of processes are wrong on their own, what follows for these surfaces is left out.
-    """
-    problems, made = list(problems), {}
-    for process in _section(config.get("process")):
-        for number, name in enumerate(names(config, process)):
-            made[name] = dotted(("process", process, "settings", number))
-    is_wrong = any(problem.path[:1] == ("process",) for problem in problems)
-    for problem in problems:
-        if not (is_wrong and problem.path[:1] == ("surfaces",) and problem.path[1:2] and problem.path[1] in made):
-            text = str(problem)
-            for name, place in made.items():
-                surface = dotted(("surfaces", name))
-                text = text.replace(f"{surface}.scans.files", f"{place}.scans").replace(f"{surface}.", f"{place}.")
-                text = text.replace(f"{surface} ", f"{place} ")
-            yield text
+    """Yield problems in words, those of the surface of a setting as problems of the setting."""
+    made = {
+        dotted(("surfaces", name)): dotted(("process", process, "settings", number))
+        for process in config.get("process", {})
+        for number, name in enumerate(names(config, process))
+    }
+    for text in map(str, problems):
+        for surface, setting in made.items():
+            text = text.replace(f"{surface}.scans.files", f"{setting}.scans").replace(f"{surface}.", f"{setting}.")
+            text = text.replace(f"{surface} ", f"{setting} ")
+        yield text
 
 
 def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
@@ -189,26 +179,23 @@ def _surface(base, setting):
         options = {key: base[key] for key in ("material", "heights", "psd", "beyond") if key in base}
         if "scans" not in base:
             options.pop("psd", None)
-        of_scans = {
-            key: value for key, value in _section(base.get("scans")).items() if key not in ("files", "left_out")
-        }
+        of_scans = {key: value for key, value in base.get("scans", {}).items() if key not in ("files", "left_out")}
         return options | {"scans": of_scans | {"files": stated.pop("scans")}} | stated
     entry = {key: value for key, value in base.items() if key not in _BY_NUMBERS}
-    if isinstance(psd := base.get("published_psd"), dict) and any(key in stated for key in _OF_SPECTRUM):
-        own = {key: stated.pop(key) for key in _OF_SPECTRUM if key in stated}
-        entry["published_psd"] = _bent(psd, **own)
+    if "published_psd" in base and any(key in stated for key in _OF_SPECTRUM):
+        changed = {key: stated.pop(key) for key in _OF_SPECTRUM if key in stated}
+        entry["published_psd"] = _bent(base["published_psd"], **changed)
     elif "corner_rad_per_um" in stated:
         entry.pop("correlation_length_nm", None)
     return entry | stated
 
 
 def _bent(psd, corner_rad_per_um=None, hurst=None):
-    """Section ``published_psd`` with another corner or Hurst exponent, as far as it is valid."""
+    """Section ``published_psd`` with another corner or Hurst exponent."""
+    falling = self_affine.slope_of(hurst) if hurst is not None else slope(psd)
+    corner = corner_rad_per_um or psd["corner_rad_per_um"]
     try:
-        corner, cutoff, plateau = psd["corner_rad_per_um"], psd["cutoff_rad_per_um"], psd["plateau_nm4"]
-        falling = self_affine.slope_of(hurst) if hurst is not None else slope(psd)
-        corner = corner_rad_per_um or corner
-        floor = plateau * (cutoff / corner) ** falling
-    except (KeyError, TypeError, ArithmeticError):
-        return psd  # the schema refuses it
+        floor = psd["plateau_nm4"] * (psd["cutoff_rad_per_um"] / corner) ** falling
+    except ArithmeticError:
+        return psd  # relations refuse the spectrum of the surface itself
     return psd | {"corner_rad_per_um": corner, "floor_nm4": float(f"{floor:.12g}")}

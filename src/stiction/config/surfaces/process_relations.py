@@ -135,21 +135,21 @@ def laws_are_those_of_moments(config):
 @relation
 def processes_at_the_same_time_have_one_variable(config):
     """Require another process with the same variable, a common range of settings and another surface."""
-    known = config["process"]
+    processes = config["process"]
     for name, other, variable, surface, settings in config.entries(
         "process", "together_with", "variable", "surface", "settings"
     ):
-        key, others = f"process.{name}.together_with", [one for one in known if one != name]
+        key, others = f"process.{name}.together_with", [process for process in processes if process != name]
         if not others:
             yield key, "must be left out, where no other process is described"
         elif refusal := undefined(other, others):
             yield key, refusal
-        elif known[other]["variable"] != variable:
+        elif processes[other]["variable"] != variable:
             yield key, "must be a process with the same variable, in the same unit", f"process.{other}.variable"
-        elif known[other]["surface"] == surface or "together_with" in known[other]:
+        elif processes[other]["surface"] == surface or "together_with" in processes[other]:
             yield key, "must be a process that makes another surface, and is together with none itself"
         else:
-            ranges = [[one["value"] for one in some] for some in (settings, known[other]["settings"])]
+            ranges = [[setting["value"] for setting in some] for some in (settings, processes[other]["settings"])]
             if max(map(min, ranges)) >= min(map(max, ranges)):
                 yield key, "must be a process with settings in a common range", f"process.{name}.settings"
 
@@ -157,14 +157,14 @@ def processes_at_the_same_time_have_one_variable(config):
 @relation
 def processes_of_devices_make_their_surfaces(config):
     """Require an existing process of a surface of the pair of a device."""
-    known = config["process"]
+    processes = config["process"]
     for name, process, pair in config.entries("devices", "process", "pair"):
         key, sides = f"devices.{name}.process", dict.fromkeys(surfaces_of(pair, config))
-        if not known:
+        if not processes:
             yield key, "must be a process of section process, where none is described"
-        elif refusal := undefined(process, known):
+        elif refusal := undefined(process, processes):
             yield key, refusal
-        elif None not in sides and known[process]["surface"] in config["surfaces"].keys() - sides:
+        elif processes[process]["surface"] in config["surfaces"].keys() - sides:
             message = f"must make a surface of pair {pair}, {' or '.join(sides)}"
             yield key, message, f"process.{process}.surface"
 
@@ -172,18 +172,22 @@ def processes_of_devices_make_their_surfaces(config):
 @relation
 def second_processes_make_the_other_surface(config):
     """Require a second process with another variable, and as the only one of the other surface of the pair."""
-    known = config["process"]
+    processes = config["process"]
     for name, first, second, pair in config.entries("devices", "process", "second_process", "pair"):
         key, sides = f"devices.{name}.second_process", dict.fromkeys(surfaces_of(pair, config))
-        if first not in known or None in sides:
+        if first not in processes:
             continue
-        made = known[first]["surface"]
-        beside = [one for one in known if known[one].get("together_with") == first and known[one]["surface"] in sides]
-        if refusal := undefined(second, [one for one in known if one != first]):
+        made = processes[first]["surface"]
+        beside = [
+            other
+            for other, process in processes.items()
+            if process.get("together_with") == first and process["surface"] in sides
+        ]
+        if refusal := undefined(second, [process for process in processes if process != first]):
             yield key, refusal
-        elif known[second]["surface"] not in sides or known[second]["surface"] == made:
+        elif processes[second]["surface"] not in sides or processes[second]["surface"] == made:
             yield key, f"must make the other surface of pair {pair}, beside {made}", f"process.{second}.surface"
-        elif known[second]["variable"] == known[first]["variable"]:
+        elif processes[second]["variable"] == processes[first]["variable"]:
             message = f"must have another variable; with the same one, state together_with: {first} in process.{second}"
             yield key, message, f"process.{second}.variable"
         elif beside:
