@@ -9,6 +9,7 @@ from dataclasses import asdict, dataclass, field
 from functools import cached_property
 
 import numpy as np
+from scipy.interpolate import PchipInterpolator
 from scipy.special import ndtr, ndtri
 
 from stiction.devices.chart import error_between
@@ -152,14 +153,13 @@ class Grid:
 
 
 def monotone(places: Sequence[float], values: np.ndarray, at: float) -> np.ndarray:
-    """Monotone cubic through values (n, ...) at increasing places (n,), by Fritsch and Butland, at one place."""
+    """Monotone cubic through values (n, ...) at increasing places (n,) at one place, NaN near an unknown value."""
     if len(places) == 1:
         return values[0]
-    widths = np.diff(places)
-    secants = np.diff(values, axis=0) / widths.reshape(-1, *[1] * (values.ndim - 1))
-    k = int(np.clip(np.searchsorted(places, at, "right") - 1, 0, len(widths) - 1))
-    slopes = [_slope(j, widths, secants) for j in (k, k + 1)]
-    return hermite(widths[k], (at - places[k]) / widths[k], values[k : k + 2], slopes)
+    k = int(np.clip(np.searchsorted(places, at, "right") - 1, 0, len(places) - 2))
+    near = slice(max(k - 1, 0), k + 3)  # all that decides the slopes at both ends of the interval
+    cubic = PchipInterpolator(places[near], np.nan_to_num(values[near]))
+    return np.where(np.isfinite(values[near]).all(axis=0), cubic(at), np.nan)[()]
 
 
 def hermite(width: float, part: float, values: Sequence, slopes: Sequence) -> np.ndarray:
@@ -167,24 +167,6 @@ def hermite(width: float, part: float, values: Sequence, slopes: Sequence) -> np
     t, s = part, 1 - part
     ends = values[0] * (1 + 2 * t) * s**2 + values[1] * t**2 * (3 - 2 * t)
     return ends + width * (slopes[0] * t * s**2 - slopes[1] * t**2 * s)
-
-
-def _slope(k, widths, secants):
-    """Slope of a monotone cubic at its k-th place: a harmonic mean inside, of three points at an end."""
-    last = len(widths)
-    if last == 1:
-        return secants[0]
-    if k in (0, last):
-        (w0, w1), (d0, d1) = (
-            (part[0], part[1]) if k == 0 else (part[last - 1], part[last - 2]) for part in (widths, secants)
-        )
-        found = ((2 * w0 + w1) * d0 - w0 * d1) / (w0 + w1)
-        found = np.where((d0 * d1 < 0) & (abs(found) > abs(3 * d0)), 3 * d0, found)
-        return np.where(found * d0 <= 0, 0 * found, found)
-    d0, d1 = secants[k - 1], secants[k]
-    w0, w1 = widths[k] * 2 + widths[k - 1], widths[k] + 2 * widths[k - 1]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(d0 * d1 <= 0, 0 * d0 * d1, (w0 + w1) / (w0 / d0 + w1 / d1))
 
 
 def nested_lists(values: np.ndarray) -> list:
