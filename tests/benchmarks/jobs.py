@@ -25,7 +25,7 @@ def rules(results):
 
 
 def costs(results):
-    """For every rule that ran: name, jobs, most and all seconds of CPU time, most memory [MB], requested MB and minutes."""
+    """For every rule that ran: name, jobs, most and all CPU seconds, most memory [MB], requested MB and minutes."""
     logs = {
         str(path.relative_to(results / "logs"))[:-4]: path.read_text() for path in (results / "logs").rglob("*.log")
     }
