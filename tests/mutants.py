@@ -4,8 +4,8 @@
 
 Errors are generated from the syntax tree of a module and sampled by a hash of the error and its function, so that an
 edit of one function leaves the sample of all others as it is. Each error is made in a copy of the project, where tests
-run until the first fails: those named after the module, those that import it, those of its folder that import a module
-which imports it, and for stages those of plan and configuration. Tests that found an error before come first.
+run until the first fails: those named after the module, those that import it, those that import a module which imports
+it or, for stages, their graph, those of its folder before all others. Tests that found an error before come first.
 
 Not generated are errors that no test should notice: in texts, messages and what raises or logs them, in annotations,
 decorators, imports and ``__all__``, in resources, precision, looks and guards against what never happens
@@ -289,14 +289,14 @@ def rounds(module):
     named = sorted({*own.glob(f"test_{name}*.py"), *own.glob(f"test_*_{name}.py")})
     using = [path for path in sorted(tests.rglob("test_*.py")) if module in imported(path) and path not in named]
     using.sort(key=lambda path: path.parent != own)
-    others = {name for name in modules() if module in imported(path_of(name))}
-    near = [path for path in sorted(own.glob("test_*.py")) if others & imported(path) and path not in [*named, *using]]
-    # Stages, and what modules declare as stages, are tested with all others, through their graph.
-    declares = folder[:1] == ["stages"] or "\nSTAGES = " in path_of(module).read_text(encoding="utf-8")
-    graph = "plan.graph" if declares else None
-    planned = [path for name in ("plan", "config") for path in sorted(tests.joinpath(name).glob("test_*.py"))]
-    through = [path for path in planned if graph in imported(path) and path not in [*named, *using, *near]]
-    found = [(named, FAST), (using, FAST), (near, FAST), (through, FAST), (named or using, SLOW)]
+    readers = {name for name in modules() if module in imported(path_of(name))}
+    # Stages, and what modules declare as stages, are also tested through their graph.
+    if folder[:1] == ["stages"] or "\nSTAGES = " in path_of(module).read_text(encoding="utf-8"):
+        readers |= {"plan.graph"}
+    reading = [path for path in sorted(tests.rglob("test_*.py")) if readers & imported(path)]
+    reading = [path for path in reading if path not in [*named, *using]]
+    near, far = ([path for path in reading if (path.parent == own) is here] for here in (True, False))
+    found = [(named, FAST), (using, FAST), (near, FAST), (far, FAST), (named or using, SLOW)]
     return [([str(path.relative_to(ROOT)) for path in paths], marks) for paths, marks in found if paths]
 
 

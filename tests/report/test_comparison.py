@@ -62,6 +62,19 @@ def test_the_figure_has_a_line_over_the_values_for_each_humidity():
     assert [text.get_text() for text in panel.get_legend().get_texts()] == ["dry", "RH 0.67"]
 
 
+@pytest.mark.parametrize("reverse", [False, True])
+def test_of_several_fractions_the_figure_has_the_middle_one(reverse):
+    shares = sorted([1e-4, 0.001, 0.01, 0.05, 0.5], reverse=reverse)
+    several = pd.concat(
+        [SAFE.assign(share=p, estimate_um=SAFE.estimate_um * (1 + p)) for p in shares], ignore_index=True
+    )
+    figure = comparison_figure(several, LENGTHS, KEYS, ENDS)
+    (panel,) = figure.axes
+    (line,) = [container.lines[0] for container in panel.containers]
+    assert list(line.get_ydata()) == pytest.approx([101.0, 202.0])
+    assert panel.get_ylabel().endswith(", p = 0.01")
+
+
 def test_keys_that_change_together_have_a_column_each_and_one_place_on_the_axis():
     keys = ["surfaces.B2.kurtosis", "surfaces.B2.skewness"]
     ends = {"Rms3": [3.0, 0.0], "Rms10": [3.0, -0.5]}

@@ -8,10 +8,10 @@ import pytest
 import small
 import xarray as xr
 from answers import BEAM, beam_page, budget_dataset, stopper_page
+from charted import charted
 from ground import C1, R1, safe_with_tips
 from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
-from test_device_outputs import charted
 
 from stiction.beam.energy import arrest_length
 from stiction.config.cases import Case

@@ -5,10 +5,10 @@ import io
 import numpy as np
 import pytest
 from answers import BEAMS, BUDGETS, STOPPERS, safe
+from charted import charted
 from drawn_curves import etched, law_of, mapped, rough
 from matplotlib.image import imread
 from matplotlib.text import Text
-from test_device_outputs import charted
 from test_stage_life import OF
 
 from stiction.report.axes import figures as of_axes

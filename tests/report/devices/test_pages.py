@@ -24,10 +24,10 @@ from answers import (
     stopper_dataset,
     stopper_page,
 )
+from charted import charted
 from hostile import HOSTILE, Reading
 from matplotlib.figure import Figure
 from noted import noted
-from test_device_outputs import charted
 
 from stiction.contact.environment import Water
 from stiction.devices.risk import VERIFIED

@@ -5,6 +5,7 @@ from itertools import product
 import numpy as np
 import pytest
 import xarray as xr
+from charted import EITHER, S_SHAPE, charted
 from ground import exactly, safe_with_tips, safe_without_tips
 from legends import covering
 from noted import noted
@@ -15,7 +16,6 @@ from stiction.report.devices import tables as tables_devices
 from stiction.report.style import save
 from stiction.stages.devices import safe_lengths
 
-S_SHAPE, EITHER = "S-shape", "S-shape or arc"
 WARNINGS = {("C1", 0.44, S_SHAPE): [noted("Too wet.")], ("C1", 0.44, EITHER): [noted("Too wet."), noted("Too thin.")]}
 WARNINGS |= {("C1", 0.67, S_SHAPE): [], ("C1", 0.67, EITHER): [noted("Too thin.")], ("R1", 0.67, "middle"): []}
 
@@ -28,23 +28,6 @@ def found():
         ("C1", 0.67): safe_with_tips(1.5 * tips),
         ("R1", 0.67): safe_without_tips(),
     }
-
-
-def charted(humidity, factor=1.0, error=0.004):
-    """Dataset of stage chart, in which a power law gave the thinner beam at the wider gap."""
-    lengths = factor * 1e-6 * np.arange(100, 116).reshape(2, 2, 2, 2)
-    limits = 1e-6 * np.arange(50, 58).reshape(2, 2, 2)
-    return xr.Dataset(
-        {
-            "safe_length": (("thickness", "gap", "shape", "share"), lengths),
-            "flooded_length": (("thickness", "gap", "shape"), limits),
-            "by_elements": (("thickness", "gap"), [[1, 0], [1, 1]]),
-            "power_law_error": error,
-            "film": 1e-9 if humidity else 0.0,
-            "humidity": humidity,
-        },
-        coords={"thickness": [2e-6, 3e-6], "gap": [10e-6, 20e-6], "shape": [S_SHAPE, EITHER], "share": [1e-2, 1e-3]},
-    )
 
 
 CHARTS = {("C1", humidity): charted(humidity, factor) for humidity, factor in ((0.5, 1.0), (0.4, 2.0), (0.6, 0.5))}
