@@ -17,7 +17,7 @@ from stiction.plan.stage import WILDCARDS
 from stiction.run import provenance, run_lock, snakemake_patches, stale_results
 from stiction.run.atomic import DataError, save_text
 from stiction.run.disk_cache import DiskCache, Kept, SharedCache
-from stiction.run.fingerprint import fingerprint
+from stiction.run.fingerprint import PACKAGE, fingerprint
 
 
 wildcard_constraints:
