@@ -12,7 +12,7 @@ from stiction.devices.roughness import LARGEST
 from stiction.report.axes import tables
 from stiction.report.devices import curve_views, curves, explorer
 from stiction.report.page import Page
-from stiction.stages.axes.margins import margins_of
+from stiction.stages.axes.margins import known_margins
 
 DEVICES = [(False, STOPPER), (True, BEAM)]
 
@@ -73,7 +73,10 @@ def test_a_page_has_at_the_points_of_a_roughness_the_numbers_of_its_table(is_bea
 def test_between_settings_the_margin_is_the_one_behind_the_recommendation():
     curve, settings = etched()
     grid = curve_views.process_view("D", STOPPER, curve, settings).grid
-    values, known = np.linspace(SETTINGS[0], SETTINGS[-1], 77), {at["humidity"]: one for at, one in margins_of(curve)}
+    values, known = (
+        np.linspace(SETTINGS[0], SETTINGS[-1], 77),
+        {at["humidity"]: one for at, one in known_margins(curve)},
+    )
     for humidity, one in known.items():
         found = [grid.at(grid.start | {"etch_time_s": value, "humidity": humidity})["margin"] for value in values]
         assert_allclose(found, one.at([values]).margin, atol=1e-12)

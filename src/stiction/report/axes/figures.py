@@ -24,6 +24,7 @@ from stiction.report.style import (
     styled,
 )
 from stiction.stages.axes.law import law_of, plain
+from stiction.stages.axes.margins import PARTS
 from stiction.stages.axes.requirement import margins_of, size_of
 from stiction.stages.axes.roughness import KURTOSIS, curves_of
 from stiction.stages.devices.end_states import END_STATES
@@ -38,8 +39,6 @@ _SHOWN = {
 }
 #: Number of values along a law.
 _POINTS = 101
-#: Parts of the error of the mean process.
-_PARTS = ("simulation", "law", "model")
 
 
 # Curves
@@ -117,7 +116,7 @@ def _simulated(panel, line, colour):
 def _band(panel, line, colour):
     """Estimate over a process, with the bands of the mean process and, wider, of the next run."""
     x, estimate = line.value.values, TO_UM * line.estimate.values
-    for names in (_PARTS, (*_PARTS, "run")):
+    for names in (PARTS, (*PARTS, "run")):
         factor = np.exp(INTERVAL * np.sqrt(sum(line[f"{name}_error"].values ** 2 for name in names)))
         panel.fill_between(x, estimate / factor, estimate * factor, color=colour, alpha=0.15, linewidth=0)
     label = f"{Air(float(line.humidity)).words}, estimate, 95 % bands of mean and next run"

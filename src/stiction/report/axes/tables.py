@@ -12,6 +12,7 @@ from stiction.report.axes.axis import axes_of
 from stiction.report.format import UM, with_band, with_error
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.axes.law import law_inputs
+from stiction.stages.axes.margins import PARTS
 from stiction.stages.axes.recommended import ALL, variables
 from stiction.stages.axes.requirement import size_of
 from stiction.stages.axes.roughness import KURTOSIS
@@ -113,7 +114,7 @@ def _row(device, point, along):
 
 def _margins(point):
     """Margin at a point with its errors by source."""
-    parts = {name: float(point[f"{name}_error"]) for name in ("simulation", "law", "model", "run")}
+    parts = {name: float(point[f"{name}_error"]) for name in (*PARTS, "run")}
     of_mean = float(np.hypot(np.hypot(parts["simulation"], parts["law"]), parts["model"]))
     errors = {"margin_se": of_mean, "margin_of_run_se": float(np.hypot(of_mean, parts["run"]))}
     return {"margin": float(point.margin)} | errors | {f"{name}_se": part for name, part in parts.items()}

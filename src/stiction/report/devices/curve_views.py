@@ -15,12 +15,10 @@ from stiction.report.devices.curves import Curves, line
 from stiction.report.devices.explorer import View, humidity_axis
 from stiction.report.devices.grid import Axis
 from stiction.report.format import UM
+from stiction.stages.axes.margins import PARTS
 from stiction.stages.axes.recommended import settings_of_processes
 from stiction.stages.axes.requirement import margins_of, relative_errors, size_of
 from stiction.stages.axes.roughness import curves_of
-
-#: Parts of the standard error of a margin over a process.
-_PARTS = ("simulation_error", "law_error", "model_error")
 
 
 @dataclass(frozen=True)
@@ -144,7 +142,7 @@ def map_view(name: str, section: Mapping[str, Any], found: xr.Dataset, pairs: xr
 
 def _over_process(held, places):
     """Lines of a device at one humidity, held by whatever holds it, over a process."""
-    error = np.sqrt(sum(held[part].values ** 2 for part in _PARTS))
+    error = np.sqrt(sum(held[f"{part}_error"].values ** 2 for part in PARTS))
     lines = {
         "margin": line(places, held.margin.values, Akima1DInterpolator),
         "error": line(places, error, PchipInterpolator),

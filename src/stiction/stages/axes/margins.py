@@ -16,6 +16,8 @@ from stiction.stages.axes.law import law_inputs, law_of
 from stiction.stages.axes.points import joined
 from stiction.stages.axes.process import axes_of
 
+#: Parts of the error of a margin of the mean process, in the names of variables.
+PARTS = ("simulation", "law", "model")
 #: Dimensions of settings, of one process or two, in the order of `stiction.devices.process.Margins`.
 _DIMENSIONS = ("second", "value")
 
@@ -42,7 +44,7 @@ def compute(
     found = found.assign(slopes=_slopes(points, found, over)).assign_coords(_labels(laws, settings))
     known = [law_of(one) for one in laws]
     errors = {"law_error": xr.full_like(found.margin, np.nan), "run_error": xr.full_like(found.margin, np.nan)}
-    for at, one in margins_of(found):
+    for at, one in known_margins(found):
         places = at | dict(zip(over, one.axes, strict=True))
         errors["law_error"].loc[places] = law_error(one, known)
         errors["run_error"].loc[places] = run_error(one, known)
@@ -93,7 +95,7 @@ def _model_error(found, model_error):
     return np.broadcast_to(np.nan_to_num(np.hypot(change, relative).values), shape)
 
 
-def margins_of(found: xr.Dataset) -> Iterator[tuple[dict[str, Any], Margins]]:
+def known_margins(found: xr.Dataset) -> Iterator[tuple[dict[str, Any], Margins]]:
     """Yield coordinates of humidity and end state with the margins at all pairs, or at two settings or more.
 
     ASSUME: an unknown margin between known ones is on a smooth curve through them. Those at the ends are left out.

@@ -14,7 +14,7 @@ from stiction.devices.roughness import sufficient
 from stiction.plan.names import by_name
 from stiction.plan.stage import Stage
 from stiction.stages.axes.law import law_inputs, law_of
-from stiction.stages.axes.margins import margins_of
+from stiction.stages.axes.margins import known_margins
 from stiction.streams import stream
 
 #: All devices of a variable together, beside each of them.
@@ -50,7 +50,7 @@ def of_pairs(found: xr.Dataset, laws: Iterable[xr.Dataset], device: str, seed: i
 def _recommended(found, laws, rng):
     """Recommended settings for some devices together."""
     known = {name: law_of(one) for name, one in laws.items()}
-    parts = [replace(one, slopes=_by_laws(of, one.slopes, known)) for of in found for _, one in margins_of(of)]
+    parts = [replace(one, slopes=_by_laws(of, one.slopes, known)) for of in found for _, one in known_margins(of)]
     if len(parts) < sum(of.sizes["humidity"] * of.sizes["shape"] for of in found):
         first, *others = known.values()
         if "second" in found[0].dims:
