@@ -121,14 +121,8 @@ def recommended(
         margin, margins = np.minimum(margin, here.margin), np.minimum(margins, of_mean)
         of_run = np.minimum(of_run, of_next)
     best = np.array([_best(axes, values) for values in margins])
-    is_certain = len(axes) == 1 and not best.std()
-    wanted = (margins >= 0).mean(axis=1)[:, None] * np.ptp(axes[0]) if is_certain else best
-    groups = [[number] for number in range(len(laws))] if len(axes) > 1 else [list(range(len(laws)))]
-    advice = [
-        _next([laws[k] for k in group], [errors[k] for k in group], [parts[k] for k in group], values)
-        for group, values in zip(groups, wanted.T, strict=True)
-    ]
-    following, again, before, after = map(np.array, zip(*advice, strict=True))
+    subject, wanted = _wanted(axes, margins, best)
+    following, again, before, after = _advice(laws, errors, parts, wanted)
     return Recommendation(
         axes=axes,
         margin=margin,
@@ -141,7 +135,7 @@ def recommended(
         interval=np.quantile(best, INTERVAL, axis=0).T,
         next=following,
         again=again,
-        subject="range" if is_certain else "best",
+        subject=subject,
         before=before,
         after=after,
     )
@@ -212,6 +206,20 @@ def _best(axes, margin):
     """Setting of each process with the largest margin, the middle of several, (processes,)."""
     places = np.nonzero(margin >= margin.max() - 1e-12)
     return np.array([axis[at].mean() for axis, at in zip(axes, places, strict=True)][::-1])
+
+
+def _wanted(axes, margins, best):
+    """Numbers that the next measurement improves (draws, processes): best settings, or the length of a range."""
+    if len(axes) > 1 or best.std():
+        return "best", best
+    return "range", (margins >= 0).mean(axis=1)[:, None] * np.ptp(axes[0])
+
+
+def _advice(laws, errors, parts, wanted):
+    """Settings of each process to measure next, as by `_next`: of all surfaces of one process, or of one each."""
+    groups = [slice(number, number + 1) for number in range(len(laws))] if wanted.shape[1] > 1 else [slice(None)]
+    advice = [_next(laws[of], errors[of], parts[of], own) for of, own in zip(groups, wanted.T, strict=True)]
+    return map(np.array, zip(*advice, strict=True))
 
 
 def _next(laws, errors, drawn, wanted):

@@ -152,7 +152,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
     for row, humidity in zip(axes, humidities, strict=True):
         for panel, shape in zip(row, shapes, strict=True):
             curve = data.sel(humidity=humidity, shape=shape).transpose("other", "roughness", ...)
-            _filled(panel, data, margins_of(curve), margins_of(curve, "safe"), f"lg ({size_of(data).ratio})")
+            _filled(panel, data, (margins_of(curve), margins_of(curve, "safe")), f"lg ({size_of(data).ratio})")
             panel.plot(along.in_unit(float(data.given)), across.in_unit(float(data.other_given)), "k+")
             panel.set_title(f"{END_STATES[shape].by}, {Air(humidity).words}")
     return figure
@@ -162,7 +162,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
 def process_map(found: xr.Dataset, pairs: xr.Dataset) -> Figure:
     """Smallest margin of a device over two processes, with its lines of zero margin and the best pair."""
     figure, ((panel,),) = panels(1, 1, (1.5 * SINGLE, 3.4))
-    _filled(panel, found, pairs.margin.values, pairs.safe.values, "lg (smallest margin)", pairs)
+    _filled(panel, found, (pairs.margin.values, pairs.safe.values), "lg (smallest margin)", pairs)
     best, interval = pairs.best.values, pairs.best_interval.values
     across, up = np.abs(interval - best[:, None])[..., None]
     marks = {"fmt": "D", "color": "black", "markersize": 4, "label": "best, 95 % intervals", "clip_on": False}
@@ -171,14 +171,15 @@ def process_map(found: xr.Dataset, pairs: xr.Dataset) -> Figure:
     return figure
 
 
-def _filled(panel, computed, margin, safe, label, shown=None):
-    """Map of a margin with its lines of zero and the computed points. Margins are at these, or at other ones shown."""
+def _filled(panel, computed, margins, label, shown=None):
+    """Map of a margin with lines where it and its safe value are zero, at the computed points or other ones shown."""
     x, y = (axis.in_unit(axis.values) for axis in axes_of(computed if shown is None else shown))
-    levels = np.ma.masked_invalid(margin / np.log(10))
+    levels = np.ma.masked_invalid(margins[0] / np.log(10))
     if levels.count():
         colours = panel.contourf(x, y, levels, 12, cmap="RdBu", norm=CenteredNorm())
         panel.figure.colorbar(colours, ax=panel, label=label)
-    for values, line, words in ((margin, "-", "estimate meets the requirement"), (safe, "--", "with 95 % confidence")):
+    lines = (("-", "estimate meets the requirement"), ("--", "with 95 % confidence"))
+    for values, (line, words) in zip(margins, lines, strict=True):
         if np.nanmin(values, initial=np.inf) < 0 < np.nanmax(values, initial=-np.inf):
             panel.contour(x, y, np.ma.masked_invalid(values), [0], colors="black", linestyles=line)
             panel.plot([], [], line, color="black", label=words)
@@ -215,10 +216,11 @@ def laws(law: xr.Dataset) -> Figure:
     return figure
 
 
-def _stage(name, shows, inputs, draw, names, wildcard="device"):
-    """Stage for a figure of each of some devices or processes of a plan."""
+def _stage(file, shows, inputs, draw, names):
+    """Stage for a figure of each of some devices or processes of a plan, the wildcard at the end of its file."""
+    wildcard = file.rpartition("{")[2].rstrip("}")
     return figure_stage(
-        f"{name}_{{{wildcard}}}",
+        file,
         shows,
         "Devices",
         inputs=inputs,
@@ -235,21 +237,21 @@ def _roughness(_plan, at):
 
 STAGES = (
     _stage(
-        "roughness",
+        "roughness_{device}",
         "how rough the surfaces of {device} must be",
         _roughness,
         lambda data: roughness(data["roughness"]),
         lambda plan: plan.devices.over_roughness,
     ),
     _stage(
-        "roughness_map",
+        "roughness_map_{device}",
         "how rough the surfaces of {device} must be, over two quantities",
         _roughness,
         lambda data: roughness_map(data["roughness"]),
         lambda plan: plan.devices.over_two_quantities,
     ),
     _stage(
-        "process",
+        "process_{device}",
         "which settings of its process leave {device} free",
         lambda plan, at: {
             "curve": f"process/curves/{at.device}",
@@ -259,15 +261,14 @@ STAGES = (
         lambda plan: plan.devices.over_process,
     ),
     _stage(
-        "process_law",
+        "process_law_{process}",
         "surface over the variable of process {process}",
         lambda plan, at: {"law": f"process/laws/{at.process}"},
         laws,
         lambda plan: process.used_processes(plan.config),
-        "process",
     ),
     _stage(
-        "process_map",
+        "process_map_{device}",
         "which pairs of settings of two processes leave {device} free",
         lambda plan, at: {"map": f"process/maps/{at.device}", "pairs": f"process/pairs/{at.device}"},
         lambda data: process_map(data["map"], data["pairs"]),
