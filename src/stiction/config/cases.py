@@ -198,5 +198,5 @@ def in_words(value: Any, path: Sequence[str | int]) -> Any:
     if not any(key in _HUMIDITIES for key in path):
         return value
     if isinstance(value, list):
-        return [in_words(one, path) for one in value]
+        return [in_words(item, path) for item in value]
     return DRY if type(value) is float and value == 0 else value

@@ -64,11 +64,11 @@ class Materials:
 
         What a material does not state is taken from section ``solid``, by default that of the configuration.
         """
-        own = [{key: material[key] for key in properties if key in material} for material in self.bodies(pair)]
-        if not any(own):
+        stated = [{key: material[key] for key in properties if key in material} for material in self.bodies(pair)]
+        if not any(stated):
             return {}
         others = solid or self.config["solid"]
-        return {"materials": {side: others | material for side, material in zip(SIDES, own, strict=True)}}
+        return {"materials": {side: others | material for side, material in zip(SIDES, stated, strict=True)}}
 
     def alike(self, pair: str) -> list[str]:
         """Sides of a pair with the material of the beam."""

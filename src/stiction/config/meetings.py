@@ -215,11 +215,11 @@ def corrections_are_not_extrapolated(config):
         return
     for name, _ in config.entries("devices", "pair"):
         meeting = device_meeting(name, config)
-        of_pair, (own, *others) = f"pairs.{meeting.pair}.humidities", meeting.airs
+        of_pair, (stated, *others) = f"pairs.{meeting.pair}.humidities", meeting.airs
         shown = [config["figures.humidity"]] * (meeting.pair in config["run.pairs"])
         covered, uncertain = [*config[of_pair], *shown], dict(config.given(meeting.deviation))
-        for key, humidities in config.given(own, *others):
-            more = sum(uncertain.values()) if key == own else 0
+        for key, humidities in config.given(stated, *others):
+            more = sum(uncertain.values()) if key == stated else 0
             if not meeting.is_wetted or _is_within(humidities, more, covered):
                 continue
             words = ", with its uncertainty," if more else ""

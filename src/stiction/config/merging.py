@@ -55,12 +55,12 @@ def without_inherited(config: dict[str, Any], base: Mapping[str, Any], overlays:
     """
     stated = [overlay["pairs"] for overlay in overlays if isinstance(overlay, Mapping) and _is_named(overlay)]
     pairs = dict(config["pairs"]) if isinstance(config.get("pairs"), Mapping) else {}
-    for name, known in base["pairs"].items():
-        own = {
+    for name, pair_of_paper in base["pairs"].items():
+        changed = {
             key: value for pair in stated if isinstance(pair.get(name), Mapping) for key, value in pair[name].items()
         }
-        if any(own.get(side, known[side]) != known[side] for side in ("beam", "substrate")):
-            pairs[name] = {key: value for key, value in pairs[name].items() if key in own or key not in _OF_PAPER}
+        if any(changed.get(side, pair_of_paper[side]) != pair_of_paper[side] for side in ("beam", "substrate")):
+            pairs[name] = {key: value for key, value in pairs[name].items() if key in changed or key not in _OF_PAPER}
     return config | {"pairs": pairs} if pairs else config
 
 
@@ -123,9 +123,9 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
 
 def _changed_entries(before, after):
     """Yield dotted names of entries different in two configurations, also below studies."""
-    for place in _places(before):
-        entries, now = reduce(getitem, place, before), reduce(getitem, place, after)
-        yield from (".".join((*place, name)) for name in now if name in entries and entries[name] != now[name])
+    for path in _places(before):
+        entries, now = reduce(getitem, path, before), reduce(getitem, path, after)
+        yield from (".".join((*path, name)) for name in now if name in entries and entries[name] != now[name])
 
 
 def _in_place(config, copied, ends):
@@ -198,10 +198,10 @@ def _with_copies(config, copied, end):
         if names
     }
     config = merged(config, added)
-    for place in _places(config):
-        stated = reduce(getitem, place, config) if place[0] == "studies" else {}
+    for path in _places(config):
+        stated = reduce(getitem, path, config) if path[0] == "studies" else {}
         if of_copies := {name + end: stated[name] for name in copied["pairs"] if name in stated}:
-            config = merged(config, _only_at(of_copies, *place))
+            config = merged(config, _only_at(of_copies, *path))
     return config
 
 

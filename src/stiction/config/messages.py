@@ -92,9 +92,12 @@ def _problems_of(error, schema):
         return [Problem((*path, missing), message, tuple((*path, key) for key in more))]
     if error.validator == "additionalProperties":
         strange = [(*path, key) for key in value if key not in error.schema["properties"]]
-        known = _keys_of_kind(path, value) or list(error.schema["properties"])
-        answers = ((place, _FORMER.get(place) or _NEVER.get(place[-1])) for place in strange)
-        return [Problem(place, said or _unknown(place[-1], value[place[-1]], known)) for place, said in answers]
+        allowed_keys = _keys_of_kind(path, value) or list(error.schema["properties"])
+        answers = ((strange_key, _FORMER.get(strange_key) or _NEVER.get(strange_key[-1])) for strange_key in strange)
+        return [
+            Problem(strange_key, answer or _unknown(strange_key[-1], value[strange_key[-1]], allowed_keys))
+            for strange_key, answer in answers
+        ]
     stated = one_line(in_words(value, path))
     return [Problem(path, f"is {stated}, must be {_allowed_values(error.schema)}{_hint(path, value, error.schema)}")]
 
@@ -289,10 +292,10 @@ def _grouped_hint(text, entry):
 
 def _converted_hint(value, unit, path, entry):
     """Advice on a number in another unit than its key's, empty unless it is a length, stress or force."""
-    kind, own = _IN_SI.get(unit), _unit_of(path)
-    if kind is None or kind != _IN_SI.get(own):
+    kind, unit_of_key = _IN_SI.get(unit), _unit_of(path)
+    if kind is None or kind != _IN_SI.get(unit_of_key):
         return ""
-    return _advice(entry, f"{from_si(to_si(value, unit), own):.12g}", f"write {{}}, the value in {own}")
+    return _advice(entry, f"{from_si(to_si(value, unit), unit_of_key):.12g}", f"write {{}}, the value in {unit_of_key}")
 
 
 def _name_hint(name, longest):

@@ -471,9 +471,9 @@ def a_mesh_is_whole(config):
 @relation
 def solids_are_less_hard_than_stiff(config):
     """Require a hardness up to Young's modulus. Bonds break at a strain well below 1."""
-    for name, own in config.entries("materials", "hardness_GPa"):
+    for name, hardness in config.entries("materials", "hardness_GPa"):
         modulus = (config["solid"] | config["materials"][name])["young_modulus_GPa"]
-        if own > modulus:
+        if hardness > modulus:
             source = f"materials.{name}" if "young_modulus_GPa" in config["materials"][name] else "solid"
             message = f"must be at most Young's modulus of the material, {modulus:g} GPa"
             yield f"materials.{name}.hardness_GPa", message, f"{source}.young_modulus_GPa"
@@ -483,12 +483,12 @@ def solids_are_less_hard_than_stiff(config):
 def coatings_attract_less_than_their_solids(config):
     """Require a coating to attract at most as its material, and to have a thickness."""
     key = COATING_ATTRACTION
-    for name, own in config.entries("materials", key):
+    for name, constants in config.entries("materials", key):
         material, path = config["materials"][name], f"materials.{name}.{key}"
         if not material.get(COATING):
             yield path, "must come with a thickness coating_nm above 0"
         for medium, constant in hamaker_constants(material).items():
-            if own[medium] > constant:
+            if constants[medium] > constant:
                 yield f"{path}.{medium}", f"must be at most that of the material itself, {constant:g} zJ"
 
 
@@ -588,15 +588,15 @@ def fields_too_large(
 
 def _correlations(config):
     """Correlation lengths of the drawn surfaces with a decaying spectrum [µm], by the key behind each."""
-    found = {
+    lengths = {
         f"surfaces.{name}.{MEASURED_CORRELATION}": length
         for name, length in _drawn_surfaces(config, MEASURED_CORRELATION)
     }
     for name, psd in _drawn_surfaces(config, "published_psd"):
         with contextlib.suppress(ValueError):
             if name not in config.files:
-                found[f"surfaces.{name}.published_psd.corner_rad_per_um"] = published_correlation(**psd)
-    return found
+                lengths[f"surfaces.{name}.published_psd.corner_rad_per_um"] = published_correlation(**psd)
+    return lengths
 
 
 #: Refusal of a correlation length [µm].

@@ -453,7 +453,9 @@ def arrays_have_the_materials_of_their_devices(config):
     arrays = config["test_beams"]
     for name, used in config.entries("devices", "test_beams"):
         wanted = _names_of_materials(config, config["devices"][name]["pair"])
-        if other := next((one for one in used if _names_of_materials(config, arrays[one]["pair"]) != wanted), None):
+        if other := next(
+            (array for array in used if _names_of_materials(config, arrays[array]["pair"]) != wanted), None
+        ):
             message = f"must have the materials of the device: those of {other} differ"
             yield f"devices.{name}.test_beams", message, *_keys_of_scans(config, name)
 

@@ -162,18 +162,18 @@ def usable(
     files, reasons = list(entry["scans"]["files"]), []
     while files:
         left_out = {"left_out": reasons} if reasons else {}
-        part = entry | {"scans": entry["scans"] | {"files": files} | left_out}
+        remaining = entry | {"scans": entry["scans"] | {"files": files} | left_out}
         try:
-            _preliminary_numbers(complete(part), section, kept)
+            _preliminary_numbers(complete(remaining), section, kept)
         except ScanError as refusal:
             key = "" if refusal.key == "files" else f" (key {refusal.key})"
             reasons.append(f"{refusal.file} is not used: it {refusal.reason}{key}")
-            labels = _labels(part)
+            labels = _labels(remaining)
             if refusal.file not in labels:
                 break
             del files[labels.index(refusal.file)]
         else:
-            return part, reasons
+            return remaining, reasons
     return None, reasons
 
 

@@ -87,7 +87,7 @@ def at_single_humidities(config: Mapping) -> list[dict[str, dict]]:
 
 def counts_as_devices(config: Mapping) -> dict[str, dict]:
     """Sections of the arrays with counts as if they were devices: their tips may hold them."""
-    return {name: one for name, one in as_cantilevers(config).items() if "stuck" in config["test_beams"][name]}
+    return {name: device for name, device in as_cantilevers(config).items() if "stuck" in config["test_beams"][name]}
 
 
 def _cantilever(config, name, measured_at):
@@ -137,8 +137,8 @@ def with_files(config: dict[str, Any], named: Mapping[str, Any], folder: str | P
         If a file cannot be used; one sentence with the key, the file, the row and the column.
     """
     files = {name: entry["file"] for name, entry in _arrays(named)}
-    own = {name: entry for name, entry in _arrays(config) if entry["file"] == files.get(name)}
-    replaced = {name: _with_file(name, entry, Path(folder)) for name, entry in own.items()}
+    named_here = {name: entry for name, entry in _arrays(config) if entry["file"] == files.get(name)}
+    replaced = {name: _with_file(name, entry, Path(folder)) for name, entry in named_here.items()}
     return config | {"test_beams": config["test_beams"] | replaced} if replaced else config
 
 
@@ -179,8 +179,8 @@ def in_files(sentence: str, config: Any) -> str:
     """Sentence with file, row and column in place of the keys of data from files."""
     for name, origin in _origins(config).items():
         for key, row, words in _places(origin.beams, config["test_beams"][name]):
-            place = f"test_beams.{name}.file is {one_line(origin.file)}, row {row}: {words}"
-            sentence = sentence.replace(f"test_beams.{name}.{key}", place)
+            row_in_file = f"test_beams.{name}.file is {one_line(origin.file)}, row {row}: {words}"
+            sentence = sentence.replace(f"test_beams.{name}.{key}", row_in_file)
     return sentence
 
 
@@ -257,16 +257,18 @@ def _beam(row, cells, columns):
         raise _Wrong(
             f"row {row}: commas separate {len(cells)} values, must be {len(columns)}, with points in decimal numbers"
         )
-    of = dict.fromkeys(COLUMNS, "") | dict(zip(columns, cells, strict=True))
-    humidity = 0.0 if of["humidity"] == DRY else _number(row, of, "humidity", 1, "as a fraction of 1, or dry")
-    length = _number(row, of, "length_um", math.inf, "in µm")
-    if bool(of["crack_length_um"]) == bool(of["stuck"]):
+    row_cells = dict.fromkeys(COLUMNS, "") | dict(zip(columns, cells, strict=True))
+    humidity = (
+        0.0 if row_cells["humidity"] == DRY else _number(row, row_cells, "humidity", 1, "as a fraction of 1, or dry")
+    )
+    length = _number(row, row_cells, "length_um", math.inf, "in µm")
+    if bool(row_cells["crack_length_um"]) == bool(row_cells["stuck"]):
         raise _Wrong(f"row {row}: it must have either crack_length_um or stuck")
-    if of["stuck"]:
-        if of["stuck"].lower() not in _WORDS:
-            raise _Wrong(f"row {row}: stuck is {one_line(of['stuck'])}, must be yes or no")
-        return Beam(row, humidity, length, None, _WORDS[of["stuck"].lower()])
-    crack = _number(row, of, "crack_length_um", length, f"below the length of the beam, {length:g} µm")
+    if row_cells["stuck"]:
+        if row_cells["stuck"].lower() not in _WORDS:
+            raise _Wrong(f"row {row}: stuck is {one_line(row_cells['stuck'])}, must be yes or no")
+        return Beam(row, humidity, length, None, _WORDS[row_cells["stuck"].lower()])
+    crack = _number(row, row_cells, "crack_length_um", length, f"below the length of the beam, {length:g} µm")
     return Beam(row, humidity, length, crack, None)
 
 

@@ -64,9 +64,9 @@ def _plain(stated):
 
 def _refuse(problems: Iterable[Problem], stated: Any, whole: dict[str, Any]) -> None:
     """Raise problems with the keys and files of the user, each once."""
-    lines = [test_beams.in_files(line, stated) for line in process.in_settings(problems, whole)]
-    if lines:
-        raise ConfigError(*dict.fromkeys(lines))
+    if problems := list(problems):
+        lines = process.in_settings(problems, whole)
+        raise ConfigError(*dict.fromkeys(test_beams.in_files(line, stated) for line in lines))
 
 
 def _by_numbers(config, estimates, origins):

@@ -62,8 +62,8 @@ def minutes(seconds: float, longest: int) -> int:
     >>> minutes(24.7, 120), minutes(180.7, 120), minutes(7200.7, 120), minutes(PER_JOB, 120)
     (10, 31, 120, 120)
     """
-    known = max(USUAL_MINUTES, math.ceil(10 * seconds / 60)) if seconds > PER_JOB else longest
-    return min(longest, known)
+    enough = max(USUAL_MINUTES, math.ceil(10 * seconds / 60)) if seconds > PER_JOB else longest
+    return min(longest, enough)
 
 
 def _sections(settings: Mapping[str, Any]) -> Iterator[Mapping[str, Any]]:

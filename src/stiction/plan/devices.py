@@ -147,8 +147,8 @@ class DevicePlan:
         """Humidities along the axis of the chart of a device, with at most four decimals, and its own between them."""
         low, high = ends = self.sections[device]["chart"]["humidities"]
         axis = np.linspace(*ends, self.config["design"]["chart_points"])
-        own = {humidity for humidity in self.sections[device]["humidities"] if low < humidity < high}
-        return sorted({round(float(humidity), 4) for humidity in axis} | own)
+        stated = {humidity for humidity in self.sections[device]["humidities"] if low < humidity < high}
+        return sorted({round(float(humidity), 4) for humidity in axis} | stated)
 
     @property
     def pressed_pairs(self) -> list[str]:
@@ -172,11 +172,11 @@ class DevicePlan:
     @cached_property
     def cantilevers_on(self) -> dict[tuple[Patch, float], list[str]]:
         """Cantilevers on every patch of contact at a humidity."""
-        found = {}
+        by_ground = {}
         for name in self.with_tips:
             for humidity in self.sections[name]["humidities"]:
-                found.setdefault((self.ground(name), humidity), []).append(name)
-        return found
+                by_ground.setdefault((self.ground(name), humidity), []).append(name)
+        return by_ground
 
     def sizes(self, device: str, humidity: float) -> dict[str, list[float]]:
         """Thicknesses and gaps from which the lengths of a device follow, empty if it is simulated by itself."""

@@ -113,16 +113,16 @@ class Graph:
 
     def needed(self, *targets: str) -> list[Job]:
         """Find all jobs for some targets of the workflow, without results of an earlier run."""
-        found, waiting = {}, []
+        jobs, waiting = {}, []
         for stage, _ in stages().values():
             if set(targets) & set(stage.targets) and stage.patterns(self.plan):
                 waiting += [Job(stage, At(**at), self.plan) for at in stage.wanted(self.plan)]
         while waiting:
             job = waiting.pop()
-            if (key := (job.stage.name, *sorted(vars(job.at).items()))) not in found:
-                found[key] = job
+            if (key := (job.stage.name, *sorted(vars(job.at).items()))) not in jobs:
+                jobs[key] = job
                 waiting += [self.job(name) for names in job.inputs.values() for name in _datasets(names)]
-        return list(found.values())
+        return list(jobs.values())
 
 
 def constraints(stage: Stage, plan: Plan) -> dict[str, str]:

@@ -111,9 +111,9 @@ class Plan:
         Keys of section ``contact`` may be given; those that are ``None`` are left out.
         """
         changed = {key: value for key, value in (self.config["contact"] | contact).items() if value is not None}
-        own = {"surfaces": self.sides(pair), "water": self.air.water(pair), "contact": changed}
+        of_pair = {"surfaces": self.sides(pair), "water": self.air.water(pair), "contact": changed}
         others = {key: value for key, value in self.air.around(pair).items() if key != "materials"}
-        return others | own | self.materials.settings(pair, properties)
+        return others | of_pair | self.materials.settings(pair, properties)
 
     def at(self, case: Case) -> dict[str, Any]:
         """Configuration of `seen_by`, with the humidity of a case."""
@@ -163,9 +163,9 @@ class Plan:
         entry = self.config["surfaces"][surface]
         if is_measured(entry) or quantity not in FAR_QUANTITIES or quantity not in uncertain(entry):
             return 0.0
-        known = knowledge(entry, paper()["surfaces"]).section
-        place = known["quantities"].index(quantity)
-        return float(known["covariance"][place][place] ** 0.5)
+        errors = knowledge(entry, paper()["surfaces"]).section
+        index = errors["quantities"].index(quantity)
+        return float(errors["covariance"][index][index] ** 0.5)
 
     def assumptions(self, *pairs: str) -> dict[str, list[dict[str, Any]]]:
         """Stored limits by assumed properties of the surfaces of some pairs, by pair, without empty ones."""
@@ -173,11 +173,11 @@ class Plan:
         end = self.devices.nyquist
         by_surface = {name: limits(name, entries[name], library, end) for name in self.scans.others}
         named = {pair: dict.fromkeys(self.sides(pair)) for pair in pairs}
-        found = {
+        by_pair = {
             pair: [limit.stored() for name in names for limit in by_surface.get(name, ())]
             for pair, names in named.items()
         }
-        return {pair: of_pair for pair, of_pair in found.items() if of_pair}
+        return {pair: of_pair for pair, of_pair in by_pair.items() if of_pair}
 
     @cached_property
     def with_summits(self) -> list[str]:
@@ -274,19 +274,19 @@ class Plan:
 
     def humidities_of_full_contact(self, pair: str) -> list[float]:
         """Humidities of a pair, that of its figures if these show corrected laws beyond them, its devices' dry air."""
-        own, shown = self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
-        humid = [rh for rh in own if rh > 0]
-        within = shown in own or shown > 0 and humid and min(humid) <= shown <= max(humid)
+        stated, shown = self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
+        humid = [rh for rh in stated if rh > 0]
+        within = shown in stated or shown > 0 and humid and min(humid) <= shown <= max(humid)
         corrected = pair in self.pairs and self.variants.corrected(pair, [shown])
         devices = [*self.devices.sections.values(), *as_cantilevers(self.config).values()]
         dry = any(0 in section["humidities"] for section in devices if section["pair"] == pair)
-        return list(dict.fromkeys([*own, *([shown] if corrected and not within else []), *([0.0] if dry else [])]))
+        return list(dict.fromkeys([*stated, *([shown] if corrected and not within else []), *([0.0] if dry else [])]))
 
     @property
     def pressed_pairs(self) -> list[str]:
         """Pairs in the study of plasticity."""
-        known = self.config["studies"]["plasticity"]["distance_nm"]
-        return [pair for pair in self.pairs if pair in known and "plasticity" in self.studies]
+        distances = self.config["studies"]["plasticity"]["distance_nm"]
+        return [pair for pair in self.pairs if pair in distances and "plasticity" in self.studies]
 
     @property
     def sensitivities(self) -> dict[tuple[str, str], str]:
@@ -324,5 +324,5 @@ class Plan:
             return subsection(nearest_feasible(**subsection(entry, names))._asdict(), names)
         if entry["heights"] == "measured":
             return None
-        known = self.preliminary or preliminary_estimates(self.config)[0]
-        return dict(zip(names, known[surface]["feasible"], strict=True))
+        estimates = self.preliminary or preliminary_estimates(self.config)[0]
+        return dict(zip(names, estimates[surface]["feasible"], strict=True))

@@ -69,9 +69,9 @@ class Variants:
     def _psd_under(self, variant, surface):
         """Source of the spectrum of a surface: the variant's if available, otherwise unchanged."""
         entry = self.config["surfaces"][surface]
-        known = {"published": "published_psd" in entry, "identified": self.plan.has_summits(surface)}
+        sources = {"published": "published_psd" in entry, "identified": self.plan.has_summits(surface)}
         wanted = self.changes[variant].get("psd", entry["psd"])
-        return wanted if known[wanted] else entry["psd"]
+        return wanted if sources[wanted] else entry["psd"]
 
     def summits(self, pair: str, variant: str) -> dict:
         """Settings of the summits of a pair without the variant, and the changes of the variant.

@@ -78,8 +78,8 @@ def _spectrum(entry, typical):
     cutoff = entry.get("cutoff_rad_per_um") or typical["cutoff_rad_per_um"]
     corner = entry.get("corner_rad_per_um") or _corner(entry, typical, falling, cutoff)
     ends = to_si(corner, "rad_per_um"), to_si(cutoff, "rad_per_um")
-    found = self_affine.spectrum(to_si(entry["rms_nm"], "nm"), falling, *ends)
-    numbers = {"plateau_nm4": from_si(found.plateau, "nm4"), "floor_nm4": from_si(found.floor, "nm4")}
+    fitted = self_affine.spectrum(to_si(entry["rms_nm"], "nm"), falling, *ends)
+    numbers = {"plateau_nm4": from_si(fitted.plateau, "nm4"), "floor_nm4": from_si(fitted.floor, "nm4")}
     return {key: _rounded(value) for key, value in numbers.items()} | {
         "corner_rad_per_um": corner,
         "cutoff_rad_per_um": cutoff,
@@ -115,11 +115,11 @@ def _uncertainty(entry, psd):
 
 def problems(config: Mapping[str, Any], library: Library) -> list[Problem]:
     """Problems of the surfaces that cannot be completed, or have impossible uncertainties, one of each."""
-    found = []
+    refused = []
     for name, entry in config["surfaces"].items():
         refusals = chain(_refusals(entry, library), _impossible_uncertainties(entry, library))
-        found += [_problem(name, entry, *refusal) for refusal in islice(refusals, 1)]
-    return found
+        refused += [_problem(name, entry, *refusal) for refusal in islice(refusals, 1)]
+    return refused
 
 
 def completed(config: dict[str, Any], library: Library) -> dict[str, Any]:
@@ -233,13 +233,13 @@ _POSITIVE = "rms_nm", "correlation_length_nm", "corner_rad_per_um"
 
 def origins(config: Mapping[str, Any]) -> dict[tuple, tuple]:
     """Keys stated by users, as paths with their values, by the keys of complete surfaces derived from them."""
-    found = {}
+    by_key = {}
     for name, entry in config["surfaces"].items():
         if is_described(entry):
             for key, sources in _SOURCES.items():
                 source = next((source for source in (*sources, "like") if source in entry), "rms_nm")
-                found["surfaces", name, *key] = ("surfaces", name, source), entry.get(source)
-    return found
+                by_key["surfaces", name, *key] = ("surfaces", name, source), entry.get(source)
+    return by_key
 
 
 #: Keys of a complete surface, and those that they follow from.

@@ -112,5 +112,5 @@ def scatter(library: Library) -> np.ndarray:
         ]
         for entry in library.values()
     ]
-    part = np.repeat(np.arange(len(_PARTS)), list(map(len, _PARTS)))
-    return np.cov(np.transpose(rows)) * (part[:, None] == part)
+    group = np.repeat(np.arange(len(_PARTS)), list(map(len, _PARTS)))
+    return np.cov(np.transpose(rows)) * (group[:, None] == group)

@@ -35,22 +35,22 @@ def members(entry: Mapping[str, Any], library: Library, end: float = np.inf) -> 
     words = list(assumed(entry).values())
     if not words or len(library) < 2:
         return {}
-    own, typical = quantities(entry), {name: quantities(other) for name, other in library.items()}
-    return {name: _feasible({word: known[word] for word in words}, own, end) for name, known in typical.items()}
+    stated, typical = quantities(entry), {name: quantities(other) for name, other in library.items()}
+    return {name: _feasible({word: others[word] for word in words}, stated, end) for name, others in typical.items()}
 
 
 def quantities(entry: Mapping[str, Any]) -> dict[str, float]:
     """Quantities of a surface in normal form by the words of key ``unknown``, as far as it states them."""
-    known = {"rms": entry["rms_nm"], "skewness": entry["skewness"], "kurtosis": entry["kurtosis"]}
+    numbers = {"rms": entry["rms_nm"], "skewness": entry["skewness"], "kurtosis": entry["kurtosis"]}
     if psd := entry.get("published_psd"):
-        known |= {"corner": psd["corner_rad_per_um"], "hurst": slope(psd), "cutoff": psd["cutoff_rad_per_um"]}
-    return known
+        numbers |= {"corner": psd["corner_rad_per_um"], "hurst": slope(psd), "cutoff": psd["cutoff_rad_per_um"]}
+    return numbers
 
 
 def is_itself(entry: Mapping[str, Any], member: Mapping[str, float]) -> bool:
     """Whether a member is the surface as stated."""
-    own = quantities(entry)
-    return all(np.isclose(own.get(word, np.nan), value, rtol=_ROUNDING) for word, value in member.items())
+    stated = quantities(entry)
+    return all(np.isclose(stated.get(word, np.nan), value, rtol=_ROUNDING) for word, value in member.items())
 
 
 def like(surface: str, member: str) -> str:
@@ -58,24 +58,24 @@ def like(surface: str, member: str) -> str:
     return f"{surface} like {member}"
 
 
-def _feasible(member, own, end):
+def _feasible(member, stated, end):
     """Quantities of a member, changed where the surface cannot have them with its own others."""
     member = dict(member)
     if len(form := {"skewness", "kurtosis"} & set(member)) == 1:  # both are of one surface, which has them
-        member |= _form(*form, own, member)
+        member |= _form(*form, stated, member)
     if "cutoff" in member:
-        least = 0.0 if "corner" in member else own.get("corner", 0.0) * np.exp(_APART)
+        least = 0.0 if "corner" in member else stated.get("corner", 0.0) * np.exp(_APART)
         member["cutoff"] = float(max(min(member["cutoff"], end), least))
-    if "corner" in member and (cutoff := (own | member).get("cutoff")):
+    if "corner" in member and (cutoff := (stated | member).get("cutoff")):
         member["corner"] = float(min(member["corner"], cutoff * np.exp(-_APART)))
     return member
 
 
-def _form(word, own, member):
+def _form(word, stated, member):
     """Skewness or kurtosis of a member, feasible beside the other one of the surface, by its word."""
     from stiction.surface.feasible import is_feasible  # only few plans need it
 
-    other = own["kurtosis" if word == "skewness" else "skewness"]
+    other = stated["kurtosis" if word == "skewness" else "skewness"]
 
     def is_possible(value):
         """Whether heights have this value."""
@@ -83,7 +83,7 @@ def _form(word, own, member):
 
     if is_possible(member[word]):
         return {}
-    near, far = own[word], member[word]
+    near, far = stated[word], member[word]
     for _ in range(_HALVINGS):
         middle = 0.5 * (near + far)
         near, far = (middle, far) if is_possible(middle) else (near, middle)
@@ -94,11 +94,11 @@ def limits(name: str, entry: Mapping[str, Any], library: Library, end: float = n
     """Limits by the assumed quantities of a surface, none without any. The end is as of `members`."""
     if not (words := list(assumed(entry).values())):
         return []
-    own, others = (
+    stated, others = (
         _shown(quantities(entry)),
         {other: _shown(member) for other, member in members(entry, library, end).items()},
     )
-    listed = [[word, _rounded(own.get(word)), _scatter(word, others)] for word in words]
+    listed = [[word, _rounded(stated.get(word)), _scatter(word, others)] for word in words]
     numbers = {"surface": name, "library": list(library), "listed": listed}
     if not others:
         return [Limit("assumed_without_scatter", Side.EITHER, False, numbers=numbers)]

@@ -47,8 +47,8 @@ def unit_of(variable: str) -> str | None:
     >>> unit_of("etch_time_s"), unit_of("rate_nm_per_min"), unit_of("time")
     ('s', 'nm/min', None)
     """
-    found = _UNIT.search(variable)
-    return UNITS[found[1]] if found else None
+    match = _UNIT.search(variable)
+    return UNITS[match[1]] if match else None
 
 
 def words_of(variable: str) -> str:
@@ -83,13 +83,17 @@ def processes_of(config: Mapping[str, Any], device: str) -> list[str]:
 
     The latter is the second one that it states, or one at the same time.
     """
-    section, known = config["devices"][device], config.get("process", {})
+    section, processes = config["devices"][device], config.get("process", {})
     named = section.get("process")
     if is_mapped(config, device):
         return [named, section["second_process"]]
     sides = config["pairs"].get(section["pair"], {}).values()
-    others = (name for name in known if known[name].get("together_with") == named and known[name]["surface"] in sides)
-    return [named, *others] if named in known else []
+    others = (
+        name
+        for name in processes
+        if processes[name].get("together_with") == named and processes[name]["surface"] in sides
+    )
+    return [named, *others] if named in processes else []
 
 
 def is_mapped(config: Mapping[str, Any], device: str) -> bool:
@@ -149,7 +153,9 @@ def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder:
             isinstance(settings, list)
             and _section(_section(config.get("process")).get(process)).get("settings") == settings
         ):
-            moved[process] = config["process"][process] | {"settings": [_in_folder(one, folder) for one in settings]}
+            moved[process] = config["process"][process] | {
+                "settings": [_in_folder(setting, folder) for setting in settings]
+            }
     return config | {"process": config["process"] | moved} if moved else config
 
 

@@ -44,8 +44,8 @@ def processes_have_several_settings(config):
             message = "must have at least two settings; for the surface of one, use roughness of the device"
             yield f"{key}.0.value", message
         for value in duplicates(values):
-            place = len(values) - 1 - values[::-1].index(value)
-            yield f"{key}.{place}.value", "must differ from that of the other settings; one has all scans of a value"
+            number = len(values) - 1 - values[::-1].index(value)
+            yield f"{key}.{number}.value", "must differ from that of the other settings; one has all scans of a value"
 
 
 @relation
@@ -54,11 +54,13 @@ def settings_are_possible(config):
     for name, settings, variable in config.entries("process", "settings", "variable"):
         unit = unit_of(variable)
         least, most = LEAST.get(unit, -math.inf), 100 if unit == "%" else math.inf
-        for place, setting in enumerate(settings):
-            key, value = f"process.{name}.settings.{place}.value", setting["value"]
+        for number, setting in enumerate(settings):
+            key, value = f"process.{name}.settings.{number}.value", setting["value"]
             if not least <= value <= most:
-                part = f"and at most 100 %; for another ratio, write {value / 100:g} and a variable that ends in _ratio"
-                message = f"must be at least {least:g} {part if unit == '%' else unit}"
+                ratio = (
+                    f"and at most 100 %; for another ratio, write {value / 100:g} and a variable that ends in _ratio"
+                )
+                message = f"must be at least {least:g} {ratio if unit == '%' else unit}"
                 yield key, message, f"process.{name}.variable"
 
 
