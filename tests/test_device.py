@@ -22,7 +22,7 @@ CONFIG = stiction.load(
     {
         "devices": {"C1": C1, "R1": R1 | {"humidities": [0.88]}, "S1": S1},
         "beam": {"width_um": 20},
-        "contact": {"samples": 40},
+        "contact": {"samples": 40, "model": "summits"},
         "chaos": {"order": 2},
         "design": {"beams": 200, "shares": [0.02]},
     }

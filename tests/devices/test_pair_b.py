@@ -31,8 +31,8 @@ SAMPLING = 0.8e-6
 
 BEAMS = 2900
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
-#: The lengths of 110 000 beams are those of summits that attract only where they touch.
-TOUCHING = {"attraction": {"reach": "touching"}}
+#: The lengths of 110 000 beams are those of summits alone that attract only where they touch.
+TOUCHING = {"attraction": {"reach": "touching"}, "contact": {"model": "summits"}}
 
 
 @pytest.fixture(scope="module")

@@ -20,7 +20,7 @@ pairs: {b: {humidities: [0.88]}}
 figures: {humidity: 0.88, pair: b}
 character: {strips: 2}
 identification: {patches: 2, patch_um: 2}
-contact: {samples: 60, chunks: 2, distance_step_nm: 0.2}
+contact: {samples: 60, chunks: 2, distance_step_nm: 0.2, model: summits}
 chaos: {order: 2}
 beam: {samples: 4}
 studies: {plasticity: {strips: 2}, orders: {draws: 1000}, sensitivity: {samples: 10},

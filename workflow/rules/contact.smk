@@ -98,6 +98,10 @@ define("full_contact_across")
 #   heights, spectrum -> results/studies/full_contact/dry/{pair}.nc
 define("full_contact_dry")
 
+# Energies of {case} in full elastic contact.
+#   heights, spectrum -> results/studies/full_contact/energy/{case}.nc
+define("full_energy")
+
 # Error of the model of the contact of pair {pair}.
 #   full_contact, tips_in_full_contact -> results/studies/model_error/{pair}.nc
 define("pair_model_error")
@@ -109,6 +113,10 @@ define("pair_model_error_across")
 # Error of the model of the contact of pair {pair} in dry air.
 #   full_contact_dry, tips_in_full_contact_dry -> results/studies/model_error/dry/{pair}.nc
 define("pair_model_error_dry")
+
+# Full elastic contact of pair {pair} under the beams of devices, over the sum over summits.
+#   full_energy, full_contact_dry, tips_in_full_contact_dry -> results/studies/model_error/devices/{pair}.nc
+define("model_error_of_devices")
 
 # Stress of the touching summits of pair {pair} (App. A).
 #   heights, spectrum -> results/studies/plasticity/{pair}.nc

@@ -6,8 +6,8 @@ Written by docs/rules.py from the declarations of the stages: change these, then
 """
 
 # Budget of {case}.
-#   heights, spectrum, contact, device_contact, slope_contact, device_slope_contact, solid_contact,
-#     device_choice_contact -> results/devices/budget/{case}.nc
+#   heights, spectrum, contact, device_contact, model_error_of_devices, slope_contact, device_slope_contact,
+#     solid_contact, device_choice_contact -> results/devices/budget/{case}.nc
 define("budget")
 
 # Budget of the tips of {case}.
@@ -16,8 +16,8 @@ define("budget")
 define("tip_budget")
 
 # Budget of test beams {case}.
-#   heights, spectrum, contact, device_contact, slope_contact, device_slope_contact, solid_contact ->
-#     results/devices/test_beams/budget/{case}.nc
+#   heights, spectrum, contact, device_contact, model_error_of_devices, slope_contact, device_slope_contact,
+#     solid_contact -> results/devices/test_beams/budget/{case}.nc
 define("test_beam_budget")
 
 # Budget of the tips of test beams {case}.
@@ -38,7 +38,8 @@ define("cracks")
 define("sizes")
 
 # Error of the model of the contact in the predictions of {device}.
-#   full_contact, full_contact_across, full_contact_dry -> results/devices/model_error/{device}.nc
+#   model_error_of_devices, full_contact, full_contact_across, full_contact_dry ->
+#     results/devices/model_error/{device}.nc
 define("device_model_error")
 
 # Where the results of device {device} are beyond the model.
@@ -46,12 +47,12 @@ define("device_model_error")
 define("device_warnings")
 
 # Force laws of {case}, strips of {length} x {width} nm.
-#   contact, device_contact, heights, spectrum, pair_model_error_dry ->
+#   contact, device_contact, heights, spectrum, pair_model_error_dry, model_error_of_devices ->
 #     results/devices/ground/{case}_{length}x{width}.nc
 define("ground")
 
 # What attraction across gaps would change of device {device}.
-#   contact, device_contact, tip_contact -> results/devices/left_out_gaps/{device}.nc
+#   contact, device_contact, tip_contact, model_error_of_devices -> results/devices/left_out_gaps/{device}.nc
 define("left_out_gaps")
 
 # Safe lengths of {case}.
@@ -63,7 +64,7 @@ define("safe_lengths")
 define("touchdowns")
 
 # Safe lengths of {case} at its voltage.
-#   cracks, tip_contact, contact -> results/devices/at_voltage/{case}.nc
+#   cracks, tip_contact, contact, model_error_of_devices -> results/devices/at_voltage/{case}.nc
 define("at_voltage")
 
 # Pull-off force of stopper {device}.
@@ -87,7 +88,7 @@ define("stoppers_at_voltage")
 define("separation")
 
 # Fast separation of {case}, strips of {length} x {width} nm.
-#   contact, device_contact -> results/devices/fast_strips/{case}_{length}x{width}.nc
+#   contact, device_contact, model_error_of_devices -> results/devices/fast_strips/{case}_{length}x{width}.nc
 define("fast_strips")
 
 # Fast separation of tips of {case}, {length} x {width} nm.
@@ -105,8 +106,8 @@ define("life")
 define("test_beams")
 
 # Device {device} at the inputs that its test beams suggest.
-#   test_beams, budget, test_beam_budget, contact, device_contact, heights, spectrum ->
-#     results/devices/test_beams/rerun/{device}.nc
+#   test_beams, budget, test_beam_budget, contact, device_contact, model_error_of_devices, heights, spectrum
+#     -> results/devices/test_beams/rerun/{device}.nc
 define("test_beams_rerun")
 
 # Answer about device {device}.

@@ -10,7 +10,7 @@ Written by docs/rules.py from the declarations of the stages: change these, then
 define("process_law")
 
 # Device {device} over its process.
-#   process_point, process_law -> results/process/curves/{device}.nc
+#   process_point, process_law, device_model_error -> results/process/curves/{device}.nc
 define("process_curve")
 
 # Device {device} over two processes.
@@ -18,7 +18,7 @@ define("process_curve")
 define("process_map")
 
 # Device {device} at value {number} of its process.
-#   heights, spectrum, process_law -> results/process/points/{device}_{number}.nc
+#   heights, spectrum, model_error_of_devices, process_law -> results/process/points/{device}_{number}.nc
 define("process_point")
 
 # Recommended {variable}.
@@ -30,7 +30,8 @@ define("process_settings")
 define("process_pairs")
 
 # Device {device} at roughness {number}.
-#   heights, spectrum, pair_model_error_dry -> results/devices/roughness/points/{device}_{number}.nc
+#   heights, spectrum, pair_model_error_dry, model_error_of_devices ->
+#     results/devices/roughness/points/{device}_{number}.nc
 define("roughness_point")
 
 # Roughness that device {device} needs.

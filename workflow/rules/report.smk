@@ -155,9 +155,9 @@ define("table_life")
 define("figure_life")
 
 # Page of device {device}.
-#   answer, life, budget, tip_budget, device_warnings, test_beams_rerun, safe_lengths, roughness, stoppers,
-#     tilted_stoppers, stoppers_at_voltage, process_curve, process_settings, process_law, chart, process_map,
-#     process_pairs, device_model_error -> results/devices/{device}.{html,txt}
+#   answer, life, budget, tip_budget, device_warnings, device_model_error, test_beams_rerun, safe_lengths,
+#     roughness, stoppers, tilted_stoppers, stoppers_at_voltage, process_curve, process_settings, process_law,
+#     chart, process_map, process_pairs -> results/devices/{device}.{html,txt}
 define("device_page")
 
 # Simulated limits of beams.

@@ -89,6 +89,7 @@ class Correction:
     energy: Change  #: of the energies e (h,)
     pull_off: Change  #: of the largest attractions f_max (h,)
     tips: TipChanges | None = None  #: of the largest attractions of tips, if any are on the pair
+    nearest: bool = False  #: whether changes at the nearest humidity hold beyond these, instead of an error
 
     def at(self, humidity: float) -> tuple[Change, Change]:
         """Changes of e and of f_max at a humidity, 0 for dry air: none in humid air if dry air alone is corrected.
@@ -101,7 +102,9 @@ class Correction:
         return self._at(humidity, self.energy), self._at(humidity, self.pull_off)
 
     def of_tips(self, humidity: float, slopes: np.ndarray) -> list[Change]:
-        """Changes of the largest attraction of tips at slopes (n,) [-]. Humidity and errors as of `at`."""
+        """Changes of the largest attraction of tips at slopes (n,) [-], none without tips. Otherwise as `at`."""
+        if self.tips is None:
+            return [NONE] * len(slopes)
         return [self._at(humidity, self.tips.at(slope)) for slope in slopes]
 
     def _at(self, humidity, changes):
@@ -110,7 +113,8 @@ class Correction:
         if humidity > 0 and not known.size:
             return NONE
         low, high = known.min(initial=1.0), known.max(initial=0.0)
-        if not (is_at_most(low, humidity) and is_at_most(humidity, high)):
+        is_near = self.nearest and humidity > 0
+        if not (is_near or is_at_most(low, humidity) and is_at_most(humidity, high)):
             where = f"at relative humidities from {low:g} to {high:g}" if known.size else "in other air alone"
             raise ValueError(
                 f"full elastic contact was computed {where} and is not extrapolated to {humidity:g}: add it to the "

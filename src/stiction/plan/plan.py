@@ -267,6 +267,28 @@ class Plan:
         """Whether the error of the model is stated beside predictions for a pair at some humidities."""
         return self.has_humid_full_contact or bool(self.variants.corrected(pair, humidities))
 
+    def states_error_of_device(self, device: str) -> bool:
+        """Whether the error of the model is stated beside predictions for a device."""
+        section = self.devices.sections[device]
+        pair, humidities = section["pair"], section["humidities"]
+        of_beam = self.devices.kind(device).is_beam and self.air_of_devices.by_levels(pair, humidities)
+        return bool(of_beam) or self.states_model_error(pair, humidities)
+
+    def airs_of_beams(self, pair: str) -> list[float]:
+        """Humidities of all beams of devices and test beams on a pair, and of their charts, increasing."""
+        arrays = self.with_test_beams.devices if "test_beams" in self.config else self.devices
+        airs = {
+            humidity
+            for devices in (self.devices, arrays)
+            for name in devices.beams
+            if devices.sections[name]["pair"] == pair
+            for humidity in (
+                *devices.sections[name]["humidities"],
+                *(devices.axis(name) if name in devices.with_chart else ()),
+            )
+        }
+        return sorted(airs)
+
     @property
     def has_humid_full_contact(self) -> bool:
         """Whether full contact is computed in humid air, too: for its study, or to correct predictions."""

@@ -100,7 +100,11 @@ def test_a_cantilever_at_a_setting_is_that_of_todays_roughness_with_its_tip():
     beam = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 10, "width_um": 4, "humidities": [0.88]}
     beam |= {"requirement": {"share": SHARE, "length_um": 300}, "process": "etch"}
     beam |= {"roughness": {"surface": "B2", "rms_nm": [2, 8]}}
-    small = {"contact": {"samples": 100}, "chaos": {"order": 1}, "design": {"beams": 200, "shares": [SHARE]}}
+    small = {
+        "contact": {"samples": 100, "model": "summits"},
+        "chaos": {"order": 1},
+        "design": {"beams": 200, "shares": [SHARE]},
+    }
     results = Results.of(config(RMS, small, Lever=beam))
     job = results.graph.job("process/points/Lever_0")
     settings = job.stage.converted(job.settings | {"samples": 0})  # without slopes

@@ -51,7 +51,7 @@ def stopper():
 
 @pytest.fixture(scope="module")
 def cantilever():
-    return stiction.Device("C1", Results.of(CONFIG))
+    return stiction.Device("C1", Results.of(stiction.load(SECTIONS, {"contact": {"model": "summits"}})))
 
 
 def forces_at(rms, **changed):

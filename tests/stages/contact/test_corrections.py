@@ -186,7 +186,7 @@ def test_the_error_of_a_pair_is_interpolated_between_the_computed_humidities_and
 
 def of_device(device, **changed):
     settings = device_model_error.Settings((0.44, 0.55, 0.92, 0.95), device, **changed)
-    return device_model_error.compute(study(), settings)
+    return device_model_error.compute(settings, study())
 
 
 def test_cracks_of_a_cantilever_change_like_those_of_table_3_and_nothing_is_said_about_its_tip():
@@ -208,8 +208,8 @@ def test_lengths_of_bridges_change_with_energy_and_force():
     bridge = DesignedBeam("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 0.5e-6, residual_stress=50e6)
     both = of_device(bridge).factor.sel(shape=MIDDLE, humidity=0.44)
     same = device_model_error.Settings((0.44,), bridge)
-    of_energy = device_model_error.compute(study(pull_off=(1, 1, 1)), same).factor[0, 0]
-    nothing = device_model_error.compute(study((1, 1, 1), (1, 1, 1)), same).factor[0, 0]
+    of_energy = device_model_error.compute(same, study(pull_off=(1, 1, 1))).factor[0, 0]
+    nothing = device_model_error.compute(same, study((1, 1, 1), (1, 1, 1))).factor[0, 0]
     assert float(both) > float(of_energy) > float(nothing) == pytest.approx(1)
 
 

@@ -80,7 +80,7 @@ def many(number, **more):
     """Graph of cantilevers of as many thicknesses, with few samples."""
     beam = {"kind": "cantilever", "pair": "b", "gap_um": 20, "width_um": 30, "humidities": [0.67]}
     devices = {f"D{k}": beam | {"thickness_um": round(2 + 0.1 * k, 3)} for k in range(number)}
-    few = {"contact": {"samples": 200}, "chaos": {"order": 3}, "design": {"beams": 200}}
+    few = {"contact": {"samples": 200, "model": "summits"}, "chaos": {"order": 3}, "design": {"beams": 200}}
     return Results.of(stiction.load({"run": {"pairs": [], "studies": []}, "devices": devices}, few, more))
 
 

@@ -55,6 +55,7 @@ PLAN = plan_of(["dry", 0.67])
 SURFACES = {stage: [f"{stage}/B2", f"{stage}/Sub1"] for stage in ("heights", "spectrum")}
 #: Correction to full elastic contact.
 FULL = {"model_error": "studies/model_error/dry/b"}
+BY_LEVELS = {"model_error": "studies/model_error/devices/b"}
 
 
 # Names and settings
@@ -65,7 +66,7 @@ FULL = {"model_error": "studies/model_error/dry/b"}
     [
         ("devices/cracks/C1_dry", {"ground": "devices/ground/b_dry_1500x6000"}),
         ("devices/ground/b_dry_1500x6000", {"contact": "devices/contact/b_dry_1500x6000", **SURFACES, **FULL}),
-        ("devices/ground/b_rh067_1500x6000", {"contact": "devices/contact/b_1500x6000", **SURFACES}),
+        ("devices/ground/b_rh067_1500x6000", {"contact": "devices/contact/b_1500x6000", **SURFACES, **BY_LEVELS}),
         (
             "devices/stoppers/S1",
             {"contact": "devices/contact/b_1500x6000", "dry": "devices/contact/b_dry_1500x6000"} | FULL,

@@ -31,7 +31,7 @@ def study(surface):
                 "run": {"pairs": ["mine"], "studies": []},
                 "surfaces": {"Etched": surface},
                 "pairs": {"mine": {"beam": "Etched", "substrate": "Sub1", "gap_um": 20, "humidities": [HUMIDITY]}},
-                "contact": {"samples": SAMPLES, "chunks": 1},
+                "contact": {"samples": SAMPLES, "chunks": 1, "model": "summits"},
                 "chaos": {"order": 2},
                 "beam": {"width_um": 6},
                 "studies": {"slopes": {"samples": SAMPLES}},

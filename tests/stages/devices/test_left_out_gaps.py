@@ -30,7 +30,7 @@ NOTHING = {
     "spectra": {},
     "stoppers": {"S1": xr.Dataset({"share_flat": 0.0, "rms": 3e-9})},
 }
-TOUCHING = Results.of(merged(small.PLAN.config, SIZES))
+TOUCHING = Results.of(merged(merged(small.PLAN.config, SIZES), {"contact": {"model": "summits"}}))
 
 
 def test_the_force_of_a_stopper_would_change_as_that_of_one_with_attraction_across_gaps():
@@ -83,6 +83,7 @@ def test_a_device_in_python_has_the_same_warning(device):
         ({}, False),
         ({"attraction": {"reach": "all"}}, False),
         ({"attraction": {"reach": "touching"}}, True),
+        ({"contact": {"model": "summits"}}, False),
         ({"contact": {"model": "full"}}, False),
         ({"contact": {"model": "full"}, "attraction": {"reach": "touching"}}, True),
         ({"van_der_waals": "none"}, False),  # nothing attracts at all, as the list of what is not in the model says
@@ -94,7 +95,7 @@ def test_the_change_is_computed_where_attraction_across_gaps_is_left_out(changes
     for device in ("C1", "S1"):
         assert ("left_out_gaps" in graph.job(f"devices/warnings/{device}.json").inputs) == is_left_out
     inputs = graph.job("devices/left_out_gaps/C1").inputs
-    assert ("model_error" in inputs) == ("contact" in changes)
+    assert ("model_error" in inputs) == (changes.get("contact") != {"model": "summits"})
 
 
 def test_the_side_of_what_is_left_out_is_that_of_lengths_and_forces():

@@ -11,7 +11,7 @@ from stiction.plan.plan import Plan
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import tables as tables_devices
 from stiction.report.model_error import sentences as model_errors
-from stiction.stages.contact import full_contact
+from stiction.stages.contact import full_contact, full_energy, pair_model_error
 from stiction.stages.devices import device_model_error
 from stiction.stages.devices.opening import EITHER, FORCE, S_SHAPE
 
@@ -193,14 +193,16 @@ IN_BOTH = {
 IN_BOTH["devices"]["C1"] |= {"humidities": ["dry", 0.6]}
 
 
-def test_devices_are_corrected_in_dry_air_alone_unless_the_model_is_stated():
+def test_beams_are_corrected_in_all_air_and_stoppers_in_dry_air_unless_the_model_is_stated():
     """A device needs dry air of its own alone: its pair has none."""
     graph = Graph(Plan(load(IN_BOTH)))
     dry = {"model_error": "studies/model_error/dry/b"}
     for job in ("devices/safe_lengths/C1_dry", "devices/ground/b_dry_1500x30000", "devices/stoppers/S1"):
         assert dry.items() <= graph.job(job).inputs.items()
-    for job in ("devices/safe_lengths/C1_rh060", "devices/ground/b_rh060_1500x30000"):
-        assert "model_error" not in graph.job(job).inputs
+    humid = {"model_error": "studies/model_error/devices/b"}
+    assert humid.items() <= graph.job("devices/ground/b_rh060_1500x30000").inputs.items()
+    assert "model_error" not in graph.job("devices/safe_lengths/C1_rh060").inputs, "tips are not corrected"
+    assert graph.job("studies/model_error/devices/b").inputs["study"] == "studies/full_contact/dry/b"
     assert graph.job("studies/full_contact/dry/b").settings["humidities"] == [0]
     ratios = graph.job("studies/model_error/dry/b").settings
     assert (ratios["humidities"], ratios["applied"]) == ([0.6, 0], [0])
@@ -212,7 +214,9 @@ def test_devices_are_corrected_in_dry_air_alone_unless_the_model_is_stated():
 def test_a_device_in_dry_and_in_humid_air_says_what_full_contact_has_changed_and_what_is_not_known():
     graph = Graph(Plan(load(IN_BOTH)))
     study = full_contact.layout(np.tile([2.0, 1.5, 1, 1, 0, 0, 0, 0, 0], (3, 1, 1)), [0.0], 1e-8)
-    found = graph.job("devices/model_error/C1").compute({"study": study})
+    unknown = full_energy.layout(full_energy.UNKNOWN, (np.nan, np.nan), "it does not settle")
+    by_levels = pair_model_error.of_devices({("b", 0.6): unknown}, study)
+    found = graph.job("devices/model_error/C1").compute({"study": study, "by_levels": by_levels})
     assert found.applied.values.tolist() == [True, False]
     said = " ".join(model_errors.sentences("C1", {"C1": found}))
     assert "has changed the lengths held by the beam by -15.9" in said, "2 ** (-1/4) - 1"
@@ -223,7 +227,8 @@ def test_a_device_in_dry_and_in_humid_air_says_what_full_contact_has_changed_and
 def test_with_the_study_of_full_contact_dry_air_is_part_of_it():
     graph = Graph(Plan(load(IN_BOTH, {"run": {"studies": ["full_contact"]}})))
     assert graph.job("devices/safe_lengths/C1_dry").inputs["model_error"] == "studies/model_error/across/b"
-    assert "model_error" not in graph.job("devices/safe_lengths/C1_rh060").inputs
+    assert graph.job("devices/ground/b_rh060_1500x30000").inputs["model_error"] == "studies/model_error/devices/b"
+    assert graph.job("studies/model_error/devices/b").inputs["study"] == "studies/full_contact/across/b"
     assert graph.job("studies/full_contact/across/b").settings["humidities"] == [0, 0.6]
     assert graph.job("studies/model_error/across/b").settings["applied"] == [0]
 

@@ -124,13 +124,14 @@ def test_only_humid_air_has_a_fast_separation_and_on_the_contact_of_the_device()
     for more, humid in (({}, [0.67]), (coated | {"materials": {"FDTS": {"contact_angle_deg": 110}}}, [])):
         graph = Graph(Plan(load({"devices": {"C1": BEAM, "S1": STOPPER}} | more)))
         inputs, case = graph.job("devices/life/C1").inputs, Case("C1_rh067")
-        for name, contact in (
-            ("fast_strips", contact_of(graph.plan, case)),
-            ("fast_tips", tips_of(graph.plan, case)["tips"]),
+        by_levels = {"model_error": "studies/model_error/devices/b"}
+        for name, needed in (
+            ("fast_strips", {"contact": contact_of(graph.plan, case)} | by_levels),
+            ("fast_tips", {"contact": tips_of(graph.plan, case)["tips"]}),
         ):
             assert list(inputs[name]) == humid
             if humid:
-                assert graph.job(inputs[name][0.67]).inputs == {"contact": contact}
+                assert graph.job(inputs[name][0.67]).inputs == needed
         assert ("separation" in graph.job("devices/life/S1").inputs) == bool(humid)
     assert list(graph.job("devices/separation/S1").inputs["contacts"]) == [0.44, 0.67] if humid else True
     dry = Graph(Plan(load({"devices": {"C1": BEAM | {"humidities": ["dry"]}}})))

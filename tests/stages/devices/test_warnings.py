@@ -504,7 +504,8 @@ def test_devices_in_dry_air_say_that_summits_leave_out_the_bending_of_surfaces(m
     config = load(study | {"pairs": pair, "devices": devices})
     left_out = Graph(Plan(config)).job("devices/C1.html").settings["not_modelled"]["left_out"]
     assert ("bent" in left_out) == bent
-    assert ("summits" in left_out) == (humidity != "dry")
+    assert ("summits" in left_out) == (humidity != "dry" and bool(model))
+    assert ("forces" in left_out) == (humidity != "dry" and not model), "energies of beams are corrected by default"
 
 
 def test_what_pairs_leave_out_is_named_with_those_of_the_paper():

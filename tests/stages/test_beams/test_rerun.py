@@ -107,7 +107,7 @@ SECTIONS = {
     "devices": {"S1": STOPPER},
     "test_beams": {"T": ARRAY},
     "run": {"pairs": [], "studies": []},
-    "contact": {"samples": 40},
+    "contact": {"samples": 40, "model": "summits"},
     "studies": {
         "slopes": {"samples": 40},
         "variants": dict.fromkeys(("van_der_waals", "psd", "every", "spacing_nm"), []),

@@ -429,6 +429,8 @@ _LEFT_OUT = {
     "van_der_waals": "van der Waals attraction of solids",
     "summits": "interaction of neighbouring summits (in humid air, on surfaces of 0.5 to 1.7 nm rms, lengths come out "
     f"up to 4 % too long and forces, up to RH 0.97, up to {in_percent(largest_shortfall())} too small)",
+    "forces": "in humid air interaction of neighbouring summits in the forces on tips and bridges (energies along a "
+    "beam include it where their error allows)",
     "bent": "in dry air the bending of surfaces towards each other (on surfaces like those of the paper lengths come "
     "out 1 to 8 % too long and forces 10 to 40 % too small; on a strip of 1.6 nm rms, lengths were a third too long "
     "and the force 3.5 times too small; without contact.model summits it is included)",

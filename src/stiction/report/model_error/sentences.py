@@ -23,13 +23,6 @@ def device_change(errors: Mapping[str, xr.Dataset] | None, device: str, humidity
     return change(error.sel(shape=shape, humidity=humidity) if known else None, "factor")
 
 
-#: What full contact does to tips, without and with a correction.
-_OF_TIPS = (
-    "It is not known for what the tip holds.",
-    "Tips have changed as tilted strips with their edge do, at the upper end of what these show with 95 % confidence.",
-)
-
-
 def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]:
     """Changes of a device by full contact in words, and the safe side of them, none without errors."""
     if errors is None:
@@ -49,12 +42,24 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     if len(known) < len(rows):
         said.append(f"It is not known {airs([humidity for humidity in rows if humidity not in known])}.")
     if EITHER in error["shape"]:
-        said.append(_OF_TIPS[bool(applied)])
+        said += _of_tips(error)
     said += [_safe_side(uncorrected, -1 if shape == FORCE else 1)] if uncorrected else []
     if error.across_gaps:
         return [*said, "Attraction across gaps is in both models."]
     gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
     return [*said, f"Attraction across gaps is in neither model. It acts {gaps}"]
+
+
+def _of_tips(error):
+    """Sentences on what full contact does to tips, with and without a correction."""
+    applied = error.applied.values & ~error.energies_alone.values
+    known, others = (list(map(float, error.humidity.values[flags])) for flags in (applied, ~applied))
+    how = "at the upper end of what these show with 95 % confidence."
+    said = [f"Tips have changed as tilted strips with their edge do, {how}"] if known else []
+    where = f" {airs(others)}" * bool(known)
+    return (
+        [*said, f"It is not known for what the tip holds{where}."] if error.energies_alone.any() or not known else said
+    )
 
 
 def _percent(row):
@@ -79,6 +84,5 @@ def _safe_side(known, sign):
 
 def error_inputs(plan: Any, *devices: str) -> dict[str, Any]:
     """Errors of those of some devices for which they are stated, as inputs of a stage."""
-    sections = plan.config["devices"]
-    stated = [name for name in devices if plan.states_model_error(sections[name]["pair"], sections[name]["humidities"])]
+    stated = list(filter(plan.states_error_of_device, devices))
     return {"errors": by_name("devices/model_error", stated)} if stated else {}

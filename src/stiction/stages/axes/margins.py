@@ -115,8 +115,7 @@ def known_margins(found: xr.Dataset) -> Iterator[tuple[dict[str, Any], Margins]]
 
 def inputs(plan: Any, at: Any) -> dict[str, Any]:
     """Points of a device and laws of its processes, and the error of the model if it is stated."""
-    section = plan.config["devices"][at.device]
-    is_stated = plan.states_model_error(section["pair"], section["humidities"])
+    is_stated = plan.states_error_of_device(at.device)
     errors = {"model_error": f"devices/model_error/{at.device}"} if is_stated else {}
     return (
         {"points": points.names("process/points", at.device, axes_of(plan, at.device))}

@@ -9,6 +9,8 @@ import xarray as xr
 from stiction.contact.correction import Change, Correction, TipChanges
 
 S = TypeVar("S")
+#: Variables of energies where no correction is applied.
+UNCHANGED = {"energy_ratio": 1.0, "energy_ratio_error": 0.0, "energy_power": 1.0, "energy_power_error": 0.0}
 
 
 def correction(error: xr.Dataset) -> Correction:
@@ -71,8 +73,14 @@ def errors_of_pairs(plan: Any) -> dict[str, str]:
 
 
 def applied(error: xr.Dataset) -> Correction:
-    """Those changes of a pair by which predictions are corrected."""
-    return correction(error.isel(humidity=error.applied.values))
+    """Those changes of a pair by which predictions are corrected.
+
+    ASSUME: beyond the humidities of all devices of a pair, where budgets shift one of them, its own change holds.
+    """
+    if "nearest" not in error:
+        return correction(error.isel(humidity=error.applied.values))
+    kept = {name: error[name].where(error.applied, same) for name, same in UNCHANGED.items()}
+    return replace(correction(error.assign(kept)), nearest=True)
 
 
 def with_correction(settings: S, data: Mapping[str, Any]) -> S:

@@ -2,14 +2,22 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from stiction.analysis.model_error import interpolation_error, length_factors, mean_ratios, scatter_ratios, tip_ratios
+from stiction.beam.energy import CRACK_LENGTH_POWER
+from stiction.config.cases import case_id
 from stiction.contact.correction import interpolated
+from stiction.plan.names import by_case
 from stiction.plan.stage import Running, Stage
 from stiction.stages.contact import full_contact, tips_in_full_contact
+from stiction.stages.contact.corrections import study_of
+
+#: Variables of datasets of stage full_energy for devices.
+_OF_ENERGIES = ["ratio", "ratio_error", "power", "power_error", "applied", "summit_energy", "summit_pull_off"]
 
 
 @dataclass(frozen=True)
@@ -41,6 +49,43 @@ def compute(study: xr.Dataset, settings: Settings, tips: xr.Dataset | None = Non
     }
     found = layout(ratios, at, at[np.isin(airs, computed)], study.sizes["strip"], settings.applied)
     return found if tips is None else found.assign(_of_tips(tips, given)).assign_coords(slope=tips.slope)
+
+
+def of_devices(
+    energies: Mapping[Any, xr.Dataset], study: xr.Dataset | None = None, tips: xr.Dataset | None = None
+) -> xr.Dataset:
+    """Changes of a pair for the beams of devices, from datasets of stage full_energy, and all changes in dry air.
+
+    ``study`` and ``tips`` have dry air, if a beam is in it. In humid air no forces are changed.
+    """
+    by_humidity = [
+        one[_OF_ENERGIES].reset_coords(drop=True).expand_dims(humidity=[rh]) for (_, rh), one in energies.items()
+    ]
+    humid = _by_levels(xr.concat(by_humidity, "humidity").sortby("humidity")).assign(nearest=((), True))
+    if study is None:
+        return humid
+    study, tips = (each if each is None else each.sel(humidity=[0.0]) for each in (study, tips))
+    dry = compute(study, Settings((0.0,), (0.0,)), tips).drop_vars("strips")
+    unchanged = {"tip_ratio": 1.0, "tip_error": 0.0, "tip_power": 1.0}
+    joined = xr.concat([dry, humid], "humidity", data_vars="all", coords="minimal", compat="override", join="outer")
+    joined = joined.fillna({name: same for name, same in unchanged.items() if name in dry})
+    return joined.assign(applied=joined.applied.astype(bool), nearest=((), True))
+
+
+def _by_levels(found):
+    """Variables of `layout` of datasets of stage full_energy along the humidity."""
+    ratio, error = found.ratio.values, found.ratio_error.values
+    length, same = ratio**CRACK_LENGTH_POWER, (np.ones(len(ratio)), np.zeros(len(ratio)))
+    ratios = {
+        "energy_ratio": (ratio, error),
+        "pull_off_ratio": same,
+        "energy_power": (found.power.values, found.power_error.values),
+        "pull_off_power": same,
+        "length_factor": (length, abs(CRACK_LENGTH_POWER) * length * error / ratio),
+    }
+    at = found.humidity.values
+    laid_out = layout(ratios, at, at, 0, at[found.applied.values]).drop_vars("strips")
+    return laid_out.assign(found[["summit_energy", "summit_pull_off"]])
 
 
 def _of_tips(tips, given):
@@ -109,8 +154,28 @@ def _stage(name, between, forces):
     )
 
 
+def _inputs_of_devices(plan, at):
+    """Energies of a pair by humidity, and its study in dry air if a beam is in it."""
+    airs = plan.airs_of_beams(at.pair)
+    humid = plan.air_of_devices.by_levels(at.pair, airs)
+    energies = {"energies": by_case("studies/full_contact/energy", [case_id(at.pair, rh) for rh in humid])}
+    if 0 not in airs:
+        return energies
+    water, has_tips = plan.air_of_devices.water(at.pair), plan.devices.has_tips(at.pair)
+    folders = {"study": "studies/full_contact"} | ({"tips": "studies/full_contact/tips"} if has_tips else {})
+    return energies | {key: study_of(plan, folder, at.pair, water) for key, folder in folders.items()}
+
+
 STAGES = (
     _stage("pair_model_error", "", ""),
     _stage("pair_model_error_across", "across/", " with attraction across gaps"),
     _stage("pair_model_error_dry", "dry/", " in dry air"),
+    Stage.writing(
+        "model_error_of_devices",
+        "studies/model_error/devices/{pair}",
+        inputs=_inputs_of_devices,
+        compute=of_devices,
+        message="Full elastic contact of pair {pair} under the beams of devices, over the sum over summits.",
+        running=Running(priority=1),
+    ),
 )

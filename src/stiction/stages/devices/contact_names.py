@@ -72,7 +72,7 @@ def tips_of(plan: Any, case: Case) -> dict[str, str]:
 def corrected_tips_of(plan: Any, case: Case) -> dict[str, str]:
     """Contact of the tips of a cantilever with its correction, none for a bridge, see `tips_of`."""
     tips = tips_of(plan, case)
-    return tips | corrections_of(plan, case.device, case.humidity) if tips else {}
+    return tips | corrections_of_forces(plan, case.device, case.humidity) if tips else {}
 
 
 def patch_of_tips(plan: Any, case: Case) -> Patch:
@@ -81,13 +81,18 @@ def patch_of_tips(plan: Any, case: Case) -> Patch:
 
 
 def corrections_of(plan: Any, device: str, *humidities: float) -> dict[str, str]:
-    """Corrections of the pair of a device at some humidities, by default all of its own.
-
-    See `stiction.stages.contact.corrections.correction_inputs`.
-    """
+    """Corrections of the pair of a device at some humidities, by default all of its own: of forces, or by levels."""
     section = plan.config["devices"][device]
     pair, airs = section["pair"], humidities or section["humidities"]
-    return correction_inputs(plan, pair, airs, water=plan.air_of_devices.water(pair))
+    if plan.devices.kind(device).is_beam and plan.air_of_devices.by_levels(pair, airs):
+        return {"model_error": f"studies/model_error/devices/{pair}"}
+    return corrections_of_forces(plan, device, *airs)
+
+
+def corrections_of_forces(plan: Any, device: str, *humidities: float) -> dict[str, str]:
+    """Corrections that change forces of a device, see `stiction.stages.contact.corrections.correction_inputs`."""
+    pair = plan.config["devices"][device]["pair"]
+    return correction_inputs(plan, pair, humidities, water=plan.air_of_devices.water(pair))
 
 
 def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:

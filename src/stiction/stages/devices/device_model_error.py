@@ -1,7 +1,7 @@
 """Error of the model of the contact in the lengths and forces of a device: the effect of full elastic contact."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
@@ -22,11 +22,17 @@ class Settings:
     applied: tuple[float, ...] = ()  #: those at which the predictions are corrected [-]
     across_gaps: bool = False  #: whether solids attract each other across gaps, in both models
     condenses: bool = True  #: whether water condenses between the surfaces; otherwise all air is dry
+    by_levels: bool = False  #: whether energies alone are corrected in humid air
 
     @property
     def airs(self) -> np.ndarray:
         """Humidities, 0 where no water condenses (h,) [-]."""
         return np.array(self.humidities) * self.condenses
+
+    @property
+    def is_by_levels(self) -> np.ndarray:
+        """Humidities at which energies alone are corrected (h,) bool."""
+        return self.by_levels & (self.airs > 0)
 
 
 def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.ndarray:
@@ -45,16 +51,48 @@ def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.n
     return np.array([device.opening.length_on_mean(sample, device.beam) for sample in samples])
 
 
-def compute(study: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Factor of every length, or of the force, at the humidities of a device."""
+def compute(settings: Settings, study: xr.Dataset | None = None, by_levels: xr.Dataset | None = None) -> xr.Dataset:
+    """Factor of every length, or of the force, at the humidities of a device.
+
+    ``study`` has strips in full contact, at all humidities or in dry air. ``by_levels`` has the energies of beams in
+    humid air, from stage model_error_of_devices, if these are corrected by levels.
+    """
+    shapes = settings.device.opening.shapes if settings.device else (FORCE,)
+    of_strips = None if study is None else _of_strips(study, shapes, settings)
+    if by_levels is None:
+        return layout(*of_strips, shapes, settings, study.humidity.values)
+    known = by_levels.reindex(humidity=list(settings.airs), fill_value={"applied": False})
+    found = _of_energies(known, shapes, settings)
+    if study is not None:
+        found = [np.where(settings.airs > 0, *each) for each in zip(found, of_strips, strict=True)]
+    own = replace(settings, applied=tuple(np.array(settings.humidities)[known.applied.values]))
+    return layout(*found, shapes, own, settings.airs)
+
+
+def _of_strips(study, shapes, settings):
+    """Factors by strips in full contact, and their errors (shapes, humidities) [-]."""
     computed, models = study.humidity.values, full_contact.moved_models(study)
-    device, at = settings.device, settings.airs
-    shapes = device.opening.shapes if device else (FORCE,)
     of_shapes = [
-        factors(lambda means, of=shape: response(of, means, device), *models, computed, at) for shape in shapes
+        factors(lambda means, of=shape: response(of, means, settings.device), *models, computed, settings.airs)
+        for shape in shapes
     ]
-    values, errors = np.moveaxis(of_shapes, 1, 0)
-    return layout(values, errors, shapes, settings, computed)
+    return np.moveaxis(of_shapes, 1, 0)
+
+
+def _of_energies(known, shapes, settings):
+    """Factors of the lengths of a beam with corrected energies, and their errors (shapes, humidities) [-]."""
+    found, at = np.full((2, len(shapes), known.sizes["humidity"]), np.nan), np.isfinite(known.summit_energy.values)
+    means = np.stack([known.summit_energy.values, known.summit_pull_off.values], axis=1)[at]
+
+    def lengths(ratio):
+        """Lengths with a ratio of the energies at each humidity (shapes, humidities) [m]."""
+        changed = means * np.stack([ratio, np.ones(len(ratio))], axis=1)
+        return np.array([response(shape, changed, settings.device) for shape in shapes])
+
+    ratio, error = known.energy_ratio.values[at], known.energy_ratio_error.values[at]
+    changed, base = lengths(ratio), lengths(np.ones(len(ratio)))
+    found[:, :, at] = changed / base, np.abs(lengths(ratio + error) - changed) / base
+    return found
 
 
 def layout(
@@ -71,6 +109,7 @@ def layout(
             "factor_error": (names, errors, {"units": "1"}),
             "interpolated": ("humidity", ~np.isin(settings.airs, computed)),
             "applied": ("humidity", np.isin(settings.humidities, settings.applied)),
+            "energies_alone": ("humidity", settings.is_by_levels),
             "across_gaps": ((), settings.across_gaps),
         },
         coords={"shape": list(shapes), "humidity": ("humidity", list(settings.humidities), {"units": "1"})},
@@ -78,20 +117,25 @@ def layout(
 
 
 def _inputs(plan, at):
-    """Study of the pair of a device, with the attraction across gaps that the device has."""
-    pair = plan.config["devices"][at.device]["pair"]
-    return {"study": study_of(plan, "studies/full_contact", pair, plan.air_of_devices.water(pair))}
+    """Study of the pair of a device, with the attraction across gaps that the device has, and energies by levels."""
+    section, beams = plan.config["devices"][at.device], plan.devices.beams
+    pair, water = section["pair"], plan.air_of_devices.water(section["pair"])
+    study = {"study": study_of(plan, "studies/full_contact", pair, water)}
+    if not (at.device in beams and plan.air_of_devices.by_levels(pair, section["humidities"])):
+        return study
+    return (study if 0 in section["humidities"] else {}) | {"by_levels": f"studies/model_error/devices/{pair}"}
 
 
 def _settings(plan, at):
     """Humidities of a device, and its dimensions."""
-    section = plan.config["devices"][at.device]
-    own = {"device": section_of_beam(plan, at.device)} if plan.devices.kind(at.device).is_beam else {}
+    section, is_beam = plan.config["devices"][at.device], plan.devices.kind(at.device).is_beam
+    own = {"device": section_of_beam(plan, at.device)} if is_beam else {}
     applied = plan.variants.corrected(section["pair"], section["humidities"])
     gaps = {"across_gaps": True} if "gaps" in plan.air_of_devices.water(section["pair"]) else {}
     dry = {} if plan.air_of_devices.is_wetted(section["pair"]) else {"condenses": False}
     said = {"humidities": section["humidities"]} | ({"applied": applied} if applied else {})
-    return select(Settings, said | own | gaps | dry)
+    by_levels = is_beam and plan.air_of_devices.by_levels(section["pair"], section["humidities"])
+    return select(Settings, said | own | gaps | dry | ({"by_levels": True} if by_levels else {}))
 
 
 STAGES = (

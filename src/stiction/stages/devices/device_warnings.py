@@ -288,9 +288,8 @@ def _at(changes, humidity):
 def not_modelled(plan: Any, *devices: str) -> dict[str, Any]:
     """Effects missing in the results of some devices, for `stiction.report.limits.words`."""
     sections = (plan.config["devices"][name] for name in devices)
-    return plan.air_of_devices.not_modelled(
-        (section["pair"], humidity) for section in sections for humidity in section["humidities"]
-    )
+    cases = ((section["pair"], humidity) for section in sections for humidity in section["humidities"])
+    return plan.air_of_devices.not_modelled(cases, of_beams=all(plan.devices.kind(name).is_beam for name in devices))
 
 
 def files_of(*devices: str) -> dict[str, File]:

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.shifts import moved
-from stiction.config.cases import PairInAir, case_id
+from stiction.config.cases import case_id
 from stiction.config.units import in_si
 from stiction.contact.materials import OF_CONTACT
 from stiction.errors import NotConverged
@@ -23,11 +23,11 @@ from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact.changes.patches import GROUND
 from stiction.stages.contact.changes.solids import with_property
 from stiction.stages.contact.contact import first
-from stiction.stages.contact.corrections import correction_inputs, with_correction
+from stiction.stages.contact.corrections import with_correction
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices import budget as stage_budget
 from stiction.stages.devices.budget import AnyBudget, budget_settings, budgets_of, budgets_of_arrays, effect
-from stiction.stages.devices.contact_names import contact_of, patch_of
+from stiction.stages.devices.contact_names import contact_of, corrections_of, patch_of
 from stiction.stages.devices.uncertain_inputs import changed
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.test_beams.inference import Result
@@ -118,20 +118,16 @@ def _inputs(plan, at):
     cases = _cases(plan, at.device)
     patches = {patch_of(of, case): (of, case) for of, case, _ in cases.values()}
     sides = dict.fromkeys(side for patch in patches for side in plan.sides(patch.pair))
-    pairs = {patch.name: PairInAir(patch.pair).pair for patch in patches}
-    waters = {name: plan.air_of_devices.water(pair) for name, pair in pairs.items()}
-    airs = {
-        name: [case.humidity for of, case, _ in cases.values() if patch_of(of, case).name == name] for name in pairs
-    }
     ratios = {
-        name: correction_inputs(plan, pair, airs[name], water=waters[name]).get("model_error")
-        for name, pair in pairs.items()
+        patch_of(of, case).name: ratio
+        for of, case, _ in cases.values()
+        for ratio in corrections_of(of, case.device, case.humidity).values()
     }
     return {
         "updated": f"devices/test_beams/{at.device}",
         "budgets": {key: name for key, (*_, name) in cases.items()},
         "contacts": {patch.name: contact_of(of, case) for patch, (of, case) in patches.items()},
-        "model_errors": {name: ratio for name, ratio in ratios.items() if ratio},
+        "model_errors": ratios,
         "heights": {side: f"heights/{side}" for side in sides},
         "spectrum": {side: f"spectrum/{side}" for side in sides},
     }

@@ -1,0 +1,96 @@
+"""Full contact of the same strip on the fine grid and on every n-th of its points.
+
+Coarse grids cost little, and their states are starts on finer ones.
+
+ASSUME: from the state at rest on a coarse grid, the search for that on a finer one ends in the state that begins
+without attraction. On 13 strips of pair b, energies of both differ by 0.3 % at most.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from stiction.contact.forcelaw import limit_distance
+from stiction.contact.full import descent, elements
+from stiction.contact.full.elements import Adhesion, State
+from stiction.contact.full.halfspace import HalfSpace
+from stiction.errors import NotConverged
+
+
+@dataclass(frozen=True)
+class Level:
+    """Every n-th point of strips in their air."""
+
+    every: int  #: n
+    space: HalfSpace
+    adhesion: Adhesion
+
+    @classmethod
+    def of(cls, every: int, fine: HalfSpace, adhesion: Callable[[HalfSpace], Adhesion]) -> "Level":
+        """Level of the elements of the fine grid, with the adhesion on its elements.
+
+        Raises
+        ------
+        ValueError
+            If the elements are too large to resolve the van der Waals forces.
+        """
+        shape = tuple(len(range(0, number, every)) for number in fine.shape)
+        space = HalfSpace(shape, every * fine.spacing, fine.modulus)
+        return cls(every, space, adhesion(space))
+
+    def on(self, heights: np.ndarray) -> np.ndarray:
+        """Heights of a strip on the fine grid at the points of this level [m]."""
+        return np.ascontiguousarray(heights[:: self.every, :: self.every])
+
+    def energy(self, state: State, heights: np.ndarray) -> float:
+        """Adhesion energy e of a state at rest of a strip with these heights on the fine grid [J m⁻²]."""
+        return -state.energy(self.on(heights), self.adhesion)
+
+    def at_rest(self, heights: np.ndarray, curve: tuple[np.ndarray, np.ndarray], start: State | None = None) -> State:
+        """State without force of a strip with these heights on the fine grid (n1, n2) [m].
+
+        ``curve`` is as of `stiction.contact.full.elements.separation`; ``start`` is a state on the elements of this
+        level. Without a start, or where it does not lead to rest, the strip begins without attraction, and by descent
+        where turns do not settle.
+
+        Raises
+        ------
+        NotConverged, ValueError
+            As `stiction.contact.full.elements.at_rest`.
+        """
+        strip = self.space, self.on(heights), self.adhesion
+        for settle, moved in self._tries(curve, start):
+            try:
+                return elements.at_rest(*strip, moved, settle)[0]
+            except (NotConverged, ValueError):
+                continue
+        return elements.at_rest(*strip, curve, descent.equilibrium)[0]
+
+    def _tries(self, curve, start):
+        """Solvers by elements, with the curve that leads each to rest."""
+        if start is not None:
+            distance, force = curve
+            yield _settled_from(start), (distance + (start.distance - limit_distance(distance, force, 0.0)), force)
+        yield elements.equilibrium, curve
+
+
+def _settled_from(start):
+    """Solver of one state that begins with another one."""
+
+    def settle(space, heights, distance, adhesion, before=None, **tolerance):
+        """State at a distance [m]."""
+        return elements.equilibrium(space, heights, distance, adhesion, before or start, **tolerance)
+
+    return settle
+
+
+def refined(state: State, times: int, shape: tuple[int, int]) -> State:
+    """State on elements that are a number of times as small: each has the values of the one in its place."""
+
+    def of(values):
+        """Values on the small elements (n1, n2)."""
+        repeated = np.repeat(np.repeat(values, times, axis=0), times, axis=1)
+        return np.ascontiguousarray(repeated[: shape[0], : shape[1]])
+
+    return State(state.distance, of(state.pressure), of(state.attraction), of(state.gap), 0)
