@@ -36,38 +36,47 @@ def are_those_of_the_table(grid, state, row):
     assert found["margin"] == pytest.approx(sign * np.log(row["estimate"] / row["required"]), abs=1e-12)
 
 
-@pytest.mark.parametrize(("is_beam", "section"), DEVICES)
-def test_a_page_has_at_the_settings_of_a_process_the_numbers_of_its_table(is_beam, section):
-    curve, settings = etched(is_beam)
-    grid = curve_views.process_view("D", section, curve, settings).grid
-    for state, row in states(grid, tables.of_processes({"D": curve}, [], {"D": []}).frame):
+def over(kind, is_beam, section):
+    """Sliders over an axis or two, the rows of their table, and the key of the second axis."""
+    if kind == "process":
+        curve, settings = etched(is_beam)
+        return curve_views.process_view("D", section, curve, settings), tables.of_processes({"D": curve}, [], {"D": []})
+    if kind == "processes":
+        found, pairs = mapped()
+        return (
+            curve_views.map_view("D", section, found, pairs),
+            tables.of_pairs({"D": found}, {}, {"D": []}),
+            "bake_min",
+        )
+    found = rough(is_beam, others=() if kind == "roughness" else (0.0, -0.5, 0.5))
+    second = [] if kind == "roughness" else ["skewness"]
+    return curve_views.roughness_view("D", section, found), tables.of_roughness({"D": found}), *second
+
+
+KINDS = [(kind, *device) for kind in ("process", "roughness", "roughnesses") for device in DEVICES]
+
+
+@pytest.mark.parametrize(("kind", "is_beam", "section"), [*KINDS, ("processes", False, STOPPER)])
+def test_a_page_has_at_computed_points_the_numbers_of_the_table(kind, is_beam, section):
+    view, table, *second = over(kind, is_beam, section)
+    grid, frame = view.grid, table.frame.rename(columns={"other_value": "second_value"})
+    frame["value"] = frame["value"].map(lambda value: min(grid.axes[0].values, key=lambda one: abs(one - value)))
+    for state, row in states(grid, frame, *second):
         are_those_of_the_table(grid, state, row)
-        assert grid.at(state)["margin"] == pytest.approx(row["margin"], abs=1e-12)
-        assert grid.at(state)["error"] == pytest.approx(row["margin_se"], rel=1e-9)
+        found, sign = grid.at(state), -1 if grid.falls else 1
+        if "margin" in row:
+            assert found["margin"] == pytest.approx(row["margin"], abs=1e-12)
+            assert found["error"] == pytest.approx(row["margin_se"], rel=1e-9)
+        if "safe" in row:
+            assert row["required"] * np.exp(sign * found["safe"]) == pytest.approx(row["safe"])
+
+
+def test_sliders_begin_at_the_best_setting_or_the_given_roughness():
+    curve, settings = etched()
+    grid = curve_views.process_view("D", STOPPER, curve, settings).grid
     assert grid.start["etch_time_s"] == pytest.approx(float(settings.best[0]), rel=1e-3)
     assert grid.start["humidity"] == 0.8, "the worst"
-
-
-def test_a_page_has_at_the_pairs_of_two_processes_the_numbers_of_their_table():
-    found, pairs = mapped()
-    grid = curve_views.map_view("D", STOPPER, found, pairs).grid
-    for state, row in states(grid, tables.of_pairs({"D": found}, {}, {"D": []}).frame, "bake_min"):
-        are_those_of_the_table(grid, state, row)
-
-
-@pytest.mark.parametrize("others", [(), (0.0, -0.5, 0.5)])
-@pytest.mark.parametrize(("is_beam", "section"), DEVICES)
-def test_a_page_has_at_the_points_of_a_roughness_the_numbers_of_its_table(is_beam, section, others):
-    found = rough(is_beam, others=others)
-    grid = curve_views.roughness_view("D", section, found).grid
-    frame = tables.of_roughness({"D": found}).frame
-    frame["value"] = frame["value"].map(lambda value: min(grid.axes[0].values, key=lambda one: abs(one - value)))
-    frame = frame.rename(columns={"other_value": "second_value"})
-    for state, row in states(grid, frame, *(["skewness"] if others else [])):
-        are_those_of_the_table(grid, state, row)
-        sign = -1 if grid.falls else 1
-        assert row["required"] * np.exp(sign * grid.at(state)["safe"]) == pytest.approx(row["safe"])
-    assert grid.start["rms_nm"] == pytest.approx(3.4)
+    assert curve_views.roughness_view("D", STOPPER, rough()).grid.start["rms_nm"] == pytest.approx(3.4)
 
 
 def test_between_settings_the_margin_is_the_one_behind_the_recommendation():

@@ -11,7 +11,7 @@ from test_process_stages import BARE, BUMP, ETCH, SECTIONS, SHARE, setting
 import stiction
 from stiction.analysis import process_law
 from stiction.analysis.process_law import fit, grid
-from stiction.devices.process import Margins, law_error, recommended, unknown
+from stiction.devices.process import Margins, recommended, unknown
 from stiction.plan.graph import Results
 from stiction.report.axes import figures, section, tables
 from stiction.report.axes import process as sentences
@@ -183,18 +183,6 @@ def test_the_error_of_simulation_and_model_is_common_to_all_pairs():
     np.testing.assert_allclose(found.margin - found.safe, 1.645 * 0.5, atol=0.06)
     assert np.ptp(found.margin - found.safe) < 1e-6
     assert found.error.tolist() == [0, 0]
-
-
-def test_the_row_of_a_map_is_the_curve_of_one_process_and_the_second_one_adds_its_error():
-    row = plane().at([np.array([12.5]), grid([30.0, 90.0])])
-    alone = Margins(row.axes[1:], row.margin[0], row.slopes[0, :, :1], row.error[0])
-    both, first = law_error(row, LAWS)[0], law_error(alone, LAWS[:1])
-    np.testing.assert_allclose(both**2 - first**2, 0.1**2 / 2)
-    exact = [LAWS[0], straight(5.0, 20.0, 1e-9)]
-    pairs = recommended([plane()], exact, ERRORS, np.random.default_rng(4))
-    one = recommended([alone], LAWS[:1], [np.array([[0.01]])], np.random.default_rng(4))
-    middle = list(pairs.axes[0]).index(12.5)
-    np.testing.assert_allclose(pairs.safe[middle], np.interp(pairs.axes[1], one.axes[0], one.safe), atol=0.02)
 
 
 def bent(quantity):
