@@ -4,12 +4,13 @@ from itertools import chain, combinations
 
 import pytest
 
-from stiction.config.kinds import COMMON, KEYS, KINDS, KNOWN, restoring_force
+from stiction.config.kinds import COMMON, KEYS, KINDS, restoring_force
 from stiction.config.relations import schema
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import BEAMS
 
 SECTION = schema()["properties"]["devices"]["additionalProperties"]["properties"]
+KNOWN = {key for kind in KINDS.values() for key in kind.allowed_keys}
 
 
 def test_the_schema_knows_all_kinds_and_the_keys_of_each_and_no_others():

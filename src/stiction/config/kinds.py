@@ -135,8 +135,6 @@ KINDS = {
         is_beam=False,
     ),
 }
-#: Keys of the devices of all kinds.
-KNOWN = frozenset(chain.from_iterable(kind.allowed_keys for kind in KINDS.values()))
 
 
 def kind_of(device: Mapping) -> Kind:
