@@ -75,6 +75,7 @@ class Environment:
         """Those of some humidities at which predictions are corrected to full elastic contact.
 
         ASSUME: by default those in dry air, where the sum over summits is on the unsafe side by up to a factor of 3.5.
+        Energies under beams of devices are corrected in humid air as well, see `by_levels`.
         Another configuration may be given, such as that of a variant.
         """
         model = (config or self.config)["contact"].get("model")

@@ -10,6 +10,7 @@ from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import tables as tables_devices
+from stiction.report.model_error import column
 from stiction.report.model_error import sentences as model_errors
 from stiction.stages.contact import full_contact, full_energy, pair_model_error
 from stiction.stages.devices import device_model_error
@@ -221,7 +222,15 @@ def test_a_device_in_dry_and_in_humid_air_says_what_full_contact_has_changed_and
     said = " ".join(model_errors.sentences("C1", {"C1": found}))
     assert "has changed the lengths held by the beam by -15.9" in said, "2 ** (-1/4) - 1"
     assert "It is not known at a relative humidity of 0.6." in said
+    assert "Tips have changed" in said
+    assert "It is not known for what the tip holds at a relative humidity of 0.6." in said
     assert "would change" not in said
+
+
+def test_a_table_of_beams_says_that_lengths_without_a_known_change_are_those_on_summits():
+    by_levels = error((S_SHAPE, EITHER), [1.1, 1.1], applied=(0.44,), by_levels=True)
+    assert ", or would change it where it is not known to 1 %" in column.caption({"C1": by_levels})
+    assert "in dry air" in column.caption({"C1": error((S_SHAPE,), [0.9, 1.1], applied=(0.44,))})
 
 
 def test_with_the_study_of_full_contact_dry_air_is_part_of_it():

@@ -39,6 +39,8 @@ def marked_change(change: float, error: float, interpolated: bool) -> str:
     return f"{text} *" if interpolated and text != MISSING else text
 
 
+#: Where predictions with forces are corrected, and where they are not.
+IN_DRY_AIR = " in dry air, and would change it in humid air"
 #: Column for reading.
 COLUMN = {"model error [%]": (marked_change, "model_error_percent", "model_error_se_percent", "interpolated")}
 
@@ -47,7 +49,9 @@ def caption(errors: Mapping[Any, xr.Dataset]) -> str:
     """Meaning of the column, from the datasets with the errors."""
     applied = {bool(flag) for error in errors.values() for flag in error.applied}
     does = "has changed what is stated" if True in applied else "would change what is stated"
-    does += " in dry air, and would change it in humid air" * (len(applied) > 1)
+    by_levels = any("energies_alone" in error and error.energies_alone.any() for error in errors.values())
+    others = ", or would change it where it is not known to 1 %" if by_levels else IN_DRY_AIR
+    does += others * (len(applied) > 1)
     own = " Where it has, bounds contain its standard error." * (True in applied)
     return (
         f"Model error: by how much full elastic contact of the surfaces {does}, ± standard error over its strips; * "

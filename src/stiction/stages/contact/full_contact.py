@@ -2,7 +2,7 @@
 
 Both models have the same forces. Force laws without attraction across gaps are compared without it, others with it.
 
-In dry air, where predictions are corrected, strips are drawn until their error counts little, and the sum over summits
+In dry air, where forces are corrected, strips are drawn until their error counts little, and the sum over summits
 of more strips says how far their means are from those of all.
 """
 
