@@ -31,7 +31,7 @@ SMALL = {
     "contact": {"samples": 80, "chunks": 1},
     "chaos": {"order": 4},
     "character": {"strips": 3},
-    "design": {"beams": 200, "budget_beams": 20, "chart_points": 3},
+    "design": {"beams": 200, "budget_beams": 20, "budget_samples": 20, "chart_points": 3},
     "studies": {"slopes": {"samples": 20}, "variants": {"van_der_waals": [], "psd": [], "every": [], "spacing_nm": []}},
 }
 #: A smooth and a rough substrate of the paper, and the surface itself.

@@ -109,7 +109,8 @@ def uncertain():
     stated = {"gap_um": 0.1, "young_modulus_GPa": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20, "scan_um": 10}
     variants = {"van_der_waals": ["none"], "psd": [], "every": [], "spacing_nm": [], "poisson_ratio": []}
     studies = {"slopes": {"samples": 20}, "variants": variants}
-    few = {"design": {"budget_beams": 20}, "studies": studies, "pairs": {"b": {"substrate": "B2"}}}
+    design = {"budget_beams": 20, "budget_samples": 20}
+    few = {"design": design, "studies": studies, "pairs": {"b": {"substrate": "B2"}}}
     narrow = {"beam": {"width_um": 6}, "devices": {"C1": {"width_um": 6, "uncertainty": stated}}}
     return stiction.load(CONFIG, few, narrow)
 

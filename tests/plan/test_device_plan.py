@@ -123,11 +123,11 @@ def test_choices_of_solids_leave_the_surfaces_as_they_are():
         "poisson_ratio_0.28",
     ]
     settings = job_settings(PLAN, f"devices/contact/tips/choices/{TIP}_poisson_ratio_0.28")
-    few = {"contact": {"samples": PLAN.config["studies"]["slopes"]["samples"]}, "solid": {"poisson_ratio": 0.28}}
+    few = {"contact": {"samples": PLAN.config["design"]["budget_samples"]}, "solid": {"poisson_ratio": 0.28}}
     assert settings == merged(job_settings(PLAN, f"devices/contact/tips/{TIP}"), few)
 
 
-def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_changed_tips_as_samples_of_slopes():
+def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_changed_tips_as_samples_of_budgets():
     found = job_settings(PLAN, "devices/budget/C1_rh067_tip")
     of_beam = job_settings(PLAN, "devices/budget/C1_rh067")
     assert found["budget"].pop("share") == 1e-3
@@ -139,7 +139,7 @@ def test_a_budget_of_tips_is_for_the_middle_share_on_as_many_changed_tips_as_sam
         of_beam["quantities"],
         PLAN.variants.choices_of_solids("b"),
     )
-    number = PLAN.config["studies"]["slopes"]["samples"]
+    number = PLAN.config["design"]["budget_samples"]
     assert number < PLAN.config["design"]["beams"]
     for name in OF_CONTACT:
         tips, strips = (job_settings(PLAN, f"devices/contact/{folder}{name}/{TIP}_less") for folder in ("tips/", ""))
@@ -166,8 +166,8 @@ def test_the_contact_of_a_device_has_the_samples_of_a_pair_and_that_of_its_tips_
     assert (tips["samples"], tips["distance_step_nm"]) == (beams, 2 * PLAN.config["contact"]["distance_step_nm"])
 
 
-def test_contacts_of_a_budget_are_on_the_patch_of_the_device_with_the_samples_of_slopes():
-    samples = PLAN.config["studies"]["slopes"]["samples"]
+def test_contacts_of_a_budget_are_on_the_patch_of_the_device_with_the_samples_of_budgets():
+    samples = PLAN.config["design"]["budget_samples"]
     for settings in (
         job_settings(PLAN, f"devices/contact/modulus/{PATCH}_less"),
         job_settings(PLAN, f"devices/contact/summits/{PATCH}_every_2")["base"],

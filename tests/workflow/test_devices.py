@@ -25,7 +25,7 @@ pytestmark = pytest.mark.slow
 SMALL = {
     "contact": {"samples": 60, "chunks": 2, "distance_step_nm": 0.2},
     "chaos": {"order": 2},
-    "design": {"beams": 200, "shares": [0.01], "chart_points": 2, "budget_beams": 20},
+    "design": {"beams": 200, "shares": [0.01], "chart_points": 2, "budget_beams": 20, "budget_samples": 20},
     "studies": {
         "slopes": {"samples": 20},
         "plasticity": {"strips": 2},

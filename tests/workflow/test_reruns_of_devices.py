@@ -117,7 +117,8 @@ MATRIX = [
      "C1|R1|contact|S1_rh070"),
     ("area of a stopper", "devices: {S1: {contact_um: [3, 2]}}", "device_contact solid_contact device_choice_summits",
      OF_BEAMS, "C1|R1|1500x"),
-    ("samples of slopes", "studies: {slopes: {samples: 200}}", "device_slope_contact solid_contact device_choice_summits process_point"
+    ("samples of slopes of measured surfaces", "studies: {slopes: {samples: 200}}", "", (), ""),
+    ("samples of budgets", "design: {budget_samples: 80}", "device_slope_contact solid_contact device_choice_summits process_point"
      " tip_slope_contact tip_solid_contact tip_choice_contact", (), "stoppers|chart|cracks"),
     ("beams of slopes", "design: {budget_beams: 150}", "budget", (), "S1|contact|chart|cracks|tip"),
     ("beams, each with a tip", "design: {beams: 900}", "cracks tip_contact chart", OF_STOPPERS,

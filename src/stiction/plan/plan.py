@@ -134,11 +134,6 @@ class Plan:
         return [case_id(pair, humidity) for pair in self.pairs for humidity in self.air.humid(pair)]
 
     @property
-    def samples_of_slopes(self) -> int:
-        """Number of samples of a contact compared with the first samples of the contact itself."""
-        return min(self.config["studies"]["slopes"]["samples"], self.config["contact"]["samples"])
-
-    @property
     def surfaces_with_scans(self) -> list[str]:
         """Surfaces of the pairs in the run described by scans."""
         return [name for name in self.surfaces if name in self.scans.surfaces]

@@ -26,7 +26,7 @@ DEPOSITION = {
     "settings": [setting(5, rms_nm=0.4), setting(20, rms_nm=2.0)],
 }
 RMS = ETCH | {"settings": [setting(30, rms_nm=2.0), setting(90, rms_nm=8.0)]}
-SMALL = {"contact": {"samples": 60}, "studies": {"slopes": {"samples": 60}}}
+SMALL = {"contact": {"samples": 60}, "design": {"budget_samples": 60}}
 VARIABLES = {"variable": "etch_time_s", "second_variable": "deposition_time_min"}
 BOTH = BUMP | {"process": "etch", "second_process": "deposition"}
 

@@ -28,8 +28,7 @@ BARE = dict(BUMP)
 BUMP |= {"requirement": {"share": SHARE}}
 SECTIONS = {
     "contact": {"samples": SAMPLES},
-    "design": {"worst_humidities": [0.45, 0.6]},
-    "studies": {"slopes": {"samples": 180}},
+    "design": {"worst_humidities": [0.45, 0.6], "budget_samples": 180},
     "run": {"pairs": [], "studies": []},
 }
 

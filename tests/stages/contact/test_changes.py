@@ -28,7 +28,8 @@ from stiction.surface.empirical import MeasuredDensity
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 20, "humidities": [0.67]}
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 2], "restoring_force_uN": 20, "humidities": [0.67]}
 DEVICES = {"C1": BEAM, "S1": STOPPER | {"tilt_deg": [0, 0.1]}}
-PLAN = Plan(load({"devices": DEVICES, "design": {"beams": 700}, "studies": {"slopes": {"samples": 30}}}))
+FEW = {"design": {"beams": 700, "budget_samples": 30}, "studies": {"slopes": {"samples": 30}}}
+PLAN = Plan(load({"devices": DEVICES} | FEW))
 #: Wildcards of any contact of the table; the patches are those of the device.
 SIDES = {GROUND: PLAN.devices.ground("C1")._asdict(), TIPS: PLAN.devices.tips("C1")._asdict(), STRIPS: {"pair": "b"}}
 SIDES |= {TILTED: PLAN.devices.ground("S1")._asdict()}

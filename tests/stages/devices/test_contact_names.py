@@ -13,7 +13,7 @@ from stiction.stages.devices import contact_names
 
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 20, "humidities": [0.67]}
 BEAM |= {"uncertainty": {"scan_um": 10, "young_modulus_GPa": 5, "poisson_ratio": 0.02, "hamaker_constant_zJ": 20}}
-PLAN = Plan(load({"devices": {"C1": BEAM}, "design": {"beams": 700}, "studies": {"slopes": {"samples": 300}}}))
+PLAN = Plan(load({"devices": {"C1": BEAM}, "design": {"beams": 700, "budget_samples": 90}}))
 GRAPH = Graph(PLAN)
 
 
@@ -31,15 +31,15 @@ def test_all_contacts_of_a_budget_are_declared_by_stages_of_contacts_of_devices(
     assert {GRAPH.job(name).stage.name for name in named} <= declared | {"model_error_of_devices"}
 
 
-def test_tips_have_as_many_samples_as_beams_or_slopes_if_changed_and_a_tilt_and_strips_have_none():
+def test_tips_have_as_many_samples_as_beams_or_budgets_if_changed_and_a_tilt_and_strips_have_none():
     unchanged = contact_names.contacts_of_tip_budget(PLAN, Case("C1_rh067"))["contact"]
     for name in of_budget(contact_names.contacts_of_tip_budget):
         settings = job_settings(PLAN, name)
-        assert settings["contact"]["samples"] == (700 if name == unchanged else 300)
+        assert settings["contact"]["samples"] == (700 if name == unchanged else 90)
         assert settings["tilt"]["slopes"]
     for name in contact_names.contacts_of_budget(PLAN, Case("C1_rh067"))["less"].values():
         settings = job_settings(PLAN, name)
-        assert settings["contact"]["samples"] == 300
+        assert settings["contact"]["samples"] == 90
         assert "tilt" not in settings
         assert settings["beam"] == {"width_um": 20}
 

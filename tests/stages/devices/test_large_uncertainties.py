@@ -34,7 +34,7 @@ def study(surface):
                 "contact": {"samples": SAMPLES, "chunks": 1, "model": "summits"},
                 "chaos": {"order": 2},
                 "beam": {"width_um": 6},
-                "studies": {"slopes": {"samples": SAMPLES}},
+                "design": {"budget_samples": SAMPLES},
                 "devices": {"Lever": LEVER | {"uncertainty": {"humidity": 0.01}}},
             }
         )

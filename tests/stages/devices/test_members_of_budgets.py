@@ -35,7 +35,7 @@ def study(beam=LIKE, substrate=None, **more):
             "mine": {"beam": "Etched", "substrate": list(surfaces)[-1], "gap_um": 20, "humidities": [HUMIDITY]},
         },
         "contact": {"samples": SAMPLES, "chunks": 1},
-        "studies": {"slopes": {"samples": SAMPLES}},
+        "design": {"budget_samples": SAMPLES},
         "devices": {"S1": STOPPER},
     }
     complete = load(merged(config, more))
@@ -158,7 +158,7 @@ def test_beams_on_members_stick_at_lengths_of_studies_of_these_surfaces_however_
 
 @pytest.mark.slow
 def test_tips_on_members_hold_lengths_of_studies_of_these_surfaces():
-    design = {"design": {"beams": 200}, "studies": {"slopes": {"samples": 200}}, "devices": {"Lever": LEVER}}
+    design = {"design": {"beams": 200, "budget_samples": 200}, "devices": {"Lever": LEVER}}
     given, direct = (Beams(study(LIKE | {"like": one}, **design), "Lever_rh067_tip") for one in ("B2", "Sub2"))
     (shifts, _), (back, _) = given.shifts, direct.shifts
     assert shifts[3] == pytest.approx(-back[1], abs=3e-3)

@@ -149,8 +149,8 @@ def test_tips_that_separate_fast_hold_shorter_beams_least_so_the_strongest(humid
 def test_the_slope_of_the_edge_is_that_between_tips_with_a_sharper_and_a_rounder_one():
     humidity, radius = 0.92, 1
     own = C1 | {"uncertainty": {"edge_radius_um": 0.3 * radius}}
-    design, slopes = {"beams": 300, "edge_radius_um": radius}, {"slopes": {"samples": 300}}
-    plan = Plan(load({"devices": {"C1": own}, "design": design, "studies": slopes}))
+    design = {"beams": 300, "edge_radius_um": radius, "budget_samples": 300}
+    plan = Plan(load({"devices": {"C1": own}, "design": design}))
     name = plan.devices.tips("C1").name
     changed = [drawn(plan, job_settings(plan, f"devices/contact/tips/edge/{name}_{side}")) for side in SHIFTS]
     plain = job_settings(plan, f"devices/budget/{case_id('C1', humidity)}_tip")["budget"]

@@ -109,12 +109,12 @@ SECTIONS = {
     "run": {"pairs": [], "studies": []},
     "contact": {"samples": 40, "model": "summits"},
     "studies": {
-        "slopes": {"samples": 40},
         "variants": dict.fromkeys(("van_der_waals", "psd", "every", "spacing_nm"), []),
     },
     "chaos": {"order": 2},
     "design": {
         "budget_beams": 40,
+        "budget_samples": 40,
         "worst_humidities": [0.6, 0.7],
         "discrepancy": {"factor": 0.02, "slope": 0.0, "rest": 0.01},
     },

@@ -98,7 +98,7 @@ def _settings(plan, at):
     settings |= dict(zip(("value", "second"), values, strict=False))
     pairs = zip(axes, points.places(at.number, axes), strict=True)
     has_slopes = all(place in (0, (len(axis) - 1) // 2, len(axis) - 1) for axis, place in pairs)
-    return settings | ({"samples": plan.config["studies"]["slopes"]["samples"]} if has_slopes else {})
+    return settings | ({"samples": plan.config["design"]["budget_samples"]} if has_slopes else {})
 
 
 def _as_rough(plan, device, *at):

@@ -146,7 +146,8 @@ def _settings(plan, at):
 
 def _settings_of_contact(plan, patch):
     """Settings of a contact for a comparison with the first samples of a patch's."""
-    return GROUND.settings(plan, At(**patch._asdict()), plan.samples_of_slopes)
+    at = At(**patch._asdict())
+    return GROUND.settings(plan, at, GROUND.fewer(plan, at))
 
 
 def _rerun(data, settings):

@@ -22,14 +22,22 @@ class Place:
     size: Callable[[Any, Any], dict]  #: settings that differ from those of the strips, by the plan and the wildcards
     #: Number of samples of the unchanged contact, by the plan and the wildcards.
     samples: Callable[[Any, Any], int] = lambda plan, _at: plan.config["contact"]["samples"]
+    #: Number of samples of each of two changed contacts. Only devices read them, unless stated otherwise.
+    changed: Callable[[Any, Any], int] = lambda plan, _at: plan.config["design"]["budget_samples"]
 
     def fewer(self, plan: Any, at: Any) -> int:
         """Number of samples of a changed contact, compared with the first samples of the unchanged one."""
-        return min(plan.config["studies"]["slopes"]["samples"], self.samples(plan, at))
+        return min(self.changed(plan, at), self.samples(plan, at))
 
     def settings(self, plan: Any, at: Any, samples: int) -> dict[str, Any]:
         """Settings of the unchanged contact of a patch."""
         return merged(select(Settings, plan.seen_by(at.pair, samples=samples)), self.size(plan, at))
+
+
+def _changed_strips(plan, at):
+    """Samples of changed strips of a pair. The errors of measured surfaces are found on the same files."""
+    measured = plan.config["studies"]["slopes"]["samples"]
+    return measured if plan.scans.sides(at.pair) else plan.config["design"]["budget_samples"]
 
 
 def _samples(plan, at):
@@ -58,7 +66,7 @@ def _size_of_tilted(plan, at):
 
 
 #: Strips along the beam, as in the paper.
-STRIPS = Place("{pair}", "", lambda plan, at: {})
+STRIPS = Place("{pair}", "", lambda plan, at: {}, changed=_changed_strips)
 #: Patch on which a device sticks: strips of another size, or the whole area of a stopper.
 GROUND = Place("{pair}_{length}x{width}", ", {length} x {width} nm,", _size, _samples)
 #: Tilted strips that hold the tips of cantilevers, one for each beam.

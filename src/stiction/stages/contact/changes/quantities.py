@@ -84,7 +84,7 @@ def _settings(plan, at, place):
     """Settings of a patch, with an uncertainty that is larger than the step of the quantity."""
     deviation = plan.deviation(at.surface, at.quantity)
     own = {"deviation": deviation} if deviation > STEPS[at.quantity] else {}
-    return place.settings(plan, at, plan.config["studies"]["slopes"]["samples"]) | own
+    return place.settings(plan, at, place.changed(plan, at)) | own
 
 
 #: A quantity of one surface.

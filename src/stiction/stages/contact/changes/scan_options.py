@@ -88,7 +88,7 @@ def _with_sources(plan, at, place):
     """Settings with the sources of the measured surfaces."""
     entries = {name: plan.config["surfaces"][name] for name in plan.scans.sides(at.pair)}
     sources = {name: select(Source, entry) for name, entry in entries.items()}
-    return place.settings(plan, at, plan.samples_of_slopes) | {"sources": sources}
+    return place.settings(plan, at, place.fewer(plan, at)) | {"sources": sources}
 
 
 def _with_estimates(plan, at, _named):

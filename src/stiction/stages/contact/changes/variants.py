@@ -226,10 +226,10 @@ def contact_of_islands(data: Mapping[str, Any], pair: str, settings: dict[str, A
 
 
 def _summit_settings(plan, at, place):
-    """Settings of the summits without the variant, and its changes. Patches of devices have the samples of slopes."""
+    """Settings of the summits without the variant, and its changes. Patches of devices have the samples of budgets."""
     settings, size = plan.variants.summits(at.pair, at.variant), place.size(plan, at)
     if size:
-        size |= {"contact": {"samples": plan.samples_of_slopes}}
+        size |= {"contact": {"samples": place.fewer(plan, at)}}
     return settings | {"base": merged(settings["base"], size)}
 
 
