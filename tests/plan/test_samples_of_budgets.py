@@ -7,6 +7,7 @@ from plans import job_settings
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.validation import normalised
+from stiction.devices.tail import FEWEST, TAIL
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 
@@ -23,7 +24,7 @@ MORE = {
 }
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 2], "restoring_force_uN": 20, "humidities": [0.67]}
 AREA = "devices/contact/slopes/b_3000x2000"
-FEWER = {"design": {"budget_samples": 99}}, {"studies": {"slopes": {"samples": 98}}}
+OTHER = {"design": {"budget_samples": 199}}, {"studies": {"slopes": {"samples": 98}}}
 
 
 def moved(plan, change):
@@ -41,24 +42,24 @@ def plan():
 
 
 def test_all_changed_contacts_of_devices_and_nothing_else_have_the_samples_of_budgets(plan):
-    assert moved(plan, FEWER[0]) == OF_DEVICES
+    assert moved(plan, OTHER[0]) == OF_DEVICES
 
 
 def test_no_device_on_surfaces_by_numbers_has_the_samples_of_slopes(plan):
-    assert moved(plan, FEWER[1]) == set()
+    assert moved(plan, OTHER[1]) == set()
 
 
 def test_the_paper_has_neither():
-    assert [moved(Plan(load()), change) for change in FEWER] == [set(), set()]
+    assert [moved(Plan(load()), change) for change in OTHER] == [set(), set()]
 
 
 def test_a_device_on_strips_of_a_measured_pair_shares_their_files_and_their_samples():
     scans = every_stage.of_scans()
     config = merged(load({"devices": {"S": STOPPER}}), scans.config)
-    plan = Plan(merged(config, merged(*FEWER)), scans.preliminary)
+    plan = Plan(merged(config, merged(*OTHER)), scans.preliminary)
     names = ("studies/slopes/contact/b_Etched_rms_less", "studies/choices/b_beyond", f"{AREA}_Etched_rms_less")
     settings = [job_settings(plan, name)["contact"]["samples"] for name in names]
-    assert settings == [98, 98, 99]
+    assert settings == [98, 98, 199]
 
 
 def test_a_contact_compared_with_the_unchanged_one_has_no_more_samples():
@@ -66,4 +67,15 @@ def test_a_contact_compared_with_the_unchanged_one_has_no_more_samples():
     plan = Plan(merged(load({"devices": {"S": STOPPER}}), few))
     name = "devices/contact/modulus/b_3000x2000_less"
     assert job_settings(plan, name)["contact"]["samples"] == 700
-    assert job_settings(Plan(merged(plan.config, FEWER[0])), name)["contact"]["samples"] == 99, "control"
+    assert job_settings(Plan(merged(plan.config, OTHER[0])), name)["contact"]["samples"] == 199, "control"
+
+
+def test_members_on_tips_have_at_least_the_tips_that_the_fit_of_few_needs(plan):
+    tips, ground = (
+        f"{patch.name}_Etched_like_Sub1" for patch in (plan.devices.tips("Mine"), plan.devices.ground("Mine"))
+    )
+    names = f"devices/contact/tips/members/{tips}", f"devices/contact/members/{ground}"
+    for samples, expected in ((100, [180, 100]), (199, [199, 199])):
+        other = Plan(merged(plan.config, {"design": {"budget_samples": samples}}))
+        assert [job_settings(other, name)["contact"]["samples"] for name in names] == expected
+    assert int(TAIL * 180) == FEWEST > int(TAIL * 179), "control"

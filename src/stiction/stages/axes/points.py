@@ -9,7 +9,7 @@ import xarray as xr
 
 from stiction.analysis.shifts import Description
 from stiction.devices.risk import VERIFIED, samples_for
-from stiction.devices.tail import FEWEST, TAIL
+from stiction.devices.tail import FEWEST_OF_FIT
 from stiction.plan.stage import At
 from stiction.stages.axes import requirement
 from stiction.stages.axes.requirement import OfBeam, OfStopper
@@ -21,8 +21,6 @@ from stiction.stages.devices.contact_names import corrections_of
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import surface_inputs
 
-#: Fewest patches of which a safe force can be fitted.
-FEWEST_OF_FIT = round(FEWEST / TAIL)
 #: Variables of a device that all its points share.
 _SHARED = ["required", "share", "samples"]
 

@@ -12,9 +12,10 @@ from typing import Any
 import xarray as xr
 
 from stiction.analysis.shifts import like
+from stiction.devices.tail import FEWEST_OF_FIT
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
-from stiction.stages.contact.changes.patches import Change
+from stiction.stages.contact.changes.patches import TIPS, Change
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import both
 
@@ -73,10 +74,14 @@ _KEYS = {
 
 
 def _settings(plan, at, place):
-    """Settings of a patch, and the numbers of the member with as many digits as those of surfaces in normal form."""
+    """Settings of a patch, and the numbers of the member with as many digits as those of surfaces in normal form.
+
+    The lengths that few tips hold are compared on members, so that there are as many tips as their fit needs.
+    """
     member = plan.devices.members_of(at.surface)[at.member]
     whole = {_KEYS[word]: float(f"{value:.9g}") for word, value in member.items()}
-    return place.settings(plan, at, place.fewer(plan, at)) | {"whole": whole}
+    samples = place.fewer(plan, at)
+    return place.settings(plan, at, max(samples, FEWEST_OF_FIT) if place is TIPS else samples) | {"whole": whole}
 
 
 #: A whole typical surface in place of one surface.
