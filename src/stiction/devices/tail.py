@@ -16,8 +16,6 @@ from scipy.special import ndtri
 TAIL = 0.05
 #: Smallest number of fitted samples, so that 200 samples can be fitted without one of the 20 groups of a jackknife.
 FEWEST = 9
-#: Fewest samples of which this share can be fitted.
-FEWEST_OF_FIT = round(FEWEST / TAIL)
 
 
 @dataclass(frozen=True)

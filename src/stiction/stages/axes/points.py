@@ -9,12 +9,12 @@ import xarray as xr
 
 from stiction.analysis.shifts import Description
 from stiction.devices.risk import VERIFIED, samples_for
-from stiction.devices.tail import FEWEST_OF_FIT
 from stiction.plan.stage import At
 from stiction.stages.axes import requirement
 from stiction.stages.axes.requirement import OfBeam, OfStopper
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
+from stiction.stages.contact.changes.members import FEWEST_OF_FIT
 from stiction.stages.contact.changes.patches import GROUND, TIPS
 from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices.contact_names import corrections_of

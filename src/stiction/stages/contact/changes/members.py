@@ -12,12 +12,15 @@ from typing import Any
 import xarray as xr
 
 from stiction.analysis.shifts import like
-from stiction.devices.tail import FEWEST_OF_FIT
+from stiction.devices.tail import FEWEST, TAIL
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import TIPS, Change
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import both
+
+#: Fewest samples of which the lowest can be fitted.
+FEWEST_OF_FIT = round(FEWEST / TAIL)
 
 
 @dataclass(frozen=True)
