@@ -7,7 +7,6 @@ from plans import job_settings
 from stiction.config.files import load
 from stiction.config.merging import merged
 from stiction.config.validation import normalised
-from stiction.devices.tail import FEWEST, TAIL
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 
@@ -70,12 +69,17 @@ def test_a_contact_compared_with_the_unchanged_one_has_no_more_samples():
     assert job_settings(Plan(merged(plan.config, OTHER[0])), name)["contact"]["samples"] == 199, "control"
 
 
-def test_members_on_tips_have_at_least_the_tips_that_the_fit_of_few_needs(plan):
+def test_members_on_tips_have_three_times_as_many_but_no_more_than_the_unchanged_contact(plan):
     tips, ground = (
         f"{patch.name}_Etched_like_Sub1" for patch in (plan.devices.tips("Mine"), plan.devices.ground("Mine"))
     )
     names = f"devices/contact/tips/members/{tips}", f"devices/contact/members/{ground}"
-    for samples, expected in ((100, [180, 100]), (199, [199, 199])):
+    of_mine = (
+        f"devices/contact/tips/{plan.devices.tips('Mine').name}",
+        f"devices/contact/{plan.devices.ground('Mine').name}",
+    )
+    unchanged = [job_settings(plan, name)["contact"]["samples"] for name in of_mine]
+    for samples, expected in ((100, [300, 100]), (199, [597, 199]), (10_000, unchanged)):
         other = Plan(merged(plan.config, {"design": {"budget_samples": samples}}))
-        assert [job_settings(other, name)["contact"]["samples"] for name in names] == expected
-    assert int(TAIL * 180) == FEWEST > int(TAIL * 179), "control"
+        found = [job_settings(other, name)["contact"]["samples"] for name in names]
+        assert found == expected

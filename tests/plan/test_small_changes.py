@@ -10,7 +10,7 @@ from stiction.config.merging import merged
 from stiction.config.messages import ConfigError, schema_problems
 from stiction.config.reading import paper
 from stiction.config.relations import schema
-from stiction.config.validation import validate
+from stiction.config.validation import checked
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 
@@ -128,7 +128,7 @@ def test_small_changes_of_all_numbers_are_small_changes_of_all_settings(of_humid
 @pytest.mark.parametrize("path", [path for path, _ in numbers(CONFIG) if of_pattern(path, ON_GRIDS) or path == ALL])
 def test_a_length_that_fits_no_grid_is_refused(path):
     with pytest.raises(ConfigError, match="multiple|whole|at most 1"):
-        validate(shifted(CONFIG, {path}))
+        checked(shifted(CONFIG, {path}))
 
 
 def test_all_other_numbers_are_whole():

@@ -9,18 +9,20 @@ import xarray as xr
 
 from stiction.analysis.shifts import Description
 from stiction.devices.risk import VERIFIED, samples_for
+from stiction.devices.tail import FEWEST, TAIL
 from stiction.plan.stage import At
 from stiction.stages.axes import requirement
 from stiction.stages.axes.requirement import OfBeam, OfStopper
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
-from stiction.stages.contact.changes.members import FEWEST_OF_FIT
 from stiction.stages.contact.changes.patches import GROUND, TIPS
 from stiction.stages.contact.corrections import with_correction
 from stiction.stages.devices.contact_names import corrections_of
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import surface_inputs
 
+#: Fewest samples of which the lowest can be fitted.
+FEWEST_OF_FIT = round(FEWEST / TAIL)
 #: Variables of a device that all its points share.
 _SHARED = ["required", "share", "samples"]
 

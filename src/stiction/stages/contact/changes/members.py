@@ -12,15 +12,15 @@ from typing import Any
 import xarray as xr
 
 from stiction.analysis.shifts import like
-from stiction.devices.tail import FEWEST, TAIL
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import TIPS, Change
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import both
 
-#: Fewest samples of which the lowest can be fitted.
-FEWEST_OF_FIT = round(FEWEST / TAIL)
+#: Tips on members, as a multiple of those for slopes: they show the lengths that few tips hold. README's lever needs
+#: 300: its sizes to build by 100, 180, 240 and 300 are 159.8, 157.4, 161.3 and 162.9 µm.
+_TIPS = 3
 
 
 @dataclass(frozen=True)
@@ -79,12 +79,12 @@ _KEYS = {
 def _settings(plan, at, place):
     """Settings of a patch, and the numbers of the member with as many digits as those of surfaces in normal form.
 
-    The lengths that few tips hold are compared on members, so that there are as many tips as their fit needs.
+    There are more tips on members than on changed surfaces, but no more than on the unchanged surface.
     """
     member = plan.devices.members_of(at.surface)[at.member]
     whole = {_KEYS[word]: float(f"{value:.9g}") for word, value in member.items()}
-    samples = place.fewer(plan, at)
-    return place.settings(plan, at, max(samples, FEWEST_OF_FIT) if place is TIPS else samples) | {"whole": whole}
+    samples = min(_TIPS * place.fewer(plan, at), place.samples(plan, at)) if place is TIPS else place.fewer(plan, at)
+    return place.settings(plan, at, samples) | {"whole": whole}
 
 
 #: A whole typical surface in place of one surface.
