@@ -180,6 +180,6 @@ def test_a_sentence_reruns_no_stage_of_contacts_surfaces_or_points():
     stages = {path: fingerprint(path) for path in PACKAGE.glob("stages/**/*.py")}
     assert len(stages) > 50
     assert not [path.name for path, modules in stages.items() if home in modules]
-    points = stages[PACKAGE / "stages" / "roughness" / "curves.py"]
+    points = stages[PACKAGE / "stages" / "axes" / "roughness.py"]
     assert "stiction.devices.limits.rules" in points
     assert home in fingerprint(PACKAGE / "report" / "devices" / "pages.py"), "the control: pages have words"

@@ -230,7 +230,7 @@ def test_a_stopper_in_dry_air_alone_is_in_no_humid_air(grounds):
         assert made.lines[0].startswith(f"{sign}: At least 20 µN; with your {1e6 * restoring:g} µN, ")
         page = made.html + " ".join(made.lines)
         assert "humidity of" not in page.replace("Humidity of the largest", "")
-        assert "In dry air, " in page
+        assert "in dry air, " in page
         assert "orst humidity" not in page
     alone = tables_budget.stoppers({"S1": layout}, {"S1": []})
     assert list(alone.cells.RH) == ["dry"]
@@ -294,7 +294,7 @@ def test_tables_print_dry_and_their_numbers_are_those_of_humidity_zero():
     table = tables_devices.safe_lengths(cases, warnings)
     assert list(dict.fromkeys(table.cells.RH)) == ["dry", "0.67"]
     assert set(table.frame.relative_humidity) == {0.0, 0.67}
-    assert "dry" in [text.get_text() for text in figures_devices.risk(cases, warnings).axes[0].get_legend().texts]
+    assert "dry" in [text.get_text() for text in figures_devices.simulated(cases, warnings).axes[0].get_legend().texts]
     budgets = tables_budget.budget({("C1", 0.0): budget_dataset(), ("C1", 0.67): budget_dataset()})
     assert "C1, dry: " in budgets.caption
     assert set(budgets.cells.RH) == {"dry", "0.67"}

@@ -55,11 +55,16 @@ BEAMS = {
 
 
 def faces(grid, answer, per):
-    """P(stuck) with its band at every size of an answer, in each of its airs: on the controls, and in the answer."""
+    """P(stuck) with its band at every size of an answer, in each of its airs: on the controls, and in the answer.
+
+    Sizes at which an end of the band has no level on the controls are left out: there the band is the wider one.
+    """
     for air in (answer.together if one.humidity == answer.together.humidity else one for one in answer.airs):
         for k, size in enumerate(answer.sizes):
             found = replace(grid, first=None).stuck(grid.start | {"humidity": air.humidity, grid.size.key: size / per})
-            if not found.beyond and 1e-6 < air.curve[0, k] < 1 - 1e-6:
+            ended = found.low == 0 < air.curve[1, k] or found.high == 1 > air.curve[2, k]
+            assert not ended or air.curve[1, k] < 0.01 or air.curve[2, k] > 0.99
+            if not found.beyond and not ended and 1e-6 < air.curve[0, k] < 1 - 1e-6:
                 yield (found.share, found.low, found.high), air.curve[:, k]
 
 
