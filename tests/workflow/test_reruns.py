@@ -152,8 +152,9 @@ MATRIX = [
     ("chaos order", "chaos: {order: 6}", "chaos variant ground", (), "forces"),
     ("beam thickness", "beam: {thickness_um: 2.5}",
      "beams resampling mesh variant checks", (), "contact|forces|chaos"),
-    ("beam width", "beam: {width_um: 24}", "character contact_chunk beams resampling mesh sensitivity_contact plasticity full_contact pressed variant_summits readings checks model_limits",
-     (), "heights|spectrum|tips|R1"),
+    # Energies of devices in full contact are those of strips of their pair, which are as wide as its beam.
+    ("beam width", "beam: {width_um: 24}", "character contact_chunk beams resampling mesh sensitivity_contact plasticity full_contact pressed variant_summits readings checks model_limits ground safe_lengths cracks chart",
+     (), "heights|spectrum|tips"),
     ("number of beams", "beam: {samples: 500}", "beams", (), "chaos|studies"),
     ("scatter of beams", "beam: {scatter: 0.03}", "beams", (), "chaos|studies|beams/.*_N?G.nc"),
     ("humidity of the figures", "pairs: {b: {humidities: [0.6, 0.8]}}\nfigures: {humidity: 0.6}",
@@ -174,15 +175,16 @@ MATRIX = [
     ("study: a Poisson's ratio added", "studies: {variants: {poisson_ratio: [0.18, 0.28, 0.3]}}", "variant_contact",
      (), "variants/summits|_base|0.18|0.28"),
     ("study: finer elements", "studies: {variants: {strips_per_element: [2, 1]}}", "variant", (), "_base|_element_2"),
-    # A wetter air reaches further: the strips of the tips are stored at more distances.
+    # A wetter air reaches further: the strips of the tips are stored at more distances. The energies of a pair in full
+    # contact at all humidities of devices are one file, which lengths at each of them read.
     ("one humidity of a device", "devices: {C1: {humidities: [0.7, 0.9]}}",
-     "tip_contact ground table_safe_lengths device_limits", (), "contact/b|cracks/C1_rh070|R1"),
+     "tip_contact ground table_safe_lengths device_limits", (), "contact/b"),
     ("a device added", "devices: {C2: {kind: cantilever, pair: a, thickness_um: 3, gap_um: 20, width_um: 30, "
      "humidities: [0.6]}}", "device_contact tip_contact ground table_safe_lengths device_limits verdict", {"chart", "table_chart"}, "results/contact/[ab]_|contact/b_|tips/b_|C1|R1|beams"),
     ("thickness of a device", "devices: {C1: {thickness_um: 3}}", "cracks safe_lengths chart", (), "contact|R1"),
     ("thicknesses of a chart", "devices: {C1: {chart: {thicknesses_um: [2.6]}}}", "tip_contact chart", (),
      "contact/b|R1|cracks"),
-    ("uncertainty of a device", "devices: {C1: {uncertainty: {gap_um: 1}}}", "verdict", (), ""),
+    ("uncertainty of a device", "devices: {C1: {uncertainty: {gap_um: 1}}}", "device_limits verdict", (), ""),
     ("beams of devices", "design: {beams: 300}", "tip_contact cracks chart", (), "results/contact"),
     ("contact angle of a body", "materials: {Wet: {contact_angle_deg: 20}}\nsurfaces: {B2: {material: Wet}}",
      "full_contact pressed readings forces humidity sensitivity variant ground safe_lengths chart table_1 table_2 table_3 checks model_limits",

@@ -77,6 +77,7 @@ READ_BY = {
 RULES = set(READ_BY) | set(" ".join(READ_BY.values()).split())
 COMPUTING = set(READ_BY)
 #: Rules of one kind of device.
+NO_BEAM = {"device_limits"}
 OF_STOPPERS = {"stoppers", "separation", "table_stoppers", "figure_stoppers"}
 SHOWN = {"table_safe_lengths"}
 OF_CHARTS = {"chart", "table_chart", "figure_chart"}
@@ -94,17 +95,17 @@ MATRIX = [
     ("voltage of a beam", "devices: {C1: {voltage_V: 3, dielectric: {thickness_nm: 100, permittivity: 4}}}", "at_voltage", (),
      "R1|S1|contact|cracks|safe"),
     ("voltage of a stopper", "devices: {S1: {voltage_V: 3, dielectric: {thickness_nm: 100, permittivity: 4}}}",
-     "stoppers_at_voltage", (), "R1|C1|contact|devices/stoppers/"),
-    ("tilt of a stopper", "devices: {S1: {tilt_deg: [0, 0.1]}}", "tilted_contact", (), "R1|C1|devices/contact/b|devices/stoppers/"),
+     "stoppers_at_voltage", NO_BEAM, "R1|C1|contact|devices/stoppers/"),
+    ("tilt of a stopper", "devices: {S1: {tilt_deg: [0, 0.1]}}", "tilted_contact", NO_BEAM, "R1|C1|devices/contact/b|devices/stoppers/"),
     ("dimples of a bridge", "devices: {R1: {length_um: 200, dimples: {number: 2, at_um: [100], height_um: 1, contact_um: [3, 3]}}}",
      "dimples safe_lengths", OF_STOPPERS | OF_CHARTS, "C1|S1|contact|cracks"),
     ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget", (), "R1|S1|contact|chart"),
-    ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", (),
+    ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", NO_BEAM,
      "C1|R1|slopes/contact|stoppers"),
     ("a quantity of a surface becomes uncertain", "surfaces: {B2: {uncertainty: {skewness: 0.1}}}",
      "device_slope_contact device_choice_summits budget tip_budget", (), "heights|spectrum/|cracks|safe_lengths|chart|devices/stoppers"),
     ("another property of the solids becomes uncertain", "devices: {S1: {uncertainty: {poisson_ratio: 0.02}}}",
-     "solid_contact budget", (), "C1|R1|modulus|hamaker|slopes|choices|heights|spectrum|contact/b|stoppers"),
+     "solid_contact budget", NO_BEAM, "C1|R1|modulus|hamaker|slopes|choices|heights|spectrum|contact/b|stoppers"),
     ("another property of the solids of a cantilever becomes uncertain",
      "devices: {C1: {uncertainty: {poisson_ratio: 0.02}}}",
      "solid_contact tip_solid_contact budget tip_budget", (),
@@ -127,14 +128,14 @@ MATRIX = [
     ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
      "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
     ("water", "water: {temperature_K: 310}", "ground safe_lengths chart stoppers budget tip_budget separation fast_strips fast_tips process_point",
-     (), "contact"),
+     (), "/contact/"),
     # It moves the scatter of energies, and with it the number of samples of C1.
     ("adsorbed water", "water: {adsorbed_nm: 0.1}", "device_contact ground safe_lengths chart stoppers budget tip_budget separation fast_strips fast_tips process_point", (),
      "results/contact|slopes|modulus|choices|contact/tips"),
     ("uncertainty of the adsorbed water", "devices: {C1: {uncertainty: {adsorbed_nm: 0.1}}}", "budget tip_budget", (),
      "R1|S1|contact|chart"),
     ("attraction across gaps", "attraction: {wavelength_nm: 90}", "ground safe_lengths chart stoppers budget tip_budget separation fast_strips fast_tips process_point", (),
-     "contact"),
+     "/contact/"),
     ("skewness of a surface", "surfaces: {B2: {skewness: -0.7}}", "heights device_choice_summits process_law", (), "Sub1.nc"),
     ("skewness of another surface", "surfaces: {B1: {skewness: -0.7}}", "", (), ""),
     # Stated ones let C1 share the strips of its pair.
@@ -146,11 +147,11 @@ MATRIX = [
      "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact safe_lengths chart",
      OF_STOPPERS, "cracks|S1|R1|contact/b|budget/C1_rh070.nc"),
     ("shares", "design: {shares: [0.02]}", "safe_lengths chart tip_budget", OF_STOPPERS, "cracks|S1|contact|budget/C1_rh070.nc"),
-    ("points of charts", "design: {chart_points: 4}", "ground",
-     OF_STOPPERS | {"cracks", "safe_lengths", "life", "answer", "table_life", "figure_life"}, "rh060|rh080|cracks|safe|S1|R1|contact"),
+    # The energies of a pair in full contact at all humidities of beams and charts are one file.
+    ("points of charts", "design: {chart_points: 4}", "ground budget fast_strips", OF_STOPPERS, "S1|/contact/"),
     ("humidities of a chart", "devices: {C1: {chart: {humidities: [0.6, 0.9]}}}",
-     "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact ground", OF_STOPPERS | {"cracks"},
-     "cracks|S1|R1|contact/b|contact/slopes"),
+     "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact ground budget fast_strips", OF_STOPPERS,
+     "S1|/contact/b|contact/slopes"),
     ("gap of a beam", "devices: {C1: {gap_um: 19}}", "cracks safe_lengths chart budget tip_budget", OF_STOPPERS, "contact|S1|R1"),
     ("width of a beam", "devices: {C1: {width_um: 24}}",
      "device_contact tip_contact device_slope_contact solid_contact device_choice_summits tip_slope_contact"

@@ -163,7 +163,7 @@ def layout(found: Ratio, on_summits: tuple[float, float], reason: str = "") -> x
 
 def settings_of(plan: Any, at: At) -> dict[str, Any]:
     """Settings of the strips of a pair in the air of devices."""
-    seen = plan.seen_by(at.case.pair, (*ELASTIC, "hardness_GPa"), samples=None)
+    seen = plan.seen_by(at.case.pair, ELASTIC, samples=None)
     own = {"humidities": [at.case.humidity], "strips": levels.PILOT}
     return select(Settings, seen | own | {"water": plan.air_of_devices.water(at.case.pair)})
 
