@@ -80,7 +80,7 @@ class Meeting:
 
 
 def surfaces_of(pair: str, config: Keys) -> list[str]:
-    """Names of the surfaces of a pair. Raises `Unknown` if it is not defined, which another relation reports."""
+    """Names of the surfaces of a pair. A pair that is not defined, which another relation reports, is an error."""
     return [config[f"pairs.{pair}.{side}"] for side in SIDES]
 
 

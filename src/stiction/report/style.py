@@ -419,7 +419,7 @@ def strips(figure: Figure) -> list[bytes]:
 def small_png(pixels: np.ndarray) -> bytes:
     """Content of a PNG file of pixels (rows, columns, 3), with a palette if it suffices.
 
-    Colours of areas and lines stay. Those of few pixels, at edges and in letters, have `_LEVELS` levels of each part.
+    Colours of areas and lines stay. Those of few pixels, at edges and in letters, have 16 levels of each part.
     """
     codes, places, counts = np.unique(pixels @ np.array([1 << 16, 1 << 8, 1]), return_inverse=True, return_counts=True)
     colours, step = np.stack([codes >> 16, codes >> 8 & 255, codes & 255], axis=1), 255 / (_LEVELS - 1)
