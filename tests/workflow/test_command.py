@@ -83,7 +83,8 @@ def test_a_check_and_a_dry_run_of_the_same_file_forecast_the_same_time_and_memor
     (said,) = filter(None, map(forecast.search, checked))
     time, *others = forecast.search(planned[0]).groups()
     assert others == [*said.groups()[1:]]
-    assert float(time) == pytest.approx(float(said[1]), rel=0.02)  # a dry run counts the job that says the verdict
+    # A dry run counts the jobs that say the verdict as well, and both have two digits.
+    assert float(time) == pytest.approx(float(said[1]), rel=0.05)
 
 
 @pytest.mark.slow
