@@ -59,7 +59,8 @@ def of_devices(
     ``study`` and ``tips`` have dry air, if a beam is in it. In humid air no forces are changed.
     """
     by_humidity = [
-        one[_OF_ENERGIES].reset_coords(drop=True).expand_dims(humidity=[rh]) for (_, rh), one in energies.items()
+        one[_OF_ENERGIES].reset_coords(drop=True).drop_encoding().expand_dims(humidity=[rh])
+        for (_, rh), one in energies.items()
     ]
     humid = _by_levels(xr.concat(by_humidity, "humidity").sortby("humidity")).assign(nearest=((), True))
     if study is None:
