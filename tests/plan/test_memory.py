@@ -153,11 +153,11 @@ def test_budgets_of_tips_reserve_the_memory_of_all_their_tips_under_every_input(
     array = {"pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30}
     array |= {"stuck": [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]}
     counted = {"test_beams": {"A": array}, "devices": {"C1": {"test_beams": ["A"]}}}
-    # 15 slopes; all tips with the inputs as stated, and 300 with less and more of eight, and under four choices.
-    assert reserved() == [tip_memory(15 * (1000 + 300 * (2 * 8 + 4))), tip_memory(0)]
-    assert reserved({"design": {"beams": 2000}}) == [tip_memory(15 * (2000 + 300 * (2 * 8 + 4))), tip_memory(0)]
+    # 15 slopes; all tips with the inputs as stated, and 100 with less and more of eight, and under four choices.
+    assert reserved() == [tip_memory(15 * (1000 + 100 * (2 * 8 + 4))), tip_memory(0)]
+    assert reserved({"design": {"beams": 2000}}) == [tip_memory(15 * (2000 + 100 * (2 * 8 + 4))), tip_memory(0)]
     # Test beams have no chart, whose beams have other slopes, and no other choices of the model.
-    assert reserved(counted)[1] == tip_memory(12 * (1000 + 300 * 2 * 8))
+    assert reserved(counted)[1] == tip_memory(12 * (1000 + 100 * 2 * 8))
 
 
 def test_a_job_that_failed_may_use_twice_as_much():

@@ -61,12 +61,15 @@ def test_the_axis_of_humidities_runs_from_the_driest_to_the_most_humid():
 
 
 @pytest.mark.parametrize(
-    ("name", "study"),
-    [("sensitivity/contact/b_rms_less", "sensitivity"), ("slopes/contact/b_B2_rms_less", "slopes")],
+    ("name", "stated"),
+    [
+        ("sensitivity/contact/b_rms_less", PLAN.config["studies"]["sensitivity"]["samples"]),
+        ("slopes/contact/b_B2_rms_less", PLAN.config["design"]["budget_samples"]),
+    ],
 )
-def test_studies_with_shifted_surfaces_have_their_own_number_of_samples(name, study):
+def test_studies_with_shifted_surfaces_have_their_own_number_of_samples(name, stated):
     samples = job_settings(PLAN, f"studies/{name}")["contact"]["samples"]
-    assert samples == PLAN.config["studies"][study]["samples"] != PLAN.config["contact"]["samples"]
+    assert samples == stated != PLAN.config["contact"]["samples"]
 
 
 @pytest.mark.parametrize(("modulus", "known"), [(164, True), (150, True), (178, True), (140, False), (190, False)])

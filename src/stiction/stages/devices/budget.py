@@ -31,6 +31,7 @@ from stiction.devices.tail import FEWEST, TAIL, fit_tail
 from stiction.plan.stage import At, Running, Stage, subsection
 from stiction.progress import progress
 from stiction.stages.contact import curves
+from stiction.stages.contact.changes.members import samples_on
 from stiction.stages.contact.changes.patches import TIPS
 from stiction.stages.contact.contact import first
 from stiction.stages.contact.corrections import with_correction
@@ -493,9 +494,10 @@ def _memory_of_tips(plan, view, names):
     slopes = []
     for name in names:
         contacts = contacts_of_tip_budget(view, case_id(name, view.devices.sections[name]["humidities"][0]))
-        left_out = ["contact"] + ["choices"] * (view is not plan)
+        left_out = ["contact", "members"] + ["choices"] * (view is not plan)
         changed = sum(len(some) for kind, some in contacts.items() if kind not in left_out)
         tips = TIPS.samples(plan, None) + changed * TIPS.fewer(plan, None)
+        tips += len(contacts["members"]) * samples_on(TIPS, plan, None)
         slopes.append(tips * len(plan.devices.tilt(view.devices.tips(name))["slopes"]))
     return memory.tip_memory(max(slopes, default=0))
 

@@ -14,7 +14,7 @@ import xarray as xr
 from stiction.analysis.shifts import like
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
-from stiction.stages.contact.changes.patches import TIPS, Change
+from stiction.stages.contact.changes.patches import TIPS, Change, Place
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import both
 
@@ -76,15 +76,17 @@ _KEYS = {
 }
 
 
-def _settings(plan, at, place):
-    """Settings of a patch, and the numbers of the member with as many digits as those of surfaces in normal form.
+def samples_on(place: Place, plan: Any, at: Any) -> int:
+    """Number of samples on a member: of tips more than on changed surfaces, but no more than on the unchanged one."""
+    fewer = place.fewer(plan, at)
+    return min(_TIPS * fewer, place.samples(plan, at)) if place is TIPS else fewer
 
-    There are more tips on members than on changed surfaces, but no more than on the unchanged surface.
-    """
+
+def _settings(plan, at, place):
+    """Settings of a patch, and the numbers of the member with as many digits as those of surfaces in normal form."""
     member = plan.devices.members_of(at.surface)[at.member]
     whole = {_KEYS[word]: float(f"{value:.9g}") for word, value in member.items()}
-    samples = min(_TIPS * place.fewer(plan, at), place.samples(plan, at)) if place is TIPS else place.fewer(plan, at)
-    return place.settings(plan, at, samples) | {"whole": whole}
+    return place.settings(plan, at, samples_on(place, plan, at)) | {"whole": whole}
 
 
 #: A whole typical surface in place of one surface.
