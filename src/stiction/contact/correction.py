@@ -89,7 +89,9 @@ class Correction:
     energy: Change  #: of the energies e (h,)
     pull_off: Change  #: of the largest attractions f_max (h,)
     tips: TipChanges | None = None  #: of the largest attractions of tips, if any are on the pair
-    nearest: bool = False  #: whether changes at the nearest humidity hold beyond these, instead of an error
+    #: Whether changes at the nearest humidity hold beyond these, instead of an error. ASSUME: only shifts of a budget are
+    #: there. Ratios rise with the humidity, so that lengths become too short in drier air and too long in wetter air.
+    nearest: bool = False
 
     def at(self, humidity: float) -> tuple[Change, Change]:
         """Changes of e and of f_max at a humidity, 0 for dry air: none in humid air if dry air alone is corrected.

@@ -230,6 +230,19 @@ def test_a_shape_has_the_warnings_of_its_own_length():
     assert sentence.startswith(f"At a length of {tip:.0f} µm the beam reaches a slope of {0.08 * alone / tip:.3g}")
 
 
+def test_a_smooth_pair_is_said_of_what_forces_hold_and_not_of_energies_along_a_beam():
+    found, of = device()
+    on_summits = replace(of, on_summits=(0.9,))
+    for rms, said in ((1e-9, True), (3.4e-9, False)):  # a smooth pair and, as control, a rough one
+        smooth = found.assign(rms=rms)
+        for shape, dimples, forces in ((S_SHAPE, False, False), (EITHER, False, True), (S_SHAPE, True, True)):
+            told = only(smooth, replace(on_summits, has_dimples=dimples), shape, humidity=0.9)
+            assert any("Forces on summits are then too small, the unsafe side" in one for one in told) == (
+                said and forces
+            )
+        assert not any("Forces on summits" in one for one in only(smooth, of, humidity=0.9)), "corrected"
+
+
 def test_a_device_is_checked_at_its_safe_length_not_at_the_longer_estimate():
     found, of = device()
     assert only(found.assign(estimate=0.1 * found.estimate), of) == []
@@ -299,7 +312,7 @@ def test_settings_of_jobs_are_those_of_the_warnings():
     c1 = {"kind": "cantilever", "pair": "c"} | sizes
     plan = Plan(load({"devices": {"C1": c1 | {"chart": {"thicknesses_um": [2, 3], "humidities": [0.5, 0.9]}}}}))
     job = Graph(plan).job("devices/warnings/C1.json")
-    assert job.settings == {"beam": BEYOND}
+    assert job.settings == {"beam": BEYOND | {"on_summits": [0.67]}}
     assert len(job.inputs["charts"]) == plan.config["design"]["chart_points"] + 1, "with its own humidity"
     assert job.inputs["plasticity"] == {"c": "studies/plasticity/c"}
 

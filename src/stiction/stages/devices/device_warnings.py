@@ -27,7 +27,7 @@ from stiction.stages.beams.pair_warnings import (
     plastic_contact,
 )
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.opening import ARC, EITHER, FORCE, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE, DesignedBeam, section_of_beam
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import sought
 from stiction.stages.surfaces import surface_flags
@@ -48,7 +48,8 @@ class OfDevice:
     accuracy: Accuracy | None = None  #: of its lengths
     materials: StatedProperties = ()  #: of its pair
     learns: bool = False  #: whether it has test beams
-    on_summits: tuple[float, ...] = ()  #: humidities with water at which summits alone make forces of its dimples [-]
+    on_summits: tuple[float, ...] = ()  #: humidities with water at which summits alone make its forces [-]
+    has_dimples: bool = False  #: whether forces of dimples decide about all shapes
 
 
 @dataclass(frozen=True)
@@ -77,10 +78,13 @@ def beam_warnings(
         rules.no_water(float(safe_lengths.film), humidity),
         rules.flat_patches(float(safe_lengths.share_flat)),
         rules.lengths_of_sizes(float(safe_lengths.size_error)),
-        rules.smooth_pair(float(safe_lengths.rms), [humidity] if humidity in of.on_summits else []),
+    )
+    smooth = rules.triggered(
+        rules.smooth_pair(float(safe_lengths.rms), [humidity] if humidity in of.on_summits else [])
     )
     return {
         shape: without
+        + smooth * (of.has_dimples or shape != S_SHAPE)
         + _length_warnings(float(shortest.sel(shape=shape)), safe_lengths, of, plastic)
         + _accuracy_warnings(safe_lengths.sel(shape=shape), of)
         for shape in map(str, safe_lengths["shape"].values)
@@ -242,14 +246,13 @@ def _settings(plan, at):
 
 
 def _on_summits(plan, device):
-    """Humidities with water at which the forces of a stopper, or of dimples, are those on summits alone."""
+    """Humidities with water at which forces of a stopper, tip, bridge or dimples are those on summits alone."""
     section = plan.config["devices"][device]
-    if plan.devices.kind(device).is_beam and "dimples" not in section:
-        return {}
     pair, air = section["pair"], plan.air_of_devices
     corrected = air.corrected(pair, section["humidities"])
     humid = [rh for rh in section["humidities"] if not air.is_dry(pair, rh) and rh not in corrected]
-    return {"on_summits": humid} if humid else {}
+    dimples = {"has_dimples": True} if "dimples" in section and plan.devices.kind(device).is_beam else {}
+    return ({"on_summits": humid} if humid else {}) | dimples
 
 
 def _device_warnings(data, settings):
