@@ -89,8 +89,8 @@ class Correction:
     energy: Change  #: of the energies e (h,)
     pull_off: Change  #: of the largest attractions f_max (h,)
     tips: TipChanges | None = None  #: of the largest attractions of tips, if any are on the pair
-    #: Whether changes at the nearest humidity hold beyond these, instead of an error. ASSUME: only shifts of a budget are
-    #: there. Ratios rise with the humidity, so that lengths become too short in drier air and too long in wetter air.
+    #: Whether changes at the nearest humidity hold beyond these, instead of an error. ASSUME: only shifts of a budget
+    #: are there. Ratios rise with humidity, so that lengths become too short in drier and too long in wetter air.
     nearest: bool = False
 
     def at(self, humidity: float) -> tuple[Change, Change]:
