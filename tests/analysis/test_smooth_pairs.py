@@ -81,14 +81,16 @@ def on_summits(devices, **config):
     return {name: list(of.get("stopper", of.get("beam")).get("on_summits", ())) for name, of in settings.items()}
 
 
-def test_stoppers_and_dimples_on_summits_in_humid_air_are_checked_and_no_others():
+def test_forces_on_summits_in_humid_air_are_checked_and_no_others():
     devices = {
         "Bump": STOPPER | {"humidities": ["dry", 0.67, 0.9]},
         "Dry": STOPPER | {"humidities": ["dry"]},
         "Lever": BEAM | {"length_um": 100, "dimples": DIMPLES, "humidities": [0.67]},
-        "Beam": BEAM | {"humidities": [0.67]},
+        "Beam": BEAM | {"humidities": ["dry", 0.67]},
+        "DryBeam": BEAM | {"humidities": ["dry"]},
     }
-    assert on_summits(devices) == {"Bump": [0.67, 0.9], "Dry": [], "Lever": [0.67], "Beam": []}
+    found = {"Bump": [0.67, 0.9], "Dry": [], "Lever": [0.67], "Beam": [0.67], "DryBeam": []}
+    assert on_summits(devices) == found
     one = {"Bump": STOPPER | {"humidities": [0.67]}}
     assert on_summits(one, contact={"model": "full"}) == {"Bump": []}
     coated = {"surfaces": {name: {"material": "FDTS"} for name in ("B2", "Sub1")}}
