@@ -8,6 +8,7 @@ from enum import StrEnum
 
 import numpy as np
 
+from stiction.answer.sought import SOUGHT, Sought
 from stiction.devices.risk import CONFIDENCE
 
 #: Kind of the limit that inputs are too uncertain. It leaves no size to build, but a device may stick for certain.
@@ -105,14 +106,18 @@ class Answer:
     curve: np.ndarray = field(default_factory=lambda: np.empty((3, 0)), compare=False)
 
     @property
-    def more_is_better(self) -> bool:
-        """Whether a larger size than that to build is safe: forces, not lengths."""
-        return self.unit == "N"
+    def sought(self) -> Sought:
+        """Number that sizes are of."""
+        return SOUGHT[self.unit]
+
+    def in_words(self, size: float) -> str:
+        """Size with its unit."""
+        return self.sought.in_words(size)
 
     @property
     def is_enough(self) -> bool:
         """Whether the stated size is within the size to build."""
-        return self.size >= self.build if self.more_is_better else self.size <= self.build
+        return self.sought.sign * self.size <= self.sought.sign * self.build
 
     @property
     def verdict(self) -> Verdict:
@@ -140,7 +145,7 @@ class Answer:
     @property
     def together(self) -> InAir:
         """Answer for all stated airs, under the humidity of the one that decides."""
-        first = (max if self.more_is_better else min)((one.first for one in self.airs), default=np.nan)
+        first = min((air.first for air in self.airs), key=lambda size: self.sought.sign * size, default=np.nan)
         return InAir(self.stated_steps[-1].humidity, self.build, np.nan, self.stuck, self.curve, first)
 
     @property

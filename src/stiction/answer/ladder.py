@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from stiction.answer.data import Answer, Cause, InAir, Probability, Step, band
+from stiction.answer.sought import SOUGHT
 from stiction.answer.unknowns import Draws, OfBudgets, OfTestBeams, Unknowns
 from stiction.answer.worlds import Condition, World
 from stiction.devices.risk import CONFIDENCE
@@ -31,7 +32,7 @@ class Question:
     @property
     def sign(self) -> float:
         """Sign of ln size in v."""
-        return -1.0 if self.unit == "N" else 1.0
+        return SOUGHT[self.unit].sign
 
     def size_of(self, v: float) -> float:
         """Size at v [m, N], NaN where nothing bounds it."""

@@ -93,7 +93,7 @@ def shown(answer):
     """Sizes that a face may state as the one to build, as text."""
     if answer.forbidden or not np.isfinite(answer.build):
         return []
-    return [words.size_in_words(answer, answer.build).split()[0]]
+    return [answer.in_words(answer.build).split()[0]]
 
 
 def test_headline_text_page_index_and_front_page_state_the_same_size(case, tmp_path):

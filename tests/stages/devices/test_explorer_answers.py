@@ -211,6 +211,6 @@ def test_a_view_of_the_simulation_alone_names_the_size_to_build_beside_its_limit
     answer = answered.of_beam(lengths, touchdowns=100)
     beside = explorer.beside(view, answer)
     assert view.words["safe"] in beside.words["safe"]
-    assert words.size_in_words(answer, answer.build) in beside.words["safe"]
+    assert answer.in_words(answer.build) in beside.words["safe"]
     assert beside.grid is view.grid
     assert explorer.beside(view, replace(answer, forbidden=("x",))) is view

@@ -11,7 +11,6 @@ from stiction.config.cases import Air
 from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.answer import tables, words
-from stiction.report.format import UM, UN
 from stiction.report.style import (
     OUTLINED,
     SINGLE,
@@ -53,7 +52,7 @@ def _steps(panel: Axes, answer):
         panel.plot(ends, [row, row], color=colour, linewidth=5, solid_capstyle="butt")
         panel.plot(ends[1], row, "|", color=colour, markersize=11)
         change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""
-        said = f"{words.CAUSES[step.cause][0]}: {words.size_in_words(answer, step.size)}{change}"
+        said = f"{words.CAUSES[step.cause][0]}: {answer.in_words(step.size)}{change}"
         panel.annotate(said, (0.02, row - 0.2), **_LABEL)
         before = step.size if step.stated else before
     ends = [step.size for step in answer.steps]
@@ -67,7 +66,7 @@ def _steps(panel: Axes, answer):
 
 def _axis(answer):
     """Unit of the sizes of an answer, and the label of their axis."""
-    return (UN, "restoring force [µN]") if answer.more_is_better else (UM, "length [µm]")
+    return answer.sought.scale, f"{answer.sought.label} [{answer.sought.shown}]"
 
 
 @styled
@@ -103,7 +102,7 @@ def _stuck(panel: Axes, answer):
     panel.annotate(one_in(answer.share), (0.99, answer.share), ha="right", **_LABEL)
     _size_to_build(panel, answer, scale)
     panel.set(yscale="log", xlim=(sizes.min(), sizes.max()), ylim=(_LOWEST * answer.share, 1.3))
-    panel.legend(loc="lower left" if answer.more_is_better else "lower right", frameon=True, edgecolor="none")
+    panel.legend(loc="lower left" if answer.sought.more_is_better else "lower right", frameon=True, edgecolor="none")
 
 
 def _size_to_build(panel, answer, scale):
@@ -113,7 +112,7 @@ def _size_to_build(panel, answer, scale):
         panel.axvspan(limit / scale, answer.build / scale, color=_ANSWER, alpha=0.15, linewidth=0)
         panel.axvline(answer.build / scale, color=_ANSWER, linewidth=1.5)
         place = {"xytext": (3, -3), "textcoords": "offset points", "va": "top", "rotation": 90, "color": _ANSWER}
-        said = f"build {words.size_in_words(answer, answer.build)}"
+        said = f"build {answer.in_words(answer.build)}"
         panel.annotate(said, (answer.build / scale, 1), xycoords=("data", "axes fraction"), **place)
     if answer.sizes.min() < answer.size < answer.sizes.max():
         panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, label="stated size")

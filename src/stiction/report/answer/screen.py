@@ -37,10 +37,10 @@ def screen(answer: Answer, section: Mapping[str, Any], forbidding: Sequence[str]
 
 def change(answer: Answer, section: Mapping[str, Any]) -> str:
     """Sizes for a safe given length, or the effect of sizes on the length."""
-    if answer.more_is_better:
+    if answer.sought.more_is_better:
         if not np.isfinite(answer.build):
             return "Compute more patches: contact.samples."
-        return "Nothing." if answer.is_enough else f"A restoring force of {words.size_in_words(answer, answer.build)}."
+        return "Nothing." if answer.is_enough else f"A restoring force of {answer.in_words(answer.build)}."
     if section.get("residual_stress_MPa", 0):
         return (
             "A thicker beam, a wider gap or more tension lets longer bridges release; key chart computes the first two."

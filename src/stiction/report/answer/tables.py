@@ -10,7 +10,7 @@ from stiction.answer.data import Answer, Cause
 from stiction.plan.names import by_name
 from stiction.report.answer import words
 from stiction.report.answer.judged import judged
-from stiction.report.format import UM, UN, number
+from stiction.report.format import number
 from stiction.report.table import Table, table_stage
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.end_states import END_STATES
@@ -43,7 +43,7 @@ def devices(answers: Mapping[str, Answer]) -> Table:
 
 def _row(answer):
     """Numbers of one device in the unit of its size. Where a limit forbids a number, there is none."""
-    scale, unit = (UN, "µN") if answer.more_is_better else (UM, "µm")
+    scale, unit = answer.sought.scale, answer.sought.shown
     known = np.nan if words.is_forbidden(answer) else 1.0
     to_build = np.nan if answer.forbidden else answer.build / scale
     last, stuck = answer.stated_steps[-1], answer.stuck
@@ -82,11 +82,10 @@ def _size(value, unit):
 
 def steps(answer: Answer) -> pd.DataFrame:
     """Steps from the estimate to the size to build, for reading."""
-    what = "force" if answer.more_is_better else "length"
     return pd.DataFrame(
         {
             "step": words.CAUSES[step.cause][0],
-            f"{what} after it": words.size_in_words(answer, step.size),
+            f"{answer.sought.name} after it": answer.in_words(step.size),
             "change [%]": number(100 * (step.factor - 1), "+.1f") if k else "",
             "air": "dry" if not step.humidity else f"RH {step.humidity:g}",
         }

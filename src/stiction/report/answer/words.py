@@ -7,7 +7,7 @@ import numpy as np
 from stiction.answer.data import INPUTS, Answer, Cause, Probability, Verdict
 from stiction.config.cases import Air
 from stiction.devices.risk import one_in
-from stiction.report.format import UM, UN, airs, humidity_text
+from stiction.report.format import airs, humidity_text
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
 
@@ -41,14 +41,6 @@ NO_NUMBER = "Do not rely on a number"
 _REASONS = {
     INPUTS: "The inputs are too uncertain for a number. Were all exact, it would be {exact}. First measure {measure}.",
 }
-
-
-def size_in_words(answer: Answer, size: float) -> str:
-    """Size in its unit.
-
-    Lengths have whole micrometres, forces three digits.
-    """
-    return f"{size / UN:.3g} µN" if answer.more_is_better else f"{size / UM:.0f} µm"
 
 
 def percent(fraction: float, end: str = "") -> str:
@@ -92,7 +84,7 @@ def sign_of(answer: Answer) -> tuple[str, str]:
     if answer.verdict is Verdict.NONE:
         return ("bad", NO_NUMBER) if is_forbidden(answer) else ("open", "Not known")
     tone, *signs = _SIGNS[answer.verdict]
-    return tone, signs[answer.more_is_better]
+    return tone, signs[answer.sought.more_is_better]
 
 
 def headline(answer: Answer) -> str:
@@ -101,14 +93,12 @@ def headline(answer: Answer) -> str:
         build = " ".join(said).removesuffix(".")
     elif not np.isfinite(answer.build):
         build = "Too few simulated devices bound a size"
-    elif answer.more_is_better:
-        build = f"At least {size_in_words(answer, answer.build)}"
     else:
-        build = f"No longer than {size_in_words(answer, answer.build)}"
+        build = f"{answer.sought.bound} {answer.in_words(answer.build)}"
     if answer.stuck is None:
         return f"{build}."
-    scale, unit = (UN, "µN") if answer.more_is_better else (UM, "µm")
-    return f"{build}; with your {answer.size / scale:.4g} {unit}, {stuck_in_words(answer.stuck)} stick."
+    size = f"{answer.size / answer.sought.scale:.4g} {answer.sought.shown}"
+    return f"{build}; with your {size}, {stuck_in_words(answer.stuck)} stick."
 
 
 def promise(answer: Answer) -> str:
@@ -146,8 +136,7 @@ def decides(answer: Answer) -> str:
     change = largest.factor - 1
     if not np.isfinite(change) or abs(change) < 0.01:
         return said
-    what = "force" if answer.more_is_better else "length"
-    by = f"{'+' if change > 0 else '−'}{in_percent(abs(change))} of the {what}"
+    by = f"{'+' if change > 0 else '−'}{in_percent(abs(change))} of the {answer.sought.name}"
     return f"{said} Largest step: {CAUSES[largest.cause][1]}, {by}."
 
 
@@ -160,7 +149,7 @@ def measure(answer: Answer) -> str:
     group = f"{answer.measure[0].upper()}{answer.measure[1:]}"
     if is_forbidden(answer) or np.isnan(answer.if_measured):
         return f"{group}."
-    left = size_in_words(answer, answer.if_measured)
+    left = answer.in_words(answer.if_measured)
     if abs(np.log(answer.if_measured / answer.build)) < 0.01:
         return f"Nothing: with {answer.measure} known exactly, it would still be {left}."
     return f"{group}: known exactly, it would be {left}."
@@ -168,7 +157,7 @@ def measure(answer: Answer) -> str:
 
 def reasons(answer: Answer) -> list[str]:
     """Why no number is stated, as far as the inputs are the reason."""
-    exact = size_in_words(answer, answer.exact)
+    exact = answer.in_words(answer.exact)
     return [_REASONS[kind].format(exact=exact, measure=answer.measure) for kind in answer.forbidden if kind in _REASONS]
 
 
@@ -176,23 +165,22 @@ def by_test_beams(answer: Answer) -> list[str]:
     """Size without the test beams, beside the one with them."""
     if np.isnan(answer.without_test_beams):
         return []
-    return [f"Without the test beams, it would be {size_in_words(answer, answer.without_test_beams)}."]
+    return [f"Without the test beams, it would be {answer.in_words(answer.without_test_beams)}."]
 
 
 def of_airs(answer: Answer) -> list[dict[str, str]]:
     """Rows of the table of a first screen: size to build and P(stuck) in each stated air alone."""
-    rows, scale = [], UN if answer.more_is_better else UM
-    what, unit = ("force", "µN") if answer.more_is_better else ("length", "µm")
-    for one in answer.airs:
-        row = {"RH": humidity_text(one.humidity), f"{what} to build [{unit}]": _size(answer, one.build)}
-        if np.isfinite(one.without_tip):
-            row["if the tip cannot touch [µm]"] = _size(answer, one.without_tip)
-        if one.stuck is not None:
-            row[f"P(stuck) at {answer.size / scale:.4g} {unit}"] = stuck_in_words(one.stuck)
+    rows, sought = [], answer.sought
+    for air in answer.airs:
+        row = {"RH": humidity_text(air.humidity), f"{sought.name} to build [{sought.shown}]": _size(answer, air.build)}
+        if np.isfinite(air.without_tip):
+            row["if the tip cannot touch [µm]"] = _size(answer, air.without_tip)
+        if air.stuck is not None:
+            row[f"P(stuck) at {answer.size / sought.scale:.4g} {sought.shown}"] = stuck_in_words(air.stuck)
         rows.append(row)
     return rows
 
 
 def _size(answer, size):
     """Size without its unit, – if none is known."""
-    return size_in_words(answer, size).split()[0] if np.isfinite(size) else "–"
+    return answer.in_words(size).split()[0] if np.isfinite(size) else "–"

@@ -25,7 +25,7 @@ from stiction.report.style import (
 )
 from stiction.stages.axes.law import law_of, plain
 from stiction.stages.axes.margins import PARTS
-from stiction.stages.axes.requirement import margins_of, size_of
+from stiction.stages.axes.requirement import margins_of, sought_of
 from stiction.stages.axes.roughness import KURTOSIS, curves_of
 from stiction.stages.devices.end_states import END_STATES
 
@@ -80,16 +80,16 @@ def _curves(curve, draw, mark):
     """Figure of a curve, ``draw`` its line at a humidity and ``mark`` what is common to a panel."""
     shapes = list(map(str, curve["shape"].values))
     figure, axes = panels(1, len(shapes), (min(DOUBLE, 1.3 * SINGLE * len(shapes)), 3.0))
-    size = size_of(curve)
+    sought = sought_of(curve)
     for panel, shape in zip(axes[0], shapes, strict=True):
         for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
             draw(panel, curve.sel(humidity=humidity, shape=shape), colour)
-        panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label=size.required)
+        panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label=sought.required)
         mark(panel)
         panel.set_yscale("log")
         plain_log(panel.yaxis)
         _show(panel.xaxis, panel.set_xscale, curve, axes_of(curve)[0])
-    axes[0, 0].set_ylabel(f"{size.response} [{size.unit}], p = {float(curve.share):g}")
+    axes[0, 0].set_ylabel(f"{sought.response} [{sought.shown}], p = {float(curve.share):g}")
     letter(axes, [END_STATES[shape].by for shape in shapes])
     legend_outside(figure, handles(*axes[0]), "lower", 2 * len(shapes))
     return figure
@@ -152,7 +152,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
     for row, humidity in zip(axes, humidities, strict=True):
         for panel, shape in zip(row, shapes, strict=True):
             curve = data.sel(humidity=humidity, shape=shape).transpose("other", "roughness", ...)
-            _filled(panel, data, (margins_of(curve), margins_of(curve, "safe")), f"lg ({size_of(data).ratio})")
+            _filled(panel, data, (margins_of(curve), margins_of(curve, "safe")), f"lg ({sought_of(data).ratio})")
             panel.plot(along.in_unit(float(data.given)), across.in_unit(float(data.other_given)), "k+")
             panel.set_title(f"{END_STATES[shape].by}, {Air(humidity).words}")
     return figure

@@ -6,7 +6,7 @@ import xarray as xr
 from stiction.devices.risk import VERIFIED, one_in, samples_for
 from stiction.report.axes.axis import Axis, axes_of, notes, subjects
 from stiction.report.format import UM, airs, fraction_with_band
-from stiction.stages.axes.requirement import size_of
+from stiction.stages.axes.requirement import sought_of
 from stiction.stages.axes.roughness import KURTOSIS, curves_of
 from stiction.stages.devices.end_states import END_STATES
 
@@ -86,10 +86,10 @@ def _answer(curve, humidity, shape):
 
 def _enough(curve, humidity, shape):
     """Place of the requirement on the safe values at a humidity against one end state."""
-    size = size_of(curve)
-    required = f"{float(curve.required) / UM:g} {size.unit}"
-    by_beam = f"a {size.name} of {required} ({END_STATES[shape].by})"
-    wanted = by_beam if size.more_is_better else f"a {size.required} of {required}"
+    sought = sought_of(curve)
+    required = f"{float(curve.required) / UM:g} {sought.shown}"
+    by_beam = f"a {sought.name} of {required} ({END_STATES[shape].by})"
+    wanted = f"a {sought.required} of {required}" if sought.more_is_better else by_beam
     rows = _rows(curve, "range", humidity, shape)
     ranges = axes_of(curve)[0].ranges(np.stack([rows.range_low, rows.range_high], axis=-1))
     where = _where(curve.sel(humidity=humidity, shape=shape), axes_of(curve)[0], ranges)
@@ -105,7 +105,7 @@ def _where(curve, axis: Axis, ranges):
     if not ranges:
         return f"no {axis.words} of {whole} suffices: nowhere there is it certain that at most {share} sticks"
     # Bounds of beams allow for the number of drawn surfaces.
-    sure = "95 % confidence" if size_of(curve).more_is_better else "95 % confidence, given the drawn surfaces"
+    sure = f"95 % confidence{', given the drawn surfaces' * sought_of(curve).more_is_better}"
     if ranges == [whole]:
         return f"at most {share} sticks at any {axis.words} of {whole} ({sure})"
     return f"at most {share} sticks where the {axis.words} is {' or '.join(ranges)} ({sure}; computed for {whole})"
@@ -115,7 +115,7 @@ def _worst(curve, humidity, shape):
     """Roughness of strongest adhesion of a stopper if it is inside the range, beyond the errors of both ends."""
     known, axis = curve.sel(humidity=humidity, shape=shape).dropna("roughness", subset=["estimate"]), axes_of(curve)[0]
     forces, errors = known.estimate.values, known.error.values
-    if size_of(curve).more_is_better or not len(forces):
+    if not sought_of(curve).more_is_better or not len(forces):
         return ""
     most = int(np.argmax(forces))
     apart = [forces[most] - forces[end] > DIFFERENT * np.hypot(errors[most], errors[end]) for end in (0, -1)]

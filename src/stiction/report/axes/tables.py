@@ -14,7 +14,7 @@ from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.stages.axes.law import law_inputs
 from stiction.stages.axes.margins import PARTS
 from stiction.stages.axes.recommended import ALL, variables
-from stiction.stages.axes.requirement import size_of
+from stiction.stages.axes.requirement import sought_of
 from stiction.stages.axes.roughness import KURTOSIS
 from stiction.stages.devices.end_states import END_STATES
 
@@ -102,7 +102,7 @@ def _row(device, point, along):
         }
         | ({"varied": along.label} if is_rough else {"variable": along.name})
         | {"value": float(along.in_unit(point[along.dimension])), "share": float(point.share)}
-        | {"unit": size_of(point).unit}
+        | {"unit": sought_of(point).shown}
         | ({"safe": float(point.safe) / UM} if is_rough else {})
         | {"estimate": float(point.estimate) / UM, "estimate_se": float(point.error) / UM}
         | {"required": float(point.required) / UM}

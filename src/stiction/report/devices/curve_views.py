@@ -17,7 +17,7 @@ from stiction.report.devices.grid import Axis
 from stiction.report.format import UM
 from stiction.stages.axes.margins import PARTS
 from stiction.stages.axes.recommended import settings_of_processes
-from stiction.stages.axes.requirement import margins_of, relative_errors, size_of
+from stiction.stages.axes.requirement import margins_of, relative_errors, sought_of
 from stiction.stages.axes.roughness import curves_of
 
 
@@ -32,7 +32,7 @@ class _Required:
     @property
     def falls(self) -> bool:
         """Whether a larger size sticks less often."""
-        return not size_of(self.dataset).more_is_better
+        return sought_of(self.dataset).more_is_better
 
     @property
     def share(self) -> Axis:
@@ -43,12 +43,17 @@ class _Required:
     @property
     def size(self) -> Axis:
         """Required length, or restoring force."""
-        size = size_of(self.dataset)
+        sought = sought_of(self.dataset)
         keys = ("restoring_force_uN", "stiffness_N_per_m") if self.falls else ("requirement.length_um",)
         stated = next((one for one in keys if one in self.section), keys[0])
         reason = f"it is that of the device; devices.{self.name}.{stated} changes this"
         return _one(
-            size.name, size.required, size.unit, "linear", float(f"{float(self.dataset.required) / UM:.9g}"), reason
+            sought.name,
+            sought.required,
+            sought.shown,
+            "linear",
+            float(f"{float(self.dataset.required) / UM:.9g}"),
+            reason,
         )
 
     @property
@@ -65,8 +70,8 @@ class _Required:
         return {
             "yes": f"suffices {where}: at most {few} sticks with {size} (95 % confidence)",
             "no": f"not sure to suffice {where}",
-            "size": f"{size_of(self.dataset).response.capitalize()} for {few}",
-            "stick": f"{size_of(self.dataset).devices.capitalize()} with {size} that stick",
+            "size": f"{sought_of(self.dataset).response.capitalize()} for {few}",
+            "stick": f"{sought_of(self.dataset).devices.capitalize()} with {size} that stick",
             "copied": copied,
         }
 

@@ -12,7 +12,6 @@ from stiction.answer.data import Answer
 from stiction.config.kinds import kind_of
 from stiction.config.units import from_si
 from stiction.devices.risk import SCORES, quantiles
-from stiction.report.answer.words import size_in_words
 from stiction.report.devices import levels
 from stiction.report.devices.curves import Curves
 from stiction.report.devices.grid import Axis, Grid
@@ -39,8 +38,7 @@ def beside(view: View, answer: Answer) -> View:
     """View of simulated limits that names the size to build beside them."""
     if answer.forbidden or not np.isfinite(answer.build):
         return view
-    what = "force" if answer.more_is_better else "length"
-    build = f"{what} to build, with everything inside: {size_in_words(answer, answer.build)}"
+    build = f"{answer.sought.name} to build, with everything inside: {answer.in_words(answer.build)}"
     return replace(view, words={**view.words, "safe": f"{view.words['safe']} ({build})"})
 
 

@@ -93,7 +93,7 @@ def _inverted(answer, air, scores):
     """Sizes at which the layers of one air reach scores (3, n), NaN beyond its curve."""
     if not len(answer.sizes):
         return np.full((3, len(scores)), np.nan)
-    sign = -1 if answer.more_is_better else 1
+    sign = answer.sought.sign
     v, rows = sign * np.log(answer.sizes), air.curve
     if air.stuck is not None:
         k = np.searchsorted(v, sign * np.log(answer.size))

@@ -2,6 +2,7 @@
 
 import textwrap
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -9,6 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from stiction.answer.sought import FORCE, LENGTH, SOUGHT
 from stiction.config.units import from_si
 from stiction.constants import FREE_FALL
 from stiction.contact.voltage import BREAKDOWN
@@ -81,10 +83,6 @@ _ROW, _AROUND = 0.34, 1.1
 _SIZE, _CHARACTER, _FILLED = 7, 0.45, 0.85
 
 
-#: Fields of an answer that are numbers.
-_NUMBERS = ("low", "high", "error")
-
-
 def table(life: Mapping[str, xr.Dataset]) -> Table:
     """Answers about all devices, one row each."""
     rows = []
@@ -129,6 +127,29 @@ def significant(value: float) -> str:
 # Sentences
 
 
+class _Words(NamedTuple):
+    """Words for the simulated limits of one kind of number."""
+
+    needs: str
+    at_voltage: str
+    fast: str
+
+
+#: By the unit of the number.
+_SIMULATED = {
+    LENGTH.unit: _Words(
+        "its simulated limit is",
+        "its simulated limit is",
+        "its simulated limit can fall from {high} to {low} µm",
+    ),
+    FORCE.unit: _Words(
+        "it needs a restoring force of",
+        "they hold it with a further",
+        "it can need a restoring force of {high} instead of {low} µN",
+    ),
+}
+
+
 def sentences(dataset: xr.Dataset, build: float = np.nan) -> list[str]:
     """Life of a device in words: causes of contact, drying, and many touchdowns, beside its size to build [m, N]."""
     answers = {answer.name: answer for answer in answers_of(dataset) if not answer.needs}
@@ -136,18 +157,23 @@ def sentences(dataset: xr.Dataset, build: float = np.nan) -> list[str]:
     length = float(dataset.length)
     at = f"At {TO_UM * length:.0f} µm{_limit(answers, length)} it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
-    said = [*_beside(build, np.isfinite(length)), *_touching(answers, at)]
+    said = [*_beside(build, _sought(dataset)), *_touching(answers, at)]
     said += _asking(one for one in unknown if one.question == TOUCH)
     said += [*_pulled_in(answers, potential), *_drying(answers, at, length), *_on_dimples(answers), *_at_tilts(answers)]
     said += [*_at_voltage(answers, potential), *_fast(answers), *_often(answers, int(dataset.touchdowns))]
     return [*said, *_asking(one for one in unknown if one.question != TOUCH)]
 
 
-def _beside(build, is_beam):
+def _sought(dataset):
+    """Number sought for a device: those with a length have none of a force."""
+    return FORCE if np.isnan(float(dataset.length)) else LENGTH
+
+
+def _beside(build, sought):
     """Note on the difference of simulated limits from the size to build."""
     if not 0 < build < np.inf:
         return []
-    size = f"length to build, {TO_UM * build:.0f} µm" if is_beam else f"force to build, {TO_UN * build:.3g} µN"
+    size = f"{sought.name} to build, {sought.in_words(build)}"
     return [f"The {size}, has everything inside. Simulated limits below have one cause each and exact inputs."]
 
 
@@ -213,11 +239,10 @@ def _at_voltage(answers, potential):
     """Effect of a voltage on a touching device, and on its dielectric."""
     if AT_VOLTAGE not in answers:
         return []
-    one, field = answers[AT_VOLTAGE], answers[FIELD]
-    is_length, on = one.unit == "m", f"While {significant(potential)} V are on,"
-    what, unit = ("its simulated limit is", "µm") if is_length else ("they hold it with a further", "µN")
-    ends = list(dict.fromkeys(end for end, value in ((_low(one), one.low), (_high(one), one.high)) if value == value))
-    said = [f"{on} {what} {' to '.join(ends)} {unit}."]
+    limit, field = answers[AT_VOLTAGE], answers[FIELD]
+    on, ends = f"While {significant(potential)} V are on,", [(_low(limit), limit.low), (_high(limit), limit.high)]
+    known = dict.fromkeys(end for end, value in ends if not np.isnan(value))
+    said = [f"{on} {_SIMULATED[limit.unit].at_voltage} {' to '.join(known)} {_UNITS[limit.unit][1]}."]
     if FREEING in answers:
         said.append(_release_voltage(answers[FREEING]))
     if field.high > BREAKDOWN:
@@ -276,12 +301,10 @@ def _liquids(answers, name):
 
 def _fast(answers):
     """Safe length, or restoring force, of fast separation in words, if it differs from slow and a bound is known."""
-    one = answers.get(FAST) or answers.get(RESTORING)
-    if one is None or not one.low < one.high < np.inf:
+    limit = answers.get(FAST) or answers.get(RESTORING)
+    if limit is None or not limit.low < limit.high < np.inf:
         return []
-    needs = f"its simulated limit can fall from {_high(one)} to {_low(one)} µm"
-    if one.unit == "N":
-        needs = f"it can need a restoring force of {_high(one)} instead of {_low(one)} µN"
+    needs = _SIMULATED[limit.unit].fast.format(low=_low(limit), high=_high(limit))
     return [f"If it separates faster than water evaporates, as in a shock, {needs}."]
 
 
@@ -289,14 +312,13 @@ def _often(answers, touchdowns):
     """What is safe for many touchdowns, as far as it is known."""
     if AFTER not in answers:
         return []
-    one = answers[AFTER]
-    is_length = one.unit == "m"
-    bounds = [_low(one), _high(one)] if is_length else [_high(one), _low(one)]
-    what = "its simulated limit is" if is_length else "it needs a restoring force of"
-    unit = _UNITS[one.unit][1]
+    limit = answers[AFTER]
+    sought = SOUGHT[limit.unit]
+    bounds = [f"{bound(limit)} {sought.shown}" for bound in (_low, _high)]
+    others, same = reversed(bounds) if sought.more_is_better else bounds
     return [
-        f"For {touchdowns} touchdowns {what} {bounds[0]} {unit} if each meets other summits, and {bounds[1]} {unit} if "
-        "all meet the same ones."
+        f"For {touchdowns} touchdowns {_SIMULATED[limit.unit].needs} {others} if each meets other summits, and {same} "
+        "if all meet the same ones."
     ]
 
 
@@ -329,13 +351,13 @@ def figure(life: Mapping[str, xr.Dataset]) -> Figure:
 
 def _rows(dataset):
     """Finite answers of a device in lengths or, for a stopper, forces."""
-    unit = "N" if np.isnan(float(dataset.length)) else "m"
-    return [one for one in answers_of(dataset) if one.unit == unit and np.isfinite(one.high)]
+    unit = _sought(dataset).unit
+    return [answer for answer in answers_of(dataset) if answer.unit == unit and np.isfinite(answer.high)]
 
 
 def _bars(panel: Axes, answers, length, count):
     """One bar for each answer from its lower to its upper bound, and the length of a beam. A figure has some panels."""
-    factor, unit = _UNITS[answers[0].unit]
+    factor, sought = _UNITS[answers[0].unit][0], SOUGHT[answers[0].unit]
     grid, figure = panel.get_gridspec(), panel.figure
     longest = int(_FILLED * figure.get_figwidth() / grid.ncols * 72 / (_SIZE * _CHARACTER))
     for row, one in enumerate(reversed(answers)):
@@ -347,8 +369,7 @@ def _bars(panel: Axes, answers, length, count):
         panel.annotate(text, (0.02, row + 0.15), **place, fontsize=_SIZE, path_effects=OUTLINED)
     if np.isfinite(length):
         panel.axvline(factor * length, color="0.4", linestyle=":", linewidth=0.8)
-    what = "length" if unit == "µm" else "force"
-    label = f"{what} [{unit}]" + ", axes differ" * (count > 1)
+    label = f"{sought.name} [{sought.shown}]" + ", axes differ" * (count > 1)
     panel.set(xlabel=label, xlim=(0, 1.05 * panel.dataLim.x1), ylim=(-0.5, len(answers) - 0.1), yticks=[])
 
 

@@ -11,7 +11,7 @@ from stiction.report.format import airs, signed
 from stiction.report.model_error.column import change
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.opening import EITHER, FORCE
+from stiction.stages.devices.opening import EITHER, SOUGHT_BY
 
 
 def device_change(errors: Mapping[str, xr.Dataset] | None, device: str, humidity: float, shape: str) -> dict[str, Any]:
@@ -29,7 +29,7 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
         return []
     error = errors[device]
     shape = str(error["shape"].values[0])
-    what = "pull-off force" if shape == FORCE else f"lengths held by the {END_STATES[shape].by}"
+    what, sought = END_STATES[shape].changes, SOUGHT_BY[shape]
     rows = {float(humidity): device_change(errors, device, humidity, shape) for humidity in error.humidity.values}
     known = {humidity: row for humidity, row in rows.items() if np.isfinite(row["model_error_percent"])}
     if not known:
@@ -43,7 +43,7 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
         said.append(f"It is not known {airs([humidity for humidity in rows if humidity not in known])}.")
     if EITHER in error["shape"]:
         said += _of_tips(error)
-    said += [_safe_side(uncorrected, -1 if shape == FORCE else 1)] if uncorrected else []
+    said += [_safe_side(uncorrected, sought)] if uncorrected else []
     if error.across_gaps:
         return [*said, "Attraction across gaps is in both models."]
     gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
@@ -68,16 +68,16 @@ def _percent(row):
     return f"{text} (interpolated)" if row["interpolated"] else text
 
 
-def _safe_side(known, sign):
+def _safe_side(known, sought):
     """Sentence on the safe side: longer beams and smaller forces stick less under full contact."""
     unsafe = {
         humidity: abs(row["model_error_percent"])
         for humidity, row in known.items()
-        if sign * row["model_error_percent"] < -2 * row["model_error_se_percent"]
+        if sought.sign * row["model_error_percent"] < -2 * row["model_error_se_percent"]
     }
     if not unsafe:
         return "What is stated is on the safe side of it, or does not differ by more than twice its standard error."
-    mend = "shorten the lengths" if sign > 0 else "raise the restoring force"
+    mend = "raise the restoring force" if sought.more_is_better else "shorten the lengths"
     by = in_percent(max(unsafe.values()) / 100)
     return f"What is stated is not on the safe side of it {airs(unsafe)}: {mend} by {by}."
 

@@ -13,7 +13,7 @@ from stiction.report.limits import words
 from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.opening import ARC, FORCE, MIDDLE, S_SHAPE
+from stiction.stages.devices.opening import ARC, MIDDLE, S_SHAPE, SOUGHT_BY
 from stiction.stages.test_beams.inference import OWN, UNLIKELY, is_reliable, shape_of
 
 #: Number of standard deviations beyond which an input counts as wrong; ratio of dimensions beyond which a prediction
@@ -90,12 +90,13 @@ def agreement(update: xr.Dataset) -> str:
 def notes(update: xr.Dataset) -> str:
     """What the test beams say about the answer apart from its number, or why they say nothing."""
     responses = list(map(str, update.response.values))
-    none = f"With the test beams, no {'force' if FORCE in responses else 'length'} is stated"
+    sought = SOUGHT_BY[responses[0]]
+    none = f"With the test beams, no {sought.name} is stated"
     if not is_reliable(update):
         return f"{none}. {words.text(contradiction(update))}"
     if update.result_after.isnull().any():
         return f"{none}: {_FEW}."
-    if FORCE in responses:
+    if sought.more_is_better:
         return "Cracks do not say how much the model errs at stoppers."
     beyond = ", but not where the middle of a bridge holds" if MIDDLE in responses else ""
     said = f"The answer contains the error of the model as far as the test beams show it{beyond}."
@@ -153,9 +154,8 @@ def stuck_sentences(update: xr.Dataset) -> list[str]:
     sentences = []
     every = (chosen.sel(humidity=humidity) for humidity in update.humidity.values)
     for at in (one for one in every if np.isfinite(one.updated_stuck)):
-        size = (
-            "at its restoring force" if shape == FORCE else f"of {TO_UM * float(at.safe):.0f} µm, the simulated limit,"
-        )
+        size = f"of {TO_UM * float(at.safe):.0f} µm, the simulated limit,"
+        size = f"at its {sought.label}" if (sought := SOUGHT_BY[shape]).more_is_better else size
         sentences.append(
             f"{airs([float(at.humidity)]).capitalize()}, {in_percent(at.expected_stuck)} of the devices {size} are "
             f"expected to stick without the test beams and {in_percent(at.updated_stuck)} with them, averaged over the "
@@ -234,7 +234,7 @@ def _safe_sizes(device, update):
     for humidity in update.humidity.values:
         head = {"device": device, "relative_humidity": float(humidity), "name": device}
         for shape in map(str, update["shape"].values):
-            of_shape, unit = update.sel(humidity=humidity, shape=shape), "µN" if shape == FORCE else "µm"
+            of_shape, unit = update.sel(humidity=humidity, shape=shape), SOUGHT_BY[shape].shown
             for share in update.share.values:
                 at = of_shape.sel(share=share)
                 part = f"{END_STATES[shape].safe}, p = {share:g}"

@@ -13,7 +13,7 @@ from stiction.answer.worlds import Condition, Sampled, Stated
 from stiction.devices.risk import sampled_bound
 from stiction.life import holding
 from stiction.stages.devices.budget import members_of, response_of
-from stiction.stages.devices.opening import EITHER, FORCE, DesignedBeam
+from stiction.stages.devices.opening import EITHER, FORCE, SOUGHT_BY, DesignedBeam
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.life.answers import AT_VOLTAGE, COLLAPSE, VOLTAGE_ENERGY, answers_of
 from stiction.stages.life.separation import of_beam
@@ -153,7 +153,7 @@ def of_budgets(budgets: Iterable[xr.Dataset], humidities: Iterable[float]) -> Un
     for humidity, dataset in zip(humidities, budgets, strict=True):
         response, _ = response_of(dataset)
         if dataset.sizes["input"] or "member" in dataset.dims:
-            found[humidity, shape_of(response)] = _slopes(dataset, -1.0 if response == FORCE else 1.0)
+            found[humidity, shape_of(response)] = _slopes(dataset, SOUGHT_BY[response].sign)
     return OfBudgets(found) if found else Exact()
 
 
@@ -164,7 +164,9 @@ def of_test_beams(update: xr.Dataset | None) -> Unknowns | None:
     quantiles = {}
     rows = zip(update.humidity_of_result.values, update.response.values, update.result_quantile.values, strict=True)
     for humidity, response, row in rows:
-        quantiles[float(humidity), shape_of(str(response))] = -row[::-1] if response == FORCE else row
+        quantiles[float(humidity), shape_of(str(response))] = (
+            -row[::-1] if SOUGHT_BY[str(response)].more_is_better else row
+        )
     return OfTestBeams(update.score.values, quantiles)
 
 

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from stiction.answer.sought import SOUGHT, Sought
 from stiction.chaos.model import Truncation
 from stiction.config.kinds import restoring_force
 from stiction.contact.correction import NONE
@@ -26,32 +27,9 @@ from stiction.stages.devices.opening import FORCE, DesignedBeam, section_of_beam
 SMOOTHER = Limit("smoother_than_full_contact", Side.UNSAFE, False)
 
 
-class Size(NamedTuple):
-    """Number by which a device meets its requirement."""
-
-    name: str
-    unit: str  #: as shown
-    required: str  #: what the device has, in words
-    response: str  #: number with the allowed fraction stuck, in words
-    devices: str  #: devices with such a number
-    more_is_better: bool  #: whether a larger response leaves fewer stuck
-
-    @property
-    def ratio(self) -> str:
-        """Ratio above one if the requirement is met, in words."""
-        return f"{self.response} / {self.required}" if self.more_is_better else f"{self.required} / {self.response}"
-
-
-#: Sizes by their unit in datasets.
-_SIZES = {
-    "m": Size("length", "µm", "required length", "length", "devices", True),
-    "N": Size("force", "µN", "restoring force", "force needed", "stoppers", False),
-}
-
-
-def size_of(found: xr.Dataset) -> Size:
-    """Size of the requirement of a dataset."""
-    return _SIZES[found.required.attrs["units"]]
+def sought_of(found: xr.Dataset) -> Sought:
+    """Number that the requirement of a dataset is about."""
+    return SOUGHT[found.required.attrs["units"]]
 
 
 class Response(NamedTuple):
@@ -191,7 +169,7 @@ def layout(responses: Sequence[Sequence[Response]], samples: int, settings: OfBe
 
 def margins_of(found: xr.Dataset, name: str = "estimate") -> np.ndarray:
     """Margins of a variable of devices to their requirement, of its shape [-]."""
-    return margins(found[name].values, float(found.required), size_of(found).more_is_better)
+    return margins(found[name].values, float(found.required), not sought_of(found).more_is_better)
 
 
 def relative_errors(found: xr.Dataset) -> np.ndarray:

@@ -40,6 +40,7 @@ from stiction.stages.devices.contact_names import contacts_of_budget, contacts_o
 from stiction.stages.devices.opening import (
     ARC,
     FORCE,
+    SOUGHT_BY,
     DesignedBeam,
     addresses,
     around,
@@ -355,8 +356,7 @@ def layout(
     (values,) = devices.values
     known, centre = values[np.isfinite(values)], devices.centre(values)
     changes = np.array(list(effects.values())).reshape(len(effects), 2)
-    unit = "N" if settings.response == FORCE else "m"
-    response = {"units": unit, "response": settings.response, "share": settings.share}
+    response = {"units": SOUGHT_BY[settings.response].unit, "response": settings.response, "share": settings.share}
     return xr.Dataset(
         {
             "slope": ("input", slopes[:, 0]),

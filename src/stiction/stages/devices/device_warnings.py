@@ -27,7 +27,7 @@ from stiction.stages.beams.pair_warnings import (
     plastic_contact,
 )
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE, SOUGHT_BY, DesignedBeam, section_of_beam
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import sought
 from stiction.stages.surfaces import surface_flags
@@ -207,7 +207,7 @@ def gap_warnings(changes: Mapping[tuple[float, str], tuple[float, float]], shape
     """Limit by the effect of attraction across gaps on adhesion in a shape, from `left_out_changes`."""
     response = ARC if shape == EITHER else shape
     of_shape = {humidity: change for (humidity, of), change in changes.items() if of == response}
-    return rules.triggered(rules.without_gaps(of_shape, shorter=shape != FORCE))
+    return rules.triggered(rules.without_gaps(of_shape, shorter=not SOUGHT_BY[shape].more_is_better))
 
 
 def left_out_gaps(plan: Any, device: str) -> dict[str, str]:

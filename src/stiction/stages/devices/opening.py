@@ -14,6 +14,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from stiction.answer import sought
 from stiction.beam.cantilever import Beam
 from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import LONGER
@@ -42,6 +43,8 @@ S_SHAPE, EITHER, MIDDLE = "S-shape", "S-shape or arc", "middle"
 #: What the inputs of a budget may move apart from the mean length at which beams stick: a length that tips hold, and a
 #: mean force.
 ARC, FORCE = "arc", "force"
+#: Numbers sought for devices, by their end state or by what the inputs of a budget move.
+SOUGHT_BY = dict.fromkeys([S_SHAPE, EITHER, MIDDLE, ARC], sought.LENGTH) | {FORCE: sought.FORCE}
 #: Length of the long beams, in crack lengths that Eq. (13) predicts from the mean adhesion energy. Cracks stop where
 #: adhesion is strongest, so that they are shorter than this prediction.
 LONG = 1.3
