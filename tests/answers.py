@@ -177,14 +177,14 @@ def beam_page(section, lengths, budgets=None, *, warnings=None, answer=None, nam
     found = limits_of(name, warnings)
     answer = answer or replace(beam_answer(section, lengths, budgets, found, **_evidence(data)), device=name)
     own = {"safe_lengths": lengths, "budgets": budgets or {}, "warnings": warnings}
-    return pages.beam_page(name, section, own | data, answer)
+    return pages.device_page(name, section, own | data, answer)
 
 
 def stopper_page(section, stopper, budgets=None, limits: Sequence[Limit] = (), *, answer=None, **data) -> Page:
     """Page of a stopper, as of `beam_page`."""
     answer = answer or stopper_answer(stopper, budgets, limits, **_evidence(data))
     own = {"stopper": stopper, "budgets": budgets or {}, "warnings": OfDevices({}, {}, {"S1": list(limits)})}
-    return pages.stopper_page("S1", section, own | data, answer)
+    return pages.device_page("S1", section, own | data, answer)
 
 
 def _evidence(data):

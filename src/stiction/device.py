@@ -3,7 +3,6 @@
 Stages, settings and addresses of random numbers are the same as in the workflow, and so are the results.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from html import escape
 from typing import TYPE_CHECKING
@@ -13,19 +12,18 @@ import xarray as xr
 from stiction.accuracy import decided
 from stiction.answer.data import Answer
 from stiction.config.cases import Air, case_id, in_numbers
-from stiction.config.kinds import KEYS, KINDS, Kind, kind_of
-from stiction.config.units import in_si
+from stiction.config.kinds import BEAM, KEYS, KINDS, STOPPER, Kind, Release, kind_of
 from stiction.devices.limits.limit import Limit, restored
 from stiction.plan.devices import DevicePlan
-from stiction.plan.graph import Results
+from stiction.plan.graph import Results, datasets_in, structured
 from stiction.report.answer import words as answer_words
 from stiction.report.answer.judged import with_limits
 from stiction.report.limits import words
 from stiction.stages.answer.answer import answer_of
-from stiction.stages.devices import device_warnings, stuck
+from stiction.stages.devices import device_warnings
 from stiction.stages.devices.contact_names import contact_of, tips_of
 from stiction.stages.devices.device_warnings import gap_warnings, left_out_changes
-from stiction.stages.devices.opening import FORCE
+from stiction.stages.devices.results import results_of, stuck_beams, stuck_stoppers
 from stiction.stages.surfaces import surface_flags
 
 if TYPE_CHECKING:
@@ -93,33 +91,27 @@ class Device:
 
         The first call takes half a minute, for a bridge a minute.
         """
-        self._must_be(lambda kind: kind.is_beam)
+        self._must_be(BEAM)
         return self._result("cracks", humidity)
 
     def safe_lengths(self, humidity: float | str) -> xr.Dataset:
         """P(stuck) against length, and safe lengths. Dataset of `stiction.stages.devices.safe_lengths`."""
-        self._must_be(lambda kind: kind.is_beam)
+        self._must_be(BEAM)
         return self._result("safe_lengths", humidity)
 
     def stuck(self, humidity: float | str) -> xr.Dataset:
         """P(stuck) with its 95 % band: of a beam over its length, of a stopper over its restoring force.
 
-        Beams and stoppers have one layout, that of `stiction.stages.devices.stuck`.
+        Beams and stoppers have one layout, that of `stiction.stages.devices.results`.
         """
-        if self.kind.is_beam:
-            return stuck.stuck_beams(self.safe_lengths(humidity))
-        return stuck.stuck_stoppers(self.forces(), in_numbers(humidity))
+        return _STUCK[self.kind.release.name](self, humidity)
 
     def plot(self) -> "Figure":
         """Figure of P(stuck) by simulation alone, at all humidities: over lengths of beams, or forces of stoppers."""
-        from stiction.report.budget.figures import stoppers
-        from stiction.report.devices.figures import simulated
+        from stiction.report.devices.parts import OF_RELEASE
 
-        if not self.kind.is_beam:
-            return stoppers({self.name: self.forces()}, {})
-        return simulated(
-            {(self.name, humidity): self.safe_lengths(humidity) for humidity in self._section["humidities"]}, {}
-        )
+        data = {name: structured(files, self.results.__getitem__) for name, files in self._simulated.items()}
+        return OF_RELEASE[self.kind.release.name].figure(self.name, data)
 
     @property
     def kind(self) -> Kind:
@@ -165,19 +157,18 @@ class Device:
         uncertainties, some minutes. Whether the contact is plastic is not checked.
         """
         answer = answer_of(self.results[f"devices/answer/{self.name}"])
-        humidities = self._section["humidities"]
-        found = [self.safe_lengths(humidity) for humidity in humidities] if self.kind.is_beam else [self.forces()]
-        return with_limits(answer, [limit for one in found for limit in self.limits(one)])
+        names = [name for files in self._simulated.values() for name in datasets_in(files)]
+        return with_limits(answer, [limit for name in names for limit in self.limits(self.results[name])])
 
     def chart(self, humidity: float | str) -> xr.Dataset:
         """Safe lengths of the thicknesses and gaps of its chart. Dataset of `stiction.stages.devices.chart`."""
-        self._must_be(lambda kind: kind.is_beam)
+        self._must_be(BEAM)
         self._must_state("chart", self._section.get("chart"))
         return self._result("chart", humidity)
 
     def forces(self) -> xr.Dataset:
         """Pull-off forces of a stopper, P(stuck) and the worst humidity: dataset of stage stoppers."""
-        self._must_be(lambda kind: not kind.is_beam)
+        self._must_be(STOPPER)
         return self.results[f"devices/stoppers/{self.name}"]
 
     def life(self) -> xr.Dataset:
@@ -197,7 +188,7 @@ class Device:
 
     def tip_budget(self, humidity: float | str) -> xr.Dataset:
         """Uncertainty of the length of adhesion at the tip of a cantilever, see `budget`."""
-        self._must_be(lambda kind: kind.has_tip)
+        self._must_be(BEAM, has_tip=True)
         self._must_state("uncertainty", self.name in self._plan.devices.with_budget)
         return self._result("budget", humidity, "_tip")
 
@@ -243,16 +234,18 @@ class Device:
         left_out = device_warnings.left_out_gaps(self._plan, self.name).values()
         changes = {key: of for name in left_out for key, of in left_out_changes(self.results[name]).items()}
         flags += map(restored, settings.get("assumed", []))
-        if "stopper" in settings:
-            of = in_si(device_warnings.OfStopper, settings["stopper"])
-            return device_warnings.stopper_warnings(safe_lengths, of) + gap_warnings(changes, FORCE) + flags
-        of_beam = device_warnings.beam_warnings(safe_lengths, in_si(device_warnings.OfDevice, settings["beam"]))
-        with_gaps = {shape: said + gap_warnings(changes, shape) for shape, said in of_beam.items()}
+        by_shape = device_warnings.of_settings(settings).limits(safe_lengths)
+        with_gaps = {shape: limits + gap_warnings(changes, shape) for shape, limits in by_shape.items()}
         return words.distinct(with_gaps) + flags
 
     def _result(self, stage, humidity, end=""):
         """Dataset of a stage at a humidity."""
         return self.results[f"devices/{stage}/{case_id(self.name, humidity)}{end}"]
+
+    @property
+    def _simulated(self):
+        """Names of the results of simulation alone, of a beam by humidity."""
+        return results_of(self._plan, self.name, "lengths", "stopper")
 
     @property
     def _plan(self):
@@ -262,9 +255,9 @@ class Device:
     def _section(self):
         return self._plan.config["devices"][self.name]
 
-    def _must_be(self, wanted: Callable[[Kind], bool]):
-        """Refuse a result of other kinds of devices."""
-        kinds = [name for name, kind in KINDS.items() if wanted(kind)]
+    def _must_be(self, release: Release, has_tip: bool = False):
+        """Refuse a result of other kinds of devices: of another release, or without a tip."""
+        kinds = [name for name, kind in KINDS.items() if kind.release is release and kind.has_tip >= has_tip]
         if self._section["kind"] not in kinds:
             raise ValueError(f"device {self.name} is a {self._section['kind']}; only a {' or '.join(kinds)} has this")
 
@@ -272,3 +265,10 @@ class Device:
         """Refuse a result without its key in the section of the device."""
         if not stated:
             raise ValueError(f"device {self.name} has no {key}: state devices.{self.name}.{key}")
+
+
+#: P(stuck) at a humidity, by the name of the release.
+_STUCK = {
+    "beam": lambda device, humidity: stuck_beams(device.safe_lengths(humidity)),
+    "stopper": lambda device, humidity: stuck_stoppers(device.forces(), in_numbers(humidity)),
+}

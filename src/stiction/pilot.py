@@ -167,38 +167,47 @@ def _pairs(plan):
 def _devices(plan, section):
     """Patches of devices, also along the axes of their charts and of the worst humidity of stoppers."""
     devices = plan.devices
-    for name, device in devices.sections.items():
+    for name in devices.sections:
         own, ground = (section, name), devices.ground(name)
         use = partial(Use, ground, ("NG",), pair=(*own, "pair"))
         air = (
             *own,
             "humidities" if section == "devices" else next(key for key in DATA if key in plan.config[section][name]),
         )
-        if not devices.kind(name).is_beam:
-            yield use(device["humidities"], size=(*own, "contact_um"), air=air)
-            sought = plan.config["design"].get("worst_humidities")
-            if sought and any(device["humidities"]):
-                yield use(sought, size=(*own, "contact_um"), air=("design", "worst_humidities"))
-            continue
-        sizes = [(device["humidities"], air, (*own, "thickness_um"), {})]
-        if chart := device.get("chart"):
-            thinnest = {
-                "thickness_um": chart["thicknesses_um"][0],
-                "gap_um": chart.get("gaps_um", [device["gap_um"]])[0],
-            }
-            keys = [(*own, "chart", key) for key in ("humidities", "thicknesses_um")]
-            sizes.append((devices.axis(name), *keys, thinnest))
-        for humidities, of_air, key, size in sizes:
-            beam = in_si(DesignedBeam, section_of_beam(plan, name) | size)
-            yield use(
-                humidities,
-                size=(*own, "width_um"),
-                air=of_air,
-                resolved=humidities,
-                longest_strip=partial(beam.opening.longest_strip, beam),
-                strip=key,
-                thickness=from_si(beam.thickness, "um"),
-            )
+        yield from _OF_RELEASE[devices.kind(name).release.name](plan, name, use, air)
+
+
+def _of_strips(plan, name, use, air):
+    """Yield the strips of a beam, also along its chart."""
+    device, own = plan.devices.sections[name], air[:2]
+    sizes = [(device["humidities"], air, (*own, "thickness_um"), {})]
+    if chart := device.get("chart"):
+        thinnest = {"thickness_um": chart["thicknesses_um"][0], "gap_um": chart.get("gaps_um", [device["gap_um"]])[0]}
+        keys = [(*own, "chart", key) for key in ("humidities", "thicknesses_um")]
+        sizes.append((plan.devices.axis(name), *keys, thinnest))
+    for humidities, of_air, key, size in sizes:
+        beam = in_si(DesignedBeam, section_of_beam(plan, name) | size)
+        yield use(
+            humidities,
+            size=(*own, "width_um"),
+            air=of_air,
+            resolved=humidities,
+            longest_strip=partial(beam.opening.longest_strip, beam),
+            strip=key,
+            thickness=from_si(beam.thickness, "um"),
+        )
+
+
+def _of_area(plan, name, use, air):
+    """Yield the area of a stopper, also at the ends of the humidities in which the worst is sought."""
+    humidities, size = plan.devices.sections[name]["humidities"], (*air[:2], "contact_um")
+    yield use(humidities, size=size, air=air)
+    worst = plan.config["design"].get("worst_humidities")
+    if worst and any(humidities):
+        yield use(worst, size=size, air=("design", "worst_humidities"))
+
+
+_OF_RELEASE = {"beam": _of_strips, "stopper": _of_area}
 
 
 def _in_full_contact(plan, uses):

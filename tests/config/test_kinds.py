@@ -4,7 +4,7 @@ from itertools import chain, combinations
 
 import pytest
 
-from stiction.config.kinds import COMMON, KEYS, KINDS, restoring_force
+from stiction.config.kinds import BEAM, COMMON, KEYS, KINDS
 from stiction.config.relations import schema
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import BEAMS
@@ -22,9 +22,9 @@ def test_the_schema_knows_all_kinds_and_the_keys_of_each_and_no_others():
 @pytest.mark.parametrize("name", KINDS)
 def test_a_kind_that_cracks_open_has_mechanics_with_a_tip_if_it_has_one(name):
     kind = KINDS[name]
-    assert {*kind.keys, *chain.from_iterable(kind.ways)} <= set(KEYS)
-    assert kind.is_beam == (name in BEAMS)
-    if kind.is_beam:
+    assert {*kind.keys, *chain.from_iterable(way.keys for way in kind.ways)} <= set(KEYS)
+    assert (kind.release is BEAM) == (name in BEAMS)
+    if kind.release is BEAM:
         assert kind.has_tip == BEAMS[name].has_tip
         assert {f"{size}_{unit}" for size in BEAMS[name].sizes for unit in ("um", "MPa")} >= set(kind.keys)
         assert all(END_STATES[shape].by and END_STATES[shape].legend for shape in BEAMS[name].shapes)
@@ -50,5 +50,5 @@ def test_a_key_of_another_kind_is_refused_with_the_keys_of_this_one(name):
 
 def test_the_force_of_a_spring_is_its_stiffness_times_its_deflection():
     for stiffness, gap in ((2, 1.5), (0.1, 3), (40, 0.2)):
-        newton = restoring_force({"stiffness_N_per_m": stiffness, "gap_um": gap}) * 1e-6
-        assert newton == pytest.approx(stiffness * gap * 1e-6, rel=1e-15)
+        stated = KINDS["stopper"].stated({"stiffness_N_per_m": stiffness, "gap_um": gap})
+        assert stated["restoring_force_uN"] * 1e-6 == pytest.approx(stiffness * gap * 1e-6, rel=1e-15)

@@ -96,7 +96,7 @@ define("fast_strips")
 define("fast_tips")
 
 # Life of device {device}.
-#   fast_strips, fast_tips, safe_lengths, touchdowns, at_voltage, stoppers_at_voltage, dimples, stoppers,
+#   safe_lengths, fast_strips, fast_tips, touchdowns, at_voltage, stoppers_at_voltage, dimples, stoppers,
 #     separation, tilted_stoppers -> results/devices/life/{device}.nc
 define("life")
 
@@ -111,6 +111,7 @@ define("test_beams")
 define("test_beams_rerun")
 
 # Answer about device {device}.
-#   budget, tip_budget, life, fast_strips, fast_tips, test_beams, safe_lengths, touchdowns, at_voltage,
-#     stoppers_at_voltage, separation, stoppers, tilted_stoppers -> results/devices/answer/{device}.nc
+#   budget, tip_budget, life, fast_strips, fast_tips, test_beams, safe_lengths, at_voltage,
+#     stoppers_at_voltage, touchdowns, separation, stoppers, tilted_stoppers ->
+#     results/devices/answer/{device}.nc
 define("answer")

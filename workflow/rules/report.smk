@@ -156,7 +156,7 @@ define("figure_life")
 
 # Page of device {device}.
 #   answer, life, budget, tip_budget, device_warnings, device_model_error, test_beams_rerun, safe_lengths,
-#     roughness, stoppers, tilted_stoppers, stoppers_at_voltage, process_curve, process_settings, process_law,
+#     roughness, stoppers, stoppers_at_voltage, tilted_stoppers, process_curve, process_settings, process_law,
 #     chart, process_map, process_pairs -> results/devices/{device}.{html,txt}
 define("device_page")
 

@@ -1,14 +1,16 @@
 """Kinds of devices: their keys, their places of contact, and the parts able to stick.
 
-All other code asks the object of a kind, never its name: a new kind is an entry of `KINDS` and of the schema. How the
-beams of a kind open is in `stiction.stages.devices.opening.BEAMS`.
+All other code asks the object of a kind, never its name: a new kind is an entry of `KINDS` and of the schema. How
+devices release is in tables of the stages and of the report, under the name of a `Release`.
 """
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from itertools import chain
 from typing import NamedTuple
+
+from stiction.answer import sought
 
 #: Keys that every device may have.
 COMMON = (
@@ -57,21 +59,65 @@ ROUGHNESSES = {
 
 
 @dataclass(frozen=True, kw_only=True)
+class Release:
+    """Release of stuck devices, and its consequences for their configuration."""
+
+    name: str  #: in settings, and in the tables of later folders
+    sought: sought.Sought
+    sides: Callable[["Kind", Mapping, float], tuple[float, float]]  #: of a patch, parameters as of `Kind.sides` [µm]
+    required: tuple[str, ...] = ()  #: keys of a requirement beside its fraction
+    refusal: str  #: of another requirement
+    has_laws: bool  #: whether it follows the force laws of many patches, which need a chaos model
+    has_energies: bool  #: whether energies decide, which full contact corrects by levels
+    in_any_air: bool  #: whether the worst humidity is sought along an axis
+
+
+#: Beams crack open along their strips.
+BEAM = Release(
+    name="beam",
+    sought=sought.LENGTH,
+    sides=lambda kind, device, of_pairs: (kind.strip(device, of_pairs), device["width_um"]),
+    required=("length_um",),
+    refusal="must come with length_um",
+    has_laws=True,
+    has_energies=True,
+    in_any_air=False,
+)
+#: Others are pulled off at once with their whole area.
+STOPPER = Release(
+    name="stopper",
+    sought=sought.FORCE,
+    sides=lambda _kind, device, _of_pairs: tuple(device["contact_um"]),
+    refusal="must come without length_um, for a stopper has a force",
+    has_laws=False,
+    has_energies=False,
+    in_any_air=True,
+)
+
+
+class Way(NamedTuple):
+    """Way to state the restoring force of a device."""
+
+    keys: tuple[str, ...]  #: first the number that grows with the force
+    per: Callable[[Mapping], float]  #: force for one unit of this number [µN]
+
+
+@dataclass(frozen=True, kw_only=True)
 class Kind:
     """Differences between the devices of one kind and others."""
 
     words: str  #: what it is
     keys: tuple[str, ...]  #: that it must have, of `KEYS`
-    ways: tuple[tuple[str, ...], ...] = ((),)  #: further ones, of which it has one tuple
+    ways: tuple[Way, ...] = ()  #: of its restoring force, of which it has one
     optional: tuple[str, ...] = ()  #: keys that it may have
-    is_beam: bool = True  #: whether it cracks open along strips; otherwise it is pulled off at once with its whole area
+    release: Release = BEAM
     has_tip: bool = False  #: whether a free end may hold it
     longest_strip: float = math.inf  #: of its strips where not stated [µm]; short ones resolve the middle of a beam
 
     @property
     def allowed_keys(self) -> tuple[str, ...]:
         """All keys allowed for it."""
-        return (*COMMON, *self.keys, *chain.from_iterable(self.ways), *self.optional)
+        return (*COMMON, *self.keys, *chain.from_iterable(way.keys for way in self.ways), *self.optional)
 
     def refusal(self, keys: Collection[str]) -> str | None:
         """Refusal of the keys of a device, one missing or of another kind, as the end of a sentence.
@@ -85,8 +131,10 @@ class Kind:
             return f"must come with {', '.join(missing)}"
         if strange := [key for key in keys if key not in self.allowed_keys]:
             return f"must come without {', '.join(sorted(strange))}: its keys are {', '.join(self.allowed_keys)}"
-        if {key for way in self.ways for key in way if key in keys} not in map(set, self.ways):
-            return f"must come with either {', or '.join(map(' and '.join, self.ways))}"
+        ways = [way.keys for way in self.ways]
+        if ways and set(keys) & set(chain(*ways)) not in map(set, ways):
+            either = "either " if len(ways) > 1 else ""
+            return f"must come with {either}{', or '.join(map(' and '.join, ways))}"
         return None
 
     @property
@@ -106,7 +154,24 @@ class Kind:
 
     def sides(self, device: Mapping, of_pairs: float) -> tuple[float, float]:
         """Sides of its patch of contact [µm]: of a strip along a beam, or of the whole area of a stopper."""
-        return (self.strip(device, of_pairs), device["width_um"]) if self.is_beam else tuple(device["contact_um"])
+        return self.release.sides(self, device, of_pairs)
+
+    def way(self, device: Mapping) -> Way:
+        """Way in which the section of a device states its restoring force."""
+        return next(way for way in self.ways if way.keys[0] in device)
+
+    def stated(self, device: Mapping) -> dict:
+        """Section of a device, with the restoring force [µN] that follows from it.
+
+        Examples
+        --------
+        >>> KINDS["stopper"].stated({"stiffness_N_per_m": 2, "gap_um": 1.5})["restoring_force_uN"]
+        3.0
+        """
+        if not self.ways:
+            return dict(device)
+        way = self.way(device)
+        return device | {"restoring_force_uN": device[way.keys[0]] * way.per(device)}
 
 
 #: All kinds by name.
@@ -130,9 +195,12 @@ KINDS = {
     "stopper": Kind(
         words="stopper",
         keys=("contact_um",),
-        ways=(("restoring_force_uN",), ("stiffness_N_per_m", "gap_um")),
+        ways=(
+            Way(("restoring_force_uN",), lambda _: 1),
+            Way(("stiffness_N_per_m", "gap_um"), lambda device: device["gap_um"]),
+        ),
         optional=("mass_ng", "electrode", "tilt_deg"),
-        is_beam=False,
+        release=STOPPER,
     ),
 }
 
@@ -140,16 +208,3 @@ KINDS = {
 def kind_of(device: Mapping) -> Kind:
     """Kind of a device, from its section of the configuration."""
     return KINDS[device["kind"]]
-
-
-def restoring_force(stopper: Mapping) -> float:
-    """Force to pull a stopper off [µN]: from its section, or of its spring, deflected by the gap.
-
-    Examples
-    --------
-    >>> restoring_force({"restoring_force_uN": 20}), restoring_force({"stiffness_N_per_m": 2, "gap_um": 1.5})
-    (20, 3.0)
-    """
-    if "restoring_force_uN" in stopper:
-        return stopper["restoring_force_uN"]
-    return stopper["stiffness_N_per_m"] * stopper["gap_um"]

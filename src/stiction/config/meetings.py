@@ -114,7 +114,7 @@ def device_meeting(name: str, config: Keys) -> Meeting:
     for _, chart in config.given(f"{section}.chart"):
         airs.append(f"{section}.chart.humidities")
         gaps.append((f"{section}.{'chart.gaps_um' if 'gaps_um' in chart else 'gap_um'}", airs[-1]))
-    if not KINDS[config[f"{section}.kind"]].is_beam and any(config[humidities]):
+    if KINDS[config[f"{section}.kind"]].release.in_any_air and any(config[humidities]):
         airs.append("design.worst_humidities")
     scanned = config.scanned(*surfaces_of(pair, config))
     return Meeting(config, pair, airs, gaps, scanned, deviation=f"{section}.uncertainty.humidity")

@@ -17,6 +17,7 @@ import yaml
 from stiction.config import memory
 from stiction.config.cases import DRY, IN_HUMID_AIR, NAMEABLE, Air
 from stiction.config.keys import Keys, Relations
+from stiction.config.kinds import kind_of
 from stiction.config.materials import hamaker_constants
 from stiction.config.meetings import above_zero, pair_meetings
 from stiction.config.messages import did_you_mean, duplicates, one_line
@@ -423,12 +424,11 @@ def chunks_are_not_empty(config):
 def samples_carry_the_chaos(config):
     """Require more samples than polynomials in four variables, App. B. Stoppers need no model."""
     order, samples, pairs = config["chaos.order"], config["contact.samples"], config["run"]["pairs"]
-    kinds = {device["kind"] for device in config["devices"].values()}
+    have_laws = [kind_of(device).release.has_laws for device in config["devices"].values()]
     most = carried(order, samples)
-    if order > most and (pairs or kinds - {"stopper"}):
-        hint = (
-            "; run: {pairs: []} computes the stoppers alone, which need no chaos model" if kinds == {"stopper"} else ""
-        )
+    if order > most and (pairs or any(have_laws)):
+        alone = "; run: {pairs: []} computes the stoppers alone, which need no chaos model"
+        hint = "" if any(have_laws) or not have_laws else alone
         message = f"must be at most {most}, or {math.comb(order + 4, 4)} samples are needed{hint}"
         yield "chaos.order", message, "contact.samples"
 

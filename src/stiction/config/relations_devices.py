@@ -374,9 +374,8 @@ def requirements_and_roughnesses_come_together(config):
 def requirements_are_those_of_the_kind(config):
     """Require a length of a beam, and a restoring force of a stopper."""
     for name, requirement, kind in config.entries("devices", "requirement", "kind"):
-        if KINDS[kind].is_beam != ("length_um" in requirement):
-            words = "with length_um" if KINDS[kind].is_beam else "without length_um, for a stopper has a force"
-            yield f"devices.{name}.requirement", f"must come {words}", f"devices.{name}.kind"
+        if set(requirement) - {"share"} != set(KINDS[kind].release.required):
+            yield f"devices.{name}.requirement", KINDS[kind].release.refusal, f"devices.{name}.kind"
 
 
 @relation_of_names

@@ -12,7 +12,7 @@ import numpy as np
 from stiction.beam.cantilever import Beam
 from stiction.config import test_beams
 from stiction.config.cases import PairInAir, case_id
-from stiction.config.kinds import ROUGHNESSES, Kind, kind_of
+from stiction.config.kinds import BEAM, ROUGHNESSES, STOPPER, Kind, kind_of
 from stiction.config.materials import Materials
 from stiction.config.reading import is_stated, paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
@@ -113,15 +113,23 @@ class DevicePlan:
         """Kind of a device."""
         return kind_of(self.sections[device])
 
+    def stated(self, device: str) -> dict:
+        """Section of a device, with the restoring force of one without a length."""
+        return self.kind(device).stated(self.sections[device])
+
     @cached_property
     def beams(self) -> list[str]:
         """Devices opening by a crack."""
-        return [name for name in self.sections if self.kind(name).is_beam]
+        return self._released_as(BEAM)
 
     @cached_property
     def stoppers(self) -> list[str]:
         """Devices touching with their whole area."""
-        return [name for name in self.sections if not self.kind(name).is_beam]
+        return self._released_as(STOPPER)
+
+    def _released_as(self, release):
+        """Devices with one release."""
+        return [name for name in self.sections if self.kind(name).release is release]
 
     @cached_property
     def with_tips(self) -> list[str]:

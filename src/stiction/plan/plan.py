@@ -265,9 +265,13 @@ class Plan:
     def states_error_of_device(self, device: str) -> bool:
         """Whether the error of the model is stated beside predictions for a device."""
         section = self.devices.sections[device]
-        pair, humidities = section["pair"], section["humidities"]
-        of_beam = self.devices.kind(device).is_beam and self.air_of_devices.by_levels(pair, humidities)
-        return bool(of_beam) or self.states_model_error(pair, humidities)
+        return self.by_levels(device) or self.states_model_error(section["pair"], section["humidities"])
+
+    def by_levels(self, device: str, *humidities: float) -> bool:
+        """Whether energies alone are corrected at some humidities of a device, by default any of its own."""
+        section = self.devices.sections[device]
+        airs = self.air_of_devices.by_levels(section["pair"], humidities or section["humidities"])
+        return self.devices.kind(device).release.has_energies and bool(airs)
 
     def airs_of_beams(self, pair: str) -> list[float]:
         """Humidities of all beams of devices and test beams on a pair, and of their charts, increasing."""

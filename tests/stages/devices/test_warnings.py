@@ -291,7 +291,7 @@ def warned(tmp_path):
                 {key: found for key, found in dict(datasets).items() if key[0] == name}
                 for datasets in (lengths, charts)
             ]
-            stoppers = {name: xr.Dataset({"share_flat": share_flat, "rms": rms})}
+            stoppers = {name: xr.Dataset({"share_flat": share_flat, "rms": rms})} if "stopper" in section else {}
             data = {"lengths": own[0], "charts": own[1], "stoppers": stoppers, "plasticity": PLASTIC} | surfaces
             files[name] = tmp_path / f"{name}.json"
             stage.save(stage.result(data, At(), section), {"json": files[name]})

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import Akima1DInterpolator, PchipInterpolator
 
+from stiction.config.kinds import kind_of
 from stiction.devices.risk import one_in
 from stiction.devices.roughness import sufficient
 from stiction.report.axes.axis import axes_of
@@ -44,8 +45,8 @@ class _Required:
     def size(self) -> Axis:
         """Required length, or restoring force."""
         sought = sought_of(self.dataset)
-        keys = ("restoring_force_uN", "stiffness_N_per_m") if self.falls else ("requirement.length_um",)
-        stated = next((one for one in keys if one in self.section), keys[0])
+        kind = kind_of(self.section)
+        stated = kind.way(self.section).keys[0] if kind.ways else "requirement.length_um"
         reason = f"it is that of the device; devices.{self.name}.{stated} changes this"
         return _one(
             sought.name,

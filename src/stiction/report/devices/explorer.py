@@ -9,7 +9,7 @@ import xarray as xr
 from scipy.special import ndtr
 
 from stiction.answer.data import Answer
-from stiction.config.kinds import kind_of
+from stiction.config.kinds import KEYS, kind_of
 from stiction.config.units import from_si
 from stiction.devices.risk import SCORES, quantiles
 from stiction.report.devices import levels
@@ -228,9 +228,9 @@ def _force_view(axes, safe, scored, section, stopper):
     """View of safe forces (axes, shares) and quantiles of forces (axes, scores) [N]."""
     bounded = np.isfinite(safe.values).all(axis=tuple(range(len(axes))))
     known = safe.isel(share=bounded if bounded.any() else [int(np.argmax(safe.share.values))]).sortby("share")
-    key, label, unit, per = "restoring_force_uN", "restoring force", "µN", UN
-    if key not in section:
-        key, label, unit, per = "stiffness_N_per_m", "stiffness of the spring", "N/m", section["gap_um"] * UM
+    way = kind_of(section).way(section)
+    key, per = way.keys[0], UN * way.per(section)
+    label, unit = KEYS[key]
     numbers = known.values / per, scored / per
     size = size_axis(key, label, unit, numbers, float(stopper.restoring_force) / per)
     least = bounded_share(stopper)

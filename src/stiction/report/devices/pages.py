@@ -2,23 +2,20 @@
 
 from collections.abc import Mapping
 from dataclasses import replace
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 import xarray as xr
-import yaml
 
 from stiction.answer.data import Answer
-from stiction.config.cases import DRY, case_id
-from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of, restoring_force
+from stiction.config.cases import DRY
+from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
 from stiction.config.merging import differing
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured
 from stiction.devices.risk import one_in
-from stiction.plan.names import by_case
 from stiction.plan.stage import File, Shown, Stage
 from stiction.report import html
 from stiction.report.answer import figures as figures_answer
@@ -30,12 +27,11 @@ from stiction.report.axes import section as process_section
 from stiction.report.axes import tables as tables_axes
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
-from stiction.report.devices import curve_views, explorer, life, sentences, voltage_views
-from stiction.report.devices import figures as figures_devices
-from stiction.report.devices import tables as tables_devices
+from stiction.report.devices import curve_views, explorer, life
+from stiction.report.devices.parts import GLOSSARY, OF_RELEASE, terms
 from stiction.report.drawings.devices import device_drawing
 from stiction.report.format import MISSING, humidity_text
-from stiction.report.limits.words import not_modelled, texts, with_numbers
+from stiction.report.limits.words import not_modelled, texts
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.style import STYLE, on_a_page
@@ -46,10 +42,8 @@ from stiction.run import provenance
 from stiction.run.atomic import save_text
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budgets_of
-from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import section_of_beam
-from stiction.stages.devices.stoppers import ends
-from stiction.stages.life.table import is_biased
+from stiction.stages.devices.results import is_biased
 
 #: What a map over two quantities shows.
 _OF_MAPS = (
@@ -57,89 +51,25 @@ _OF_MAPS = (
     "meets it; dashed: the safe value does, with a confidence of 95 %. Dots: computed points; cross: the surface as it "
     "is given.",
 )
-#: Why a table of safe lengths and one of a budget have cells without a number.
-_MISSING_LENGTHS = (
-    "all drawn surfaces have the same tips, whose scatter is part of the error due to the number of beams, and the "
-    "paper measured no tips; or too few beams stick for an estimate"
-)
+#: Why a table of a budget has cells without a number.
 _MISSING_EFFECTS = "this input does not act here, or too few of the simulated devices stick to show what it changes"
-#: What is not inside a table of one stage, and what a ladder shows.
-_SIMULATED = (
-    "Simulated limits: one touchdown, no voltage, and all inputs exact. The answer above has everything inside."
-)
+#: What a ladder shows.
 _LADDER = (
     "Each step adds one cause to those above it, in the air and end state that are then worst. From the error of the "
     "simulation on, sizes hold with 95 % confidence. What is not stated stands beside and changes nothing. Lines: the "
     "size to build, and yours (dotted)."
 )
 _NO_ERROR = "Not inside: the error of the model of the contact, which study full_contact computes."
-#: Terms that pages explain.
-_GLOSSARY = Path(__file__).with_name("terms.yaml")
 
 
-@cache
-def _terms():
-    """Terms by part of a page."""
-    return _read(yaml.safe_load(_GLOSSARY.read_text(encoding="utf-8")))
+def device_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], answer: Answer) -> Page:
+    """Page of a device, from its section of the configuration, its datasets and its answer.
 
-
-def _read(part):
-    """Section of the glossary, or the text of a term with its parts joined."""
-    if isinstance(part, dict):
-        return {name: _read(inner) for name, inner in part.items()}
-    return part if isinstance(part, str) else " ".join(part)
-
-
-def beam_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], answer: Answer) -> Page:
-    """Page of a cantilever or bridge, from its section of the configuration, its datasets and its answer.
-
-    Of the data, ``safe_lengths`` and ``charts`` are by humidity, ``budgets`` by humidity and more, and ``warnings`` are
-    those of `stiction.stages.devices.device_warnings.read`. Charts, budgets, ``test_beams``, ``errors`` of the model
-    and ``roughness`` may be missing.
+    Of the data, ``safe_lengths`` and ``charts`` of a beam are by humidity, ``budgets`` by humidity and more, and
+    ``warnings`` are those of `stiction.stages.devices.device_warnings.read`. A ``stopper`` has one dataset. Charts,
+    budgets, ``test_beams``, ``errors`` of the model and ``roughness`` may be missing.
     """
-    lengths, warnings = data["safe_lengths"], data["warnings"].lengths | data["warnings"].curves
-    cases = {(name, humidity): dataset for humidity, dataset in lengths.items()}
-    table = tables_devices.safe_lengths(cases, warnings, data.get("errors")).cells.drop(columns="device")
-    pictures = figures_devices.simulated(cases, {})
-    sections = [Section("By simulation alone", (_SIMULATED,), table, pictures, _MISSING_LENGTHS)]
-    if data.get("charts"):
-        axis = {(name, humidity): dataset for humidity, dataset in data["charts"].items()}
-        table = tables_devices.chart(axis, warnings).cells.drop(columns="device")
-        sections.append(Section("Other thicknesses and humidities", (), table, figures_devices.chart(axis, {})))
-    said = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
-    listed = with_numbers(warnings) + texts(sentences.shortest_warnings(section, answer))
-    return _page_of(name, section, data, answer, (sections, said, listed, _words_of_beam(data)))
-
-
-def _words_of_beam(data):
-    """Terms that the page of a beam explains."""
-    lengths, terms = data["safe_lengths"], _terms()
-    shapes = map(str, next(iter(lengths.values()))["shape"].values)
-    held = {term: text for shape in shapes for term, text in END_STATES[shape].terms.items()}
-    return (
-        held
-        | terms["beams"]
-        | {"Bound": tables_devices.about_bounds(lengths, **terms["bounds"])}
-        | (terms["dry_air"] if any(float(dataset.film) == 0 for dataset in lengths.values()) else {})
-        | (terms["charts"] if data.get("charts") else {})
-    )
-
-
-def stopper_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], answer: Answer) -> Page:
-    """Page of a stopper. Parameters as of `beam_page`, with its dataset ``stopper`` in place of lengths."""
-    stopper = data["stopper"]
-    table = tables_budget.stoppers({name: stopper}, {name: []}, data.get("errors")).cells.drop(columns=["device"])
-    picture = figures_budget.stoppers({name: stopper}, {})
-    sections = [Section("By simulation alone", (_SIMULATED,), table, picture)]
-    worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
-    said = [*sentences.safe_force_sentences(stopper), *worst]
-    words = _terms()["stoppers"] | (_terms()["worst_humidity"] if worst else {})
-    return _page_of(name, section, data, answer, (sections, said, texts(data["warnings"].patches[name]), words))
-
-
-def _page_of(name, section, data, answer, own):
-    """Page of a device from the first sections, sentences, warnings and terms of its kind."""
-    sections, said, listed, words = own
+    sections, said, listed, words = _of_release(section).parts(name, section, data, answer)
     budgets, errors, test_beams, roughness = (data.get(key) for key in ("budgets", "errors", "test_beams", "roughness"))
     of_model, told = model_errors.sentences(name, errors), []
     limits = judged.limits_of(name, data["warnings"])
@@ -162,10 +92,10 @@ def _words_of_budgets(budgets):
     """Terms used by the budgets."""
     if not budgets:
         return {}
-    words = dict(_terms()["budgets"])
+    words = dict(terms()["budgets"])
     choices = [str(name) for budget in budgets.values() for name in budget.choice.values]
-    for start, terms in _terms()["choices"].items():
-        words |= terms if any(name.startswith(start) for name in choices) else {}
+    for start, of_choice in terms()["choices"].items():
+        words |= of_choice if any(name.startswith(start) for name in choices) else {}
     return words
 
 
@@ -176,7 +106,7 @@ def _title(name, section):
 def _facts_of(section):
     """Dimensions and conditions of a device, by name."""
     facts = {"surfaces": f"pair {section['pair']}"} | section.get("surfaces", {})
-    stated = _with_force(section)
+    stated = kind_of(section).stated(section)
     for key in (key for key in KEYS if key in stated):
         (name, unit), value = KEYS[key], stated[key]
         values = value if isinstance(value, list) else [value]
@@ -188,9 +118,9 @@ def _facts_of(section):
     return facts | _requirement(section)
 
 
-def _with_force(section):
-    """Section of a device, of a stopper with its restoring force."""
-    return section if kind_of(section).is_beam else section | {"restoring_force_uN": restoring_force(section)}
+def _of_release(section):
+    """Parts of pages of the release of a device."""
+    return OF_RELEASE[kind_of(section).release.name]
 
 
 def _requirement(section):
@@ -270,7 +200,6 @@ def _side_by_side(cells):
 def _inputs(plan, at):
     """Inputs of the page of a device."""
     devices, section = plan.devices, plan.config["devices"][at.device]
-    cases = [case_id(at.device, humidity) for humidity in section["humidities"]]
     budgets = budgets_of(plan, at.device) if at.device in devices.with_budget else {}
     own = {"answer": f"devices/answer/{at.device}", "life": f"devices/life/{at.device}"}
     own |= {"budgets": {key[1:]: name for key, name in budgets.items()}}
@@ -278,16 +207,8 @@ def _inputs(plan, at):
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
     own |= process_section.inputs(plan, at.device)
-    own |= {"style": File(STYLE), "templates": [File(_GLOSSARY), *html.files(TEMPLATE)]}
-    if not devices.kind(at.device).is_beam:
-        tilted = {"tilted": f"devices/tilted/{at.device}"} if "tilt_deg" in section else {}
-        biased = {"biased": f"devices/at_voltage/{at.device}"} if is_biased(plan, at.device) else {}
-        return own | {"stopper": f"devices/stoppers/{at.device}"} | tilted | biased
-    charts = devices.chart_cases(at.device) if at.device in devices.with_chart else []
-    return own | {
-        "safe_lengths": {key[1]: name for key, name in by_case("devices/safe_lengths", cases).items()},
-        "charts": {key[1]: name for key, name in by_case("devices/chart", charts).items()},
-    }
+    own |= {"style": File(STYLE), "templates": [File(GLOSSARY), *html.files(TEMPLATE)]}
+    return own | _of_release(section).inputs(plan, at.device)
 
 
 def _settings(plan, at):
@@ -316,34 +237,15 @@ def _page(data, at, settings):
     """Page of a device."""
     data = dict(data) | {"warnings": device_warnings.read({at.device: data["warnings"]})}
     answer = judged.judged(data["answer"], data["warnings"])
-    make, views = (stopper_page, _views_of_stopper) if "stopper" in data else (beam_page, _views_of_beam)
-    page = make(at.device, settings, data, answer)
+    page, views = device_page(at.device, settings, data, answer), _of_release(settings).views
     views = [*views(at.device, settings, data, answer), *curve_views.views(at.device, settings, data)]
     page = process_section.with_process(with_life(page, at.device, data["life"], answer), at.device, data)
     return replace(
         page,
         not_modelled=not_modelled(**settings["not_modelled"]),
-        drawing=device_drawing(_with_force(settings), answer.is_by_tip).svg,
+        drawing=device_drawing(kind_of(settings).stated(settings), answer.is_by_tip).svg,
         explorer=explorer.content(at.device, settings, views),
     )
-
-
-def _views_of_stopper(name, section, data, answer):
-    """Views of a stopper."""
-    stopper, views = data["stopper"], explorer.views_of_stopper(section, data["stopper"], answer)
-    if "tilted" in data:
-        views.append(explorer.beside(explorer.tilted_view(name, section, data["tilted"], stopper), answer))
-    if "biased" in data:
-        views.append(explorer.beside(voltage_views.stopper_view(name, section, data["biased"]), answer))
-    return views
-
-
-def _views_of_beam(name, section, data, answer):
-    """Views of a cantilever or bridge."""
-    views = explorer.views_of_beam(name, section, data["safe_lengths"], data["charts"], answer)
-    if "young_modulus_GPa" in section:
-        views.append(explorer.beside(voltage_views.beam_view(name, section, data["safe_lengths"]), answer))
-    return views
 
 
 def with_life(page: Page, name: str, answers: xr.Dataset, answer: Answer) -> Page:

@@ -30,8 +30,7 @@ def of_lengths(beams: Mapping[str, Any], answers: Mapping[str, xr.Dataset]) -> L
 
 def _beams(plan):
     """Sections of all beams by name."""
-    sections = plan.devices.sections
-    return {name: section for name, section in sections.items() if plan.devices.kind(name).is_beam}
+    return {name: plan.devices.sections[name] for name in plan.devices.beams}
 
 
 STAGES = (

@@ -7,22 +7,21 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.answer import ladder
+from stiction.answer import ladder, sought
 from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, Step
 from stiction.answer.ladder import Question
 from stiction.answer.unknowns import Draws, OfBudgets
 from stiction.answer.worlds import DRAWS
-from stiction.config.cases import case_id
 from stiction.config.units import in_si
 from stiction.devices.budget import LARGEST
 from stiction.plan.stage import Stage, select
 from stiction.stages.answer import conditions
 from stiction.stages.devices.budget import budgets_of
-from stiction.stages.devices.opening import DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import DesignedBeam, own_section
+from stiction.stages.devices.results import results_of
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import bounded_share
 from stiction.stages.life.separation import separation_inputs
-from stiction.stages.life.table import is_biased
 from stiction.stages.test_beams.inference import is_reliable
 
 
@@ -43,7 +42,7 @@ class Settings:
 
 def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
     """Answer about a device."""
-    found, question = _of_stopper(data) if settings.beam is None else _of_beam(data, settings)
+    found, question = _of_beam(data, settings) if settings.beam else _of_stopper(data)
     before = conditions.of_budgets(data["budgets"], settings.budgets)
     unknowns = conditions.of_test_beams(data.get("test_beams")) or before
     stated = {"touchdowns": settings.touchdowns, "left_out": (*settings.left_out, *_left_out(data, found, unknowns))}
@@ -63,7 +62,7 @@ def _of_beam(data, settings):
         *conditions.drying(data["life"], settings.liquids, data["lengths"]),
     ]
     share = chosen_share(next(iter(data["lengths"].values())))
-    return found, {"share": share, "unit": "m", "size": settings.length}
+    return found, {"share": share, "unit": sought.LENGTH.unit, "size": settings.length}
 
 
 def _of_stopper(data):
@@ -82,7 +81,7 @@ def _of_stopper(data):
         biased = data["biased"]
         found += conditions.of_forces(biased.pull_off, share, biased.safe_force, errors, Cause.VOLTAGE)
     size = float(stopper.restoring_force)
-    return found, {"share": share or float(stopper.share.max()), "unit": "N", "size": size}
+    return found, {"share": share or float(stopper.share.max()), "unit": sought.FORCE.unit, "size": size}
 
 
 def _left_out(data, found, unknowns):
@@ -201,21 +200,7 @@ def _inputs(plan, at):
     own = {"budgets": list(_budgets(plan, device).values()), "life": f"devices/life/{device}"}
     own |= separation_inputs(plan, device)
     own |= {"test_beams": f"devices/test_beams/{device}"} if "test_beams" in section else {}
-    if not plan.devices.kind(device).is_beam:
-        own |= {"tilted": f"devices/tilted/{device}"} if "tilt_deg" in section else {}
-        own |= {"biased": f"devices/at_voltage/{device}"} if is_biased(plan, device) else {}
-        return own | {"stopper": f"devices/stoppers/{device}"}
-    cases = {humidity: case_id(device, humidity) for humidity in section["humidities"]}
-    biased = cases if is_biased(plan, device) else {}
-    more = {name: f"devices/touchdowns/{case}" for name, case in cases.items()} if "touchdowns" in section else {}
-    return (
-        own
-        | ({"after": more} if more else {})
-        | {
-            "lengths": {humidity: f"devices/safe_lengths/{case}" for humidity, case in cases.items()},
-            "biased": {humidity: f"devices/at_voltage/{case}" for humidity, case in biased.items()},
-        }
-    )
+    return own | results_of(plan, device, "tilted", "biased", "stopper", "after", "lengths")
 
 
 def _budgets(plan, device):
@@ -226,12 +211,12 @@ def _budgets(plan, device):
 
 def _settings(plan, at):
     """Settings of a device."""
-    section, is_beam = plan.config["devices"][at.device], plan.devices.kind(at.device).is_beam
-    own = {"seed": plan.config["seed"], "name": at.device, "liquids": sorted(plan.config.get("liquids", {}))}
+    section, beam = plan.config["devices"][at.device], own_section(plan, at.device, key="beam")
+    liquids = plan.config.get("liquids", {}) if beam else {}
+    own = {"seed": plan.config["seed"], "name": at.device, "liquids": sorted(liquids)}
     own |= {"left_out": ["dimples"] if "dimples" in section else []}
     own |= {"budgets": [humidity for humidity, *_ in _budgets(plan, at.device)]}
-    own |= {"beam": section_of_beam(plan, at.device)} if is_beam else {}
-    return select(Settings, section | own | ({} if is_beam else {"liquids": []}))
+    return select(Settings, section | own | beam)
 
 
 STAGES = (

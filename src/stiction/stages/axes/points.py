@@ -142,7 +142,7 @@ def inputs(plan: Any, device: str) -> dict[str, Any]:
 def settings_of(plan: Any, device: str, rough: Any) -> dict[str, Any]:
     """Settings of a device. A plan with the changed surfaces is ``rough``: the reach of tips depends on them."""
     section, kind = plan.config["devices"][device], plan.devices.kind(device)
-    settings = {"pair": section["pair"], "beam" if kind.is_beam else "stopper": requirement.settings_of(plan, device)}
+    settings = {"pair": section["pair"], kind.release.name: requirement.settings_of(plan, device)}
     for humidity in section["humidities"]:
         pair = plan.air_of_devices.contact(section["pair"], humidity)
         tips = {"tips": _of_tips(rough, pair, device)} if kind.has_tip else {}
@@ -157,7 +157,7 @@ def _of_patch(plan, pair, device):
     """
     ground, share = plan.devices.ground(device), plan.config["devices"][device]["requirement"]["share"]
     samples = plan.devices.samples(ground)
-    if not plan.devices.kind(device).is_beam:
+    if not plan.devices.kind(device).release.has_laws:
         samples = max(samples, samples_for(max(share, VERIFIED)))
     return GROUND.settings(plan, At(**ground._replace(pair=pair)._asdict()), samples)
 

@@ -10,7 +10,6 @@ import xarray as xr
 
 from stiction.answer.sought import SOUGHT, Sought
 from stiction.chaos.model import Truncation
-from stiction.config.kinds import restoring_force
 from stiction.contact.correction import NONE
 from stiction.contact.environment import Water
 from stiction.devices import risk
@@ -21,7 +20,7 @@ from stiction.errors import NotConverged
 from stiction.plan.stage import select
 from stiction.run.stored_limits import as_text, of_text
 from stiction.stages.devices import sticking, stoppers
-from stiction.stages.devices.opening import FORCE, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import FORCE, DesignedBeam, own_section
 
 #: Limit of surfaces smoother than those on which full elastic contact was computed, where they change more.
 SMOOTHER = Limit("smoother_than_full_contact", Side.UNSAFE, False)
@@ -66,6 +65,11 @@ class OfBeam:
         return self.length, "m"
 
     @property
+    def number(self) -> int:
+        """Number of devices."""
+        return self.beams
+
+    @property
     def shares(self) -> tuple[float, ...]:
         """Fractions, as in other settings of safe lengths."""
         return (self.share,)
@@ -105,7 +109,7 @@ class OfStopper:
     share: float  #: p [-]
     restoring_force: float  #: [N]
 
-    shapes = (FORCE,)
+    shapes, number = (FORCE,), 0  # one stopper for each sample of the contact
 
     @property
     def required(self) -> tuple[float, str]:
@@ -119,6 +123,10 @@ class OfStopper:
         stuck = tuple(stoppers.stuck_with_band(forces, self.restoring_force, change))
         (safe,) = stoppers.safe_forces_of(forces[None], self.share, self.seed, [change])
         return [Response(safe.force, safe.estimate, safe.error, np.nan, stuck)], []
+
+
+#: By the name of the release.
+OF_RELEASE = {"beam": OfBeam, "stopper": OfStopper}
 
 
 def compute(
@@ -154,7 +162,7 @@ def layout(responses: Sequence[Sequence[Response]], samples: int, settings: OfBe
         {name: (over, columns[name], note) for name in ("safe", "estimate", "error", "bound")}
         | {
             "stuck": ((*over, "end"), columns["stuck"], {"units": "1"}),
-            "samples": ((), samples if isinstance(settings, OfStopper) else settings.beams),
+            "samples": ((), settings.number or samples),
             "required": ((), required, note),
             "share": ((), settings.share, {"units": "1"}),
             "corrected": ("humidity", [settings.water.changes(rh) != (NONE, NONE) for rh in settings.humidities]),
@@ -190,9 +198,7 @@ def settings_of(plan: Any, device: str) -> dict[str, Any]:
     section = plan.config["devices"][device]
     air = plan.air_of_devices
     wettest = air.contact(section["pair"], max(section["humidities"]))
-    own = plan.config["design"] | section | section["requirement"] | {"water": air.water(wettest)}
-    if not plan.devices.kind(device).is_beam:
-        return select(OfStopper, own | {"seed": plan.config["seed"]} | {"restoring_force_uN": restoring_force(section)})
-    common = {key: plan.config[key] for key in ("seed", "chaos")}
-    edge = {"edge_radius_um": plan.devices.edge_radius(device)}
-    return select(OfBeam, own | common | edge | {"device": section_of_beam(plan, device)})
+    own = plan.config["design"] | plan.devices.stated(device) | section["requirement"] | {"water": air.water(wettest)}
+    own |= {key: plan.config[key] for key in ("seed", "chaos")} | own_section(plan, device)
+    own |= {"edge_radius_um": plan.devices.edge_radius(device)}
+    return select(OF_RELEASE[plan.devices.kind(device).release.name], own)

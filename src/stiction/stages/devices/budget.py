@@ -46,7 +46,7 @@ from stiction.stages.devices.opening import (
     around,
     arrests,
     ground_of,
-    section_of_beam,
+    own_section,
 )
 from stiction.stages.devices.uncertain_inputs import Input, Known, Settings, State, countable, covariances, uncertain
 
@@ -433,10 +433,8 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     own |= plan.materials.modulus(pair)
     if "hamaker_constant" in devices.uncertain_solids(name):
         own |= {"hamaker_constant_zJ": plan.air.beam_hamaker_constant(pair), "alike": plan.materials.alike(pair)}
-    if devices.kind(name).is_beam:
-        own |= {"device": section_of_beam(plan, name, pair), "beams": plan.config["design"]["budget_beams"]}
-    else:
-        own |= subsection(section, ["contact_um"])
+    beam = own_section(plan, name, pair)
+    own |= beam | {"beams": plan.config["design"]["budget_beams"]} if beam else subsection(section, ["contact_um"])
     own |= {"seed": plan.config["seed"], "water": plan.air_of_devices.water(pair), "surfaces": plan.sides(pair)}
     known = {surface: one.section for surface, one in devices.surface_errors(name).items() if one.quantities}
     own |= {"known": known} if known else {}

@@ -83,10 +83,9 @@ def patch_of_tips(plan: Any, case: Case) -> Patch:
 def corrections_of(plan: Any, device: str, *humidities: float) -> dict[str, str]:
     """Corrections of the pair of a device at some humidities, by default all of its own: of forces, or by levels."""
     section = plan.config["devices"][device]
-    pair, airs = section["pair"], humidities or section["humidities"]
-    if plan.devices.kind(device).is_beam and plan.air_of_devices.by_levels(pair, airs):
-        return {"model_error": f"studies/model_error/devices/{pair}"}
-    return corrections_of_forces(plan, device, *airs)
+    if plan.by_levels(device, *humidities):
+        return {"model_error": f"studies/model_error/devices/{section['pair']}"}
+    return corrections_of_forces(plan, device, *humidities or section["humidities"])
 
 
 def corrections_of_forces(plan: Any, device: str, *humidities: float) -> dict[str, str]:

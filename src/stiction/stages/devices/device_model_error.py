@@ -10,7 +10,7 @@ from stiction.analysis.model_error import factors
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.corrections import study_of
-from stiction.stages.devices.opening import EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam, own_section
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.n
     ASSUME: the strips of the pair give the ratios of a patch of any size, and a safe length changes like the length on
     the mean contact. What tips hold is not known: their strips are tilted, on which full contact is not computed.
     """
-    if shape == FORCE:
+    if device is None:
         return means[:, 1]
     if shape == EITHER:
         return np.full(len(means), np.nan)
@@ -118,24 +118,23 @@ def layout(
 
 def _inputs(plan, at):
     """Study of the pair of a device, with the attraction across gaps that the device has, and energies by levels."""
-    section, beams = plan.config["devices"][at.device], plan.devices.beams
+    section = plan.config["devices"][at.device]
     pair, water = section["pair"], plan.air_of_devices.water(section["pair"])
     study = {"study": study_of(plan, "studies/full_contact", pair, water)}
-    if not (at.device in beams and plan.air_of_devices.by_levels(pair, section["humidities"])):
+    if not plan.by_levels(at.device):
         return study
     return (study if 0 in section["humidities"] else {}) | {"by_levels": f"studies/model_error/devices/{pair}"}
 
 
 def _settings(plan, at):
     """Humidities of a device, and its dimensions."""
-    section, is_beam = plan.config["devices"][at.device], plan.devices.kind(at.device).is_beam
-    own = {"device": section_of_beam(plan, at.device)} if is_beam else {}
+    section = plan.config["devices"][at.device]
     applied = plan.variants.corrected(section["pair"], section["humidities"])
     gaps = {"across_gaps": True} if "gaps" in plan.air_of_devices.water(section["pair"]) else {}
     dry = {} if plan.air_of_devices.is_wetted(section["pair"]) else {"condenses": False}
     said = {"humidities": section["humidities"]} | ({"applied": applied} if applied else {})
-    by_levels = is_beam and plan.air_of_devices.by_levels(section["pair"], section["humidities"])
-    return select(Settings, said | own | gaps | dry | ({"by_levels": True} if by_levels else {}))
+    by_levels = {"by_levels": True} if plan.by_levels(at.device) else {}
+    return select(Settings, said | own_section(plan, at.device) | gaps | dry | by_levels)
 
 
 STAGES = (

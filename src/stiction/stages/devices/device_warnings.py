@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from stiction.config.cases import Air, case_id
+from stiction.config.cases import Air
 from stiction.config.units import from_si, in_si
 from stiction.contact.environment import Water
 from stiction.devices.limits import rules
@@ -27,10 +27,14 @@ from stiction.stages.beams.pair_warnings import (
     plastic_contact,
 )
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE, SOUGHT_BY, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE, SOUGHT_BY, DesignedBeam, own_section
+from stiction.stages.devices.results import results_of
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import sought
 from stiction.stages.surfaces import surface_flags
+
+#: Limits by end state.
+ByShape = dict[str, list[Limit]]
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,15 @@ class OfDevice:
     on_summits: tuple[float, ...] = ()  #: humidities with water at which summits alone make its forces [-]
     has_dimples: bool = False  #: whether forces of dimples decide about all shapes
 
+    @property
+    def pair(self) -> str:
+        """Name of its pair."""
+        return self.device.pair
+
+    def limits(self, dataset: xr.Dataset, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0) -> ByShape:
+        """Limits by end state, see `beam_warnings`."""
+        return beam_warnings(dataset, self, plastic, humidity)
+
 
 @dataclass(frozen=True)
 class OfStopper:
@@ -64,10 +77,24 @@ class OfStopper:
     materials: StatedProperties = ()  #: of its pair
     on_summits: tuple[float, ...] = ()  #: humidities with water at which summits alone make its forces [-]
 
+    def limits(self, dataset: xr.Dataset, plastic: Plastic = NOT_STUDIED, _humidity: float = 0.0) -> ByShape:
+        """Limits by end state, see `stopper_warnings`."""
+        return {FORCE: stopper_warnings(dataset, self, plastic)}
+
+
+#: By the name of the release.
+_OF_RELEASE = {"beam": OfDevice, "stopper": OfStopper}
+
+
+def of_settings(settings: Mapping[str, Any]) -> OfDevice | OfStopper:
+    """Device and its pair from the settings of a job."""
+    (of,) = (in_si(kind, settings[release]) for release, kind in _OF_RELEASE.items() if release in settings)
+    return of
+
 
 def beam_warnings(
     safe_lengths: xr.Dataset, of: OfDevice, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0
-) -> dict[str, list[Limit]]:
+) -> ByShape:
     """Limits of a device at a humidity, by the shape of its adhesion. Dataset of stage safe_lengths.
 
     Each shape is checked at the shortest of its lengths, where slopes are largest. That no water condenses is worth a
@@ -219,16 +246,15 @@ def left_out_gaps(plan: Any, device: str) -> dict[str, str]:
 
 def _inputs(plan, at):
     """Inputs of the warnings about a device."""
-    devices, section = plan.devices, plan.config["devices"][at.device]
-    cases = [case_id(at.device, humidity) for humidity in section["humidities"]] if at.device in devices.beams else []
+    devices, results = plan.devices, results_of(plan, at.device, "lengths", "stopper")
     charts = devices.chart_cases(at.device) if at.device in devices.with_chart else []
     limited = {
-        "lengths": by_case("devices/safe_lengths", cases),
-        "stoppers": by_name("devices/stoppers", [at.device] if at.device in devices.stoppers else []),
+        "lengths": {(at.device, humidity): name for humidity, name in results.get("lengths", {}).items()},
+        "stoppers": {at.device: results["stopper"]} if "stopper" in results else {},
         "charts": by_case("devices/chart", charts),
         "plasticity": by_name("studies/plasticity", devices.pairs_of_plasticity(at.device)),
     }
-    return limited | left_out_gaps(plan, at.device) | surface_flags.inputs(plan, section["pair"])
+    return limited | left_out_gaps(plan, at.device) | surface_flags.inputs(plan, devices.sections[at.device]["pair"])
 
 
 def _settings(plan, at):
@@ -236,13 +262,11 @@ def _settings(plan, at):
     section = plan.config["devices"][at.device]
     own = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
     own |= ({"learns": True} if "test_beams" in section else {}) | _on_summits(plan, at.device)
-    said = plan.assumptions(section["pair"]).get(section["pair"])
-    assumed = {"assumed": said} if said else {}
-    if plan.devices.kind(at.device).is_beam:
-        return assumed | {"beam": select(OfDevice, own | {"device": section_of_beam(plan, at.device)})}
-    own |= section | {"water": plan.air_of_devices.water(section["pair"])}
+    own |= section | {"water": plan.air_of_devices.water(section["pair"])} | own_section(plan, at.device)
     own |= {"worst_humidities": sought(plan.config["design"], section)}
-    return assumed | {"stopper": select(OfStopper, own)}
+    assumptions = plan.assumptions(section["pair"]).get(section["pair"])
+    release = plan.devices.kind(at.device).release.name
+    return ({"assumed": assumptions} if assumptions else {}) | {release: select(_OF_RELEASE[release], own)}
 
 
 def _on_summits(plan, device):
@@ -251,30 +275,27 @@ def _on_summits(plan, device):
     pair, air = section["pair"], plan.air_of_devices
     corrected = air.corrected(pair, section["humidities"])
     humid = [rh for rh in section["humidities"] if not air.is_dry(pair, rh) and rh not in corrected]
-    dimples = {"has_dimples": True} if "dimples" in section and plan.devices.kind(device).is_beam else {}
-    return ({"on_summits": humid} if humid else {}) | dimples
+    return ({"on_summits": humid} if humid else {}) | ({"has_dimples": True} if "dimples" in section else {})
 
 
 def _device_warnings(data, settings):
     """Limits of a device: of its lengths, its curves and its patch, each with a suffix to its name."""
     flags = surface_flags.together(data) + list(map(restored, settings.get("assumed", [])))
     changes = left_out_changes(data["left_out_gaps"]) if "left_out_gaps" in data else {}
-    if "stopper" in settings:
-        of = in_si(OfStopper, settings["stopper"])
-        gaps = gap_warnings(changes, FORCE)
-        (stopper,) = data["stoppers"].values()
-        plastic = plastic_contact(data["plasticity"], of.pair)
-        return [], [], [[[], stopper_warnings(stopper, of, plastic) + gaps + flags]]
-    of = in_si(OfDevice, settings["beam"])
-    plastic = plastic_contact(data["plasticity"], of.device.pair)
+    of, charts = of_settings(settings), list(data["charts"].values())
+    plastic = plastic_contact(data["plasticity"], of.pair)
     lengths = [
-        [[humidity, shape], found + gap_warnings(_at(changes, humidity), shape) + flags]
+        [[humidity, shape], limits + gap_warnings(_at(changes, humidity), shape) + flags]
         for (_, humidity), dataset in data["lengths"].items()
-        for shape, found in beam_warnings(dataset, of, plastic, humidity).items()
+        for shape, limits in of.limits(dataset, plastic, humidity).items()
     ]
-    charts = list(data["charts"].values())
+    patches = [
+        [[], limits + gap_warnings(changes, shape) + flags]
+        for dataset in data["stoppers"].values()
+        for shape, limits in of.limits(dataset, plastic).items()
+    ]
     of_curves = chart_warnings(charts, of, plastic) if charts else {}
-    return lengths, [[curve, found + flags] for curve, found in of_curves.items()], []
+    return lengths, [[curve, limits + flags] for curve, limits in of_curves.items()], patches
 
 
 def _save(found, paths):
@@ -292,7 +313,8 @@ def not_modelled(plan: Any, *devices: str) -> dict[str, Any]:
     """Effects missing in the results of some devices, for `stiction.report.limits.words`."""
     sections = (plan.config["devices"][name] for name in devices)
     cases = ((section["pair"], humidity) for section in sections for humidity in section["humidities"])
-    return plan.air_of_devices.not_modelled(cases, of_beams=all(plan.devices.kind(name).is_beam for name in devices))
+    by_energies = all(plan.devices.kind(name).release.has_energies for name in devices)
+    return plan.air_of_devices.not_modelled(cases, by_energies)
 
 
 def files_of(*devices: str) -> dict[str, File]:

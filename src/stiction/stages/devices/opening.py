@@ -266,6 +266,11 @@ def at_voltage(plan: Any, device: str, settings: dict[str, Any]) -> dict[str, An
     return settings | {"water": settings["water"] | {"capacitor": plan.devices.capacitor(device)}}
 
 
+def own_section(plan: Any, name: str, contact: str | None = None, key: str = "device") -> dict[str, Any]:
+    """Section of a beam under a key, as of `section_of_beam`; none of other devices."""
+    return {key: section_of_beam(plan, name, contact)} if name in plan.devices.beams else {}
+
+
 def section_of_beam(plan: Any, name: str, contact: str | None = None) -> dict[str, Any]:
     """Kind, pair and dimensions of a beam, length of its strips, and its solids in the air of a contact."""
     section = plan.config["devices"][name]

@@ -10,7 +10,6 @@ import xarray as xr
 from scipy.special import ndtri
 
 from stiction.config.cases import case_id
-from stiction.config.kinds import restoring_force
 from stiction.contact.correction import NONE, Change
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import is_wetted
@@ -381,9 +380,9 @@ def _settings(plan, at):
     """Water, patch, restoring force and humidities of a stopper, and its fine axis of humidities."""
     section, air = plan.config["devices"][at.device], plan.air_of_devices
     pair = air.contact(section["pair"], max(section["humidities"]))
-    own = {"seed": plan.config["seed"], "restoring_force_uN": restoring_force(section), "water": air.water(pair)}
+    own = {"seed": plan.config["seed"], "water": air.water(pair)}
     own |= {"worst_humidities": sought(plan.config["design"], section)}
-    return select(Settings, section | own)
+    return select(Settings, plan.devices.stated(at.device) | own)
 
 
 def _inputs(plan, at):

@@ -112,9 +112,11 @@ def _ratio(fast, slow, factor):
 
 def separation_inputs(plan: Any, device: str) -> dict[str, Any]:
     """Forces of a stopper, or strips and tips of a beam by humidity, as inputs of a stage; none without water."""
-    wet = _wet(plan, device)
-    if not plan.devices.kind(device).is_beam:
-        return {"separation": f"devices/separation/{device}"} if wet else {}
+    return _INPUTS[plan.devices.kind(device).release.name](plan, device, _wet(plan, device))
+
+
+def _inputs_of_beam(plan, device, wet):
+    """Strips and tips of a beam by humidity."""
     tips = wet if plan.devices.kind(device).has_tip else {}
     return {
         "fast_strips": {
@@ -122,6 +124,12 @@ def separation_inputs(plan: Any, device: str) -> dict[str, Any]:
         },
         "fast_tips": {humidity: f"devices/fast_tips/{_name_of_tips(plan, case)}" for humidity, case in tips.items()},
     }
+
+
+_INPUTS = {
+    "beam": _inputs_of_beam,
+    "stopper": lambda _plan, device, wet: {"separation": f"devices/separation/{device}"} if wet else {},
+}
 
 
 def _wet(plan, device):

@@ -11,14 +11,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import Air, case_id
-from stiction.config.kinds import restoring_force
+from stiction.config.cases import Air
 from stiction.config.units import from_si, in_si
 from stiction.constants import LIQUIDS
-from stiction.contact.voltage import BREAKDOWN, Capacitor
 from stiction.devices.risk import one_in
 from stiction.plan.stage import Stage, select
-from stiction.stages.devices.opening import section_of_beam
+from stiction.stages.devices.opening import own_section
+from stiction.stages.devices.results import results_of
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.life.answers import HOLD, SAFE, STICK, Answer, in_order, layout
 from stiction.stages.life.dimples import dimple_answers
@@ -97,64 +96,44 @@ def stopper_answers(
 
 def compute(data: Mapping[str, Any], settings: dict[str, Any]) -> xr.Dataset:
     """Answers about a device, from its safe lengths by humidity or from the forces of a stopper."""
-    if "stopper" in data:
-        of = in_si(OfStopper, settings["stopper"])
-        own = (data.get(name) for name in ("biased", "tilted", "separation"))
-        return layout(stopper_answers(data["stopper"], of, *own), of)
-    of, lengths = in_si(OfBeam, settings["beam"]), data["lengths"]
+    ((release, own),) = settings.items()
+    kind, answers = _OF_RELEASE[release]
+    return answers(data, in_si(kind, own))
+
+
+def _beam(data, of):
+    """Answers about a beam."""
     strips, tips = (data.get(name, {}) for name in ("fast_strips", "fast_tips"))
     fast = of_beam(strips, tips, of.device) if strips else None
-    answers = beam_answers(lengths, data.get("after", {}), of, data.get("biased"), fast)
+    answers = beam_answers(data["lengths"], data.get("after", {}), of, data.get("biased"), fast)
     answers += dimple_answers(of, data.get("dimples", {}))
-    return layout(in_order(answers), of, length_of(lengths, of))
+    return layout(in_order(answers), of, length_of(data["lengths"], of))
 
 
-def is_biased(plan: Any, device: str) -> bool:
-    """Whether a device has a voltage at which its dielectric does not break down."""
-    capacitor = plan.devices.capacitor(device)
-    return bool(capacitor) and in_si(Capacitor, capacitor).field <= BREAKDOWN
+def _stopper(data, of):
+    """Answers about a stopper."""
+    more = (data.get(name) for name in ("biased", "tilted", "separation"))
+    return layout(stopper_answers(data["stopper"], of, *more), of)
 
 
-def _inputs(plan, at):
-    """Safe lengths at all humidities of a beam, for all touchdowns and at its voltage as well, or forces of a stopper.
-
-    Beyond the breakdown of the dielectric, no voltage is there that could hold, and flats alone bound what it does.
-    """
-    section, fast = plan.config["devices"][at.device], separation_inputs(plan, at.device)
-    if not plan.devices.kind(at.device).is_beam:
-        biased = {"biased": f"devices/at_voltage/{at.device}"} if is_biased(plan, at.device) else {}
-        tilted = {"tilted": f"devices/tilted/{at.device}"} if "tilt_deg" in section else {}
-        return {"stopper": f"devices/stoppers/{at.device}"} | biased | tilted | fast
-    cases = {humidity: case_id(at.device, humidity) for humidity in section["humidities"]}
-    more, biased = cases if "touchdowns" in section else {}, cases if is_biased(plan, at.device) else {}
-    dimpled = cases if "dimples" in section else {}
-    return fast | {
-        "lengths": {humidity: f"devices/safe_lengths/{case}" for humidity, case in cases.items()},
-        "after": {humidity: f"devices/touchdowns/{case}" for humidity, case in more.items()},
-        "biased": {humidity: f"devices/at_voltage/{case}" for humidity, case in biased.items()},
-        "dimples": {humidity: f"devices/dimples/{case}" for humidity, case in dimpled.items()},
-    }
+#: Settings, and what makes the dataset, by the name of the release.
+_OF_RELEASE = {"beam": (OfBeam, _beam), "stopper": (OfStopper, _stopper)}
 
 
 def _settings(plan, at):
-    """Settings of a device, the liquids and its density, or of a stopper."""
-    section = plan.config["devices"][at.device]
-    if not plan.devices.kind(at.device).is_beam:
-        return {"stopper": select(OfStopper, section, restoring_force_uN=restoring_force(section))}
-    known = {name: {"surface_tension_mN_per_m": from_si(tension, "mN_per_m")} for name, tension in LIQUIDS.items()}
-    own = {"uncertainty": {}} | section | {"device": section_of_beam(plan, at.device)}
-    own |= {
-        "density_kg_per_m3": plan.materials.density(section["pair"]),
-        "liquids": known | plan.config.get("liquids", {}),
-    }
-    return {"beam": select(OfBeam, own)}
+    """Settings of a device, with the liquids and its density."""
+    own, release = {"uncertainty": {}} | plan.devices.stated(at.device), plan.devices.kind(at.device).release
+    usual = {name: {"surface_tension_mN_per_m": from_si(tension, "mN_per_m")} for name, tension in LIQUIDS.items()}
+    own |= {"liquids": usual | plan.config.get("liquids", {})} | own_section(plan, at.device)
+    own |= {"density_kg_per_m3": plan.materials.density(own["pair"])}
+    return {release.name: select(_OF_RELEASE[release.name][0], own)}
 
 
 STAGES = (
     Stage.writing(
         "life",
         "devices/life/{device}",
-        inputs=_inputs,
+        inputs=lambda plan, at: results_of(plan, at.device) | separation_inputs(plan, at.device),
         settings=_settings,
         compute=compute,
         message="Life of device {device}.",

@@ -24,7 +24,17 @@ from stiction.plan.stage import Stage
 from stiction.stages.contact import curves
 from stiction.stages.devices.budget import budgets_of, budgets_of_arrays, response_of, shared_laws
 from stiction.stages.devices.contact_names import contact_of, tips_of
-from stiction.stages.devices.opening import ARC, EITHER, FORCE, LONG, S_SHAPE, DesignedBeam, section_of_beam
+from stiction.stages.devices.opening import (
+    ARC,
+    EITHER,
+    FORCE,
+    LONG,
+    S_SHAPE,
+    DesignedBeam,
+    own_section,
+    section_of_beam,
+)
+from stiction.stages.devices.results import results_of
 from stiction.stages.devices.uncertain_inputs import OF_BEAMS
 from stiction.streams import stream
 
@@ -600,24 +610,9 @@ def _settings(plan, at):
         wettest = case_id(name, max(data["stuck"][name]["humidity"]))
         contact = plan.with_test_beams.contact_of_device(wettest)
         data["stuck"][name]["water"] = plan.air_of_devices.water(contact)
-    is_beam = plan.devices.kind(at.device).is_beam
-    return (
-        data
-        | ({"device": section_of_beam(plan, at.device)} if is_beam else {})
-        | {
-            "seed": plan.config["seed"],
-            "discrepancy": plan.config["design"]["discrepancy"],
-            "arrays": {name: section_of_beam(plan.with_test_beams, name) for name in names},
-        }
-    )
-
-
-def _predicted_sizes(plan, device):
-    """Safe lengths of a beam by humidity, or forces of a stopper."""
-    if not plan.devices.kind(device).is_beam:
-        return f"devices/stoppers/{device}"
-    stated = plan.config["devices"][device]["humidities"]
-    return {humidity: f"devices/safe_lengths/{case_id(device, humidity)}" for humidity in stated}
+    common = {"seed": plan.config["seed"], "discrepancy": plan.config["design"]["discrepancy"]}
+    common["arrays"] = {name: section_of_beam(plan.with_test_beams, name) for name in names}
+    return data | own_section(plan, at.device) | common
 
 
 def _contacts(plan, device):
@@ -642,7 +637,7 @@ STAGES = (
             {
                 "budgets": budgets_of(plan, at.device),
                 "test_beams": budgets_of_arrays(plan, at.device),
-                "predicted": _predicted_sizes(plan, at.device),
+                "predicted": next(iter(results_of(plan, at.device, "lengths", "stopper").values())),
             }
             | _contacts(plan, at.device)
         ),

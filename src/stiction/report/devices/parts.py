@@ -1,0 +1,161 @@
+"""Parts of the page of a device that its release decides: inputs, simulation, words, and controls."""
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import yaml
+from matplotlib.figure import Figure
+
+from stiction.answer.data import Answer
+from stiction.plan.names import by_case
+from stiction.report.budget import figures as figures_budget
+from stiction.report.budget import tables as tables_budget
+from stiction.report.devices import explorer, sentences, voltage_views
+from stiction.report.devices import figures as figures_devices
+from stiction.report.devices import tables as tables_devices
+from stiction.report.limits.words import texts, with_numbers
+from stiction.report.page import Section
+from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.devices.results import results_of
+from stiction.stages.devices.stoppers import ends
+
+#: Why a table of safe lengths has cells without a number.
+_MISSING_LENGTHS = (
+    "all drawn surfaces have the same tips, whose scatter is part of the error due to the number of beams, and the "
+    "paper measured no tips; or too few beams stick for an estimate"
+)
+#: What is not inside a table of one stage.
+_SIMULATED = (
+    "Simulated limits: one touchdown, no voltage, and all inputs exact. The answer above has everything inside."
+)
+#: Terms that pages explain.
+GLOSSARY = Path(__file__).with_name("terms.yaml")
+
+
+@cache
+def terms() -> dict[str, Any]:
+    """Terms by part of a page."""
+    return _read(yaml.safe_load(GLOSSARY.read_text(encoding="utf-8")))
+
+
+def _read(part):
+    """Section of the glossary, or the text of a term with its parts joined."""
+    if isinstance(part, dict):
+        return {name: _read(inner) for name, inner in part.items()}
+    return part if isinstance(part, str) else " ".join(part)
+
+
+class Parts(NamedTuple):
+    """First sections, sentences, warnings and terms of a page."""
+
+    sections: list[Section]
+    sentences: list[str]
+    warnings: list[str]
+    terms: dict[str, str]
+
+
+class OfRelease(NamedTuple):
+    """Parts of the pages of devices of one release, by functions of a device."""
+
+    inputs: Callable[[Any, str], dict[str, Any]]  #: of the plan and its name
+    parts: Callable[[str, Mapping, Mapping, Answer], Parts]  #: of its name, section, data and answer
+    views: Callable[[str, Mapping, Mapping, Answer], list[explorer.View]]  #: of the same
+    figure: Callable[[str, Mapping], Figure]  #: by simulation alone, of its name and data
+
+
+# Beams
+
+
+def _inputs_of_beam(plan, device):
+    """Safe lengths and charts by humidity."""
+    charts = plan.devices.chart_cases(device) if device in plan.devices.with_chart else []
+    return {
+        "safe_lengths": results_of(plan, device, "lengths")["lengths"],
+        "charts": {humidity: name for (_, humidity), name in by_case("devices/chart", charts).items()},
+    }
+
+
+def _cases(name, datasets):
+    """Datasets by name and humidity."""
+    return {(name, humidity): dataset for humidity, dataset in datasets.items()}
+
+
+def _parts_of_beam(name, section, data, answer):
+    """Parts of the page of a cantilever or bridge."""
+    lengths, warnings = data["safe_lengths"], data["warnings"].lengths | data["warnings"].curves
+    table = tables_devices.safe_lengths(_cases(name, lengths), warnings, data.get("errors")).cells
+    pictures, cells = figures_devices.simulated(_cases(name, lengths), {}), table.drop(columns="device")
+    sections = [Section("By simulation alone", (_SIMULATED,), cells, pictures, _MISSING_LENGTHS)]
+    if data.get("charts"):
+        axis = _cases(name, data["charts"])
+        cells = tables_devices.chart(axis, warnings).cells.drop(columns="device")
+        sections.append(Section("Other thicknesses and humidities", (), cells, figures_devices.chart(axis, {})))
+    said = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
+    listed = with_numbers(warnings) + texts(sentences.shortest_warnings(section, answer))
+    return Parts(sections, said, listed, _words_of_beam(data))
+
+
+def _words_of_beam(data):
+    """Terms that the page of a beam explains."""
+    lengths, words = data["safe_lengths"], terms()
+    shapes = map(str, next(iter(lengths.values()))["shape"].values)
+    held = {term: text for shape in shapes for term, text in END_STATES[shape].terms.items()}
+    return (
+        held
+        | words["beams"]
+        | {"Bound": tables_devices.about_bounds(lengths, **words["bounds"])}
+        | (words["dry_air"] if any(float(dataset.film) == 0 for dataset in lengths.values()) else {})
+        | (words["charts"] if data.get("charts") else {})
+    )
+
+
+def _views_of_beam(name, section, data, answer):
+    """Views of a cantilever or bridge."""
+    views = explorer.views_of_beam(name, section, data["safe_lengths"], data["charts"], answer)
+    if "young_modulus_GPa" in section:
+        views.append(explorer.beside(voltage_views.beam_view(name, section, data["safe_lengths"]), answer))
+    return views
+
+
+# Stoppers
+
+
+def _parts_of_stopper(name, _section, data, _answer):
+    """Parts of the page of a stopper."""
+    stopper = data["stopper"]
+    table = tables_budget.stoppers({name: stopper}, {name: []}, data.get("errors")).cells.drop(columns=["device"])
+    picture = figures_budget.stoppers({name: stopper}, {})
+    sections = [Section("By simulation alone", (_SIMULATED,), table, picture)]
+    worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
+    said = [*sentences.safe_force_sentences(stopper), *worst]
+    words = terms()["stoppers"] | (terms()["worst_humidity"] if worst else {})
+    return Parts(sections, said, texts(data["warnings"].patches[name]), words)
+
+
+def _views_of_stopper(name, section, data, answer):
+    """Views of a stopper."""
+    stopper, views = data["stopper"], explorer.views_of_stopper(section, data["stopper"], answer)
+    if "tilted" in data:
+        views.append(explorer.beside(explorer.tilted_view(name, section, data["tilted"], stopper), answer))
+    if "biased" in data:
+        views.append(explorer.beside(voltage_views.stopper_view(name, section, data["biased"]), answer))
+    return views
+
+
+#: By the name of the release.
+OF_RELEASE = {
+    "beam": OfRelease(
+        _inputs_of_beam,
+        _parts_of_beam,
+        _views_of_beam,
+        lambda name, data: figures_devices.simulated(_cases(name, data["lengths"]), {}),
+    ),
+    "stopper": OfRelease(
+        lambda plan, device: results_of(plan, device),
+        _parts_of_stopper,
+        _views_of_stopper,
+        lambda name, data: figures_budget.stoppers({name: data["stopper"]}, {}),
+    ),
+}
