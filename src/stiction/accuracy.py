@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from stiction.chaos.model import Truncation
-from stiction.config.cases import Air, Case
+from stiction.config.cases import Case
 from stiction.config.merging import merged
 from stiction.config.reading import is_stated
 from stiction.config.scans import preliminary_estimates, with_preliminary_estimates
@@ -31,6 +31,7 @@ from stiction.devices.sampling import sampled_surfaces
 from stiction.devices.tail import fit_tail
 from stiction.pilot import surface
 from stiction.plan.devices import DevicePlan, Patch
+from stiction.plan.numbers import Numbers
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At, select
 from stiction.progress import without_progress
@@ -48,31 +49,6 @@ PILOT, _ORDER = 200, 5
 #: Part of the lengths that is fitted. ASSUME: the lowest quarter has the slope of the lowest 5 %, with half the error.
 #: Those of 1400 beams and tips of pair b differ by 5 to 20 %.
 _PART = 0.25
-
-
-@dataclass(frozen=True)
-class Numbers:
-    """Numbers of beams and of samples, and the errors to be expected of them."""
-
-    accuracy: float | None  #: relative standard error that is asked for, if any [-]
-    beams: int  #: of every device and humidity; as many tips
-    samples: dict[str, int]  #: of the grounds of beams, by the name of the patch; none if they are stated
-    errors: dict[Case, float]  #: largest of the lengths of each case [-]
-
-    def within(self, config: dict) -> dict:
-        """Configuration with these numbers, as all plans take them."""
-        return merged(config, {"design": {"beams": self.beams, "samples_of_patches": self.samples}})
-
-    def __str__(self):
-        grounds = "".join(f", {number} samples of {name}" for name, number in self.samples.items())
-        if self.accuracy is None:
-            return f"Devices take {self.beams} beams{grounds}."
-        words = f"An accuracy of {self.accuracy:.2g} takes {self.beams} beams{grounds}"
-        worst = max(self.errors, key=self.errors.get, default=None)
-        if worst is None or self.errors[worst] <= self.accuracy:
-            return f"{words}."
-        missed = f"{self.errors[worst]:.2g} for {worst.device} {Air(worst.humidity).where}"
-        return f"{words}; it is missed: with these numbers, the error is about {missed}."
 
 
 def decided(config: dict) -> dict:

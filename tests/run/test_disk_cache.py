@@ -98,3 +98,16 @@ def test_what_one_folder_knows_another_one_knows_and_so_does_another_machine(tmp
         remember.save()
     monkeypatch.setattr(disk_cache, "own_folder", lambda: tmp_path / "three")
     assert SharedCache(tmp_path / "d" / "kept.json")("key", lambda: "computed") == "computed"  # control
+
+
+@pytest.mark.parametrize("unused", [0, 1, 5])
+def test_the_latest_results_that_a_process_does_not_use_are_kept(tmp_path, unused):
+    path = tmp_path / "kept.json"
+    for key in "abc":
+        remember = DiskCache(path, unused)
+        remember(key, lambda key=key: key)
+        remember.save()
+    remember, computed = DiskCache(path), []
+    for key in "abc":
+        remember(key, lambda key=key: computed.append(key))
+    assert computed == list("abc")[: max(2 - unused, 0)]

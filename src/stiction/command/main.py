@@ -166,12 +166,12 @@ def _check(arguments):
     """Check files."""
     from stiction.command.prepared import prepared
     from stiction.config.files import joined
-    from stiction.run.disk_cache import NOWHERE, Kept
+    from stiction.run.disk_cache import kept_below
 
-    directory = Path(arguments.directory)
-    launch.require_folder(directory)
-    kept = Kept(directory / ".snakemake") if directory.is_dir() else NOWHERE
-    ready = prepared(joined(*arguments.files), kept, with_samples=True)
+    launch.require_folder(directory := Path(arguments.directory))
+    with kept_below(directory) as kept:
+        ready = prepared(joined(*arguments.files), kept, with_samples=True)
+        cost = _cost(ready, kept)
     config = ready.config
     pairs, devices = config["run"]["pairs"], config.get("devices", {})
     scanned = [name for name, entry in config["surfaces"].items() if "scans" in entry]
@@ -180,7 +180,7 @@ def _check(arguments):
     say(f"{' '.join(arguments.files)} can run: {' and '.join(parts) or 'nothing'}.")
     if ready.numbers:
         say(str(ready.numbers))
-    say(f"It takes {_cost(ready)}, less for results that are already there.")
+    say(f"It takes {cost}, less for results that are already there.")
     of_pairs = {name: {pair[side] for side in SIDES} for name, pair in config["pairs"].items()}
     if long := [name for name, device in devices.items() if of_pairs[device["pair"]] & {*scanned}]:
         say(
@@ -190,17 +190,13 @@ def _check(arguments):
     return Status.DONE
 
 
-def _cost(ready):
+def _cost(ready, kept):
     """CPU time and memory of the whole run of a configuration, in words."""
-    from stiction.plan import cost, memory
-    from stiction.plan.graph import Graph
-    from stiction.plan.plan import Plan
-    from stiction.plan.planner import WHOLE
+    from stiction.plan import cost
+    from stiction.plan.planner import Planner
 
-    jobs = Graph(plan := Plan(ready.config, ready.estimates)).needed(*WHOLE)
-    of_stages = {job.stage.name: needs(plan) for job in jobs if (needs := job.stage.running.memory)}
-    megabytes = max(memory.job_memory(ready.config), *map(round, of_stages.values()), 0)
-    return cost.in_words(sum(job.seconds for job in jobs), megabytes)
+    with kept.cache("cost.json") as remember:
+        return cost.in_words(*Planner(ready.config, ready.estimates, kept.code, remember).cost)
 
 
 def _run(arguments, *targets):

@@ -1,18 +1,17 @@
 """One way to a configuration that can run: checked, completed, with the numbers that it leaves open."""
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from dataclasses import astuple, dataclass
+from typing import Any
 
 from stiction.config import scans
 from stiction.config.messages import ConfigError, Problem
 from stiction.config.reading import PAPER
 from stiction.config.surfaces import process
 from stiction.plan.devices import DevicePlan
+from stiction.plan.numbers import Numbers
 from stiction.run.disk_cache import NOWHERE, Kept
 from stiction.run.fingerprint import PACKAGE, fingerprint
-
-if TYPE_CHECKING:
-    from stiction.accuracy import Numbers
 
 
 @dataclass(frozen=True)
@@ -21,7 +20,7 @@ class Prepared:
 
     config: dict[str, Any]  #: complete, valid and in normal form, with all numbers
     estimates: dict[str, dict]  #: preliminary numbers of its measured surfaces
-    numbers: "Numbers | None"  #: decided for the errors of its devices, none if it leaves none open
+    numbers: Numbers | None  #: decided for the errors of its devices, none if it leaves none open
 
 
 def prepared(stated: dict[str, Any], kept: Kept = NOWHERE, with_samples: bool = False) -> Prepared:
@@ -48,11 +47,7 @@ def prepared(stated: dict[str, Any], kept: Kept = NOWHERE, with_samples: bool = 
         raise ConfigError(*map(str, problems))
     if not has_open_numbers:
         return Prepared(config, estimates, None)
-    from stiction import accuracy  # imports the physics, as the pilot does
-
-    with kept.cache("accuracy.json") as remember:
-        code = fingerprint(PACKAGE / "accuracy.py", kept.code)
-        numbers = accuracy.numbers(config, estimates, code, remember)
+    numbers = _numbers(config, estimates, kept)
     return Prepared(numbers.within(config) if numbers else config, estimates, numbers)
 
 
@@ -67,15 +62,44 @@ def _checked(stated, kept):
 
     if scans.has_scans(stated) or process.has_scans(stated):
         return check()
-    code = fingerprint(PACKAGE / "config" / "validation.py", kept.code, silent=())
-    texts = [PAPER.with_name(name).read_text(encoding="utf-8") for name in (PAPER.name, "schema.yaml")]
-    with kept.cache("planning.json") as remember:
-        return remember(["valid", stated, code, texts], check)
+    return _kept(kept, "planning.json", "config/validation.py", [stated], check)
 
 
 def problems_of_samples(config: dict[str, Any], estimates: dict[str, dict], kept: Kept) -> list[Problem]:
     """Problems of a complete configuration in its first samples, which show that a job would fail."""
-    from stiction import pilot
 
-    with kept.cache("pilot.json") as remember:
-        return pilot.problems(config, estimates, fingerprint(PACKAGE / "pilot.py", kept.code), remember)
+    def draw():
+        """Draw them now."""
+        from stiction import pilot  # imports the physics
+
+        with kept.cache("pilot.json") as remember:
+            code = fingerprint(PACKAGE / "pilot.py", kept.code)
+            return list(map(astuple, pilot.problems(config, estimates, code, remember)))
+
+    found = _kept(kept, "samples.json", "pilot.py", [config, estimates], draw)
+    return [Problem(tuple(path), message, tuple(map(tuple, others))) for path, message, others in found]
+
+
+def _numbers(config, estimates, kept):
+    """Numbers for the errors of the devices of a complete configuration."""
+
+    def decide():
+        """Decide them now."""
+        from stiction import accuracy  # imports the physics, as the pilot does
+
+        with kept.cache("accuracy.json") as remember:
+            code = fingerprint(PACKAGE / "accuracy.py", kept.code)
+            numbers = accuracy.numbers(config, estimates, code, remember)
+        return numbers and numbers.plain
+
+    return Numbers.of(_kept(kept, "numbers.json", "accuracy.py", [config, estimates], decide))
+
+
+def _kept(kept: Kept, file: str, module: str, determined_by: list, compute: Callable[[], Any]) -> Any:
+    """Result of a module, kept until a configuration, the module or one of its imports changes."""
+    if kept.folder is None:
+        return compute()
+    code = fingerprint(PACKAGE / module, kept.code, silent=())
+    texts = [PAPER.with_name(name).read_text(encoding="utf-8") for name in (PAPER.name, "schema.yaml")]
+    with kept.cache(file) as remember:
+        return remember([*determined_by, code, texts], compute)

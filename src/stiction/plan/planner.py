@@ -13,6 +13,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from stiction.plan import memory
 from stiction.plan.cost import USUAL_MINUTES
 from stiction.plan.plan import Plan
 from stiction.plan.stage import WILDCARDS, At, expression
@@ -113,6 +114,18 @@ class Planner:
     def wanted(self, target: str) -> list[str]:
         """Files wanted by a target of the workflow."""
         return [file for rule in self.rules if target in rule["targets"] for file in rule["wanted"]]
+
+    @property
+    def cost(self) -> tuple[float, int]:
+        """CPU time [s] of all jobs of a whole run, and memory [MB] of its largest one."""
+        return tuple(self._kept("cost", self._cost))
+
+    def _cost(self):
+        """Sum over the jobs, see `cost`."""
+        jobs = self._graph.needed(*WHOLE)
+        of_stages = {job.stage.name: needs(self.plan) for job in jobs if (needs := job.stage.running.memory)}
+        megabytes = max(memory.job_memory(self.plan.config), *map(round, of_stages.values()), 0)
+        return sum(job.seconds for job in jobs), megabytes
 
     @cached_property
     def before_last(self) -> list[str]:

@@ -20,9 +20,13 @@ from stiction.temporary import own_folder
 class DiskCache:
     """Results by the hash of all their sources."""
 
-    def __init__(self, path: str | Path):
-        """Results in a file. None if it cannot be read, or is not as it was written."""
+    def __init__(self, path: str | Path, unused: int = 0):
+        """Results in a file. None if it cannot be read, or is not as it was written.
+
+        Of those that this process does not use, the file keeps the ``unused`` latest ones.
+        """
         self._path, self._used = Path(path).absolute(), {}  # Snakemake leaves its working directory before it ends
+        self._unused = unused
         self._known = _stored(self._path)
 
     def __call__(self, determined_by: object, compute: Callable[[], Any]) -> Any:
@@ -39,11 +43,13 @@ class DiskCache:
 
     def save(self) -> None:
         """Keep the used results. If the file cannot be written, only time is lost."""
-        if self._used != self._known:
+        others = [key for key in self._known if key not in self._used] if self._unused else []
+        kept = {key: self._known[key] for key in others[-self._unused :]} | self._used
+        if kept != self._known:
             with contextlib.suppress(OSError, DataError):
-                text = json.dumps(self._used)
+                text = json.dumps(kept)
                 save_text(f"{_checksum(text)}\n{text}", self._path)
-            self._known = dict(self._used)
+            self._known = kept
 
 
 def _stored(path):
@@ -84,13 +90,16 @@ NOWHERE = Kept()
 class SharedCache(DiskCache):
     """Results that are kept in a file, and in one of this user for all folders.
 
-    Other machines may not see the file of the user.
+    Other machines may not see the file of the user. Both keep what other commands use: `UNUSED` is that of a few
+    versions of the code.
     """
+
+    UNUSED = 2000  #: results that this process does not use
 
     def __init__(self, path: str | Path):
         """As `DiskCache`. The file of the user has the same name."""
-        super().__init__(path)
-        self._of_user = DiskCache(own_folder() / Path(path).name)
+        super().__init__(path, self.UNUSED)
+        self._of_user = DiskCache(own_folder() / Path(path).name, self.UNUSED)
 
     def __call__(self, determined_by: object, compute: Callable[[], Any]) -> Any:
         """As `DiskCache`."""
@@ -102,3 +111,16 @@ class SharedCache(DiskCache):
         """As `DiskCache`."""
         super().save()
         self._of_user.save()
+
+
+@contextlib.contextmanager
+def kept_below(directory: Path) -> Iterator[Kept]:
+    """Keep what a command finds out below the folder of a run. Nothing is kept if the folder is missing."""
+    if not directory.is_dir():
+        yield NOWHERE
+        return
+    code = SharedCache(directory / ".snakemake" / "code.json")
+    try:
+        yield Kept(directory / ".snakemake", code)
+    finally:
+        code.save()
