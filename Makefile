@@ -237,6 +237,7 @@ $(VENV)/ready: requirements.lock pyproject.toml
 	$(LIBRARIES)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
 	$(BIN)/python -m stiction.command.editor_schema
+	$(BIN)/python -m stiction.run.warmup
 	@touch $@
 
 requirements.lock:

@@ -23,12 +23,12 @@ from stiction.config.meetings import above_zero, pair_meetings
 from stiction.config.messages import did_you_mean, duplicates, one_line
 from stiction.config.scans import MEASURED_CORRELATION
 from stiction.config.surfaces.grid import carried, published_correlation, used_surfaces
+from stiction.config.surfaces.moments import nearest_shape
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si
 from stiction.contact.materials import COATING, COATING_ATTRACTION
 from stiction.errors import NotConverged
 from stiction.models import SIDES
 from stiction.rounding import is_at_most, is_multiple
-from stiction.surface.feasible import nearest_feasible
 from stiction.surface.identify import SummitTarget, estimated_spectrum
 from stiction.surface.spectrum import correlation_length
 
@@ -206,7 +206,7 @@ def without_density(skewness: float, kurtosis: float) -> str | None:
     if kurtosis <= skewness**2 + 1:
         return f"must be above skewness² + 1 = {skewness**2 + 1:.6g}"
     try:
-        nearest_feasible(skewness, kurtosis)
+        nearest_shape(skewness, kurtosis)
     except (ValueError, NotConverged) as reason:
         return f"must be near that of a maximum-entropy density of the heights: {reason}"
     return None

@@ -16,6 +16,7 @@ from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
 from stiction.config.surfaces.knowledge import knowledge, uncertain
 from stiction.config.surfaces.members import limits
+from stiction.config.surfaces.moments import nearest_shape
 from stiction.config.test_beams import as_cantilevers
 from stiction.contact.materials import ELASTIC
 from stiction.models import BEAM_MODELS, FAR_QUANTITIES, MODE_QUANTITIES, SURFACE_MODELS
@@ -338,11 +339,9 @@ class Plan:
 
     def _feasible_shape(self, surface):
         """Skewness and kurtosis of the maximum-entropy density of a surface, ``None`` if its heights are measured."""
-        from stiction.surface.feasible import nearest_feasible
-
         entry, names = self.config["surfaces"][surface], ("skewness", "kurtosis")
         if not is_measured(entry):
-            return subsection(nearest_feasible(**subsection(entry, names))._asdict(), names)
+            return dict(zip(names, nearest_shape(**subsection(entry, names)), strict=True))
         if entry["heights"] == "measured":
             return None
         estimates = self.preliminary or preliminary_estimates(self.config)[0]
