@@ -2,6 +2,7 @@
 
 import importlib.util
 import re
+import shutil
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
@@ -60,6 +61,7 @@ SNIPPETS = sorted(
 )
 EXAMPLES = ("examples/scans/mine", "examples/devices", "examples/roughness", "examples/drawn_beams/mine")
 EXAMPLES += ("examples/test_beams", "examples/sealed", "examples/life", "examples/process/mine", "workflow/smoke")
+EXAMPLES += ("examples/range/mine",)
 
 
 def module(path):
@@ -84,6 +86,7 @@ def folder(tmp_path_factory):
     module(ROOT / "examples" / "process" / "draw.py").main(path)
     for name in ("arrayA.csv", "wafer.csv"):
         (path / name).write_text(TEMPLATE, encoding="utf-8")
+    shutil.copy2(ROOT / "examples" / "range" / "range.csv", path)
     return path
 
 

@@ -11,6 +11,7 @@ from snakemake.logging import logger
 from stiction.command.prepared import prepared, problems_of_samples
 from stiction.command.run_state import RUN
 from stiction.config import files, merging, messages
+from stiction.config.tables import device_table
 from stiction.plan import cost, memory
 from stiction.plan.planner import WHOLE, Planner
 from stiction.plan.stage import WILDCARDS
@@ -51,9 +52,9 @@ def stated():
     whole = merging.merged(contents.get(defaults) or files.read(defaults), config)
     changes = [contents[file] for file in contents if file != defaults]
     whole = merging.without_inherited(whole, files.paper(), changes)
-    for file in contents:  # files of scans and of test beams are relative to the first match
+    for file in contents:  # files of scans, test beams and devices are relative to the first match
         whole = files.located(whole, contents[file], file.parent)
-    return whole
+    return device_table.with_rows(whole)
 
 
 #: What one plan finds out for the next.

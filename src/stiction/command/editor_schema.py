@@ -13,7 +13,10 @@ _OF_COMPLETE = ("required", "if", "else", "then", "allOf", "minProperties")
 
 def text() -> str:
     """Schema of files of changed single keys, as JSON for editors with completion and checks of YAML."""
-    return json.dumps(_reduced(schema()) | {"$schema": "http://json-schema.org/draft-07/schema#"}, indent=1) + "\n"
+    reduced = _reduced(schema()) | {"$schema": "http://json-schema.org/draft-07/schema#"}
+    devices = reduced["properties"]["devices"]
+    devices["properties"] |= devices["additionalProperties"]["properties"]  # beside a file of devices
+    return json.dumps(reduced, indent=1) + "\n"
 
 
 def _reduced(entry):

@@ -8,6 +8,7 @@ from stiction.config import scans
 from stiction.config.messages import ConfigError, Problem
 from stiction.config.reading import PAPER
 from stiction.config.surfaces import process
+from stiction.config.tables import device_table
 from stiction.plan.devices import DevicePlan
 from stiction.plan.numbers import Numbers
 from stiction.run.disk_cache import NOWHERE, Kept
@@ -44,7 +45,7 @@ def prepared(stated: dict[str, Any], kept: Kept = NOWHERE, with_samples: bool = 
     has_open_numbers = DevicePlan(config).has_open_numbers
     is_sampled = with_samples or has_open_numbers and "accuracy" in config["design"]  # whose pilot takes longer
     if is_sampled and (problems := problems_of_samples(config, estimates, kept)):
-        raise ConfigError(*map(str, problems))
+        raise ConfigError(*device_table.in_rows(map(str, problems), device_table.without_file(stated)[1]))
     if not has_open_numbers:
         return Prepared(config, estimates, None)
     numbers = _numbers(config, estimates, kept)

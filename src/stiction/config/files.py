@@ -9,6 +9,7 @@ from stiction.config import scans, test_beams
 from stiction.config.merging import merged, without_inherited
 from stiction.config.reading import PAPER, paper, read
 from stiction.config.surfaces import process
+from stiction.config.tables import device_table
 
 
 def load(*overlays: str | Path | Mapping) -> dict:
@@ -18,7 +19,7 @@ def load(*overlays: str | Path | Mapping) -> dict:
     ----------
     *overlays : path of a YAML file, or mapping
         Each changes single keys of the preceding configuration, like ``CONFIG=mine.yaml`` in the workflow. Files of
-        scans and of test beams are relative to the folder of the YAML file, in a mapping to the working directory.
+        scans, test beams and devices are relative to the folder of the YAML file, in a mapping to the current folder.
 
     Raises
     ------
@@ -39,7 +40,7 @@ def joined(*overlays: str | Path | Mapping) -> dict:
     """Configuration of the paper, changed by overlays as in `load`, as it is stated: not checked."""
     changes = [_in_memory(overlay) if isinstance(overlay, Mapping) else read_located(overlay) for overlay in overlays]
     whole = functools.reduce(merged, changes, read(PAPER))
-    return without_inherited(whole, paper(), changes)
+    return device_table.with_rows(without_inherited(whole, paper(), changes))
 
 
 def _in_memory(overlay):
@@ -75,7 +76,9 @@ def read_located(path: str | Path) -> dict:
 def located(config: dict, named: Mapping[str, Any], folder: str | Path) -> dict:
     """Configuration, valid or not, with the files that one of its files names.
 
-    Those of scans are in the folder of this file, in place of relative to it. Test beams have the data in their files.
+    Those of scans and devices are in the folder of this file, in place of relative to it. Test beams have the data in
+    their files.
     """
+    config = device_table.in_folder(config, named, folder)
     config = scans.resolve_scan_paths(config, named, folder)
     return test_beams.with_files(process.resolve_scan_paths(config, named, folder), named, folder)

@@ -6,7 +6,6 @@ In a file, a row is a beam: measured if it has a crack length, counted if it say
 has the means and counts from the start; what is wrong with them is said with the row, and nothing else knows of files.
 """
 
-import csv
 import math
 from collections.abc import Iterator, Mapping
 from itertools import zip_longest
@@ -16,8 +15,10 @@ from typing import Any, NamedTuple
 
 from stiction.config.cases import DRY
 from stiction.config.kinds import KEYS
-from stiction.config.messages import ConfigError, did_you_mean, one_line
+from stiction.config.messages import ConfigError, one_line
 from stiction.config.reading import text
+from stiction.config.tables import csv_rows
+from stiction.config.tables.csv_rows import WrongFileError
 
 #: Keys of an array that list what was measured.
 DATA = ("crack_lengths", "stuck")
@@ -121,10 +122,6 @@ class Origin(NamedTuple):
     beams: list[Beam]
 
 
-class _Wrong(ValueError):
-    """Fault of a file, as the end of a sentence."""
-
-
 def with_files(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
     """Configuration, valid or not, with means and counts from the files named by the content.
 
@@ -159,7 +156,7 @@ def _with_file(name, entry, folder):
     try:
         rows = beams(text(folder / entry["file"]))
         data = summary(rows)
-    except _Wrong as wrong:
+    except WrongFileError as wrong:
         raise ConfigError(f"{key}, {wrong}") from None
     except (OSError, ValueError) as reason:
         raise ConfigError(f"{key}, which cannot be read: {getattr(reason, 'strerror', None) or reason}") from reason
@@ -219,54 +216,21 @@ def _places(of_file, array):
 
 def beams(content: str) -> list[Beam]:
     """Single beams from the text of a file. Lines beginning with # are comments."""
-    lines = ((k, line) for k, line in enumerate(content.removeprefix("\ufeff").splitlines(), 1) if line.strip(" ,"))
-    rows = [(k, _cells(k, line)) for k, line in lines if line[0] != "#"]
-    if not rows:
-        raise _Wrong(f"which is empty, must begin with the names of its columns: {','.join(COLUMNS)}")
-    (first, columns), *others = rows
-    _check_columns(first, columns)
-    if not others:
-        raise _Wrong("which holds no beam, must have a row for every beam")
-    return [_beam(row, cells, columns) for row, cells in others]
+    return [_beam(row, cells) for row, cells in csv_rows.rows(content, COLUMNS, COLUMNS[:2], "beam")]
 
 
-def _cells(row, line):
-    """Values of a row."""
-    try:
-        return [cell.strip() for cell in next(csv.reader([line]))]
-    except csv.Error as reason:
-        raise _Wrong(f"row {row} of {len(line)} characters cannot be read: {reason}") from None
-
-
-def _check_columns(row, columns):
-    """Refuse columns if unknown, missing or given twice."""
-    for name in columns:
-        if name not in COLUMNS:
-            hint = "; separate columns by commas" if ";" in name or "\t" in name else did_you_mean(name, COLUMNS)
-            raise _Wrong(f"row {row}: column {one_line(name)} is unknown, must be among {', '.join(COLUMNS)}{hint}")
-    missing = [name for name in COLUMNS[:2] if name not in columns]
-    if missing or len(set(columns)) < len(columns):
-        raise _Wrong(
-            f"row {row}: the columns are {', '.join(columns)}, must have {' and '.join(COLUMNS[:2])}, each once"
-        )
-
-
-def _beam(row, cells, columns):
+def _beam(row, cells):
     """Beam of a row."""
-    if len(cells) != len(columns):
-        raise _Wrong(
-            f"row {row}: commas separate {len(cells)} values, must be {len(columns)}, with points in decimal numbers"
-        )
-    row_cells = dict.fromkeys(COLUMNS, "") | dict(zip(columns, cells, strict=True))
+    row_cells = dict.fromkeys(COLUMNS, "") | cells
     humidity = (
         0.0 if row_cells["humidity"] == DRY else _number(row, row_cells, "humidity", 1, "as a fraction of 1, or dry")
     )
     length = _number(row, row_cells, "length_um", math.inf, "in µm")
     if bool(row_cells["crack_length_um"]) == bool(row_cells["stuck"]):
-        raise _Wrong(f"row {row}: it must have either crack_length_um or stuck")
+        raise WrongFileError(f"row {row}: it must have either crack_length_um or stuck")
     if row_cells["stuck"]:
         if row_cells["stuck"].lower() not in _WORDS:
-            raise _Wrong(f"row {row}: stuck is {one_line(row_cells['stuck'])}, must be yes or no")
+            raise WrongFileError(f"row {row}: stuck is {one_line(row_cells['stuck'])}, must be yes or no")
         return Beam(row, humidity, length, None, _WORDS[row_cells["stuck"].lower()])
     crack = _number(row, row_cells, "crack_length_um", length, f"below the length of the beam, {length:g} µm")
     return Beam(row, humidity, length, crack, None)
@@ -279,7 +243,7 @@ def _number(row, cells, column, limit, words):
     except ValueError:
         value = math.nan
     if not 0 < value < limit:
-        raise _Wrong(f"row {row}: {column} is {one_line(cells[column])}, must be a number above 0, {words}")
+        raise WrongFileError(f"row {row}: {column} is {one_line(cells[column])}, must be a number above 0, {words}")
     return value
 
 
@@ -294,7 +258,7 @@ def summary(beams: list[Beam]) -> dict[str, Any]:
         first, *others = sorted(beam for _, group in measured for beam in group)
         other = next((beam for beam in others if beam.length != first.length), None)
         if other is not None:
-            raise _Wrong(
+            raise WrongFileError(
                 f"row {other.row}: length_um is {other.length:g}, must be {first.length:g} as in row {first.row}: all "
                 "beams with crack lengths are equal"
             )
@@ -320,7 +284,7 @@ def _mean(humidity, group):
     _require_one_unit(group)
     lengths = [beam.crack_length for beam in group]
     if len(set(lengths)) < 2:
-        raise _Wrong(
+        raise WrongFileError(
             f"row {group[0].row}: crack_length_um must have different values in at least two rows at humidity "
             f"{humidity:g}: their standard deviation gives the error of the mean"
         )
@@ -333,7 +297,7 @@ def _require_one_unit(group):
     off = max(group, key=lambda beam: abs(math.log(beam.crack_length / usual)))
     other = max(group, key=lambda beam: abs(math.log(beam.crack_length / off.crack_length)))
     if max(off.crack_length / other.crack_length, other.crack_length / off.crack_length) > _OTHER_UNIT:
-        raise _Wrong(
+        raise WrongFileError(
             f"row {off.row}: crack_length_um is {off.crack_length:g}, but {other.crack_length:g} in row {other.row}: "
             "all must be in µm"
         )

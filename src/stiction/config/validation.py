@@ -12,11 +12,12 @@ from typing import Any, NamedTuple
 from stiction.config import meetings, relations, relations_devices, scans, test_beams
 from stiction.config.cases import in_numbers, in_words
 from stiction.config.keys import Keys, Relations
-from stiction.config.merging import expanded
+from stiction.config.merging import expanded, merged
 from stiction.config.messages import ConfigError, Problem, schema_problems
 from stiction.config.reading import paper
 from stiction.config.relations import schema
 from stiction.config.surfaces import described, grid, process, process_relations
+from stiction.config.tables import device_table
 
 #: Relations between the names and the keys of devices, then between their values. Those of arrays of test beams, too.
 _NAMES_OF_DEVICES = relations_devices.relation_of_names
@@ -41,8 +42,20 @@ def checked(stated: Any, kept: Path | None = None) -> Checked:
     Raises
     ------
     ConfigError
-        If it is invalid; one line per problem: full key, value, allowed values.
+        If it is invalid; one line per problem: full key, or row of the file of devices, value, allowed values.
     """
+    stated, of_file = device_table.without_file(stated)
+    try:
+        found = _checked(stated, kept)
+    except ConfigError as error:
+        raise ConfigError(*device_table.in_rows(error.problems, of_file)) from error
+    if not of_file.numbers:
+        return found
+    return found._replace(config=merged(found.config, {"design": {"order": list(of_file.numbers)}}))
+
+
+def _checked(stated, kept):
+    """Checked configuration without a file of devices. Raises the errors of `checked`."""
     _refuse(schema_problems(sections := _plain(stated), schema()), stated, {})
     stated = process.with_surfaces(expanded(stated))
     if (whole := _plain(stated)) != sections:  # with copies and surfaces of settings

@@ -109,6 +109,12 @@ class DevicePlan:
         """Sections of all devices by name. Empty if the configuration has none."""
         return self.config.get("devices", {})
 
+    @property
+    def in_order(self) -> list[str]:
+        """Names of all devices: those of a file in its order, then all others."""
+        of_file = [name for name in self.config["design"].get("order", ()) if name in self.sections]
+        return list(dict.fromkeys([*of_file, *self.sections]))
+
     def kind(self, device: str) -> Kind:
         """Kind of a device."""
         return kind_of(self.sections[device])

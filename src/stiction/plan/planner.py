@@ -123,8 +123,9 @@ class Planner:
     def _cost(self):
         """Sum over the jobs, see `cost`."""
         jobs = self._graph.needed(*WHOLE)
-        of_stages = {job.stage.name: needs(self.plan) for job in jobs if (needs := job.stage.running.memory)}
-        megabytes = max(memory.job_memory(self.plan.config), *map(round, of_stages.values()), 0)
+        of_stages = {job.stage.name: job.stage.running.memory for job in jobs}
+        needed = (round(needs(self.plan)) for needs in of_stages.values() if needs)
+        megabytes = max(memory.job_memory(self.plan.config), *needed, 0)
         return sum(job.seconds for job in jobs), megabytes
 
     @cached_property

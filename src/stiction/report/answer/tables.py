@@ -38,7 +38,7 @@ def devices(answers: Mapping[str, Answer]) -> Table:
         "then": (_size, "if_measured", "unit"),
         "no number": (str, "forbidden"),
     }
-    return Table.of([_row(answer) for answer in answers.values()], _CAPTION, columns)
+    return Table.of([_without_noise(_row(answer)) for answer in answers.values()], _CAPTION, columns)
 
 
 def _row(answer):
@@ -54,7 +54,7 @@ def _row(answer):
         "verdict": str(answer.verdict),
         "sign": words.sign_of(answer)[1],
         "unit": unit,
-        "size": float(f"{answer.size / scale:.9g}"),  # as in the configuration
+        "size": answer.size / scale,
         "to_build": to_build,
         "exact": known * answer.exact / scale,
         "share": answer.share,
@@ -73,6 +73,11 @@ def _row(answer):
         "left_out": " ".join(answer.left_out),
         "forbidden": " ".join(answer.forbidden),
     }
+
+
+def _without_noise(row):
+    """Row with twelve digits of each number: 250 as stated, not 250.00000000000003."""
+    return {key: float(f"{value:.12g}") if isinstance(value, float) else value for key, value in row.items()}
 
 
 def _size(value, unit):
@@ -107,7 +112,10 @@ STAGES = (
             "answers": by_name("devices/answer", plan.devices.sections),
             "warnings": device_warnings.files_of(*plan.devices.sections),
         },
-        compute=lambda data: devices(of_datasets(data["answers"], data["warnings"])),
+        compute=lambda data, settings: devices(
+            of_datasets({name: data["answers"][name] for name in settings["order"]}, data["warnings"])
+        ),
+        settings=lambda plan, at: {"order": plan.devices.in_order},
         jobs=lambda plan: [{}] if plan.devices.sections else [],
         targets=("devices",),
     ),

@@ -1,0 +1,1 @@
+"""CSV files that a configuration names."""
