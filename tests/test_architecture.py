@@ -1,6 +1,7 @@
 """The order of the modules: each imports only from those before it, and the physics is independent of files."""
 
 import ast
+import re
 from functools import cache
 from pathlib import Path
 
@@ -286,3 +287,66 @@ def test_every_folder_has_its_place_once_and_none_is_crowded():
     assert len(ORDER) == len(set(ORDER))
     folders = [name.rpartition(".")[0] for name in MODULES]
     assert max(map(folders.count, folders)) <= LARGEST_FOLDER
+
+
+#: Names of humidities, and functions of which a value is one or all of them.
+OF_HUMIDITY, OF_SEVERAL = re.compile(r"humidit|\brh\b|\bairs\b"), ("any", "min", "max", "np.min", "np.max")
+
+
+def is_zero(node):
+    """Whether an expression is the number 0."""
+    return isinstance(node, ast.Constant) and type(node.value) in (int, float) and node.value == 0
+
+
+def is_humidity(node, values):
+    """Whether an expression is a humidity by its name, or one of some values, and no answer of a function."""
+    if isinstance(node, ast.Call) and ast.unparse(node.func) in OF_SEVERAL:
+        return is_humidity(node.args[0], values)
+    text, is_answer = ast.unparse(node), any(isinstance(inner, ast.Call) for inner in ast.walk(node))
+    return not is_answer and (text in values or bool(OF_HUMIDITY.search(text)))
+
+
+def questions_of_dry_air(path):
+    """Expressions that ask whether a humidity is 0: by comparisons, or by its truth."""
+    loops = [node for node in nodes(path) if isinstance(node, ast.comprehension | ast.For)]
+    values = {ast.unparse(loop.target) for loop in loops if OF_HUMIDITY.search(ast.unparse(loop.iter))}
+    for node in nodes(path):
+        compared = [node.left, *node.comparators] if isinstance(node, ast.Compare) else []
+        tests = [node.test] if isinstance(node, ast.If | ast.IfExp) else getattr(node, "ifs", [])
+        tests = [test.operand if isinstance(test, ast.UnaryOp) else test for test in tests]
+        tests = [test for test in tests if isinstance(test, ast.Name | ast.Attribute | ast.Call)]
+        asked = [*(compared if any(map(is_zero, compared)) else []), *tests]
+        yield from (ast.unparse(each) for each in asked if is_humidity(each, values))
+
+
+def test_one_module_asks_whether_air_is_dry():
+    for path in FILES:
+        assert module_name(path) == "contact.air" or not list(questions_of_dry_air(path)), path
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "x = contact[humidity > 0]",
+        "x = 'dry' if rh == 0.0 else 'humid'",
+        "x = [h for h in humidities if h]",
+        "x = [h for h in section['humidities'] if 0 < h]",
+        "x = 1 if not case.humidity else 2",
+        "x = 0 in device['humidities']",
+        "x = 1 if any(humidities) else 2",
+        "x = data.relative_humidity.values > 0",
+    ],
+)
+def test_a_question_of_dry_air_is_found(tmp_path, line):
+    path = tmp_path / "table.py"
+    path.write_text(f"def f(humidity):\n    {line}\n")
+    assert len(list(questions_of_dry_air(path))) == 1
+
+
+@pytest.mark.parametrize(
+    "line", ["x = Air(humidity).is_dry", "x = humidity > 0.3", "x = gap > 0", "x = 1 if is_humid(humidity) else 2"]
+)
+def test_other_questions_are_none_of_dry_air(tmp_path, line):
+    path = tmp_path / "table.py"
+    path.write_text(f"def f(humidity):\n    {line}\n")
+    assert not list(questions_of_dry_air(path))

@@ -24,13 +24,13 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.resolution import longest
-from stiction.config.cases import Air
 from stiction.config.messages import Problem, dotted, one_line
 from stiction.config.relations import field_too_large
 from stiction.config.scans import is_measured, with_preliminary_estimates
 from stiction.config.test_beams import DATA
 from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
 from stiction.contact import forcelaw
+from stiction.contact.air import Air, humid, is_humid
 from stiction.contact.environment import ForceCurves, Water, force_curves
 from stiction.contact.pair import contacts_of_samples
 from stiction.models import SURFACE_MODELS
@@ -203,7 +203,7 @@ def _of_area(plan, name, use, air):
     humidities, size = plan.devices.sections[name]["humidities"], (*air[:2], "contact_um")
     yield use(humidities, size=size, air=air)
     worst = plan.config["design"].get("worst_humidities")
-    if worst and any(humidities):
+    if worst and humid(humidities):
         yield use(worst, size=size, air=("design", "worst_humidities"))
 
 
@@ -280,7 +280,7 @@ def _too_long(use, length, error, samples):
 def _weak(use, humidities, weak):
     """Key and message of a patch with a sample too weak against the adhesion at the first of some humidities."""
     pull, repulsion = (f"{from_si(weak[key], 'MPa'):.3g} MPa" for key in ("pull", "repulsion"))
-    more, water = " and others" * (len(set(humidities)) > 1), "water and " * (humidities[0] > 0)
+    more, water = " and others" * (len(set(humidities)) > 1), "water and " * is_humid(humidities[0])
     resist = (
         f"{Air(humidities[0]).where}{more}, {water}van der Waals forces pull "
         f"with up to {pull}, and the summits of sample {weak['sample']} of {weak['samples']} resist with {repulsion}"
@@ -294,14 +294,14 @@ def _weak(use, humidities, weak):
         )
     others = [Air(humidity).name for humidity in use.humidities if humidity not in humidities]
     choose = f"only {', '.join(others)}" if others else "other humidities"
-    humid = any(use.humidities)  # a study of dry air has no humidity to choose
+    is_wet = bool(humid(use.humidities))  # a study of dry air has no humidity to choose
     full = " of the strips in full elastic contact" * use.in_full_contact
     flat = ", or state contact.model: summits, which counts weak samples as flat" * use.in_full_contact
     return use.pair, (
-        f"must have surfaces rough enough and a solid stiff enough{' for its humidities' * humid}: {resist} where the "
+        f"must have surfaces rough enough and a solid stiff enough{' for its humidities' * is_wet}: {resist} where the "
         f"mean planes{full} meet; increase the roughness or young_modulus_GPa{flat}"
         + f", or choose {choose} in {dotted(use.air)}"
-        * humid
+        * is_wet
     )
 
 

@@ -135,9 +135,9 @@ def test_counts_have_budgets_of_beams_and_tips_on_the_contacts_of_the_device():
     assert set(inputs["test_beams"]) == {("first", 0.44), ("first", 0.67), ("first", 0.67, "tip")}
     tips = [graph.job(f"devices/{name}_rh067_tip") for name in ("budget/C1", "test_beams/budget/first")]
     assert tips[1].settings["budget"]["share"] == 0.5
-    assert tips[0].inputs["contact"] == tips[1].inputs["contact"] == inputs["tips"]["first", True]
+    assert tips[0].inputs["contact"] == tips[1].inputs["contact"] == inputs["tips"]["first", "humid"]
     assert tips[0].inputs["less"] == tips[1].inputs["less"] != {}
-    assert inputs["grounds"]["first", True] == graph.job("devices/budget/C1_rh067").inputs["contact"]
+    assert inputs["grounds"]["first", "humid"] == graph.job("devices/budget/C1_rh067").inputs["contact"]
     assert Graph(PLAN).job("devices/test_beams/C1").inputs["grounds"] == {}
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from stiction.beam.energy import CRACK_LENGTH_POWER
+from stiction.contact.air import is_humid
 from stiction.contact.correction import interpolated
 from stiction.estimates import jackknife
 
@@ -60,13 +61,15 @@ def interpolation_error(logarithms: np.ndarray, humidities: np.ndarray, at: np.n
     standard error; curves that bend several times between two humidities are not. Dry air, humidity 0, is no point of
     these curves.
     """
-    humid = humidities > 0
+    humid = is_humid(humidities)
     if not humid.any():
         return np.zeros(np.shape(at))
     nodes, values = np.append(humidities[humid], 1.0), np.append(logarithms[humid], 0.0)
     differences = np.diff(np.diff(values) / np.diff(nodes)) / (nodes[2:] - nodes[:-2])
     above = np.clip(np.searchsorted(nodes, at, side="right"), 1, len(nodes) - 1)
-    return np.where(at > 0, np.abs(differences).max(initial=0.0) * (at - nodes[above - 1]) * (nodes[above] - at), 0.0)
+    return np.where(
+        is_humid(at), np.abs(differences).max(initial=0.0) * (at - nodes[above - 1]) * (nodes[above] - at), 0.0
+    )
 
 
 def mean_ratios(

@@ -1,17 +1,12 @@
-"""Air of cases: its words, its names in files, and the word ``dry`` for air without condensation of water.
-
-Dry air has the humidity 0 in the code. It has no water at all, which is not a film that becomes thinner and thinner.
-"""
+"""Names of cases in files, and the word ``dry`` for the humidity of dry air in configurations."""
 
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cache
-from numbers import Real
 from typing import Any
 
-#: Word for the humidity of dry air in configurations, and the medium of attraction in it.
-DRY = "dry"
+from stiction.contact.air import DRY, DRY_AIR, Air, is_possible
+
 #: Pattern of a name in paths. No ``_`` in it is followed by the excluded text, which follows names.
 _NAME = "[A-Za-z][A-Za-z0-9-]*(?:_(?!{})[A-Za-z0-9-]*)*"
 #: Pattern of the name of a device, or of an array of test beams, before air.
@@ -30,54 +25,6 @@ _HUMIDITIES = ("humidity", "humidities")
 _LEVELS = 5
 #: Requirement on a humidity, as part of an error message.
 NAMEABLE = "have at most 4 decimals, because the names of files contain them"
-
-
-@dataclass(frozen=True)
-class Air:
-    """Air of a relative humidity, in words and in names of files.
-
-    Examples
-    --------
-    >>> humid, dry = Air(0.67), Air(0.0)
-    >>> humid.name, humid.words, humid.where, humid.ending, humid.medium
-    ('0.67', 'RH 0.67', 'at RH 0.67', '_rh067', None)
-    >>> dry.name, dry.words, dry.where, dry.ending, dry.medium
-    ('dry', 'dry', 'in dry air', '_dry', 'dry')
-    """
-
-    humidity: float  #: 0 in dry air [-]
-
-    @property
-    def name(self) -> str:
-        """Humidity as configurations state it."""
-        return f"{self.humidity:g}" if self.humidity else DRY
-
-    @property
-    def words(self) -> str:
-        """Name in figures and tables, and before a comma."""
-        return f"RH {self.name}" if self.humidity else self.name
-
-    @property
-    def where(self) -> str:
-        """Place in this air, as a part of a sentence."""
-        return f"at {self.words}" if self.humidity else "in dry air"
-
-    @property
-    def ending(self) -> str | None:
-        """End of the names of cases in it, with two to four decimals. ``None`` if four are not exact."""
-        if not self.humidity:
-            return f"_{DRY}"
-        texts = (f"{self.humidity:.{places}f}" for places in (2, 3, 4))
-        return next((f"_rh{text.replace('.', '')}" for text in texts if float(text) == self.humidity), None)
-
-    @property
-    def medium(self) -> str | None:
-        """Medium of the attraction between summits, if not the configuration's."""
-        return None if self.humidity else DRY
-
-
-#: Dry air, whose contacts have names of their own.
-DRY_AIR = Air(0.0)
 
 
 class PairInAir(str):
@@ -162,7 +109,7 @@ def case_id(pair: str, humidity: float | str) -> Case:
     ('b_rh067', 'b_rh060', 'b_rh0675', 'b_dry', 'b_dry')
     """
     humidity = in_numbers(humidity)
-    ending = Air(humidity).ending if isinstance(humidity, Real) and 0 <= humidity < 1 else None
+    ending = Air(humidity).ending if is_possible(humidity) else None
     if ending is None:
         raise ValueError(f"humidity {humidity} of pair {pair} must be dry, or above 0, below 1 and {NAMEABLE}")
     return Case(pair + ending)
@@ -182,7 +129,7 @@ def in_numbers(value: Any, key: str = "humidity", levels: int = _LEVELS) -> Any:
         return {name: in_numbers(inner, name, levels - 1) for name, inner in value.items()}
     if isinstance(value, list) and levels:
         return [in_numbers(inner, key, levels - 1) for inner in value]
-    return 0.0 if value == DRY and key in _HUMIDITIES else value
+    return DRY_AIR.humidity if value == DRY and key in _HUMIDITIES else value
 
 
 def in_words(value: Any, path: Sequence[str | int]) -> Any:
@@ -199,4 +146,4 @@ def in_words(value: Any, path: Sequence[str | int]) -> Any:
         return value
     if isinstance(value, list):
         return [in_words(item, path) for item in value]
-    return DRY if type(value) is float and value == 0 else value
+    return DRY if type(value) is float and value == DRY_AIR.humidity else value

@@ -9,7 +9,6 @@ from functools import partial
 import numpy as np
 
 from stiction.config import memory
-from stiction.config.cases import Air
 from stiction.config.keys import Relations
 from stiction.config.kinds import KEYS, KINDS, ROUGHNESSES, kind_of
 from stiction.config.materials import hamaker_constant, material_of
@@ -37,6 +36,7 @@ from stiction.config.relations import (
 from stiction.config.surfaces import process as process_surfaces
 from stiction.config.test_beams import DATA, shared_uncertainty
 from stiction.config.units import NM_PER_UM, from_si, to_si
+from stiction.contact.air import Air, is_humid
 from stiction.contact.materials import COATING_ATTRACTION, OF_CONTACT
 from stiction.contact.tilt import EDGE_RADIUS, Edge
 from stiction.rounding import is_at_most
@@ -197,7 +197,7 @@ def uncertain_water_of_devices_is_a_liquid(config):
                 (deviation * (key == wrong) for wrong in keys),
             )
             driest = min(above_zero(humidities), default=0) - drier
-            if driest <= 0 or _freezes_or_boils(warmer, config[TEMPERATURE]) or meeting.too_dry(humidities):
+            if not is_humid(driest) or _freezes_or_boils(warmer, config[TEMPERATURE]) or meeting.too_dry(humidities):
                 continue  # other relations report it
             if refusal := meeting.too_dry(driest, more, warmer):
                 message = f"must leave water that is a liquid: the humidity, {driest:g}, {refusal}"
@@ -295,9 +295,9 @@ def uncertain_humidities_stay_within_their_limits(config):
     """Humidities are above 0 and below 1 one standard uncertainty around their values, too."""
     for name, deviation, humidities in config.entries("devices", "uncertainty.humidity", "humidities"):
         message, given = None, f"devices.{name}.humidities"
-        if deviation and not any(humidities):
+        if deviation and not above_zero(humidities):
             message = "must be left out, because dry air has no humidity that could be uncertain"
-        elif not (min(above_zero(humidities), default=1) - deviation > 0 and max(humidities) + deviation < 1):
+        elif not (is_humid(min(above_zero(humidities), default=1) - deviation) and max(humidities) + deviation < 1):
             message = "must leave the humidities above 0 and below 1"
         if message:
             yield f"devices.{name}.uncertainty.humidity", message, given

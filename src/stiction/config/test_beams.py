@@ -13,12 +13,12 @@ from pathlib import Path
 from statistics import fmean, median, stdev
 from typing import Any, NamedTuple
 
-from stiction.config.cases import DRY
 from stiction.config.kinds import KEYS
 from stiction.config.messages import ConfigError, one_line
 from stiction.config.reading import text
 from stiction.config.tables import csv_rows
 from stiction.config.tables.csv_rows import WrongFileError
+from stiction.contact.air import DRY, humid
 
 #: Keys of an array that list what was measured.
 DATA = ("crack_lengths", "stuck")
@@ -95,7 +95,7 @@ def _cantilever(config, name, measured_at):
     """Section of an array at some of its humidities, with itself as its test beams."""
     array = config["test_beams"][name]
     shared = {key: value for user in users(config, name).values() for key, value in shared_uncertainty(user).items()}
-    if not any(measured_at):  # dry air has no humidity that could be uncertain
+    if not humid(measured_at):  # dry air has no humidity that could be uncertain
         shared = {key: value for key, value in shared.items() if key != "humidity"}
     sizes = {key: array[key] for key in _SIZES if key in array}
     stated = {"humidities": measured_at, "uncertainty": shared | array.get("uncertainty", {}), "test_beams": [name]}

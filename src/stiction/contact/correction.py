@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ndtri
 
+from stiction.contact.air import is_humid
 from stiction.rounding import is_at_most
 
 
@@ -21,10 +22,10 @@ def interpolated(ratios: np.ndarray, humidities: np.ndarray, at: float | np.ndar
     >>> round(float(interpolated(np.array([0.64, 1.0]), np.array([0.4, 0.8]), 0.6)), 12)
     0.8
     """
-    humid, found = humidities > 0, np.full(np.shape(at), np.nan)
+    humid, found = is_humid(humidities), np.full(np.shape(at), np.nan)
     if humid.any():
         found = np.exp(np.interp(at, humidities[humid], np.log(ratios[humid]), left=np.nan, right=np.nan))
-    return found if humid.all() else np.where(np.equal(at, 0), ratios[~humid][0], found)
+    return found if humid.all() else np.where(is_humid(at), found, ratios[~humid][0])
 
 
 class Change(NamedTuple):
@@ -111,11 +112,12 @@ class Correction:
 
     def _at(self, humidity, changes):
         """Change at a humidity."""
-        known = self.humidities[(self.humidities > 0) == (humidity > 0)]
-        if humidity > 0 and not known.size:
+        in_humid_air = is_humid(humidity)
+        known = self.humidities[is_humid(self.humidities) == in_humid_air]
+        if in_humid_air and not known.size:
             return NONE
         low, high = known.min(initial=1.0), known.max(initial=0.0)
-        is_near = self.nearest and humidity > 0
+        is_near = self.nearest and in_humid_air
         if not (is_near or is_at_most(low, humidity) and is_at_most(humidity, high)):
             where = f"at relative humidities from {low:g} to {high:g}" if known.size else "in other air alone"
             raise ValueError(

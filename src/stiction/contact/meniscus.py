@@ -5,11 +5,10 @@ at its 300 K: a published correlation gives only their ratio to 300 K. The paper
 correlations give 71.7 and 18.08), and its numbers are to be reproduced.
 """
 
-from numbers import Real
-
 import numpy as np
 
 from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_MOLECULE, WATER_SURFACE_ENERGY
+from stiction.contact.air import is_humid, is_possible
 
 #: ASSUME: fewest molecules across a film that is a liquid: one adsorbed on each solid, and one between them. On silica
 #: the first three layers, which grow up to RH 0.3, are ordered as in ice, and only those beyond are liquid (Asay and
@@ -92,7 +91,7 @@ def laplace_pressure(humidity: float | np.ndarray, temperature: float) -> float 
     -59.7
     """
     humidity = np.asarray(humidity, float)
-    if not np.all((humidity > 0) & (humidity < 1)):
+    if not np.all(is_humid(humidity) & (humidity < 1)):
         raise ValueError(f"relative humidity must be in (0, 1), got {humidity}")
     return GAS_CONSTANT * temperature * np.log(humidity) / molar_volume(temperature)
 
@@ -159,7 +158,7 @@ def dry_air(humidity: float, temperature: float, contact_angles: tuple[float, fl
 
 def require_humidity(humidity: float) -> None:
     """Refuse a relative humidity impossible in air [-]."""
-    if not (isinstance(humidity, Real) and 0 <= humidity < 1):
+    if not is_possible(humidity):
         raise ValueError(f"relative humidity must be 0, in dry air, or above 0 and below 1, got {humidity}")
 
 
@@ -174,7 +173,7 @@ def film(humidity: float, temperature: float, contact_angles: tuple[float, float
         If no air has this humidity, or if it is not dry, and too dry for a film that is a liquid.
     """
     require_humidity(humidity)
-    if humidity == 0 or not is_wetted(contact_angles):
+    if not (is_humid(humidity) and is_wetted(contact_angles)):
         return 0.0, 0.0
     if refusal := dry_air(humidity, temperature, contact_angles):
         raise ValueError(f"a relative humidity of {humidity:g} {refusal}")

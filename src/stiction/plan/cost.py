@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from stiction.config.units import NM_PER_UM
+from stiction.contact.air import is_humid
 
 #: CPU time [s] of a job apart from the following, of one point of a field of a sample in contact, and of one beam, on
 #: one core of an AMD EPYC: 7 ms for 2.5 µm x 31 µm at 10 nm, and 0.24 s for 100 beams (docs/tables/bench.md).
@@ -97,7 +98,7 @@ def _strip_time(section):
     humidities = section["humidities"]
     if tilt := section.get("tilt"):
         return PER_TIP * len(tilt["slopes"]) * len(humidities)
-    return sum(PER_STRIP if humidity else PER_DRY_STRIP for humidity in humidities)
+    return sum(PER_STRIP if is_humid(humidity) else PER_DRY_STRIP for humidity in humidities)
 
 
 def _beams(section):

@@ -19,6 +19,7 @@ from stiction.config.scans import is_measured, preliminary_estimates, quantities
 from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, stated
 from stiction.config.surfaces.members import is_itself, like, members
 from stiction.config.units import NM_PER_UM, from_si, to_si
+from stiction.contact.air import DRY_AIR, has_dry, is_humid
 from stiction.contact.materials import OF_CONTACT
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.contact.tilt import EDGE_RADIUS, Edge, length_of_edge
@@ -154,7 +155,7 @@ class DevicePlan:
 
     def chart_cases(self, device: str) -> list[str]:
         """Cases of a device at each humidity along the axis of its chart, and in dry air if listed."""
-        dry = [humidity for humidity in self.sections[device]["humidities"] if humidity == 0]
+        dry = [DRY_AIR.humidity] * has_dry(self.sections[device]["humidities"])
         return [case_id(device, humidity) for humidity in [*dry, *self.axis(device)]]
 
     def axis(self, device: str) -> list[float]:
@@ -379,8 +380,8 @@ class DevicePlan:
         section = self.sections[device]
         wettest = max(section["humidities"] + section.get("chart", {}).get("humidities", []))
         water = self.config["water"]
-        film = from_si(float(meniscus_height(wettest, water["temperature_K"])), "nm") if wettest else 0.0
-        adsorbed = water.get("adsorbed_nm", 0) if wettest else 0
+        film = from_si(float(meniscus_height(wettest, water["temperature_K"])), "nm") if is_humid(wettest) else 0.0
+        adsorbed = water.get("adsorbed_nm", 0) if is_humid(wettest) else 0
         least = film + adsorbed + 3 * self._roughest_of_both(section["pair"])
         return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
 

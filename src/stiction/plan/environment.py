@@ -11,6 +11,7 @@ from typing import Any
 from stiction.config.cases import TOO_LITTLE, PairInAir
 from stiction.config.materials import Materials, hamaker_constant, hamaker_constants
 from stiction.config.units import to_si
+from stiction.contact.air import humid
 from stiction.contact.materials import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.contact.meniscus import is_wetted, require_humidity
 from stiction.contact.vanderwaals import combined
@@ -52,7 +53,7 @@ class Environment:
             If no air has this humidity, or no water condenses and attraction does not reach across gaps.
         """
         require_humidity(humidity)
-        if humidity > 0 and self.is_wetted(pair):
+        if not self.is_dry(pair, humidity):
             return PairInAir(pair)
         if self.config["attraction"].get("reach") == "touching":
             raise ValueError(f"pair {pair} in dry air needs attraction.reach: all: {TOO_LITTLE}")
@@ -65,11 +66,15 @@ class Environment:
 
     def humid(self, pair: str) -> list[float]:
         """Humidities of a pair with condensation of water: studies against humidity leave out dry air."""
-        return [rh for rh in self.config["pairs"][pair]["humidities"] if rh > 0] if self.is_wetted(pair) else []
+        return self.wet(pair, self.config["pairs"][pair]["humidities"])
+
+    def wet(self, pair: str, humidities: Iterable[float]) -> list[float]:
+        """Those of some humidities at which water condenses between the surfaces of a pair."""
+        return humid(humidities) if self.is_wetted(pair) else []
 
     def is_dry(self, pair: str, humidity: float) -> bool:
         """Whether no water condenses between the surfaces of a pair at a humidity."""
-        return humidity == 0 or not self.is_wetted(pair)
+        return not self.wet(pair, [humidity])
 
     def corrected(self, pair: str, humidities: Iterable[float], config: dict | None = None) -> list[float]:
         """Those of some humidities at which predictions are corrected to full elastic contact.
@@ -87,7 +92,7 @@ class Environment:
         ASSUME: by default in humid air, where the sum over summits errs by up to 10 % of a length. Forces are not.
         """
         is_default = "model" not in self.config["contact"]
-        return [rh for rh in humidities if is_default and self.of_devices and not self.is_dry(pair, rh)]
+        return self.wet(pair, humidities) if is_default and self.of_devices else []
 
     def not_modelled(self, cases: Iterable[tuple[str, float]], of_beams: bool = False) -> dict[str, Any]:
         """Effects missing in the results of some cases, each a pair and a humidity, by keys and for which pairs.

@@ -18,6 +18,7 @@ from stiction.config.surfaces.knowledge import knowledge, uncertain
 from stiction.config.surfaces.members import limits
 from stiction.config.surfaces.moments import nearest_shape
 from stiction.config.test_beams import as_cantilevers
+from stiction.contact.air import DRY_AIR, has_dry, humid, is_humid
 from stiction.contact.materials import ELASTIC
 from stiction.models import BEAM_MODELS, FAR_QUANTITIES, MODE_QUANTITIES, SURFACE_MODELS
 from stiction.plan.devices import DevicePlan
@@ -297,12 +298,12 @@ class Plan:
     def humidities_of_full_contact(self, pair: str) -> list[float]:
         """Humidities of a pair, that of its figures if these show corrected laws beyond them, its devices' dry air."""
         stated, shown = self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
-        humid = [rh for rh in stated if rh > 0]
-        within = shown in stated or shown > 0 and humid and min(humid) <= shown <= max(humid)
+        wet = humid(stated)
+        within = shown in stated or is_humid(shown) and wet and min(wet) <= shown <= max(wet)
         corrected = pair in self.pairs and self.variants.corrected(pair, [shown])
         devices = [*self.devices.sections.values(), *as_cantilevers(self.config).values()]
-        dry = any(0 in section["humidities"] for section in devices if section["pair"] == pair)
-        return list(dict.fromkeys([*stated, *([shown] if corrected and not within else []), *([0.0] if dry else [])]))
+        dry = [DRY_AIR.humidity] * any(has_dry(section["humidities"]) for section in devices if section["pair"] == pair)
+        return list(dict.fromkeys([*stated, *([shown] if corrected and not within else []), *dry]))
 
     @property
     def pressed_pairs(self) -> list[str]:

@@ -20,8 +20,8 @@ from stiction.beam.cantilever import Beam
 from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.beam.equilibrium import allowed_imbalance
 from stiction.beam.foundation import ACCURACY
-from stiction.config.cases import Air
 from stiction.config.units import in_si
+from stiction.contact.air import Air, is_humid
 from stiction.contact.environment import Water, flooded_law
 from stiction.contact.forcelaw import admissible, coefficients, energy
 from stiction.contact.meniscus import is_wetted
@@ -329,7 +329,7 @@ def trend_checks(
     the surfaces of the ``wetted`` pairs, water condenses: others are in dry air at any humidity.
     """
     for pair, model in sorted({(pair, model) for pair, _, model in forces if pair in wetted}):
-        rising = sorted(humidity for p, humidity, m in forces if (p, m) == (pair, model) and humidity > 0)
+        rising = sorted(humidity for p, humidity, m in forces if (p, m) == (pair, model) and is_humid(humidity))
         for low, high in pairwise(rising):
             case = f"{_case(pair, low, model)} to {high:g}"
             drier, more_humid = (forces[pair, humidity, model] for humidity in (low, high))

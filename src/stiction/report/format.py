@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from stiction.config.cases import DRY_AIR
+from stiction.contact.air import DRY_AIR, Air, has_dry, humid
 
 #: Units in SI, for tables: the stored number is a quantity divided by its unit; a product may differ in the last bit.
 NM, UM, UN, PER_UM2 = 1e-9, 1e-6, 1e-6, 1e12
@@ -50,7 +50,7 @@ def humidity_text(value: float) -> str:
     >>> humidity_text(0.67), humidity_text(0.0), humidity_text(float("nan"))
     ('0.67', 'dry', '–')
     """
-    return number(value, "g") if value else DRY_AIR.name
+    return DRY_AIR.name if Air(value).is_dry else number(value, "g")
 
 
 def listed(names: Sequence[str]) -> str:
@@ -73,10 +73,10 @@ def airs(humidities: Collection[float]) -> str:
     >>> airs([0.0, 0.45, 0.67]), airs([0.67]), airs([0.0])
     ('in dry air and at relative humidities of 0.45, 0.67', 'at a relative humidity of 0.67', 'in dry air')
     """
-    humid = [f"{humidity:g}" for humidity in humidities if humidity > 0]
-    dry = [DRY_AIR.where] if len(humid) < len(humidities) else []
-    wet = f"{'relative humidities' if len(humid) > 1 else 'a relative humidity'} of {', '.join(humid)}"
-    return " and ".join(dry + [f"at {wet}"] * bool(humid))
+    values = [f"{humidity:g}" for humidity in humid(humidities)]
+    dry = [DRY_AIR.where] * has_dry(humidities)
+    wet = f"{'relative humidities' if len(values) > 1 else 'a relative humidity'} of {', '.join(values)}"
+    return " and ".join(dry + [f"at {wet}"] * bool(values))
 
 
 def with_error(value: float, error: float, sign: str = "") -> str:

@@ -26,7 +26,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter
 from matplotlib.transforms import ScaledTranslation
 from PIL import Image
 
-from stiction.config.cases import DRY
+from stiction.contact.air import DRY, Air, has_dry, humid, is_humid
 from stiction.plan.stage import File, Shown, Stage, stage_name, title_of, without_wildcards
 from stiction.run.atomic import save_bytes
 
@@ -102,7 +102,7 @@ def humidity_colour(humidity: float) -> tuple[float, float, float, float]:
 
     It darkens with the square of the humidity, because devices are mostly in air above 0.4. Dry air is brown.
     """
-    if not humidity:
+    if not is_humid(humidity):
         return to_rgba(_DRY_AIR)
     return colormaps["viridis_r"](DISTINCT + (1 - DISTINCT) * humidity**2)
 
@@ -254,9 +254,9 @@ def places(humidities: Iterable[float]) -> dict[float, float]:
     {0.0: 0.45, 0.5: 0.5, 0.75: 0.75}
     """
     humidities = sorted(set(humidities))
-    on_axis = [humidity for humidity in humidities if humidity > 0] or [0.5]
+    on_axis = humid(humidities) or [0.5]
     apart = _BESIDE * max(on_axis[-1] - on_axis[0], _SHORTEST)
-    return {humidity: humidity or on_axis[0] - apart for humidity in humidities}
+    return {humidity: Air(humidity).choose(humidity, on_axis[0] - apart) for humidity in humidities}
 
 
 def humidity_axis(panel: Axes, placed: Mapping[float, float] | None = None) -> None:
@@ -276,7 +276,7 @@ def humidity_axis(panel: Axes, placed: Mapping[float, float] | None = None) -> N
 
 def dry_tick(panel: Axes, placed: Mapping[float, float]) -> None:
     """Tick for dry air if it is among the `places` of an axis, and a line between it and the lowest humidity."""
-    if 0 not in placed:
+    if not has_dry(placed):
         return
     dry, lowest = (*placed.values(), np.inf)[:2]
     ticks = [tick for tick in panel.get_xticks() if (dry + lowest) / 2 < tick <= panel.get_xlim()[1]]

@@ -106,7 +106,7 @@ def test_counted_test_beams_stick_on_the_contacts_of_their_own_air():
     device = CANTILEVER | {"humidities": [0.67], "test_beams": ["T"]}
     job = Graph(Plan(load(SIZES, {"devices": {"C1": device}, "test_beams": {"T": array}}))).job("devices/test_beams/C1")
     patch = "1500x6000"
-    grounds = {("T", False): f"devices/contact/b_dry_{patch}", ("T", True): f"devices/contact/b_{patch}"}
+    grounds = {("T", "dry"): f"devices/contact/b_dry_{patch}", ("T", "humid"): f"devices/contact/b_{patch}"}
     assert job.inputs["grounds"] == grounds
     assert [name.split("/")[-1].rsplit("_", 1)[0] for name in job.inputs["tips"].values()] == ["b_dry", "b"]
     water = job.stage.converted(job.settings).stuck["T"].water

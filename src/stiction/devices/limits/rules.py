@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 from stiction.analysis.smooth_pairs import shortfall
 from stiction.beam.foundation import LONGER, TOO_EARLY
 from stiction.constants import WATER_MOLECULE
+from stiction.contact.air import is_humid
 from stiction.contact.materials import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
 from stiction.devices.limits.limit import Limit, Side
 
@@ -180,7 +181,7 @@ def thin_film(film: float) -> Limit | None:
 
 def no_water(film: float, humidity: float) -> Limit | None:
     """Humid air without a film of height h_C: no water condenses between the surfaces."""
-    return None if film > 0 or humidity == 0 else Limit("no_water", Side.EITHER, True, 0.0)
+    return None if film > 0 or not is_humid(humidity) else Limit("no_water", Side.EITHER, True, 0.0)
 
 
 def wide_meniscus(film: float, sides: Sequence[float]) -> Limit | None:

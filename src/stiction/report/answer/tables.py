@@ -7,6 +7,7 @@ import pandas as pd
 import xarray as xr
 
 from stiction.answer.data import Answer, Cause
+from stiction.contact.air import Air
 from stiction.plan.names import by_name
 from stiction.report.answer import words
 from stiction.report.answer.judged import judged
@@ -92,7 +93,7 @@ def steps(answer: Answer) -> pd.DataFrame:
             "step": words.CAUSES[step.cause][0],
             f"{answer.sought.name} after it": answer.in_words(step.size),
             "change [%]": number(100 * (step.factor - 1), "+.1f") if k else "",
-            "air": "dry" if not step.humidity else f"RH {step.humidity:g}",
+            "air": Air(step.humidity).words,
         }
         for k, step in enumerate(answer.steps)
     )

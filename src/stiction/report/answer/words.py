@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from stiction.answer.data import INPUTS, Answer, Cause, Probability, Verdict
-from stiction.config.cases import Air
+from stiction.contact.air import Air
 from stiction.devices.risk import one_in
 from stiction.report.format import airs, humidity_text
 from stiction.rounding import in_percent
@@ -131,7 +131,8 @@ def decides(answer: Answer) -> str:
     last, largest = answer.stated_steps[-1], answer.largest_step
     held = END_STATES[last.shape].by if last.shape in END_STATES else "liquid that dries"
     held = "tip" if answer.is_by_tip else held
-    air = Air(last.humidity).words if last.humidity else "Dry air"
+    air = Air(last.humidity)
+    air = air.choose(air.words, "Dry air")
     said = f"{air}, stuck by {'the ' if held != 'beam or tip' else ''}{held}."
     change = largest.factor - 1
     if not np.isfinite(change) or abs(change) < 0.01:

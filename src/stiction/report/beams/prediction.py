@@ -8,6 +8,7 @@ import pandas as pd
 from matplotlib.figure import Figure
 
 from stiction.analysis.prediction import LENGTHS, PAIRS, Discrepancy
+from stiction.contact.air import is_humid
 from stiction.plan.stage import File
 from stiction.report.format import MISSING
 from stiction.report.style import DOUBLE, columns_of_panels, figure_stage, humidity_axis, letter, plain_log, styled
@@ -33,7 +34,7 @@ def with_intervals(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     the paper has no comparison, have no interval.
     """
     frame = pd.DataFrame(rows)
-    lengths = frame[(frame.model == _LEARNT_BY) & (frame.relative_humidity > 0) & frame.crack_length_um.notna()]
+    lengths = frame[(frame.model == _LEARNT_BY) & is_humid(frame.relative_humidity) & frame.crack_length_um.notna()]
     measured = {
         pair: (of.crack_length_um.values, of.experiment_um.values)
         for pair, of in lengths[lengths.experiment_um.notna()].groupby("pair", sort=False)
@@ -52,7 +53,7 @@ def with_intervals(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 def _ends(rows, discrepancy, middle):
     """Ends of the intervals of the rows of a pair."""
-    known = rows[(rows.model != "G") & (rows.relative_humidity > 0) & rows.crack_length_um.notna()]
+    known = rows[(rows.model != "G") & is_humid(rows.relative_humidity) & rows.crack_length_um.notna()]
     lengths = known.crack_length_um.values
     scans = known.get("crack_length_scans_se_um", pd.Series(0.0, known.index)).fillna(0.0)
     errors = np.hypot(known.crack_length_se_um, scans).values / lengths

@@ -7,7 +7,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from stiction.config.cases import Air
+from stiction.contact.air import Air, is_humid
 from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import stuck_share
 from stiction.plan.names import by_name
@@ -96,7 +96,8 @@ def _force_over_humidity(panel, dataset):
     """Mean and 5 to 95 % of the pull-off force along the fine axis, and the worst humidity unless all air is dry."""
     low, high = (TO_UN * dataset.quantile_along.sel(probability=p) for p in dataset.probability.values[[0, -1]])
     light = {"color": _COLOUR, "alpha": 0.2, "linewidth": 0}
-    placed, humid = places([*dataset.axis.values.tolist(), float(dataset.worst_humidity)]), dataset.axis.values > 0
+    worst, humid = Air(float(dataset.worst_humidity)), is_humid(dataset.axis.values)
+    placed = places([*dataset.axis.values.tolist(), worst.humidity])
     single = ~humid | (humid.sum() == 1)
     axis, means = dataset.axis[humid], TO_UN * dataset.mean_along
     entries: list = []
@@ -111,9 +112,8 @@ def _force_over_humidity(panel, dataset):
         entries.append(panel.errorbar(at, means[single], reach, **points))
     panel.axhline(TO_UN * float(dataset.restoring_force), color="0.4", linestyle=":", linewidth=0.8)
     if not single.all():
-        worst = float(dataset.worst_humidity)
-        label = f"worst humidity {worst:.2f}" if worst else "worst in dry air"
-        entries += panel.plot([placed[worst]], [float(means.max())], "v", color="black", label=label)
+        label = f"worst {worst.choose(f'humidity {worst.humidity:.2f}', worst.where)}"
+        entries += panel.plot([placed[worst.humidity]], [float(means.max())], "v", color="black", label=label)
     legend_below(panel, entries)
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
     humidity_axis(panel, placed)

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.config.cases import Air
+from stiction.contact.air import Air, has_dry, is_humid
 from stiction.devices.budget import advice, ranked
 from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import Basis
@@ -82,7 +82,7 @@ def stoppers(
             " The last row of a stopper has the largest values along a fine axis of humidities. Worst RH: humidity "
             "of the largest mean pull-off force along this axis."
         )
-    if any(dataset.axis[0] == 0 for dataset in humid):
+    if any(has_dry(dataset.axis.values) for dataset in humid):
         caption += " For a stopper in dry air as well, this is one of them."
     if 0 < len(humid) < len(datasets):
         caption += " One in a single air has no such row."
@@ -157,7 +157,7 @@ def worst_humidity(humidity: float, error: float, is_an_end: bool) -> str:
     >>> worst_humidity(0.901, 0.0021, False), worst_humidity(0.98, 0.0, True)
     ('0.9010 ± 0.0021', '0.98 or beyond')
     """
-    if not humidity:
+    if not is_humid(humidity):
         return humidity_text(humidity)
     return f"{humidity:g} or beyond" if is_an_end else with_error(humidity, error)
 

@@ -11,6 +11,7 @@ from scipy.special import ndtr
 from stiction.answer.data import Answer
 from stiction.config.kinds import KEYS, kind_of
 from stiction.config.units import from_si
+from stiction.contact.air import has_dry, is_humid
 from stiction.devices.risk import SCORES, quantiles
 from stiction.report.devices import levels
 from stiction.report.devices.curves import Curves
@@ -74,7 +75,7 @@ def beam_view(
     answer: Answer,
 ) -> View:
     """View of a cantilever or bridge, with its datasets by humidity. Charts may be empty."""
-    humid = {humidity: chart for humidity, chart in sorted(charts.items()) if humidity > 0}
+    humid = {humidity: chart for humidity, chart in sorted(charts.items()) if is_humid(humidity)}
     itself = alone(section, safe_lengths)
     joined = _chart_views(humid) if humid else itself
     worst, chart = answer.together.humidity, f"devices.{name}.chart"
@@ -124,8 +125,8 @@ def _own(joined, itself, answer):
 
 def _as_axis(own, humidities):
     """Own airs that are humid if those of an axis are, all if none is."""
-    humid = {humidity: one for humidity, one in own.items() if humidity > 0}
-    return humid if humid and min(humidities) > 0 else own
+    humid = {humidity: one for humidity, one in own.items() if is_humid(humidity)}
+    return humid if humid and not has_dry(humidities) else own
 
 
 def _chart_views(charts):
@@ -173,10 +174,10 @@ def views_of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, answer: An
 
 def stopper_view(section: Mapping[str, Any], stopper: xr.Dataset, answer: Answer) -> View:
     """View of a stopper over the humidity: its section, dataset of stage stoppers and answer."""
-    is_humid = stopper.axis.values[-1] > 0
     safe, scored = _along(stopper)
-    shown = safe.axis.values > 0 if is_humid else slice(None)
-    key = "design.worst_humidities" if is_humid else "humidities of the device"
+    wet = is_humid(safe.axis.values)
+    shown = wet if wet.any() else slice(None)
+    key = "design.worst_humidities" if wet.any() else "humidities of the device"
     axis = humidity_axis(safe.axis.values[shown], answer.together.humidity, key, True)
     return _to_build(((axis,), safe.isel(axis=shown), scored[shown]), section, stopper, answer)
 

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stiction.config.cases import Air
+from stiction.contact.air import Air, is_humid
 from stiction.devices.chart import FEWEST_HUMIDITIES, between, error_between
 from stiction.devices.limits.limit import Limit
 from stiction.report.format import TO_UM, fraction_with_band
@@ -233,7 +233,7 @@ def _curve(at, lengths):
 
 def _parts(whole, lines):
     """Lengths along the axis, as lines, and in dry air, as markers, each with the styles of lengths and bounds."""
-    humid = whole.relative_humidity.values > 0
+    humid = is_humid(whole.relative_humidity.values)
     parts = (whole.isel(relative_humidity=humid), lines), (whole.isel(relative_humidity=~humid), ("D", "_"))
     return [(part, styles) for part, styles in parts if part.sizes["relative_humidity"]]
 

@@ -10,11 +10,11 @@ import pandas as pd
 import xarray as xr
 
 from stiction.answer.data import Answer
-from stiction.config.cases import DRY
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
 from stiction.config.merging import differing
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured
+from stiction.contact.air import DRY, Air
 from stiction.devices.risk import one_in
 from stiction.plan.stage import File, Shown, Stage
 from stiction.report import html
@@ -146,7 +146,7 @@ def _sure(name, budgets, errors):
         return []
     cases = {(name, *key): dataset for key, dataset in budgets.items()}
     said = [
-        f"{f'Relative humidity {humidity:g}' if humidity else 'Dry air'}: {tables_budget.what_to_measure(budget)}"
+        f"{Air(humidity).choose(f'Relative humidity {humidity:g}', 'Dry air')}: {tables_budget.what_to_measure(budget)}"
         for (humidity, *_), budget in budgets.items()
     ]
     said.append(tables_budget.counted_as_exact(*budgets.values()))

@@ -9,6 +9,7 @@ import xarray as xr
 
 from stiction.answer.data import Answer, Cause
 from stiction.config.units import to_si
+from stiction.contact.air import is_humid
 from stiction.devices.limits import rules
 from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import Basis, one_in, samples_for
@@ -129,7 +130,7 @@ def worst_sentence(stopper: xr.Dataset) -> str:
     if is_at_an_end(stopper):
         low, high = ends(stopper)
         return f"Between relative humidities of {low:g} and {high:g}, the stopper holds most at {worst:g}.{stuck}"
-    if not worst:
+    if not is_humid(worst):
         return f"The stopper holds most in dry air; humid air{_range(stopper)} is less critical.{stuck}"
     return (
         f"The stopper holds most at a relative humidity of {worst:.2f}; drier and wetter air,{_range(stopper)}, "

@@ -9,6 +9,7 @@ from typing import Any
 from stiction.analysis.smooth_pairs import largest_shortfall
 from stiction.beam.foundation import ACCURACY, LONGER, TOO_EARLY
 from stiction.constants import WATER_MOLECULE
+from stiction.contact.air import DRY_AIR, has_dry, humid
 from stiction.contact.materials import COATING_ATTRACTION
 from stiction.devices.limits.limit import Limit
 from stiction.devices.limits.rules import FILMS, MOLECULES, PLASTIC, PLATE, RIM, ROTATION, SLENDER
@@ -351,8 +352,8 @@ def _nonlinear_update(different):
 
 
 def _beyond_humidities_of_test_beams(measured, beyond):
-    humid = [humidity for humidity in measured if humidity > 0]
-    where = ["in dry air"] * (0 in measured) + [f"from RH {humid[0]:g} to {humid[-1]:g}" for _ in humid[:1]]
+    wet = humid(measured)
+    where = [DRY_AIR.where] * has_dry(measured) + [f"from RH {wet[0]:g} to {wet[-1]:g}" for _ in wet[:1]]
     return f"Test beams were measured {' and '.join(where)}: the prediction {airs(beyond)} is an extrapolation."
 
 

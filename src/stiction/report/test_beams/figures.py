@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
+from stiction.contact.air import has_dry, is_humid
 from stiction.report.format import TO_UM
 from stiction.report.style import (
     DOUBLE,
@@ -71,7 +72,7 @@ def _lengths(panel, data, room):
     """
     placed = places([*data.datum_humidity.values.tolist(), *data.humidity_of_count.values.tolist()])
     humidity = np.array([placed[rh] for rh in data.datum_humidity.values])
-    dry = data.datum_humidity.values == 0
+    dry = ~is_humid(data.datum_humidity.values)
     bands = [_band(humidity, part, placed) for part in map(np.flatnonzero, (~dry, dry)) if len(part)]
     computed, shift = TO_UM * data.computed.values, data.datum_shift.values
     entries, on_the_left = [], _on_the_left(placed)
@@ -95,7 +96,7 @@ def _lengths(panel, data, room):
         panel.annotate(f"{int(at.stuck)} of {int(at.counted)}", place, textcoords="offset points", **side)
         entries += [mark] if k == 0 else []
     panel.set(xlabel="relative humidity [–]", ylim=(0, (1 + _HEAD) * panel.dataLim.y1))
-    if 0 in data.humidity_of_count:
+    if has_dry(data.humidity_of_count):
         left, right = panel.get_xlim()
         panel.set_xlim(min(left, (placed[0] - room * right) / (1 - room)), right)
     humidity_axis(panel, placed)
@@ -104,8 +105,8 @@ def _lengths(panel, data, room):
 
 def _on_the_left(placed):
     """Places with numbers of counts on the left: dry air, and the last of several humidities, at the frame."""
-    humid = sorted(place for humidity, place in placed.items() if humidity > 0)
-    return [place for humidity, place in placed.items() if humidity == 0] + humid[1:][-1:]
+    dry, wet = ([placed[rh] for rh in placed if is_humid(rh) == humid] for humid in (False, True))
+    return dry + sorted(wet)[1:][-1:]
 
 
 def _inputs(panel, uncertain):

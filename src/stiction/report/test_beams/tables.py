@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from stiction.contact.air import humid
 from stiction.devices import inference
 from stiction.devices.limits.limit import Limit, Side
 from stiction.plan.names import by_name
@@ -342,9 +343,9 @@ def _beyond_test_beams(update):
     if not update.sizes["datum"]:
         return
     measured = sorted(set(update.datum_humidity.values.tolist()))
-    humid = [humidity for humidity in measured if humidity > 0] or [np.inf]
+    wet = humid(measured) or [np.inf]
     results = sorted(set(update.humidity_of_result.values.tolist()) - set(measured))
-    beyond = [humidity for humidity in results if not humid[0] <= humidity <= humid[-1]]
+    beyond = [humidity for humidity in results if not wet[0] <= humidity <= wet[-1]]
     if beyond:
         numbers = {"measured": measured, "beyond": beyond}
         yield Limit("beyond_humidities_of_test_beams", Side.EITHER, False, numbers=numbers)

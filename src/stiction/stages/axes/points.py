@@ -8,6 +8,7 @@ from typing import Any
 import xarray as xr
 
 from stiction.analysis.shifts import Description
+from stiction.contact.air import KINDS_OF_AIR, Air
 from stiction.devices.risk import VERIFIED, samples_for
 from stiction.devices.tail import FEWEST, TAIL
 from stiction.plan.stage import At
@@ -49,9 +50,9 @@ class Device:
     dry: Contacts | None = None  #: contacts in dry air
 
     @property
-    def airs(self) -> dict[bool, Contacts]:
-        """Contacts in humid air (true) and in dry air."""
-        return {is_humid: found for is_humid, found in ((True, self.humid), (False, self.dry)) if found}
+    def airs(self) -> dict[str, Contacts]:
+        """Contacts by the kind of air."""
+        return {kind: found for kind in KINDS_OF_AIR if (found := getattr(self, kind))}
 
     @property
     def patch(self) -> pairs.Settings:
@@ -70,10 +71,10 @@ class Device:
             [drawn[id(some[name])] if name in some else same for name, same in zip(names, surfaces, strict=True)]
             for some in changed
         ]
-        patches = {humid: self._contacts(alternatives, of.contact) for humid, of in self.airs.items()}
-        tips = {humid: self._contacts(alternatives, of.tips) for humid, of in self.airs.items() if of.tips}
+        patches = {kind: self._contacts(alternatives, of.contact) for kind, of in self.airs.items()}
+        tips = {kind: self._contacts(alternatives, of.tips) for kind, of in self.airs.items() if of.tips}
         for number in range(len(changed)):
-            at, tip = ({humid: some[number] for humid, some in of.items()} for of in (patches, tips))
+            at, tip = ({kind: some[number] for kind, some in of.items()} for of in (patches, tips))
             yield requirement.compute(at, self.beam or self.stopper, tip)
 
     def _contacts(self, alternatives, of):
@@ -90,7 +91,7 @@ class Device:
             samples = min(max(number, FEWEST_OF_FIT), of.contact.contact.samples)
             return replace(of, contact=replace(of.contact, contact=replace(of.contact.contact, samples=samples)))
 
-        return replace(self, **{name: few(of) for name, of in (("humid", self.humid), ("dry", self.dry)) if of})
+        return replace(self, **{kind: few(of) for kind, of in self.airs.items()})
 
     def corrected(self, data: Mapping[str, Any]) -> "Device":
         """Device with the correction to full elastic contact from its input."""
@@ -146,7 +147,7 @@ def settings_of(plan: Any, device: str, rough: Any) -> dict[str, Any]:
     for humidity in section["humidities"]:
         pair = plan.air_of_devices.contact(section["pair"], humidity)
         tips = {"tips": _of_tips(rough, pair, device)} if kind.has_tip else {}
-        settings["humid" if humidity > 0 else "dry"] = {"contact": _of_patch(plan, pair, device)} | tips
+        settings[Air(humidity).kind] = {"contact": _of_patch(plan, pair, device)} | tips
     return settings
 
 

@@ -10,6 +10,7 @@ import xarray as xr
 
 from stiction.answer.sought import SOUGHT, Sought
 from stiction.chaos.model import Truncation
+from stiction.contact.air import Air
 from stiction.contact.correction import NONE
 from stiction.contact.environment import Water
 from stiction.devices import risk
@@ -130,17 +131,17 @@ OF_RELEASE = {"beam": OfBeam, "stopper": OfStopper}
 
 
 def compute(
-    contact: Mapping[bool, xr.Dataset], settings: OfBeam | OfStopper, tips: Mapping[bool, xr.Dataset] | None = None
+    contact: Mapping[str, xr.Dataset], settings: OfBeam | OfStopper, tips: Mapping[str, xr.Dataset] | None = None
 ) -> xr.Dataset:
     """Lengths or forces at all humidities, or the reason against them.
 
-    The contacts are those in humid air (true) and in dry air, of tips if there are any.
+    The contacts are by the kind of air, of tips if there are any.
     """
     responses, flagged, refused = [], [], []
     for humidity in settings.humidities:
-        met, air = (contact[humidity > 0], (tips or {}).get(humidity > 0)), settings.water.at(humidity)
+        kind, water = Air(humidity).kind, settings.water.at(humidity)
         try:
-            found, limits = replace(settings, water=air).responses(*met, humidity)
+            found, limits = replace(settings, water=water).responses(contact[kind], (tips or {}).get(kind), humidity)
             reason = ""
         except (ValueError, NotConverged) as error:
             traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code

@@ -268,7 +268,7 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
 
     They are the lowest, the middle and the highest one at which water condenses, that of its figures among them.
     """
-    humid = sorted(filter(None, plan.humidities_of_full_contact(at.pair))) if plan.air.is_wetted(at.pair) else []
+    humid = sorted(plan.air.wet(at.pair, plan.humidities_of_full_contact(at.pair)))
     chosen = dict.fromkeys(humid[k] for k in (0, (len(humid) - 1) // 2, -1)) if humid else ()
     study = {"humidities": list(chosen), "strips": plan.config["studies"]["full_contact"]["samples"]}
     seen = plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None)

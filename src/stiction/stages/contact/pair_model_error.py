@@ -10,6 +10,7 @@ import xarray as xr
 from stiction.analysis.model_error import interpolation_error, length_factors, mean_ratios, scatter_ratios, tip_ratios
 from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.config.cases import case_id
+from stiction.contact.air import has_dry
 from stiction.contact.correction import interpolated
 from stiction.plan.names import by_case
 from stiction.plan.stage import Running, Stage
@@ -160,7 +161,7 @@ def _inputs_of_devices(plan, at):
     airs = plan.airs_of_beams(at.pair)
     humid = plan.air_of_devices.by_levels(at.pair, airs)
     energies = {"energies": by_case("studies/full_contact/energy", [case_id(at.pair, rh) for rh in humid])}
-    if 0 not in airs:
+    if not has_dry(airs):
         return energies
     water, has_tips = plan.air_of_devices.water(at.pair), plan.devices.has_tips(at.pair)
     folders = {"study": "studies/full_contact"} | ({"tips": "studies/full_contact/tips"} if has_tips else {})

@@ -16,6 +16,7 @@ import xarray as xr
 
 from stiction.beam.foundation import foundation_length
 from stiction.config.cases import case_id
+from stiction.contact.air import is_humid
 from stiction.contact.environment import Water
 from stiction.devices import risk
 from stiction.devices.chart import (
@@ -269,7 +270,7 @@ def largest_error_between(whole: xr.Dataset) -> float:
 
     The dataset has all humidities along ``relative_humidity``; dry air is apart.
     """
-    humid = whole.safe_length.isel(relative_humidity=whole.relative_humidity.values > 0)
+    humid = whole.safe_length.isel(relative_humidity=is_humid(whole.relative_humidity.values))
     if not humid.size:
         return np.nan
     curves = humid.transpose(..., "relative_humidity").values.reshape(-1, humid.sizes["relative_humidity"])

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.model_error import factors
+from stiction.contact.air import has_dry, is_humid
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.corrections import study_of
@@ -32,7 +33,7 @@ class Settings:
     @property
     def is_by_levels(self) -> np.ndarray:
         """Humidities at which energies alone are corrected (h,) bool."""
-        return self.by_levels & (self.airs > 0)
+        return self.by_levels & is_humid(self.airs)
 
 
 def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.ndarray:
@@ -64,7 +65,7 @@ def compute(settings: Settings, study: xr.Dataset | None = None, by_levels: xr.D
     known = by_levels.reindex(humidity=list(settings.airs), fill_value={"applied": False})
     found = _of_energies(known, shapes, settings)
     if study is not None:
-        found = [np.where(settings.airs > 0, *each) for each in zip(found, of_strips, strict=True)]
+        found = [np.where(is_humid(settings.airs), *each) for each in zip(found, of_strips, strict=True)]
     own = replace(settings, applied=tuple(np.array(settings.humidities)[known.applied.values]))
     return layout(*found, shapes, own, settings.airs)
 
@@ -123,7 +124,7 @@ def _inputs(plan, at):
     study = {"study": study_of(plan, "studies/full_contact", pair, water)}
     if not plan.by_levels(at.device):
         return study
-    return (study if 0 in section["humidities"] else {}) | {"by_levels": f"studies/model_error/devices/{pair}"}
+    return (study if has_dry(section["humidities"]) else {}) | {"by_levels": f"studies/model_error/devices/{pair}"}
 
 
 def _settings(plan, at):

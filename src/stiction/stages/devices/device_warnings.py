@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import xarray as xr
 
-from stiction.config.cases import Air
 from stiction.config.units import from_si, in_si
+from stiction.contact.air import Air, humid
 from stiction.contact.environment import Water
 from stiction.devices.limits import rules
 from stiction.devices.limits.limit import Limit, restored
@@ -173,8 +173,8 @@ def _length_warnings(length, dataset, of, plastic, thinnest=None):
 
 def _water_warnings(of):
     """Warnings, or None, about the thinnest and the thickest film on the patch of a stopper."""
-    humid = [*filter(None, of.humidities), *of.worst_humidities] if any(of.humidities) else []
-    films = [of.water.film(humidity)[0] for humidity in humid] or [0.0]
+    stated = humid(of.humidities)
+    films = [of.water.film(rh)[0] for rh in (*stated, *(of.worst_humidities if stated else ()))] or [0.0]
     without = rules.no_water(max(films), max(of.humidities))
     return without, rules.thin_film(min(films)), rules.wide_meniscus(max(films), of.contact)
 
@@ -274,8 +274,9 @@ def _on_summits(plan, device):
     section = plan.config["devices"][device]
     pair, air = section["pair"], plan.air_of_devices
     corrected = air.corrected(pair, section["humidities"])
-    humid = [rh for rh in section["humidities"] if not air.is_dry(pair, rh) and rh not in corrected]
-    return ({"on_summits": humid} if humid else {}) | ({"has_dimples": True} if "dimples" in section else {})
+    uncorrected = [rh for rh in air.wet(pair, section["humidities"]) if rh not in corrected]
+    dimples = {"has_dimples": True} if "dimples" in section else {}
+    return ({"on_summits": uncorrected} if uncorrected else {}) | dimples
 
 
 def _device_warnings(data, settings):

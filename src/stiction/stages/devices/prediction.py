@@ -25,6 +25,7 @@ import xarray as xr
 
 from stiction.analysis.prediction import Discrepancy
 from stiction.config.cases import Case
+from stiction.contact.air import is_humid
 from stiction.plan.stage import File
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import first
@@ -46,7 +47,7 @@ _OF_ENERGY = -1 / 4
 
 def inputs(plan: Any, case: Case) -> dict[str, str]:
     """Contact and lengths of the paper for a cantilever in humid air without test beams, otherwise none."""
-    has_length = plan.devices.kind(case.device).has_tip and case.humidity > 0
+    has_length = plan.devices.kind(case.device).has_tip and is_humid(case.humidity)
     if not has_length or "test_beams" in plan.config["devices"][case.device]:
         return {}
     return {"contact": contact_of(plan, case), "paper": File(PAPER_LENGTHS)}

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.config.cases import case_id
+from stiction.contact.air import humid
 from stiction.contact.environment import Water
 from stiction.devices import arcs, risk
 from stiction.devices.risk import Known, SafeLength, in_order
@@ -191,10 +192,10 @@ def _for_touchdowns(plan, at):
 def _in_drier_air(plan, case):
     """Safe lengths of a cantilever in the next drier of its humid airs, if there is one. Other airs are in no table."""
     airs = plan.config["devices"][case.device]["humidities"]
-    humid = [one for one in airs if case.humidity in airs and 0 < one < case.humidity]
-    if not (humid and plan.devices.kind(case.device).has_tip):
+    drier = [rh for rh in humid(airs) if case.humidity in airs and rh < case.humidity]
+    if not (drier and plan.devices.kind(case.device).has_tip):
         return {}
-    return {"drier": f"devices/safe_lengths/{case_id(case.device, max(humid))}"}
+    return {"drier": f"devices/safe_lengths/{case_id(case.device, max(drier))}"}
 
 
 _SAFE_LENGTHS = Stage.writing(

@@ -10,6 +10,7 @@ import xarray as xr
 from scipy.special import ndtri
 
 from stiction.config.cases import case_id
+from stiction.contact.air import DRY_AIR, Air, has_dry, humid, is_humid
 from stiction.contact.correction import NONE, Change
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import is_wetted
@@ -64,7 +65,7 @@ def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = No
     The contact is that in the wettest air of the device, and in dry air if that is one of its humidities.
     """
     axis = axis_of(settings)
-    contacts = {float(h): dry if h == 0 and dry is not None else contact for h in (*settings.humidities, *axis)}
+    contacts = {float(h): Air(h).choose(contact, dry) for h in (*settings.humidities, *axis)}
     at = {h: forces(one, h, settings) for h, one in progress(contacts.items(), "humidities", total=len(contacts))}
     chosen = np.array([at[h] for h in settings.humidities])
     along = np.array([at[float(h)] for h in axis])
@@ -77,7 +78,7 @@ def compute_at_voltage(contact: xr.Dataset, settings: Settings, dry: xr.Dataset 
     """Forces of `compute` at a voltage, and the potentials below which the spring frees each patch."""
     area, found = settings.contact[0] * settings.contact[1], []
     for humidity in settings.humidities:
-        one, water = dry if humidity == 0 and dry is not None else contact, settings.water.at(humidity)
+        one, water = Air(humidity).choose(contact, dry), settings.water.at(humidity)
         with on_patch(*settings.contact):
             found.append(freeing_potentials(one, humidity, water, settings.restoring_force / area))
     volts = {"units": "V", "long_name": "difference of potential below which the spring frees a patch"}
@@ -103,8 +104,8 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
     """
     width, found, wedges = settings.contact[1], [], []
     for humidity in settings.humidities:
-        end, water = "_dry" if humidity == 0 and "dry" in data else "", settings.water.at(humidity)
-        parallel, tilted = data["dry" if end else "contact"], data.get(f"tilted{end}")
+        air, water = Air(humidity), settings.water.at(humidity)
+        parallel, tilted = (air.choose(data.get(wet), data.get(dry)) for wet, dry in _CONTACTS_OF_TILTED)
         flat = forces(parallel, humidity, settings)
         rows = [] if settings.slopes[0] else [flat]
         if tilted is not None:
@@ -115,6 +116,8 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
     return layout_tilted(settings, np.swapaxes(found, 0, 1), np.array(wedges))
 
 
+#: Contacts of parallel and of tilted patches among the data of a tilted stopper, in humid and in dry air.
+_CONTACTS_OF_TILTED = ("contact", "dry"), ("tilted", "tilted_dry")
 #: Statistics of a tilted stopper, at each tilt and of the largest force of every patch over all tilts.
 _OVER_TILTS = ("mean", "mean_error", "stuck", "safe_force")
 
@@ -190,9 +193,9 @@ def axis_of(settings: Settings) -> np.ndarray:
 
     A device in dry air alone, or with surfaces that no water wets, has no other air.
     """
-    humid = max(settings.humidities) > 0 and is_wetted(settings.water.contact_angles)
-    dry = [0.0] if min(settings.humidities) == 0 or not humid else []
-    return np.array([*dry, *(fine_axis(*settings.worst_humidities) if humid else ())])
+    is_wet = bool(humid(settings.humidities)) and is_wetted(settings.water.contact_angles)
+    dry = [DRY_AIR.humidity] * (has_dry(settings.humidities) or not is_wet)
+    return np.array([*dry, *(fine_axis(*settings.worst_humidities) if is_wet else ())])
 
 
 def fine_axis(low: float, high: float) -> np.ndarray:
@@ -208,8 +211,8 @@ def sought(design: Mapping[str, Any], stopper: Mapping[str, Any]) -> list[float]
     >>> sought({}, {"humidities": [0.0, 0.44, 0.9]}), sought({"worst_humidities": [0.4, 0.98]}, {"humidities": [0.5]})
     ([0.44, 0.9], [0.4, 0.98])
     """
-    humid = [humidity for humidity in stopper["humidities"] if humidity > 0]
-    return design.get("worst_humidities") or [min(humid, default=0.0), max(humid, default=0.0)]
+    stated = humid(stopper["humidities"])
+    return design.get("worst_humidities") or [min(stated, default=0.0), max(stated, default=0.0)]
 
 
 def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.ndarray) -> xr.Dataset:
@@ -265,13 +268,13 @@ def _worst(axis, along):
 
     The latter is their distance / √12. Dry air, if it is worse than all humid air, has no error.
     """
-    humid, means = axis > 0, along.mean(axis=1)
-    if means[~humid].max(initial=0.0) >= means[humid].max(initial=0.0):
-        return 0.0, 0.0
-    if humid.sum() == 1:
-        return float(axis[humid][0]), 0.0
-    worst, scatter = worst_humidity(axis[humid], along[humid].T)
-    return worst, float(np.hypot(scatter, np.diff(axis[humid])[0] / np.sqrt(12)))
+    wet, means = is_humid(axis), along.mean(axis=1)
+    if means[~wet].max(initial=0.0) >= means[wet].max(initial=0.0):
+        return DRY_AIR.humidity, 0.0
+    if wet.sum() == 1:
+        return float(axis[wet][0]), 0.0
+    worst, scatter = worst_humidity(axis[wet], along[wet].T)
+    return worst, float(np.hypot(scatter, np.diff(axis[wet])[0] / np.sqrt(12)))
 
 
 def _changes(settings, humidities):
@@ -354,8 +357,8 @@ def is_at_an_end(dataset: xr.Dataset) -> bool:
 
 def ends(dataset: xr.Dataset) -> tuple[float, ...]:
     """Lowest and highest humidity of the fine axis [-]. None if the device has a single air, or dry air alone."""
-    humid = dataset.axis.values[dataset.axis.values > 0]
-    return tuple(map(float, humid[[0, -1]])) if humid.size > 1 else ()
+    wet = dataset.axis.values[is_humid(dataset.axis.values)]
+    return tuple(map(float, wet[[0, -1]])) if wet.size > 1 else ()
 
 
 def in_any_air(dataset: xr.Dataset) -> tuple[tuple[float, float, float], xr.DataArray]:
@@ -389,7 +392,7 @@ def _inputs(plan, at):
     """Contact in the wettest air of a stopper, and in dry air if it is one of its humidities."""
     humidities = plan.config["devices"][at.device]["humidities"]
     wettest, driest = (case_id(at.device, end(humidities)) for end in (max, min))
-    dry = {"dry": contact_of(plan, driest)} if 0 in humidities else {}
+    dry = {"dry": contact_of(plan, driest)} if has_dry(humidities) else {}
     return {"contact": contact_of(plan, wettest)} | dry | corrections_of_forces(plan, at.device, *humidities)
 
 
@@ -411,7 +414,7 @@ def _inputs_tilted(plan, at):
     inputs, humidities = _inputs(plan, at), plan.config["devices"][at.device]["humidities"]
     if not any(plan.devices.slopes(at.device)):
         return inputs
-    dry = {"tilted_dry": tilted_of(plan, case_id(at.device, 0))} if 0 in humidities else {}
+    dry = {"tilted_dry": tilted_of(plan, case_id(at.device, 0))} if has_dry(humidities) else {}
     return inputs | {"tilted": tilted_of(plan, case_id(at.device, max(humidities)))} | dry
 
 

@@ -135,8 +135,7 @@ _INPUTS = {
 def _wet(plan, device):
     """Cases of a device at those of its humidities at which water condenses, by humidity."""
     section = plan.config["devices"][device]
-    humid = [humidity for humidity in section["humidities"] if humidity > 0]
-    wetted = humid if plan.air_of_devices.is_wetted(section["pair"]) else []
+    wetted = plan.air_of_devices.wet(section["pair"], section["humidities"])
     return {humidity: Case(case_id(device, humidity)) for humidity in wetted}
 
 

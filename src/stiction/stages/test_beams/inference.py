@@ -15,8 +15,9 @@ from scipy.special import ndtr, ndtri
 
 from stiction.beam.energy import CRACK_LENGTH_POWER, arrest_length
 from stiction.beam.foundation import foundation_length
-from stiction.config.cases import Air, case_id
+from stiction.config.cases import case_id
 from stiction.config.test_beams import humidities
+from stiction.contact.air import Air
 from stiction.contact.environment import Water
 from stiction.devices import arcs, inference, risk
 from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths
@@ -149,15 +150,15 @@ def compute(
     budgets: Mapping[tuple, xr.Dataset],
     test_beams: Mapping[tuple, xr.Dataset],
     predicted: Mapping[float, xr.Dataset] | xr.Dataset,
-    grounds: Mapping[tuple[str, bool], xr.Dataset],
-    tips: Mapping[tuple[str, bool], xr.Dataset],
+    grounds: Mapping[tuple[str, str], xr.Dataset],
+    tips: Mapping[tuple[str, str], xr.Dataset],
     settings: Settings,
 ) -> xr.Dataset:
     """Inputs, lengths and safe lengths, or forces, of a device before and after its test beams were measured.
 
     Budgets are by device or array, humidity and, for tips, more. What is predicted are the datasets of stage
     safe_lengths of a beam by humidity, or that of stage stoppers. ``grounds`` and ``tips`` are the contacts on which
-    the beams of an array with counts stick in humid air, if true, or in dry air, and those of their tips.
+    the beams of an array with counts stick, by array and kind of air, and those of their tips.
 
     Data of test beams of which too few stick in the simulation say nothing, and are left out.
     """
@@ -281,8 +282,8 @@ def count_data(
     results: Sequence[Result],
     responses: np.ndarray,
     stuck: Mapping[str, Stuck],
-    grounds: Mapping[tuple[str, bool], xr.Dataset],
-    tips: Mapping[tuple[str, bool], xr.Dataset],
+    grounds: Mapping[tuple[str, str], xr.Dataset],
+    tips: Mapping[tuple[str, str], xr.Dataset],
 ) -> Counts:
     """Numbers of stuck beams beside the lengths of stuck beams and tips.
 
@@ -297,10 +298,8 @@ def count_data(
     for name, data in stuck.items():
         shapes = {}
         for humidity in set(data.humidity):
-            met = grounds[name, humidity > 0], tips[name, humidity > 0]
-            shapes[humidity] = lengths_and_scores(
-                results[places[name, humidity, S_SHAPE]], *met, data.water.at(humidity)
-            )
+            on, cracks = (name, Air(humidity).kind), results[places[name, humidity, S_SHAPE]]
+            shapes[humidity] = lengths_and_scores(cracks, grounds[on], tips[on], data.water.at(humidity))
         for humidity, length in zip(data.humidity, data.length, strict=True):
             behind, of_humidity = shapes[humidity]
             rows.append(responses[[places[name, humidity, shape] for shape in _COUNTED]])
@@ -619,7 +618,7 @@ def _contacts(plan, device):
     """Contacts of the counted test beams of a device, and of their tips, as in `compute`."""
     arrays, of_arrays = plan.config["test_beams"], plan.with_test_beams
     cases = {
-        (name, humidity > 0): case_id(name, humidity)
+        (name, Air(humidity).kind): case_id(name, humidity)
         for name in plan.config["devices"][device]["test_beams"]
         for humidity in humidities(arrays[name], "stuck")
     }

@@ -1,0 +1,103 @@
+"""Air around two surfaces: its relative humidity, and all that depends on whether it is dry or humid.
+
+Dry air has the humidity 0 in the code. It has no water at all, which is not a film that becomes thinner and thinner. No
+other module compares a humidity with 0 (`tests/test_architecture.py`).
+"""
+
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+from numbers import Real
+from typing import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    import numpy as np
+
+T = TypeVar("T")
+#: Word for the humidity of dry air in configurations, and the medium of attraction in it.
+DRY = "dry"
+#: Both kinds of air. A pair has one contact in all air of a kind.
+KINDS_OF_AIR = ("humid", DRY)
+
+
+def is_possible(humidity: Any) -> bool:
+    """Whether air can have a relative humidity. Saturated air has none of the films of this package."""
+    return isinstance(humidity, Real) and 0 <= humidity < 1
+
+
+def is_humid(humidity: "float | np.ndarray") -> "bool | np.ndarray":
+    """Whether air of each humidity [-] has water, in the shape of the humidity."""
+    return humidity > 0
+
+
+def humid(humidities: Iterable[float]) -> list[float]:
+    """Humidities without that of dry air, in their order [-]."""
+    return [humidity for humidity in humidities if is_humid(humidity)]
+
+
+def has_dry(humidities: Collection[float]) -> bool:
+    """Whether dry air is among some humidities [-]."""
+    return 0 in humidities
+
+
+@dataclass(frozen=True)
+class Air:
+    """Air of a relative humidity, in words and in names of files.
+
+    Examples
+    --------
+    >>> humid, dry = Air(0.67), Air(0.0)
+    >>> humid.name, humid.words, humid.where, humid.ending, humid.medium
+    ('0.67', 'RH 0.67', 'at RH 0.67', '_rh067', None)
+    >>> dry.name, dry.words, dry.where, dry.ending, dry.medium
+    ('dry', 'dry', 'in dry air', '_dry', 'dry')
+    >>> humid.kind, dry.kind, dry.choose("its own contact", None)
+    ('humid', 'dry', 'its own contact')
+    """
+
+    humidity: float  #: 0 in dry air [-]
+
+    @property
+    def is_dry(self) -> bool:
+        """Whether it has no water."""
+        return self.humidity == 0
+
+    @property
+    def kind(self) -> str:
+        """One of `KINDS_OF_AIR`."""
+        return KINDS_OF_AIR[self.is_dry]
+
+    def choose(self, in_humid_air: T, in_dry_air: T | None) -> T:
+        """Choose what holds in this air. Without anything of its own, dry air has that of humid air."""
+        return in_dry_air if self.is_dry and in_dry_air is not None else in_humid_air
+
+    @property
+    def name(self) -> str:
+        """Humidity as configurations state it."""
+        return self.choose(f"{self.humidity:g}", DRY)
+
+    @property
+    def words(self) -> str:
+        """Name in figures and tables, and before a comma."""
+        return self.choose(f"RH {self.name}", DRY)
+
+    @property
+    def where(self) -> str:
+        """Place in this air, as a part of a sentence."""
+        return self.choose(f"at {self.words}", "in dry air")
+
+    @property
+    def ending(self) -> str | None:
+        """End of the names of cases in it, with two to four decimals. ``None`` if four are not exact."""
+        if self.is_dry:
+            return f"_{DRY}"
+        texts = (f"{self.humidity:.{places}f}" for places in (2, 3, 4))
+        return next((f"_rh{text.replace('.', '')}" for text in texts if float(text) == self.humidity), None)
+
+    @property
+    def medium(self) -> str | None:
+        """Medium of the attraction between summits, if not the configuration's."""
+        return self.choose(None, DRY)
+
+
+#: Dry air, whose contacts have names of their own.
+DRY_AIR = Air(0.0)
