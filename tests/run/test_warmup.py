@@ -12,8 +12,6 @@ from stiction.run import warmup
 
 #: Modules of studies that the paper does not need: the first of their jobs compile the kernels.
 OF_STUDIES = {
-    "stiction.contact.full.descent",
-    "stiction.contact.full.elements",
     "stiction.contact.regions",
     "stiction.surface.islands",
 }

@@ -1,8 +1,8 @@
 """Compile and cache the kernels of the paper before jobs run in parallel: ``python -m stiction.run.warmup``.
 
 Kernels that are not in the cache are compiled by processes of their own, whose memory is free again when they end. The
-parts have no kernel in common, so that none is compiled twice. Kernels of other studies (full contact, islands) are
-compiled by the first jobs that need them.
+parts have no kernel in common, so that none is compiled twice. Kernels of other studies (islands) are compiled by the
+first jobs that need them.
 """
 
 import sys
@@ -18,6 +18,9 @@ from stiction.beam.tension import end_stiffness
 from stiction.chaos import model as chaos
 from stiction.contact import forcelaw, separation
 from stiction.contact.asperity import asperity, reduced_modulus
+from stiction.contact.full import descent, elements
+from stiction.contact.full.elements import GAPS, Adhesion
+from stiction.contact.full.halfspace import HalfSpace
 from stiction.contact.pair import SurfacePair
 from stiction.contact.tilt import Tilt
 from stiction.contact.tilted import TiltedPair
@@ -51,6 +54,17 @@ def contact_kernels() -> None:
     forcelaw.largest_attractions(*stored, starts, 1e-10, (1e-9, 1e6))
 
 
+def full_contact_kernels() -> None:
+    """Run the kernels of full elastic contact on a small problem."""
+    heights = 1e-9 * stream(0).standard_normal((32, 32), np.float32)
+    space = HalfSpace(heights.shape, 1e-8, 1e11)
+    adhesion = Adhesion(2e-9, 1e7, 1e7, 1e-9, work=np.linspace(1e-3, 0.0, GAPS.size))
+    for solve in (elements.equilibrium, descent.equilibrium):
+        state = solve(space, heights, 1e-9, adhesion)
+    state.energy(heights, adhesion)
+    _ = state.residual
+
+
 def chaos_kernels() -> None:
     """Run the kernels of the chaos model on a small problem."""
     vectors = np.exp(0.1 * stream(0).standard_normal((50, 4))) * [7e-3, 2e6, 8e-9, 4e-9]
@@ -65,7 +79,7 @@ def beam_kernels() -> None:
 
 
 #: Parts that may be compiled at the same time, the longest first.
-PARTS = (beam_kernels, contact_kernels, chaos_kernels)
+PARTS = (beam_kernels, contact_kernels, full_contact_kernels, chaos_kernels)
 
 
 class _NotCachedError(Exception):
