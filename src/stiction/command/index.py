@@ -21,18 +21,20 @@ from stiction.config.materials import Materials
 from stiction.config.merging import differing
 from stiction.config.reading import paper
 from stiction.models import SIDES
-from stiction.plan.planner import Planner
+from stiction.plan.planner import Planner, hashes
 from stiction.plan.stage import WILDCARDS, expression
 from stiction.report.drawings.devices import device_drawing
 from stiction.report.html import rendered
 from stiction.report.surfaces.words import surface_in_words
 from stiction.run import stale_results
 from stiction.run.atomic import save_text
-from stiction.run.disk_cache import DiskCache
+from stiction.run.disk_cache import DiskCache, Kept
 from stiction.run.provenance import code_of, recorded_runs, start_of
 
 #: Name of the page.
 INDEX = "index.html"
+#: Complete configuration of the last run, among the files of Snakemake.
+_PLANNED = "configuration.json"
 
 
 @dataclass(frozen=True)
@@ -58,17 +60,34 @@ def write(results: Path, rules: Iterable[Mapping[str, Any]], unlike: Collection[
 def write_for_last_run(results: Path) -> Path | None:
     """Write the index of a folder by the configuration of its last run, and name it. Nothing without a run.
 
-    Runs of which a job failed, or that were stopped, write no index themselves.
+    Runs of which a job failed, or that were stopped, write no index themselves. A page is kept until a file of the
+    folder or the code changes.
 
     Raises
     ------
     ValueError
         If the record of runs is damaged.
     """
+    kept = results.parent / ".snakemake"
+    with Kept(kept if kept.is_dir() else None).cache("index.json") as remember:
+        page = remember([_states(results), hashes("*.py", "*.yaml", "*.html", "*.css")], lambda: _page(results))
+    if page and Present(results).text(INDEX) != page:
+        save_text(page, results / INDEX)
+    return results / INDEX if page else None
+
+
+def _page(results):
+    """Index of a folder by the configuration of its last run, empty without a run."""
     if not (runs := recorded_runs(results / "provenance.json")):
-        return None
-    write(results, _planner(results, runs[-1]["config"]).rules, unlike_last_run(results))
-    return results / INDEX
+        return ""
+    return index(results, _planner(results, runs[-1]["config"]).rules, unlike_last_run(results))
+
+
+def _states(results):
+    """Times and sizes of the files that the index of a folder depends on, by file."""
+    files = [results.parent / ".snakemake" / _PLANNED, *filter(Path.is_file, results.rglob("*"))]
+    states = ((file, file.stat()) for file in files if file.is_file() and file.name != INDEX)
+    return {str(file): [state.st_mtime_ns, state.st_ctime_ns, state.st_size] for file, state in states}
 
 
 def unlike_last_run(results: Path) -> dict[str, str]:
@@ -88,7 +107,7 @@ def _planner(results, config):
     """Planner of the last run of a folder, with its numbers of measured surfaces if they are still there."""
     kept, preliminary = results.parent / ".snakemake", None
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
-        planned, numbers = json.loads(Present(kept).text("configuration.json"))["planned"]
+        planned, numbers = json.loads(Present(kept).text(_PLANNED))["planned"]
         preliminary = numbers if planned == config and isinstance(numbers, dict) else None
     return Planner(config, preliminary, _now, DiskCache(kept / "jobs.json"))
 

@@ -45,13 +45,13 @@ class Planner:
     @cached_property
     def _determined_by(self):
         """Hash of all sources of the jobs: code, configuration and files of scans."""
-        files = (file for kind in ("*.py", "*.yaml") for file in PACKAGE.rglob(kind))
-        code = {str(file.relative_to(PACKAGE)): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
         scans = [Path(file) for surface in self.plan.scans.surfaces for file in self.plan.scans.files(surface).values()]
         states = [(str(file), *_state(file)) for file in scans]
         known = dict(self.plan.preliminary or {})
         # Files of the package are inputs by their paths, which are others in another checkout.
-        text = json.dumps([str(PACKAGE), code, self.plan.config, states, known], sort_keys=True, default=str)
+        text = json.dumps(
+            [str(PACKAGE), hashes("*.py", "*.yaml"), self.plan.config, states, known], sort_keys=True, default=str
+        )
         return hashlib.sha256(text.encode()).hexdigest()
 
     def _code(self, file):
@@ -248,6 +248,12 @@ class Planner:
             for rule in self.rules
             for file in rule["files"].values()
         ]
+
+
+def hashes(*patterns: str) -> dict[str, str]:
+    """SHA-256 of all files of the package with names of these patterns, by file."""
+    files = (file for pattern in patterns for file in PACKAGE.rglob(pattern))
+    return {str(file.relative_to(PACKAGE)): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
 
 
 def _state(file):
