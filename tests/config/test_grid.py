@@ -82,7 +82,7 @@ def test_surfaces_count_that_are_drawn(more, finer):
 
 def test_what_is_stated_stays():
     found = sampling(b2(0.5, 900.0), {"run": {"pairs": ["b"]}, "sampling": {"spacing_nm": 8, "margin_um": 0.7}})
-    assert found == {"spacing_nm": 8, "margin_um": 0.7, "strip_length_um": 1.5}
+    assert found == {"spacing_nm": 8, "margin_um": 0.7, "strip_length_um": 1.504}  # 188 points, where none is stated
     one = sampling(b2(0.5, 900.0), {"run": {"pairs": ["b"]}, "sampling": {"spacing_nm": 8}})
     assert one["spacing_nm"] == 8
     assert one["margin_um"] > 1
@@ -163,7 +163,7 @@ def test_a_measured_surface_counts_up_to_the_end_of_its_spectrum():
         "character: {spacing_nm: 25}",
         "character: {spacing_nm: 510}",
         "beam: {width_um: 30.005}",
-        "beam: {elements: 333}",
+        "beam: {elements: 333, length_um: 1501}",
         "identification: {patch_um: 0.755}",
         "studies: {mesh: {elements_um: [7]}}",
         "surfaces: {B2: {published_psd: {cutoff_rad_per_um: 900}}}",

@@ -248,7 +248,8 @@ def test_adsorbed_water_is_part_of_the_film_that_a_gap_must_exceed():
 
 def test_a_gap_is_refused_once_in_the_air_that_needs_the_largest():
     for narrow, airs in ({"gap_um": 0.1}, "humidities"), ({"gap_um": 0.1, "humidities": [0.3]}, "figures.humidity"):
-        lines = problems(merged(PAPER, {"run": {"pairs": ["b"]}, "pairs": {"b": narrow}}))
+        study = {"run": {"pairs": ["b"]}, "pairs": {"b": narrow}, "figures": {"humidity": 0.66}}
+        lines = problems(merged(PAPER, study))
         (line,) = [one for one in lines if one.startswith("pairs.b.gap_um") and "water film" in one]
         assert f"{airs} = " in line
 

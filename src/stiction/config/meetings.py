@@ -12,6 +12,7 @@ from stiction.config.cases import TOO_LITTLE
 from stiction.config.keys import Keys, Relations
 from stiction.config.kinds import KINDS
 from stiction.config.materials import material_of
+from stiction.config.reading import is_stated
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.air import has_dry, humid
 from stiction.contact.materials import COATING
@@ -23,7 +24,7 @@ from stiction.rounding import is_at_most
 #: Relations between what meets, its gaps and the air between.
 relation = Relations()
 
-TEMPERATURE, ADSORBED = "water.temperature_K", "water.adsorbed_nm"
+TEMPERATURE, ADSORBED, _SHOWN = "water.temperature_K", "water.adsorbed_nm", "figures.humidity"
 
 
 @dataclass(frozen=True)
@@ -101,8 +102,9 @@ def pair_meetings(config: Keys) -> Iterator[Meeting]:
     """Yield the meetings of the pairs in the run."""
     for pair, *surfaces in config.entries("pairs", *SIDES):
         if pair in config["run.pairs"]:
-            section, shown = f"pairs.{pair}", "figures.humidity"
-            airs = [f"{section}.humidities", shown]
+            section = f"pairs.{pair}"
+            listed, shown = (dict(config.given(key)).get(key) for key in (f"{section}.humidities", _SHOWN))
+            airs = [f"{section}.humidities", *([_SHOWN] if shown not in (listed or ()) else [])]
             stated = [*(f"{section}.{side}" for side in SIDES), *config.scanned(*surfaces)]
             yield Meeting(config, pair, airs, [(f"{section}.gap_um", air) for air in airs], stated, ("run.pairs",))
 
@@ -119,6 +121,27 @@ def device_meeting(name: str, config: Keys) -> Meeting:
         airs.append("design.worst_humidities")
     scanned = config.scanned(*surfaces_of(pair, config))
     return Meeting(config, pair, airs, gaps, scanned, deviation=f"{section}.uncertainty.humidity")
+
+
+def shown_humidity(config: Keys) -> float:
+    """Humidity of the figures: as stated, otherwise the usual one or one in which all pairs in the run can touch.
+
+    The nearest humidity of the pair of the figures takes the place of one in which the contact of a pair is refused.
+    """
+    pairs, usual = config["run.pairs"], config[_SHOWN]
+    met = list(pair_meetings(config))
+    if is_stated(config.config, *_SHOWN.split(".")) or not any(_refusal(meeting, usual) for meeting in met):
+        return usual
+    shown = config["figures.pair"] if config["figures.pair"] in pairs else pairs[0]
+    stated = sorted(config[f"pairs.{shown}.humidities"], key=lambda humidity: abs(humidity - usual))
+    return next((air for air in stated if not any(_refusal(meeting, air) for meeting in met)), stated[0])
+
+
+def _refusal(meeting, humidity):
+    """Refusal of a humidity for a pair of surfaces: no liquid film, or a film that fills the gap."""
+    (gap, _), *_ = meeting.gaps
+    least, refusal = least_gap(humidity, meeting)
+    return meeting.too_dry(humidity) or (refusal if meeting.config[gap] < least else None)
 
 
 @relation

@@ -80,19 +80,6 @@ def strips_and_patches_are_whole_on_the_grid(config):
         yield key, next(filter(None, refusals), None), *_GRID
 
 
-@relation
-def strips_of_bridges_are_whole_on_the_grid(config):
-    """Strips at the middle of a bridge are whole on the grid also if their length is not stated."""
-    for name, kind in config.entries("devices", "kind"):
-        kind, device = KINDS[kind], config["devices"][name]
-        refusal = off_grid(kind.strip(device, config[_STRIP]), *(config[step] for step in _GRID))
-        if kind.has_short_strips and "strip_um" not in device and refusal:
-            message = (
-                f"must come with strip_um, because {kind.longest_strip} µm are not whole on the grid: it {refusal}"
-            )
-            yield f"devices.{name}.kind", message, _STRIP, *_GRID
-
-
 @relation_of_names
 def devices_have_the_keys_of_their_kind(config):
     """Require all keys of the kind of a device, and none of another kind."""

@@ -5,7 +5,7 @@ types, then with names of what exists, then with surfaces by numbers.
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -44,7 +44,7 @@ def checked(stated: Any, kept: Path | None = None) -> Checked:
     ConfigError
         If it is invalid; one line per problem: full key, or row of the file of devices, value, allowed values.
     """
-    stated, of_file = device_table.without_file(stated)
+    stated, of_file = device_table.without_file(device_table.with_rows(stated))
     try:
         found = _checked(stated, kept)
     except ConfigError as error:
@@ -66,7 +66,10 @@ def _checked(stated, kept):
     estimates, unusable = scans.preliminary_estimates(whole, kept)
     _refuse(unusable, stated, whole)
     config = grid.completed(described.completed(whole, library), estimates)
-    _refuse(_broken(RELATIONS, _OF_DEVICES, _by_numbers(config, estimates, described.origins(whole))), stated, whole)
+    by_numbers = _by_numbers(config, estimates, described.origins(whole))
+    shown = {"figures": {"humidity": meetings.shown_humidity(by_numbers)}}
+    config, by_numbers = merged(config, shown), replace(by_numbers, config=merged(by_numbers.config, shown))
+    _refuse(_broken(RELATIONS, _OF_DEVICES, by_numbers), stated, whole)
     return Checked(normalised(config), estimates)
 
 

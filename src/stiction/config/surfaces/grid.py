@@ -5,7 +5,8 @@ spectrum, or the smallest one whose fields take half of the memory of a job, whi
 margin is 1 µm, or the smallest multiple of 0.5 µm above the correlation length of every surface. Only surfaces of pairs
 that run, of devices and of test beams count. Those of the paper have the paper's grid.
 
-Devices alone have a chaos model of the paper's order, or of the largest one that their samples carry.
+What a configuration does not state fits the rest: the chaos model has the paper's order, or the largest one that the
+samples carry; strips are whole on the grid, and fill the elements of the beam.
 """
 
 import functools
@@ -15,25 +16,33 @@ from itertools import count
 from typing import Any
 
 from stiction.config import memory, scans
+from stiction.config.kinds import kind_of
 from stiction.config.merging import merged
-from stiction.config.reading import paper
+from stiction.config.reading import is_stated
 from stiction.config.surfaces import process
 from stiction.config.units import NM_PER_UM, from_si, in_si
 from stiction.models import SIDES
-from stiction.rounding import is_at_most
+from stiction.rounding import is_at_most, is_multiple
 from stiction.surface.spectrum import CutoffSelfAffine, correlation_length
 
 #: Distance between heights [nm] and margin [µm] of the paper, and the steps of longer margins [µm].
 _SPACING, _MARGIN, _STEP = memory.GRID["spacing_nm"], memory.GRID["margin_um"], 0.5
+#: Decimals of chosen lengths in µm.
+_PICOMETRES = 6
 
 
 def completed(config: dict[str, Any], estimates: Mapping[str, dict]) -> dict[str, Any]:
-    """Configuration with all keys of section ``sampling``, a chaos model, and heights with a density.
+    """Configuration with all keys of section ``sampling``, a chaos model, whole strips, and heights with a density.
 
     Variants on grids that are not finer than one that follows the surfaces, or whose fields do not fit into memory with
     a margin that does, are left out. The estimates are the preliminary numbers of measured surfaces.
     """
-    config, sampling = _with_carried_order(scans.with_heights(config, estimates)), config["sampling"]
+    return _with_whole_strips(_with_grid(_with_carried_order(scans.with_heights(config, estimates)), estimates))
+
+
+def _with_grid(config, estimates):
+    """Configuration with the distance between heights and the margin."""
+    sampling = config["sampling"]
     if {"spacing_nm", "margin_um"} <= set(sampling):
         return config
     waves = [_waves(config["surfaces"][name], estimates.get(name)) for name in dict.fromkeys(used_surfaces(config))]
@@ -62,11 +71,59 @@ def carried(order: int, samples: int) -> int:
 
 
 def _with_carried_order(config):
-    """Configuration with an order that the samples carry, if it has no pairs and states no order of its own."""
-    order = paper()["chaos"]["order"]
-    if config["run"]["pairs"] or config["chaos"]["order"] != order:
+    """Configuration with an order that the samples carry, if it states none of its own."""
+    if is_stated(config, "chaos", "order"):
         return config
-    return config | {"chaos": config["chaos"] | {"order": carried(order, max(config["contact"]["samples"], 5))}}
+    order = carried(config["chaos"]["order"], config["contact"]["samples"])
+    return config | {"chaos": config["chaos"] | {"order": order}}
+
+
+def _with_whole_strips(config):
+    """Configuration with strips that are whole on the grid and fill the elements of the beam, where it states none."""
+    step = config["sampling"]["spacing_nm"] * config["contact"]["every"] / NM_PER_UM
+    config = _with_whole(config, "sampling", "strip_length_um", step)
+    if config["run"]["pairs"]:
+        config = _with_filled_elements(_with_whole(config, "beam", "width_um", step), step)
+    short = {name: _bridge_strip(device, config, step) for name, device in config.get("devices", {}).items()}
+    whole = {name: {"strip_um": length} for name, length in short.items() if length}
+    return merged(config, {"devices": whole}) if whole else config
+
+
+def _with_whole(config, section, key, step):
+    """Configuration with a length [µm] that is a multiple of a step, the nearest one, unless it is stated."""
+    length = config[section][key]
+    if is_stated(config, section, key) or is_multiple(length, step):
+        return config
+    return merged(config, {section: {key: round(round(length / step) * step, _PICOMETRES)}})
+
+
+def _with_filled_elements(config, step):
+    """Configuration with a whole number of strips in every element: a longer beam, or other strips, if not stated."""
+    beam, strip = config["beam"], config["sampling"]["strip_length_um"]
+    element = strip * beam["elements"]
+    if is_multiple(beam["length_um"], element):
+        return config
+    length_is_stated, strip_is_stated = (
+        is_stated(config, *key) for key in (("beam", "length_um"), ("sampling", "strip_length_um"))
+    )
+    if not length_is_stated:
+        longer = math.ceil(beam["length_um"] / element) * element
+        return merged(config, {"beam": {"length_um": round(longer, _PICOMETRES)}})
+    most = 0 if strip_is_stated else math.ceil(2 * beam["length_um"] / element)
+    parts = (beam["length_um"] / beam["elements"] / n for n in range(1, most + 1))
+    if not (fitting := [part for part in parts if is_multiple(part, step)]):
+        return config
+    nearest = min(fitting, key=lambda part: abs(math.log(part / strip)))
+    return merged(config, {"sampling": {"strip_length_um": round(nearest, _PICOMETRES)}})
+
+
+def _bridge_strip(device, config, step):
+    """Length of the strips of a bridge [µm] where neither it nor the grid has the usual one, otherwise ``None``."""
+    kind, usual = kind_of(device), config["sampling"]["strip_length_um"]
+    length = kind.strip(device, usual)
+    if not kind.has_short_strips or "strip_um" in device or is_multiple(length, step):
+        return None
+    return round(max(math.floor(length / step), 1) * step, _PICOMETRES)
 
 
 def used_surfaces(config: Mapping[str, Any]) -> Iterator[str]:

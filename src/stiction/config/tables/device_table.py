@@ -104,13 +104,13 @@ def _of_rows(file, numbers, sentence):
 
 
 def _shown(file):
-    """Name of a file in messages."""
-    return one_line(Path(file).name)
+    """Name of a file in messages, without the folder of the configuration."""
+    return one_line(Path(file).name if Path(file).is_absolute() else file)
 
 
 def _file(config):
     """File of devices, ``None`` if a configuration names none."""
-    devices = config.get("devices")
+    devices = config.get("devices") if isinstance(config, dict) else None
     file = devices.get("file") if isinstance(devices, dict) else None
     return file if isinstance(file, str) else None
 
