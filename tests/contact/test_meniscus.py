@@ -192,3 +192,15 @@ def test_warm_water_pulls_less_and_takes_more_room_beyond_its_greatest_density()
 @pytest.mark.parametrize("wet", [(0.0, 0.0), (0.3, 0.9)])
 def test_flats_in_saturated_air_have_the_surface_energy_times_the_cosines(wet):
     assert flooded_energy(300.0, wet) == pytest.approx(WATER_SURFACE_ENERGY * np.sum(np.cos(wet)), rel=1e-12)
+
+
+def test_the_pull_of_a_film_on_flats_grows_in_drier_air_beyond_that_of_both_neighbours():
+    """Between dry air, without a film, and the driest allowed air, a film would pull harder than either."""
+    driest = least_humidity(300.0)
+    pull = {humidity: -float(laplace_pressure(humidity, 300.0)) for humidity in (driest / 2, driest, 0.5, 0.9)}
+    assert list(pull.values()) == sorted(pull.values(), reverse=True)
+    # The second route: work to raise the film's height of water out of its vapour, γ cosθ₁ + γ cosθ₂ for any height.
+    for humidity, pressure in pull.items():
+        assert pressure * float(meniscus_height(humidity, 300.0)) == pytest.approx(2 * WATER_SURFACE_ENERGY, rel=1e-9)
+    assert "do not bound" in dry_air(driest / 2, 300.0)
+    assert dry_air(driest, 300.0) is None

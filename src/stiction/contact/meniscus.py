@@ -152,7 +152,7 @@ def dry_air(humidity: float, temperature: float, contact_angles: tuple[float, fl
         f"must be at least {np.ceil(1e4 * least) / 1e4:.4g}: in drier air, at {temperature:g} K and contact angles of "
         f"{degrees} degrees, the film between the surfaces is thinner than {MOLECULES} molecules, "
         f"{1e9 * MOLECULES * WATER_MOLECULE:.2g} nm, which are no liquid; results for dry air and for the driest "
-        "air that is allowed bracket those between"
+        "air that is allowed do not bound those between, because thinner films pull harder"
     )
 
 

@@ -201,7 +201,7 @@ def _thin_film(film):
     return (
         f"The film of water is {TO_NM * film:.2g} nm high, thinner than {MOLECULES} molecules, "
         f"{MOLECULES * TO_NM * WATER_MOLECULE:.3g} nm: the air is too dry for the theory of a liquid, and this result "
-        "can be off to either side. Results for dry air and for the next humidity above bracket it."
+        "can be off to either side. Results for dry air and for the next humidity above do not bound it."
     )
 
 
