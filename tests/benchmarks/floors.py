@@ -22,7 +22,7 @@ _BLOCK = 64
 
 def surface(rough, rng):
     """One rough surface: its normal numbers and its inverse FFTs, of input that is not copied."""
-    _, amplitude, columns = rough._modes
+    _, amplitude, columns = rough.modes
     grid = rough.grid
     standard_normal(rng, 2 * len(amplitude))
     waves = np.zeros((columns, grid.field_shape[0]), np.complex64)

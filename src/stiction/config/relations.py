@@ -328,6 +328,15 @@ def correlated(length: float, psd: dict) -> str | None:
 
 
 @relation
+def offsets_stay_in_the_margin(config):
+    """Require offsets within the margin of a strip, beyond which its periodic field repeats."""
+    for pair, offset in config.entries("pairs", "replica.offset_nm"):
+        if offset > config["sampling.margin_um"] * NM_PER_UM:
+            message = f"must be at most {config['sampling.margin_um'] * NM_PER_UM:g} nm"
+            yield f"pairs.{pair}.replica.offset_nm", message, "sampling.margin_um"
+
+
+@relation
 def lengths_can_exceed_the_correlation(config):
     """Require lengths above the estimated correlation of an identified spectrum. The jobs check the spectrum itself."""
     keys = "psd", "rms_nm", "mean_summit_radius_um", "summit_density_per_um2"

@@ -20,6 +20,7 @@ from stiction.contact.asperity import Asperity, Ranges
 from stiction.kernels import kernel
 from stiction.surface.field import RoughSurface
 from stiction.surface.islands import find_islands
+from stiction.surface.replica import Replica
 from stiction.surface.summits import find_summits
 
 #: Levels at which islands are found, on one rms of the heights: enough for crack lengths to 0.2 %.
@@ -76,6 +77,7 @@ class EquivalentSurface:
     step: float  #: of the distances [m]
     every: int = 1  #: summits and area are taken from every n-th point of the drawn grid
     definition: Definition = Definition.SUMMIT  #: of an asperity
+    replica: Replica | None = None  #: of both surfaces, if the beam follows the substrate
 
     def __post_init__(self):
         beam, substrate = self.beam.grid, self.substrate.grid
@@ -91,6 +93,11 @@ class EquivalentSurface:
         return self.beam.grid.spacing * self.every
 
     @property
+    def rms(self) -> float:
+        """Root mean square of z₁ + z₂ [m]."""
+        return self.replica.rms if self.replica else float(np.hypot(self.beam.rms, self.substrate.rms))
+
+    @property
     def distances(self) -> DistanceGrid:
         """Grid of the distances, covering every possible height z₁ + z₂."""
         lowest, highest = (float(self.beam.table[end]) + float(self.substrate.table[end]) for end in (0, -1))
@@ -98,8 +105,11 @@ class EquivalentSurface:
 
     def draw(self, beam_rng: np.random.Generator, substrate_rng: np.random.Generator) -> np.ndarray:
         """Draw one equivalent surface z = z₁ + z₂, (n1, n2) float32 [m]."""
-        heights = self.beam.draw(beam_rng)
-        self.substrate.add_to(heights, substrate_rng)
+        if self.replica:
+            heights = self.replica.draw(beam_rng, substrate_rng)
+        else:
+            heights = self.beam.draw(beam_rng)
+            self.substrate.add_to(heights, substrate_rng)
         return np.ascontiguousarray(heights[:: self.every, :: self.every])
 
     def asperities(self, heights: np.ndarray) -> Summits:
@@ -129,7 +139,7 @@ class EquivalentSurface:
         ASSUME: below the rms of the heights, where islands are about to become one, they keep their spheres from there.
         ASSUME: fitted by least squares, an island without a fit has the sphere of its area.
         """
-        summits, grid, rms = self.summits(heights), self.distances, float(np.hypot(self.beam.rms, self.substrate.rms))
+        summits, grid, rms = self.summits(heights), self.distances, self.rms
         stride = max(round(rms / (LEVELS_PER_RMS * grid.step)), 1)
         levels = DistanceGrid(stride * grid.step, 0, -(-grid.above // stride))
         lowest = min(int(np.ceil(rms / levels.step)), levels.above - 1)
@@ -241,8 +251,9 @@ def contacts_of_samples(
 
 def _equivalent_surface(pairs, streams, sample):
     """Equivalent surface of one sample of each pair."""
-    if len(pairs) == 1:  # the second surface is added in place, which needs no array of its heights
-        yield pairs[0].draw(*streams(sample))
+    if len(pairs) == 1 or any(pair.replica for pair in pairs):
+        # The second surface is added in place, which needs no array of its heights.
+        yield from (pair.draw(*streams(sample)) for pair in pairs)
         return
     strips = {}
     for pair in pairs:

@@ -115,7 +115,11 @@ class Plan:
         changed = {key: value for key, value in (self.config["contact"] | contact).items() if value is not None}
         of_pair = {"surfaces": self.sides(pair), "water": self.air.water(pair), "contact": changed}
         others = {key: value for key, value in self.air.around(pair).items() if key != "materials"}
-        return others | of_pair | self.materials.settings(pair, properties)
+        return others | of_pair | self.materials.settings(pair, properties) | self.replica(pair)
+
+    def replica(self, pair: str) -> dict[str, dict]:
+        """Setting ``replica`` of a pair, empty if its surfaces are independent."""
+        return subsection(self.config["pairs"][PairInAir(pair).pair], ["replica"])
 
     def at(self, case: Case) -> dict[str, Any]:
         """Configuration of `seen_by`, with the humidity of a case."""

@@ -80,12 +80,18 @@ class Variants:
         """
         pair, scanned = PairInAir(pair).pair, self.plan.scans.surfaces
         contact = subsection(self.config["contact"], ("distance_step_nm", "every", "asperity"))
-        base = subsection(self.config, ("seed", "sampling")) | {
-            "contact": contact | {"samples": self.config["studies"]["variants"]["samples"]},
-            "beam": subsection(self.config["beam"], ["width_um"]),
-            "pairs": {pair: subsection(self.config["pairs"][pair], SIDES)},
-            "surfaces": {name: self.surface(variant, name) for name in self.plan.sides(pair) if name not in scanned},
-        }
+        base = (
+            subsection(self.config, ("seed", "sampling"))
+            | self.plan.replica(pair)
+            | {
+                "contact": contact | {"samples": self.config["studies"]["variants"]["samples"]},
+                "beam": subsection(self.config["beam"], ["width_um"]),
+                "pairs": {pair: subsection(self.config["pairs"][pair], SIDES)},
+                "surfaces": {
+                    name: self.surface(variant, name) for name in self.plan.sides(pair) if name not in scanned
+                },
+            }
+        )
         changes = {} if variant == CORRECTED else subsection(self.changes[variant], ("sampling", "contact"))
         identified = sorted(name for name, entry in base["surfaces"].items() if entry["psd"] == "identified")
         return {"base": base, "changes": changes, "identified": identified}

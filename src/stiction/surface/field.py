@@ -73,7 +73,7 @@ class RoughSurface:
             raise ValueError(f"need an rms above 0, got {self.rms:.3g} m")
 
     @cached_property
-    def _modes(self):
+    def modes(self) -> tuple[np.ndarray, np.ndarray, int]:
         """Waves of the half plane ζ₂ >= 0 up to the cut-off.
 
         Position in the (ζ₂, ζ₁) array and amplitude, (n,) int and float32, and the number of rows ζ₂ of that array.
@@ -107,24 +107,29 @@ class RoughSurface:
 
     def add_to(self, heights: np.ndarray, rng: np.random.Generator) -> None:
         """Draw one strip and add it to ``heights`` (n1, n2) float32 [m]."""
-        add_heights(self._field(rng), self.table, heights)
+        self.add_waves(heights, self.waves(rng))
 
-    def _field(self, rng):
-        """Draw the standard Gaussian field on the length of the strip and the whole period across, (n1, n) float32."""
-        return fft.irfft(self._waves_across(rng), n=self.grid.field_shape[1], axis=1, norm="forward")
+    def waves(self, rng: np.random.Generator) -> np.ndarray:
+        """Draw the waves of the standard Gaussian field at all places of `modes`, (n,) complex64."""
+        position, amplitude, columns = self.modes
+        waves = np.zeros(columns * self.grid.field_shape[0], np.complex64)
+        _place(standard_normal(rng, 2 * len(position)), amplitude, position, waves.view(np.float32))
+        return waves
 
-    def _waves_across(self, rng):
-        """Draw the waves ζ₂ >= 0 across each line of the strip, up to the Nyquist wave number, complex64.
+    def add_waves(self, heights: np.ndarray, waves: np.ndarray) -> None:
+        """Add the strip with these `waves`, which are overwritten, to ``heights`` (n1, n2) float32 [m]."""
+        field = fft.irfft(self._waves_across(waves), n=self.grid.field_shape[1], axis=1, norm="forward")
+        add_heights(field, self.table, heights)
+
+    def _waves_across(self, waves):
+        """Waves ζ₂ >= 0 across each line of the strip, up to the Nyquist wave number, complex64.
 
         The inverse transform would copy an input that is not contiguous or shorter.
         """
-        position, amplitude, columns = self._modes
         n1, n2 = self.grid.field_shape
-        waves = np.zeros(columns * n1, np.complex64)
-        _place(standard_normal(rng, 2 * len(position)), amplitude, position, waves.view(np.float32))
-        along = fft.ifft(waves.reshape(columns, n1), axis=1, norm="forward", overwrite_x=True)
+        along = fft.ifft(waves.reshape(-1, n1), axis=1, norm="forward", overwrite_x=True)
         across = np.zeros((self.grid.shape[0], n2 // 2 + 1), np.complex64)
-        across[:, :columns] = along.T[: len(across)]
+        across[:, : len(along)] = along.T[: len(across)]
         return across
 
 

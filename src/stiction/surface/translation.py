@@ -171,8 +171,8 @@ def underlying_spectrum(
         If the grid does not resolve the target.
     """
     require_resolved(target.cutoff, spacing)
-    zeta, cell = _square(spacing, points)
-    correlation = fft.fft2(_on_square(target, zeta)).real
+    zeta, cell = square(spacing, points)
+    correlation = fft.fft2(on_square(target, zeta)).real
     rho = _on_one_half(translation.underlying_autocorrelation, correlation / correlation[0, 0])
     wanted = fft.ifft2(rho).real / cell
     possible = np.where(zeta <= target.cutoff, np.maximum(wanted, 0), 0)
@@ -185,20 +185,20 @@ def spectrum_of_heights(
 ) -> TabulatedSpectrum:
     """Spectrum of the translated field, of unit variance: inverse of `underlying_spectrum`, with the same errors."""
     require_resolved(underlying.cutoff, spacing)
-    zeta, cell = _square(spacing, points)
-    correlation = fft.fft2(_on_square(underlying, zeta)).real
+    zeta, cell = square(spacing, points)
+    correlation = fft.fft2(on_square(underlying, zeta)).real
     heights = fft.ifft2(_on_one_half(translation.autocorrelation, correlation / correlation[0, 0])).real / cell
     return _radial(np.maximum(heights, 0), zeta, np.inf)  # rounding may make it negative
 
 
-def _square(spacing, points):
+def square(spacing: float, points: int) -> tuple[np.ndarray, float]:
     """Wave numbers |ζ| (n, n) of a periodic square and Δζ²."""
     axis = 2 * np.pi * fft.fftfreq(points, spacing)
     return np.hypot(axis[:, None], axis), axis[1] ** 2
 
 
-def _on_square(spectrum, zeta):
-    """Spectrum at all wave numbers of `_square`, computed in a quarter and mirrored to the others."""
+def on_square(spectrum: Spectrum, zeta: np.ndarray) -> np.ndarray:
+    """Spectrum at all wave numbers of `square`, computed in a quarter and mirrored to the others."""
     places = np.arange(len(zeta))
     mirrored = np.minimum(places, len(zeta) - places)
     quarter = spectrum(zeta[: mirrored.max() + 1, : mirrored.max() + 1])

@@ -14,7 +14,7 @@ from stiction.contact.pair import DistanceGrid, contacts_of_samples
 from stiction.contact.tilted import TiltedPair
 from stiction.progress import progress
 from stiction.rounding import is_at_most
-from stiction.stages.contact.pairs import Settings, streams_of_sides, surface_pairs
+from stiction.stages.contact.pairs import Settings, require_feasible, streams_of_sides, surface_pairs
 from stiction.stages.surfaces.heights import moments
 from stiction.stages.surfaces.parameters import spectrum_of
 from stiction.stages.surfaces.rough_surfaces import both
@@ -58,7 +58,8 @@ def compute_each(
 
 
 def from_surfaces(data: Mapping[str, Any], pair: str, settings: Settings) -> xr.Dataset:
-    """Compute from the datasets of both surfaces by stage."""
+    """Compute from the datasets of both surfaces by stage, of which one can follow the other as stated."""
+    require_feasible(both(data), "NG", settings)
     return compute(both(data), pair, "NG", settings)
 
 
@@ -97,6 +98,7 @@ def chunk(samples: int, number: int, chunks: int) -> range:
 
 def drawn_chunk(data: Mapping[str, Any], at: Any, settings: Settings) -> xr.Dataset:
     """Compute the samples of one chunk from the datasets of both surfaces by stage and the wildcards of a job."""
+    require_feasible(both(data), at.model, settings)
     samples = chunk(settings.contact.samples, int(at.chunk), int(at.number))
     return compute(both(data), at.pair, at.model, settings, samples)
 

@@ -21,6 +21,7 @@ from stiction.contact.tilted import TiltedPair
 from stiction.models import SIDES
 from stiction.stages.surfaces.rough_surfaces import Sampling, Width, rough_surface
 from stiction.streams import stream
+from stiction.surface.replica import Coherence, Replica
 
 #: Materials of beam and substrate by side, where section ``solid`` does not hold for both.
 SolidBySide = dict[str, Solid]
@@ -42,6 +43,7 @@ class Surfaces(Protocol):
     sampling: Sampling
     contact: Contact
     beam: Width
+    replica: Coherence | None
 
 
 class Solids(Protocol):
@@ -65,6 +67,7 @@ class Settings:
     surfaces: tuple[str, ...] = ()  #: names of the two surfaces; they do not affect the results
     materials: SolidBySide = field(default_factory=dict)
     tilt: Tilt | None = None  #: of the tips of beams, with the step of their distances; none for surfaces without slope
+    replica: Coherence | None = None  #: of the beam's underside and the substrate, if one follows the other
 
 
 def sides_of_strip(settings: Surfaces) -> tuple[float, float]:
@@ -88,7 +91,14 @@ def equivalent_surface(
     """Sum of two surfaces from their (heights, spectrum) datasets, the beam's first."""
     grid = settings.sampling.strips(settings.beam.width)
     beam, substrate = (rough_surface(heights, spectrum, model, grid) for heights, spectrum in surfaces)
-    return EquivalentSurface(beam, substrate, *_discretisation(settings.contact))
+    return EquivalentSurface(
+        beam, substrate, *_discretisation(settings.contact), replica=_replica(beam, substrate, settings.replica)
+    )
+
+
+def _replica(beam, substrate, stated):
+    """Both surfaces drawn together, if the beam's follows the substrate's."""
+    return Replica(beam, substrate, stated) if stated else None
 
 
 def _discretisation(contact):
@@ -111,9 +121,16 @@ def surface_pairs(
     build = partial(SurfacePair, asperity=solid)
     if settings.tilt:
         build = partial(TiltedPair, asperity=solid, tilt=settings.tilt)
+    both = ([built[id(one)] for one in surfaces] for surfaces in alternatives)
     return [
-        build(*(built[id(one)] for one in surfaces), *_discretisation(settings.contact)) for surfaces in alternatives
+        build(*sides, *_discretisation(settings.contact), replica=_replica(*sides, settings.replica)) for sides in both
     ]
+
+
+def require_feasible(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], model: str, settings: Settings) -> None:
+    """Refuse a coherence that these surfaces cannot have. ASSUME: slightly changed ones have as much as is feasible."""
+    if settings.replica:
+        surface_pair(surfaces, model, settings).replica.require_feasible()
 
 
 def streams_of_sides(seed: int, pair: str) -> Callable[[int], tuple[np.random.Generator, ...]]:

@@ -30,6 +30,7 @@ from stiction.stages.contact.pairs import Contact, SolidBySide, asperity_of, equ
 from stiction.stages.surfaces import heights as stage_heights
 from stiction.stages.surfaces import spectrum as stage_spectrum
 from stiction.stages.surfaces.rough_surfaces import Sampling, Width
+from stiction.surface.replica import Coherence
 from stiction.surface.spectrum import CutoffSelfAffine
 
 
@@ -62,6 +63,7 @@ class Settings:
     beam: Width
     pairs: dict[str, Sides]
     surfaces: dict[str, Surface]
+    replica: Coherence | None = None  #: of the two surfaces
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,172 @@
+r"""Two facing surfaces, one of which follows the other: a beam deposited on a film that lay on its substrate.
+
+Heights point towards the other surface, so that a full replica is z₁ = -z₂. Waves of both have the cross spectrum
+
+.. math:: -c(\zeta) \sqrt{s_1 s_2} \, e^{-i \zeta_1 s},
+
+with the coherence c and the offset s along the beam, and z₁ + z₂ has the spectrum
+:math:`s_1 + s_2 - 2 c \sqrt{s_1 s_2} \cos \zeta_1 s`. Both surfaces keep their own spectra and moments.
+
+The underlying Gaussian waves are correlated. With orthonormal Hermite polynomials :math:`g_1 = \sum a_k h_k` and
+:math:`g_2 = \sum b_k h_k`, the cross-correlation of the heights is :math:`\sum a_k b_k \rho^k`, where ρ is that of the
+Gaussian fields. It increases with ρ, so that its inverse gives the coherence of the Gaussian waves.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy import fft
+
+from stiction.surface.field import RoughSurface
+from stiction.surface.spectrum import ring_means
+from stiction.surface.translation import on_square, square
+
+#: Points along each side of the periodic square of the transforms, as in `stiction.surface.translation`.
+_POINTS = 1024
+#: Correlations ρ at which that of the heights is tabulated: linear interpolation errs by 1e-9.
+_CORRELATIONS = np.linspace(-1, 1, 20001)
+#: ASSUME: relative error of the rms of z₁ + z₂ that an unfeasible coherence of some waves may cause: 2 % of a length.
+ALLOWED = 0.05
+
+
+@dataclass(frozen=True)
+class Coherence:
+    """Coherence of the heights of two surfaces that face each other, by wave."""
+
+    coherence: float  #: c of the waves that are copied [-]
+    above: float = 0.0  #: wavelength above which waves are copied; all by default [m]
+    offset: float = 0.0  #: distance along the beam by which it lies beside its register [m]
+
+    def __post_init__(self):
+        if not (0 <= self.coherence <= 1 and 0 <= self.above < np.inf and 0 <= self.offset < np.inf):
+            raise ValueError(
+                f"need a coherence from 0 to 1 and lengths of 0 or more, got {self.coherence:.4g}, {self.above:.4g} m "
+                f"and {self.offset:.4g} m"
+            )
+
+    def __call__(self, wavenumber: np.ndarray) -> np.ndarray:
+        """Coherence at |ζ| [-], shape of ``wavenumber`` [rad m⁻¹]."""
+        return np.where(self.copies(wavenumber), self.coherence, 0.0)
+
+    def copies(self, wavenumber: np.ndarray) -> np.ndarray:
+        """Whether waves are copied, bool of the shape of ``wavenumber`` [rad m⁻¹]."""
+        return wavenumber * self.above < 2 * np.pi
+
+
+@dataclass(frozen=True)
+class Replica:
+    """Beam whose waves follow those of its substrate."""
+
+    beam: RoughSurface
+    substrate: RoughSurface
+    stated: Coherence  #: of the heights
+
+    def __post_init__(self):
+        if self.beam.grid != self.substrate.grid:
+            raise ValueError("surfaces that follow each other must be drawn on the same grid")
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of z₁ + z₂, as far as the stated coherence is feasible [m]."""
+        return self._rms_of_sum(self._waves.reached)
+
+    def require_feasible(self) -> None:
+        """Refuse a coherence that two surfaces with these moments cannot have.
+
+        Raises
+        ------
+        ValueError
+            If z₁ + z₂ is rougher than stated by more than `ALLOWED`: unless they have opposite skewness, no surface
+            is the negative of the other.
+        """
+        wanted = self._rms_of_sum(self._waves.wanted)
+        if self.rms > (1 + ALLOWED) * wanted:
+            raise ValueError(
+                f"surfaces with these moments cannot have heights of coherence {self.stated.coherence:g}: their sum "
+                f"would have an rms of {1e9 * self.rms:.3g} in place of {1e9 * wanted:.3g} nm; a full replica has the "
+                "opposite skewness of its original"
+            )
+
+    def _rms_of_sum(self, correlation):
+        """Root mean square of z₁ + z₂ with this correlation of the heights in register [m]."""
+        one, other = self.beam.rms, self.substrate.rms
+        return float(np.hypot(one - other, np.sqrt(2 * max(1 + correlation, 0.0) * one * other)))
+
+    @cached_property
+    def _waves(self):
+        return _gaussian_waves(self.beam, self.substrate, self.stated)
+
+    @cached_property
+    def _mixing(self):
+        """Places of the waves that both surfaces have, their share of own waves, and the factor of the substrate's."""
+        (own, amplitude, _), (other, amplitude_of_other, _) = self.beam.modes, self.substrate.modes
+        places, of_own, of_other = np.intersect1d(own, other, assume_unique=True, return_indices=True)
+        n1, _ = self.beam.grid.field_shape
+        step1, step2 = self.beam.grid.wavenumber_steps
+        zeta1, zeta2 = step1 * ((places + n1 // 2) % n1 - n1 // 2), step2 * (places // n1)
+        coherence = self._waves.coherence(np.hypot(zeta1, zeta2))
+        ratio = amplitude[of_own] / amplitude_of_other[of_other]
+        factor = -coherence * ratio * np.exp(-1j * zeta1 * self.stated.offset)
+        return places, np.sqrt(1 - coherence**2).astype(np.float32), factor.astype(np.complex64)
+
+    def draw(self, beam_rng: np.random.Generator, substrate_rng: np.random.Generator) -> np.ndarray:
+        """Draw one strip of z₁ + z₂, (n1, n2) float32 [m]. Without coherence it is that of independent surfaces."""
+        waves, others = self.beam.waves(beam_rng), self.substrate.waves(substrate_rng)
+        places, share, factor = self._mixing
+        waves[places] = share * waves[places] + factor * others[places]
+        heights = np.zeros(self.beam.grid.shape, np.float32)
+        self.beam.add_waves(heights, waves)
+        self.substrate.add_waves(heights, others)
+        return heights
+
+
+@dataclass(frozen=True)
+class _GaussianWaves:
+    """Coherence of the Gaussian waves of two surfaces, and the correlation of their heights in register."""
+
+    stated: Coherence  #: of the heights
+    tables: tuple  #: wave numbers (n,) [rad m⁻¹] and coherences (n,) [-] of waves that are copied, and of the others
+    wanted: float  #: correlation as stated [-]
+    reached: float  #: correlation of the drawn heights [-]
+
+    def coherence(self, wavenumber):
+        """Coherence at |ζ| [-], shape of ``wavenumber`` [rad m⁻¹]."""
+        return _tabulated(self.stated, self.tables, wavenumber)
+
+
+def _tabulated(stated, tables, wavenumber):
+    """Coherence at |ζ| from the tables of copied and other waves, between which it is not continuous."""
+    copied, others = (np.interp(wavenumber, *table) if len(table[0]) else 0.0 for table in tables)
+    return np.where(stated.copies(wavenumber), copied, others)
+
+
+def _gaussian_waves(beam, substrate, stated):
+    """Coherence of the Gaussian waves for a stated one of the heights, as far as it is feasible."""
+    zeta, _ = square(beam.grid.spacing, _POINTS)
+    gaussian, heights = zip(*(_spectra(surface, zeta) for surface in (beam, substrate)), strict=True)
+    one, other = (surface.translation.hermite_coefficients for surface in (beam, substrate))
+    powers = np.r_[0.0, one * other / np.sqrt(np.sum(one**2) * np.sum(other**2))]
+    of_heights = np.polynomial.polynomial.polyval(_CORRELATIONS, powers)
+    wanted = fft.fft2(-stated(zeta) * np.sqrt(heights[0] * heights[1])).real
+    crossed = fft.ifft2(np.interp(wanted, of_heights, _CORRELATIONS)).real
+    inside = zeta <= min(beam.underlying.cutoff, substrate.underlying.cutoff)
+    both, copied = np.where(inside, np.sqrt(gaussian[0] * gaussian[1]), 0.0), stated.copies(zeta)
+    tables = [_table(-crossed, both, inside & waves, zeta[0, 1]) for waves in (copied, ~copied)]
+    drawn = -np.sum(_tabulated(stated, tables, zeta) * both)
+    return _GaussianWaves(stated, tables, wanted[0, 0], float(np.interp(drawn, _CORRELATIONS, of_heights)))
+
+
+def _table(crossed, both, inside, step):
+    """Wave numbers of the rings with some waves [rad m⁻¹], and their ratio of spectra (n, n), from 0 to 1 [-]."""
+    across, along = ring_means(crossed, inside), ring_means(both, inside)
+    rings = np.flatnonzero(along)
+    return step * rings, np.clip(across[rings] / along[rings], 0, 1)
+
+
+def _spectra(surface, zeta):
+    """Spectra on a square (n, n) of the Gaussian field and of the heights of a surface, each of unit sum."""
+    gaussian = on_square(surface.underlying, zeta)
+    gaussian = gaussian / gaussian.sum()
+    heights = fft.ifft2(surface.translation.autocorrelation(fft.fft2(gaussian).real)).real
+    return gaussian, np.maximum(heights, 0)  # rounding may make it negative
