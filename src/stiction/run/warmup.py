@@ -56,7 +56,7 @@ def contact_kernels() -> None:
 
 def full_contact_kernels() -> None:
     """Run the kernels of full elastic contact on a small problem."""
-    heights = 1e-9 * stream(0).standard_normal((32, 32), np.float32)
+    heights = stream(0).normal(0.0, 1e-9, (32, 32)).astype(np.float32)
     space = HalfSpace(heights.shape, 1e-8, 1e11)
     adhesion = Adhesion(2e-9, 1e7, 1e7, 1e-9, work=np.linspace(1e-3, 0.0, GAPS.size))
     for solve in (elements.equilibrium, descent.equilibrium):
