@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 import stiction
 from stiction.analysis.greenwood import GreenwoodWilliamson
@@ -22,7 +23,7 @@ from stiction.contact.meniscus import film, flooded_energy
 from stiction.plan.graph import Results
 from stiction.plan.plan import Plan
 from stiction.report.format import TO_MJ, TO_UM
-from stiction.report.style import DOUBLE, letter, plain_log, save, styled
+from stiction.report.style import DOUBLE, handles, legend_outside, letter, plain_log, save, styled
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
 from stiction.stages.contact.curves import energies
 from stiction.surface.spectrum import CutoffSelfAffine, autocovariance, correlation_length
@@ -33,6 +34,13 @@ ROUGHER = {"a": "B1", "b": "B2", "c": "Sub2"}
 WIDTHS, HUMIDITIES = (30, 10, 3, 1), {"a": 0.6, "b": 0.67, "c": 0.8}
 #: Surface pairs of every size.
 SAMPLES = 300
+#: Least energy of the first panel [mJ/m²], and what each panel shows.
+LEAST = 1e-3
+TITLES = (
+    "GW predicts far too little adhesion",
+    r"Few summits scatter less than $A^{-1/2}$",
+    "Surfaces scatter weak adhesion",
+)
 
 
 def main(folder):
@@ -145,7 +153,7 @@ def shares(config, table):
 @styled
 def drawn(parts):
     """Energies of the baseline, scatter against area, and both sources of scatter."""
-    figure = Figure(figsize=(DOUBLE, 2.6), layout="constrained")
+    figure = Figure(figsize=(DOUBLE, 3.1), layout="constrained")
     axes = figure.subplots(1, 3)
     for k, (pair, rows) in enumerate(parts["greenwood_williamson"].groupby("pair")):
         axes[0].semilogy(rows.RH, rows["ē, GW [mJ/m²]"], f"C{k}:")
@@ -157,12 +165,18 @@ def drawn(parts):
         share = parts["shares"][parts["shares"].pair == pair]
         axes[2].loglog(share["Γ/2γ [%]"], share["surfaces [%]"], f"C{k}o-", markersize=3)
         axes[2].loglog(share["Γ/2γ [%]"], share["dimensions [%]"], f"C{k}:")
-    axes[0].set(xlabel="relative humidity [–]", ylabel=r"$\bar e$ [mJ/m²]")
-    axes[0].legend(title="pair")
-    axes[1].set(xlabel="area [µm²]", ylabel=r"cv of $\bar e$ [–]")
-    axes[2].set(xlabel=r"$\Gamma / 2\gamma$ [%]", ylabel=r"scatter of $\Gamma$ [%]")
-    plain_log(axes[1].xaxis)
-    letter(axes, ["NG, and GW (dotted)", r"and $A^{-1/2}$ (dotted)", "surfaces, dimensions (dotted)"])
+    axes[0].set(xlabel="relative humidity [–]", ylabel=r"adhesion energy $\bar e$ [mJ/m²]", ylim=(LEAST, None))
+    arrow = {"ha": "center", "va": "bottom", "arrowprops": {"arrowstyle": "->"}}
+    axes[0].annotate(r"to $10^{-14}$", (0.85, 1.1 * LEAST), (0.78, 4 * LEAST), **arrow)
+    axes[1].set(xlabel="area of a patch [µm²]", ylabel=r"std / mean of $\bar e$ [–]")
+    axes[2].set(xlabel=r"adhesion, $\Gamma / 2\gamma$ [%]", ylabel=r"std / mean of $\Gamma$ [%]")
+    for axis in (axes[1].xaxis, axes[1].yaxis, axes[2].yaxis):
+        plain_log(axis)
+    pairs, dotted = handles(axes[0]), ("GW", "$A^{-1/2}$", "by dimensions")
+    legend_outside(figure, (pairs[0], [f"pair {pair}" for pair in pairs[1]]), "lower", 3)
+    for panel, name in zip(axes, dotted, strict=True):
+        panel.legend(handles=[Line2D([], [], color="0.3", linestyle=":", label=name)], loc="lower left")
+    letter(axes, TITLES)
     return figure
 
 

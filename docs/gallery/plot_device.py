@@ -38,7 +38,7 @@ device = stiction.Device.of(config, "C1")
 # %%
 # P(stuck) over the length
 # ------------------------
-# Bands contain the true share with a confidence of 95 %. The beam may be held by its whole width, or by its tip
+# Bands contain the true fraction with a confidence of 95 %. The beam may be held by its whole width, or by its tip
 # alone.
 
 for humidity in (0.44, 0.67):
@@ -46,8 +46,8 @@ for humidity in (0.44, 0.67):
     for shape, line in zip(lengths["shape"].values, ("-", "--"), strict=False):
         curve = lengths.sel(shape=shape)
         plt.semilogy(1e6 * curve.length, curve.stuck, line, label=f"RH {humidity}, {shape}")
-        safe = 1e6 * float(curve.safe_length.sel(share=0.01))
-        print(f"RH {humidity}, {shape}: safe length {safe:.0f} µm, at which at most 1 % stick")
+        limit = 1e6 * float(curve.safe_length.sel(share=0.01))
+        print(f"RH {humidity}, {shape}: simulated limit {limit:.0f} µm, at which at most 1 % stick")
 plt.xlabel("length of the beam [µm]")
 plt.ylabel("P(stuck) [–]")
 plt.legend()

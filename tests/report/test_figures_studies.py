@@ -175,7 +175,7 @@ def test_figure_16_shows_the_onset_of_the_hardest_pair():
 def test_figure_17_shows_the_law_of_a_part_of_all_samples_and_the_tolerance():
     tolerance = 1e-6
     figure = figures_studies.sample_convergence(sizes(), {("a", 0.5): [0.1, 0.01, 1e-3, 1e-4]}, tolerance)
-    _, errors, distances, _ = figure.axes
+    _, errors, distances = figure.axes
     assert errors.get_ylim()[0] <= tolerance / 2
     law, own = (line.get_xydata().T for line in distances.get_lines() if line.get_linestyle() in ("--", ":"))
     assert_allclose(law[1], KOLMOGOROV_MEAN * np.sqrt(1 / law[0] - 1 / 20))
@@ -236,37 +236,29 @@ def test_figure_17_always_shows_the_tolerance():
         assert high > max(tolerance, 0.1)
 
 
-def test_figure_19_shows_gamma_the_energy_of_the_law_and_their_signed_difference():
+def test_figure_19_shows_gamma_over_the_energy_of_the_law_beside_the_difference_of_the_paper():
     panel = figures_studies.mesh_convergence(mesh(), correlation()).axes[1]
     energy = 2e6 * (1.5 / 1e9 + 0.5 / 6e8)
-    assert_allclose(heights(panel)[0], [6, 5.9])  # mJ/m²
-    assert_allclose(panel.get_lines()[-1].get_ydata(), 1e3 * energy)
-    (inset,) = panel.child_axes
-    assert_allclose(heights(inset)[0], 100 * (np.array([6e-3, 5.9e-3]) / energy - 1))
-
-
-@pytest.mark.parametrize("lengths", [(3e-5, 1.5e-5), (7.5e-6, 1.5e-6)])
-def test_the_inset_of_figure_19_shows_the_shortest_elements_and_those_of_the_paper(lengths):
-    found = mesh()
-    found = found.assign(element_length=found.element_length.copy(data=np.array(lengths)))
-    (inset,) = figures_studies.mesh_convergence(found, correlation()).axes[1].child_axes
-    low, high = inset.get_xlim()
-    assert low < 1e6 * min(lengths) < high
-    assert high == pytest.approx(1.3 * max(7.5, 1e6 * min(lengths)))
-    (shaded,) = inset.patches
+    assert_allclose(heights(panel)[0], 100 * (np.array([6e-3, 5.9e-3]) / energy - 1))
+    (shaded,) = panel.patches
     assert_allclose([shaded.get_y(), shaded.get_y() + shaded.get_height()], [-2.5, 2.5])  # %, stated in the paper
+    low, high = panel.get_ylim()
+    assert low < min(heights(panel)[0])
+    assert high > max(heights(panel)[0])
 
 
-def test_base_and_experiment_lie_above_the_other_variants():
-    panel = figures_studies.variants(VARIANTS, PUBLISHED).axes[2]
-    above = {c.get_label(): c[0].get_zorder() for c in panel.containers}
-    assert sorted(above, key=above.get) == ["vdW: none", "base", "measured"]
+def lines_of(panel):
+    """Places of the vertical lines of a panel by their label."""
+    return {line.get_label(): line.get_xdata()[0] for line in panel.lines if len(set(line.get_xdata())) == 1}
 
 
-def test_measured_crack_lengths_are_relative_to_the_published_ones():
-    panel = figures_studies.variants(VARIANTS, PUBLISHED).axes[2]
-    (measured,) = (container for container in panel.containers if container.get_label() == "measured")
-    assert_allclose(list(measured[0].get_ydata()), 100 * (np.array([820, 590, 410]) / np.array([800, 600, 400]) - 1))
+def test_published_and_measured_crack_lengths_are_lines_relative_to_the_base():
+    base = VARIANTS["a", "base"].isel(humidity=0).crack_length.values.mean() * 1e6
+    found = lines_of(figures_studies.variants(VARIANTS, PUBLISHED).axes[0])
+    known = {"base": 0, "published": 100 * (800 / base - 1), "measured ± standard deviation": 100 * (820 / base - 1)}
+    assert {label: found[label] for label in known} == pytest.approx(known)
+    without = lines_of(figures_studies.variants(VARIANTS, PUBLISHED[:0]).axes[0])
+    assert not {"published", "measured ± standard deviation"} & without.keys()
 
 
 def test_variants_are_compared_with_base_published_and_measured_values():
@@ -281,17 +273,17 @@ def test_variants_are_compared_with_base_published_and_measured_values():
     assert row.share_s_shape == 1
 
 
-def test_the_figure_of_the_variants_shows_the_numbers_of_the_table():
-    table = tables_studies.variants(VARIANTS, PUBLISHED).frame.set_index(["pair", "variant"])
-    axes = figures_studies.variants(VARIANTS, PUBLISHED).axes
-    assert_allclose(heights(axes[1])[0], table.loc["b", "van_der_waals_none"].shift_percent)
-    assert_allclose(heights(axes[2])[0], table.loc["a", "base"].published_deviation_percent)
-
-
-def test_error_bars_of_the_variants_are_the_standard_errors_of_the_table():
+def test_dots_of_the_variants_are_the_numbers_of_the_table_at_the_lowest_humidity():
     table = tables_studies.variants(VARIANTS, PUBLISHED).frame.set_index(["pair", "variant"])
     panel = figures_studies.variants(VARIANTS, PUBLISHED).axes[1]
-    assert_allclose(bars(panel), table.loc["b", "van_der_waals_none"].shift_se_percent)
+    row = table.loc["b", "van_der_waals_none"].iloc[0]
+    (dot,) = (line for line in panel.lines if line.get_marker() == "o")
+    assert_allclose(list(dot.get_xdata()), row.shift_percent)
+    (segment,) = panel.containers[0][2][0].get_segments()
+    assert_allclose(np.ptp(segment[:, 0]) / 2, row.shift_se_percent)
+    assert [label.get_text() for label in figures_studies.variants(VARIANTS, PUBLISHED).axes[0].get_yticklabels()] == [
+        figures_studies.variant_label("van_der_waals_none")
+    ]
 
 
 def test_variants_of_pairs_of_the_paper_are_compared_with_what_was_published():
@@ -299,8 +291,7 @@ def test_variants_of_pairs_of_the_paper_are_compared_with_what_was_published():
     found = {(*key, k): each.isel(humidity=k) for key, each in VARIANTS.items() for k in range(len(HUMIDITIES))}
     found = {(pair, HUMIDITIES[k], name): each for (pair, name, k), each in found.items()}
     figure = job.compute({"studies": found, "published": job.inputs["published"]})
-    assert len(figure.axes) == 4
-    assert "measured" in [container.get_label() for container in figure.axes[2].containers]
+    assert len(figure.axes) == 2
 
 
 def test_free_beams_are_counted_and_not_averaged():
@@ -382,21 +373,19 @@ def test_the_figure_of_one_pair_shows_it_alone_whatever_else_is_compared():
     assert {pair for pair, _ in Plan(load(dry)).sensitivities} == {"b"}
 
 
-def test_the_colours_of_figure_17_are_those_of_humidities_and_its_lines_those_of_pairs():
-    errors = {(pair, rh): [0.1, 0.01, 1e-3, 1e-4] for pair in "ab" for rh in (0.5, 0.9)}
+def test_figure_17_shows_the_variance_lost_without_the_last_coordinate_at_every_humidity():
+    errors = {(pair, rh): [0.1, 0.01, 1e-3 * rh, 1e-4] for pair in "ab" for rh in (0.9, 0.5)}
     panel = figures_studies.sample_convergence(sizes(), errors, 1e-6).axes[1]
-    lines = dict(zip(errors, panel.lines, strict=False))
-    for (pair, rh), line in lines.items():
-        assert line.get_color() == lines["b" if pair == "a" else "a", rh].get_color()
-        assert line.get_color() != lines[pair, 0.9 if rh == 0.5 else 0.5].get_color()
-        assert line.get_marker() == lines[pair, 0.9 if rh == 0.5 else 0.5].get_marker()
+    for line in panel.lines[:2]:
+        assert_allclose(line.get_xydata(), [[0.5, 5e-4], [0.9, 9e-4]])
+    assert "$N_g$ = 3" in panel.get_title("left")
 
 
-def test_figure_18_shows_the_cumulative_probabilities_beside_the_spikes_of_the_first_marginal():
+def test_figure_18_shows_the_cumulative_probabilities_of_samples_and_orders():
     found = orders(3, 12)
-    (inset,) = figures_studies.order_convergence(found).axes[0].child_axes
+    panel = figures_studies.order_convergence(found).axes[0]
     width = float(found.position[1] - found.position[0])
     of_eta = found.sel(eta=found.eta[0])
-    for line, order in zip(inset.lines, (2, 4, 8, 12), strict=False):
-        more = width * np.cumsum(of_eta.density.sel(order=order).values - of_eta.input_density.values)
-        assert_allclose(line.get_ydata(), 100 * more)
+    known = [of_eta.input_density, *(of_eta.density.sel(order=order) for order in (2, 4, 8, 12))]
+    for line, density in zip(panel.lines, known, strict=True):
+        assert_allclose(line.get_ydata(), width * np.cumsum(density.values))

@@ -191,7 +191,7 @@ def rows(cases):
 
 #: Numbers of pairs or surfaces at two humidities; of humidities; of humidities and choices for some numbers of pairs.
 OF_PAIRS = [(name, n, 2) for name in ("12", "15", "16", "17", "19", "variants") for n in (1, 2, 4, 7, 12)]
-OF_HUMIDITIES = [("13", 3), ("15", 1), ("17", 2), ("overview", 1), ("variants", 2)]
+OF_HUMIDITIES = [("13", 3), ("15", 1), ("17", 2), ("overview", 1)]
 OF_HUMIDITIES = [(name, pairs, n) for name, pairs in OF_HUMIDITIES for n in (1, 4, 25)]
 OF_CHOICES = [("variants", pairs, n, choices) for pairs in (1, 5) for n in (1, 25) for choices in (9, 15)]
 FAST = {("12", 1, 2), ("13", 3, 25), ("15", 1, 25), ("16", 1, 2), ("17", 4, 2), ("19", 4, 2), ("overview", 1, 25)}
@@ -296,11 +296,10 @@ def shown(figure, label):
 @pytest.mark.parametrize("case", rows(OF_HUMIDITIES))
 def test_every_humidity_of_every_curve_is_shown(case):
     name, pairs, count = case
-    label = {"13": "skewness", "15": "GEO: beams, mean ± std", "overview": "computed here", "variants": "vdW: none"}
+    label = {"13": "skewness", "15": "GEO: beams, mean ± std", "overview": "computed here"}
     if name == "17":
-        assert len(drawn(case).axes[1].lines) == pairs * (count + 1) + 1
-    elif name == "variants":
-        assert shown(drawn(case), label[name]) == [count, count, len(published(count))]
+        assert len(drawn(case).axes[1].lines) == pairs + 1
+        assert {len(line.get_xdata()) for line in drawn(case).axes[1].lines[:-1]} == {count}
     else:
         assert shown(drawn(case), label[name]) == [count] * (1 + (name == "13"))
 
@@ -330,35 +329,25 @@ def test_the_share_of_nearly_all_beams_is_not_stated_as_all():
     assert [text.get_text() for text in figure.axes[0].texts] == ["> 99 %"]
 
 
-@pytest.mark.parametrize("case", rows(case for case in OF_CHOICES if case[:3] == ("variants", 1, 25)))
-def test_every_choice_has_one_curve_of_all_humidities_and_a_legend_below_its_panels(case):
-    figure, choices = drawn(case), case[3]
+@pytest.mark.parametrize("case", rows(OF_CHOICES))
+def test_every_choice_is_a_row_of_every_pair(case):
+    _, pairs, _, choices = case
+    panels_of = drawn(case).axes
     labels = [figures_studies.variant_label(name) for name in CHOICES[:choices]]
-    assert [shown(figure, label) for label in labels] == choices * [[25, len(published(25))]]
-    legends = [legend for part in (figure, *figure.subfigs) for legend in part.legends]
-    named = [text.get_text() for legend in legends for text in legend.get_texts()]
-    assert sorted(named) == sorted([*labels, *["base", "measured"] * len(legends)])
-    assert len(legends) == (1 if choices <= 9 else 2)
-
-
-def test_choices_of_one_key_stay_together_unless_they_are_more_than_the_colours():
-    groups = figures_studies._groups
-    assert groups([]) == [[]]
-    assert groups(list(CHOICES)) == [list(CHOICES[:9]), list(CHOICES[9:])]
-    of_one_key = [f"every_{k}" for k in range(2, 13)]
-    assert groups(["psd_identified", *of_one_key]) == [["psd_identified"], of_one_key[:9], of_one_key[9:]]
+    assert [text.get_text() for text in panels_of[0].get_yticklabels()] == labels
+    assert [len(panel.containers) for panel in panels_of] == [choices] * pairs
 
 
 @pytest.mark.parametrize("case", rows(OF_PAIRS))
 def test_every_pair_surface_and_number_of_samples_has_its_curve_or_panel(case):
     name, count, _ = case
     axes = drawn(case).axes
-    panels_of = {"12": 3 * count, "15": 4 * count, "16": count + 1, "17": 3 + 1, "19": 3, "variants": count + 1}
+    panels_of = {"12": 3 * count, "15": 4 * count, "16": count + 1, "17": 3, "19": 3, "variants": count}
     assert len(axes) == panels_of[name]
     if name == "17":
         assert len(axes[0].lines) == max(2, count)
-        assert len(axes[1].lines) == 3 * count + 1
-        looks = [(line.get_color(), line.get_linestyle(), line.get_marker()) for line in axes[1].lines[: 2 * count : 2]]
+        assert len(axes[1].lines) == count + 1
+        looks = [(line.get_color(), line.get_linestyle(), line.get_marker()) for line in axes[1].lines[:count]]
         assert len(set(looks)) == count
     if name == "19":
         assert len(axes[2].lines) == count

@@ -94,15 +94,17 @@ def test_parts_of_the_error_multiply_to_the_error_itself():
 
 
 @pytest.mark.parametrize("published", [PUBLISHED, PUBLISHED[:0]])
-def test_the_figure_has_all_curves_and_equal_bytes(published):
+def test_the_figure_has_a_row_for_each_reading_at_the_lowest_humidity_and_equal_bytes(published):
     figure = asperities.figure(*DATA, published)
-    assert len(figure.axes) == 2
-    labels = figure.legends[0].texts
-    known = {"summit, 10 nm", "summit, 5 nm", "island, 10 nm", "island, 5 nm", "shape, 10 nm", "full contact"}
-    known |= {"fitted, 10 nm", "fitted, 5 nm"}
-    for panel, factor in zip(figure.axes, (0.8, 0.8 * 0.7), strict=True):  # with attraction of the solids and without
-        (curve,) = (one.lines[0] for one in panel.containers if one.get_label() == "island, 10 nm")
-        np.testing.assert_array_equal(curve.get_xdata(), HUMIDITIES)
-        np.testing.assert_allclose(list(curve.get_ydata()), 100 * (factor**-0.25 - 1))
-    assert {text.get_text() for text in labels} == known | ({"published"} if len(published) else set())
+    (panel,) = figure.axes
+    readings = [f"{reading}, {spacing} nm" for reading in ("summit", "island", "fitted") for spacing in (10, 5)]
+    rows = [label.get_text() for label in panel.get_yticklabels()]
+    assert sorted(rows) == sorted([*readings, "shape, 10 nm", "full elastic contact"])
+    at = rows.index("island, 10 nm")
+    dots = [line.get_xdata()[0] for line in panel.lines if line.get_marker() == "o" and line.get_ydata()[0] == at]
+    np.testing.assert_allclose(dots, [100 * (factor**-0.25 - 1) for factor in (0.8, 0.8 * 0.7)])
+    (full,) = (line for line in panel.lines if line.get_marker() == "o" and line.get_color() == "black")
+    np.testing.assert_allclose(list(full.get_xdata()), 100 * (0.6**-0.25 - 1))
+    stated = [line.get_xdata()[0] for line in panel.lines if line.get_label() == "published"]
+    np.testing.assert_allclose(stated, [100 * (700 / 600 - 1)] if len(published) else [])
     assert style.png(figure) == style.png(asperities.figure(*DATA, published))

@@ -55,15 +55,15 @@ define("ground")
 #   contact, device_contact, tip_contact, model_error_of_devices -> results/devices/left_out_gaps/{device}.nc
 define("left_out_gaps")
 
-# Safe lengths of {case}.
+# Simulated limits of {case}.
 #   cracks, tip_contact, safe_lengths, contact, pair_model_error_dry -> results/devices/safe_lengths/{case}.nc
 define("safe_lengths")
 
-# Safe lengths of {case} for many touchdowns.
+# Simulated limits of {case} for many touchdowns.
 #   cracks, tip_contact -> results/devices/touchdowns/{case}.nc
 define("touchdowns")
 
-# Safe lengths of {case} at its voltage.
+# Simulated limits of {case} at its voltage.
 #   cracks, tip_contact, contact, model_error_of_devices -> results/devices/at_voltage/{case}.nc
 define("at_voltage")
 

@@ -151,7 +151,7 @@ define("figure_chart")
 define("table_life")
 
 # Life: what limits the life of devices, on one axis.
-#   life -> results/figures/life.{pdf,png,txt}
+#   life, answer, device_warnings -> results/figures/life.{pdf,png,txt}
 define("figure_life")
 
 # Page of device {device}.

@@ -60,7 +60,7 @@ _CHARACTER, _HANDLE = 0.45, 5.0
 
 #: Style of the models in every figure.
 MODELS = {
-    "G": {"color": "#E69F00", "linestyle": "--", "label": "Gaussian"},
+    "G": {"color": "#C98500", "linestyle": "--", "label": "Gaussian"},
     "NG": {"color": "#0072B2", "linestyle": "-", "label": "non-Gaussian"},
     "GEO": {"color": "#0072B2", "linestyle": "-", "label": "non-Gaussian, scattered geometry"},
 }
@@ -69,6 +69,8 @@ MODELS = {
 DISTINCT, _DRY_AIR = 0.41, "#8C510A"
 #: Colour of published values.
 PUBLISHED = "#D55E00"
+#: Colour of the size to build.
+BUILD = "#D55E00"
 _MARKERS = ("o", "s", "^", "v", "D", "P", "X", "<", ">", "p")
 _DASHES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (8, 2)), (0, (1, 3)), (0, (4, 4)))
 
@@ -89,12 +91,12 @@ def dashes(k: int) -> str | tuple:
     return _DASHES[k % len(_DASHES)]
 
 
-def shades(count: int, lightest: float = 0.15) -> np.ndarray:
+def shades(count: int) -> np.ndarray:
     """Colours darkening from the first to the last, also when printed in grey, (count, 4).
 
-    The first one is at the part ``lightest`` of the way from the lightest to the darkest.
+    The contrast of the lightest to white is 3.
     """
-    return colormaps["viridis_r"](np.linspace(lightest, 1, count))
+    return colormaps["viridis_r"](np.linspace(DISTINCT, 1, count))
 
 
 def humidity_colour(humidity: float) -> tuple[float, float, float, float]:

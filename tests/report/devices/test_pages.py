@@ -111,7 +111,7 @@ def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_sec
     assert shown.count("rms of B2 [nm]</td>") == len(responses)
     assert page.answer[-1] == (
         "For a restoring force of 1 µN, at a relative humidity of 0.6, at most 1 in 20 sticks where the rms of B2 is "
-        "4.13 to 8 nm (95 % confidence, given the drawn surfaces; computed for 2 to 8 nm)."
+        "4.13 to 8 nm (by simulation alone, 95 % confidence, given the drawn surfaces; computed for 2 to 8 nm)."
     )
 
 
@@ -254,7 +254,7 @@ def test_where_few_devices_stick_the_page_begins_with_how_many_do_at_most():
     assert page.answer[0] == (
         "At a relative humidity of 0.67, hardly any device sticks: none of the 400 simulated ones shorter than 1400 µm "
         "does, and at most 2.9 % of those of 1410 µm (95 % confidence, given the drawn surfaces). For 1 in 1000, the "
-        "length that sticks on flat surfaces counts; 2995 devices in design.beams show whether longer ones are safe."
+        "length that sticks on flat surfaces counts; 2995 devices in design.beams show whether longer ones release."
     )
     flat = 1e6 * few.flooded_length.sel(shape=EITHER).item()
     assert page.lines[0] == f"Length to build: No longer than {flat:.0f} µm."

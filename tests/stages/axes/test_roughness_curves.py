@@ -228,12 +228,15 @@ def test_page_and_table_say_which_roughness_suffices_with_its_error():
     assert png(figures_roughness.roughness(found))[:4] == b"\x89PNG"
 
 
+SURE = "by simulation alone, 95 % confidence, given the drawn surfaces"
+
+
 @pytest.mark.parametrize(
     ("force", "said"),
     [
         (2e-6, "no rms of B2 of 1 to 8 nm suffices: nowhere there is it certain that at most 1 in 20 sticks."),
-        (0.5e-6, "at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm (95 % confidence, given the drawn surfaces)."),
-        (0.0, "at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm (95 % confidence, given the drawn surfaces)."),
+        (0.5e-6, f"at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm ({SURE})."),
+        (0.0, f"at most 1 in 20 sticks at any rms of B2 of 1 to 8 nm ({SURE})."),
     ],
 )
 def test_none_and_all_of_a_range_are_answers(force, said):

@@ -28,7 +28,7 @@ FIGURES = {
     "chart": (4, lambda: of_devices.chart({("C1", rh): charted(rh) for rh in (0.4, 0.5, 0.6)}, {})),
     "stoppers": (2, lambda: of_budgets.stoppers({"S1": STOPPERS["S1"]}, {})),
     "budget": (4, lambda: of_budgets.budget(BEAMS | {key: one for key, one in BUDGETS.items() if "tip" in key})),
-    "life": (1, lambda: life.figure({"C1": layout(beam_answers({0.67: safe()}, {}, OF), OF)})),
+    "life": (1, lambda: life.figure({"C1": layout(beam_answers({0.67: safe()}, {}, OF), OF)}, {"C1": 1e-4})),
     "roughness": (1, lambda: of_axes.roughness(rough())),
     "map": (2, lambda: of_axes.roughness_map(rough(others=(0.0, -0.5, 0.5)))),
     "process": (1, lambda: of_axes.devices(*etched(), "D")),

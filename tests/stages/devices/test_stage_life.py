@@ -438,25 +438,40 @@ def test_no_text_of_a_row_decides_about_a_sentence(found):
         assert report.sentences(blank) == expected
 
 
-def test_the_figure_has_a_bar_for_every_length_and_covers_nothing(found):
-    figure = report.figure(found)
+def test_the_figure_has_a_row_for_every_length_with_its_number_left_of_which_is_its_label(found):
+    builds = dict.fromkeys(found, np.nan)
+    figure = report.figure(found, builds)
+    save(figure)  # lays it out
     for panel, dataset, unit in zip(figure.axes, found.values(), "mN", strict=True):
         shown = [one for one in answers_of(dataset) if one.unit == unit and np.isfinite(one.high)]
-        assert len(panel.texts) >= len(shown)
-        assert len(panel.lines) == 2 * len(shown) + (unit == "m")
-    assert not covering(figure)
-
-
-@pytest.mark.parametrize("count", [1, 3, 4])
-def test_the_texts_of_the_figure_stay_in_their_panels(found, count):
-    figure = report.figure({f"C{k}": found["C1"] for k in range(count)})
-    save(figure)  # lays it out
-    for panel in figure.axes:
+        labels = [" ".join(label.get_text().split()) for label in panel.get_yticklabels()]
+        assert labels == [one.what.partition(":")[0] for one in shown]
+        for one, text in zip(shown, panel.texts, strict=True):
+            assert text.get_text().split()[-1] == report.significant(one.high * 1e6)
         boxes = [text.get_window_extent() for text in panel.texts]
         assert panel.bbox.x0 <= min(box.x0 for box in boxes)
         assert panel.bbox.x1 >= max(box.x1 for box in boxes)
-        assert panel.bbox.y1 >= max(box.y1 for box in boxes)
-        assert ("axes differ" in panel.get_xlabel()) == (count > 1)
+    assert not covering(figure)
+
+
+@pytest.mark.parametrize("factor", [0.99, 1.01])
+def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
+    """A length is too small below the size to build, a force too large above it."""
+    for name, dataset in found.items():
+        is_length = np.isfinite(float(dataset.length))
+        shown = [one for one in answers_of(dataset) if one.unit == "mN"[not is_length] and np.isfinite(one.high)]
+        ends = [one.high if not is_length or np.isnan(one.low) else one.low for one in shown]
+        build = factor * min(ends) if is_length else max(ends) / factor
+        (panel,) = report.figure({name: dataset}, {name: build}).axes
+        red = [k for k, label in enumerate(panel.get_yticks()) if _colours(panel, label) & {report._SHORT}]  # noqa: SLF001
+        expected = [k for k, end in enumerate(ends) if (end < build if is_length else end > build)]
+        assert red == expected
+        assert bool(red) == (factor > 1)
+
+
+def _colours(panel, row):
+    """Colours of the marks of a row."""
+    return {line.get_color() for line in panel.lines if line.get_ydata()[0] == row and line.get_linewidth() > 1}
 
 
 def test_a_page_says_the_life_and_shows_all_answers(found):

@@ -148,23 +148,24 @@ def drawn(panel):
     return [text.get_text() for text in panel.get_yticklabels()], panel.patches
 
 
-def test_bars_of_a_tornado_are_the_effects_the_largest_first():
+def test_bars_of_a_budget_are_shares_of_the_variance_below_the_total_the_largest_first():
     figure = figures_budget.budget(BEAMS)
     measured, chosen = figure.axes
     names, bars = drawn(measured)
-    assert names == ["heights of B2", "thickness", tables_budget.TOTAL]
-    assert_allclose([bar.get_width() for bar in bars[:2]], 100 * np.sqrt(6e-4) * np.array([4, 2]), rtol=1e-9)
-    assert_allclose([bar.get_x() for bar in bars], [-bar.get_width() / 2 for bar in bars])
+    heights, thickness = 6e-4, 0.64e-4  # variances at the first humidity
+    totals = "± " + ", ".join(f"{100 * scale * np.sqrt(heights + thickness):.2g}" for scale in (2, 1)) + " %"
+    assert names == [f"total\n{totals}", "heights of B2", "thickness", "scatter between devices\n± 1.4, 1.4 %"]
+    shares = [[100] * 2, [100 * heights / (heights + thickness)] * 2, [100 * thickness / (heights + thickness)] * 2]
+    assert_allclose(np.reshape([bar.get_width() for bar in bars[:6]], (3, 2)), shares, rtol=1e-9)
+    assert {bar.get_x() for bar in bars} == {0}
     middles = [bar.get_y() + bar.get_height() / 2 for bar in bars]
-    assert_allclose(np.reshape(middles, (3, 2)).mean(axis=1), range(3), atol=1e-12)
-    assert_allclose(bars[4].get_width(), 2 * 2 * 100 * np.sqrt(6e-4 + 0.64e-4), rtol=1e-9)
+    assert_allclose(np.reshape(middles, (4, 2)).mean(axis=1), range(4), atol=1e-12)
     names, bars = drawn(chosen)
     assert names == ["van der Waals in dry gaps"]
     assert_allclose([bars[0].get_x(), bars[0].get_x() + bars[0].get_width()], [-4.2, 0], atol=1e-12)
     ((low, high),) = (segment[:, 0] for segment in chosen.containers[1][2][0].get_segments())
     assert_allclose([low, high], [-4.5, -3.9])  # the error is drawn at the end away from zero
     assert "mean length at which beams stick" in measured.get_title(loc="left")
-    assert measured.get_xlabel().endswith("scatter between devices: 1.4, 1.4 %")
 
 
 def test_beam_and_tip_have_panels_of_their_own():

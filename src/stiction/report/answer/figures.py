@@ -12,6 +12,7 @@ from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.answer import tables, words
 from stiction.report.style import (
+    BUILD,
     OUTLINED,
     SINGLE,
     at_most_double,
@@ -24,8 +25,8 @@ from stiction.report.style import (
 )
 from stiction.stages.devices import device_warnings
 
-#: Colours of steps that are inside the answer, of those beside it, and of the answer [Okabe and Ito].
-_INSIDE, _BESIDE, _ANSWER = "#0072B2", "0.6", "#D55E00"
+#: Colours of steps that are inside the answer, and of those beside it [Okabe and Ito].
+_INSIDE, _BESIDE = "#0072B2", "0.6"
 #: Height of a row of steps, of the rest, and of a panel of P(stuck) [in].
 _ROW, _AROUND, _PANEL = 0.42, 0.6, 2.7
 #: Label of the axis of P(stuck), and its lower end over the allowed fraction.
@@ -57,7 +58,7 @@ def _steps(panel: Axes, answer):
         before = step.size if step.stated else before
     ends = [step.size for step in answer.steps]
     if np.isfinite(answer.build):
-        panel.axvline(answer.build / scale, color=_ANSWER, linewidth=1.2, zorder=0)
+        panel.axvline(answer.build / scale, color=BUILD, linewidth=1.2, zorder=0)
     if 0.5 * min(ends) < answer.size < 2 * max(ends):
         panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, zorder=0)
     panel.set(xlabel=label, yticks=[], ylim=(len(answer.steps) - 0.6, -0.75))
@@ -109,9 +110,9 @@ def _size_to_build(panel, answer, scale):
     """Vertical band from the simulated limit to the size to build, with its number, and the stated size."""
     if np.isfinite(answer.build):
         (limit,) = (step.size for step in answer.steps if step.cause is Cause.SIMULATION)
-        panel.axvspan(limit / scale, answer.build / scale, color=_ANSWER, alpha=0.15, linewidth=0)
-        panel.axvline(answer.build / scale, color=_ANSWER, linewidth=1.5)
-        place = {"xytext": (3, -3), "textcoords": "offset points", "va": "top", "rotation": 90, "color": _ANSWER}
+        panel.axvspan(limit / scale, answer.build / scale, color=BUILD, alpha=0.15, linewidth=0)
+        panel.axvline(answer.build / scale, color=BUILD, linewidth=1.5)
+        place = {"xytext": (3, -3), "textcoords": "offset points", "va": "top", "rotation": 90, "color": BUILD}
         said = f"build {answer.in_words(answer.build)}"
         panel.annotate(said, (answer.build / scale, 1), xycoords=("data", "axes fraction"), **place)
     if answer.sizes.min() < answer.size < answer.sizes.max():

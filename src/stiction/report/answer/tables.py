@@ -99,6 +99,12 @@ def steps(answer: Answer) -> pd.DataFrame:
     )
 
 
+def builds(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, str]) -> dict[str, float]:
+    """Sizes to build by device [m or N], NaN where none is stated. Parameters as of `of_datasets`."""
+    answers = of_datasets(datasets, warnings)
+    return {name: np.nan if answer.forbidden else answer.build for name, answer in answers.items()}
+
+
 def of_datasets(answers: Mapping[str, xr.Dataset], warnings: Mapping[str, str]) -> dict[str, Answer]:
     """Answers of some devices from their datasets, and from the files of their limits, by name."""
     limits = device_warnings.read(warnings)

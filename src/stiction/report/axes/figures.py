@@ -46,7 +46,7 @@ _POINTS = 101
 
 @styled
 def roughness(dataset: xr.Dataset) -> Figure:
-    """Estimate with its band of 95 %, safe value and crossings with the required one. A panel for each end state.
+    """Estimate with its band of 95 %, simulated limit and crossings with the required one. A panel for each end state.
 
     Of a map, the curve with the second quantity as given is drawn.
     """
@@ -96,13 +96,13 @@ def _curves(curve, draw, mark):
 
 
 def _simulated(panel, line, colour):
-    """Estimate along a roughness with its band, safe values, and crossings with their 95 % intervals."""
+    """Estimate along a roughness with its band, simulated limits, and crossings with their 95 % intervals."""
     axis, shape = axes_of(line)[0], str(line["shape"].values)
     x, estimate = axis.in_unit(line.roughness.values), TO_UM * line.estimate.values
     reach = INTERVAL * TO_UM * line.error.values
     panel.fill_between(x, estimate - reach, estimate + reach, color=colour, alpha=0.2, linewidth=0)
     panel.plot(x, estimate, ".-", color=colour, label=f"{Air(float(line.humidity)).words}, estimate and 95 % band")
-    panel.plot(x, TO_UM * line.safe.values, "_", color=colour, markersize=8, label="safe, 95 % confidence")
+    panel.plot(x, TO_UM * line.safe.values, "_", color=colour, markersize=8, label="simulated limit")
     if np.isfinite(line.bound.values).any():
         style, label = END_STATES[shape].lines[1], f"flat surfaces, {END_STATES[shape].by}"
         panel.plot(x, TO_UM * line.bound.values, style, color=colour, linewidth=0.8, label=label)
@@ -152,9 +152,12 @@ def roughness_map(data: xr.Dataset) -> Figure:
     for row, humidity in zip(axes, humidities, strict=True):
         for panel, shape in zip(row, shapes, strict=True):
             curve = data.sel(humidity=humidity, shape=shape).transpose("other", "roughness", ...)
-            _filled(panel, data, (margins_of(curve), margins_of(curve, "safe")), f"lg ({sought_of(data).ratio})")
-            panel.plot(along.in_unit(float(data.given)), across.in_unit(float(data.other_given)), "k+")
-            panel.set_title(f"{END_STATES[shape].by}, {Air(humidity).words}")
+            label = f"log$_{{10}}$ ({sought_of(data).ratio})"
+            _filled(panel, data, (margins_of(curve), margins_of(curve, "safe")), label)
+            place = along.in_unit(float(data.given)), across.in_unit(float(data.other_given))
+            panel.plot(*place, "k+", markersize=8, linestyle="none", label="surface as given")
+    letter(axes, [f"{END_STATES[shape].by}, {Air(humidity).words}" for humidity in humidities for shape in shapes])
+    legend_outside(figure, handles(*axes.flat), "lower", 2)
     return figure
 
 
@@ -162,7 +165,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
 def process_map(found: xr.Dataset, pairs: xr.Dataset) -> Figure:
     """Smallest margin of a device over two processes, with its lines of zero margin and the best pair."""
     figure, ((panel,),) = panels(1, 1, (1.5 * SINGLE, 3.4))
-    _filled(panel, found, (pairs.margin.values, pairs.safe.values), "lg (smallest margin)", pairs)
+    _filled(panel, found, (pairs.margin.values, pairs.safe.values), "log$_{10}$ (smallest margin)", pairs)
     best, interval = pairs.best.values, pairs.best_interval.values
     across, up = np.abs(interval - best[:, None])[..., None]
     marks = {"fmt": "D", "color": "black", "markersize": 4, "label": "best, 95 % intervals", "clip_on": False}
@@ -172,13 +175,13 @@ def process_map(found: xr.Dataset, pairs: xr.Dataset) -> Figure:
 
 
 def _filled(panel, computed, margins, label, shown=None):
-    """Map of a margin with lines where it and its safe value are zero, at the computed points or other ones shown."""
+    """Map of a margin with lines where it and its 95 % bound are zero, at the computed points or other ones shown."""
     x, y = (axis.in_unit(axis.values) for axis in axes_of(computed if shown is None else shown))
     levels = np.ma.masked_invalid(margins[0] / np.log(10))
     if levels.count():
         colours = panel.contourf(x, y, levels, 12, cmap="RdBu", norm=CenteredNorm())
         panel.figure.colorbar(colours, ax=panel, label=label)
-    lines = (("-", "estimate meets the requirement"), ("--", "with 95 % confidence"))
+    lines = (("-", "estimate meets the requirement"), ("--", "with 95 % confidence too"))
     for values, (line, words) in zip(margins, lines, strict=True):
         if np.nanmin(values, initial=np.inf) < 0 < np.nanmax(values, initial=-np.inf):
             panel.contour(x, y, np.ma.masked_invalid(values), [0], colors="black", linestyles=line)

@@ -85,7 +85,7 @@ def _answer(curve, humidity, shape):
 
 
 def _enough(curve, humidity, shape):
-    """Place of the requirement on the safe values at a humidity against one end state."""
+    """Place of the requirement on the simulated limits at a humidity against one end state."""
     sought = sought_of(curve)
     required = f"{float(curve.required) / UM:g} {sought.shown}"
     by_beam = f"a {sought.name} of {required} ({END_STATES[shape].by})"
@@ -97,7 +97,7 @@ def _enough(curve, humidity, shape):
 
 
 def _where(curve, axis: Axis, ranges):
-    """Roughness with the safe value of a curve at the requirement."""
+    """Roughness whose simulated limit meets the requirement."""
     known = axis.values[curve.safe.notnull().values]
     if not len(known):
         return "nothing is computed"
@@ -105,7 +105,8 @@ def _where(curve, axis: Axis, ranges):
     if not ranges:
         return f"no {axis.words} of {whole} suffices: nowhere there is it certain that at most {share} sticks"
     # Bounds of beams allow for the number of drawn surfaces.
-    sure = f"95 % confidence{', given the drawn surfaces' * sought_of(curve).more_is_better}"
+    given = ", given the drawn surfaces" * sought_of(curve).more_is_better
+    sure = f"by simulation alone, 95 % confidence{given}"
     if ranges == [whole]:
         return f"at most {share} sticks at any {axis.words} of {whole} ({sure})"
     return f"at most {share} sticks where the {axis.words} is {' or '.join(ranges)} ({sure}; computed for {whole})"

@@ -40,6 +40,8 @@ from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, slo
 _COLOUR = "#0072B2"
 #: Heights of a row of a budget, of everything else in its panel, and of the legend [in]; share of a row with bars.
 _ROW, _AROUND, _LEGEND, _FILLED = 0.22, 0.62, 0.3, 0.8
+#: Right end of the axis of shares of the variance [%]. The scatter between devices may be beyond it.
+_WIDEST = 125
 
 
 # Stoppers
@@ -124,7 +126,7 @@ def _force_over_humidity(panel, dataset):
 
 @styled
 def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
-    """Tornado of a device: effect of each measurement and their total. Beside it, choices of the model.
+    """Share of each measurement in the variance of a device, below their total. Beside it, choices of the model.
 
     The budgets are by device, humidity and, for those of tips, ``tip``.
     """
@@ -142,11 +144,10 @@ def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
         for panel, rows, title in zip(line, of_row[:count], (text, "choices of the model")[:count], strict=True):
             if rows:
                 titles[panel] = title
-                _tornado(panel, rows, [colours[humidity] for humidity in cases])
+                _rows_of_bars(panel, rows, [colours[humidity] for humidity in cases])
             else:
                 panel.remove()
-        scatter = ", ".join(f"{100 * float(dataset.scatter):.2g}" for dataset in cases.values())
-        line[0].set_xlabel(f"standard uncertainty [%]; {SCATTER}: {scatter} %")
+        line[0].set(xlabel="share of the variance [%]", xlim=(0, _WIDEST))
         if count > 1:
             line[1].set_xlabel("change [%]")
     letter(list(titles), list(titles.values()))
@@ -156,26 +157,40 @@ def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
 
 
 def _measurements(cases):
-    """Rows of all measurements, the largest first, and of the total: name to bars [%] by humidity."""
-    budgets = {humidity: budget_of(dataset) for humidity, dataset in cases.items()}
+    """Rows of the total, of all measurements, the largest first, and of the scatter: name to bars [%] by humidity."""
+    budgets = [(budget_of(dataset), slope_errors_of(dataset)) for dataset in cases.values()]
     groups = {name: inputs for dataset in cases.values() for name, inputs in groups_of(dataset).items()}
-    everything = [name for inputs in groups.values() for name in inputs]
-    errors = list(map(slope_errors_of, cases.values()))
+    totals = [budget.effect(budget.names) for budget, _ in budgets]
     rows = {
-        name: [_both_sides(budget, inputs, error) for budget, error in zip(budgets.values(), errors, strict=True)]
-        for name, inputs in (groups | {TOTAL: everything}).items()
+        name: [_share(*budget, inputs, total) for budget, total in zip(budgets, totals, strict=True)]
+        for name, inputs in groups.items()
     }
     largest = sorted(groups, key=lambda name: -max(high for _, high, _ in rows[name]))
-    return {name: rows[name] for name in [*largest, TOTAL]}
+    scatters = [float(dataset.scatter) for dataset in cases.values()]
+    above, below = ({_in_words(*row): _bars_of(row[1], totals)} for row in ((TOTAL, totals), (SCATTER, scatters)))
+    return above | {name: rows[name] for name in largest} | below
 
 
-def _both_sides(budget, inputs, slope_errors):
-    """Bar of the effect of some inputs in both directions, and its error [%]. Zero if a budget has none of them."""
+def _bars_of(uncertainties, totals):
+    """Bars of some uncertainties as shares of the variance [%]."""
+    return [
+        (0.0, 100 * (one / total) ** 2 if total > 0 else 0.0, 0.0)
+        for one, total in zip(uncertainties, totals, strict=True)
+    ]
+
+
+def _in_words(name, uncertainties):
+    """Name of a row with its standard uncertainties at all humidities."""
+    return f"{name}\n± {', '.join(f'{100 * one:.2g}' for one in uncertainties)} %"
+
+
+def _share(budget, slope_errors, inputs, total):
+    """Bar of the share of some inputs in the variance, and its error [%]. Zero if a budget has none of them."""
     own = [name for name in budget.names if name in inputs]
-    if not own:
+    if not own or not total > 0:
         return 0.0, 0.0, 0.0
-    effect = 100 * budget.effect(own)
-    return -effect, effect, 100 * budget.error_of_effect(own, slope_errors)
+    effect = budget.effect(own) / total
+    return 0.0, 100 * effect**2, 200 * effect * budget.error_of_effect(own, slope_errors) / total
 
 
 def _choices(cases):
@@ -194,7 +209,7 @@ def _from_zero(dataset, choice):
     return (*sorted((0.0, 100 * float(of_choice.effect))), 100 * float(of_choice.effect_error))
 
 
-def _tornado(panel, rows: Mapping[str, Sequence[tuple]], colours: Sequence[np.ndarray]):
+def _rows_of_bars(panel, rows: Mapping[str, Sequence[tuple]], colours: Sequence[np.ndarray]):
     """Draw rows of bars (low, high, error) from top to bottom. The bars of a row are those of the humidities.
 
     Bars that are not known are left out.
@@ -209,7 +224,8 @@ def _tornado(panel, rows: Mapping[str, Sequence[tuple]], colours: Sequence[np.nd
             widest = max(widest, -low + error, high + error)
             at = place + (k - (len(bars) - 1) / 2) * height
             panel.barh(at, high - low, height, left=low, color=shade, linewidth=0)
-            panel.errorbar(high if high > -low else low, at, xerr=error, color="black", linewidth=0.6, capsize=1)
+            if error > 0:
+                panel.errorbar(high if high > -low else low, at, xerr=error, color="black", linewidth=0.6, capsize=1)
     ends = 1.1 * (widest or 1.0)
     panel.axvline(0, color="black", linewidth=0.6)
     panel.set_yticks(range(len(rows)), list(rows))

@@ -8,8 +8,9 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.analysis.model_error import length_factors, rms_deviation
+from stiction.config.cases import Air
 from stiction.plan.names import by_case, by_name
-from stiction.report import published
+from stiction.report import dots, published
 from stiction.report.format import TO_NM, UM, number, percent, signed, with_error
 from stiction.report.published import value
 from stiction.report.style import (
@@ -20,9 +21,8 @@ from stiction.report.style import (
     columns_of_panels,
     figure_stage,
     handles,
-    humidity_axis,
+    legend_outside,
     letter_lines,
-    on_own_axes,
     styled,
 )
 from stiction.report.table import PAIR, Table, table_stage
@@ -162,52 +162,60 @@ def _energies_of_models(study, of_full):
 
 #: Error that is due to rounding [%].
 _ROUNDING = 1e-10
-_STYLES = {
-    "summit": {"color": "#0072B2", "marker": "o"},
-    "island": {"color": "#009E73", "marker": "s"},
-    "fitted": {"color": "#E69F00", "marker": "v"},
-    "shape": {"color": "#CC79A7", "marker": "^"},
-}
+#: Height of a legend below the panels [in].
+_LEGEND = 0.3
+#: Colours by the attraction of the solids, the first one filled.
+_COLOURS = ("#0072B2", "#C98500")
 
 
 @styled
 def figure(*data) -> Figure:
-    """Change of the crack lengths by each reading, with and without attraction of the solids. Data as of ``_rows``."""
+    """Change of the crack length by each reading at the lowest humidity, a panel for each pair. Data as of ``_rows``.
+
+    Below them full elastic contact; a line for the published length.
+    """
     frame, full = pd.DataFrame(_rows(*data)), data[1]
-    pairs, media = (list(dict.fromkeys(frame[column])) for column in ("pair", "vdw"))
-    figure, columns, lines = columns_of_panels(
-        len(pairs), len(media), at_most_double(1.3 * SINGLE), 1.4 + 1.8 * len(media), sharex="col"
-    )
-    for column, pair in zip(columns, pairs, strict=True):
-        for panel, medium in zip(column, media, strict=True):
-            _panel(panel, frame[(frame.pair == pair) & (frame.vdw == medium)], full[pair])
-        column[-1].set_xlabel("relative humidity [–]")
-        humidity_axis(column[0])
-    for line in lines:
-        for panel, medium in zip(line[:, 0], media, strict=True):
-            panel.set_ylabel(on_own_axes(f"change of $l_s$ [%], vdW: {medium}", line))
-    figure.legend(*handles(*columns.flat), loc="outside lower center", ncols=4)
-    letter_lines(lines, [f"pair {pair}" for pair in pairs])
+    lowest = frame[frame.relative_humidity == frame.groupby("pair").relative_humidity.transform("min")]
+    pairs, most = frame.pair.unique(), len(frame[["reading", "spacing_nm"]].drop_duplicates())
+    height = dots.AROUND + _LEGEND + dots.ROW * (1 + most)
+    figure, columns, lines = columns_of_panels(len(pairs), 1, at_most_double(1.3 * SINGLE), height, sharey=True)
+    titles = []
+    for (panel,), pair in zip(columns, pairs, strict=True):
+        of_pair = lowest[lowest.pair == pair]
+        dots.draw(panel, _readings(of_pair) | {"full elastic contact": [_full(full[pair])]})
+        panel.axvline(0, color="black", linewidth=0.8, label="summits, 10 nm")
+        needed = _needed(of_pair.iloc[0])
+        if np.isfinite(needed):
+            panel.axvline(needed, color=PUBLISHED, label="published")
+        panel.set_xlabel("change of $l_s$ [%]")
+        titles.append(f"pair {pair}, {Air(of_pair.relative_humidity.iloc[0]).words}")
+    letter_lines(lines, titles)
+    legend_outside(figure, handles(*columns.flat), "lower", 4)
     return figure
 
 
-def _panel(panel, rows, full):
-    """Readings under one attraction, beside full contact and the published lengths."""
-    finest = rows.spacing_nm.min()
-    for (reading, spacing), curve in rows.groupby(["reading", "spacing_nm"], sort=False):
-        fine = {"linestyle": "--", "markerfacecolor": "white"} if spacing == finest else {"linestyle": "-"}
-        style = _STYLES[reading] | fine | {"label": f"{reading}, {spacing:g} nm"}
-        panel.errorbar(curve.relative_humidity, curve.change_percent, curve.change_se_percent, **style)
-    humidities, *energies = full_contact.energies(full)
-    factor, error = length_factors(*energies, humidities, humidities)
-    style = {"fmt": "D", "color": "black", "label": "full contact"}
-    panel.errorbar(humidities, 100 * (factor - 1), 100 * error, **style)
-    known = rows[rows.published_um.notna()].drop_duplicates("relative_humidity")
-    if len(known):
-        unchanged = known.crack_length_um / (1 + known.change_percent / 100)
-        needed = 100 * (known.published_um / unchanged - 1)
-        panel.plot(known.relative_humidity, needed, "*", color=PUBLISHED, label="published")
-    panel.axhline(0, color="0.6", linewidth=0.6, zorder=0)
+def _readings(rows):
+    """Marks of the readings of a pair by their label: with attraction of the solids, and without."""
+    media, found = rows.vdw.unique().tolist(), {}
+    for row in rows.itertuples():
+        k, change = media.index(row.vdw), row.change_percent
+        shown = {"error": row.change_se_percent, "label": f"van der Waals: {row.vdw}", "filled": k == 0}
+        mark = dots.Mark(change, change, _COLOURS[k], dots.signed(change) * (k == 0), **shown)
+        found.setdefault(f"{row.reading}, {row.spacing_nm:g} nm", []).append(mark)
+    return found
+
+
+def _full(study):
+    """Change by full elastic contact at its lowest humidity."""
+    humidities, *energies = full_contact.energies(study)
+    (factor, *_), (error, *_) = length_factors(*energies, humidities, humidities)
+    change = 100 * (factor - 1)
+    return dots.Mark(change, change, "black", dots.signed(change), 100 * error)
+
+
+def _needed(row):
+    """Change that gives the published length [%]."""
+    return 100 * (row.published_um / row.crack_length_um * (1 + row.change_percent / 100) - 1)
 
 
 def _stage(kind, shows, draw, **declared):

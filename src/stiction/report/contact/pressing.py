@@ -17,9 +17,9 @@ from stiction.report.style import (
     columns_of_panels,
     dashes,
     figure_stage,
+    humidity_colours,
     letter_lines,
     marker,
-    shades,
     styled,
 )
 from stiction.report.table import Table, table_stage
@@ -85,17 +85,16 @@ def figure(studies: Mapping[str, xr.Dataset]) -> Figure:
     figure, columns, lines = columns_of_panels(len(studies), 1, at_most_double(1.3 * SINGLE), 3.0)
     for (panel,), pair in zip(columns, studies, strict=True):
         of_pair = frame[frame.pair == pair]
-        humidities = of_pair.relative_humidity.unique()
-        for k, (humidity, shade) in enumerate(zip(humidities, shades(len(humidities)), strict=True)):
+        for k, (humidity, colour) in enumerate(humidity_colours(of_pair.relative_humidity).items()):
             curve = of_pair[of_pair.relative_humidity == humidity]
-            style = {"color": shade, "marker": marker(k), "linestyle": dashes(k), "label": f"RH {humidity:g}"}
+            style = {"color": colour, "marker": marker(k), "linestyle": dashes(k), "label": f"RH {humidity:g}"}
             errors = {"xerr": curve.pressure_MPa_se, "yerr": curve.energy_ratio_se}
             panel.errorbar(curve.pressure_MPa, curve.energy_ratio, **errors, **style)
         panel.axhline(1, color="0.6", linewidth=0.6, zorder=0)
         panel.set_xlabel("mean pressure [MPa]")
         panel.legend()
     for line in lines:
-        line[0, 0].set_ylabel(r"$\bar e$ after / before pressing")
+        line[0, 0].set_ylabel(r"$\bar e$ after / before pressing [–]")
     letter_lines(lines, [f"pair {pair}" for pair in studies])
     return figure
 

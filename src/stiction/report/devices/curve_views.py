@@ -190,7 +190,7 @@ def roughness_view(name: str, section: Mapping[str, Any], found: xr.Dataset) -> 
         axes[0] = replace(axes[0], setting="")
     words = axes[0].label
     copied = "" if axes[0].setting else f"It has the {words} as it is given; this address keeps the value shown"
-    shown = {"title": words, "where": "at this humidity", "copied": copied}
+    shown = {"title": words, "where": "at this humidity by simulation alone", "copied": copied}
     return _view(_Required(name, section, found), axes, _over_roughness, _ranges, **shown)
 
 

@@ -270,7 +270,7 @@ def share_axis(values: Sequence[float], start: float, setting: str) -> Axis:
     """Axis of the fractions that may stick. Only beams have a key of them."""
     values = tuple(map(float, values))
     several = f"from {values[0]:g} to {values[-1]:g}" if len(values) > 1 else f"= {values[0]:g} alone"
-    reason = f"safe values are computed for p {several}"
+    reason = f"limits are computed for p {several}"
     reason += f"; design.{setting} changes this" if setting else ""
     return Axis(
         "share", "fraction p that may stick", "", "score", values, float(start), len(values) > 1, reason, setting

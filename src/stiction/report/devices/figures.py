@@ -16,7 +16,6 @@ from stiction.devices.limits.limit import Limit
 from stiction.report.format import TO_UM, fraction_with_band
 from stiction.report.limits.words import numbered, with_numbers
 from stiction.report.style import (
-    DISTINCT,
     SINGLE,
     at_most_double,
     columns_of_panels,
@@ -198,7 +197,7 @@ def _thicknesses(panel, whole, shape, marks, placed):
     share, named = whole.share.values[len(whole.share) // 2], []
     state = END_STATES[shape]
     line, dotted = state.lines
-    for thickness, shade, mark in zip(whole.thickness.values, shades(len(marks), DISTINCT), marks, strict=True):
+    for thickness, shade, mark in zip(whole.thickness.values, shades(len(marks)), marks, strict=True):
         for part, styles in _parts(whole.sel(thickness=thickness, share=share), (line, dotted)):
             at = [placed[humidity] for humidity in part.relative_humidity.values]
             by_law, lengths = part.by_elements.values == 0, TO_UM * part.safe_length

@@ -6,7 +6,6 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -15,18 +14,20 @@ from stiction.config.units import from_si
 from stiction.constants import FREE_FALL
 from stiction.contact.voltage import BREAKDOWN
 from stiction.plan.names import by_name
+from stiction.report import dots
+from stiction.report.answer import tables
 from stiction.report.format import MISSING, TO_MJ, TO_NM, TO_UM, TO_UN, fraction_between, listed
 from stiction.report.style import (
-    OUTLINED,
-    SINGLE,
-    at_most_double,
-    columns_of_panels,
+    BUILD,
+    DOUBLE,
     figure_stage,
     legend_outside,
-    letter_lines,
+    letter,
+    panels,
     styled,
 )
 from stiction.report.table import Table, table_stage
+from stiction.stages.devices import device_warnings
 from stiction.stages.life.answers import (
     AFTER,
     AT_VOLTAGE,
@@ -76,11 +77,12 @@ CAPTION = (
     "area that it wets. Lengths and forces are simulated limits: all inputs count as exact. The answer of the device "
     "has everything inside."
 )
-_COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#D55E00", "#CC79A7", "#009E73"), strict=True))
-#: Height of a row, and of everything else in a panel [in]. Size of text [points], mean width of its characters in
-#: sizes, and share of a column of panels that it may take.
-_ROW, _AROUND = 0.34, 1.1
-_SIZE, _CHARACTER, _FILLED = 7, 0.45, 0.85
+_COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#C98500", "#CC79A7", "#009E73"), strict=True))
+#: Colour of a limit below the size to build, and the difference that rounding makes.
+_SHORT, _ROUNDED = "#B00020", 1e-3
+#: Height of the legend, and largest height of the figure [in]. Share of its width for labels, and mean width of their
+#: characters [in].
+_LEGEND, _TALLEST, _LABELS, _CHARACTER = 0.3, 100.0, 0.4, 0.045
 
 
 def table(life: Mapping[str, xr.Dataset]) -> Table:
@@ -336,16 +338,23 @@ def _high(answer: Answer) -> str:
 
 
 @styled
-def figure(life: Mapping[str, xr.Dataset]) -> Figure:
-    """Limits of the lives of devices on one axis: lengths of beams, or forces of stoppers, a panel for each device."""
+def figure(life: Mapping[str, xr.Dataset], builds: Mapping[str, float]) -> Figure:
+    """Limits of the lives of devices as dot plots: lengths of beams, or forces of stoppers, a panel for each device.
+
+    Sizes to build are by device [m or N]. Red: less than that.
+    """
     rows = {name: _rows(dataset) for name, dataset in life.items()}
-    height = _AROUND + _ROW * max(map(len, rows.values()))
-    made, columns, lines = columns_of_panels(len(rows), 1, at_most_double(1.6 * SINGLE), height)
-    for panel, (name, answers) in zip(columns[:, 0], rows.items(), strict=True):
-        _bars(panel, answers, float(life[name].length), len(rows))
-    letter_lines(lines, list(rows))
+    heights = [dots.AROUND + dots.ROW * len(answers) for answers in rows.values()]
+    size = DOUBLE, min(sum(heights) + _LEGEND, _TALLEST)
+    made, axes = panels(len(rows), 1, size, height_ratios=heights)
+    widest = int(_LABELS * made.get_figwidth() / _CHARACTER)
+    for panel, (name, answers) in zip(axes[:, 0], rows.items(), strict=True):
+        _limits(panel, answers, builds[name], widest)
+    letter(axes[:, 0], list(rows))
     entries = [Line2D([], [], color=colour, linewidth=4, label=name) for name, colour in _COLOURS.items()]
-    legend_outside(made, (entries, list(_COLOURS)), "upper", 4)
+    entries.append(Line2D([], [], color=_SHORT, linewidth=4, label="does not allow this size"))
+    entries.insert(4, Line2D([], [], color=BUILD, label="size to build"))
+    legend_outside(made, (entries, [entry.get_label() for entry in entries]), "upper", 6)
     return made
 
 
@@ -355,22 +364,22 @@ def _rows(dataset):
     return [answer for answer in answers_of(dataset) if answer.unit == unit and np.isfinite(answer.high)]
 
 
-def _bars(panel: Axes, answers, length, count):
-    """One bar for each answer from its lower to its upper bound, and the length of a beam. A figure has some panels."""
-    factor, sought = _UNITS[answers[0].unit][0], SOUGHT[answers[0].unit]
-    grid, figure = panel.get_gridspec(), panel.figure
-    longest = int(_FILLED * figure.get_figwidth() / grid.ncols * 72 / (_SIZE * _CHARACTER))
-    for row, one in enumerate(reversed(answers)):
-        low, high = factor * (one.high if np.isnan(one.low) else one.low), factor * one.high
-        panel.plot([low, high], [row, row], color=_COLOURS[one.question], linewidth=4, solid_capstyle="butt")
-        panel.plot([low, high], [row, row], "|", color=_COLOURS[one.question], markersize=8)
-        text = textwrap.fill(one.what.partition(":")[0], longest)
-        place = {"xycoords": ("axes fraction", "data"), "va": "bottom", "linespacing": 1}
-        panel.annotate(text, (0.02, row + 0.15), **place, fontsize=_SIZE, path_effects=OUTLINED)
-    if np.isfinite(length):
-        panel.axvline(factor * length, color="0.4", linestyle=":", linewidth=0.8)
-    label = f"{sought.name} [{sought.shown}]" + ", axes differ" * (count > 1)
-    panel.set(xlabel=label, xlim=(0, 1.05 * panel.dataLim.x1), ylim=(-0.5, len(answers) - 0.1), yticks=[])
+def _limits(panel, answers, build, widest):
+    """One row for each answer from its lower to its upper bound, with both numbers, and the size to build."""
+    sought = SOUGHT[answers[0].unit]
+    rows = {}
+    for answer in answers:
+        low, high = (answer.high if np.isnan(answer.low) else answer.low) / sought.scale, answer.high / sought.scale
+        largest, least = build * (1 + _ROUNDED) / sought.scale, build * (1 - _ROUNDED) / sought.scale
+        is_short = high > largest if sought.more_is_better else low < least
+        colour = _SHORT if is_short else _COLOURS[answer.question]
+        text = " to ".join(dict.fromkeys([significant(low), significant(high)]))
+        label = textwrap.fill(answer.what.partition(":")[0], widest)
+        rows[label] = [dots.Mark(low, high, colour, text)]
+    dots.draw(panel, rows)
+    if np.isfinite(build):
+        panel.axvline(build / sought.scale, color=BUILD, linewidth=1.2, zorder=0)
+    panel.set(xlabel=f"{sought.name} [{sought.shown}]")
 
 
 #: What table and figure declare alike.
@@ -379,6 +388,14 @@ _OF_ALL: dict = {
     "jobs": lambda plan: [{}] if plan.devices.sections else [],
     "targets": ("devices",),
 }
+
+
+def _inputs_of_figure(plan, at):
+    """Lives, answers and warnings of all devices."""
+    answers = by_name("devices/answer", plan.devices.sections)
+    warnings = device_warnings.files_of(*plan.devices.sections)
+    return _OF_ALL["inputs"](plan, at) | {"answers": answers, "warnings": warnings}
+
 
 STAGES = (
     table_stage(
@@ -391,7 +408,7 @@ STAGES = (
         "life",
         "what limits the life of devices, on one axis",
         "Devices",
-        compute=figure,
-        **_OF_ALL,
+        compute=lambda data: figure(data["life"], tables.builds(data["answers"], data["warnings"])),
+        **_OF_ALL | {"inputs": _inputs_of_figure},
     ),
 )

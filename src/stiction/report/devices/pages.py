@@ -48,8 +48,7 @@ from stiction.stages.devices.results import is_biased
 #: What a map over two quantities shows.
 _OF_MAPS = (
     "Blue: the requirement is met, by the factor of which the decimal logarithm is shown. Solid line: the estimate "
-    "meets it; dashed: the safe value does, with a confidence of 95 %. Dots: computed points; cross: the surface as it "
-    "is given.",
+    "meets it; dashed: the simulated limit does. Dots: computed points; cross: the surface as it is given.",
 )
 #: Why a table of a budget has cells without a number.
 _MISSING_EFFECTS = "this input does not act here, or too few of the simulated devices stick to show what it changes"
@@ -252,8 +251,9 @@ def with_life(page: Page, name: str, answers: xr.Dataset, answer: Answer) -> Pag
     """Page with the life of its device: in words, and after the first section as table and figure."""
     first, *others = page.sections
     cells = life.table({name: answers}).cells.drop(columns="device")
-    section = Section("From the first contact to the last", (life.CAPTION,), cells, life.figure({name: answers}))
     build = np.nan if answer.forbidden else answer.build
+    picture = life.figure({name: answers}, {name: build})
+    section = Section("From the first contact to the last", (life.CAPTION,), cells, picture)
     said, sections = life.sentences(answers, build), [first, section, *others]
     return replace(page, answer=[*said, *page.answer], more=[*said, *page.more], sections=sections)
 

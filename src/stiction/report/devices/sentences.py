@@ -90,11 +90,11 @@ def few_sentence(humidity: float, dataset: xr.Dataset) -> str:
         return sentence
     return (
         f"{sentence} For {one_in(share)}, the length that sticks on flat surfaces counts; {samples_for(share)} "
-        "devices in design.beams show whether longer ones are safe."
+        "devices in design.beams show whether longer ones release."
     )
 
 
-#: What a safe force rests on.
+#: What a simulated limit of a force rests on.
 _ON = {
     Basis.SAMPLED: "95 % confidence",
     Basis.FITTED: "95 % confidence, by a line through the largest 5 % of the forces",

@@ -60,7 +60,7 @@ def stopper_view(name: str, section: Mapping[str, Any], biased: xr.Dataset) -> V
         "what": "voltage",
         "safe": "Voltage that simulation alone allows",
         "stick": "Stoppers that stick while this voltage is on",
-        "bound": "safe",
+        "bound": "limit",
         "none": "none: too few patches, or its spring does not free them without voltage",
     }
     return View("voltage", grid, words)

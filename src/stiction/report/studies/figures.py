@@ -1,41 +1,41 @@
 """Figures of the studies for the main result: 13, 16 to 19 and the model comparison."""
 
 from collections.abc import Mapping
-from itertools import groupby, product
 
 import numpy as np
 import pandas as pd
 import xarray as xr
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import LogNorm, Normalize
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from stiction.analysis import convergence
 from stiction.analysis import variants as comparison
 from stiction.analysis.plasticity import ONSET
+from stiction.config.cases import Air
 from stiction.contact import forcelaw
 from stiction.plan.names import by_case, by_name, by_outcome
-from stiction.report import published
+from stiction.report import dots, published
 from stiction.report.format import TO_GPA, TO_MJ, TO_MPA, TO_NM, TO_UM, with_error
 from stiction.report.published import rows
 from stiction.report.studies.tables import variant_label
 from stiction.report.style import (
     DOUBLE,
     OUTLINED,
+    PUBLISHED,
     SINGLE,
     STUDIES,
     at_most_double,
-    blocks_of_columns,
     columns_of_panels,
     dashes,
     figure_stage,
     handles,
     humidity_axis,
+    legend_outside,
     legends,
     letter,
     letter_lines,
     marker,
-    on_own_axes,
     panels,
     plain_log,
     shades,
@@ -44,18 +44,16 @@ from stiction.report.style import (
 from stiction.stages.beams.variant_beams import by_pair, cases_of
 from stiction.stages.laws.stored_model import chaos_model
 
-_COLOURS = ("#0072B2", "#56B4E9", "#E69F00", "#D55E00", "#CC79A7", "#009E73", "#882255", "#7F7F00", "#332288")
 _ZERO = {"color": "0.6", "linewidth": 0.6, "zorder": 0}
-#: Element length [µm] chosen in the paper and the difference of Γ from ē [%] stated for it.
-_PAPER_LENGTH, _PAPER_ERROR = 7.5, 2.5
+#: Difference of Γ from ē [%] that the paper states for its elements.
+_PAPER_ERROR = 2.5
 #: Number of summits per cell that is drawn in white; a single summit is a little darker.
 _FAINTEST = 0.3
-_TARGET = {"color": "black", "linestyle": "--", "linewidth": 0.8}
 _BOUND = {"color": "0.4", "linestyle": ":"}
-#: Largest number of markers of a curve of the variants.
-_MARKED = 9
-#: What the panels of the variants show.
-_DEVIATIONS = "change of $l_s$ against base", "deviation of $l_s$ from published"
+#: Distribution of the samples.
+_SAMPLES = {"color": "0.75", "linewidth": 4, "label": "samples"}
+#: Height of a legend below the panels [in].
+_LEGEND = 0.3
 
 
 # Figure 13
@@ -63,6 +61,8 @@ _DEVIATIONS = "change of $l_s$ against base", "deviation of $l_s$ from published
 
 #: What the sensitivities are of.
 _STATISTICS = ("mean", "standard deviation")
+#: Entry of the legend for the bands.
+_BAND = {"color": "0.8", "label": "between the slopes to less and to more of the moment"}
 
 
 @styled
@@ -79,6 +79,7 @@ def sensitivities(
         of_pair = {moment: dataset for (name, moment), dataset in datasets.items() if name == pair}
         _slopes_of_pair(axes, of_pair, {tuple(at): slope for (name, *at), slope in published.items() if name == pair})
     names = [f", pair {pair}" for pair in pairs] if len(pairs) > 1 else [""]
+    legend_outside(figure, ([Patch(**_BAND)], [_BAND["label"]]), "lower", 1)
     letter(lines, [rf"{statistic} of $\bar e${name}" for name in names for statistic in _STATISTICS])
     return figure
 
@@ -170,14 +171,13 @@ def sample_convergence(
     """
     figure, (axes,) = panels(1, 3, (DOUBLE, 2.4), width_ratios=(1.3, 1, 1))
     _densities(axes[0], sizes)
-    shown = _dimension_errors(axes[1], dimension_errors)
-    figure.colorbar(shown, ax=axes[1], label="relative humidity [–]", pad=0.02)
+    most = _dimension_errors(axes[1], dimension_errors)
     axes[1].axhline(tolerance, **_BOUND, label="tolerance")
     low, high = axes[1].get_ylim()
-    axes[1].set_ylim(min(low, tolerance / 2), 3 * high)  # room for the legend
+    axes[1].set_ylim(min(low, tolerance / 2), 10 * max(high, tolerance))  # room for the legend
     _distances(axes[2], sizes)
-    legends(figure, {axes[0]: {}, axes[1]: {"loc": "upper right"}})
-    letter(axes, [r"density of $\bar e$", "variance lost", "distance from all samples"])
+    legends(figure, {axes[0]: {}, axes[1]: {"loc": "upper right", "ncols": 2}})
+    letter(axes, [r"density of $\bar e$", f"variance lost, $N_g$ = {most}", "distance from all samples"])
     return figure
 
 
@@ -209,18 +209,13 @@ def _distances(panel, sizes):
 
 
 def _dimension_errors(panel, dimension_errors):
-    """Err^DR of every case, one style for each pair and one colour for each humidity; returns the colours."""
-    pairs, humidities = (list(dict.fromkeys(parts)) for parts in zip(*dimension_errors, strict=True))
-    colours = ScalarMappable(Normalize(min(humidities), max(humidities)), "viridis_r")
-    for (pair, humidity), errors in dimension_errors.items():
-        k = pairs.index(pair)
-        style = {"color": colours.to_rgba(humidity), "marker": marker(k), "linestyle": dashes(k), "markersize": 4}
-        panel.plot(range(1, len(errors)), errors[:-1], **style)
-    for k, pair in enumerate(pairs):
-        panel.plot([], [], color="0.3", marker=marker(k), linestyle=dashes(k), markersize=4, label=f"pair {pair}")
-    panel.set(xlabel="number of coordinates $N_g$", ylabel=r"Err$^\mathrm{DR}$ [–]", yscale="log")
-    panel.set_xticks(range(1, len(errors)))
-    return colours
+    """Err^DR with all coordinates but one against humidity, a line for each pair; returns their number."""
+    for k, pair in enumerate(dict.fromkeys(pair for pair, _ in dimension_errors)):
+        points = sorted((humidity, errors[-2]) for (name, humidity), errors in dimension_errors.items() if name == pair)
+        panel.plot(*zip(*points, strict=True), marker=marker(k), linestyle=dashes(k), label=f"pair {pair}")
+    panel.set(xlabel="relative humidity [–]", ylabel=r"Err$^\mathrm{DR}$ [–]", yscale="log")
+    humidity_axis(panel)
+    return max(len(errors) for errors in dimension_errors.values()) - 1
 
 
 # Figure 18
@@ -228,7 +223,7 @@ def _dimension_errors(panel, dimension_errors):
 
 @styled
 def order_convergence(orders: xr.Dataset) -> Figure:
-    """Figure 18: marginals of the chaos model for polynomials of increasing order."""
+    """Figure 18: cumulative marginals of the chaos model for polynomials of increasing order."""
     etas = orders.eta.values[:3]
     lines = len(etas) // 2 + 1
     figure, axes = panels(lines, 2, (DOUBLE, 2.2 * lines))
@@ -239,30 +234,17 @@ def order_convergence(orders: xr.Dataset) -> Figure:
     shown = sorted({-(-last * share // 6) for share in (1, 2, 4, 6)})  # 2, 4, 8 and 12 of 12
     for panel, eta in zip(used[:-1], etas, strict=True):
         of_eta = orders.sel(eta=eta)
-        panel.fill_between(orders.position, of_eta.input_density, step="mid", color="0.85", label="samples")
+        width = float(orders.position[1] - orders.position[0])
+        panel.plot(orders.position, width * np.cumsum(of_eta.input_density.values), **_SAMPLES)
         for k, (order, shade) in enumerate(zip(shown, shades(len(shown)), strict=True)):
             style = {"color": shade, "linestyle": dashes(len(shown) - 1 - k), "label": f"$N_d$ = {order}"}
-            panel.step(orders.position, of_eta.density.sel(order=order), where="mid", **style)
-        panel.set(xlabel=rf"$\eta_{eta}$ [–]", ylabel="density [–]", ylim=(0, None))
+            panel.plot(orders.position, width * np.cumsum(of_eta.density.sel(order=order).values), **style)
+        panel.set(xlabel=rf"$\eta_{eta}$ [–]", ylabel="cumulative probability [–]")
         panel.margins(x=0)
-    _cumulative(used[0], orders.sel(eta=etas[0]), shown)
-    used[0].legend(loc="upper right")
+    used[0].legend(loc="upper left")
     _order_distances(used[-1], orders)
     letter(used, [*(rf"marginal of $\eta_{eta}$" for eta in etas), "distance from the kernel density"])
     return figure
-
-
-def _cumulative(panel, of_eta, shown):
-    """Inset of the differences of cumulative probabilities, which converge although the density has spikes."""
-    inset, position = panel.inset_axes([0.13, 0.47, 0.2, 0.4]), of_eta.position.values
-    width = position[1] - position[0]
-    for k, (order, shade) in enumerate(zip(shown, shades(len(shown)), strict=True)):
-        more = np.cumsum(of_eta.density.sel(order=order).values - of_eta.input_density.values)
-        inset.plot(position, 100 * width * more, color=shade, linestyle=dashes(len(shown) - 1 - k), linewidth=0.8)
-    inset.set_xlim(position[0], position[-1])
-    inset.axhline(0, **_ZERO)
-    inset.set_title("cumulative, less samples [%]", fontsize=6, pad=2)
-    inset.tick_params(labelsize=6, pad=2)
 
 
 def _order_distances(panel, orders):
@@ -313,41 +295,28 @@ def _ground(panel, mesh):
 
 
 def _meshes(panel, mesh):
-    """Energy Γ under every mesh and ē, with an inset of small differences."""
-    target = float(forcelaw.energy(mesh.law.values))
-    excess = 100 * (mesh.energy.values / target - 1)
-    inset = _small_differences(panel, excess, TO_UM * mesh.element_length.values)
+    """Relative difference of Γ under every mesh from ē, beside the one stated in the paper."""
+    excess = 100 * (mesh.energy.values / float(forcelaw.energy(mesh.law.values)) - 1)
+    panel.axhspan(-_PAPER_ERROR, _PAPER_ERROR, color="0.92", zorder=0, label=f"{_PAPER_ERROR} %, paper")
     points = np.unique(mesh.point_distance.values)[::-1]
     for k, (point, shade) in enumerate(zip(points, shades(len(points)), strict=True)):
         chosen = mesh.point_distance.values == point
-        length, energy = TO_UM * mesh.element_length.values[chosen], TO_MJ * mesh.energy.values[chosen]
-        style = {"marker": marker(k), "linestyle": dashes(k), "color": shade, "label": f"{TO_UM * point:.3g}"}
-        panel.plot(length, energy, **style)
-        inset.plot(length, excess[chosen], **style)
-    panel.axhline(TO_MJ * target, label=r"$\bar e$", **_TARGET)
-    panel.set(xscale="log", xlabel="element length $l_e$ [µm]", ylabel=r"$\Gamma$ [mJ/m²]", ylim=(0, None))
-    # Set limits: if the beam does not stick under this law, ē is the only curve.
+        style = {
+            "marker": marker(k),
+            "linestyle": dashes(k),
+            "color": shade,
+            "label": f"strips of {TO_UM * point:.3g} µm",
+        }
+        panel.plot(TO_UM * mesh.element_length.values[chosen], excess[chosen], **style)
+    panel.axhline(0, **_ZERO)
+    panel.set_yscale("symlog", linthresh=_PAPER_ERROR, linscale=0.5)
+    panel.yaxis.set_major_formatter("{x:g}")
+    panel.set_ylim(1.3 * np.nanmin(excess, initial=-1), 1.5 * np.nanmax(excess, initial=_PAPER_ERROR))
+    panel.set(xscale="log", xlabel="element length $l_e$ [µm]", ylabel=r"$\Gamma/\bar e - 1$ [%]")
+    # Set limits: a beam that does not stick under this law has no points.
     panel.set_xlim(TO_UM * mesh.element_length.values.min() / 1.2, 1.2 * TO_UM * mesh.element_length.values.max())
     plain_log(panel.xaxis)
-    panel.legend(loc="upper left", title=r"strips $l^\mathrm{meso}$ [µm]", ncols=2, columnspacing=1, handlelength=1.8)
-
-
-def _small_differences(panel, excess, lengths):
-    """Inset for the differences of Γ from ē about as small as the paper's, which is shaded [%]."""
-    inset = panel.inset_axes([0.19, 0.31, 0.52, 0.38])
-    near = excess[np.abs(excess) < 1.5 * _PAPER_ERROR]
-    low, high = min([0, *near]), max([_PAPER_ERROR, *near])
-    inset.axhline(0, **_TARGET)
-    inset.axhspan(-_PAPER_ERROR, _PAPER_ERROR, color="0.92", zorder=0)
-    inset.annotate(
-        f"{_PAPER_ERROR} %, paper", (0.03, _PAPER_ERROR), (0, 2), ("axes fraction", "data"), "offset points", fontsize=6
-    )
-    limits = lengths.min() / 1.3, 1.3 * max(_PAPER_LENGTH, lengths.min())  # all elements may be longer than the paper's
-    inset.set(xscale="log", xlim=limits, ylim=(1.2 * low - 0.2 * high, 1.3 * high))
-    inset.set_ylabel(r"$\Gamma/\bar e - 1$ [%]", fontsize=6)
-    inset.tick_params(labelsize=6, pad=2)
-    plain_log(inset.xaxis)
-    return inset
+    panel.legend(loc="upper left")
 
 
 # Model choices
@@ -355,102 +324,45 @@ def _small_differences(panel, excess, lengths):
 
 @styled
 def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataFrame) -> Figure:
-    """Crack lengths under several variants of the model, compared with the base, the paper and measurements.
+    """Change of the crack length by each variant of the model at the lowest humidity, a panel for each pair.
 
-    More choices than there are colours continue in further panels below, each group of choices with its legend. The
-    datasets are by pair and variant, and every pair has every variant; Table III has the rows of the paper's own pairs.
+    Lines: published and measured lengths. The datasets are by pair and variant, and every pair has every variant;
+    Table III has the rows of the paper's own pairs.
     """
     pairs, names = (list(dict.fromkeys(parts)) for parts in zip(*datasets, strict=True))
-    count = 2 if published.pair.isin(pairs).any() else 1
-    groups = _groups([name for name in names if name != "base"])
-    figure, blocks = blocks_of_columns(
-        len(groups), len(pairs), count, at_most_double(1.3 * SINGLE), 1 + 1.8 * count, sharex="col"
-    )
-    for group, (part, columns, lines) in zip(groups, blocks, strict=True):
-        for column, pair in zip(columns, pairs, strict=True):
-            chosen = {name: datasets[pair, name] for name in ("base", *group)}
-            _column_of_variants(column, chosen, rows(published, pair=pair))
-        for line, k in product(lines, range(count)):
-            line[k, 0].set_ylabel(on_own_axes(f"{_DEVIATIONS[k]} [%]", line))
-        part.legend(*handles(*columns.flat), loc="outside lower center", ncols=5 if len(pairs) > 1 else 3)
-    lines = [line for _, _, lines in blocks for line in lines]
-    letter_lines(lines, [f"pair {pair}" for pair in pairs] * len(groups))
+    height = dots.AROUND + _LEGEND + dots.ROW * len(names)
+    figure, columns, lines = columns_of_panels(len(pairs), 1, at_most_double(1.3 * SINGLE), height, sharey=True)
+    titles = []
+    for (panel,), pair in zip(columns, pairs, strict=True):
+        humidity, base = next(cases_of(datasets[pair, "base"]))
+        cases = {name: next(cases_of(datasets[pair, name]))[1] for name in names if name != "base"}
+        dots.draw(panel, {variant_label(name): [_shift(case, base)] for name, case in cases.items()})
+        _references(panel, rows(published, pair=pair, relative_humidity=humidity), base)
+        panel.set_xlabel("change of $l_s$ [%]")
+        titles.append(f"pair {pair}, {Air(humidity).words}")
+    letter_lines(lines, titles)
+    legend_outside(figure, handles(*columns.flat), "lower", 3)
     return figure
 
 
-def _groups(names):
-    """Choices in groups of at most as many as there are colours. Choices of one key stay together if possible."""
-    groups, most = [[]], len(_COLOURS)
-    for _, names_of_key in groupby(names, lambda name: name.rpartition("_")[0]):
-        of_key = list(names_of_key)
-        for part in (of_key[k : k + most] for k in range(0, len(of_key), most)):
-            if len(groups[-1]) + len(part) > most:
-                groups.append([])
-            groups[-1] += part
-    return groups
+def _shift(case, base):
+    """Change of the crack length by a variant, relative to the base [%]."""
+    shift, error = 100 * np.divide(comparison.shift(case, base), comparison.mean_crack_length(base)[0])
+    return dots.Mark(shift, shift, "#0072B2", dots.signed(shift), error)
 
 
-def _column_of_variants(column, datasets, table):
-    """Panels of one pair: change against the base and, if the panel is there, deviation from the published length."""
-    for name, style in _styles(datasets).items():
-        _shift(column[0], datasets[name], datasets["base"], style)
-        if len(table):
-            _deviation(column[1], datasets[name], table, style)
-    if len(table):
-        _experiment(column[1], table)
-    elif len(column) > 1:  # what is not published needs no panel
-        column[1].remove()
-        column = column[:1]
-        column[0].tick_params(labelbottom=True)
-    column[-1].set_xlabel("relative humidity [–]")
-    for panel in column:
-        panel.axhline(0, **_ZERO)
-    humidity_axis(column[0])
-
-
-def _experiment(panel, table):
-    """Deviation of the measured crack length from the published one."""
-    measured = 100 * (table.experiment / table.ng - 1), 100 * table.experiment_std / table.ng
-    style = {"color": "black", "markerfacecolor": "white", "markersize": 6, "label": "measured", "zorder": 4}
-    panel.errorbar(table.relative_humidity, *measured, fmt="*", **style)
-
-
-def _styles(names):
-    """Colour, line and marker of every variant, the base's black and above the others."""
-    styles = {"base": {"color": "black", "marker": "o", "linestyle": "-", "label": "base", "zorder": 3}}
-    for k, name in enumerate(name for name in names if name != "base"):
-        # No more names than colours; the eight other markers and the seven other line styles.
-        style = {"color": _COLOURS[k], "marker": marker(1 + k), "linestyle": dashes(1 + k % 7)}
-        styles[name] = style | {"label": variant_label(name)}
-    return styles
-
-
-def _shift(panel, dataset, base, style):
-    """Change of the crack length by a variant, relative to the base."""
-    pairs = zip(cases_of(dataset), cases_of(base), strict=True)
-    shifts = [
-        (h, *np.divide(comparison.shift(case, of), comparison.mean_crack_length(of)[0])) for (h, case), (_, of) in pairs
-    ]
-    humidity, shift, error = np.transpose(shifts)
-    if dataset is not base:
-        _curve(panel, humidity, shift, error, style)
-
-
-def _deviation(panel, dataset, table, style):
-    """Deviation of the crack length from the published one, at humidities with a published value."""
-    cases = dict(cases_of(dataset))
-    known = {h: length / TO_UM for h, length in zip(table.relative_humidity, table.ng, strict=True) if h in cases}
-    if known:
-        lengths = [np.divide(comparison.mean_crack_length(cases[h]), length) for h, length in known.items()]
-        ratio, error = np.transpose(lengths)
-        _curve(panel, [*known], ratio - 1, error, style)
-
-
-def _curve(panel, humidity, change, error, style):
-    """Relative changes as a curve, with markers and error bars of at most `_MARKED` points, for legibility."""
-    known = np.flatnonzero(np.isfinite(change))
-    marked = known[:: max(1, -(-len(known) // _MARKED))].tolist()
-    panel.errorbar(humidity, 100 * change, 100 * error, markevery=marked, errorevery=marked, **style)
+def _references(panel, known, base):
+    """Published and measured length over that of the base."""
+    length = TO_UM * comparison.mean_crack_length(base)[0]
+    panel.axvline(0, color="black", linewidth=0.8, label="base")
+    for row in known.itertuples():
+        if np.isfinite(row.ng):
+            panel.axvline(100 * (row.ng / length - 1), color=PUBLISHED, label="published")
+        if np.isfinite(row.experiment):
+            measured, spread = 100 * (row.experiment / length - 1), 100 * np.nan_to_num(row.experiment_std) / length
+            style = {"color": "0.4", "alpha": 0.2, "linewidth": 0, "zorder": 0}
+            panel.axvspan(measured - spread, measured + spread, **style)
+            panel.axvline(measured, color="0.4", linestyle="--", label="measured ± standard deviation")
 
 
 def _sensitivities(data, settings):

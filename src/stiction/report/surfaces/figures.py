@@ -8,7 +8,6 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from stiction.estimates import mean_with_error
 from stiction.models import SURFACE_MODELS
 from stiction.plan.names import by_name
 from stiction.report.format import TO_NM, TO_UM
@@ -18,12 +17,16 @@ from stiction.report.style import (
     OUTLINED,
     SINGLE,
     columns_of_panels,
+    dashes,
     figure_stage,
     handles,
+    legend_outside,
     letter,
     letter_lines,
+    marker,
     panels,
     plain_log,
+    shades,
     styled,
 )
 
@@ -115,72 +118,61 @@ def profiles(name: str, characters: Mapping[str, xr.Dataset]) -> Figure:
 
     ``name`` is that of the surface; its datasets are by model, G and NG.
     """
-    figure, axes = panels(2, 1, (SINGLE, 2.8), sharex=True, sharey=True)
-    for (panel,), model in zip(axes, SURFACE_MODELS, strict=True):
+    figure, ((panel,),) = panels(1, 1, (SINGLE, 2.4))
+    panel.axhline(0, color="0.7", linewidth=0.6)
+    for model in SURFACE_MODELS:
         dataset = characters[model]
-        middle = dataset.sizes["y"] // 2
-        panel.axhline(0, color="0.7", linewidth=0.6)
-        panel.plot(TO_UM * dataset.x, TO_NM * dataset.elevation[:, middle], color=MODELS[model]["color"])
-        panel.set(ylabel="height $z$ [nm]", xlim=TO_UM * dataset.x[[0, -1]])
-    axes[-1, 0].set_xlabel("$x_1$ [µm]")
-    letter(axes, [f"{name}, {MODELS[model]['label']}" for model in SURFACE_MODELS])
+        panel.plot(TO_UM * dataset.x, TO_NM * dataset.elevation[:, dataset.sizes["y"] // 2], **MODELS[model])
+    panel.set(xlabel="$x_1$ [µm]", ylabel="height $z$ [nm]", xlim=TO_UM * dataset.x[[0, -1]])
+    panel.set_title(name, loc="left")
+    legend_outside(figure, handles(panel), "lower", 2)
     return figure
 
 
 # Figure 10
 
-_DRAWN = {"color": MODELS["NG"]["color"], "linewidth": 0.9, "label": "surfaces drawn from the closed form"}
-_ITERATED = {"color": "#D55E00", "linestyle": ":", "label": "surfaces of the last iteration"}
-_CLOSED = {"color": "black", "linestyle": "--", "linewidth": 0.8, "label": "closed form, expected"}
+#: Label of the wave number.
+_ZETA = r"wave number $\zeta$ [rad/µm]"
+#: Line of the error of the closed form.
+_CLOSED = {"linestyle": (0, (1, 3)), "linewidth": 1}
 
 
 @styled
 def spectra(surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset, xr.Dataset, xr.Dataset]]) -> Figure:
-    """Figure 10: target spectrum, closed form and iterative algorithm. Ratio to the target. Error by iteration.
+    """Figure 10: spectra of all surfaces over their targets, closed form over target, and error by iteration.
 
     Each surface has its datasets of stages heights, spectrum, character (non-Gaussian) and iteration, in this order.
     """
-    figure, columns, lines = columns_of_panels(len(surfaces), 3, _width, 5.4, height_ratios=[1.3, 1, 1])
-    for column, datasets in zip(columns, surfaces.values(), strict=True):
-        _spectra(column[0], *datasets)
-        _relations(column[1], *datasets)
-        _misfits(column[2], datasets[3])
-    names = ("spectrum $s_Z$ [nm$^4$]", "spectrum / target [–]", "mean error per ring [%]")
-    for line in lines:
-        for panel, name in zip(line[:, 0], names, strict=True):
-            panel.set_ylabel(name)
-    letter_lines(lines, surfaces)
-    figure.legend(*handles(columns[0, 0], columns[0, 1]), loc="outside upper center", ncols=min(4, len(surfaces)))
-    figure.legend(*handles(columns[0, 2]), loc="outside lower center", ncols=min(3, len(surfaces) + 1))
+    figure, ((density, ratio, error),) = panels(1, 3, (DOUBLE, 2.8))
+    for k, (name, datasets) in enumerate(surfaces.items()):
+        style = {"color": shades(len(surfaces))[k], "linestyle": dashes(k), "label": name}
+        _spectra(density, datasets, style)
+        _relation(ratio, datasets[1], style)
+        _misfits(error, datasets[3], style | {"marker": marker(k)})
+    density.set(xlabel=_ZETA, ylabel="spectrum $s_Z$ [nm$^4$]", xscale="log", yscale="log")
+    ratio.set(xlabel=_ZETA, ylabel="closed form / target [–]", xscale="log")
+    error.set(xlabel="iteration", ylabel="mean error per ring [%]", yscale="log")
+    error.xaxis.set_major_locator(MaxNLocator(integer=True))
+    plain_log(error.yaxis)
+    error.plot([], [], color="0.3", label="closed form", **_CLOSED)
+    letter((density, ratio, error), ["drawn surfaces, target grey", "closed form", "iterative algorithm"])
+    legend_outside(figure, handles(error), "lower", 6)
     return figure
 
 
-def _spectra(panel, heights, spectrum, character, iteration):
-    """Spectra of one surface: target, drawn from the closed form, drawn in the last iteration."""
-    variance = float(heights.rms) ** 2
-    target = spectrum.wavenumber[1:], variance * spectrum.target[1:]
-    last = iteration.wavenumber, variance * iteration.periodogram[-1].mean("field")
-    drawn = character.wavenumber, character.periodogram.mean("field")
-    styles = {"color": "0.75", "linewidth": 2.5, "label": "target"}, _DRAWN, _ITERATED
-    for (zeta, density), style in zip((target, drawn, last), styles, strict=True):
-        panel.loglog(zeta / TO_UM, density * TO_NM**4, **style)
-    panel.set_ylim(0.05 * TO_NM**4 * float(target[1][-2]), None)
-    panel.set_xlabel(r"wave number $\zeta$ [rad/µm]")
+def _spectra(panel, datasets, style):
+    """Target of one surface, and the mean spectrum of those drawn from the closed form."""
+    heights, spectrum, character, _ = datasets
+    target = TO_NM**4 * float(heights.rms) ** 2 * spectrum.target[1:]
+    drawn = TO_NM**4 * character.periodogram.mean("field")
+    panel.plot(spectrum.wavenumber[1:] / TO_UM, target.where(target > 0), color="0.8", linewidth=3.5, zorder=0)
+    panel.plot(character.wavenumber / TO_UM, drawn.where(drawn > 0.05 * float(target[-2])), **style)
 
 
-def _relations(panel, heights, spectrum, character, iteration):
-    """Spectra of :func:`_spectra` over the target, with two standard errors, and the expected closed form."""
+def _relation(panel, spectrum, style):
+    """Expected spectrum of the closed form over the target."""
     zeta, target = _whole_rings(spectrum)
-    panel.axhline(1, color="0.75", linewidth=2.5)
-    drawn = character.periodogram.sel(wavenumber=slice(0, zeta[-1])) / float(heights.rms) ** 2
-    drawn = drawn / np.interp(drawn.wavenumber, zeta, target)
-    for relation, style in ((drawn, _DRAWN), (iteration.periodogram[-1] / iteration.target, _ITERATED)):
-        mean, error = mean_with_error(relation.transpose("field", "wavenumber"))
-        band = {"color": style["color"], "alpha": 0.25, "linewidth": 0}
-        panel.fill_between(relation.wavenumber / TO_UM, mean - 2 * error, mean + 2 * error, **band)
-        panel.plot(relation.wavenumber / TO_UM, mean, **style)
-    panel.plot(zeta / TO_UM, spectrum.achieved[1 : len(zeta) + 1] / target, **_CLOSED)
-    panel.set(xscale="log", xlabel=r"wave number $\zeta$ [rad/µm]")
+    panel.plot(zeta / TO_UM, spectrum.achieved[1 : len(zeta) + 1] / target, **style)
 
 
 def _whole_rings(spectrum):
@@ -190,15 +182,10 @@ def _whole_rings(spectrum):
     return zeta[inside], target[inside]
 
 
-def _misfits(panel, iteration):
-    """Error of the iterated spectra, of the closed form, and of a correct spectrum due to sampling."""
-    number = iteration.iteration
-    panel.plot(number, 100 * iteration.misfit, **_ITERATED | {"marker": "o", "label": "iterated"})
-    panel.plot(number, 100 * iteration.sampling_misfit, color="0.5", linestyle="-.", label="sampling alone")
-    panel.axhline(100 * float(iteration.closed_form_misfit), **_CLOSED)
-    panel.set(xlabel="iteration", yscale="log")
-    panel.xaxis.set_major_locator(MaxNLocator(integer=True))
-    plain_log(panel.yaxis)
+def _misfits(panel, iteration, style):
+    """Error of the iterated spectra by iteration, and of the closed form."""
+    panel.plot(iteration.iteration, 100 * iteration.misfit, **style)
+    panel.axhline(100 * float(iteration.closed_form_misfit), color=style["color"], **_CLOSED)
 
 
 # Figure 11

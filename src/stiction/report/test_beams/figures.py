@@ -33,14 +33,16 @@ _ALONE, _NEXT = 0.01, 0.3
 _ROOM = 0.1
 #: Share of an axis above its data, for the number of the longest counted beams.
 _HEAD = 0.12
+#: Change of an input that is not shown, in standard uncertainties before the measurement.
+_UNMOVED = 0.1
 
 
 @styled
 def test_beams(update: xr.Dataset) -> Figure:
     """Measured crack lengths with bands of 95 % before and after, and inputs in units of their standard uncertainty."""
     arrays = list(dict.fromkeys(map(str, update.array.values)))
-    uncertain = update.isel(input=np.flatnonzero(update.prior_deviation.values > 0))
-    height = max(2.4, _ROW * uncertain.sizes["input"] + _AROUND)
+    moved, others = _moved(update)
+    height = max(2.8, _ROW * moved.sizes["input"] + _AROUND)
     figure, axes = panels(1, len(arrays) + 1, (DOUBLE, height))
     shared = {}
     for panel, name in zip(axes[0], arrays, strict=False):
@@ -50,10 +52,19 @@ def test_beams(update: xr.Dataset) -> Figure:
         }
         shared |= _lengths(panel, update.isel(chosen), _ROOM * (len(arrays) + 1))
     axes[0, 0].set_ylabel("crack length [µm]")
-    _inputs(axes[0, -1], uncertain)
-    letter(axes, [*arrays, "inputs"])
+    _inputs(axes[0, -1], moved)
+    letter(axes, [*arrays, f"inputs; {others} others keep their values" if others else "inputs"])
     legend_outside(figure, (list(shared.values()), list(shared)), "lower", 3)
     return figure
+
+
+def _moved(update):
+    """Inputs that the measurement moves or narrows by more than `_UNMOVED`, and the number of the others."""
+    prior = update.prior_deviation.where(update.prior_deviation > 0)
+    changes = np.maximum(abs(update["shift"]), abs(update.deviation - prior)) / prior
+    kept = np.flatnonzero(changes.fillna(0).values > _UNMOVED)
+    kept = kept if len(kept) else np.flatnonzero(prior.notnull().values)[:1]
+    return update.isel(input=kept), int(prior.notnull().sum()) - len(kept)
 
 
 def _band(humidity, part, placed):
@@ -123,7 +134,7 @@ def _inputs(panel, uncertain):
     panel.tick_params(axis="y", length=0)
     panel.use_sticky_edges = False
     panel.autoscale_view(scaley=False)
-    panel.set(ylim=(len(places) - 0.4, -0.6), xlabel="standard uncertainties")
+    panel.set(ylim=(len(places) - 0.4, -0.6), xlabel="value in standard uncertainties before [–]")
 
 
 STAGES = (

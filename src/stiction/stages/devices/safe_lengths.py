@@ -208,7 +208,7 @@ _SAFE_LENGTHS = Stage.writing(
     kind=Settings,
     complete=with_correction,
     compute=compute,
-    message="Safe lengths of {case}.",
+    message="Simulated limits of {case}.",
     running=Running(priority=1),
 )
 STAGES = (
@@ -228,7 +228,7 @@ STAGES = (
         name="touchdowns",
         files={"dataset": "devices/touchdowns/{case}"},
         settings=_for_touchdowns,
-        message="Safe lengths of {case} for many touchdowns.",
+        message="Simulated limits of {case} for many touchdowns.",
     ),
     Stage.writing(
         "at_voltage",
@@ -242,6 +242,6 @@ STAGES = (
         kind=Settings,
         complete=with_correction,
         compute=compute_at_voltage,
-        message="Safe lengths of {case} at its voltage.",
+        message="Simulated limits of {case} at its voltage.",
     ),
 )
