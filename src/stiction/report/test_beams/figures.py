@@ -53,7 +53,7 @@ def test_beams(update: xr.Dataset) -> Figure:
         shared |= _lengths(panel, update.isel(chosen), _ROOM * (len(arrays) + 1))
     axes[0, 0].set_ylabel("crack length [µm]")
     _inputs(axes[0, -1], moved)
-    letter(axes, [*arrays, f"inputs; {others} others keep their values" if others else "inputs"])
+    letter(axes, [*arrays, f"inputs; {others} others hardly move" if others else "inputs"])
     legend_outside(figure, (list(shared.values()), list(shared)), "lower", 3)
     return figure
 
