@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from stiction.config.materials import sourced_properties
 from stiction.config.messages import number_of_items
 from stiction.config.reading import read
 from stiction.config.relations import schema
@@ -113,6 +114,22 @@ def page() -> str:
 def of_simulation() -> str:
     """Sections and tables of all other keys in Markdown."""
     return _tables(OF_SIMULATION)
+
+
+def materials() -> str:
+    """Table of the materials by name in Markdown: every property with its source."""
+    head = "Materials by name, for `surfaces.NAME.material` and `materials.NAME.like`. Measure your own films.\n\n"
+    rows = [
+        f"| {name} | `{key}` | {_in_short(entry['value'])} | {entry['source']} |"
+        for name, properties in sourced_properties().items()
+        for key, entry in properties.items()
+    ]
+    return head + "\n".join(["| material | property | value | source |", "|---|---|---|---|", *rows])
+
+
+def _in_short(value):
+    """Value, or values by name without quotes."""
+    return json.dumps(value).replace('"', "").strip("{}")
 
 
 def _tables(names):

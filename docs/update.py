@@ -459,7 +459,8 @@ def shrink(picture, smaller, width):
 
 def tables():
     """Path to text of every file that is written from the schema, or from the declarations of the stages."""
-    return {DOCS / "tables" / "keys_of_the_simulation.md": keys.of_simulation() + "\n"} | rules.written()
+    made = {"keys_of_the_simulation": keys.of_simulation(), "materials": keys.materials()}
+    return {DOCS / "tables" / f"{name}.md": text + "\n" for name, text in made.items()} | rules.written()
 
 
 def pages():

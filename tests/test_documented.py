@@ -61,7 +61,7 @@ SNIPPETS = sorted(
 )
 EXAMPLES = ("examples/scans/mine", "examples/devices", "examples/roughness", "examples/drawn_beams/mine")
 EXAMPLES += ("examples/test_beams", "examples/sealed", "examples/life", "examples/process/mine", "workflow/smoke")
-EXAMPLES += ("examples/range/mine",)
+EXAMPLES += ("examples/range/mine", "examples/switch")
 
 
 def module(path):

@@ -15,6 +15,10 @@ from stiction.run.disk_cache import NOWHERE, Kept
 from stiction.run.fingerprint import PACKAGE, fingerprint
 
 
+#: Files that determine what configurations mean.
+_TEXTS = (PAPER.name, "schema.yaml", "materials.yaml")
+
+
 @dataclass(frozen=True)
 class Prepared:
     """Configuration that can run."""
@@ -101,6 +105,6 @@ def _kept(kept: Kept, file: str, module: str, determined_by: list, compute: Call
     if kept.folder is None:
         return compute()
     code = fingerprint(PACKAGE / module, kept.code, silent=())
-    texts = [PAPER.with_name(name).read_text(encoding="utf-8") for name in (PAPER.name, "schema.yaml")]
+    texts = [PAPER.with_name(name).read_text(encoding="utf-8") for name in _TEXTS]
     with kept.cache(file) as remember:
         return remember([*determined_by, code, texts], compute)

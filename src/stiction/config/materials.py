@@ -5,7 +5,11 @@ The properties themselves are in `stiction.contact.materials`.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
 from typing import Any
+
+import yaml
 
 from stiction.config.cases import PairInAir
 from stiction.config.units import from_si
@@ -16,6 +20,27 @@ from stiction.models import SIDES
 #: ASSUME: a solid is polysilicon if its Young's modulus differs from that of the paper by no more than this share.
 _POLYSILICON = 0.1
 _MODULUS = PROPERTIES["modulus"].key
+
+
+@cache
+def sourced_properties() -> dict[str, dict[str, dict[str, Any]]]:
+    """Value and source of each property of the materials by name: ``materials.yaml`` next to this module."""
+    return yaml.safe_load(Path(__file__).with_name("materials.yaml").read_text(encoding="utf-8"))
+
+
+def with_named(config: dict[str, Any]) -> dict[str, Any]:
+    """Configuration with the materials by name that its surfaces use, and with those in key ``like`` of others.
+
+    Own materials of the same name remain.
+    """
+    named = {name: {key: entry["value"] for key, entry in of.items()} for name, of in sourced_properties().items()}
+    stated = config.get("materials", {})
+    used = dict.fromkeys(surface.get("material") for surface in config["surfaces"].values())
+    materials = {name: named[name] for name in used if name in named} | {
+        name: named.get(material.get("like"), {}) | {key: value for key, value in material.items() if key != "like"}
+        for name, material in stated.items()
+    }
+    return config | {"materials": materials} if materials != stated else config
 
 
 def material_of(materials: dict, surface: dict) -> dict[str, Any]:

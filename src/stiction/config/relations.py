@@ -18,7 +18,7 @@ from stiction.config import memory
 from stiction.config.cases import DRY, IN_HUMID_AIR, NAMEABLE, Air
 from stiction.config.keys import Keys, Relations
 from stiction.config.kinds import kind_of
-from stiction.config.materials import hamaker_constants
+from stiction.config.materials import hamaker_constants, sourced_properties
 from stiction.config.meetings import above_zero, pair_meetings
 from stiction.config.messages import did_you_mean, duplicates, one_line
 from stiction.config.scans import MEASURED_CORRELATION
@@ -111,10 +111,10 @@ def undefined(name: str, defined: Iterable[str]) -> str | None:
 
 @relation_of_names
 def materials_are_defined(config):
-    """Require materials to be defined in their own section. The paper has none."""
-    none = "must be the name of a section of materials, where no material is described"
-    for key, refusal in references_are_defined(config, "surfaces", "material", "materials"):
-        yield key, refusal if config.names("materials") else none
+    """Require materials to be defined in their own section, or by name in ``materials.yaml``."""
+    defined = [*dict.fromkeys([*config.names("materials"), *sourced_properties()])]
+    for name, material in config.entries("surfaces", "material"):
+        yield f"surfaces.{name}.material", undefined(material, defined)
 
 
 @relation

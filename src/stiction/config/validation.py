@@ -9,7 +9,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from stiction.config import meetings, relations, relations_devices, scans, test_beams
+from stiction.config import materials, meetings, relations, relations_devices, scans, test_beams
 from stiction.config.cases import in_numbers, in_words
 from stiction.config.keys import Keys, Relations
 from stiction.config.merging import expanded, merged
@@ -57,7 +57,7 @@ def checked(stated: Any, kept: Path | None = None) -> Checked:
 def _checked(stated, kept):
     """Checked configuration without a file of devices. Raises the errors of `checked`."""
     _refuse(schema_problems(sections := _plain(stated), schema()), stated, {})
-    stated = process.with_surfaces(expanded(stated))
+    stated = process.with_surfaces(expanded(materials.with_named(stated)))
     if (whole := _plain(stated)) != sections:  # with copies and surfaces of settings
         _refuse(schema_problems(whole, schema()), stated, whole)
     library = paper()["surfaces"]
