@@ -46,8 +46,8 @@ def test_other_code_or_another_schema_checks_a_known_configuration_again(asked, 
     with patch.object(module, "fingerprint", lambda *_, **__: {"stiction.config.relations": "changed"}):
         prepared(stated, kept)
     assert len(asked) == 2
-    for number, changed in enumerate(("paper.yaml", "schema.yaml"), 3):
-        for name in ("paper.yaml", "schema.yaml"):
+    for number, changed in enumerate(("paper.yaml", "schema.yaml", "materials.yaml"), 3):
+        for name in ("paper.yaml", "schema.yaml", "materials.yaml"):
             text = module.PAPER.with_name(name).read_text(encoding="utf-8")
             (tmp_path / name).write_text(text + "# changed" * (name == changed), encoding="utf-8")
         with patch.object(module, "PAPER", tmp_path / "paper.yaml"):

@@ -14,7 +14,6 @@ from stiction.plan.numbers import Numbers
 from stiction.run.disk_cache import NOWHERE, Kept
 from stiction.run.fingerprint import PACKAGE, fingerprint
 
-
 #: Files that determine what configurations mean.
 _TEXTS = (PAPER.name, "schema.yaml", "materials.yaml")
 
