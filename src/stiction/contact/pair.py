@@ -251,14 +251,17 @@ def contacts_of_samples(
 
 def _equivalent_surface(pairs, streams, sample):
     """Equivalent surface of one sample of each pair."""
-    if len(pairs) == 1 or any(pair.replica for pair in pairs):
-        # The second surface is added in place, which needs no array of its heights.
-        yield from (pair.draw(*streams(sample)) for pair in pairs)
+    if len(pairs) == 1:  # the second surface is added in place, which needs no array of its heights
+        yield pairs[0].draw(*streams(sample))
         return
     strips = {}
     for pair in pairs:
-        for side, surface in enumerate((pair.beam, pair.substrate)):
-            if (side, id(surface)) not in strips:
-                strips[side, id(surface)] = surface.draw(streams(sample)[side])
-        heights = strips[0, id(pair.beam)] + strips[1, id(pair.substrate)]
+        above = (id(pair.beam), id(pair.substrate)) if pair.replica else id(pair.beam)
+        if above not in strips:
+            drawn = streams(sample)
+            strips[above] = pair.replica.draw_beam(*drawn) if pair.replica else pair.beam.draw(drawn[0])
+        below = "substrate", id(pair.substrate)
+        if below not in strips:
+            strips[below] = pair.substrate.draw(streams(sample)[1])
+        heights = strips[above] + strips[below]
         yield np.ascontiguousarray(heights[:: pair.every, :: pair.every])

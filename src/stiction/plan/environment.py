@@ -108,8 +108,9 @@ class Environment:
         dry = {self.is_dry(*case) for case in cases if not self.corrected(case[0], case[1:])}
         is_by_levels = of_beams and any(self.by_levels(pair, [humidity]) for pair, humidity in cases)
         left_out += ["forces" if is_by_levels else "summits"] * (False in dry) + ["bent"] * (True in dry)
+        follows = {"copied": True} if pairs and all("replica" in self.config["pairs"][pair] for pair in pairs) else {}
         of_some = {"pairs": touching} if "gaps" in left_out and len(touching) < len(pairs) else {}
-        return {"left_out": left_out, "humid": not all(self.is_dry(*case) for case in cases)} | of_some
+        return {"left_out": left_out, "humid": not all(self.is_dry(*case) for case in cases)} | of_some | follows
 
     def around(self, contact: str, config: dict | None = None) -> dict[str, Any]:
         """Configuration with attraction of the summits of a contact through its own medium."""

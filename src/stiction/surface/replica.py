@@ -112,12 +112,21 @@ class Replica:
 
     def draw(self, beam_rng: np.random.Generator, substrate_rng: np.random.Generator) -> np.ndarray:
         """Draw one strip of z₁ + z₂, (n1, n2) float32 [m]. Without coherence it is that of independent surfaces."""
-        waves, others = self.beam.waves(beam_rng), self.substrate.waves(substrate_rng)
+        others = self.substrate.waves(substrate_rng)
+        heights = self._beam_above(others, beam_rng)
+        self.substrate.add_waves(heights, others)
+        return heights
+
+    def draw_beam(self, beam_rng: np.random.Generator, substrate_rng: np.random.Generator) -> np.ndarray:
+        """Draw one strip of z₁, (n1, n2) float32 [m]."""
+        return self._beam_above(self.substrate.waves(substrate_rng), beam_rng)
+
+    def _beam_above(self, others, rng):
+        """Draw one strip of z₁ above a substrate with these waves, (n1, n2) float32 [m]."""
+        waves, heights = self.beam.waves(rng), np.zeros(self.beam.grid.shape, np.float32)
         places, share, factor = self._mixing
         waves[places] = share * waves[places] + factor * others[places]
-        heights = np.zeros(self.beam.grid.shape, np.float32)
         self.beam.add_waves(heights, waves)
-        self.substrate.add_waves(heights, others)
         return heights
 
 

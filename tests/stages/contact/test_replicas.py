@@ -11,8 +11,10 @@ from stiction.config.units import in_si
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import flooded_energy
 from stiction.contact.vanderwaals import attraction
+from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.plan.stage import select
+from stiction.report.limits.words import not_modelled
 from stiction.stages.contact import contact, curves, pairs
 
 LIKE_B2 = {
@@ -58,6 +60,30 @@ def test_jobs_of_independent_pairs_have_no_setting_of_replicas():
 def test_contact_without_coherence_is_that_of_independent_surfaces():
     alone, together = contact_of(None, samples=3), contact_of({"coherence": 0}, samples=3)
     assert alone.identical(together)
+
+
+@pytest.mark.parametrize("replica", [None, {"coherence": 0.7, "above_nm": 80, "offset_nm": 30}])
+def test_changed_surfaces_drawn_together_have_the_contact_of_each_alone(replica):
+    plan, skewed = plan_of(replica), plan_of(replica, skewness=-0.3)
+    one, other = surface_datasets(plan, "G"), surface_datasets(skewed, "G")
+    alternatives, settings = [[one, one], [other, one], [one, other]], settings_of(plan, samples=2, width=2)
+    together = contact.compute_each(alternatives, "r", "NG", settings)
+    for surfaces, found in zip(alternatives, together, strict=True):
+        assert found.identical(contact.compute(surfaces, "r", "NG", settings))
+
+
+def test_a_device_says_how_its_underside_follows_and_otherwise_what_a_copy_would_cost():
+    section = {"kind": "stopper", "pair": "r", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.6]}
+    said = []
+    for replica in (None, {"coherence": 0.9, "offset_nm": 20}):
+        plan = plan_of(replica)
+        page = Graph(Plan(plan.config | {"devices": {"S": section}})).job("devices/S.html").settings
+        said.append((page["surfaces"]["surface of the beam"], not_modelled(**page["not_modelled"])))
+    (alone, without), (follows, with_replica) = said
+    assert follows.removeprefix(alone) == ", follows the substrate with a coherence of 0.9, 20 nm beside its register"
+    assert "conformal films" in without
+    assert "conformal films" not in with_replica
+    assert "in register it sticks most" in with_replica
 
 
 def test_the_closer_the_copy_the_larger_the_energy():

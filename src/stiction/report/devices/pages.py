@@ -35,7 +35,7 @@ from stiction.report.limits.words import not_modelled, texts
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.style import STYLE, on_a_page
-from stiction.report.surfaces.words import surface_in_words
+from stiction.report.surfaces.words import replica_in_words, surface_in_words
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import provenance
@@ -220,6 +220,8 @@ def _settings(plan, at):
         part: f"{name}: {surface_in_words(plan.config['surfaces'][name], material)}"
         for (part, name), material in zip(names.items(), materials, strict=True)
     }
+    if "replica" in pair:
+        surfaces["surface of the beam"] += f", {replica_in_words(pair['replica'])}"
     left_out = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
     assumed = plan.devices.assumed_inputs(at.device)
     measured = [name for name in names.values() if is_measured(plan.config["surfaces"][name])]

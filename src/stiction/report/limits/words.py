@@ -438,10 +438,22 @@ _LEFT_OUT = {
 }
 
 
-def not_modelled(left_out: Sequence[str] = (), humid: bool = True, pairs: Sequence[str] = ()) -> str:
+#: What is not known of how both surfaces lie on each other, if the underside is stated to copy the ground and if not.
+#: Energies are of 50 strips of two Gaussian surfaces like B2, as in tests/stages/contact/test_replicas.py.
+_COPIES = {
+    True: "movement of a beam in its plane between touchdowns (in register it sticks most)",
+    False: "conformal films, which correlate both surfaces (between two Gaussian surfaces like B2 in humid air, a "
+    "coherence of 0.9 raises the energy some 450 times; key replica of the pair states it)",
+}
+
+
+def not_modelled(
+    left_out: Sequence[str] = (), humid: bool = True, pairs: Sequence[str] = (), copied: bool = False
+) -> str:
     """Effects relevant to stiction but not in the model: at no settings, or left out by the present ones.
 
-    Attraction across gaps is left out for some pairs, or, if these are empty, for all.
+    Attraction across gaps is left out for some pairs, or, if these are empty, for all. Undersides are ``copied`` if all
+    pairs state it.
     """
     of_some = {"gaps": f" (pairs {', '.join(pairs)})"} if pairs else {}
     named = [_LEFT_OUT[key] + of_some.get(key, "") for key in left_out]
@@ -451,7 +463,7 @@ def not_modelled(left_out: Sequence[str] = (), humid: bool = True, pairs: Sequen
         *time,
         "drift of electric charge",
         "wear",
-        "conformal films, which correlate both surfaces",
+        _COPIES[copied],
     ]
     sentence = f"Not in the model: {', '.join([*named, *never])}, and curl by a stress gradient."
     fast = " If surfaces separate faster than water evaporates, they hold more than computed: this is the unsafe side."

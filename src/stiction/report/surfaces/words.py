@@ -32,6 +32,19 @@ def surface_in_words(surface: Mapping, material: Mapping) -> str:
     return ", ".join(stated + _numbers_in_words(material, _OF_MATERIALS))
 
 
+def replica_in_words(replica: Mapping) -> str:
+    """How a surface follows the substrate.
+
+    Examples
+    --------
+    >>> replica_in_words({"coherence": 0.9, "above_nm": 100, "offset_nm": 0})
+    'follows the substrate with a coherence of 0.9, in waves above 100 nm'
+    """
+    above = [f"in waves above {replica['above_nm']:g} nm"] if replica.get("above_nm") else []
+    beside = [f"{replica['offset_nm']:g} nm beside its register"] if replica.get("offset_nm") else []
+    return ", ".join([f"follows the substrate with a coherence of {replica['coherence']:g}", *above, *beside])
+
+
 def _numbers_in_words(section, words):
     """Numbers of a section, in words."""
     return [f"{name} {section[key]:g}{unit}" for key, (name, unit) in words.items() if key in section]
