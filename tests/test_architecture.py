@@ -313,6 +313,7 @@ def questions_of_dry_air(path):
     for node in nodes(path):
         compared = [node.left, *node.comparators] if isinstance(node, ast.Compare) else []
         tests = [node.test] if isinstance(node, ast.If | ast.IfExp) else getattr(node, "ifs", [])
+        tests = [part for test in tests for part in getattr(test, "values", [test])]
         tests = [test.operand if isinstance(test, ast.UnaryOp) else test for test in tests]
         tests = [test for test in tests if isinstance(test, ast.Name | ast.Attribute | ast.Call)]
         asked = [*(compared if any(map(is_zero, compared)) else []), *tests]
@@ -333,7 +334,7 @@ def test_one_module_asks_whether_air_is_dry():
         "x = [h for h in section['humidities'] if 0 < h]",
         "x = 1 if not case.humidity else 2",
         "x = 0 in device['humidities']",
-        "x = 1 if any(humidities) else 2",
+        "x = 1 if worst and any(humidities) else 2",
         "x = data.relative_humidity.values > 0",
     ],
 )

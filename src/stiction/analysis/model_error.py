@@ -67,9 +67,8 @@ def interpolation_error(logarithms: np.ndarray, humidities: np.ndarray, at: np.n
     nodes, values = np.append(humidities[humid], 1.0), np.append(logarithms[humid], 0.0)
     differences = np.diff(np.diff(values) / np.diff(nodes)) / (nodes[2:] - nodes[:-2])
     above = np.clip(np.searchsorted(nodes, at, side="right"), 1, len(nodes) - 1)
-    return np.where(
-        is_humid(at), np.abs(differences).max(initial=0.0) * (at - nodes[above - 1]) * (nodes[above] - at), 0.0
-    )
+    error = np.abs(differences).max(initial=0.0) * (at - nodes[above - 1]) * (nodes[above] - at)
+    return np.where(is_humid(at), error, 0.0)
 
 
 def mean_ratios(

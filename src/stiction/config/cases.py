@@ -55,7 +55,7 @@ class PairInAir(str):
     @property
     def medium(self) -> str | None:
         """Medium of the attraction between its summits, if not the configuration's."""
-        return DRY_AIR.medium if self.ending else None
+        return DRY if self.ending else None
 
 
 class Case(str):

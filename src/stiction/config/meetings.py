@@ -77,18 +77,13 @@ class Meeting:
 
     def too_dry(self, humidities: float | list, more: float = 0, warmer: float = 0) -> str | None:
         """Refusal of the lowest humidity if the film is no liquid there, at larger angles [degrees] or warmer [K]."""
-        angles, wet = self.wetting(more), above_zero(humidities)
+        angles, wet = self.wetting(more), humid(humidities)
         return dry_air(min(wet), self.config[TEMPERATURE] + warmer, angles) if angles and wet else None
 
 
 def surfaces_of(pair: str, config: Keys) -> list[str]:
     """Names of the surfaces of a pair. A pair that is not defined, which another relation reports, is an error."""
     return [config[f"pairs.{pair}.{side}"] for side in SIDES]
-
-
-def above_zero(humidities: float | list) -> list[float]:
-    """Humidities, of one or several, without dry air."""
-    return humid(np.ravel(humidities).tolist())
 
 
 def meetings(config: Keys) -> Iterator[Meeting]:
@@ -117,7 +112,7 @@ def device_meeting(name: str, config: Keys) -> Meeting:
     for _, chart in config.given(f"{section}.chart"):
         airs.append(f"{section}.chart.humidities")
         gaps.append((f"{section}.{'chart.gaps_um' if 'gaps_um' in chart else 'gap_um'}", airs[-1]))
-    if KINDS[config[f"{section}.kind"]].release.in_any_air and above_zero(config[humidities]):
+    if KINDS[config[f"{section}.kind"]].release.in_any_air and humid(config[humidities]):
         airs.append("design.worst_humidities")
     scanned = config.scanned(*surfaces_of(pair, config))
     return Meeting(config, pair, airs, gaps, scanned, deviation=f"{section}.uncertainty.humidity")
@@ -172,7 +167,7 @@ def with_rms(config: Keys, device: str, rms: Mapping[str, float]) -> Meeting:
 def least_gap(humidities: float | list, meeting: Meeting) -> tuple[float, str]:
     """Smallest gap [µm] far above the film at the highest humidity, and its message."""
     adsorbed = sum(value for _, value in meeting.config.given(ADSORBED))
-    angles, wet = meeting.wetting(), above_zero(humidities)
+    angles, wet = meeting.wetting(), humid(humidities)
     is_wet = angles and wet
     heights = meniscus_height(wet, meeting.config[TEMPERATURE], angles) + to_si(adsorbed, "nm") if is_wet else 0.0
     height, rms = float(np.max(heights)), to_si(meeting.rms, "nm")
@@ -216,7 +211,7 @@ _TOO_SHORT = {
 def attraction_reaches_across_dry_gaps(config):
     """Require attraction across gaps in dry air. There surfaces attract each other mostly out of contact."""
     for meeting in meetings(config):
-        dry = [key for key, humidities in config.given(*meeting.airs) if has_dry(np.ravel(humidities))]
+        dry = [key for key, humidities in config.given(*meeting.airs) if has_dry(humidities)]
         if meeting.is_wetted and not dry:
             continue
         angles = " and ".join(f"{material.get('contact_angle_deg', 0):g}" for material in meeting.materials)
@@ -253,7 +248,7 @@ def corrections_are_not_extrapolated(config):
 
 def _is_within(humidities, more, covered):
     """Whether humidities, with their uncertainty, are within covered ones: dry air is one of these or not."""
-    wet, of_pair = above_zero(humidities), above_zero(covered)
-    if has_dry(np.ravel(humidities)) and not has_dry(covered) or wet and not of_pair:
+    wet, of_pair = humid(humidities), humid(covered)
+    if has_dry(humidities) and not has_dry(covered) or wet and not of_pair:
         return False
     return not wet or is_at_most(min(of_pair), min(wet) - more) and is_at_most(max(wet) + more, max(of_pair))

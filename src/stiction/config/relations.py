@@ -15,16 +15,17 @@ import numpy as np
 import yaml
 
 from stiction.config import memory
-from stiction.config.cases import DRY, IN_HUMID_AIR, NAMEABLE, Air
+from stiction.config.cases import IN_HUMID_AIR, NAMEABLE
 from stiction.config.keys import Keys, Relations
 from stiction.config.kinds import kind_of
 from stiction.config.materials import hamaker_constants, sourced_properties
-from stiction.config.meetings import above_zero, pair_meetings
+from stiction.config.meetings import pair_meetings
 from stiction.config.messages import did_you_mean, duplicates, one_line
 from stiction.config.scans import MEASURED_CORRELATION
 from stiction.config.surfaces.grid import carried, published_correlation, used_surfaces
 from stiction.config.surfaces.moments import nearest_shape
 from stiction.config.units import MB_PER_GB, NM_PER_UM, from_si, to_si
+from stiction.contact.air import DRY, Air, humid
 from stiction.contact.materials import COATING, COATING_ATTRACTION
 from stiction.errors import NotConverged
 from stiction.models import SIDES
@@ -514,16 +515,16 @@ def studies_in_humid_air_have_some(config):
 
     That of the sensitivity is about the pair of the figures.
     """
-    humid = {
-        meeting.pair: above_zero(config[f"pairs.{meeting.pair}.humidities"]) and meeting.is_wetted
+    wet = {
+        meeting.pair: humid(config[f"pairs.{meeting.pair}.humidities"]) and meeting.is_wetted
         for meeting in pair_meetings(config)
     }
     running = config["run.pairs"]
     shown = [pair for pair in running if pair == config["figures.pair"]] or running[:1]
     for name in config["run.studies"]:
-        if name in IN_HUMID_AIR and not any(humid.values()):
+        if name in IN_HUMID_AIR and not any(wet.values()):
             yield "run.studies", _without(name, "no pair of run.pairs is in any"), "run.pairs"
-        elif name == "sensitivity" and shown and not humid[shown[0]]:
+        elif name == "sensitivity" and shown and not wet[shown[0]]:
             yield (
                 "run.studies",
                 _without(name, f"pair {shown[0]} of the figures is in none"),

@@ -14,7 +14,6 @@ from stiction.config.kinds import KEYS, KINDS, ROUGHNESSES, kind_of
 from stiction.config.materials import hamaker_constant, material_of
 from stiction.config.meetings import (
     TEMPERATURE,
-    above_zero,
     device_meeting,
     least_gap,
     surfaces_of,
@@ -36,7 +35,7 @@ from stiction.config.relations import (
 from stiction.config.surfaces import process as process_surfaces
 from stiction.config.test_beams import DATA, shared_uncertainty
 from stiction.config.units import NM_PER_UM, from_si, to_si
-from stiction.contact.air import Air, is_humid
+from stiction.contact.air import Air, humid, is_humid
 from stiction.contact.materials import COATING_ATTRACTION, OF_CONTACT
 from stiction.contact.tilt import EDGE_RADIUS, Edge
 from stiction.rounding import is_at_most
@@ -183,7 +182,7 @@ def uncertain_water_of_devices_is_a_liquid(config):
                 device_meeting(name, config),
                 (deviation * (key == wrong) for wrong in keys),
             )
-            driest = min(above_zero(humidities), default=0) - drier
+            driest = min(humid(humidities), default=0) - drier
             if not is_humid(driest) or _freezes_or_boils(warmer, config[TEMPERATURE]) or meeting.too_dry(humidities):
                 continue  # other relations report it
             if refusal := meeting.too_dry(driest, more, warmer):
@@ -282,9 +281,9 @@ def uncertain_humidities_stay_within_their_limits(config):
     """Humidities are above 0 and below 1 one standard uncertainty around their values, too."""
     for name, deviation, humidities in config.entries("devices", "uncertainty.humidity", "humidities"):
         message, given = None, f"devices.{name}.humidities"
-        if deviation and not above_zero(humidities):
+        if deviation and not humid(humidities):
             message = "must be left out, because dry air has no humidity that could be uncertain"
-        elif not (is_humid(min(above_zero(humidities), default=1) - deviation) and max(humidities) + deviation < 1):
+        elif not (is_humid(min(humid(humidities), default=1) - deviation) and max(humidities) + deviation < 1):
             message = "must leave the humidities above 0 and below 1"
         if message:
             yield f"devices.{name}.uncertainty.humidity", message, given

@@ -4,13 +4,12 @@ Dry air has the humidity 0 in the code. It has no water at all, which is not a f
 other module compares a humidity with 0 (`tests/test_architecture.py`).
 """
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection
 from dataclasses import dataclass
 from numbers import Real
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
-if TYPE_CHECKING:
-    import numpy as np
+import numpy as np
 
 T = TypeVar("T")
 #: Word for the humidity of dry air in configurations, and the medium of attraction in it.
@@ -24,19 +23,19 @@ def is_possible(humidity: Any) -> bool:
     return isinstance(humidity, Real) and 0 <= humidity < 1
 
 
-def is_humid(humidity: "float | np.ndarray") -> "bool | np.ndarray":
+def is_humid(humidity: float | np.ndarray) -> bool | np.ndarray:
     """Whether air of each humidity [-] has water, in the shape of the humidity."""
     return humidity > 0
 
 
-def humid(humidities: Iterable[float]) -> list[float]:
-    """Humidities without that of dry air, in their order [-]."""
-    return [humidity for humidity in humidities if is_humid(humidity)]
+def humid(humidities: float | Collection[float]) -> list[float]:
+    """Humidities, of one or several, without that of dry air, in their order [-]."""
+    return [float(humidity) for humidity in np.ravel(humidities) if is_humid(humidity)]
 
 
-def has_dry(humidities: Collection[float]) -> bool:
-    """Whether dry air is among some humidities [-]."""
-    return 0 in humidities
+def has_dry(humidities: float | Collection[float]) -> bool:
+    """Whether dry air is among humidities, one or several [-]."""
+    return 0 in np.ravel(humidities)
 
 
 @dataclass(frozen=True)
@@ -46,10 +45,10 @@ class Air:
     Examples
     --------
     >>> humid, dry = Air(0.67), Air(0.0)
-    >>> humid.name, humid.words, humid.where, humid.ending, humid.medium
-    ('0.67', 'RH 0.67', 'at RH 0.67', '_rh067', None)
-    >>> dry.name, dry.words, dry.where, dry.ending, dry.medium
-    ('dry', 'dry', 'in dry air', '_dry', 'dry')
+    >>> humid.name, humid.words, humid.where, humid.ending
+    ('0.67', 'RH 0.67', 'at RH 0.67', '_rh067')
+    >>> dry.name, dry.words, dry.where, dry.ending
+    ('dry', 'dry', 'in dry air', '_dry')
     >>> humid.kind, dry.kind, dry.choose("its own contact", None)
     ('humid', 'dry', 'its own contact')
     """
@@ -92,11 +91,6 @@ class Air:
             return f"_{DRY}"
         texts = (f"{self.humidity:.{places}f}" for places in (2, 3, 4))
         return next((f"_rh{text.replace('.', '')}" for text in texts if float(text) == self.humidity), None)
-
-    @property
-    def medium(self) -> str | None:
-        """Medium of the attraction between summits, if not the configuration's."""
-        return self.choose(None, DRY)
 
 
 #: Dry air, whose contacts have names of their own.

@@ -13,6 +13,7 @@ from vectors import sampled_vectors
 from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.contact import forcelaw
+from stiction.contact.air import KINDS_OF_AIR
 from stiction.contact.environment import Gaps, Water
 from stiction.devices import arcs
 from stiction.devices.inference import FACTOR, SCORES, SLOPE, Discrepancy, expected_share, lognormal
@@ -96,7 +97,7 @@ def computed(
         slopes |= {(name, rh, "tip"): budget(array, rh, ARC) for name in names for rh in stuck.humidity}
     found = [dict.fromkeys(names, data) if data else {} for data in (lengths if len(means) else None, stuck)]
     settings = Settings(0, stated, dict.fromkeys(names, array), *found, DEVICE)
-    contacts = {(name, is_humid): is_humid for name in names for is_humid in (False, True)}
+    contacts = {(name, kind): kind for name in names for kind in KINDS_OF_AIR}
     found = inference.compute(budgets(), slopes, safe_lengths(), contacts, contacts, settings)
     return with_reruns(found)
 
@@ -453,7 +454,8 @@ def shapes(monkeypatch):
 
     def longer(factor):
         def of_shapes(cracks, ground, tips, water):
-            assert ground == tips == (cracks.humidity > 0) == (water.gaps.summits == "water")
+            assert ground == tips == ("humid" if cracks.humidity else "dry")
+            assert water.gaps.summits == ("water" if cracks.humidity else "dry")
             crack = float(cracks.budget.centre)
             arc = factor * float(budget(cracks.beam, cracks.humidity, ARC).centre)
             return np.zeros(2), [lognormal(crack, SCATTER), lognormal(arc, SCATTER)]

@@ -274,9 +274,8 @@ def _on_summits(plan, device):
     section = plan.config["devices"][device]
     pair, air = section["pair"], plan.air_of_devices
     corrected = air.corrected(pair, section["humidities"])
-    uncorrected = [rh for rh in air.wet(pair, section["humidities"]) if rh not in corrected]
-    dimples = {"has_dimples": True} if "dimples" in section else {}
-    return ({"on_summits": uncorrected} if uncorrected else {}) | dimples
+    alone = [rh for rh in air.wet(pair, section["humidities"]) if rh not in corrected]
+    return ({"on_summits": alone} if alone else {}) | ({"has_dimples": True} if "dimples" in section else {})
 
 
 def _device_warnings(data, settings):

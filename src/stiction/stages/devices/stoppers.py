@@ -105,7 +105,8 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
     width, found, wedges = settings.contact[1], [], []
     for humidity in settings.humidities:
         air, water = Air(humidity), settings.water.at(humidity)
-        parallel, tilted = (air.choose(data.get(wet), data.get(dry)) for wet, dry in _CONTACTS_OF_TILTED)
+        parallel = air.choose(data["contact"], data.get("dry"))
+        tilted = air.choose(data.get("tilted"), data.get("tilted_dry"))
         flat = forces(parallel, humidity, settings)
         rows = [] if settings.slopes[0] else [flat]
         if tilted is not None:
@@ -116,8 +117,6 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
     return layout_tilted(settings, np.swapaxes(found, 0, 1), np.array(wedges))
 
 
-#: Contacts of parallel and of tilted patches among the data of a tilted stopper, in humid and in dry air.
-_CONTACTS_OF_TILTED = ("contact", "dry"), ("tilted", "tilted_dry")
 #: Statistics of a tilted stopper, at each tilt and of the largest force of every patch over all tilts.
 _OVER_TILTS = ("mean", "mean_error", "stuck", "safe_force")
 

@@ -135,8 +135,7 @@ _INPUTS = {
 def _wet(plan, device):
     """Cases of a device at those of its humidities at which water condenses, by humidity."""
     section = plan.config["devices"][device]
-    wetted = plan.air_of_devices.wet(section["pair"], section["humidities"])
-    return {humidity: Case(case_id(device, humidity)) for humidity in wetted}
+    return {rh: Case(case_id(device, rh)) for rh in plan.air_of_devices.wet(section["pair"], section["humidities"])}
 
 
 def _name_of_tips(plan, case):
