@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from stiction.analysis import levels
-from stiction.analysis.levels import FINE, SUMMITS, by_levels, in_proportion, link, numbers, ratio_of_energies
+from stiction.analysis.levels import FINE, SUMMITS, by_levels, in_proportion, link, numbers, ratio_of_means
 
 #: Scatter of ln e on summits, of full contact about it, and of grids of 20 and 30 nm about full contact, with the mean
 #: ratio of each grid: pairs a at RH 0.45, b at 0.44 and c at 0.72, as 8 to 60 strips show them.
@@ -63,7 +63,7 @@ def test_the_plain_choice_of_the_luckiest_of_four_strips_misses_its_errors():
 
 def test_strips_in_proportion_hold_the_true_ratio_where_grids_are_no_control():
     rng = np.random.default_rng(3)
-    found = [ratio_of_energies(reader(drawn("c", rng, 500)), (2, 3), 0.04, rng) for _ in range(100)]
+    found = [ratio_of_means(reader(drawn("c", rng, 500)), (2, 3), 0.04, rng) for _ in range(100)]
     one, two = coverage(found)
     assert np.mean([each.chain == (FINE, SUMMITS) and each.strips[FINE] >= levels.FEWEST for each in found]) > 0.9
     assert one >= 0.60

@@ -15,12 +15,15 @@ from scipy import fft, optimize
 from small import heights_of, spectrum_of
 
 from stiction.analysis.levels import FINE, SUMMITS
+from stiction.config.cases import case_id
 from stiction.config.files import load
 from stiction.config.units import in_si
 from stiction.contact.full import elements
 from stiction.contact.gaps import work_across_film
 from stiction.plan.plan import Plan
-from stiction.stages.contact import full_contact, full_energy
+from stiction.stages.contact import full_contact, full_energy, tips_in_full_contact
+from stiction.stages.contact.curves import curve_of_tip
+from stiction.stages.contact.pairs import streams_of_sides
 
 #: Width of the edge of the film, which is a step in the package [m].
 EDGE = 2e-11
@@ -112,12 +115,12 @@ PLAN = Plan(
 
 def strips_at(humidity):
     """Strips of pair b like those of stage full_energy."""
-    settings = in_si(full_contact.Settings, job_settings(PLAN, "studies/full_contact/energy/b_rh044"))
+    settings = in_si(full_energy.Settings, job_settings(PLAN, "studies/full_contact/energy/b_rh044"))
     settings = replace(settings, humidities=(humidity,))
     if not humidity:
         settings = replace(settings, van_der_waals="dry", water=settings.water.at(0.0))
     strips = full_energy.strips_of([(heights_of(name), spectrum_of(name)) for name in PLAN.sides("b")], "b", settings)
-    strips.value(SUMMITS, 0)
+    strips.energy(SUMMITS, 0)
     return strips, strips.heights(strips.resisting[0])
 
 
@@ -138,7 +141,7 @@ def test_another_solver_with_another_wall_has_the_energy_of_full_contact_and_not
     without_attraction = elements.equilibrium(level.space, heights, state.distance).gap
     _, energy = walls_like(strips, heights).minimum(np.maximum(without_attraction, 0).astype(float))
     assert -energy == pytest.approx(level.energy(state, heights), rel=0.02)
-    assert -energy != pytest.approx(strips.value(SUMMITS, 0), rel=0.04)
+    assert -energy != pytest.approx(strips.energy(SUMMITS, 0), rel=0.04)
 
 
 @pytest.mark.slow
@@ -150,4 +153,31 @@ def test_another_solver_has_the_largest_attraction_of_full_contact():
     gap, _ = walls.minimum(np.maximum(separation.closed.gap, 0).astype(float))
     attraction = walls.largest_attraction(gap, 0.25e-9)
     assert attraction == pytest.approx(separation.pull_off, rel=0.04)
-    assert attraction != pytest.approx(strips.pull_offs[0], rel=0.04)
+    assert attraction != pytest.approx(strips.pull_off(SUMMITS, 0), rel=0.04)
+
+
+def tips_at(humidity, slope):
+    """Tips of narrow beams on pair b at a slope, and the heights of one of them."""
+    lever = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 4}
+    plan = Plan(load(PLAN.config, {"devices": {"C1": lever | {"humidities": [humidity]}}}))
+    name = f"studies/full_contact/tips/devices/{case_id('b', humidity)}"
+    settings = in_si(full_contact.Settings, job_settings(plan, name))
+    surfaces = [(heights_of(name), spectrum_of(name)) for name in PLAN.sides("b")]
+    (tips,) = tips_in_full_contact._at_slope(surfaces, settings, slope)
+    return tips, tips.draw(*streams_of_sides(settings.seed, "b")(0))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("humidity", [0.44, 0.67])
+def test_another_solver_has_the_largest_attraction_of_a_tip_and_not_that_of_its_summits(humidity):
+    tips, heights = tips_at(humidity, 0.08)
+    tilted, curve = tips.tilted(heights), curve_of_tip(tips._contact(heights), humidity, tips.water)
+    separation = tips.separated(tilted, curve)
+    film, gaps = tips.water.film(humidity), tips.water.gaps
+    work = partial(work_across_film, height=film[0], wet=gaps.through(gaps.summits), dry=gaps.through("dry"))
+    walls = Walls(tilted.astype(float), tips.space.spacing, tips.space.modulus, film, work)
+    gap, _ = walls.minimum(np.maximum(separation.closed.gap, 0).astype(float))
+    attraction = walls.largest_attraction(gap, 0.1e-9)
+    assert attraction == pytest.approx(separation.pull_off, rel=0.07)
+    on_summits = tips.on_summits(heights) / (tips.space.spacing * len(heights))
+    assert attraction != pytest.approx(on_summits, rel=0.3)

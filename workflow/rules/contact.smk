@@ -114,8 +114,9 @@ define("pair_model_error_across")
 #   full_contact_dry, tips_in_full_contact_dry -> results/studies/model_error/dry/{pair}.nc
 define("pair_model_error_dry")
 
-# Full elastic contact of pair {pair} under the beams of devices, over the sum over summits.
-#   full_energy, full_contact_dry, tips_in_full_contact_dry -> results/studies/model_error/devices/{pair}.nc
+# Full elastic contact of pair {pair} under devices, over the sum over summits.
+#   full_energy, tips_of_devices, full_contact_dry, tips_in_full_contact_dry ->
+#     results/studies/model_error/devices/{pair}.nc
 define("model_error_of_devices")
 
 # Stress of the touching summits of pair {pair} (App. A).
@@ -137,3 +138,7 @@ define("tips_in_full_contact_across")
 # Full elastic contact of the tips of beams of pair {pair} in dry air, beside the sum over summits.
 #   heights, spectrum -> results/studies/full_contact/tips/dry/{pair}.nc
 define("tips_in_full_contact_dry")
+
+# Full elastic contact of the tips of devices of {case}, beside the sum over summits.
+#   heights, spectrum -> results/studies/full_contact/tips/devices/{case}.nc
+define("tips_of_devices")

@@ -26,7 +26,7 @@ define("test_beam_budget")
 define("test_beam_tip_budget")
 
 # Chart of {case}.
-#   ground, tip_contact, chart -> results/devices/chart/{case}.nc
+#   ground, tip_contact, model_error_of_devices, chart -> results/devices/chart/{case}.nc
 define("chart")
 
 # Release long beams of {case}.
@@ -38,12 +38,12 @@ define("cracks")
 define("sizes")
 
 # Error of the model of the contact in the predictions of {device}.
-#   model_error_of_devices, full_contact, full_contact_across, full_contact_dry ->
-#     results/devices/model_error/{device}.nc
+#   model_error_of_devices, full_contact_dry -> results/devices/model_error/{device}.nc
 define("device_model_error")
 
 # Where the results of device {device} are beyond the model.
-#   safe_lengths, plasticity, stoppers, chart, left_out_gaps -> results/devices/warnings/{device}.json
+#   safe_lengths, plasticity, model_error_of_devices, stoppers, chart, left_out_gaps ->
+#     results/devices/warnings/{device}.json
 define("device_warnings")
 
 # Force laws of {case}, strips of {length} x {width} nm.
@@ -56,35 +56,36 @@ define("ground")
 define("left_out_gaps")
 
 # Simulated limits of {case}.
-#   cracks, tip_contact, safe_lengths, contact, pair_model_error_dry -> results/devices/safe_lengths/{case}.nc
+#   cracks, tip_contact, pair_model_error_dry, model_error_of_devices, safe_lengths, contact ->
+#     results/devices/safe_lengths/{case}.nc
 define("safe_lengths")
 
 # Simulated limits of {case} for many touchdowns.
-#   cracks, tip_contact -> results/devices/touchdowns/{case}.nc
+#   cracks, tip_contact, model_error_of_devices -> results/devices/touchdowns/{case}.nc
 define("touchdowns")
 
 # Simulated limits of {case} at its voltage.
-#   cracks, tip_contact, contact, model_error_of_devices -> results/devices/at_voltage/{case}.nc
+#   cracks, tip_contact, model_error_of_devices, contact -> results/devices/at_voltage/{case}.nc
 define("at_voltage")
 
 # Pull-off force of stopper {device}.
-#   device_contact, pair_model_error_dry -> results/devices/stoppers/{device}.nc
+#   device_contact, model_error_of_devices -> results/devices/stoppers/{device}.nc
 define("stoppers")
 
 # Pull-off force of the dimples of {case}.
-#   device_contact -> results/devices/dimples/{case}.nc
+#   device_contact, model_error_of_devices -> results/devices/dimples/{case}.nc
 define("dimples")
 
 # Pull-off force of tilted stopper {device}.
-#   device_contact, tilted_contact -> results/devices/tilted/{device}.nc
+#   device_contact, model_error_of_devices, tilted_contact -> results/devices/tilted/{device}.nc
 define("tilted_stoppers")
 
 # Pull-off force of stopper {device} at its voltage.
-#   device_contact -> results/devices/at_voltage/{device}.nc
+#   device_contact, model_error_of_devices -> results/devices/at_voltage/{device}.nc
 define("stoppers_at_voltage")
 
 # Fast separation of stopper {device}.
-#   device_contact, pair_model_error_dry -> results/devices/separation/{device}.nc
+#   device_contact, model_error_of_devices -> results/devices/separation/{device}.nc
 define("separation")
 
 # Fast separation of {case}, strips of {length} x {width} nm.
@@ -92,7 +93,7 @@ define("separation")
 define("fast_strips")
 
 # Fast separation of tips of {case}, {length} x {width} nm.
-#   tip_contact -> results/devices/fast_tips/{case}_{length}x{width}.nc
+#   tip_contact, model_error_of_devices -> results/devices/fast_tips/{case}_{length}x{width}.nc
 define("fast_tips")
 
 # Life of device {device}.

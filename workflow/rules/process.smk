@@ -14,7 +14,7 @@ define("process_law")
 define("process_curve")
 
 # Device {device} over two processes.
-#   process_point, process_law -> results/process/maps/{device}.nc
+#   process_point, process_law, device_model_error -> results/process/maps/{device}.nc
 define("process_map")
 
 # Device {device} at value {number} of its process.
@@ -30,8 +30,7 @@ define("process_settings")
 define("process_pairs")
 
 # Device {device} at roughness {number}.
-#   heights, spectrum, pair_model_error_dry, model_error_of_devices ->
-#     results/devices/roughness/points/{device}_{number}.nc
+#   heights, spectrum, model_error_of_devices -> results/devices/roughness/points/{device}_{number}.nc
 define("roughness_point")
 
 # Roughness that device {device} needs.

@@ -1,4 +1,4 @@
-r"""Ratio of energies in full contact to those on summits, from few strips on a fine grid and many on coarse ones.
+r"""Ratio of means in full contact to those on summits, from few strips on a fine grid and many on coarse ones.
 
 A strip on a coarse grid is a control of the same strip on the fine grid: their ratio scatters by a percent, where that
 to the sum over summits scatters by a third. A chain of levels, fine > coarse > summits, has the ratio of means
@@ -61,7 +61,7 @@ class Ratio:
     power_error: float  #: standard error of the power [-]
     chain: tuple[int, ...]  #: levels, the fine one first
     strips: dict[int, int]  #: number of strips by level
-    largest: float  #: part of one strip in the squared residuals, at most [-]
+    largest: float  #: part of one strip in the squared error, at most [-]
 
 
 class Link(NamedTuple):
@@ -71,6 +71,11 @@ class Link(NamedTuple):
     scatter: float  #: relative, of one strip about the ratio, shrunk [-]
     freedom: int  #: degrees of freedom of the scatter
     residuals: np.ndarray  #: relative, of each strip [-]
+
+    @property
+    def weight(self) -> float:
+        """Part of a squared residual in the variance of the ratio [-]."""
+        return 1 / (self.freedom * len(self.residuals))
 
     @property
     def variance(self) -> float:
@@ -163,10 +168,11 @@ def _of_chain(values, chain):
     level = max(set(values) - {SUMMITS}, key=lambda each: (len(values[each]), -each))
     n = len(values[level])
     power, power_error = scatter_ratio(values[level], values[SUMMITS][:n], np.ones(n))
-    squares = max(of_chain, key=lambda each: each.variance).residuals ** 2
+    total = sum(each.variance for each in of_chain)
+    largest = max(np.max(each.residuals**2) * each.weight for each in of_chain) / total
     ratio = float(np.prod([each.ratio for each in of_chain]))
     strips = {each: len(values[each]) for each in values}
-    return Ratio(ratio, error, power, power_error, chain, strips, float(squares.max() / squares.sum()))
+    return Ratio(ratio, error, power, power_error, chain, strips, float(largest))
 
 
 def scatter_ratio(full: np.ndarray, summits: np.ndarray, weights: np.ndarray) -> tuple[float, float]:
@@ -207,6 +213,6 @@ def in_proportion(value: Value, target: float, rng: np.random.Generator) -> Rati
     return Ratio(float(ratios.mean()), error, power, power_error, (FINE, SUMMITS), strips, part)
 
 
-def ratio_of_energies(value: Value, grids: Sequence[int], target: float, rng: np.random.Generator) -> Ratio:
+def ratio_of_means(value: Value, grids: Sequence[int], target: float, rng: np.random.Generator) -> Ratio:
     """Ratio by levels, or from strips in proportion where no control scatters little enough."""
     return by_levels(value, grids, target) or in_proportion(value, target, rng)

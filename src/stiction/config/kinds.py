@@ -68,7 +68,6 @@ class Release:
     required: tuple[str, ...] = ()  #: keys of a requirement beside its fraction
     refusal: str  #: of another requirement
     has_laws: bool  #: whether it follows the force laws of many patches, which need a chaos model
-    has_energies: bool  #: whether energies decide, which full contact corrects by levels
     in_any_air: bool  #: whether the worst humidity is sought along an axis
 
 
@@ -80,7 +79,6 @@ BEAM = Release(
     required=("length_um",),
     refusal="must come with length_um",
     has_laws=True,
-    has_energies=True,
     in_any_air=False,
 )
 #: Others are pulled off at once with their whole area.
@@ -90,7 +88,6 @@ STOPPER = Release(
     sides=lambda _kind, device, _of_pairs: tuple(device["contact_um"]),
     refusal="must come without length_um, for a stopper has a force",
     has_laws=False,
-    has_energies=False,
     in_any_air=True,
 )
 

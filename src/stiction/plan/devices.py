@@ -19,7 +19,7 @@ from stiction.config.scans import is_measured, preliminary_estimates, quantities
 from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, stated
 from stiction.config.surfaces.members import is_itself, like, members
 from stiction.config.units import NM_PER_UM, from_si, to_si
-from stiction.contact.air import DRY_AIR, has_dry, is_humid
+from stiction.contact.air import DRY_AIR, has_dry, humid, is_humid
 from stiction.contact.materials import OF_CONTACT
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.contact.tilt import EDGE_RADIUS, Edge, length_of_edge
@@ -320,6 +320,31 @@ class DevicePlan:
     def has_tips(self, pair: str) -> bool:
         """Whether any tip is on a pair."""
         return any(plan.sections[name]["pair"] == pair for plan, name in self._with_tips)
+
+    def airs_of_tips(self, pair: str) -> list[float]:
+        """Humidities, with water, of devices and counted test beams with tips on a pair, increasing."""
+        sections = [plan.sections[name] for plan, name in self._with_tips]
+        return humid(sorted({rh for section in sections if section["pair"] == pair for rh in section["humidities"]}))
+
+    def airs_of_forces(self, pair: str) -> list[float]:
+        """Humidities, with water, of stoppers, bridges and dimples on a pair, and the wettest of charts and searches.
+
+        ASSUME: changes between these are interpolated, and in drier air are those in the driest, the safe side: ratios
+        of full contact to summits grow with the humidity.
+        """
+        airs = set()
+        for name, section in self.sections.items():
+            is_flat = not self.kind(name).has_tip or "dimples" in section
+            if section["pair"] == pair and is_flat:
+                of_chart = section.get("chart", {}).get("humidities", [])
+                others = self._searched if self.kind(name).release.in_any_air else of_chart
+                airs |= {*section["humidities"], max(others, default=0)}
+        return humid(sorted(airs))
+
+    @property
+    def _searched(self):
+        """Ends of the search of the worst humidity of stoppers, if they are stated."""
+        return self.config["design"].get("worst_humidities", [])
 
     @cached_property
     def _with_tips(self):

@@ -80,34 +80,32 @@ class Environment:
         """Those of some humidities at which predictions are corrected to full elastic contact.
 
         ASSUME: by default those in dry air, where the sum over summits is on the unsafe side by up to a factor of 3.5.
-        Energies under beams of devices are corrected in humid air as well, see `by_levels`.
+        Devices are corrected in humid air as well, see `by_levels`.
         Another configuration may be given, such as that of a variant.
         """
         model = (config or self.config)["contact"].get("model")
         return [rh for rh in humidities if model == "full" or model is None and self.is_dry(pair, rh)]
 
     def by_levels(self, pair: str, humidities: Iterable[float]) -> list[float]:
-        """Those of some humidities at which energies under the beams of devices are corrected if their error allows.
+        """Those of some humidities at which devices are corrected if the error of a change allows.
 
-        ASSUME: by default in humid air, where the sum over summits errs by up to 10 % of a length. Forces are not.
+        ASSUME: by default in humid air, where the sum over summits errs by up to 10 % of a length and 80 % of a force,
+        and tips of rough pairs hold up to four times less.
         """
         is_default = "model" not in self.config["contact"]
         return self.wet(pair, humidities) if is_default and self.of_devices else []
 
-    def not_modelled(self, cases: Iterable[tuple[str, float]], of_beams: bool = False) -> dict[str, Any]:
-        """Effects missing in the results of some cases, each a pair and a humidity, by keys and for which pairs.
-
-        Energies are corrected `by_levels` if all of them are of beams.
-        """
+    def not_modelled(self, cases: Iterable[tuple[str, float]]) -> dict[str, Any]:
+        """Effects missing in the results of some cases, each a pair and a humidity, by keys and for which pairs."""
         cases = list(cases)
         pairs = list(dict.fromkeys(pair for pair, _ in cases))
         humid = {pair for pair, humidity in cases if not self.is_dry(pair, humidity)}
         touching = [pair for pair in pairs if pair in humid and self.reach(pair) == "touching"]
         nothing_attracts = self.config["van_der_waals"] == "none"
         left_out = ["van_der_waals"] if nothing_attracts else ["gaps"] * bool(touching)
-        dry = {self.is_dry(*case) for case in cases if not self.corrected(case[0], case[1:])}
-        is_by_levels = of_beams and any(self.by_levels(pair, [humidity]) for pair, humidity in cases)
-        left_out += ["forces" if is_by_levels else "summits"] * (False in dry) + ["bent"] * (True in dry)
+        left = [case for case in cases if not (self.corrected(case[0], case[1:]) or self.by_levels(case[0], case[1:]))]
+        dry = {self.is_dry(*case) for case in left}
+        left_out += ["summits"] * (False in dry) + ["bent"] * (True in dry)
         follows = {"copied": True} if pairs and all("replica" in self.config["pairs"][pair] for pair in pairs) else {}
         of_some = {"pairs": touching} if "gaps" in left_out and len(touching) < len(pairs) else {}
         return {"left_out": left_out, "humid": not all(self.is_dry(*case) for case in cases)} | of_some | follows

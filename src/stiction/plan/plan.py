@@ -271,13 +271,8 @@ class Plan:
     def states_error_of_device(self, device: str) -> bool:
         """Whether the error of the model is stated beside predictions for a device."""
         section = self.devices.sections[device]
-        return self.by_levels(device) or self.states_model_error(section["pair"], section["humidities"])
-
-    def by_levels(self, device: str, *humidities: float) -> bool:
-        """Whether energies alone are corrected at some humidities of a device, by default any of its own."""
-        section = self.devices.sections[device]
-        airs = self.air_of_devices.by_levels(section["pair"], humidities or section["humidities"])
-        return self.devices.kind(device).release.has_energies and bool(airs)
+        pair, humidities = section["pair"], section["humidities"]
+        return bool(self.air_of_devices.by_levels(pair, humidities)) or self.states_model_error(pair, humidities)
 
     def airs_of_beams(self, pair: str) -> list[float]:
         """Humidities of all beams of devices and test beams on a pair, and of their charts, increasing."""

@@ -1,5 +1,7 @@
 """Energies by levels for the beams of devices: of strips, as data, as corrections, and in a plan."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 import small
@@ -16,7 +18,7 @@ from stiction.contact.correction import NONE
 from stiction.errors import NotConverged
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
-from stiction.stages.contact import corrections, full_contact, full_energy, pair_model_error
+from stiction.stages.contact import corrections, full_contact, full_energy, pair_model_error, tips_in_full_contact
 from stiction.stages.devices import device_model_error
 from stiction.stages.devices.opening import EITHER, MIDDLE, S_SHAPE, DesignedBeam
 
@@ -29,10 +31,10 @@ def found(ratio, error, power=1.2):
     """Dataset of energies with a ratio and its relative error."""
     strips = {SUMMITS: 64, FINE: 4, 2: 10, 3: 64}
     values = Ratio(ratio, error, power, 0.05, (FINE, 2, 3, SUMMITS), strips, 0.2)
-    return full_energy.layout(values, (2e-3, 1e6))
+    return full_energy.layout(values, full_energy.Quantities(2e-3, 1e6))
 
 
-UNKNOWN = full_energy.layout(full_energy.UNKNOWN, (np.nan, np.nan), "it does not settle")
+UNKNOWN = full_energy.layout(full_energy.UNKNOWN, full_energy.NOT_FOUND, "it does not settle")
 BY_HUMIDITY = {
     ("b", 0.67): found(0.9, 0.02),
     ("b", 0.44): found(0.7, 0.03),
@@ -44,26 +46,29 @@ BY_HUMIDITY = {
 @pytest.fixture(scope="module")
 def strips():
     """Strips of a narrow pair b at RH 0.44."""
-    settings = in_si(full_energy.Settings, job_settings(small.PLAN, ENERGY))
+    settings = in_si(full_energy.Settings, job_settings(small.PLAN, ENERGY) | {"forces": True})
     return full_energy.strips_of(small.surfaces(), "b", settings)
 
 
 @pytest.mark.slow
-def test_the_state_from_a_coarse_one_has_the_energy_of_the_whole_separation(strips):
+def test_the_state_from_a_coarse_one_has_the_energy_and_the_force_of_the_whole_separation(strips):
     """The whole separation begins without attraction, on the fine grid alone."""
     level = strips.levels[FINE]
     for place in range(3):
-        nested = strips.value(FINE, place)
+        nested = strips.energy(FINE, place)
         heights = strips.heights(strips.resisting[place])
         separated = full_contact.separated(
             level.space, heights, full_contact.InAir(level.adhesion, strips.curves[place], 0.0)
         )
         assert nested == pytest.approx(separated.adhesion_energy, rel=4e-3)
+        assert strips.pull_off(FINE, place) == pytest.approx(separated.pull_off, rel=0.03)
 
 
 @pytest.mark.slow
-def test_a_coarse_grid_scatters_less_about_full_contact_than_summits_do(strips):
-    values = {level: np.array([strips.value(level, k) for k in range(6)]) for level in (FINE, 2, 3, SUMMITS)}
+@pytest.mark.parametrize("quantity", ["energy", "pull_off"])
+def test_a_coarse_grid_scatters_less_about_full_contact_than_summits_do(strips, quantity):
+    of = getattr(strips, quantity)
+    values = {level: np.array([of(level, k) for k in range(6)]) for level in (FINE, 2, 3, SUMMITS)}
     scatter = {level: np.std(np.log(values[FINE] / values[level])) for level in (2, 3, SUMMITS)}
     assert scatter[2] < scatter[3] < scatter[SUMMITS]
     assert scatter[2] < 0.05
@@ -72,7 +77,7 @@ def test_a_coarse_grid_scatters_less_about_full_contact_than_summits_do(strips):
 @pytest.mark.slow
 def test_energies_on_summits_are_those_of_the_contact_of_the_same_strips(strips):
     airs = full_contact._airs(small.surfaces(), "b", strips_settings(), 2)[1][0]
-    assert_allclose([strips.value(SUMMITS, k) for k in range(2)], [airs(k).on_summits[0] for k in range(2)], rtol=1e-5)
+    assert_allclose([strips.energy(SUMMITS, k) for k in range(2)], [airs(k).on_summits[0] for k in range(2)], rtol=1e-5)
 
 
 def strips_settings():
@@ -91,7 +96,7 @@ def test_energies_that_are_not_found_correct_nothing(monkeypatch):
     assert np.isnan(unknown.ratio)
 
 
-def test_beams_are_corrected_where_the_error_allows_and_forces_nowhere():
+def test_without_forces_energies_alone_are_corrected_where_their_error_allows():
     error = pair_model_error.of_devices(BY_HUMIDITY)
     assert error.applied.values.tolist() == [True, True, False, False]
     changes = corrections.applied(error)
@@ -102,6 +107,72 @@ def test_beams_are_corrected_where_the_error_allows_and_forces_nowhere():
     assert changes.at(0.8)[0] == changes.at(0.9)[0] == NONE
     assert changes.at(0.43)[0] == energy
     assert pull_off == NONE
+
+
+def with_forces(ratio, error):
+    """Dataset of energies and forces, these with a ratio and its relative error."""
+    strips = {SUMMITS: 64, FINE: 4, 2: 10, 3: 64}
+    forces = Ratio(ratio, error, 1.1, 0.05, (FINE, 2, 3, SUMMITS), strips, 0.2)
+    return found(0.9, 0.02).assign(full_energy._ratio(forces, full_energy.ALLOWED_OF_FORCES, "pull_off_"))
+
+
+def test_forces_are_corrected_at_their_humidities_and_between_them_with_the_error_of_the_interpolation():
+    forces = {0.44: (0.7, 0.03), 0.6: None, 0.9: (1.2, 0.02), 0.95: (1.5, 0.3)}
+    data = {("b", rh): with_forces(*of) if of else found(0.9, 0.02) for rh, of in forces.items()}
+    changes = corrections.applied(pair_model_error.of_devices(data))
+    assert changes.at(0.44)[1] == pytest.approx((0.7, 1.1, 0.03, 0.05))
+    assert changes.at(0.4)[1] == changes.at(0.44)[1], "drier air"
+    between = changes.at(0.6)[1]
+    assert between.ratio == pytest.approx(0.7 * (1.2 / 0.7) ** (0.16 / 0.46))
+    assert between.ratio_error > 0.03
+    assert changes.at(0.95)[1] == NONE, "its error is too large"
+
+
+def tips(humidity, ratios, strips=8):
+    """Study of tips at one humidity, whose forces are those on summits times a ratio at each slope."""
+    summits = np.exp(0.5 * np.random.default_rng(1).standard_normal((strips, len(ratios), 1)))
+    rows = np.stack([summits * np.reshape(ratios, (-1, 1)), summits], axis=-1)
+    settings = small_tips(humidity, len(ratios))
+    return tips_in_full_contact.layout(rows, settings)
+
+
+def small_tips(humidity, slopes):
+    """Settings with the slopes and the humidity of tips."""
+    slopes = tuple(np.geomspace(0.03, 0.2, slopes))
+    return SimpleNamespace(tilt=SimpleNamespace(slopes=slopes), humidities=(humidity,))
+
+
+def test_tips_are_corrected_at_all_humidities_and_hold_as_much_as_summits_in_saturated_air():
+    data = {("b", rh): tips(rh, ratios) for rh, ratios in ((0.44, [0.5, 0.3]), (0.9, [0.9, 1.1]))}
+    changes = corrections.applied(
+        pair_model_error.of_devices(BY_HUMIDITY | {("b", 0.97): found(1, 0.02)}, None, None, data)
+    )
+    at = {
+        rh: [change.ratio for change in changes.of_tips(rh, np.array([0.03, 0.2]))]
+        for rh in (0.4, 0.44, 0.67, 0.9, 0.97)
+    }
+    assert at[0.44] == pytest.approx([0.5, 0.3])
+    assert at[0.4] == at[0.44]
+    assert at[0.67] == pytest.approx([np.sqrt(0.45), np.sqrt(0.33)], rel=1e-9)
+    assert at[0.97] == pytest.approx([0.9**0.3, 1.1], rel=1e-9)
+    assert [change.ratio for change in pair_model_error_without_tips().of_tips(0.44, np.array([0.1]))] == [1.0]
+
+
+def test_tips_that_do_not_settle_stay_on_summits(monkeypatch):
+    def fails(*_):
+        raise NotConverged("full elastic contact does not settle", 1.0, 0.1, 3)
+
+    monkeypatch.setattr(tips_in_full_contact, "compute", fails)
+    settings = SimpleNamespace(strips=8, **vars(small_tips(0.44, 2)))
+    unknown = tips_in_full_contact.compute_for_devices([], "b", settings)
+    error = pair_model_error.of_devices(BY_HUMIDITY, tips_in_water={("b", 0.44): unknown})
+    assert not error.tip_applied.any()
+    assert corrections.applied(error).of_tips(0.44, np.array([0.1])) == [NONE]
+
+
+def pair_model_error_without_tips():
+    """Changes of a pair without tips."""
+    return corrections.applied(pair_model_error.of_devices(BY_HUMIDITY))
 
 
 def test_dry_air_keeps_its_own_corrections_beside_humid_air():
@@ -144,18 +215,24 @@ def test_a_bridge_changes_less_than_by_its_energy_because_its_force_stays():
     assert 1 < float(changed.factor.sel(shape=MIDDLE, humidity=0.44)) < 0.7**-1
 
 
-@pytest.mark.parametrize(("model", "of_beam"), [(None, "devices"), ("summits", None), ("full", "across")])
-def test_by_default_beams_of_devices_have_energies_by_levels_and_stoppers_and_pairs_have_none(model, of_beam):
+@pytest.mark.parametrize(("model", "of_device"), [(None, "devices"), ("summits", None), ("full", "across")])
+def test_by_default_devices_have_changes_by_levels_and_pairs_have_none(model, of_device):
     contact = {"contact": {"model": model}} if model else {}
     chart = {"thicknesses_um": [2, 2.6], "humidities": [0.5, 0.8]}
     devices = {"C1": CANTILEVER | {"humidities": [0.44, 0.67], "chart": chart}, "R1": BRIDGE, "S1": STOPPER}
-    plan = Plan(load(contact | {"devices": devices, "run": {"pairs": ["b"]}}))
+    plan = Plan(
+        load(contact | {"devices": devices, "run": {"pairs": ["b"]}, "design": {"worst_humidities": [0.5, 0.9]}})
+    )
     graph = Graph(plan)
-    of_ground = graph.job("devices/ground/b_rh067_1500x30000").inputs.get("model_error")
-    assert of_ground == (f"studies/model_error/{of_beam}/b" if of_beam else None)
-    assert ("model_error" in graph.job("devices/stoppers/S1").inputs) == (model == "full")
+    expected = f"studies/model_error/{of_device}/b" if of_device else None
+    for job in ("ground/b_rh067_1500x30000", "safe_lengths/C1_rh067", "chart/C1_rh067", "stoppers/S1"):
+        assert graph.job(f"devices/{job}").inputs.get("model_error") == expected
     assert ("model_error" in graph.job("forces/b_rh067_NG").inputs) == (model == "full")
     if model is None:
-        energies = graph.job("studies/model_error/devices/b").inputs["energies"]
-        assert {humidity for _, humidity in energies} == {0.44, 0.67, *plan.devices.axis("C1")}
-        assert "study" not in graph.job("studies/model_error/devices/b").inputs
+        inputs = graph.job("studies/model_error/devices/b").inputs
+        stopper = set(STOPPER["humidities"])
+        assert {rh for _, rh in inputs["energies"]} == {0.44, 0.67, 0.9, *plan.devices.axis("C1"), *stopper}
+        assert {rh for _, rh in inputs["tips_in_water"]} == {0.44, 0.67}
+        assert "study" not in inputs
+        separated = {rh for (_, rh), file in inputs["energies"].items() if graph.job(file).settings.get("forces")}
+        assert separated == {0.67, 0.9, *stopper}

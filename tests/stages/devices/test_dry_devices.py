@@ -69,7 +69,7 @@ BY_LEVELS = {"model_error": "studies/model_error/devices/b"}
         ("devices/ground/b_rh067_1500x6000", {"contact": "devices/contact/b_1500x6000", **SURFACES, **BY_LEVELS}),
         (
             "devices/stoppers/S1",
-            {"contact": "devices/contact/b_1500x6000", "dry": "devices/contact/b_dry_1500x6000"} | FULL,
+            {"contact": "devices/contact/b_1500x6000", "dry": "devices/contact/b_dry_1500x6000"} | BY_LEVELS,
         ),
     ],
 )

@@ -127,7 +127,7 @@ def test_only_humid_air_has_a_fast_separation_and_on_the_contact_of_the_device()
         by_levels = {"model_error": "studies/model_error/devices/b"}
         for name, needed in (
             ("fast_strips", {"contact": contact_of(graph.plan, case)} | by_levels),
-            ("fast_tips", {"contact": tips_of(graph.plan, case)["tips"]}),
+            ("fast_tips", {"contact": tips_of(graph.plan, case)["tips"]} | by_levels),
         ):
             assert list(inputs[name]) == humid
             if humid:

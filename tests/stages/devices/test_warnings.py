@@ -466,13 +466,11 @@ def test_a_page_without_warnings_says_so():
 
 #: Settings, and what is not in the results of devices with them.
 IN_FORCE = [
-    ({}, ["interaction of neighbouring summits"]),
-    (
-        {"attraction": {"reach": "touching"}},
-        ["attraction of solids across gaps", "interaction of neighbouring summits"],
-    ),
+    ({}, []),
+    ({"contact": {"model": "summits"}}, ["interaction of neighbouring summits"]),
+    ({"attraction": {"reach": "touching"}}, ["attraction of solids across gaps"]),
     ({"contact": {"model": "full"}}, []),
-    ({"van_der_waals": "none"}, ["van der Waals attraction of solids", "interaction of neighbouring summits"]),
+    ({"van_der_waals": "none"}, ["van der Waals attraction of solids"]),
 ]
 
 
@@ -517,8 +515,7 @@ def test_devices_in_dry_air_say_that_summits_leave_out_the_bending_of_surfaces(m
     config = load(study | {"pairs": pair, "devices": devices})
     left_out = Graph(Plan(config)).job("devices/C1.html").settings["not_modelled"]["left_out"]
     assert ("bent" in left_out) == bent
-    assert ("summits" in left_out) == (humidity != "dry" and bool(model))
-    assert ("forces" in left_out) == (humidity != "dry" and not model), "energies of beams are corrected by default"
+    assert ("summits" in left_out) == (humidity != "dry" and bool(model)), "full contact is the default"
 
 
 def test_what_pairs_leave_out_is_named_with_those_of_the_paper():

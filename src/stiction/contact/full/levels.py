@@ -67,6 +67,18 @@ class Level:
                 continue
         return elements.at_rest(*strip, curve, descent.equilibrium)[0]
 
+    def pull_off(self, heights: np.ndarray, curve: tuple[np.ndarray, np.ndarray], closed: State) -> float:
+        """Largest attraction from the state at rest [Pa], on coarse grids in long steps. Otherwise as `at_rest`."""
+        strip = self.space, self.on(heights), self.adhesion
+        for settle in (elements.equilibrium, descent.equilibrium):
+            try:
+                if self.every > 1:
+                    return elements.roughly_pulled_off(strip, closed, curve, settle)
+                return elements.pulled_off(strip, closed, curve, settle)[0]
+            except (NotConverged, ValueError) as failed:
+                reason = failed
+        raise reason
+
     def _tries(self, curve, start):
         """Solvers by elements, with the curve that leads each to rest."""
         if start is not None:

@@ -194,6 +194,13 @@ def _smooth_pair(rms, short):
     )
 
 
+def _few_strips(part):
+    return (
+        f"One strip of surface makes {in_percent(part)} of the squared error of full elastic contact. Others like it "
+        "can be missing, so that the change and its error are themselves hardly known."
+    )
+
+
 # Water
 
 
@@ -393,6 +400,7 @@ SENTENCES: dict[str, Callable[..., str]] = {
     "without_gaps_safe": _gaps,
     "flat_patches": _flat_patches,
     "smooth_pair": _smooth_pair,
+    "few_strips": _few_strips,
     "thin_film": _thin_film,
     "no_water": _no_water,
     "wide_meniscus": _wide_meniscus,
@@ -430,8 +438,6 @@ _LEFT_OUT = {
     "van_der_waals": "van der Waals attraction of solids",
     "summits": "interaction of neighbouring summits (in humid air, on surfaces of 0.5 to 1.7 nm rms, lengths come out "
     f"up to 4 % too long and forces, up to RH 0.97, up to {in_percent(largest_shortfall())} too small)",
-    "forces": "in humid air interaction of neighbouring summits in the forces on tips and bridges (energies along a "
-    "beam include it where their error allows)",
     "bent": "in dry air the bending of surfaces towards each other (on surfaces like those of the paper lengths come "
     "out 1 to 8 % too long and forces 10 to 40 % too small; on a strip of 1.6 nm rms, lengths were a third too long "
     "and the force 3.5 times too small; without contact.model summits it is included)",

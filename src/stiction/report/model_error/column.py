@@ -49,8 +49,8 @@ def caption(errors: Mapping[Any, xr.Dataset]) -> str:
     """Meaning of the column, from the datasets with the errors."""
     applied = {bool(flag) for error in errors.values() for flag in error.applied}
     does = "has changed what is stated" if True in applied else "would change what is stated"
-    by_levels = any("energies_alone" in error and error.energies_alone.any() for error in errors.values())
-    others = ", or would change it where it is not known to 1 %" if by_levels else IN_DRY_AIR
+    by_levels = any("by_levels" in error and error.by_levels.any() for error in errors.values())
+    others = ", or would change it where its error is too large" if by_levels else IN_DRY_AIR
     does += others * (len(applied) > 1)
     own = " Where it has, bounds contain its standard error." * (True in applied)
     return (

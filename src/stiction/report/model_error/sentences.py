@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from stiction.contact.air import humid
 from stiction.plan.names import by_name
 from stiction.report.format import airs, signed
 from stiction.report.model_error.column import change
@@ -52,14 +53,20 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
 
 def _of_tips(error):
     """Sentences on what full contact does to tips, with and without a correction."""
-    applied = error.applied.values & ~error.energies_alone.values
+    applied = np.where(error.by_levels, error.get("tips_applied", False), error.applied)
     known, others = (list(map(float, error.humidity.values[flags])) for flags in (applied, ~applied))
     how = "at the upper end of what these show with 95 % confidence."
     said = [f"Tips have changed as tilted strips with their edge do, {how}"] if known else []
     where = f" {airs(others)}" * bool(known)
-    return (
-        [*said, f"It is not known for what the tip holds{where}."] if error.energies_alone.any() or not known else said
-    )
+    unknown = error.by_levels.any() if known else True
+    said += [f"It is not known for what the tip holds{where}."] if unknown and others else []
+    return said + [_ratio_of_tips(error, rh) for rh in humid(known) if "least_of_tips" in error]
+
+
+def _ratio_of_tips(error, humidity):
+    """Sentence on what tips hold over what summits hold, by their slope."""
+    least, largest = (float(error[f"{end}_of_tips"].sel(humidity=humidity)) for end in ("least", "largest"))
+    return f"They hold {least:.2f} to {largest:.2f} times what summits do {airs([humidity])}, depending on their slope."
 
 
 def _percent(row):

@@ -9,8 +9,16 @@ import xarray as xr
 from stiction.contact.correction import Change, Correction, TipChanges
 
 S = TypeVar("S")
-#: Variables of energies where no correction is applied.
-UNCHANGED = {"energy_ratio": 1.0, "energy_ratio_error": 0.0, "energy_power": 1.0, "energy_power_error": 0.0}
+#: Variables where no correction is applied, by the flag that says so.
+UNCHANGED = {
+    "applied": {"energy_ratio": 1.0, "energy_ratio_error": 0.0, "energy_power": 1.0, "energy_power_error": 0.0},
+    "pull_off_applied": {
+        "pull_off_ratio": 1.0,
+        "pull_off_ratio_error": 0.0,
+        "pull_off_power": 1.0,
+        "pull_off_power_error": 0.0,
+    },
+}
 
 
 def correction(error: xr.Dataset) -> Correction:
@@ -79,7 +87,7 @@ def applied(error: xr.Dataset) -> Correction:
     """
     if "nearest" not in error:
         return correction(error.isel(humidity=error.applied.values))
-    kept = {name: error[name].where(error.applied, same) for name, same in UNCHANGED.items()}
+    kept = {name: error[name].where(error[flag], same) for flag, of in UNCHANGED.items() for name, same in of.items()}
     return replace(correction(error.assign(kept)), nearest=True)
 
 

@@ -1,13 +1,13 @@
-"""Energies of a pair in full elastic contact at one humidity, by levels, for the beams of devices.
+"""Energies and largest attractions of a pair in full elastic contact at one humidity, by levels, for devices.
 
-The state at rest alone has the energy. Strips without summits that resist are left out, as in
-`stiction.stages.contact.full_contact`.
+The state at rest alone has the energy. Where devices need forces, each strip is separated from there. Strips without
+summits that resist are left out, as in `stiction.stages.contact.full_contact`.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -25,15 +25,33 @@ from stiction.errors import NotConverged
 from stiction.plan.stage import At, Running, Stage, select
 from stiction.stages.contact import contact, full_contact
 from stiction.stages.contact.curves import force_curves
-from stiction.stages.contact.full_contact import Settings
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
 from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 from stiction.streams import stream
 
 #: Largest relative error of the ratio of energies with which predictions are corrected: 1 % of a length.
 ALLOWED = 0.04
+#: Relative error of the ratio of forces for which strips are drawn, and the largest with which forces are corrected.
+OF_FORCES, ALLOWED_OF_FORCES = 0.04, 0.1
 #: Coarse grids: every n-th point.
 GRIDS = (2, 3)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings(full_contact.Settings):
+    """Settings of the strips of a pair, at one humidity."""
+
+    forces: bool = False  #: whether devices need forces as well
+
+
+class Quantities(NamedTuple):
+    """Energy e and largest attraction f_max of a strip, NaN if they are not found or not wanted."""
+
+    energy: float  #: [J m⁻²]
+    pull_off: float  #: [Pa]
+
+
+NOT_FOUND = Quantities(np.nan, np.nan)
 
 
 @dataclass(frozen=True)
@@ -45,10 +63,10 @@ class Strips:
     levels: dict[int, Level]  #: by their every n-th point
     water: Water
     humidity: float  #: [-]
+    forces: bool = False  #: whether strips are separated
     resisting: list[int] = field(default_factory=list)  #: numbers of the first strips with summits that resist
     curves: list[tuple] = field(default_factory=list)  #: their distances [m] and forces [Pa] on summits
-    values: dict[tuple[int, int], float] = field(default_factory=dict)  #: energies by level and place [J m⁻²]
-    pull_offs: list[float] = field(default_factory=list)  #: largest attractions on summits [Pa]
+    values: dict[tuple[int, int], Quantities] = field(default_factory=dict)  #: by level and place
     last: dict[int, np.ndarray] = field(default_factory=dict)  #: heights of the last strip by its number [m]
 
     def heights(self, number: int) -> np.ndarray:
@@ -58,8 +76,16 @@ class Strips:
             self.last[number] = self.pair.draw(*self.streams(number))
         return self.last[number]
 
-    def value(self, level: int, place: int) -> float:
+    def energy(self, level: int, place: int) -> float:
         """Energy of a strip that resists, by its place among these, NaN if a coarse level finds none [J m⁻²]."""
+        return self._value(level, place).energy
+
+    def pull_off(self, level: int, place: int) -> float:
+        """Largest attraction [Pa], as `energy`."""
+        return self._value(level, place).pull_off
+
+    def _value(self, level, place):
+        """Quantities of a strip that resists."""
         while len(self.resisting) <= place:
             self._draw_another()
         if (level, place) not in self.values:
@@ -78,25 +104,25 @@ class Strips:
             if forcelaw.resists(force := curve(0).copy()):
                 break
             number += 1
-        self.values[SUMMITS, len(self.resisting)] = forcelaw.adhesion_energy(
-            distance, force, 0.0 if beyond is None else float(beyond[0])
-        )
+        energy = forcelaw.adhesion_energy(distance, force, 0.0 if beyond is None else float(beyond[0]))
+        self.values[SUMMITS, len(self.resisting)] = Quantities(energy, forcelaw.extremum(distance, force)[1])
         self.resisting.append(number)
         self.curves.append((distance, force))
-        self.pull_offs.append(forcelaw.extremum(distance, force)[1])
 
     def _compute(self, level, place):
-        """Energy of a strip on a grid, on the fine one from the state on the next coarser one."""
-        heights, start = self.heights(self.resisting[place]), None
+        """Quantities of a strip on a grid, on the fine one from the state on the next coarser one."""
+        heights, curve, start = self.heights(self.resisting[place]), self.curves[place], None
         for every in (2, FINE) if level == FINE and 2 in self.levels else (level,):
             try:
-                state = self.levels[every].at_rest(heights, self.curves[place], start)
+                on_grid = self.levels[every]
+                state = on_grid.at_rest(heights, curve, start)
+                largest = on_grid.pull_off(heights, curve, state) if self.forces else np.nan
             except (KeyError, NotConverged, ValueError):
                 if every == FINE:
                     raise
-                self.values[every, place] = np.nan
+                self.values[every, place] = NOT_FOUND
                 continue
-            self.values[every, place] = self.levels[every].energy(state, heights)
+            self.values[every, place] = Quantities(on_grid.energy(state, heights), largest)
             start = refined(state, 2, self.levels[FINE].space.shape) if every == 2 else None
 
 
@@ -121,50 +147,56 @@ def strips_of(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, sett
             grids[every] = Level.of(every, fine, adhesion)
         except ValueError:  # no control
             continue
-    return Strips(drawn, streams_of_sides(settings.seed, pair), grids, water, humidity)
+    return Strips(drawn, streams_of_sides(settings.seed, pair), grids, water, humidity, settings.forces)
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], case: Case, settings: Settings) -> xr.Dataset:
-    """Ratio and power of the energies in full contact to those on summits, unknown where strips do not settle."""
-    rng = stream(settings.seed, "full_energy", case.pair)
+    """Ratios and powers of full contact to summits, of energies and if wanted of forces, unknown without rest."""
+    energy, pull_off, means, reason = UNKNOWN, UNKNOWN, NOT_FOUND, ""
     try:
         strips = strips_of(surfaces, case.pair, settings)
-        found = levels.ratio_of_energies(strips.value, GRIDS, ALLOWED, rng)
-    except (NotConverged, ValueError) as reason:
-        return layout(UNKNOWN, (np.nan, np.nan), str(reason))
-    count = len(strips.resisting)
-    energies = [strips.values[SUMMITS, k] for k in range(count)]
-    return layout(found, (float(np.mean(energies)), float(np.mean(strips.pull_offs))))
+        random = stream(settings.seed, "full_energy", case.pair)
+        energy = levels.ratio_of_means(strips.energy, GRIDS, ALLOWED, random)
+        means = Quantities(*np.mean([strips.values[SUMMITS, k] for k in range(len(strips.resisting))], axis=0))
+        if settings.forces:
+            random = stream(settings.seed, "full_force", case.pair)
+            pull_off = levels.ratio_of_means(strips.pull_off, GRIDS, OF_FORCES, random)
+    except (NotConverged, ValueError) as failed:
+        reason = str(failed)
+    of_forces = _ratio(pull_off, ALLOWED_OF_FORCES, "pull_off_") if settings.forces else {}
+    return layout(energy, means, reason).assign(of_forces)
 
 
-#: Ratio of energies that are not found.
+#: Ratio that is not found.
 UNKNOWN = Ratio(np.nan, np.nan, np.nan, np.nan, (FINE, SUMMITS), {}, np.nan)
 
 
-def layout(found: Ratio, on_summits: tuple[float, float], reason: str = "") -> xr.Dataset:
-    """Dataset of a ratio, of the means of e [J m⁻²] and f_max [Pa] on summits, and why it is not known."""
-    known = {name: ((), getattr(found, name), {"units": "1"}) for name in ("ratio", "power", "power_error")}
-    means = (((), mean, {"units": unit}) for mean, unit in zip(on_summits, ("J m-2", "Pa"), strict=True))
+def layout(found: Ratio, on_summits: Quantities, reason: str = "") -> xr.Dataset:
+    """Dataset of the ratio of energies, the means on summits, and why it is not known."""
+    units = {"energy": "J m-2", "pull_off": "Pa"}
+    means = {f"summit_{name}": ((), getattr(on_summits, name), {"units": unit}) for name, unit in units.items()}
     every = [SUMMITS, FINE, *GRIDS]
-    return xr.Dataset(
-        known
-        | {"ratio_error": ((), found.ratio * found.error, {"units": "1"})}
-        | dict(zip(("summit_energy", "summit_pull_off"), means, strict=True))
-        | {
-            "strips": ("every", [found.strips.get(level, 0) for level in every]),
-            "in_chain": ("every", [level in found.chain for level in every]),
-            "largest_residual": ((), found.largest, {"units": "1"}),
-            "applied": ((), bool(found.error <= ALLOWED)),
-        },
-        coords={"every": every},
-        attrs={"reason": reason},
-    )
+    return xr.Dataset(_ratio(found, ALLOWED) | means, coords={"every": every}, attrs={"reason": reason})
+
+
+def _ratio(found, allowed, prefix=""):
+    """Variables of a ratio, which corrects predictions with at most an allowed error."""
+    every = [SUMMITS, FINE, *GRIDS]
+    known = {name: getattr(found, name) for name in ("ratio", "power", "power_error")}
+    known |= {"ratio_error": found.ratio * found.error, "largest_residual": found.largest}
+    columns = {name: ((), value, {"units": "1"}) for name, value in known.items()} | {
+        "strips": ("every", [found.strips.get(level, 0) for level in every]),
+        "in_chain": ("every", [level in found.chain for level in every]),
+        "applied": ((), bool(found.error <= allowed)),
+    }
+    return {f"{prefix}{name}": column for name, column in columns.items()}
 
 
 def settings_of(plan: Any, at: At) -> dict[str, Any]:
     """Settings of the strips of a pair in the air of devices."""
     seen = plan.seen_by(at.case.pair, ELASTIC, samples=None)
     own = {"humidities": [at.case.humidity], "strips": levels.PILOT}
+    own |= {"forces": True} if at.case.humidity in plan.devices.airs_of_forces(at.case.pair) else {}
     return select(Settings, seen | own | {"water": plan.air_of_devices.water(at.case.pair)})
 
 

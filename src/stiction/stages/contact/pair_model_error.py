@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from stiction.analysis.levels import half_of_two
 from stiction.analysis.model_error import interpolation_error, length_factors, mean_ratios, scatter_ratios, tip_ratios
 from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.config.cases import case_id
@@ -16,9 +17,6 @@ from stiction.plan.names import by_case
 from stiction.plan.stage import Running, Stage
 from stiction.stages.contact import full_contact, tips_in_full_contact
 from stiction.stages.contact.corrections import study_of
-
-#: Variables of datasets of stage full_energy for devices.
-_OF_ENERGIES = ["ratio", "ratio_error", "power", "power_error", "applied", "summit_energy", "summit_pull_off"]
 
 
 @dataclass(frozen=True)
@@ -53,41 +51,104 @@ def compute(study: xr.Dataset, settings: Settings, tips: xr.Dataset | None = Non
 
 
 def of_devices(
-    energies: Mapping[Any, xr.Dataset], study: xr.Dataset | None = None, tips: xr.Dataset | None = None
+    energies: Mapping[Any, xr.Dataset],
+    study: xr.Dataset | None = None,
+    tips: xr.Dataset | None = None,
+    tips_in_water: Mapping[Any, xr.Dataset] | None = None,
 ) -> xr.Dataset:
-    """Changes of a pair for the beams of devices, from datasets of stage full_energy, and all changes in dry air.
+    """Changes of a pair for devices, from datasets of stages full_energy and tips_of_devices, and all in dry air.
 
-    ``study`` and ``tips`` have dry air, if a beam is in it. In humid air no forces are changed.
+    ``study`` and ``tips`` have dry air, if a device is in it. Humid air without forces or tips has none changed.
     """
-    by_humidity = [
-        one[_OF_ENERGIES].reset_coords(drop=True).drop_encoding().expand_dims(humidity=[rh])
-        for (_, rh), one in energies.items()
-    ]
-    humid = _by_levels(xr.concat(by_humidity, "humidity").sortby("humidity")).assign(nearest=((), True))
+    humid = _by_levels({rh: one for (_, rh), one in sorted(energies.items(), key=lambda each: each[0][1])})
+    if settled := [one for one in (tips_in_water or {}).values() if one.force.notnull().all()]:
+        humid = humid.assign(_of_tips_in_water(settled, humid.humidity.values))
+    else:
+        humid = humid.assign(tip_applied=("humidity", np.full(humid.sizes["humidity"], False)))
+    humid = humid.assign(nearest=((), True))
     if study is None:
         return humid
     study, tips = (each if each is None else each.sel(humidity=[0.0]) for each in (study, tips))
     dry = compute(study, Settings((0.0,), (0.0,)), tips).drop_vars("strips")
-    unchanged = {"tip_ratio": 1.0, "tip_error": 0.0, "tip_power": 1.0}
+    dry = dry.assign({f"{of}_applied": dry.applied for of in ("pull_off", "tip")})
     joined = xr.concat([dry, humid], "humidity", data_vars="all", coords="minimal", compat="override", join="outer")
-    joined = joined.fillna({name: same for name, same in unchanged.items() if name in dry})
-    return joined.assign(applied=joined.applied.astype(bool), nearest=((), True))
+    joined = joined.fillna({name: same for name, same in _NO_TIPS.items() if name in joined})
+    flags = {name: joined[name].astype(bool) for name in ("applied", "pull_off_applied", "tip_applied")}
+    return joined.assign(flags | {"nearest": ((), True)})
 
 
-def _by_levels(found):
-    """Variables of `layout` of datasets of stage full_energy along the humidity."""
-    ratio, error = found.ratio.values, found.ratio_error.values
-    length, same = ratio**CRACK_LENGTH_POWER, (np.ones(len(ratio)), np.zeros(len(ratio)))
+#: Changes of tips where none are known.
+_NO_TIPS = {"tip_ratio": 1.0, "tip_error": 0.0, "tip_power": 1.0}
+
+
+def _by_levels(energies):
+    """Variables of `layout` of datasets of stage full_energy by increasing humidity."""
+    at = np.array(list(energies))
+
+    def columns(*names):
+        """Values of some variables, NaN where a dataset has none (n, h)."""
+        return np.array([[float(one.get(name, np.nan)) for one in energies.values()] for name in names])
+
+    ratio, error, *of_power = columns("ratio", "ratio_error", "power", "power_error")
+    length = ratio**CRACK_LENGTH_POWER
+    forces = columns("pull_off_ratio", "pull_off_ratio_error", "pull_off_power", "pull_off_power_error")
+    of_ratio, of_forces = _between(forces, columns("pull_off_applied")[0], at)
     ratios = {
         "energy_ratio": (ratio, error),
-        "pull_off_ratio": same,
-        "energy_power": (found.power.values, found.power_error.values),
-        "pull_off_power": same,
+        "pull_off_ratio": of_ratio[:2],
+        "energy_power": of_power,
+        "pull_off_power": of_ratio[2:],
         "length_factor": (length, abs(CRACK_LENGTH_POWER) * length * error / ratio),
     }
-    at = found.humidity.values
-    laid_out = layout(ratios, at, at, 0, at[found.applied.values]).drop_vars("strips")
-    return laid_out.assign(found[["summit_energy", "summit_pull_off"]])
+    laid_out = layout(ratios, at, at, 0, at[columns("applied")[0] > 0]).drop_vars("strips")
+    others = "summit_energy", "summit_pull_off", "largest_residual", "pull_off_largest_residual"
+    own = dict(zip(others, columns(*others), strict=True)) | {"pull_off_applied": of_forces}
+    return laid_out.assign({name: ("humidity", values) for name, values in own.items()})
+
+
+def _between(forces, applied, at):
+    """Ratio and power of forces with their errors (4, h), and whether they are applied, at all humidities (h,).
+
+    Those computed remain. Others are interpolated between applied ones, or those at the nearest, with the error of
+    `stiction.analysis.model_error.interpolation_error`.
+    """
+    used, computed = applied > 0, np.isfinite(forces[0])
+    if not used.any():
+        return np.where(computed, forces, [[1.0], [0.0], [1.0], [0.0]]), used
+    ratio, error, power, power_error = forces[:, used]
+    within = np.clip(at, at[used][0], at[used][-1])
+    others = interpolated(ratio, at[used], within)
+    more = others * interpolation_error(np.log(ratio), at[used], within)
+    rest = [np.interp(within, at[used], each) for each in (error, power, power_error)]
+    filled = np.array([others, np.hypot(rest[0], more), *rest[1:]])
+    return np.where(computed, forces, filled), np.where(computed, used, True)
+
+
+def _of_tips_in_water(studies, at):
+    """Variables of the changes of tips at all humidities (h,), between those computed as `_between`.
+
+    The error of few strips is half of what covers two by Student's t. ASSUME: beyond the wettest, ratios below 1 rise
+    to 1 in saturated air, the safe side, and others stay.
+    """
+    studies = sorted(studies, key=lambda one: float(one.humidity[0]))
+    computed = np.array([float(one.humidity[0]) for one in studies])
+    read = tips_in_full_contact.models, tips_in_full_contact.more_on_summits
+    found = [tip_ratios(*read[0](one), read[1](one)) for one in studies]
+    wider = [[half_of_two([1.0], [one.sizes["strip"] - 1])] for one in studies]
+    means, errors = (np.concatenate(each) for each in zip(*(one[:2] for one in found), strict=True))
+    powers, within = np.concatenate([one.powers for one in found]), np.maximum(at, computed[0])
+    between = [interpolation_error(np.log(each), computed, within) for each in means.T]
+    ends, means = np.append(computed, 1.0), np.vstack([means, np.maximum(means[-1], 1.0)])
+    errors = [np.interp(within, computed, each) for each in (errors * wider).T]
+    over = "humidity", "slope"
+    ratios = [interpolated(each, ends, within) for each in means.T]
+    return {
+        "tip_ratio": (over, np.transpose(ratios), {"units": "1"}),
+        "tip_error": (over, np.hypot(errors, between).T, {"units": "1"}),
+        "tip_power": ("humidity", np.interp(within, computed, powers), {"units": "1"}),
+        "tip_applied": ("humidity", np.full(len(at), True)),
+        "slope": ("slope", studies[0].slope.values, {"units": "1"}),
+    }
 
 
 def _of_tips(tips, given):
@@ -157,15 +218,24 @@ def _stage(name, between, forces):
 
 
 def _inputs_of_devices(plan, at):
-    """Energies of a pair by humidity, and its study in dry air if a beam is in it."""
-    airs = plan.airs_of_beams(at.pair)
-    humid = plan.air_of_devices.by_levels(at.pair, airs)
-    energies = {"energies": by_case("studies/full_contact/energy", [case_id(at.pair, rh) for rh in humid])}
+    """Energies, forces and tips of a pair by humidity, and its studies in dry air if a device is in it."""
+    devices, pair, by_levels = plan.devices, at.pair, plan.air_of_devices.by_levels
+    stated = {rh for section in devices.sections.values() if section["pair"] == pair for rh in section["humidities"]}
+    airs = sorted({*plan.airs_of_beams(pair), *devices.airs_of_forces(pair), *stated})
+    inputs = {"energies": by_case("studies/full_contact/energy", _cases(pair, by_levels(pair, airs)))}
+    if wet := by_levels(pair, devices.airs_of_tips(pair)):
+        inputs["tips_in_water"] = by_case("studies/full_contact/tips/devices", _cases(pair, wet))
     if not has_dry(airs):
-        return energies
-    water, has_tips = plan.air_of_devices.water(at.pair), plan.devices.has_tips(at.pair)
-    folders = {"study": "studies/full_contact"} | ({"tips": "studies/full_contact/tips"} if has_tips else {})
-    return energies | {key: study_of(plan, folder, at.pair, water) for key, folder in folders.items()}
+        return inputs
+    water = plan.air_of_devices.water(pair)
+    folders = {"study": "studies/full_contact"}
+    folders |= {"tips": "studies/full_contact/tips"} if devices.has_tips(pair) else {}
+    return inputs | {key: study_of(plan, folder, pair, water) for key, folder in folders.items()}
+
+
+def _cases(pair, humidities):
+    """Names of the cases of a pair at some humidities."""
+    return [case_id(pair, rh) for rh in humidities]
 
 
 STAGES = (
@@ -177,7 +247,7 @@ STAGES = (
         "studies/model_error/devices/{pair}",
         inputs=_inputs_of_devices,
         compute=of_devices,
-        message="Full elastic contact of pair {pair} under the beams of devices, over the sum over summits.",
+        message="Full elastic contact of pair {pair} under devices, over the sum over summits.",
         running=Running(priority=1),
     ),
 )

@@ -72,7 +72,7 @@ def tips_of(plan: Any, case: Case) -> dict[str, str]:
 def corrected_tips_of(plan: Any, case: Case) -> dict[str, str]:
     """Contact of the tips of a cantilever with its correction, none for a bridge, see `tips_of`."""
     tips = tips_of(plan, case)
-    return tips | corrections_of_forces(plan, case.device, case.humidity) if tips else {}
+    return tips | corrections_of(plan, case.device, case.humidity) if tips else {}
 
 
 def patch_of_tips(plan: Any, case: Case) -> Patch:
@@ -81,17 +81,12 @@ def patch_of_tips(plan: Any, case: Case) -> Patch:
 
 
 def corrections_of(plan: Any, device: str, *humidities: float) -> dict[str, str]:
-    """Corrections of the pair of a device at some humidities, by default all of its own: of forces, or by levels."""
+    """Corrections of the pair of a device at some humidities, by default all of its own: by levels, or of its study."""
     section = plan.config["devices"][device]
-    if plan.by_levels(device, *humidities):
-        return {"model_error": f"studies/model_error/devices/{section['pair']}"}
-    return corrections_of_forces(plan, device, *humidities or section["humidities"])
-
-
-def corrections_of_forces(plan: Any, device: str, *humidities: float) -> dict[str, str]:
-    """Corrections that change forces of a device, see `stiction.stages.contact.corrections.correction_inputs`."""
-    pair = plan.config["devices"][device]["pair"]
-    return correction_inputs(plan, pair, humidities, water=plan.air_of_devices.water(pair))
+    pair, airs = section["pair"], humidities or section["humidities"]
+    if plan.air_of_devices.by_levels(pair, airs):
+        return {"model_error": f"studies/model_error/devices/{pair}"}
+    return correction_inputs(plan, pair, airs, water=plan.air_of_devices.water(pair))
 
 
 def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:

@@ -23,7 +23,7 @@ class Settings:
     applied: tuple[float, ...] = ()  #: those at which the predictions are corrected [-]
     across_gaps: bool = False  #: whether solids attract each other across gaps, in both models
     condenses: bool = True  #: whether water condenses between the surfaces; otherwise all air is dry
-    by_levels: bool = False  #: whether energies alone are corrected in humid air
+    by_levels: bool = False  #: whether changes in humid air are those for devices, by levels
 
     @property
     def airs(self) -> np.ndarray:
@@ -32,8 +32,13 @@ class Settings:
 
     @property
     def is_by_levels(self) -> np.ndarray:
-        """Humidities at which energies alone are corrected (h,) bool."""
+        """Humidities at which changes are by levels (h,) bool."""
         return self.by_levels & is_humid(self.airs)
+
+    @property
+    def shapes(self) -> tuple[str, ...]:
+        """End states, the force of a stopper in place of these."""
+        return self.device.opening.shapes if self.device else (FORCE,)
 
 
 def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.ndarray:
@@ -42,7 +47,7 @@ def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.n
     The means are those of the energy e [J m⁻²] and of the largest attraction f_max [Pa], (h, 2).
 
     ASSUME: the strips of the pair give the ratios of a patch of any size, and a safe length changes like the length on
-    the mean contact. What tips hold is not known: their strips are tilted, on which full contact is not computed.
+    the mean contact. Tips have no factor of their own: each slope has another one.
     """
     if device is None:
         return means[:, 1]
@@ -55,44 +60,65 @@ def response(shape: str, means: np.ndarray, device: DesignedBeam | None) -> np.n
 def compute(settings: Settings, study: xr.Dataset | None = None, by_levels: xr.Dataset | None = None) -> xr.Dataset:
     """Factor of every length, or of the force, at the humidities of a device.
 
-    ``study`` has strips in full contact, at all humidities or in dry air. ``by_levels`` has the energies of beams in
-    humid air, from stage model_error_of_devices, if these are corrected by levels.
+    ``study`` has strips in full contact, at all humidities or in dry air. ``by_levels`` has the changes in humid air,
+    from stage model_error_of_devices, if these are by levels.
     """
-    shapes = settings.device.opening.shapes if settings.device else (FORCE,)
-    of_strips = None if study is None else _of_strips(study, shapes, settings)
+    of_strips = None if study is None else _of_strips(study, settings)
     if by_levels is None:
-        return layout(*of_strips, shapes, settings, study.humidity.values)
-    known = by_levels.reindex(humidity=list(settings.airs), fill_value={"applied": False})
-    found = _of_energies(known, shapes, settings)
+        return layout(*of_strips, settings.shapes, settings, study.humidity.values)
+    missing = dict.fromkeys(_FLAGS, False)
+    known = by_levels.reindex(humidity=list(settings.airs), fill_value=missing)
+    found = _of_ratios(known, settings)
     if study is not None:
         found = [np.where(is_humid(settings.airs), *each) for each in zip(found, of_strips, strict=True)]
-    own = replace(settings, applied=tuple(np.array(settings.humidities)[known.applied.values]))
-    return layout(*found, shapes, own, settings.airs)
+    applied = np.all([known[flag].values for flag in _FLAGS_OF[settings.shapes[0]]], axis=0)
+    own = replace(settings, applied=tuple(np.array(settings.humidities)[applied]))
+    return layout(*found, settings.shapes, own, settings.airs).assign(_of_tips(known))
 
 
-def _of_strips(study, shapes, settings):
+#: Whether changes of energies, of forces and of tips are applied, and those of these on which a response rests.
+_FLAGS = ("applied", "pull_off_applied", "tip_applied")
+_FLAGS_OF = {S_SHAPE: _FLAGS[:1], MIDDLE: _FLAGS[:2], FORCE: _FLAGS[1:2]}
+
+
+def _of_tips(known):
+    """Least and largest ratio of tips over the slopes, and whether it is applied, if the pair has tips."""
+    if "tip_ratio" not in known:
+        return {}
+    ends = known.tip_ratio.where(known.tip_applied)
+    unit = {"units": "1"}
+    return {
+        "least_of_tips": ends.min("slope").assign_attrs(unit),
+        "largest_of_tips": ends.max("slope").assign_attrs(unit),
+        "tips_applied": known.tip_applied,
+    }
+
+
+def _of_strips(study, settings):
     """Factors by strips in full contact, and their errors (shapes, humidities) [-]."""
     computed, models = study.humidity.values, full_contact.moved_models(study)
     of_shapes = [
         factors(lambda means, of=shape: response(of, means, settings.device), *models, computed, settings.airs)
-        for shape in shapes
+        for shape in settings.shapes
     ]
     return np.moveaxis(of_shapes, 1, 0)
 
 
-def _of_energies(known, shapes, settings):
-    """Factors of the lengths of a beam with corrected energies, and their errors (shapes, humidities) [-]."""
-    found, at = np.full((2, len(shapes), known.sizes["humidity"]), np.nan), np.isfinite(known.summit_energy.values)
-    means = np.stack([known.summit_energy.values, known.summit_pull_off.values], axis=1)[at]
+def _of_ratios(known, settings):
+    """Factors of lengths or of the force by changes by levels, and their errors (shapes, humidities) [-]."""
+    found, at = np.full((2, len(settings.shapes), known.sizes["humidity"]), np.nan), np.isfinite(known.energy_ratio)
+    means, ratios, errors = (
+        np.stack([known[f"{prefix}{of}{suffix}"].values[at] for of in ("energy", "pull_off")], axis=1)
+        for prefix, suffix in (("summit_", ""), ("", "_ratio"), ("", "_ratio_error"))
+    )
 
-    def lengths(ratio):
-        """Lengths with a ratio of the energies at each humidity (shapes, humidities) [m]."""
-        changed = means * np.stack([ratio, np.ones(len(ratio))], axis=1)
-        return np.array([response(shape, changed, settings.device) for shape in shapes])
+    def responses(changes):
+        """Responses with some changes of both means (shapes, humidities)."""
+        return np.array([response(shape, means * changes, settings.device) for shape in settings.shapes])
 
-    ratio, error = known.energy_ratio.values[at], known.energy_ratio_error.values[at]
-    changed, base = lengths(ratio), lengths(np.ones(len(ratio)))
-    found[:, :, at] = changed / base, np.abs(lengths(ratio + error) - changed) / base
+    base, changed = responses(np.ones_like(ratios)), responses(ratios)
+    parts = [responses(ratios + errors * one) - changed for one in np.eye(2)]
+    found[:, :, at] = changed / base, np.hypot(*parts) / base
     return found
 
 
@@ -110,7 +136,7 @@ def layout(
             "factor_error": (names, errors, {"units": "1"}),
             "interpolated": ("humidity", ~np.isin(settings.airs, computed)),
             "applied": ("humidity", np.isin(settings.humidities, settings.applied)),
-            "energies_alone": ("humidity", settings.is_by_levels),
+            "by_levels": ("humidity", settings.is_by_levels),
             "across_gaps": ((), settings.across_gaps),
         },
         coords={"shape": list(shapes), "humidity": ("humidity", list(settings.humidities), {"units": "1"})},
@@ -118,11 +144,11 @@ def layout(
 
 
 def _inputs(plan, at):
-    """Study of the pair of a device, with the attraction across gaps that the device has, and energies by levels."""
+    """Study of the pair of a device, with the attraction across gaps that the device has, and its changes by levels."""
     section = plan.config["devices"][at.device]
     pair, water = section["pair"], plan.air_of_devices.water(section["pair"])
     study = {"study": study_of(plan, "studies/full_contact", pair, water)}
-    if not plan.by_levels(at.device):
+    if not plan.air_of_devices.by_levels(pair, section["humidities"]):
         return study
     return (study if has_dry(section["humidities"]) else {}) | {"by_levels": f"studies/model_error/devices/{pair}"}
 
@@ -134,7 +160,7 @@ def _settings(plan, at):
     gaps = {"across_gaps": True} if "gaps" in plan.air_of_devices.water(section["pair"]) else {}
     dry = {} if plan.air_of_devices.is_wetted(section["pair"]) else {"condenses": False}
     said = {"humidities": section["humidities"]} | ({"applied": applied} if applied else {})
-    by_levels = {"by_levels": True} if plan.by_levels(at.device) else {}
+    by_levels = {"by_levels": True} if plan.air_of_devices.by_levels(section["pair"], section["humidities"]) else {}
     return select(Settings, said | own_section(plan, at.device) | gaps | dry | by_levels)
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 import xarray as xr
 
@@ -26,6 +26,7 @@ from stiction.stages.beams.pair_warnings import (
     contact_warnings,
     plastic_contact,
 )
+from stiction.stages.devices.contact_names import corrections_of
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE, SOUGHT_BY, DesignedBeam, own_section
 from stiction.stages.devices.results import results_of
@@ -60,6 +61,12 @@ class OfDevice:
         """Name of its pair."""
         return self.device.pair
 
+    @property
+    def changes_of_forces(self) -> tuple[str, ...]:
+        """Flags of the changes of its forces, of a dataset of stage model_error_of_devices."""
+        has_tip = EITHER in self.device.opening.shapes
+        return ("tip_applied",) * has_tip + ("pull_off_applied",) * (self.has_dimples or not has_tip)
+
     def limits(self, dataset: xr.Dataset, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0) -> ByShape:
         """Limits by end state, see `beam_warnings`."""
         return beam_warnings(dataset, self, plastic, humidity)
@@ -76,6 +83,7 @@ class OfStopper:
     worst_humidities: tuple[float, float]  #: ends of the axis along which the worst humidity is sought [-]
     materials: StatedProperties = ()  #: of its pair
     on_summits: tuple[float, ...] = ()  #: humidities with water at which summits alone make its forces [-]
+    changes_of_forces: ClassVar[tuple[str, ...]] = ("pull_off_applied",)  #: as of `OfDevice`
 
     def limits(self, dataset: xr.Dataset, plastic: Plastic = NOT_STUDIED, _humidity: float = 0.0) -> ByShape:
         """Limits by end state, see `stopper_warnings`."""
@@ -254,7 +262,9 @@ def _inputs(plan, at):
         "charts": by_case("devices/chart", charts),
         "plasticity": by_name("studies/plasticity", devices.pairs_of_plasticity(at.device)),
     }
-    return limited | left_out_gaps(plan, at.device) | surface_flags.inputs(plan, devices.sections[at.device]["pair"])
+    changes = {} if "model" in plan.config["contact"] else corrections_of(plan, at.device)
+    flags = surface_flags.inputs(plan, devices.sections[at.device]["pair"])
+    return limited | changes | left_out_gaps(plan, at.device) | flags
 
 
 def _settings(plan, at):
@@ -278,19 +288,40 @@ def _on_summits(plan, device):
     return ({"on_summits": alone} if alone else {}) | ({"has_dimples": True} if "dimples" in section else {})
 
 
+def _left_on_summits(of, data):
+    """Device or stopper with those humidities alone at which full contact has not changed all of its forces."""
+    if "model_error" not in data or "nearest" not in data["model_error"]:
+        return of
+    known = data["model_error"][list(of.changes_of_forces)].sel(humidity=list(of.on_summits))
+    return replace(of, on_summits=tuple(known.humidity.values[~known.to_array().all("variable").values]))
+
+
+def _few_strips(data, *humidities, of=""):
+    """Limit by the strips in full contact on which a change of energies, or of forces, at some humidities rests."""
+    if "model_error" not in data or "nearest" not in data["model_error"]:
+        return []
+    known = data["model_error"].reindex(humidity=list(humidities))
+    parts = known[f"{of}largest_residual"].where(known[f"{of}applied"] > 0)
+    return rules.triggered(rules.few_strips(float(parts.max())))
+
+
 def _device_warnings(data, settings):
     """Limits of a device: of its lengths, its curves and its patch, each with a suffix to its name."""
     flags = surface_flags.together(data) + list(map(restored, settings.get("assumed", [])))
     changes = left_out_changes(data["left_out_gaps"]) if "left_out_gaps" in data else {}
-    of, charts = of_settings(settings), list(data["charts"].values())
+    of, charts = _left_on_summits(of_settings(settings), data), list(data["charts"].values())
     plastic = plastic_contact(data["plasticity"], of.pair)
+    few = {humidity: _few_strips(data, humidity) for _, humidity in data["lengths"]}
     lengths = [
-        [[humidity, shape], limits + gap_warnings(_at(changes, humidity), shape) + flags]
+        [
+            [humidity, shape],
+            limits + gap_warnings(_at(changes, humidity), shape) + few[humidity] * (shape != EITHER) + flags,
+        ]
         for (_, humidity), dataset in data["lengths"].items()
         for shape, limits in of.limits(dataset, plastic, humidity).items()
     ]
     patches = [
-        [[], limits + gap_warnings(changes, shape) + flags]
+        [[], limits + gap_warnings(changes, shape) + _few_strips(data, *of.humidities, of="pull_off_") + flags]
         for dataset in data["stoppers"].values()
         for shape, limits in of.limits(dataset, plastic).items()
     ]
@@ -313,8 +344,7 @@ def not_modelled(plan: Any, *devices: str) -> dict[str, Any]:
     """Effects missing in the results of some devices, for `stiction.report.limits.words`."""
     sections = (plan.config["devices"][name] for name in devices)
     cases = ((section["pair"], humidity) for section in sections for humidity in section["humidities"])
-    by_energies = all(plan.devices.kind(name).release.has_energies for name in devices)
-    return plan.air_of_devices.not_modelled(cases, by_energies)
+    return plan.air_of_devices.not_modelled(cases)
 
 
 def files_of(*devices: str) -> dict[str, File]:

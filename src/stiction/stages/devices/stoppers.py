@@ -25,7 +25,7 @@ from stiction.stages.contact.curves import energies, freeing_potentials, pull_of
 from stiction.stages.contact.error_notes import on_patch
 from stiction.stages.devices.contact_names import (
     contact_of,
-    corrections_of_forces,
+    corrections_of,
     dimples_of,
     tilted_of,
 )
@@ -392,7 +392,7 @@ def _inputs(plan, at):
     humidities = plan.config["devices"][at.device]["humidities"]
     wettest, driest = (case_id(at.device, end(humidities)) for end in (max, min))
     dry = {"dry": contact_of(plan, driest)} if has_dry(humidities) else {}
-    return {"contact": contact_of(plan, wettest)} | dry | corrections_of_forces(plan, at.device, *humidities)
+    return {"contact": contact_of(plan, wettest)} | dry | corrections_of(plan, at.device, *humidities)
 
 
 _STOPPERS = Stage.writing(
@@ -430,7 +430,7 @@ STAGES = (
         "dimples",
         "devices/dimples/{case}",
         inputs=lambda plan, at: (
-            {"contact": dimples_of(plan, at.case)} | corrections_of_forces(plan, at.case.device, at.case.humidity)
+            {"contact": dimples_of(plan, at.case)} | corrections_of(plan, at.case.device, at.case.humidity)
         ),
         settings=_settings_of_dimples,
         kind=Dimples,

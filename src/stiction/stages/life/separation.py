@@ -25,7 +25,6 @@ from stiction.stages.devices.contact_names import (
     case_on,
     contact_of,
     corrections_of,
-    corrections_of_forces,
     name_of_ground,
     tips_of,
 )
@@ -185,7 +184,7 @@ def _contact_of_strips(plan: Any, at: At) -> dict[str, str]:
 def _contact_of_tips(plan: Any, at: At) -> dict[str, str]:
     """Contact of tips, with its correction."""
     case = _case_of_tips(plan, at)
-    return {"contact": tips_of(plan, case)["tips"]} | corrections_of_forces(plan, case.device, case.humidity)
+    return {"contact": tips_of(plan, case)["tips"]} | corrections_of(plan, case.device, case.humidity)
 
 
 STAGES = (
