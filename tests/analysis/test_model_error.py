@@ -3,12 +3,12 @@ import pytest
 from scipy.special import ndtri
 from standard_errors import ALLOWED
 
-from stiction.analysis.levels import half_of_two
 from stiction.analysis.model_error import (
     RARE,
     beside_more,
     error_of_largest,
     factors,
+    few_tip_ratios,
     interpolation_error,
     length_factors,
     mean_ratios,
@@ -305,21 +305,22 @@ def test_a_tip_that_holds_next_to_nothing_changes_no_scatter_of_the_others():
     assert of_logarithms[0] > 1.3 * of_logarithms[1], "control"
 
 
-def upper_ends(strips, more, correlation, studies=80):
+def upper_ends(strips, more, power_error=0.0, studies=400):
     """Upper ends of the ratio of tips at 95 % over the true ratio, of studies like those of devices (n, slopes)."""
     rng, found = np.random.default_rng(8), []
     for _ in range(studies):
         common, own = rng.normal(size=(2, more, 1, 3))
-        mixed = correlation * common + np.sqrt(1 - correlation**2) * own
+        mixed = 0.2 * common + np.sqrt(1 - 0.2**2) * own
         full, summits = np.exp(0.63 * mixed - 0.2) * [0.4, 0.3, 0.35], np.exp(0.63 * common - 0.2)
-        tips = tip_ratios(full[:strips], summits[:strips], summits)
-        found.append((tips.means * np.exp(ndtri(0.95) * tips.error * half_of_two([1.0], [strips - 1])))[0])
+        ratios, errors = few_tip_ratios(full[:strips], summits, power_error)
+        found.append((ratios * np.exp(ndtri(0.95) * errors))[0])
     return np.array(found) / [0.4, 0.3, 0.35]
 
 
 def test_upper_ends_of_few_tips_hold_and_more_tips_on_summits_bring_them_nearer():
     """Like pair b at RH 0.44, with a scatter of 0.63 in both models, which are hardly correlated."""
-    alone, beside = upper_ends(8, 8, 0.2), upper_ends(8, 64, 0.2)
+    alone, beside = upper_ends(8, 8), upper_ends(8, 64)
     assert np.mean(beside >= 1) > 0.9
     assert np.median(beside) < np.median(alone)
+    assert np.mean(upper_ends(8, 64, 0.1)) > np.mean(beside)
     assert np.mean(beside / 1.5 >= 1) < 0.8, "control: a third less would not hold"

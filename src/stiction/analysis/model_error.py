@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import ndtri
 
+from stiction.analysis.levels import half_of_two
 from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.contact.air import is_humid
 from stiction.contact.correction import interpolated
@@ -21,8 +22,6 @@ RARE = 1e-3
 #: ASSUME: fewer strips for each slope of a regression say too little about it. With 4 in all its error was a hundred
 #: times that without it, or more (0.8 nm rms in dry air).
 STRIPS_PER_SLOPE = 10
-#: As `STRIPS_PER_SLOPE`, of tips. With 8 strips, upper ends at 95 % hold in 92 % of drawn studies of log-normal forces.
-TIPS_PER_SLOPE = 8
 
 
 def factors(
@@ -80,9 +79,7 @@ def mean_ratios(
     return factors(lambda means: means, full, summits, humidities, at)
 
 
-def beside_more(
-    full: np.ndarray, summits: np.ndarray, more: np.ndarray, least: int = STRIPS_PER_SLOPE
-) -> tuple[np.ndarray, np.ndarray]:
+def beside_more(full: np.ndarray, summits: np.ndarray, more: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     r"""Values of strips by both models (n, k), moved to the mean of more strips on summits (N, k), N >= n.
 
     The regression estimator of two samples (W. G. Cochran, Sampling Techniques, 1977, ch. 12). With the mean M of all
@@ -91,10 +88,10 @@ def beside_more(
     .. math:: S_i' = M + \sqrt{n / N} \, (S_i - \bar S) , \quad F_i' = \bar F + (S_i' - \bar S) b + r_i ,
 
     so that both means have the errors and the correlation that they have over the two samples. The rest r_i is that of
-    strip i from a regression without it, centred. Fewer than ``least`` k strips are not moved.
+    strip i from a regression without it, centred. Fewer than `STRIPS_PER_SLOPE` k strips are not moved.
     """
     (n, columns), mean, average = summits.shape, summits.mean(axis=0), full.mean(axis=0)
-    if n < least * columns:
+    if n < STRIPS_PER_SLOPE * columns:
         return full, summits
     off = summits - mean
     inverse = np.linalg.pinv(off)
@@ -156,10 +153,8 @@ class TipRatios(NamedTuple):
     powers: np.ndarray  #: ratios of the standard deviations of the logarithms at all slopes (h,) [-]
 
 
-def tip_ratios(full: np.ndarray, summits: np.ndarray, more: np.ndarray | None = None) -> TipRatios:
+def tip_ratios(full: np.ndarray, summits: np.ndarray) -> TipRatios:
     r"""Ratios of the largest attractions of tips in full contact and on summits (n, h, s), independent at each slope.
-
-    Means are moved to those of ``more`` tips on summits (N, h, s), if there are any, each as of `beside_more`.
 
     ASSUME: they are log-normal, with a variance of the logarithm from mean and variance of the forces,
 
@@ -168,15 +163,13 @@ def tip_ratios(full: np.ndarray, summits: np.ndarray, more: np.ndarray | None = 
     because tips that hold next to nothing, and matter to no beam, decide that of the logarithms. It is averaged over
     the slopes. The error is as in `error_of_largest`.
     """
-    shape = full.shape[1:]
-    means_of = (full, summits) if more is None else _moved_tips(full, summits, more)
-    columns = np.stack([*means_of, full, summits, full**2, summits**2], axis=1)
+    shape, columns = full.shape[1:], np.stack([full, summits, full**2, summits**2], axis=1)
 
     def ratios(means):
         """Ratio of the means, logarithm of the changed value, and power, alike at all slopes (3, h, s) [-]."""
-        moved, first, second = np.split(means.reshape(6, *shape), 3)
+        first, second = np.split(means.reshape(4, *shape), 2)
         deviations = np.sqrt(np.log(second / first**2).mean(axis=-1, keepdims=True))
-        ratio, power = moved[0] / moved[1], deviations[0] / deviations[1]
+        ratio, power = first[0] / first[1], deviations[0] / deviations[1]
         exponent = scatter * np.maximum(power, 1.0)
         largest = np.log(ratio) - exponent * ndtri(RARE) - exponent**2 / 2
         return np.stack([ratio, largest, np.broadcast_to(power, shape)])
@@ -186,13 +179,19 @@ def tip_ratios(full: np.ndarray, summits: np.ndarray, more: np.ndarray | None = 
     return TipRatios(means, error, powers[:, 0])
 
 
-def _moved_tips(full, summits, more):
-    """Tips in full contact and on summits (n, h, s) each, moved to the mean of more on summits (N, h, s)."""
-    moved = np.empty((2, *full.shape))
-    for at in np.ndindex(full.shape[1:]):
-        each = (values[(slice(None), *at)][:, None] for values in (full, summits, more))
-        moved[(slice(None), slice(None), *at)] = np.stack(beside_more(*each, TIPS_PER_SLOPE))[..., 0]
-    return moved
+def few_tip_ratios(full: np.ndarray, summits: np.ndarray, power_error: float) -> tuple[np.ndarray, np.ndarray]:
+    """Ratios of the means of few tips in full contact (n, h, s) and more on summits (N, h, s), and their errors (h, s).
+
+    Where both models are hardly correlated, as on pair b at RH 0.44, no regression on the same strips helps. The error
+    is relative, that of what one tip in 1000 exceeds for a power of 1 with a standard error, and the part of the means
+    half of what covers two of it by Student's t.
+    """
+    means, squares = (np.array([(each**power).mean(axis=0) for each in (full, summits)]) for power in (1, 2))
+    numbers = np.array([len(full), len(summits)])
+    variances = np.moveaxis((squares / means**2 - 1).reshape(2, -1) / (numbers - 1)[:, None], 0, -1)
+    of_means = np.array([half_of_two(each, numbers - 1) for each in variances]).reshape(full.shape[1:])
+    scatter = np.sqrt(np.log(squares[1] / means[1] ** 2).mean(axis=-1, keepdims=True))
+    return means[0] / means[1], np.hypot(of_means, power_error * scatter * (-ndtri(RARE) - scatter))
 
 
 def length_factors(

@@ -156,9 +156,10 @@ def _of_more(rows, more):
     return {"more": (("more_samples", "slope", "humidity"), forces, {"units": "N m-1"})} if more else {}
 
 
-def more_on_summits(study: xr.Dataset) -> np.ndarray | None:
-    """Largest attractions on summits of more strips, those in full contact first (N, humidities, slopes) [N/m]."""
-    return study.more.transpose("more_samples", "humidity", "slope").values if "more" in study else None
+def models_of_devices(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
+    """As `models`, with more strips on summits, those in full contact first (N, humidities, slopes) [N/m]."""
+    full, summits = models(study)
+    return full, study.more.transpose("more_samples", "humidity", "slope").values if "more" in study else summits
 
 
 def models(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
