@@ -152,11 +152,11 @@ def stuck_sentences(update: xr.Dataset) -> list[str]:
     chosen = update.sel(shape=shape)
     if "share" in chosen.expected_stuck.dims:
         chosen = chosen.isel(share=update.sizes["share"] // 2)
-    sentences = []
+    sentences, sought = [], SOUGHT_BY[shape]
     every = (chosen.sel(humidity=humidity) for humidity in update.humidity.values)
     for at in (one for one in every if np.isfinite(one.updated_stuck)):
-        size = f"of {TO_UM * float(at.safe):.0f} µm, the simulated limit,"
-        size = f"at its {sought.label}" if (sought := SOUGHT_BY[shape]).more_is_better else size
+        stated = f"at its {sought.label}"
+        size = stated if sought.more_is_better else f"of {sought.in_words(float(at.safe))}, the simulated limit,"
         sentences.append(
             f"{airs([float(at.humidity)]).capitalize()}, {in_percent(at.expected_stuck)} of the devices {size} are "
             f"expected to stick without the test beams and {in_percent(at.updated_stuck)} with them, averaged over the "

@@ -23,8 +23,9 @@ from stiction.devices import arcs, inference, risk
 from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths
 from stiction.plan.stage import Stage
 from stiction.stages.contact import curves
+from stiction.stages.contact.corrections import applied
 from stiction.stages.devices.budget import budgets_of, budgets_of_arrays, response_of, shared_laws
-from stiction.stages.devices.contact_names import contact_of, tips_of
+from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
 from stiction.stages.devices.opening import (
     ARC,
     EITHER,
@@ -153,18 +154,20 @@ def compute(
     grounds: Mapping[tuple[str, str], xr.Dataset],
     tips: Mapping[tuple[str, str], xr.Dataset],
     settings: Settings,
+    changes: Mapping[str, xr.Dataset] | None = None,
 ) -> xr.Dataset:
     """Inputs, lengths and safe lengths, or forces, of a device before and after its test beams were measured.
 
     Budgets are by device or array, humidity and, for tips, more. What is predicted are the datasets of stage
     safe_lengths of a beam by humidity, or that of stage stoppers. ``grounds`` and ``tips`` are the contacts on which
-    the beams of an array with counts stick, by array and kind of air, and those of their tips.
+    the beams of an array with counts stick, by array and kind of air, and those of their tips. ``changes`` are those of
+    its contact by full elastic contact, if its beams are corrected: tips of the device have them as well.
 
     Data of test beams of which too few stick in the simulation say nothing, and are left out.
     """
     every = [Result(*key[:2], budget, settings.arrays[key[0]]) for key, budget in test_beams.items()]
     of_arrays = [result for result in every if result.is_known]
-    stuck = known_counts(settings.stuck, of_arrays)
+    stuck = known_counts(_with_changes(settings.stuck, changes or {}), of_arrays)
     beams, of_tips = (
         [budget for budget in of_arrays if (budget.response == ARC) == is_tip] for is_tip in (False, True)
     )
@@ -276,6 +279,12 @@ def known_counts(stuck: Mapping[str, Stuck], results: Sequence[Result]) -> dict[
         columns = ("humidity", "length", "stuck", "of")
         kept[name] = replace(data, **{key: tuple(getattr(data, key)[k] for k in at) for key in columns})
     return kept
+
+
+def _with_changes(stuck, changes):
+    """Counts of arrays with the corrections to full elastic contact of their tips, by array."""
+    waters = {name: replace(stuck[name].water, correction=applied(error)) for name, error in changes.items()}
+    return {name: replace(data, water=waters.get(name, data.water)) for name, data in stuck.items()}
 
 
 def count_data(
@@ -625,7 +634,14 @@ def _contacts(plan, device):
     return {
         "grounds": {key: contact_of(of_arrays, case) for key, case in cases.items()},
         "tips": {key: tips_of(of_arrays, case)["tips"] for key, case in cases.items()},
-    }
+    } | _changes(of_arrays, {name for name, _ in cases})
+
+
+def _changes(of_arrays, names):
+    """Corrections to full elastic contact of some arrays, none where there are none."""
+    found = {name: corrections_of(of_arrays, name) for name in sorted(names)}
+    changes = {name: one["model_error"] for name, one in found.items() if one}
+    return {"changes": changes} if changes else {}
 
 
 STAGES = (
