@@ -23,8 +23,9 @@ from stiction.stages.devices.device_warnings import OfDevices
 from stiction.stages.devices.opening import EITHER, S_SHAPE, DesignedBeam
 from stiction.stages.devices.uncertain_inputs import Input, State, Uncertainty
 from stiction.stages.life.answers import layout
+from stiction.stages.life.beams import beam_answers
 from stiction.stages.life.inputs import Errors, OfBeam, OfStopper
-from stiction.stages.life.table import beam_answers, stopper_answers
+from stiction.stages.life.stoppers import stopper_answers
 
 CANTILEVER = {
     "kind": "cantilever",

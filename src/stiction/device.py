@@ -15,7 +15,7 @@ from stiction.config.cases import Air, case_id, in_numbers
 from stiction.config.kinds import BEAM, KEYS, KINDS, STOPPER, Kind, Release, kind_of
 from stiction.devices.limits.limit import Limit, restored
 from stiction.plan.devices import DevicePlan
-from stiction.plan.graph import Results, datasets_in, structured
+from stiction.plan.graph import Results
 from stiction.report.answer import words as answer_words
 from stiction.report.answer.judged import with_limits
 from stiction.report.limits import words
@@ -23,7 +23,7 @@ from stiction.stages.answer.answer import answer_of
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.contact_names import contact_of, tips_of
 from stiction.stages.devices.device_warnings import gap_warnings, left_out_changes
-from stiction.stages.devices.results import results_of, stuck_beams, stuck_stoppers
+from stiction.stages.devices.results import stuck_beams, stuck_stoppers
 from stiction.stages.surfaces import surface_flags
 
 if TYPE_CHECKING:
@@ -110,8 +110,7 @@ class Device:
         """Figure of P(stuck) by simulation alone, at all humidities: over lengths of beams, or forces of stoppers."""
         from stiction.report.devices.parts import OF_RELEASE
 
-        data = {name: structured(files, self.results.__getitem__) for name, files in self._simulated.items()}
-        return OF_RELEASE[self.kind.release.name].figure(self.name, data)
+        return OF_RELEASE[self.kind.release.name].figure(self.name, self._simulated)
 
     @property
     def kind(self) -> Kind:
@@ -157,8 +156,7 @@ class Device:
         uncertainties, some minutes. Whether the contact is plastic is not checked.
         """
         answer = answer_of(self.results[f"devices/answer/{self.name}"])
-        names = [name for files in self._simulated.values() for name in datasets_in(files)]
-        return with_limits(answer, [limit for name in names for limit in self.limits(self.results[name])])
+        return with_limits(answer, [limit for dataset in self._simulated.values() for limit in self.limits(dataset)])
 
     def chart(self, humidity: float | str) -> xr.Dataset:
         """Safe lengths of the thicknesses and gaps of its chart. Dataset of `stiction.stages.devices.chart`."""
@@ -244,8 +242,8 @@ class Device:
 
     @property
     def _simulated(self):
-        """Names of the results of simulation alone, of a beam by humidity."""
-        return results_of(self._plan, self.name, "lengths", "stopper")
+        """Datasets of simulation alone, of a beam by humidity."""
+        return _SIMULATED[self.kind.release.name](self)
 
     @property
     def _plan(self):
@@ -267,7 +265,11 @@ class Device:
             raise ValueError(f"device {self.name} has no {key}: state devices.{self.name}.{key}")
 
 
-#: P(stuck) at a humidity, by the name of the release.
+#: Datasets of simulation alone, and P(stuck) at a humidity, by the name of the release.
+_SIMULATED = {
+    "beam": lambda device: {humidity: device.safe_lengths(humidity) for humidity in device._section["humidities"]},
+    "stopper": lambda device: {"forces": device.forces()},
+}
 _STUCK = {
     "beam": lambda device, humidity: stuck_beams(device.safe_lengths(humidity)),
     "stopper": lambda device, humidity: stuck_stoppers(device.forces(), in_numbers(humidity)),

@@ -60,29 +60,23 @@ def answer(
     inside = frozenset(step.cause for step in steps if step.stated) - {Cause.ESTIMATE}
     world = replace(start, causes=inside)
     exact = replace(world, causes=inside - {Cause.INPUTS, Cause.TEST_BEAMS})
-    sizes = _sizes(question, world)
+    alone, sizes = replace(exact, causes=exact.causes | {Cause.INPUTS}), _sizes(question, world)
     measure, if_measured = _to_measure(question, world)
+    airs = dict.fromkeys(condition.humidity for condition in world.inside)
     return Answer(
-        question.device,
-        question.kind,
-        question.share,
-        question.unit,
-        question.size_of(world.size),
-        question.size_of(exact.size),
-        tuple(steps),
-        tuple(_in_air(question, world, rh, sizes) for rh in dict.fromkeys(one.humidity for one in world.inside)),
-        question.size,
-        _stuck(question, world),
-        question.touchdowns,
-        world.is_extrapolated,
-        question.left_out,
-        question.forbidden,
-        measure,
-        if_measured,
-        _spread_of_budget(world),
-        np.nan if before is None else _without_test_beams(question, exact, before),
-        sizes,
-        _curve(question, world, sizes),
+        **vars(question),
+        build=question.size_of(world.size),
+        exact=question.size_of(exact.size),
+        steps=tuple(steps),
+        airs=tuple(_in_air(question, world, humidity, sizes) for humidity in airs),
+        stuck=_stuck(question, world),
+        extrapolated=world.is_extrapolated,
+        measure=measure,
+        if_measured=if_measured,
+        spread_of_budget=_spread_of_budget(world),
+        without_test_beams=np.nan if before is None else question.size_of(replace(alone, unknowns=before).size),
+        sizes=sizes,
+        curve=_curve(question, world, sizes),
     )
 
 
@@ -143,11 +137,6 @@ def _sizes(question, world):
         return np.empty(0)
     low, high = min(known) - _BELOW, max(known) + 0.02
     return np.exp(question.sign * np.linspace(low, high, _POINTS))
-
-
-def _without_test_beams(question, exact, before):
-    """Size to build without test beams."""
-    return question.size_of(replace(exact, unknowns=before, causes=exact.causes | {Cause.INPUTS}).size)
 
 
 def _in_air(question, world, humidity, sizes):

@@ -1,6 +1,7 @@
 """Numbers sought for devices: the largest length, or the smallest restoring force, of which few enough stick."""
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -9,7 +10,7 @@ class Sought:
 
     name: str
     unit: str  #: in datasets
-    shown: str  #: unit for readers, a millionth of that in datasets
+    shown: str  #: unit for readers
     digits: str  #: format for readers
     more_is_better: bool  #: whether devices with more of it stick less often
     label: str  #: what a device has, in words
@@ -17,11 +18,7 @@ class Sought:
     response: str  #: number with the allowed fraction stuck, in words
     devices: str  #: devices with such a number
     bound: str  #: how a number that is safe bounds all safe ones
-
-    @property
-    def scale(self) -> float:
-        """Unit for readers in that of datasets."""
-        return 1e-6
+    scale: ClassVar[float] = 1e-6  #: unit for readers in that of datasets
 
     @property
     def sign(self) -> float:

@@ -10,8 +10,6 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import NamedTuple
 
-from stiction.answer import sought
-
 #: Keys that every device may have.
 COMMON = (
     "kind",
@@ -63,31 +61,26 @@ class Release:
     """Release of stuck devices, and its consequences for their configuration."""
 
     name: str  #: in settings, and in the tables of later folders
-    sought: sought.Sought
     sides: Callable[["Kind", Mapping, float], tuple[float, float]]  #: of a patch, parameters as of `Kind.sides` [µm]
     required: tuple[str, ...] = ()  #: keys of a requirement beside its fraction
     refusal: str  #: of another requirement
-    has_laws: bool  #: whether it follows the force laws of many patches, which need a chaos model
-    in_any_air: bool  #: whether the worst humidity is sought along an axis
+    has_laws: bool = False  #: whether it follows force laws by a chaos model
+    in_any_air: bool = False  #: whether the worst humidity is sought along an axis
 
 
 #: Beams crack open along their strips.
 BEAM = Release(
     name="beam",
-    sought=sought.LENGTH,
     sides=lambda kind, device, of_pairs: (kind.strip(device, of_pairs), device["width_um"]),
     required=("length_um",),
     refusal="must come with length_um",
     has_laws=True,
-    in_any_air=False,
 )
 #: Others are pulled off at once with their whole area.
 STOPPER = Release(
     name="stopper",
-    sought=sought.FORCE,
     sides=lambda _kind, device, _of_pairs: tuple(device["contact_um"]),
     refusal="must come without length_um, for a stopper has a force",
-    has_laws=False,
     in_any_air=True,
 )
 

@@ -121,7 +121,7 @@ class Graph:
             job = waiting.pop()
             if (key := (job.stage.name, *sorted(vars(job.at).items()))) not in jobs:
                 jobs[key] = job
-                waiting += [self.job(name) for names in job.inputs.values() for name in datasets_in(names)]
+                waiting += [self.job(name) for names in job.inputs.values() for name in _datasets(names)]
         return list(jobs.values())
 
 
@@ -195,7 +195,7 @@ def structured(names: Names, read: Any) -> Any:
     return [read(name) for name in names]
 
 
-def datasets_in(names: Names) -> list[str]:
+def _datasets(names):
     """Names of all datasets in a structure of names."""
     flat = []
     structured(names, flat.append)

@@ -22,9 +22,10 @@ from stiction.stages.answer import answer, conditions
 from stiction.stages.contact import curves
 from stiction.stages.devices import safe_lengths, stoppers
 from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE
-from stiction.stages.life import table
+from stiction.stages.life import beams
 from stiction.stages.life.answers import answers_of
 from stiction.stages.life.inputs import Errors, Liquid, OfBeam, OfStopper
+from stiction.stages.life.stoppers import stopper_answers
 
 TIPS = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(400))
 AIRS, OXIDE = {0.44: 1.0, 0.67: 1.5}, Dielectric(100e-9, 4.0)
@@ -79,7 +80,7 @@ def data_of_beam(device=C1, airs=AIRS, voltage=0.0, touchdowns=1, budgets=(), **
     stated = {"voltage": voltage, "dielectric": OXIDE} if voltage else {}
     errors = Errors(thickness=SIGMA * device.thickness) if budgets else Errors()
     of = OfBeam(device=device, density=2330.0, liquids=LIQUIDS, uncertainty=errors, touchdowns=touchdowns, **stated)
-    life = table.layout(table.beam_answers(lengths, after, of, biased or None), of)
+    life = beams.layout(beams.beam_answers(lengths, after, of, biased or None), of)
     names = [rh for rh in airs for _ in budgets]
     data = {"lengths": lengths, "after": after, "biased": biased, "life": life, "budgets": list(budgets) * len(airs)}
     return data, answer.Settings(1, "D", of.device.kind, touchdowns=touchdowns, beam=device, budgets=tuple(names))
@@ -292,7 +293,7 @@ def data_of_stopper(patches=4000, touchdowns=1, voltage=0.0, tilted=False, force
     stated = {"voltage": voltage, "dielectric": OXIDE} if voltage else {}
     of = OfStopper(restoring_force=force, contact=(3e-6, 3e-6), touchdowns=touchdowns, electrode=None, **stated)
     some = (data.get(name) for name in ("biased", "tilted", "separation"))
-    data["life"] = table.layout(table.stopper_answers(data["stopper"], of, *some), of)
+    data["life"] = beams.layout(stopper_answers(data["stopper"], of, *some), of)
     return data, answer.Settings(1, "S", "stopper", touchdowns=touchdowns)
 
 

@@ -17,7 +17,7 @@ from stiction.report.devices import sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.format import fraction_between, fraction_with_band
 from stiction.stages.devices.stoppers import stuck_with_band
-from stiction.stages.life.table import stopper_answers
+from stiction.stages.life.stoppers import stopper_answers
 
 #: A fraction of zero or of all as an estimate: 0 %, 100 %, 0 (…) and 100 (…) in cells.
 AS_ESTIMATE = re.compile(r"(?<![\d.,])(?:0|100)(?: %| \()")

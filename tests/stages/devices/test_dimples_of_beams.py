@@ -24,9 +24,9 @@ from stiction.report.devices import life as report
 from stiction.stages.contact import curves
 from stiction.stages.devices import stoppers
 from stiction.stages.life.answers import layout
+from stiction.stages.life.beams import beam_answers
 from stiction.stages.life.dimples import dimple_answers
 from stiction.stages.life.inputs import Dimples, Errors, OfBeam
-from stiction.stages.life.table import beam_answers
 
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 3, "width_um": 30, "humidities": [0, 0.67]}
 ROW = {"number": 3, "at_um": [80], "height_um": 1, "contact_um": [2, 1]}

@@ -16,15 +16,14 @@ from stiction.contact.voltage import Capacitor, Dielectric
 from stiction.devices.risk import SCORES, quantiles
 from stiction.life import holding
 from stiction.report.answer import words
-from stiction.report.devices import explorer, sentences, voltage_views
+from stiction.report.devices import explorer, voltage_views
 from stiction.report.devices.levels import SHOWN
 from stiction.stages.devices import stoppers
 from stiction.stages.devices.chart import largest_error_between
 from stiction.stages.devices.safe_lengths import chosen_share
-from stiction.stages.life.answers import AT_VOLTAGE
+from stiction.stages.life.answers import Name
+from stiction.stages.life.beams import beam_at_voltage, least_safe
 from stiction.stages.life.inputs import Errors, OfBeam
-from stiction.stages.life.lengths import least_safe
-from stiction.stages.life.voltage import beam_at_voltage
 
 BRIDGE = CANTILEVER | {"kind": "bridge", "residual_stress_MPa": 10}
 SPRING = {key: value for key, value in STOPPER.items() if key != "restoring_force_uN"}
@@ -183,7 +182,7 @@ def test_a_cantilever_at_a_voltage_has_the_closed_form_of_flats_and_its_bound_of
     ):
         energy = holding.energy_of_voltage(Capacitor(oxide, volts, 0.5), 20e-6)
         state = grid.start | {"voltage_V": volts, "humidity": humidity}
-        least = float(sentences.safe_lengths_of(lengths[humidity]).min())
+        least = float(lengths[humidity].safe_length.sel(share=chosen_share(lengths[humidity])).min())
         expected = holding.tip_length_at_voltage(least, beam, energy)
         assert grid.safe_size(state) == pytest.approx(1e6 * expected, rel=1e-3)
         sticks = 0.7 * np.linspace(2 / 3, 1, 400) * (600e-6 if humidity == 0.44 else 500e-6)
@@ -196,7 +195,7 @@ def test_a_cantilever_at_a_voltage_has_the_closed_form_of_flats_and_its_bound_of
         grid.safe_size(grid.start | {"voltage_V": 100.0})
     of = OfBeam(device=C1, density=2330.0, liquids={}, uncertainty=Errors(), voltage=5.0, offset=-0.5, dielectric=oxide)
     answers = {one.name: one for one in beam_at_voltage(of, min(map(least_of, lengths.values())), None)}
-    assert grid.safe_size(grid.start) == pytest.approx(1e6 * answers[AT_VOLTAGE].low, rel=1e-3)
+    assert grid.safe_size(grid.start) == pytest.approx(1e6 * answers[Name.AT_VOLTAGE].low, rel=1e-3)
 
 
 def least_of(dataset):

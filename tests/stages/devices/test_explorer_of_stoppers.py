@@ -15,7 +15,7 @@ from stiction.contact.voltage import Capacitor, Dielectric
 from stiction.report.devices import explorer, voltage_views
 from stiction.stages.contact import curves
 from stiction.stages.devices import stoppers
-from stiction.stages.life.table import stopper_answers
+from stiction.stages.life.stoppers import stopper_answers
 
 FORCES = 1e-6 * np.exp(0.2 * np.random.default_rng(4).normal(size=4000))
 AXIS = np.linspace(0.5, 0.9, 5)

@@ -19,7 +19,7 @@ from stiction.report.devices import life as report
 from stiction.stages.contact import curves
 from stiction.stages.devices import stoppers
 from stiction.stages.life.answers import layout
-from stiction.stages.life.table import stopper_answers
+from stiction.stages.life.stoppers import stopper_answers
 
 AREA = 9e-12
 OXIDE = Dielectric(100e-9, 4.0)

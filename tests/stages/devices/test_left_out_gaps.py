@@ -25,6 +25,8 @@ SIZES = {"devices": {"C1": BEAM, "S1": STOPPER}, "design": {"beams": 200, "budge
 SIZES |= {"design": SIZES["design"] | {"worst_humidities": [0.44, 0.9]}}
 #: Inputs of warnings that say nothing.
 NOTHING = {
+    "lengths": {},
+    "charts": {},
     "plasticity": {},
     "estimates": {},
     "spectra": {},

@@ -13,9 +13,9 @@ from stiction.contact.voltage import Dielectric
 from stiction.devices.risk import samples_for
 from stiction.report.devices import life as report
 from stiction.stages.life.answers import QUESTIONS, answers_of, layout
+from stiction.stages.life.beams import beam_answers, length_of
 from stiction.stages.life.inputs import OfStopper
-from stiction.stages.life.lengths import length_of
-from stiction.stages.life.table import beam_answers, stopper_answers
+from stiction.stages.life.stoppers import stopper_answers
 
 ON = {"voltage": 5.0, "dielectric": Dielectric(100e-9, 4.0)}
 #: What each key gives to a stopper.

@@ -17,7 +17,7 @@ from stiction.report.devices import figures as of_devices
 from stiction.report.devices import life
 from stiction.report.style import PAGE, on_a_page, panels, strips, styled
 from stiction.stages.life.answers import layout
-from stiction.stages.life.table import beam_answers
+from stiction.stages.life.beams import beam_answers
 
 pytestmark = pytest.mark.slow
 

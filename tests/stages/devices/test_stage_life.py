@@ -25,9 +25,9 @@ from stiction.report.devices.pages import Page, Section, with_life
 from stiction.report.style import save
 from stiction.run import storage
 from stiction.stages.life.answers import QUESTIONS, answers_of, layout
+from stiction.stages.life.beams import beam_answers, length_of
 from stiction.stages.life.inputs import Electrode, Errors, Liquid, OfBeam, OfStopper
-from stiction.stages.life.lengths import length_of
-from stiction.stages.life.table import beam_answers, stopper_answers
+from stiction.stages.life.stoppers import stopper_answers
 
 LIQUIDS = {"water": Liquid(0.072), "mine": Liquid(0.03, np.pi / 3)}
 OF = OfBeam(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=Errors())

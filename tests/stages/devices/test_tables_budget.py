@@ -277,15 +277,6 @@ def test_equal_data_give_equal_files(draw, tmp_path):
     assert (tmp_path / "one.png").read_bytes() == (tmp_path / "two.png").read_bytes()
 
 
-def test_an_assumed_input_is_named_where_it_decides_and_nowhere_else():
-    datasets = BEAMS.values()  # heights of B2 decide; the total at 0.44 is twice that at 0.67
-    (said,) = tables_budget.first_to_measure(datasets, ["skewness of B2"])
-    assert said.startswith("What decides is assumed, not measured: heights of B2. If that were known, the standard ")
-    assert said.endswith("beams stick (S-shape) would be 1.6 instead of 5.2 %.")
-    assert tables_budget.first_to_measure(datasets, ["thickness"]) == tables_budget.first_to_measure(datasets, []) == []
-    assert tables_budget.first_to_measure([], ["skewness of B2"]) == []
-
-
 def test_a_budget_without_other_choices_of_the_model_has_no_empty_panel():
     whole = figures_budget.budget(BEAMS)
     alone = figures_budget.budget({key: one.isel(choice=[]) for key, one in BEAMS.items()})

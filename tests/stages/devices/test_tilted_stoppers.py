@@ -25,7 +25,7 @@ from stiction.stages.contact import contact, curves
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices import stoppers
 from stiction.stages.life.answers import layout
-from stiction.stages.life.table import stopper_answers
+from stiction.stages.life.stoppers import stopper_answers
 
 SECTION = {"kind": "stopper", "pair": "b", "contact_um": [1.5, 6], "restoring_force_uN": 18, "humidities": [0.67, 0.88]}
 DEGREES = [0, 0.0005, 0.02, 0.1, 0.5]

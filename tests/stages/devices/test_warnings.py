@@ -43,9 +43,9 @@ def about_beams(*case):
     return texts(pair_warnings.beam_warnings(*case))
 
 
-def about_device(*case, **more):
+def about_device(dataset, of, *case, **more):
     """Sentences on a device, by shape."""
-    return in_words(device_warnings.beam_warnings(*case, **more))
+    return in_words(of.limits(dataset, *case, **more))
 
 
 def about_curves(*case):

@@ -46,14 +46,10 @@ def with_process(page: Page, device: str, data: Mapping[str, Any]) -> Page:
     pictures = [Section(f"Law of {law.surface}", (), None, figures.laws(law)) for law in laws]
     summary = page.summary
     if summary and not page.is_forbidden:
-        summary = replace(summary, points=_with_advice(summary.points, answer))
+        advice = " ".join(filter(None, [summary.points.get(CHANGE, ""), answer]))
+        summary = replace(summary, points=summary.points | {CHANGE: advice})
     sections = [*page.sections, own, *pictures]
     return replace(page, summary=summary, answer=[answer, *page.answer], sections=sections)
-
-
-def _with_advice(points, answer):
-    """Points of a first screen, with the settings of the process as a change to consider."""
-    return points | {CHANGE: " ".join(filter(None, [points.get(CHANGE, ""), answer]))}
 
 
 def _of_pairs(device, found, pairs, laws):

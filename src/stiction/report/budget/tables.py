@@ -1,13 +1,13 @@
 """Tables of stoppers and of the uncertainty of devices: P(stuck) of patches, and advice on measurements."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import pandas as pd
 import xarray as xr
 
 from stiction.contact.air import Air, has_dry, is_humid
-from stiction.devices.budget import advice, ranked
+from stiction.devices.budget import advice
 from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import Basis
 from stiction.estimates import mean_with_error
@@ -212,22 +212,6 @@ def what_to_measure(dataset: xr.Dataset) -> str:
     return advice(uncertainty, groups_of(dataset), response_text(dataset))
 
 
-def first_to_measure(datasets: Iterable[xr.Dataset], assumed: Sequence[str]) -> list[str]:
-    """Sentence about the most uncertain of some budgets, if assumed inputs are the first to measure."""
-    budgets = [(budget_of(dataset), dataset) for dataset in datasets]
-    budgets = [budget for budget in budgets if np.isfinite(budget[0].total)]
-    uncertainty, dataset = max(budgets, key=lambda budget: budget[0].total, default=(None, None))
-    if not assumed or uncertainty is None:
-        return []
-    name, _, remaining = ranked(uncertainty, groups_of(dataset))[0]
-    if not set(groups_of(dataset)[name]).intersection(assumed):
-        return []
-    return [
-        f"What decides is assumed, not measured: {name}. If that were known, the standard uncertainty of the "
-        f"{response_text(dataset)} would be {100 * remaining:.1f} instead of {100 * uncertainty.total:.1f} %."
-    ]
-
-
 def response_text(dataset: xr.Dataset) -> str:
     """Quantity changed by the inputs, in words."""
     response, share = response_of(dataset)
@@ -284,11 +268,6 @@ def _effect(budget, inputs, slope_errors):
     return {"effect_percent": 100 * budget.effect(inputs), "effect_se_percent": 100 * error}
 
 
-def _part(part, name):
-    """Subject of a row."""
-    return f"choice: {choice_label(name)}" if part == "choice" else name
-
-
 def _effect_as_text(part, effect, error):
     """Effect with its standard error, if it has one. Effects of a choice, or of the model, have a sign."""
     if part in MODEL:
@@ -300,7 +279,7 @@ def _effect_as_text(part, effect, error):
 
 _BUDGET = DEVICE | {
     "held by": (str, "held_by"),
-    "what": (_part, "part", "name"),
+    "what": (lambda part, name: f"choice: {choice_label(name)}" if part == "choice" else name, "part", "name"),
     "effect [%]": (_effect_as_text, "part", "effect_percent", "effect_se_percent"),
     "remaining [%]": (".2g", "remaining_percent"),
 }

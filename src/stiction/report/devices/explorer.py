@@ -247,11 +247,8 @@ def humidity_axis(values: Sequence[float], worst: float, key: str, between: bool
     """Axis of relative humidities."""
     values = tuple(map(float, values))
     several = between and len(values) > 1
-    text = (
-        f"computed from {values[0]:g} to {values[-1]:g}"
-        if several
-        else f"computed at {_humidities_in_words(values)} alone"
-    )
+    each = ", ".join(f"{value:g}" if value else "0 (dry air)" for value in values)
+    text = f"computed from {values[0]:g} to {values[-1]:g}" if several else f"computed at {each} alone"
     start = min(max(worst, values[0]), values[-1]) if between else worst
     reason = f"it is {text}; {key} changes this"
     return Axis("humidity", "relative humidity", "", "linear", values, start, bool(between), reason, "humidities")
@@ -284,8 +281,3 @@ def size_axis(key: str, label: str, unit: str, computed: Sequence[np.ndarray], s
     low, high = (float(f"{value:.3g}") for value in (numbers.min() * (1 - _ROOM), numbers.max() * (1 + _ROOM)))
     reason = f"P(stuck) is known between {low:g} and {high:g} {unit}"
     return Axis(key, label, unit, "linear", (low, high), float(f"{start:.4g}"), True, reason, key)
-
-
-def _humidities_in_words(values):
-    """Humidities in words."""
-    return ", ".join(f"{value:g}" if value else "0 (dry air)" for value in values)

@@ -78,7 +78,8 @@ def simulated(
             label = f"{Air(humidity).words}{_at_length(dataset)}{_marks(numbers, name, humidity)}"
             named.append(Line2D([], [], color=colours[humidity], linewidth=3, label=label))
         legend_below(panel, named)
-        _own_length(panel, dataset)
+        if "length_of_device" in dataset:
+            panel.axvline(TO_UM * float(dataset.length_of_device), color="0.4", linestyle=":", linewidth=0.8)
         shares = np.concatenate([dataset.share.values for dataset in cases.values()])
         panel.set(
             yscale="log", ylim=(shares.min() / 2, 1.3), xlabel=on_own_axes("length of the device [µm]", columns.T)
@@ -100,12 +101,6 @@ def _at_length(dataset):
     stuck, *band = map(float, held.stuck_at_length)
     said = f"{100 * stuck:.3g} %" if 0 < stuck < 1 else fraction_with_band(stuck, *band, " %")
     return f": {said} at {TO_UM * float(held.length_of_device):g} µm"
-
-
-def _own_length(panel, dataset):
-    """Line at the length that a device states."""
-    if "length_of_device" in dataset:
-        panel.axvline(TO_UM * float(dataset.length_of_device), color="0.4", linestyle=":", linewidth=0.8)
 
 
 def _marks(numbers: Mapping[tuple, Iterable[int]], *subject) -> str:
@@ -160,7 +155,9 @@ def chart(
     numbers = numbered(warnings)
     wholes = axes(datasets)
     placed = {name: places(whole.relative_humidity.values.tolist()) for name, whole in wholes.items()}
-    subjects = [(name, *at) for name, whole in wholes.items() for at in product(whole.gap.values, _shapes_of(whole))]
+    subjects = [
+        (name, *at) for name, whole in wholes.items() for at in product(whole.gap.values, whole["shape"].values)
+    ]
     most = max(whole.sizes["thickness"] for whole in wholes.values()) + 2
     figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
@@ -180,11 +177,6 @@ def chart(
     legend_outside(figure, handles(*columns[:, 0]), "upper", 2)
     refer_to_warnings(figure, warnings)
     return figure
-
-
-def _shapes_of(dataset):
-    """Names of the shapes of a dataset."""
-    return map(str, dataset["shape"].values)
 
 
 def _thicknesses(panel, whole, shape, marks, placed):

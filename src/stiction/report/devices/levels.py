@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from stiction.answer.data import Answer, InAir
+from stiction.answer.data import Answer
 from stiction.devices.risk import SCORES
 
 #: Normal scores of shown fractions, from 3e-7 on, and that of a band of 95 %.
@@ -64,8 +64,12 @@ def of_answer(answer: Answer, humidities: Sequence[float], states: Simulated, ow
     ASSUME: at other sizes, and in other air, all causes inside the answer change sizes by as much as at its own. What
     they do in two stated airs is interpolated between them.
     """
-    airs = sorted((_together(answer, one) for one in answer.airs if one.humidity in own), key=lambda one: one.humidity)
-    scores, stated = _scores(airs), [one.humidity for one in airs]
+    at = {air.humidity: air for air in answer.airs if air.humidity in own} | {answer.together.humidity: answer.together}
+    airs = [at[humidity] for humidity in sorted(own.keys() & at.keys())]
+    # Scores at the stated size are among the levels, so that it has exactly what the answer says.
+    own_scores = ndtri(np.ravel([(air.stuck.value, air.stuck.low, air.stuck.high) for air in airs if air.stuck]))
+    scores = np.unique(np.append(SHOWN, own_scores[np.abs(own_scores) < SHOWN[-1]]))
+    stated = [air.humidity for air in airs]
     weights = [np.interp(humidities, stated, row) for row in np.eye(len(airs))]
     ratios = [_ratio(states, own[humidity], scores) for humidity in stated]
     inverted = [_inverted(answer, one, scores) for one in airs]
@@ -75,18 +79,6 @@ def of_answer(answer: Answer, humidities: Sequence[float], states: Simulated, ow
     beside = [np.log(one.build / own[one.humidity].limit) for one in airs]
     factor = _joined(weights, beside, [0 * ratio for ratio in lowest])
     return Levels(scores, np.array(sizes), first, factor)
-
-
-def _together(answer: Answer, air: InAir) -> InAir:
-    """Answer for an air, or for all together in place of the one that decides."""
-    return answer.together if air.humidity == answer.together.humidity else air
-
-
-def _scores(airs):
-    """Scores of the levels, among them those at the stated size, so that it has exactly what the answer says."""
-    stated = [(one.stuck.value, one.stuck.low, one.stuck.high) for one in airs if one.stuck]
-    found = ndtri(np.ravel(stated))
-    return np.unique(np.append(SHOWN, found[np.abs(found) < SHOWN[-1]]))
 
 
 def _inverted(answer, air, scores):

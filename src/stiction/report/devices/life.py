@@ -2,7 +2,6 @@
 
 import textwrap
 from collections.abc import Mapping
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -28,31 +27,7 @@ from stiction.report.style import (
 )
 from stiction.report.table import Table, table_stage
 from stiction.stages.devices import device_warnings
-from stiction.stages.life.answers import (
-    AFTER,
-    AT_VOLTAGE,
-    BESIDE,
-    COLLAPSE,
-    DIMPLES,
-    FAST,
-    FIELD,
-    FREEING,
-    ON_DIMPLES,
-    PULLED,
-    QUESTIONS,
-    RELEASED,
-    RESTORING,
-    SAFE,
-    SHOCK,
-    TENSION_BESIDE,
-    TILTED,
-    TOUCH,
-    VOLTAGE,
-    VOLTAGE_BESIDE,
-    WEDGE,
-    Answer,
-    answers_of,
-)
+from stiction.stages.life.answers import QUESTIONS, TOUCH, Answer, Name, answers_of
 
 #: Units of the answers by those in SI: factor and text.
 _UNITS = {
@@ -129,24 +104,11 @@ def significant(value: float) -> str:
 # Sentences
 
 
-class _Words(NamedTuple):
-    """Words for the simulated limits of one kind of number."""
-
-    needs: str
-    at_voltage: str
-    fast: str
-
-
-#: By the unit of the number.
+#: Words for simulated limits by their unit: what is needed, at a voltage, and in fast separation.
 _SIMULATED = {
-    LENGTH.unit: _Words(
-        "its simulated limit is",
-        "its simulated limit is",
-        "its simulated limit can fall from {high} to {low} µm",
-    ),
-    FORCE.unit: _Words(
-        "it needs a restoring force of",
-        "they hold it with a further",
+    LENGTH.unit: (*["its simulated limit is"] * 2, "its simulated limit can fall from {high} to {low} µm"),
+    FORCE.unit: (
+        *("it needs a restoring force of", "they hold it with a further"),
         "it can need a restoring force of {high} instead of {low} µN",
     ),
 }
@@ -181,7 +143,9 @@ def _beside(build, sought):
 
 def _limit(answers, length):
     """Note on a length that is the least simulated limit [m]."""
-    return ", its simulated limit," * any(one.low == length for name, one in answers.items() if name.startswith(SAFE))
+    return ", its simulated limit," * any(
+        one.low == length for name, one in answers.items() if name.startswith(Name.SAFE)
+    )
 
 
 def _asking(unknown):
@@ -191,45 +155,47 @@ def _asking(unknown):
 
 def _touching(answers, at):
     """Voltage and shock below which a device does not touch; nothing if neither is known."""
-    limits = [f"{_low(answers[VOLTAGE])} V"] if VOLTAGE in answers else []
-    limits += [f"a half-sine shock of {_low(answers[SHOCK])} g"] if SHOCK in answers else []
-    slow = f" A slow shock of {_high(answers[SHOCK])} g brings it down." if SHOCK in answers else ""
+    limits = [f"{_low(answers[Name.VOLTAGE])} V"] if Name.VOLTAGE in answers else []
+    limits += [f"a half-sine shock of {_low(answers[Name.SHOCK])} g"] if Name.SHOCK in answers else []
+    slow = f" A slow shock of {_high(answers[Name.SHOCK])} g brings it down." if Name.SHOCK in answers else ""
     return [f"{at} does not touch below {' or '.join(limits)}.{slow}"] if limits else []
 
 
 def _pulled_in(answers, potential):
     """Sentence on the pull-in of a device by its own voltage."""
-    if VOLTAGE not in answers or potential < answers[VOLTAGE].low:
+    if Name.VOLTAGE not in answers or potential < answers[Name.VOLTAGE].low:
         return []
-    at_once = "" if potential >= answers[VOLTAGE].high else " if it is switched on at once"
+    at_once = "" if potential >= answers[Name.VOLTAGE].high else " if it is switched on at once"
     return [f"Its own voltage of {significant(potential)} V {'can pull' if at_once else 'pulls'} it in{at_once}."]
 
 
 def _on_dimples(answers):
     """Whether a beam sticks on its dimples, and whether it touches beside them."""
-    if DIMPLES not in answers:
+    if Name.DIMPLES not in answers:
         return []
-    pulls, holds = answers[PULLED], answers[DIMPLES]
-    often = max((one for one in answers.values() if one.name.startswith(f"{ON_DIMPLES}_")), key=lambda one: one.high)
+    pulls, holds = answers[Name.PULLED], answers[Name.DIMPLES]
+    often = max(
+        (one for one in answers.values() if one.name.startswith(f"{Name.ON_DIMPLES}_")), key=lambda one: one.high
+    )
     said = (
         f"The {pulls.what} is at least {_low(pulls)} µN. A row is held by {_low(holds)} µN on average: "
         f"{fraction_between(often.low, often.high, ' %')} of the beams stick on dimples in the worst of their air."
     )
-    if answers[BESIDE].low > 0:
-        tension = from_si(answers[TENSION_BESIDE].low, "mN_per_m")
-        volts = f"a slowly raised voltage of {_low(answers[VOLTAGE_BESIDE])} V"
+    if answers[Name.BESIDE].low > 0:
+        tension = from_si(answers[Name.TENSION_BESIDE].low, "mN_per_m")
+        volts = f"a slowly raised voltage of {_low(answers[Name.VOLTAGE_BESIDE])} V"
         return [
-            f"{said} Beside them, {_low(answers[BESIDE])} % of the gap is left: it does not touch there below {volts}, "
-            f"or while a liquid of up to {significant(tension)} mN/m dries."
+            f"{said} Beside them, {_low(answers[Name.BESIDE])} % of the gap is left: it does not touch there below "
+            f"{volts}, or while a liquid of up to {significant(tension)} mN/m dries."
         ]
     return [f"{said} But it touches beside them, where they do not protect it."]
 
 
 def _at_tilts(answers):
     """Force on a stopper at its tilts, and the tilt that makes it that of a wedge."""
-    if TILTED not in answers:
+    if Name.TILTED not in answers:
         return []
-    one, wedge = answers[TILTED], answers[WEDGE]
+    one, wedge = answers[Name.TILTED], answers[Name.WEDGE]
     ends, limit = (" to ".join(dict.fromkeys((_low(each), _high(each)))) for each in (one, wedge))
     worst = " (the most with each area at its worst tilt)" * (one.high > one.low)
     return [
@@ -239,14 +205,14 @@ def _at_tilts(answers):
 
 def _at_voltage(answers, potential):
     """Effect of a voltage on a touching device, and on its dielectric."""
-    if AT_VOLTAGE not in answers:
+    if Name.AT_VOLTAGE not in answers:
         return []
-    limit, field = answers[AT_VOLTAGE], answers[FIELD]
+    limit, field = answers[Name.AT_VOLTAGE], answers[Name.FIELD]
     on, ends = f"While {significant(potential)} V are on,", [(_low(limit), limit.low), (_high(limit), limit.high)]
     known = dict.fromkeys(end for end, value in ends if not np.isnan(value))
-    said = [f"{on} {_SIMULATED[limit.unit].at_voltage} {' to '.join(known)} {_UNITS[limit.unit][1]}."]
-    if FREEING in answers:
-        said.append(_release_voltage(answers[FREEING]))
+    said = [f"{on} {_SIMULATED[limit.unit][1]} {' to '.join(known)} {_UNITS[limit.unit][1]}."]
+    if Name.FREEING in answers:
+        said.append(_release_voltage(answers[Name.FREEING]))
     if field.high > BREAKDOWN:
         said.append(f"The field in its dielectric, {_high(field)} V/nm, is above 1 V/nm, where thin oxides break down.")
     return said
@@ -262,13 +228,15 @@ def _release_voltage(one):
 
 def _drying(answers, at, length):
     """Beams standing while liquids dry, the fate of one of this length, and beams releasing afterwards."""
-    standing = _liquids(answers, COLLAPSE)
+    standing = _liquids(answers, Name.COLLAPSE)
     if not standing:
         return []
-    fates = {liquid: _fate(one, length) for liquid, one in standing.items()}
-    now = [f"{_FATES[fate]} from {listed(names)}" for fate, names in _inverted(fates).items()]
-    limits = ", ".join(f"{_low(one)} and {_high(one)} µm ({liquid})" for liquid, one in standing.items())
-    free = ", ".join(f"{_high(one)} µm ({liquid})" for liquid, one in _liquids(answers, RELEASED).items())
+    fates = {}
+    for liquid, limit in standing.items():
+        fates.setdefault((length > limit.low) + (length > limit.high), []).append(liquid)
+    now = [f"{_FATES[fate]} when it is dried from {listed(names)}" for fate, names in fates.items()]
+    limits = ", ".join(f"{_low(limit)} and {_high(limit)} µm ({liquid})" for liquid, limit in standing.items())
+    free = ", ".join(f"{_high(limit)} µm ({liquid})" for liquid, limit in _liquids(answers, Name.RELEASED).items())
     return [
         *([f"{at} {', and '.join(now)}."] if np.isfinite(length) else []),
         f"Beams that dry stand up to the first of these lengths and collapse beyond the second: {limits}. After a "
@@ -276,24 +244,8 @@ def _drying(answers, at, length):
     ]
 
 
-#: What becomes of a beam that dries.
-_FATES = {
-    "stands": "stands when it is dried",
-    "may": "may collapse when it is dried",
-    "collapses": "collapses when it is dried",
-}
-
-
-def _fate(answer, length):
-    """Fate of a beam of a length [m] while a liquid dries, key of `_FATES`."""
-    if not length > answer.low:
-        return "stands"
-    return "may" if length <= answer.high else "collapses"
-
-
-def _inverted(values):
-    """Keys of a dict by their value."""
-    return {value: [key for key, other in values.items() if other == value] for value in dict.fromkeys(values.values())}
+#: What becomes of a beam that dries, by the number of bounds of its length that it exceeds.
+_FATES = ("stands", "may collapse", "collapses")
 
 
 def _liquids(answers, name):
@@ -303,23 +255,23 @@ def _liquids(answers, name):
 
 def _fast(answers):
     """Safe length, or restoring force, of fast separation in words, if it differs from slow and a bound is known."""
-    limit = answers.get(FAST) or answers.get(RESTORING)
+    limit = answers.get(Name.FAST) or answers.get(Name.RESTORING)
     if limit is None or not limit.low < limit.high < np.inf:
         return []
-    needs = _SIMULATED[limit.unit].fast.format(low=_low(limit), high=_high(limit))
+    needs = _SIMULATED[limit.unit][2].format(low=_low(limit), high=_high(limit))
     return [f"If it separates faster than water evaporates, as in a shock, {needs}."]
 
 
 def _often(answers, touchdowns):
     """What is safe for many touchdowns, as far as it is known."""
-    if AFTER not in answers:
+    if Name.AFTER not in answers:
         return []
-    limit = answers[AFTER]
+    limit = answers[Name.AFTER]
     sought = SOUGHT[limit.unit]
     bounds = [f"{bound(limit)} {sought.shown}" for bound in (_low, _high)]
     others, same = reversed(bounds) if sought.more_is_better else bounds
     return [
-        f"For {touchdowns} touchdowns {_SIMULATED[limit.unit].needs} {others} if each meets other summits, and {same} "
+        f"For {touchdowns} touchdowns {_SIMULATED[limit.unit][0]} {others} if each meets other summits, and {same} "
         "if all meet the same ones."
     ]
 

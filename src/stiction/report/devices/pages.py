@@ -77,14 +77,16 @@ def device_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], 
         told, listed, limits = [tables_test_beams.notes(test_beams)], listed + texts(of_beams), [*of_beams, *limits]
     forbidding = texts(dict.fromkeys(limit for limit in limits if limit.forbids))
     shown = screen.screen(answer, section, forbidding, (of_model or [_NO_ERROR])[0])
-    said = [*said, *filter(None, told), *_rough_enough(roughness), *of_model[1:]]
+    briefly = [] if roughness is None else sentences_roughness.briefly(roughness)
+    said = [*said, *filter(None, told), *briefly, *of_model[1:]]
     steps = Section(
         "From the estimate to the answer", (_LADDER,), tables_answer.steps(answer), figures_answer.ladder(answer)
     )
     sections = [steps, *sections, *_sure(name, budgets or {}, errors), *_test_beam_sections(name, test_beams)]
     sections += _how_rough(name, roughness)
     terms = words | _words_of_budgets(budgets)
-    return Page(_title(name, section), _facts_of(section), said, sections, listed, terms, summary=shown, more=said)
+    title = f"{name}: {kind_of(section).words}"
+    return Page(title, _facts_of(section), said, sections, listed, terms, summary=shown, more=said)
 
 
 def _words_of_budgets(budgets):
@@ -96,10 +98,6 @@ def _words_of_budgets(budgets):
     for start, of_choice in terms()["choices"].items():
         words |= of_choice if any(name.startswith(start) for name in choices) else {}
     return words
-
-
-def _title(name, section):
-    return f"{name}: {kind_of(section).words}"
 
 
 def _facts_of(section):
@@ -165,11 +163,6 @@ def _test_beam_sections(name, update):
     said += [tables_test_beams.again(update), *tables_test_beams.stuck_sentences(update)]
     cells = tables_test_beams.test_beams({name: update}).cells.drop(columns="device")
     return [Section("What the test beams say", said, cells, figures_test_beams.test_beams(update))]
-
-
-def _rough_enough(roughness):
-    """Sufficient roughness, among the first sentences, or nothing without a requirement."""
-    return [] if roughness is None else sentences_roughness.briefly(roughness)
 
 
 def _how_rough(name, roughness):

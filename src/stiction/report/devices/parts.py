@@ -47,22 +47,14 @@ def _read(part):
     return part if isinstance(part, str) else " ".join(part)
 
 
-class Parts(NamedTuple):
-    """First sections, sentences, warnings and terms of a page."""
-
-    sections: list[Section]
-    sentences: list[str]
-    warnings: list[str]
-    terms: dict[str, str]
-
-
 class OfRelease(NamedTuple):
     """Parts of the pages of devices of one release, by functions of a device."""
 
     inputs: Callable[[Any, str], dict[str, Any]]  #: of the plan and its name
-    parts: Callable[[str, Mapping, Mapping, Answer], Parts]  #: of its name, section, data and answer
+    #: First sections, sentences, warnings and terms, of its name, section, data and answer.
+    parts: Callable[[str, Mapping, Mapping, Answer], tuple[list[Section], list[str], list[str], dict[str, str]]]
     views: Callable[[str, Mapping, Mapping, Answer], list[explorer.View]]  #: of the same
-    figure: Callable[[str, Mapping], Figure]  #: by simulation alone, of its name and data
+    figure: Callable[[str, Mapping], Figure]  #: by simulation alone, of its name and datasets
 
 
 # Beams
@@ -94,7 +86,7 @@ def _parts_of_beam(name, section, data, answer):
         sections.append(Section("Other thicknesses and humidities", (), cells, figures_devices.chart(axis, {})))
     said = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
     listed = with_numbers(warnings) + texts(sentences.shortest_warnings(section, answer))
-    return Parts(sections, said, listed, _words_of_beam(data))
+    return sections, said, listed, _words_of_beam(data)
 
 
 def _words_of_beam(data):
@@ -131,7 +123,7 @@ def _parts_of_stopper(name, _section, data, _answer):
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
     said = [*sentences.safe_force_sentences(stopper), *worst]
     words = terms()["stoppers"] | (terms()["worst_humidity"] if worst else {})
-    return Parts(sections, said, texts(data["warnings"].patches[name]), words)
+    return sections, said, texts(data["warnings"].patches[name]), words
 
 
 def _views_of_stopper(name, section, data, answer):
@@ -150,12 +142,12 @@ OF_RELEASE = {
         _inputs_of_beam,
         _parts_of_beam,
         _views_of_beam,
-        lambda name, data: figures_devices.simulated(_cases(name, data["lengths"]), {}),
+        lambda name, datasets: figures_devices.simulated(_cases(name, datasets), {}),
     ),
     "stopper": OfRelease(
         lambda plan, device: results_of(plan, device),
         _parts_of_stopper,
         _views_of_stopper,
-        lambda name, data: figures_budget.stoppers({name: data["stopper"]}, {}),
+        lambda name, datasets: figures_budget.stoppers({name: datasets["forces"]}, {}),
     ),
 }

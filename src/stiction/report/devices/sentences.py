@@ -17,7 +17,7 @@ from stiction.report.format import UM, UN, airs, fraction_with_band, with_error
 from stiction.rounding import in_percent
 from stiction.stages.devices.opening import BEAMS, S_SHAPE
 from stiction.stages.devices.safe_lengths import chosen_share
-from stiction.stages.devices.stoppers import bounded_share, ends, in_any_air, is_at_an_end
+from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end
 
 
 def shortest_warnings(section: Mapping[str, Any], answer: Answer) -> list[Limit]:
@@ -31,18 +31,6 @@ def shortest_warnings(section: Mapping[str, Any], answer: Answer) -> list[Limit]
         return []
     sizes = (to_si(section[key], "um") for key in ("gap_um", "width_um", "thickness_um"))
     return rules.length_warnings(*sizes, shortest / BEAMS[section["kind"]].arms)
-
-
-def worst_air(stopper: xr.Dataset) -> float:
-    """Stated humidity of the largest sufficient force, or of the largest mean force without a bound [-]."""
-    share = bounded_share(stopper)
-    stated = stopper.pull_off.mean("sample") if share is None else stopper.safe_force.sel(part="safe", share=share)
-    return float(stopper.humidity[int(np.argmax(stated.values))])
-
-
-def safe_lengths_of(dataset: xr.Dataset) -> xr.DataArray:
-    """Safe lengths for the chosen share, by shape [m]."""
-    return dataset.safe_length.sel(share=chosen_share(dataset))
 
 
 def prediction_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
@@ -69,12 +57,8 @@ def prediction_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
 
 def few_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
     """Largest fractions of stuck devices, at each humidity with hardly any stuck."""
-    return [few_sentence(humidity, one) for humidity, one in safe_lengths.items() if _few_stick(one)]
-
-
-def _few_stick(dataset):
-    """Whether the safe length of the chosen fraction is as long as the simulated devices, or as on flat surfaces."""
-    return dataset.basis.sel(share=chosen_share(dataset)).values[-1] in (Basis.LONGEST, Basis.FLAT)
+    bases = {rh: dataset.basis.sel(share=chosen_share(dataset)).values[-1] for rh, dataset in safe_lengths.items()}
+    return [few_sentence(rh, safe_lengths[rh]) for rh, basis in bases.items() if basis in (Basis.LONGEST, Basis.FLAT)]
 
 
 def few_sentence(humidity: float, dataset: xr.Dataset) -> str:

@@ -38,17 +38,17 @@ _FEW = {
     Basis.LONGEST: "longest, the longest simulated devices, with at most a fraction p stuck",
     Basis.FLAT: "flat, the length that sticks on flat surfaces, as too few of the simulated devices stick for a line",
 }
-_BOUND = (
-    "Bound: for a cantilever, the sticking length of flat surfaces in contact, with water in all gaps. For a "
-    "bridge: no surface, however smooth, can hold a bridge shorter than this at this humidity. The bound of a tip has "
-    "its edge and holds only on average. A single rough tip can stick harder than flat, flooded surfaces, so a fitted "
-    "length may fall below it."
+_OF_BRIDGE = "For a bridge: no surface, however smooth, can hold a bridge shorter than this"
+_FLOODED = (
+    "Bound: for a cantilever, the sticking length of flat surfaces in contact, with water in all gaps. "
+    f"{_OF_BRIDGE} at this humidity."
 )
-_DRY_BOUND = (
-    "Bound: for a cantilever, the sticking length of flats in contact, as no water condenses. For a bridge: no "
-    "surface, however smooth, can hold a bridge shorter than this. The bound of a tip has its edge and holds only on "
-    "average. A single rough tip can stick harder than flats, so a fitted length may fall below it."
+_DRY = f"Bound: for a cantilever, the sticking length of flats in contact, as no water condenses. {_OF_BRIDGE}."
+_OF_TIP = (
+    "The bound of a tip has its edge and holds only on average. A single rough tip can stick harder than {}, so a "
+    "fitted length may fall below it."
 )
+_BOUND, _DRY_BOUND = f"{_FLOODED} {_OF_TIP.format('flat, flooded surfaces')}", f"{_DRY} {_OF_TIP.format('flats')}"
 _CHART = (
     "Simulated limit of beams of the thicknesses and gaps of a chart against relative humidity: the largest length "
     "with at most a fraction p stuck, with a confidence of 95 %. From: finite elements, or a power law between their "
@@ -56,15 +56,9 @@ _CHART = (
     "exact: table devices has lengths to build."
 )
 _CHART_BOUND = (
-    "Bound: for a cantilever, the sticking length of flats in contact, with water in all gaps. For a bridge: no "
-    "surface, however smooth, can hold a bridge shorter than this at this humidity. A single rough tip can hold a "
-    "shorter beam than flooded flats."
+    f"{_FLOODED.replace('flat surfaces', 'flats')} A single rough tip can hold a shorter beam than flooded flats."
 )
-_DRY_CHART_BOUND = (
-    "Bound: for a cantilever, the sticking length of flats in contact, as no water condenses. For a bridge: no "
-    "surface, however smooth, can hold a bridge shorter than this. A single rough tip can hold a shorter beam than "
-    "flats."
-)
+_DRY_CHART_BOUND = f"{_DRY} A single rough tip can hold a shorter beam than flats."
 _CHART_WARNINGS = "The warnings are about the shortest length of each thickness and gap."
 #: Ends what is said about bounds if water condenses in some cases only.
 _WHERE_DRY = "Without condensation, bounds are those of flats in contact."
@@ -86,19 +80,13 @@ def _at_length(dataset: xr.Dataset) -> dict[str, float]:
     return row | {"share_stuck_se_surfaces": float(dataset.stuck_surfaces_error)}
 
 
-def _percent(stuck, low, high, error):
-    """Fraction with its band and error in percent, – for devices without a length."""
-    surfaces = f", ± {100 * error:.2g}" if error > 0 else ""
-    return fraction_with_band(stuck, low, high) + surfaces
-
-
-def _interval(low, high):
-    """Interval as text, – without one [µm]."""
-    return MISSING if np.isnan(low) else f"{low:.0f} to {high:.0f}"
-
-
 #: Column with the interval of a length with the form of the model as an error.
-_PREDICTION = {"95 %, form of the model [µm]": (_interval, "prediction_low_um", "prediction_high_um")}
+_PREDICTION = {
+    "95 %, form of the model [µm]": (
+        lambda low, high: MISSING if np.isnan(low) else f"{low:.0f} to {high:.0f}",
+        *("prediction_low_um", "prediction_high_um"),
+    )
+}
 #: Meaning of this column.
 _PREDICTED = (
     "95 %, form of the model: prediction interval of the estimate of a cantilever held by its beam, if this model errs "
@@ -108,7 +96,10 @@ _PREDICTED = (
 )
 _COLUMNS_AT_LENGTH = {
     "length [µm]": (lambda length: number(length, "g"), "length_um"),
-    "P(stuck) [%]": (_percent, "share_stuck", "share_stuck_low", "share_stuck_high", "share_stuck_se_surfaces"),
+    "P(stuck) [%]": (
+        lambda stuck, low, high, error: fraction_with_band(stuck, low, high) + f", ± {100 * error:.2g}" * (error > 0),
+        *("share_stuck", "share_stuck_low", "share_stuck_high", "share_stuck_se_surfaces"),
+    ),
 }
 
 

@@ -30,7 +30,8 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
         return []
     error = errors[device]
     shape = str(error["shape"].values[0])
-    what, sought = END_STATES[shape].changes, SOUGHT_BY[shape]
+    sought = SOUGHT_BY[shape]
+    what = "pull-off force" if sought.more_is_better else f"lengths held by the {END_STATES[shape].by}"
     rows = {float(humidity): device_change(errors, device, humidity, shape) for humidity in error.humidity.values}
     known = {humidity: row for humidity, row in rows.items() if np.isfinite(row["model_error_percent"])}
     if not known:

@@ -170,7 +170,8 @@ def stuck_sentences(update: xr.Dataset) -> list[str]:
 
 def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     """Test beams and the lengths of their devices, by name of the device, before and after the measurement."""
-    rows = [row for device, update in datasets.items() for row in _rows(device, update)]
+    parts = _data, _results, _safe_sizes, _input_rows
+    rows = [row for device, update in datasets.items() for part in parts for row in part(device, update)]
     sentences = [
         f"{device}: {sentence}"
         for device, update in datasets.items()
@@ -192,12 +193,6 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     missing = {"measured"} - {name for row in rows for name in row}
     columns = {name: column for name, column in _COLUMNS.items() if name not in missing}
     return Table.of(rows, with_list(caption, sentences), columns)
-
-
-def _rows(device, update):
-    """Numbers of one device: data, results, safe sizes, inputs."""
-    for part in (_data, _results, _safe_sizes, _input_rows):
-        yield from part(device, update)
 
 
 def _data(device, update):
@@ -273,16 +268,14 @@ def _number(value, deviation):
     return with_error(value, deviation) if deviation > 0 else number(value, ".1f" if abs(value) >= 1 else ".2g")
 
 
-def _datum_text(value, error):
-    """Count, or a mean with its standard error."""
-    return number(value, "g") if np.isnan(error) else with_error(value, error)
-
-
 _COLUMNS = DEVICE | {
     "what": (lambda part, name: f"{name}: {part}", "part", "name"),
     "before": (_number, "before", "before_std"),
     "after": (_number, "after", "after_std"),
-    "measured": (_datum_text, "measured", "measured_se"),
+    "measured": (
+        lambda value, error: number(value, "g") if np.isnan(error) else with_error(value, error),
+        *("measured", "measured_se"),
+    ),
 }
 
 

@@ -133,7 +133,8 @@ def layout(answer: Answer) -> xr.Dataset:
     for name in _AIRS:
         variables[f"air_{name}"] = ("air", [getattr(one, name) for one in answer.airs], size)
     for name in _STUCK:
-        at = [np.nan if one is None else float(getattr(one, name)) for one in (answer.stuck, *_of_airs(answer))]
+        every = [answer.stuck, *(air.stuck for air in answer.airs)]
+        at = [np.nan if stuck is None else float(getattr(stuck, name)) for stuck in every]
         variables[f"stuck_{name}"] = ((), at[0], none)
         variables[f"air_stuck_{name}"] = ("air", at[1:], none)
     curves, note = [one.curve for one in answer.airs], none | {"long_name": "P(stuck) with its 95 % band"}
@@ -142,11 +143,6 @@ def layout(answer: Answer) -> xr.Dataset:
     coords = {"step": [str(step.cause) for step in answer.steps], "air": [one.humidity for one in answer.airs]}
     coords["end"] = ["value", "low", "high"]
     return xr.Dataset(variables, coords, {name: getattr(answer, name) for name in _TEXTS})
-
-
-def _of_airs(answer):
-    """P(stuck) in each of the airs."""
-    return [one.stuck for one in answer.airs]
 
 
 def answer_of(dataset: xr.Dataset) -> Answer:

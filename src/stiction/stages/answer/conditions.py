@@ -15,7 +15,7 @@ from stiction.life import holding
 from stiction.stages.devices.budget import members_of, response_of
 from stiction.stages.devices.opening import EITHER, FORCE, SOUGHT_BY, DesignedBeam
 from stiction.stages.devices.safe_lengths import chosen_share
-from stiction.stages.life.answers import AT_VOLTAGE, COLLAPSE, VOLTAGE_ENERGY, answers_of
+from stiction.stages.life.answers import Name, answers_of
 from stiction.stages.life.separation import of_beam
 from stiction.stages.test_beams.inference import is_reliable, shape_of
 
@@ -82,7 +82,7 @@ def separated_fast(
 
 def at_voltage_on_flats(slow: Iterable[Condition], life: xr.Dataset, device: DesignedBeam) -> Iterator[Condition]:
     """Yield conditions of tips at a voltage as if flats were at the distance of the dielectric."""
-    added = max((row.high for row in answers_of(life) if row.name == VOLTAGE_ENERGY), default=np.nan)
+    added = max((row.high for row in answers_of(life) if row.name == Name.VOLTAGE_ENERGY), default=np.nan)
     for one in slow:
         if added > 0 and one.shape == EITHER:
             at = one.sampled.moved(lambda v: _log(holding.tip_length_at_voltage(np.exp(v), device.beam, added)))
@@ -94,7 +94,7 @@ def drying(life: xr.Dataset, liquids: Iterable[str], humidities: Iterable[float]
 
     Their errors are those of the dimensions.
     """
-    named = {f"{COLLAPSE}_{liquid}" for liquid in liquids}
+    named = {f"{Name.COLLAPSE}_{liquid}" for liquid in liquids}
     rows = [row for row in answers_of(life) if row.name in named and 0 < row.low < np.inf]
     for humidity, row in product(humidities, rows):
         error = float(np.nan_to_num(row.error / row.low))
@@ -137,7 +137,7 @@ def _stated_force(values, share, safe):
 
 def at_voltage_on_flat_patches(stopper: Iterable[Condition], life: xr.Dataset) -> Iterator[Condition]:
     """Yield conditions of a stopper at a voltage as if flats were at the distance of the dielectric."""
-    added = max((row.high for row in answers_of(life) if row.name == AT_VOLTAGE), default=np.nan)
+    added = max((row.high for row in answers_of(life) if row.name == Name.AT_VOLTAGE), default=np.nan)
     for one in stopper:
         if added > 0:
             at = one.sampled.moved(lambda v: -_log(np.exp(-v) + added))

@@ -231,13 +231,9 @@ def tip_responses(states: Sequence[State], share: float) -> Responses:
         (curves.tip_forces(state.contact, state.humidity, state.water), state.device.beam) for state in states
     ]
     lengths = [arcs.longest_free(*forces, beam) for forces, beam in forces_and_beams]
-    compared, end = (partial(_held_by_part, share=share, part=part) for part in (_OF_SLOPES, TAIL))
+    parts = (max(part, (FEWEST + 0.5) / len(lengths[0])) for part in (_OF_SLOPES, TAIL))  # or as many as a fit needs
+    compared, end = (partial(_stuck_length, share=share, part=part) for part in parts)
     return Responses(np.array(lengths), partial(_stuck_length, share=share), compared=compared, end=end)
-
-
-def _held_by_part(lengths, share, part):
-    """As `_stuck_length`, from a part of the tips, or from as many as a fit needs."""
-    return _stuck_length(lengths, share, max(part, (FEWEST + 0.5) / len(lengths)))
 
 
 def _stuck_length(lengths, share, part=TAIL):

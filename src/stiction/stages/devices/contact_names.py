@@ -31,19 +31,19 @@ def name_of_ground(plan: Any, case: Case) -> str:
     return f"{case_id(size.pair, case.humidity)}_{size.length}x{size.width}"
 
 
-def case_on(plan: Any, at: At) -> Case:
-    """Case of one of the devices on a ground.
+def case_on(plan: Any, at: At, of_tips: bool = False) -> Case:
+    """Case of one of the devices on a ground, or with its tips on one.
 
     Raises
     ------
     KeyError
         If no device is on it.
     """
-    size = (at.case.pair, int(at.length), int(at.width))
-    users = [name for name in plan.devices.beams if plan.devices.ground(name) == size]
-    if not users:
+    size, devices = (at.case.pair, int(at.length), int(at.width)), plan.devices
+    names, patch_of = (devices.with_tips, devices.tips) if of_tips else (devices.beams, devices.ground)
+    if (user := next((name for name in names if patch_of(name) == size), None)) is None:
         raise KeyError(f"no device is on strips of {at.length} x {at.width} nm of pair {at.case.pair}")
-    return Case(case_id(users[0], at.case.humidity))
+    return Case(case_id(user, at.case.humidity))
 
 
 def patch_of(plan: Any, case: Case) -> Patch:

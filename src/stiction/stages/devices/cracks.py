@@ -140,12 +140,6 @@ def _sizes(plan, case):
     return plan.devices.sizes(case.device, case.humidity)
 
 
-def _settings(plan: Any, at: At) -> dict[str, Any]:
-    """Settings of a device."""
-    by_sizes = {"by_sizes": True} if _sizes(plan, at.case) else {}
-    return select(Settings, settings_of_beam(plan, at.case) | by_sizes)
-
-
 def _case_of_sizes(plan, at):
     """Case of the first cantilever on a ground.
 
@@ -171,7 +165,9 @@ STAGES = (
         "cracks",
         "devices/cracks/{case}",
         inputs=_inputs,
-        settings=_settings,
+        settings=lambda plan, at: select(
+            Settings, settings_of_beam(plan, at.case) | ({"by_sizes": True} if _sizes(plan, at.case) else {})
+        ),
         kind=Settings,
         compute=lambda data, settings: compute(data["ground"], settings, data.get("of_sizes")),
         message="Release long beams of {case}.",

@@ -68,8 +68,26 @@ class OfDevice:
         return ("tip_applied",) * has_tip + ("pull_off_applied",) * (self.has_dimples or not has_tip)
 
     def limits(self, dataset: xr.Dataset, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0) -> ByShape:
-        """Limits by end state, see `beam_warnings`."""
-        return beam_warnings(dataset, self, plastic, humidity)
+        """Limits at a humidity by end state, from the dataset of stage safe_lengths.
+
+        Each state is checked at the shortest of its lengths, where slopes are largest. That no water condenses is worth
+        a warning at a humidity, but not in dry air.
+        """
+        shortest = dataset.safe_length.min("share")
+        without = rules.triggered(
+            rules.no_water(float(dataset.film), humidity),
+            rules.flat_patches(float(dataset.share_flat)),
+            rules.lengths_of_sizes(float(dataset.size_error)),
+        )
+        on_summits = [humidity] if humidity in self.on_summits else []
+        smooth = rules.triggered(rules.smooth_pair(float(dataset.rms), on_summits))
+        return {
+            shape: without
+            + smooth * (self.has_dimples or shape != S_SHAPE)
+            + _length_warnings(float(shortest.sel(shape=shape)), dataset, self, plastic)
+            + _accuracy_warnings(dataset.sel(shape=shape), self)
+            for shape in map(str, dataset["shape"].values)
+        }
 
 
 @dataclass(frozen=True)
@@ -86,8 +104,18 @@ class OfStopper:
     changes_of_forces: ClassVar[tuple[str, ...]] = ("pull_off_applied",)  #: as of `OfDevice`
 
     def limits(self, dataset: xr.Dataset, plastic: Plastic = NOT_STUDIED, _humidity: float = 0.0) -> ByShape:
-        """Limits by end state, see `stopper_warnings`."""
-        return {FORCE: stopper_warnings(dataset, self, plastic)}
+        """Limits, from the dataset of stage stoppers. Other parameters as of `OfDevice.limits`."""
+        stated = humid(self.humidities)
+        films = [self.water.film(rh)[0] for rh in (*stated, *(self.worst_humidities if stated else ()))] or [0.0]
+        limits = rules.triggered(
+            rules.no_water(max(films), max(self.humidities)),
+            rules.thin_film(min(films)),
+            rules.wide_meniscus(max(films), self.contact),
+            rules.flat_patches(float(dataset.share_flat)),
+            rules.smooth_pair(float(dataset.rms), self.on_summits),
+            *contact_warnings(plastic, self.materials, is_stopper=True),
+        )
+        return {FORCE: limits}
 
 
 #: By the name of the release.
@@ -98,32 +126,6 @@ def of_settings(settings: Mapping[str, Any]) -> OfDevice | OfStopper:
     """Device and its pair from the settings of a job."""
     (of,) = (in_si(kind, settings[release]) for release, kind in _OF_RELEASE.items() if release in settings)
     return of
-
-
-def beam_warnings(
-    safe_lengths: xr.Dataset, of: OfDevice, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0
-) -> ByShape:
-    """Limits of a device at a humidity, by the shape of its adhesion. Dataset of stage safe_lengths.
-
-    Each shape is checked at the shortest of its lengths, where slopes are largest. That no water condenses is worth a
-    warning at a humidity, but not in dry air.
-    """
-    shortest = safe_lengths.safe_length.min("share")
-    without = rules.triggered(
-        rules.no_water(float(safe_lengths.film), humidity),
-        rules.flat_patches(float(safe_lengths.share_flat)),
-        rules.lengths_of_sizes(float(safe_lengths.size_error)),
-    )
-    smooth = rules.triggered(
-        rules.smooth_pair(float(safe_lengths.rms), [humidity] if humidity in of.on_summits else [])
-    )
-    return {
-        shape: without
-        + smooth * (of.has_dimples or shape != S_SHAPE)
-        + _length_warnings(float(shortest.sel(shape=shape)), safe_lengths, of, plastic)
-        + _accuracy_warnings(safe_lengths.sel(shape=shape), of)
-        for shape in map(str, safe_lengths["shape"].values)
-    }
 
 
 def _accuracy_warnings(safe_lengths, of):
@@ -179,30 +181,12 @@ def _length_warnings(length, dataset, of, plastic, thinnest=None):
     )
 
 
-def _water_warnings(of):
-    """Warnings, or None, about the thinnest and the thickest film on the patch of a stopper."""
-    stated = humid(of.humidities)
-    films = [of.water.film(rh)[0] for rh in (*stated, *(of.worst_humidities if stated else ()))] or [0.0]
-    without = rules.no_water(max(films), max(of.humidities))
-    return without, rules.thin_film(min(films)), rules.wide_meniscus(max(films), of.contact)
-
-
 class OfDevices(NamedTuple):
     """Limits of devices."""
 
     lengths: dict[tuple[str, float, str], list[Limit]]  #: by name, humidity and shape
     curves: dict[tuple[str, float, float, str], list[Limit]]  #: of charts, by name, thickness [m], gap [m] and shape
     patches: dict[str, list[Limit]]  #: of stoppers, by name
-
-
-def stopper_warnings(stopper: xr.Dataset, of: OfStopper, plastic: Plastic = NOT_STUDIED) -> list[Limit]:
-    """Limits of a stopper, from its dataset of stage stoppers. Other parameters as of `beam_warnings`."""
-    return rules.triggered(
-        *_water_warnings(of),
-        rules.flat_patches(float(stopper.share_flat)),
-        rules.smooth_pair(float(stopper.rms), of.on_summits),
-        *contact_warnings(plastic, of.materials, is_stopper=True),
-    )
 
 
 def read(files: Mapping[str, str]) -> OfDevices:
@@ -315,7 +299,10 @@ def _device_warnings(data, settings):
     lengths = [
         [
             [humidity, shape],
-            limits + gap_warnings(_at(changes, humidity), shape) + few[humidity] * (shape != EITHER) + flags,
+            limits
+            + gap_warnings({key: changes[key] for key in changes if key[0] == humidity}, shape)
+            + few[humidity] * (shape != EITHER)
+            + flags,
         ]
         for (_, humidity), dataset in data["lengths"].items()
         for shape, limits in of.limits(dataset, plastic, humidity).items()
@@ -333,11 +320,6 @@ def _save(found, paths):
     """Write limits as JSON."""
     stored = [[[key, [limit.stored() for limit in limits]] for key, limits in part] for part in found]
     save_text(json.dumps(stored, ensure_ascii=False, indent=1, allow_nan=False), paths["json"])
-
-
-def _at(changes, humidity):
-    """Changes at one humidity."""
-    return {key: change for key, change in changes.items() if key[0] == humidity}
 
 
 def not_modelled(plan: Any, *devices: str) -> dict[str, Any]:

@@ -16,13 +16,7 @@ class EndState:
     budget: str = ""  #: what the inputs of a budget move
     result: str = ""  #: the same beside test beams, with its unit
     safe: str = ""  #: what is safe against it
-    changing: str = ""  #: what full contact changes
     terms: Mapping[str, str] = field(default_factory=dict)  #: terms that a page explains
-
-    @property
-    def changes(self) -> str:
-        """Numbers of devices in this state that full contact changes."""
-        return self.changing or f"lengths held by the {self.by}"
 
 
 #: End states by their name in datasets; of those of one device, the longest devices are in the first.
@@ -63,10 +57,6 @@ END_STATES = {
         },
     ),
     FORCE: EndState(
-        by="whole area",
-        budget="mean pull-off force",
-        result="mean pull-off force [µN]",
-        safe="simulated limit",
-        changing="pull-off force",
+        by="whole area", budget="mean pull-off force", result="mean pull-off force [µN]", safe="simulated limit"
     ),
 }

@@ -178,11 +178,6 @@ def _crack_lengths(beam, strips, draw, number, address):
     return np.where(released["state"] == EndState.S_SHAPE, released["crack_length"], np.inf)
 
 
-def _energies_and_pull_offs(laws):
-    """Adhesion energy [J m⁻²] and largest attraction [Pa] of force laws (..., 4), along the last axis."""
-    return np.stack([forcelaw.energy(laws), laws[..., 0]], axis=-1)
-
-
 @dataclass(frozen=True, kw_only=True)
 class Opening:
     """Opening of beams of one kind, and their places of adhesion."""
@@ -242,7 +237,7 @@ BEAMS = {
         longest_strip=lambda device, laws: longest_strip(device.beam, laws),
         arrests=held_lengths,
         tried=longest_tried,
-        contribution=_energies_and_pull_offs,
+        contribution=lambda laws: np.stack([forcelaw.energy(laws), laws[..., 0]], axis=-1),
         length_on_mean=lambda sample, beam: bridges.least_length(*sample.mean(axis=0), beam),
         uniform=held_on_mean,
         bound=lambda strongest, beam: bridges.least_length(*strongest, beam),

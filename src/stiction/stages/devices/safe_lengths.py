@@ -131,16 +131,7 @@ def layout(
     axis = _axis(sticking, reach)
     stuck = np.array([risk.stuck_share(axis, values) for values in sticking.values()])
     shortest = [np.min(values, where=values <= reach, initial=np.inf) for values in sticking.values()]
-    shaped, metres = ("shape", "share"), {"units": "m"}
-    columns = {
-        "safe_length": ([[one.length for one in rows] for rows in safe.values()], "one-sided 95 % bound of estimate"),
-        "estimate": ([[one.estimate for one in rows] for rows in safe.values()], "length with P(stuck) = share"),
-        "beams_error": ([[one.error for one in rows] for rows in safe.values()], "standard error, number of beams"),
-        "surfaces_error": (
-            [[one.surfaces_error for one in rows] for rows in safe.values()],
-            "standard error, number of sampled surfaces",
-        ),
-    }
+    metres, none_sticks = {"units": "m"}, "shortest length that sticks; infinite if none does"
     film, flat = settings.water.film(settings.humidity)[0], [one.flat for one in without_samples.values()]
     most, number = [risk.most_stuck(values, reach) for values in sticking.values()], len(next(iter(sticking.values())))
     return xr.Dataset(
@@ -148,18 +139,13 @@ def layout(
             "stuck": (("shape", "length"), stuck[:, 0], {"units": "1"}),
             "stuck_band": (("shape", "bound", "length"), stuck[:, 1:], {"units": "1"}),
             "flooded_length": ("shape", flat, metres | {"long_name": "bound by flooded flats"}),
-            "shortest": (
-                "shape",
-                shortest,
-                metres | {"long_name": "shortest length that sticks; infinite if none does"},
-            ),
+            "shortest": ("shape", shortest, metres | {"long_name": none_sticks}),
             "most_stuck": ("shape", most, {"units": "1", "long_name": "95 % bound of P(stuck) at the reach"}),
             "reach": ((), reach, metres | {"long_name": "longest simulated length, if not all of them stick"}),
             "beams": ((), number, {"long_name": "number of simulated devices"}),
             "film": ((), film, metres),
-            "basis": (shaped, [[str(one.basis) for one in rows] for rows in safe.values()]),
         }
-        | {name: (shaped, values, metres | {"long_name": text}) for name, (values, text) in columns.items()},
+        | _of_shares(safe.values()),
         coords={
             "shape": list(sticking),
             "share": list(settings.shares),
@@ -167,6 +153,27 @@ def layout(
             "length": ("length", axis, metres),
         },
     )
+
+
+#: Variables of safe lengths: field, and what it is.
+_LENGTHS = {
+    "safe_length": ("length", "one-sided 95 % bound of estimate"),
+    "estimate": ("estimate", "length with P(stuck) = share"),
+    "beams_error": ("error", "standard error, number of beams"),
+    "surfaces_error": ("surfaces_error", "standard error, number of sampled surfaces"),
+}
+
+
+def _of_shares(safe):
+    """Variables of safe lengths in rows of shapes (shapes, shares)."""
+
+    def column(field):
+        """Values of a field."""
+        return ("shape", "share"), [[getattr(length, field) for length in row] for row in safe]
+
+    over, bases = column("basis")
+    lengths = {name: (*column(field), {"units": "m", "long_name": text}) for name, (field, text) in _LENGTHS.items()}
+    return {"basis": (over, [list(map(str, row)) for row in bases])} | lengths
 
 
 def _axis(sticking, reach):

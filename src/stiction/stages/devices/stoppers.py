@@ -38,6 +38,8 @@ SHARES = (1e-2, 1e-3, 1e-4, 1e-6)
 STEP = 0.01
 #: Probabilities of the stored quantiles of the pull-off force.
 PROBABILITIES = np.array([0.05, 0.5, 0.95])
+#: Coordinates of fractions, of P(stuck) with its band, and of safe forces with their errors.
+_COORDS = {"share": list(SHARES), "bound": ["estimate", "low", "high"], "part": ["safe", "estimate", "error"]}
 
 
 @dataclass(frozen=True)
@@ -141,10 +143,7 @@ def _statistics(settings, pull_off):
     """Mean forces, P(stuck) and safe forces of rows of patches (rows, n_rh, m) [N]."""
     newton, over = {"units": "N"}, ("tilt", "humidity")
     changes = _changes(settings, settings.humidities)
-    stuck = [
-        [stuck_with_band(row, settings.restoring_force, of) for row, of in zip(rows, changes, strict=True)]
-        for rows in pull_off
-    ]
+    stuck = [_stuck(rows, settings, changes) for rows in pull_off]
     safe, bases = zip(*(_safe(rows, settings.seed, changes) for rows in pull_off), strict=True)
     mean, error = mean_with_error(np.moveaxis(pull_off, -1, 0))
     of_stuck = {"units": "1", "long_name": "P(stuck) and its 95 % band"}
@@ -152,16 +151,11 @@ def _statistics(settings, pull_off):
         {
             "mean": (over, mean, newton),
             "mean_error": (over, np.hypot(error, mean * _ratio_errors(changes)), newton),
-            "stuck": (("bound", *over), np.moveaxis(stuck, -1, 0), of_stuck),
+            "stuck": (("bound", *over), np.moveaxis(stuck, 1, 0), of_stuck),
             "safe_force": (("part", *over, "share"), np.moveaxis(safe, 0, 1), newton),
             "basis": ("share", bases[0]),
         },
-        coords={
-            "humidity": list(settings.humidities),
-            "share": list(SHARES),
-            "bound": ["estimate", "low", "high"],
-            "part": ["safe", "estimate", "error"],
-        },
+        coords={"humidity": list(settings.humidities)} | _COORDS,
     )
 
 
@@ -220,46 +214,49 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
     Forces at the humidities of the device (n_rh, m), and along (n, m) a fine axis of humidities, which dry air may
     precede (n,) [N], [-].
     """
-    newton, none = {"units": "N"}, {"units": "1"}
-    worst, worst_error = _worst(axis, along)
-    both = [(rows, _changes(settings, at)) for rows, at in ((chosen, settings.humidities), (along, axis))]
-    stuck_chosen, stuck = (
-        np.array([stuck_with_band(row, settings.restoring_force, of) for row, of in zip(*one, strict=True)]).T
-        for one in both
+    newton, none, changes = {"units": "N"}, {"units": "1"}, _changes(settings, settings.humidities)
+    safe, basis = _safe(chosen, settings.seed, changes)
+    of_force, of_band = (
+        none | {"long_name": "relative, of mean forces"},
+        none | {"long_name": "P(stuck) and its 95 % band"},
     )
-    (safe, basis), (safe_along, _) = (_safe(rows, settings.seed, changes) for rows, changes in both)
-    mean, error = mean_with_error(along.T)
+    at = {"humidity": list(settings.humidities), "axis": axis, "share": _COORDS["share"]}
     return xr.Dataset(
         {
             "pull_off": (("humidity", "sample"), chosen, newton),
-            "full_contact_error": (
-                "humidity",
-                _ratio_errors(both[0][1]),
-                none | {"long_name": "relative, of mean forces"},
-            ),
-            "stuck": (("bound", "humidity"), stuck_chosen, none | {"long_name": "P(stuck) and its 95 % band"}),
+            "full_contact_error": ("humidity", _ratio_errors(changes), of_force),
+            "stuck": (("bound", "humidity"), _stuck(chosen, settings, changes), of_band),
             "safe_force": (("part", "humidity", "share"), safe, newton),
             "basis": ("share", basis),
             "restoring_force": ((), settings.restoring_force, newton),
-            "mean_along": ("axis", mean, newton),
-            "mean_along_error": ("axis", np.hypot(error, mean * _ratio_errors(both[1][1])), newton),
-            "quantile_along": (("probability", "axis"), np.quantile(along, PROBABILITIES, axis=1), newton),
-            "stuck_along": (("bound", "axis"), stuck, none),
-            "scored_along": (("axis", "score"), [quantiles(row) for row in along], newton),
-            "safe_force_along": (("axis", "share"), safe_along[0], newton),
-            "worst_humidity": ((), worst, none),
-            "worst_humidity_error": ((), worst_error, none),
-        },
-        coords={
-            "humidity": list(settings.humidities),
-            "axis": axis,
-            "share": list(SHARES),
-            "probability": PROBABILITIES,
-            "score": SCORES,
-            "bound": ["estimate", "low", "high"],
-            "part": ["safe", "estimate", "error"],
-        },
+        }
+        | _along(settings, axis, along),
+        coords=at | {"probability": PROBABILITIES, "score": SCORES} | _COORDS,
     )
+
+
+def _along(settings, axis, along):
+    """Variables of the forces (n, m) [N] along the fine axis of humidities (n,) [-]."""
+    newton, none, changes = {"units": "N"}, {"units": "1"}, _changes(settings, axis)
+    worst, worst_error = _worst(axis, along)
+    (safe, *_), _ = _safe(along, settings.seed, changes)
+    mean, error = mean_with_error(along.T)
+    return {
+        "mean_along": ("axis", mean, newton),
+        "mean_along_error": ("axis", np.hypot(error, mean * _ratio_errors(changes)), newton),
+        "quantile_along": (("probability", "axis"), np.quantile(along, PROBABILITIES, axis=1), newton),
+        "stuck_along": (("bound", "axis"), _stuck(along, settings, changes), none),
+        "scored_along": (("axis", "score"), [quantiles(row) for row in along], newton),
+        "safe_force_along": (("axis", "share"), safe, newton),
+        "worst_humidity": ((), worst, none),
+        "worst_humidity_error": ((), worst_error, none),
+    }
+
+
+def _stuck(rows, settings, changes):
+    """P(stuck) of rows of patches (n, m) [N] with its band (3, n) [-]."""
+    force = settings.restoring_force
+    return np.array([stuck_with_band(row, force, change) for row, change in zip(rows, changes, strict=True)]).T
 
 
 def _worst(axis, along):

@@ -1,6 +1,7 @@
 """Answers about a device: their names, and the dataset that keeps them."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from enum import StrEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -10,16 +11,34 @@ from stiction.stages.life.inputs import Stated
 
 #: Questions of a designer, in their order.
 QUESTIONS = TOUCH, STICK, HOLD, FREE = "touch", "stick", "hold", "free"
-#: Names of answers that sentences are about.
-VOLTAGE, SHOCK, COLLAPSE, RELEASED, AFTER = "voltage", "shock", "collapse", "released", "after"
-AT_VOLTAGE, VOLTAGE_ENERGY, FIELD, FREEING = "at_voltage", "voltage_energy", "field", "freeing_voltage"
-FAST, RESTORING, FREED = "fast", "restoring_force", "freeing"
-HELD, PULL = "energy", "force"
-#: Begins the names of safe lengths, which end with their humidity.
-SAFE = "safe_length_"
-TILTED, WEDGE = "force_tilted", "wedge"
-ON_DIMPLES, BESIDE, DIMPLES, PULLED = "stuck_dimples", "beside_dimples", "dimples", "dimples_force"
-VOLTAGE_BESIDE, TENSION_BESIDE = "voltage_dimples", "tension_dimples"
+
+
+class Name(StrEnum):
+    """Names of answers that sentences are about; those of liquids and airs end with these."""
+
+    VOLTAGE = "voltage"
+    SHOCK = "shock"
+    COLLAPSE = "collapse"
+    RELEASED = "released"
+    AFTER = "after"
+    AT_VOLTAGE = "at_voltage"
+    VOLTAGE_ENERGY = "voltage_energy"
+    FIELD = "field"
+    FREEING = "freeing_voltage"
+    FAST = "fast"
+    RESTORING = "restoring_force"
+    FREED = "freeing"
+    HELD = "energy"
+    PULL = "force"
+    SAFE = "safe_length_"
+    TILTED = "force_tilted"
+    WEDGE = "wedge"
+    ON_DIMPLES = "stuck_dimples"
+    BESIDE = "beside_dimples"
+    DIMPLES = "dimples"
+    PULLED = "dimples_force"
+    VOLTAGE_BESIDE = "voltage_dimples"
+    TENSION_BESIDE = "tension_dimples"
 
 
 #: Fields of an answer that are texts.
@@ -68,3 +87,31 @@ def answers_of(dataset: xr.Dataset) -> list[Answer]:
         )
         for row in rows
     ]
+
+
+# What answers about beams and stoppers have in common
+
+#: Keys for the effect of a voltage on a device in contact, and its source.
+BY_VOLTAGE, HELD_BY = "voltage_V and dielectric", "stage at_voltage, stiction.life.holding"
+
+
+def missing(answers: Sequence[Answer], rows: Iterable[tuple[str, str, str, str, str]]) -> list[Answer]:
+    """Answers without a number for those rows (name, question, what, unit, keys) that no answer has."""
+    known = {answer.name for answer in answers}
+    nothing = np.nan, np.nan, np.nan
+    return [
+        Answer(name, question, what, *nothing, unit, "–", "–", keys)
+        for name, question, what, unit, keys in rows
+        if name not in known
+    ]
+
+
+def field_in_dielectric(of: Stated) -> Answer:
+    """Field in the dielectric of a device whose surfaces touch."""
+    what, form = "field in the dielectric in contact", "V / t; thin oxides break down near 1 V/nm"
+    return Answer(Name.FIELD, HOLD, what, np.nan, of.capacitor.field, np.nan, "V m-1", form, "stiction.contact.voltage")
+
+
+def pulses(sine: float, rectangle: float) -> str:
+    """Lower bound of the peak of a half-sine, and of a rectangular pulse, in parts of a slow one."""
+    return f"at least: / {sine:.3g}, any half-sine (a rectangular pulse: / {rectangle:.3g})"

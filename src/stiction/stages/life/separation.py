@@ -143,21 +143,6 @@ def _name_of_tips(plan, case):
     return f"{case_id(tips.pair, case.humidity)}_{tips.length}x{tips.width}"
 
 
-def _case_of_tips(plan, at):
-    """Case of one of the cantilevers with some tips.
-
-    Raises
-    ------
-    KeyError
-        If there is none.
-    """
-    patch = (at.case.pair, int(at.length), int(at.width))
-    for name in plan.devices.with_tips:
-        if plan.devices.tips(name) == patch:
-            return Case(case_id(name, at.case.humidity))
-    raise KeyError(f"no device has tips of {at.length} x {at.width} nm of pair {at.case.pair}")
-
-
 def _contacts_of_stopper(plan, at):
     """Contacts of a stopper by humidity."""
     contacts = {humidity: contact_of(plan, case) for humidity, case in _wet(plan, at.device).items()}
@@ -183,7 +168,7 @@ def _contact_of_strips(plan: Any, at: At) -> dict[str, str]:
 
 def _contact_of_tips(plan: Any, at: At) -> dict[str, str]:
     """Contact of tips, with its correction."""
-    case = _case_of_tips(plan, at)
+    case = case_on(plan, at, of_tips=True)
     return {"contact": tips_of(plan, case)["tips"]} | corrections_of(plan, case.device, case.humidity)
 
 

@@ -137,17 +137,15 @@ def _settings(plan, at):
     """Settings of every budget with the name of its patch, and those of every contact."""
     cases = _cases(plan, at.device).values()
     patches = [patch_of(of, case) for of, case, _ in cases]
+    at = {patch: At(**patch._asdict()) for patch in patches}  # samples as in a comparison with the first of a patch
     return {
         "budgets": [stage_budget.settings_of(of, At(case=case))["budget"] for of, case, _ in cases],
         "patches": [patch.name for patch in patches],
-        "contacts": {patch.name: [str(patch.pair), _settings_of_contact(plan, patch)] for patch in patches},
+        "contacts": {
+            patch.name: [str(patch.pair), GROUND.settings(plan, at[patch], GROUND.fewer(plan, at[patch]))]
+            for patch in patches
+        },
     }
-
-
-def _settings_of_contact(plan, patch):
-    """Settings of a contact for a comparison with the first samples of a patch's."""
-    at = At(**patch._asdict())
-    return GROUND.settings(plan, at, GROUND.fewer(plan, at))
 
 
 def _rerun(data, settings):
