@@ -355,7 +355,7 @@ def test_the_job_reads_what_is_stated_alone():
     }
     plan = Plan(load({"devices": names, "liquids": {"mine": {"surface_tension_mN_per_m": 30}}}))
     inputs = {name: Graph(plan).job(f"devices/answer/{name}").inputs for name in names}
-    assert "after" not in inputs["C1"]
+    assert inputs["C1"]["after"] == {}
     assert inputs["C2"]["after"] == {0.67: "devices/touchdowns/C2_rh067"}
     assert inputs["C2"]["budgets"] == ["devices/budget/C2_rh067", "devices/budget/C2_rh067_tip"]
     assert inputs["C1"]["biased"] == {}
