@@ -25,7 +25,8 @@ def _reduced(entry):
         return entry
     kept = {name: value for name, value in entry.items() if name not in _OF_COMPLETE}
     if "word" in kept:
-        return {"description": kept.pop("description"), "anyOf": [{"const": kept.pop("word")}, kept]}
+        dew_point = {"type": "object", "properties": {"dew_point_C": {"type": "number"}}, "additionalProperties": False}
+        return {"description": kept.pop("description"), "anyOf": [{"const": kept.pop("word")}, kept, dew_point]}
     for name in ("additionalProperties", "items"):
         if name in kept:
             kept[name] = _reduced(kept[name])

@@ -5,6 +5,7 @@ import operator
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -12,11 +13,13 @@ from stiction.config.cases import TOO_LITTLE
 from stiction.config.keys import Keys, Relations
 from stiction.config.kinds import KINDS
 from stiction.config.materials import material_of
+from stiction.config.messages import ConfigError, Problem, is_number, one_line
 from stiction.config.reading import is_stated
 from stiction.config.units import NM_PER_UM, from_si, to_si
+from stiction.constants import ZERO_CELSIUS
 from stiction.contact.air import has_dry, humid
 from stiction.contact.materials import COATING
-from stiction.contact.meniscus import dry_air, is_wetted, meniscus_height
+from stiction.contact.meniscus import dry_air, humidity_at, is_wetted, meniscus_height
 from stiction.devices.limits import rules
 from stiction.models import SIDES
 from stiction.rounding import is_at_most
@@ -25,6 +28,10 @@ from stiction.rounding import is_at_most
 relation = Relations()
 
 TEMPERATURE, ADSORBED, _SHOWN = "water.temperature_K", "water.adsorbed_nm", "figures.humidity"
+#: Key of air by its dew point, and the lowest dew point with a vapour pressure [K].
+_DEW_POINT, _COLDEST = "dew_point_C", 150.0
+#: Levels above ``test_beams.T.crack_lengths[0].humidity``, the deepest humidity.
+_LEVELS = 5
 
 
 @dataclass(frozen=True)
@@ -137,6 +144,49 @@ def _refusal(meeting, humidity):
     (gap, _), *_ = meeting.gaps
     least, refusal = least_gap(humidity, meeting)
     return meeting.too_dry(humidity) or (refusal if meeting.config[gap] < least else None)
+
+
+def at_dew_points(config: Any, path: tuple = (), temperature: float | None = None) -> Any:
+    """Configuration, valid or not, with the humidity at the temperature of the water for each dew point.
+
+    ``humidities: [{dew_point_C: 10}]`` is the humidity, to four decimals, of air with this dew point.
+
+    Raises
+    ------
+    ConfigError
+        If water condenses at the temperature.
+    """
+    if not path:
+        temperature = dict(Keys(config).given(TEMPERATURE)).get(TEMPERATURE)
+    if not is_number(temperature) or not temperature > 0 or len(path) > _LEVELS:
+        return config  # the schema reports it, or no humidity is so deep
+    if _is_dew_point(config, path):
+        return _humidity_of_dew_point(config, path, temperature)
+    if isinstance(config, dict):
+        return {key: at_dew_points(value, (*path, key), temperature) for key, value in config.items()}
+    if isinstance(config, list):
+        return [at_dew_points(value, (*path, k), temperature) for k, value in enumerate(config)]
+    return config
+
+
+def _is_dew_point(value, path):
+    """Whether a value at a path is the dew point in place of a humidity."""
+    is_humidity = "humidities" in path[-2:] or path[-1:] == ("humidity",)
+    return is_humidity and isinstance(value, dict) and {*value} == {_DEW_POINT} and is_number(value[_DEW_POINT])
+
+
+def _humidity_of_dew_point(value, path, temperature):
+    """Humidity of a dew point. Refuses air from which water condenses on the surfaces."""
+    dew_point = value[_DEW_POINT] + ZERO_CELSIUS
+    humidity = round(humidity_at(temperature, dew_point), 4) if dew_point > _COLDEST else 0.0
+    if humidity >= 1:
+        words = (
+            f"is {one_line(value)}, must be below the temperature of the water, {temperature - ZERO_CELSIUS:.4g} °C: "
+            "water condenses on colder surfaces, which is not in the model, and unsafe "
+            f"(given {TEMPERATURE} = {temperature:g})"
+        )
+        raise ConfigError(str(Problem(path, words)))
+    return max(humidity, 1e-4)  # not dry air, but too dry for a film
 
 
 @relation

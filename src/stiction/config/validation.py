@@ -56,6 +56,7 @@ def checked(stated: Any, kept: Path | None = None) -> Checked:
 
 def _checked(stated, kept):
     """Checked configuration without a file of devices. Raises the errors of `checked`."""
+    stated = meetings.at_dew_points(stated)
     _refuse(schema_problems(sections := _plain(stated), schema()), stated, {})
     stated = process.with_surfaces(expanded(materials.with_named(stated)))
     if (whole := _plain(stated)) != sections:  # with copies and surfaces of settings

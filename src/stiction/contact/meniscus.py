@@ -21,6 +21,11 @@ _ROUNDING = 1e-9
 _REFERENCE = 300.0
 #: Critical temperature of water [K]; IAPWS R1-76(2014).
 _CRITICAL = 647.096
+#: Critical pressure of water [Pa], factors and powers of its vapour pressure; W. Wagner and A. Pruss, J. Phys. Chem.
+#: Ref. Data 22, 783 (1993).
+_CRITICAL_PRESSURE = 22.064e6
+_VAPOUR = np.array([-7.85951783, 1.84408259, -11.7866497, 22.6807411, -15.9618719, 1.80122502])
+_POWERS = np.array([1, 1.5, 3, 3.5, 4, 7.5])
 #: Density of water, Kell (1975), J. Chem. Eng. Data 20, 97: numerator and denominator, in powers of t [°C]; [kg m⁻³].
 _MASS = (999.83952, 16.945176, -7.9870401e-3, -46.170461e-6, 105.56302e-9, -280.54253e-12)
 _EXPANSION = (1.0, 16.879850e-3)
@@ -51,6 +56,27 @@ def tabulated_density(temperature: float) -> float:
     celsius = temperature - 273.15
     mass, expansion = (np.polynomial.polynomial.polyval(celsius, powers) for powers in (_MASS, _EXPANSION))
     return float(mass / expansion)
+
+
+def vapour_pressure(temperature: float) -> float:
+    r"""Saturation pressure of the vapour over water, Wagner and Pruss (1993) [Pa]. Temperature [K].
+
+    .. math:: \ln(p / p_c) = (T_c / T) \sum_k a_k \tau^{n_k}, \quad \tau = 1 - T / T_c
+
+    Below 0 °C it is that over supercooled water, by which dew points are defined.
+
+    Examples
+    --------
+    >>> round(vapour_pressure(293.15))
+    2339
+    """
+    tau = 1 - temperature / _CRITICAL
+    return float(_CRITICAL_PRESSURE * np.exp(_CRITICAL / temperature * (_VAPOUR @ tau**_POWERS)))
+
+
+def humidity_at(temperature: float, dew_point: float) -> float:
+    """Relative humidity of air at a temperature from its dew point [-]. Both in K. At least 1 where water condenses."""
+    return vapour_pressure(dew_point) / vapour_pressure(temperature)
 
 
 def surface_energy(temperature: float) -> float:
