@@ -3,8 +3,6 @@
 #: Molar gas constant [J mol⁻¹ K⁻¹], exact; SI of 2019.
 GAS_CONSTANT = 8.31446261815324
 
-#: 0 °C [K], exact; SI.
-ZERO_CELSIUS = 273.15
 #: Molar volume of liquid water, 300 K [m³ mol⁻¹]; paper, below Eq. (8).
 WATER_MOLAR_VOLUME = 1.8e-5
 #: Liquid-vapour surface energy γ_LG of water, 300 K [N m⁻¹]; paper, below Eq. (8).

@@ -16,10 +16,9 @@ from stiction.config.materials import material_of
 from stiction.config.messages import ConfigError, Problem, is_number, one_line
 from stiction.config.reading import is_stated
 from stiction.config.units import NM_PER_UM, from_si, to_si
-from stiction.constants import ZERO_CELSIUS
 from stiction.contact.air import has_dry, humid
 from stiction.contact.materials import COATING
-from stiction.contact.meniscus import dry_air, humidity_at, is_wetted, meniscus_height
+from stiction.contact.meniscus import ZERO_CELSIUS, dry_air, humidity_at, is_wetted, meniscus_height
 from stiction.devices.limits import rules
 from stiction.models import SIDES
 from stiction.rounding import is_at_most

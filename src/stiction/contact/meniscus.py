@@ -17,6 +17,8 @@ from stiction.contact.air import is_humid, is_possible
 MOLECULES = 3
 #: Rounding of the sum of two cosines that are opposite to each other.
 _ROUNDING = 1e-9
+#: 0 °C [K], exact; SI.
+ZERO_CELSIUS = 273.15
 #: Temperature of the paper [K].
 _REFERENCE = 300.0
 #: Critical temperature of water [K]; IAPWS R1-76(2014).
@@ -53,7 +55,7 @@ def tabulated_density(temperature: float) -> float:
     >>> round(tabulated_density(298.15), 1)
     997.0
     """
-    celsius = temperature - 273.15
+    celsius = temperature - ZERO_CELSIUS
     mass, expansion = (np.polynomial.polynomial.polyval(celsius, powers) for powers in (_MASS, _EXPANSION))
     return float(mass / expansion)
 
