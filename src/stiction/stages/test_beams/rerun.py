@@ -127,7 +127,8 @@ def _inputs(plan, at):
         "updated": f"devices/test_beams/{at.device}",
         "budgets": {key: name for key, (*_, name) in cases.items()},
         "contacts": {patch.name: contact_of(of, case) for patch, (of, case) in patches.items()},
-        "model_errors": ratios,
+        "by_levels": {patch: ratio for patch, ratio in ratios.items() if "/devices/" in ratio},  # of another stage
+        "model_errors": {patch: ratio for patch, ratio in ratios.items() if "/devices/" not in ratio},
         "heights": {side: f"heights/{side}" for side in sides},
         "spectrum": {side: f"spectrum/{side}" for side in sides},
     }
@@ -152,7 +153,7 @@ def _rerun(data, settings):
     """Contacts with the errors of the update, and all recomputed results, or the reason against them."""
     surfaces = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     update = data["updated"]
-    errors, contacts, model_errors = errors_of(update), {}, data["model_errors"]
+    errors, contacts, model_errors = errors_of(update), {}, data["by_levels"] | data["model_errors"]
     wanted = [
         with_correction(budget_settings(own), {"model_error": model_errors[patch]} if patch in model_errors else {})
         for own, patch in zip(settings["budgets"], settings["patches"], strict=True)
