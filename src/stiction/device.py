@@ -11,8 +11,9 @@ import xarray as xr
 
 from stiction.accuracy import decided
 from stiction.answer.data import Answer
-from stiction.config.cases import Air, case_id, in_numbers
+from stiction.config.cases import case_id, in_numbers
 from stiction.config.kinds import BEAM, KEYS, KINDS, STOPPER, Kind, Release, kind_of
+from stiction.contact.air import Air
 from stiction.devices.limits.limit import Limit, restored
 from stiction.plan.devices import DevicePlan
 from stiction.plan.graph import Results

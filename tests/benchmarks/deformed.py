@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 from stiction.beam.energy import CRACK_LENGTH_POWER
-from stiction.config.cases import Air
 from stiction.config.files import load
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
+from stiction.contact.air import Air
 from stiction.contact.full import elements
 from stiction.contact.materials import ELASTIC
 from stiction.estimates import mean_with_error

@@ -20,10 +20,10 @@ from scipy.integrate import cumulative_trapezoid
 from stiction.beam import equilibrium, release
 from stiction.beam.energy import arrest_length
 from stiction.beam.resolution import resolved
-from stiction.config.cases import Air
 from stiction.config.files import load
 from stiction.config.units import in_si, to_si
 from stiction.contact import forcelaw
+from stiction.contact.air import Air
 from stiction.contact.environment import Water, force_curves
 from stiction.errors import NotConverged
 from stiction.estimates import mean_with_error

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import numpy as np
 
-from stiction.config.cases import Air, Case
+from stiction.config.cases import Case
 from stiction.config.units import from_si
+from stiction.contact.air import Air
 from stiction.devices.risk import one_in
 from stiction.report.format import fraction_with_band
 from stiction.run import storage

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 import yaml
 
 from stiction.command.present import Present
-from stiction.config.cases import Air
 from stiction.config.merging import differing
 from stiction.config.reading import paper
+from stiction.contact.air import Air
 from stiction.report.format import with_error
 from stiction.report.html import rendered
 from stiction.rounding import in_percent

@@ -9,7 +9,7 @@ from typing import Any
 
 import xarray as xr
 
-from stiction.config.cases import DRY_AIR
+from stiction.contact.air import DRY_AIR
 from stiction.plan import cost
 from stiction.plan.plan import Plan
 from stiction.plan.stage import FOLDERS, WILDCARDS, At, File, Names, Stage, expression, stages_of

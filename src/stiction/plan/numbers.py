@@ -3,8 +3,9 @@
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from stiction.config.cases import Air, Case
+from stiction.config.cases import Case
 from stiction.config.merging import merged
+from stiction.contact.air import Air
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,9 @@ from inspect import signature
 from types import SimpleNamespace
 from typing import Any, get_args, get_origin, get_type_hints
 
-from stiction.config.cases import BEFORE_AIR, CASE, DRY_AIR, PAIR_IN_AIR, Case, PairInAir
+from stiction.config.cases import BEFORE_AIR, CASE, PAIR_IN_AIR, Case, PairInAir
 from stiction.config.units import in_si, without_unit
+from stiction.contact.air import DRY_AIR
 from stiction.contact.materials import OF_CONTACT
 from stiction.models import (
     ALTERNATIVES_OF_SCANS,

@@ -6,8 +6,8 @@ from typing import NamedTuple
 import pandas as pd
 from matplotlib.figure import Figure
 
-from stiction.config.cases import Air
 from stiction.config.merging import values
+from stiction.contact.air import Air
 from stiction.plan.stage import File
 from stiction.report.format import fraction_with_band, with_error
 from stiction.report.style import DOUBLE, SINGLE, dashes, figure_stage, letter, marker, panels, styled

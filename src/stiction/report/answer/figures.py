@@ -7,7 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from stiction.answer.data import Answer, Cause
-from stiction.config.cases import Air
+from stiction.contact.air import Air
 from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.answer import tables, words

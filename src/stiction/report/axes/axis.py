@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import Air
 from stiction.config.kinds import ROUGHNESSES
 from stiction.config.surfaces import process
 from stiction.config.units import from_si, without_unit
+from stiction.contact.air import Air
 from stiction.report.format import with_error
 from stiction.report.limits import words
 from stiction.run.stored_limits import of_text

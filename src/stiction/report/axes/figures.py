@@ -5,8 +5,8 @@ import xarray as xr
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
-from stiction.config.cases import Air
 from stiction.config.surfaces import process
+from stiction.contact.air import Air
 from stiction.report.axes.axis import axes_of
 from stiction.report.format import TO_NM, TO_UM
 from stiction.report.style import (

@@ -8,7 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 
 from stiction.analysis.model_error import length_factors, rms_deviation
-from stiction.config.cases import Air
+from stiction.contact.air import Air
 from stiction.plan.names import by_case, by_name
 from stiction.report import dots, published
 from stiction.report.format import TO_NM, UM, number, percent, signed, with_error

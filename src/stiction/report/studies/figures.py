@@ -12,8 +12,8 @@ from matplotlib.patches import Patch
 from stiction.analysis import convergence
 from stiction.analysis import variants as comparison
 from stiction.analysis.plasticity import ONSET
-from stiction.config.cases import Air
 from stiction.contact import forcelaw
+from stiction.contact.air import Air
 from stiction.plan.names import by_case, by_name, by_outcome
 from stiction.report import dots, published
 from stiction.report.format import TO_GPA, TO_MJ, TO_MPA, TO_NM, TO_UM, with_error

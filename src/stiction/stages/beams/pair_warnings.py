@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.cantilever import Beam
-from stiction.config.cases import Air
+from stiction.contact.air import Air
 from stiction.contact.environment import Water
 from stiction.devices.limits import rules
 from stiction.devices.limits.limit import Limit, restored

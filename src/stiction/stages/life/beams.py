@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from stiction.beam.energy import apparent_adhesion_energy
-from stiction.config.cases import Air
 from stiction.config.units import from_si
+from stiction.contact.air import Air
 from stiction.devices.risk import one_in
 from stiction.life import drying, freeing, holding, touch
 from stiction.stages.devices.safe_lengths import chosen_share

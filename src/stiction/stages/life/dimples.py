@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import Air
 from stiction.constants import VACUUM_PERMITTIVITY
+from stiction.contact.air import Air
 from stiction.devices.stoppers import stuck_patches
 from stiction.estimates import mean_with_error
 from stiction.life.dimples import holds, least_load, least_pull, states

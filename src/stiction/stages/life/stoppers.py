@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.config.cases import Air
 from stiction.config.units import from_si
+from stiction.contact.air import Air
 from stiction.devices.risk import Basis, one_in, sampled_bound, samples_for
 from stiction.devices.stoppers import safe_force
 from stiction.estimates import mean_with_error
