@@ -57,7 +57,7 @@ def written():
 
 
 WRITTEN = [
-    *(DOCS / "pictures" / f"{name}.svg" for name in ("beam", "stopper_and_bridge", "method")),
+    *(DOCS / "pictures" / f"{name}.svg" for name in ("beam", "method", "stopper_and_bridge")),
     DOCS / "tables" / "keys_of_the_simulation.md",
     DOCS / "tables" / "materials.md",
     *(ROOT / "workflow" / "rules" / f"{name}.smk" for name in ("chain", *update.rules.ROOMS)),

@@ -16,13 +16,12 @@ from stiction.config.messages import ConfigError
 from stiction.config.relations import schema
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
-from stiction.report.drawings import devices as drawings
 from stiction.stages.answer.answer import answer_of
 
 SPRING = "torsion_nN_m_per_rad"
 #: Force for a stiffness of 1 nN m/rad [µN]: (1e-9 N m/rad) θ / (1e-6 m) = 1e-3 N = 1000 µN, for θ = 1 rad and r = 1 µm.
 PER = Way((SPRING, "angle_deg", "arm_um"), lambda mirror: 1e3 * math.radians(mirror["angle_deg"]) / mirror["arm_um"])
-MIRROR = Kind(words="torsion mirror", keys=("contact_um",), ways=(PER,), release=STOPPER)
+MIRROR = Kind(words="torsion mirror", drawing="stopper.svg", keys=("contact_um",), ways=(PER,), release=STOPPER)
 NUMBERS = {
     SPRING: ("torsional stiffness of the spring", "nN·m/rad"),
     "angle_deg": ("angle in contact", "°"),
@@ -37,15 +36,13 @@ SMALL |= {"studies": {"plasticity": {"strips": 2}}}
 
 @pytest.fixture
 def registered(monkeypatch):
-    """Register the kind: its object, the words of its keys, these in the schema, and its drawing."""
+    """Register the kind: its object, the words of its keys, and these in the schema."""
     section = schema()["properties"]["devices"]["additionalProperties"]["properties"]
     monkeypatch.setitem(KINDS, "mirror", MIRROR)
     monkeypatch.setitem(section["kind"], "enum", list(KINDS))
     for key, words in NUMBERS.items():
         monkeypatch.setitem(KEYS, key, words)
         monkeypatch.setitem(section, key, {"type": "number", "exclusiveMinimum": 0, "description": "a number"})
-    drawing = drawings._OF_KINDS["stopper"]  # noqa: SLF001
-    monkeypatch.setitem(drawings._OF_KINDS, "mirror", drawing)  # noqa: SLF001
 
 
 @pytest.mark.usefixtures("registered")

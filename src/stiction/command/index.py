@@ -23,7 +23,7 @@ from stiction.config.reading import paper
 from stiction.models import SIDES
 from stiction.plan.planner import Planner, hashes
 from stiction.plan.stage import WILDCARDS, expression
-from stiction.report.drawings.devices import device_drawing
+from stiction.report.drawings import device_drawing
 from stiction.report.html import rendered
 from stiction.report.surfaces.words import surface_in_words
 from stiction.run import stale_results
@@ -188,7 +188,7 @@ def _devices(results: Present, config: Mapping, found: Sequence[Item]) -> Iterat
         yield {
             "name": name,
             "kind": kind_of(section).words,
-            "drawing": device_drawing(section, verdicts.get(name, {}).get("by_tip") == "True").svg,
+            "drawing": device_drawing(section, verdicts.get(name, {}).get("by_tip") == "True"),
             "page": page if page in pages else "",
             "answer": answer,
             "warnings": sum(name in {one.name for one in subjects} for _, subjects in found_limits),

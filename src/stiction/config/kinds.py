@@ -97,6 +97,7 @@ class Kind:
     """Differences between the devices of one kind and others."""
 
     words: str  #: what it is
+    drawing: str  #: template of its drawing
     keys: tuple[str, ...]  #: that it must have, of `KEYS`
     ways: tuple[Way, ...] = ()  #: of its restoring force, of which it has one
     optional: tuple[str, ...] = ()  #: keys that it may have
@@ -168,12 +169,14 @@ class Kind:
 KINDS = {
     "cantilever": Kind(
         words="beam clamped at one end",
+        drawing="cantilever.svg",
         keys=("thickness_um", "gap_um", "width_um"),
         optional=("length_um", "strip_um", "chart", "dimples"),
         has_tip=True,
     ),
     "bridge": Kind(
         words="beam clamped at both ends",
+        drawing="bridge.svg",
         keys=("thickness_um", "gap_um", "width_um", "residual_stress_MPa"),
         optional=("length_um", "strip_um", "chart", "dimples"),
         # ASSUME: strips of 0.5 µm resolve the middle of a bridge, which is held on 2 to 6 µm. Shorter ones hold more:
@@ -184,6 +187,7 @@ KINDS = {
     ),
     "stopper": Kind(
         words="stopper",
+        drawing="stopper.svg",
         keys=("contact_um",),
         ways=(
             Way(("restoring_force_uN",), lambda _: 1),

@@ -1,16 +1,18 @@
 """Dot plots that read like a table: labels left of the axis, a mark for each number, and the number beside it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from matplotlib.axes import Axes
 
 from stiction.report.style import OUTLINED
 
-#: Height of a row of dots, and of everything else in a panel [in].
-ROW, AROUND = 0.24, 0.75
-#: Widths of the bar of a mark and of its ends [points]; free part of an axis beside its marks, for their numbers.
-_THICK, _END, _FREE = 3.5, 7, 0.22
+#: Height of a row of dots, of each further line of its label, and of everything else in a panel [in].
+ROW, LINE, AROUND = 0.24, 0.13, 0.75
+#: Widths of the bar of a mark and of its ends [points].
+_THICK, _END = 3.5, 7
+#: Width of a character of a number [in], part of a figure that its panels fill, and free part of an axis on its left.
+_CHARACTER, _FILLED, _LEFT = 0.06, 0.55, 0.06
 _NUMBER = {"textcoords": "offset points", "va": "center", "fontsize": 7, "path_effects": OUTLINED}
 
 
@@ -28,7 +30,7 @@ class Mark:
 
 
 def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]]) -> None:
-    """Draw the marks of each row by its label, from top to bottom."""
+    """Draw the marks of each row by its label, from top to bottom. What a panel already shows stays within its axis."""
     for place, marks in enumerate(rows.values()):
         panel.axhline(place, color="0.9", linewidth=0.6, zorder=0)
         for mark in marks:
@@ -36,7 +38,22 @@ def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]]) -> None:
     panel.set_yticks(range(len(rows)), list(rows))
     panel.tick_params(axis="y", length=0)
     panel.set_ylim(len(rows) - 0.4, -0.6)
-    panel.margins(x=_FREE)
+    _set_ends(panel, max((len(mark.text) for marks in rows.values() for mark in marks), default=0))
+
+
+def _set_ends(panel, longest):
+    """Set the ends of the axis, with room for the longest number on the right."""
+    low, high = panel.dataLim.intervalx
+    span = (high - low) or abs(high) or 1.0
+    width = _FILLED * panel.figure.get_figwidth() / panel.get_gridspec().ncols
+    right = min(0.5, _CHARACTER * longest / width)
+    panel.set_xlim(low - _LEFT * span, high + span * right / (1 - right))
+
+
+def height(labels: Iterable[str]) -> float:
+    """Height of a panel with rows of some labels, broken into lines [in]."""
+    lines = [label.count("\n") for label in labels]
+    return AROUND + len(lines) * (ROW + LINE * max(lines, default=0))
 
 
 def signed(number: float) -> str:

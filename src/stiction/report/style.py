@@ -124,6 +124,11 @@ def on_a_page() -> Iterator[None]:
         _ON_A_PAGE.reset(token)
 
 
+def page_width(width: float) -> float:
+    """Width of a figure of `panels`: that of a page while one is drawn, else ``width`` [in]."""
+    return PAGE if _ON_A_PAGE.get() else width
+
+
 def panels(rows: int, columns: int, size: tuple[float, float], **shared) -> tuple[Figure, np.ndarray]:
     """New figure of ``size`` (width, height) [in] and its axes (rows, columns), ``shared`` as in Figure.subplots."""
     if _ON_A_PAGE.get():

@@ -162,8 +162,6 @@ def test_a_device_of_surfaces_that_water_does_not_wet_is_dry_at_any_humidity():
         "estimates": {},
         "spectra": {},
         "stoppers": {"S1": xr.Dataset({"share_flat": 0.0, "rms": 3e-9})},
-        "charts": {},
-        "lengths": {},
     }
     found = graph.job("devices/warnings/S1.json").compute(known)[2][0][1]
     assert found[0].kind == "no_water"

@@ -182,11 +182,11 @@ def figure(*data) -> Figure:
     titles = []
     for (panel,), pair in zip(columns, pairs, strict=True):
         of_pair = lowest[lowest.pair == pair]
-        dots.draw(panel, _readings(of_pair) | {"full elastic contact": [_full(full[pair])]})
         panel.axvline(0, color="black", linewidth=0.8, label="summits, 10 nm")
         needed = _needed(of_pair.iloc[0])
         if np.isfinite(needed):
             panel.axvline(needed, color=PUBLISHED, label="published")
+        dots.draw(panel, _readings(of_pair) | {"full elastic contact": [_full(full[pair])]})
         panel.set_xlabel("change of $l_s$ [%]")
         titles.append(f"pair {pair}, {Air(of_pair.relative_humidity.iloc[0]).words}")
     letter_lines(lines, titles)

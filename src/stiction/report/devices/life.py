@@ -22,6 +22,7 @@ from stiction.report.style import (
     figure_stage,
     legend_outside,
     letter,
+    page_width,
     panels,
     styled,
 )
@@ -295,13 +296,18 @@ def figure(life: Mapping[str, xr.Dataset], builds: Mapping[str, float]) -> Figur
 
     Sizes to build are by device [m or N]. Red: less than that.
     """
-    rows = {name: _rows(dataset) for name, dataset in life.items()}
-    heights = [dots.AROUND + dots.ROW * len(answers) for answers in rows.values()]
+    answers = {name: _rows(dataset) for name, dataset in life.items()}
+    widest = int(_LABELS * page_width(DOUBLE) / _CHARACTER)
+    rows = {name: _marks(some, builds[name], widest) for name, some in answers.items()}
+    heights = [dots.height(labels) for labels in rows.values()]
     size = DOUBLE, min(sum(heights) + _LEGEND, _TALLEST)
     made, axes = panels(len(rows), 1, size, height_ratios=heights)
-    widest = int(_LABELS * made.get_figwidth() / _CHARACTER)
-    for panel, (name, answers) in zip(axes[:, 0], rows.items(), strict=True):
-        _limits(panel, answers, builds[name], widest)
+    for panel, (name, marks) in zip(axes[:, 0], rows.items(), strict=True):
+        factor, unit = _UNITS[answers[name][0].unit]
+        if np.isfinite(builds[name]):
+            panel.axvline(factor * builds[name], color=BUILD, linewidth=1.2, zorder=0)
+        dots.draw(panel, marks)
+        panel.set(xlabel=f"{'length' if unit == 'µm' else 'force'} [{unit}]")
     letter(axes[:, 0], list(rows))
     entries = [Line2D([], [], color=colour, linewidth=4, label=name) for name, colour in _COLOURS.items()]
     entries.append(Line2D([], [], color=_SHORT, linewidth=4, label="does not allow this size"))
@@ -316,22 +322,20 @@ def _rows(dataset):
     return [answer for answer in answers_of(dataset) if answer.unit == unit and np.isfinite(answer.high)]
 
 
-def _limits(panel, answers, build, widest):
-    """One row for each answer from its lower to its upper bound, with both numbers, and the size to build."""
-    sought = SOUGHT[answers[0].unit]
+def _marks(answers, build, widest):
+    """One row for each answer from its lower to its upper bound, with both numbers, by its label."""
     rows = {}
     for answer in answers:
-        low, high = (answer.high if np.isnan(answer.low) else answer.low) / sought.scale, answer.high / sought.scale
-        largest, least = build * (1 + _ROUNDED) / sought.scale, build * (1 - _ROUNDED) / sought.scale
-        is_short = high > largest if sought.more_is_better else low < least
-        colour = _SHORT if is_short else _COLOURS[answer.question]
+        sought, least = SOUGHT[answer.unit], answer.high if np.isnan(answer.low) else answer.low
+        is_short = answer.high > build * (1 + _ROUNDED) if sought.more_is_better else least < build * (1 - _ROUNDED)
+        colour, low, high = (
+            _SHORT if is_short else _COLOURS[answer.question],
+            least / sought.scale,
+            answer.high / sought.scale,
+        )
         text = " to ".join(dict.fromkeys([significant(low), significant(high)]))
-        label = textwrap.fill(answer.what.partition(":")[0], widest)
-        rows[label] = [dots.Mark(low, high, colour, text)]
-    dots.draw(panel, rows)
-    if np.isfinite(build):
-        panel.axvline(build / sought.scale, color=BUILD, linewidth=1.2, zorder=0)
-    panel.set(xlabel=f"{sought.name} [{sought.shown}]")
+        rows[textwrap.fill(answer.what.partition(":")[0], widest)] = [dots.Mark(low, high, colour, text)]
+    return rows
 
 
 #: What table and figure declare alike.

@@ -17,7 +17,7 @@ from stiction.config.scans import is_measured
 from stiction.contact.air import DRY, Air
 from stiction.devices.risk import one_in
 from stiction.plan.stage import File, Shown, Stage
-from stiction.report import html
+from stiction.report import drawings, html
 from stiction.report.answer import figures as figures_answer
 from stiction.report.answer import judged, screen
 from stiction.report.answer import tables as tables_answer
@@ -29,7 +29,6 @@ from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import curve_views, explorer, life
 from stiction.report.devices.parts import GLOSSARY, OF_RELEASE, terms
-from stiction.report.drawings.devices import device_drawing
 from stiction.report.format import MISSING, humidity_text
 from stiction.report.limits.words import not_modelled, texts
 from stiction.report.model_error import sentences as model_errors
@@ -199,7 +198,7 @@ def _inputs(plan, at):
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
     own |= process_section.inputs(plan, at.device)
-    own |= {"style": File(STYLE), "templates": [File(GLOSSARY), *html.files(TEMPLATE)]}
+    own |= {"style": File(STYLE), "templates": [File(GLOSSARY), *html.files(TEMPLATE), *drawings.FILES]}
     return own | _of_release(section).inputs(plan, at.device)
 
 
@@ -237,7 +236,7 @@ def _page(data, at, settings):
     return replace(
         page,
         not_modelled=not_modelled(**settings["not_modelled"]),
-        drawing=device_drawing(kind_of(settings).stated(settings), answer.is_by_tip).svg,
+        drawing=drawings.device_drawing(kind_of(settings).stated(settings), answer.is_by_tip),
         explorer=explorer.content(at.device, settings, views),
     )
 

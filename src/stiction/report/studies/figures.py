@@ -336,8 +336,8 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
     for (panel,), pair in zip(columns, pairs, strict=True):
         humidity, base = next(cases_of(datasets[pair, "base"]))
         cases = {name: next(cases_of(datasets[pair, name]))[1] for name in names if name != "base"}
-        dots.draw(panel, {variant_label(name): [_shift(case, base)] for name, case in cases.items()})
         _references(panel, rows(published, pair=pair, relative_humidity=humidity), base)
+        dots.draw(panel, {variant_label(name): [_shift(case, base)] for name, case in cases.items()})
         panel.set_xlabel("change of $l_s$ [%]")
         titles.append(f"pair {pair}, {Air(humidity).words}")
     letter_lines(lines, titles)

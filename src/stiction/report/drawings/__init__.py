@@ -1,1 +1,0 @@
-"""Drawings of devices, of their places of adhesion, and of the method, as SVG."""
