@@ -102,8 +102,8 @@ define("fast_tips")
 define("life")
 
 # Test beams of device {device}.
-#   budget, tip_budget, test_beam_budget, test_beam_tip_budget, safe_lengths, contact, tip_contact ->
-#     results/devices/test_beams/{device}.nc
+#   budget, tip_budget, test_beam_budget, test_beam_tip_budget, safe_lengths, contact, tip_contact,
+#     model_error_of_devices -> results/devices/test_beams/{device}.nc
 define("test_beams")
 
 # Device {device} at the inputs that its test beams suggest.
