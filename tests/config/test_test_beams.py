@@ -139,6 +139,8 @@ def test_counts_have_budgets_of_beams_and_tips_on_the_contacts_of_the_device():
     assert tips[0].inputs["less"] == tips[1].inputs["less"] != {}
     assert inputs["grounds"]["first", "humid"] == graph.job("devices/budget/C1_rh067").inputs["contact"]
     assert Graph(PLAN).job("devices/test_beams/C1").inputs["grounds"] == {}
+    of_device = graph.job("devices/safe_lengths/C1_rh067").inputs["model_error"]
+    assert inputs["changes"] == {"first": of_device}, "tips of both have the same changes"
 
 
 @pytest.mark.parametrize(
