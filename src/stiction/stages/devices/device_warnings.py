@@ -132,8 +132,8 @@ def _accuracy_warnings(safe_lengths, of):
     """Warning about the error of the length of one shape at the share that pages speak of, if an accuracy is stated."""
     if of.accuracy is None:
         return []
-    one = safe_lengths.sel(share=chosen_share(safe_lengths))
-    parts = [float(one[name] / one.estimate) for name in ("beams_error", "surfaces_error")]
+    state = safe_lengths.sel(share=chosen_share(safe_lengths))
+    parts = [float(state[name] / state.estimate) for name in ("beams_error", "surfaces_error")]
     return rules.triggered(rules.missed_accuracy(*parts, of.accuracy.length))
 
 
@@ -144,7 +144,7 @@ def chart_warnings(
 
     Each curve is checked at its shortest length.
     """
-    found = {}
+    by_curve = {}
     for thickness, gap, shape in curves(charts[0]):
         along = [curve.sel(thickness=thickness, gap=gap, shape=shape) for curve in charts]
         shortest = min(along, key=lambda curve: float(curve.safe_length.min()))
@@ -152,10 +152,10 @@ def chart_warnings(
         shortest = shortest.assign(resampled=max(curve.resampled for curve in along))
         of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
         length = float(shortest.safe_length.min())
-        found[thickness, gap, shape] = _length_warnings(
+        by_curve[thickness, gap, shape] = _length_warnings(
             length, shortest, of_size, plastic, min(filter(None, (float(curve.film) for curve in along)), default=0.0)
         )
-    return found
+    return by_curve
 
 
 def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
@@ -193,21 +193,21 @@ def read(files: Mapping[str, str]) -> OfDevices:
     """Limits of devices from their files, by name."""
     joined = OfDevices({}, {}, {})
     for name, path in files.items():
-        for known, stored in zip(joined, json.loads(Path(path).read_text(encoding="utf-8")), strict=True):
-            known.update({(name, *key) if key else name: list(map(restored, found)) for key, found in stored})
+        for by_subject, stored in zip(joined, json.loads(Path(path).read_text(encoding="utf-8")), strict=True):
+            by_subject.update({(name, *key) if key else name: list(map(restored, limits)) for key, limits in stored})
     return joined
 
 
-def subjects(found: OfDevices) -> Limits:
+def subjects(of_devices: OfDevices) -> Limits:
     """Limits of devices by their subjects in words."""
     by_subject = {
         Subject(name, (Air(humidity).words, f"held by the {END_STATES[shape].by}")): limits_of_length
-        for (name, humidity, shape), limits_of_length in found.lengths.items()
+        for (name, humidity, shape), limits_of_length in of_devices.lengths.items()
     }
-    for (name, thickness, gap, shape), limits_of_curve in found.curves.items():
+    for (name, thickness, gap, shape), limits_of_curve in of_devices.curves.items():
         size = f"{from_si(thickness, 'um'):g} µm thick", f"gap {from_si(gap, 'um'):g} µm"
         by_subject[Subject(name, ("chart", *size, f"held by the {END_STATES[shape].by}"))] = limits_of_curve
-    return by_subject | {Subject(name): limits_of_patch for name, limits_of_patch in found.patches.items()}
+    return by_subject | {Subject(name): limits_of_patch for name, limits_of_patch in of_devices.patches.items()}
 
 
 # Stages

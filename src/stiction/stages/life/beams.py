@@ -81,15 +81,15 @@ def length_of(lengths: Mapping[float, xr.Dataset], of: OfBeam) -> float:
 
 def least_safe(dataset: xr.Dataset, share: float) -> tuple[float, float, str]:
     """Least safe length of all end states [m], the standard error of its estimate, and its basis."""
-    one = dataset.sel(share=share)
-    one = one.isel(shape=int(one.safe_length.argmin("shape")))
-    return *length_and_error(one), str(one.basis.values)
+    shapes = dataset.sel(share=share)
+    worst = shapes.isel(shape=int(shapes.safe_length.argmin("shape")))
+    return *length_and_error(worst), str(worst.basis.values)
 
 
-def length_and_error(one: xr.Dataset) -> tuple[float, float]:
+def length_and_error(state: xr.Dataset) -> tuple[float, float]:
     """Safe length of one end state [m], and the standard error of its estimate; NaN if none is known."""
-    errors = [float(one[name]) for name in ("beams_error", "surfaces_error")]
-    return float(one.safe_length), float(np.sqrt(np.nansum(np.square(errors)))) or np.nan
+    errors = [float(state[name]) for name in ("beams_error", "surfaces_error")]
+    return float(state.safe_length), float(np.sqrt(np.nansum(np.square(errors)))) or np.nan
 
 
 def beam_touched(of: OfBeam, length: float) -> list[Answer]:
@@ -224,9 +224,9 @@ def separated_fast(lengths: Mapping[float, xr.Dataset], separation: xr.Dataset) 
     """
     slow, fast = [], []
     for humidity, dataset in lengths.items():
-        one = dataset.sel(share=chosen_share(dataset))
-        for shape in map(str, one["shape"].values):
-            length, spread = length_and_error(one.sel(shape=shape))
+        shapes = dataset.sel(share=chosen_share(dataset))
+        for shape in map(str, shapes["shape"].values):
+            length, spread = length_and_error(shapes.sel(shape=shape))
             factor, error = 1.0, 0.0  # in air without water
             if humidity in separation.humidity.values:
                 at = separation.sel(humidity=humidity, shape=shape)
@@ -253,13 +253,14 @@ def beam_at_voltage(
     added = holding.energy_of_voltage(of.capacitor, of.device.gap)
     distance = from_si(of.dielectric.distance, "nm")
     form = f"mean over samples (at least); Γ_V = ε₀ V² / 2 (1 / D - 1 / (D + h)), D = {distance:.3g} nm (at most)"
-    gained = [(float(one.voltage_energy), float(one.voltage_error)) for one in (biased or {}).values()]
+    at_voltage = list((biased or {}).values())
+    gained = [(float(dataset.voltage_energy), float(dataset.voltage_error)) for dataset in at_voltage]
     low, error = max(gained, default=(np.nan, np.nan))
     what = f"adhesion energy that {of.potential:g} V add"
     numbers = min(low, added), added, error
     added_energy = Answer(Name.VOLTAGE_ENERGY, HOLD, what, *numbers, "J m-2", form, shared.HELD_BY)
     answers = [added_energy, shared.field_in_dielectric(of)]
-    numbers = _shorter(of, added, safe, [least_safe(one, chosen_share(one)) for one in (biased or {}).values()])
+    numbers = _shorter(of, added, safe, [least_safe(dataset, chosen_share(dataset)) for dataset in at_voltage])
     if np.isnan(numbers).all():
         return answers
     what = f"simulated limit while {of.potential:g} V are on"
