@@ -15,7 +15,7 @@ def another_process(tmp_path, monkeypatch):
     monkeypatch.setattr(moments, "own_folder", lambda: tmp_path)
 
     def forget():
-        moments._remember.cache_clear()
+        nearest_shape.cache_clear()
         moments._code.cache_clear()
 
     forget()

@@ -11,22 +11,17 @@ from stiction.run.fingerprint import PACKAGE, fingerprint
 from stiction.run.provenance import version_of
 from stiction.temporary import own_folder
 
-#: Surfaces of other processes that are kept.
-_OTHERS = 2000
 
-
+@cache
 def nearest_shape(skewness: float, kurtosis: float) -> tuple[float, float]:
-    """Skewness and kurtosis of `stiction.surface.feasible.nearest_feasible`, with its errors, which are not kept."""
-    remember = _remember()
+    """Skewness and kurtosis of `stiction.surface.feasible.nearest_feasible`, with its errors, which are not kept.
+
+    Each shape has a file of its own, because processes that write one file lose what the others found.
+    """
+    remember = DiskCache(own_folder() / "moments" / f"{skewness!r}_{kurtosis!r}.json")
     shape = remember([skewness, kurtosis, _code()], lambda: _computed(skewness, kurtosis))
     remember.save()
     return tuple(shape)
-
-
-@cache
-def _remember():
-    """Moments kept by all processes of this user."""
-    return DiskCache(own_folder() / "moments.json", _OTHERS)
 
 
 @cache
