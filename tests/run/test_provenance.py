@@ -96,16 +96,22 @@ def test_a_library_that_is_not_installed_is_recorded_as_none(tmp_path, monkeypat
 RUN = {"started": "2026-01-31T23:05:59+00:00", "versions": {"stiction": "0.2.0", "numpy": "2.0"}, "git": None}
 
 
+COMMIT = "abcdef0123456789"
+
+
 def commit(*changed):
-    return {"commit": "abc", "changed": list(changed), "untracked": ["notes.txt"]}
+    return {"commit": COMMIT, "changed": list(changed), "untracked": ["notes.txt"]}
 
 
 @pytest.mark.parametrize(
     ("git", "sentences"),
     [
         (None, ["stiction 0.2.0, installed"]),
-        (commit(), ["stiction 0.2.0, commit abc"]),
-        (commit("a.py", "b.py"), ["stiction 0.2.0, commit abc", "Files that are changed in its folder: a.py, b.py"]),
+        (commit(), [f"stiction 0.2.0, commit {COMMIT[:10]}"]),
+        (
+            commit("a.py", "b.py"),
+            [f"stiction 0.2.0, commit {COMMIT[:10]}", "Files that are changed in its folder: a.py, b.py"],
+        ),
     ],
 )
 def test_the_code_of_a_run_is_named_with_its_changed_files_alone(git, sentences):

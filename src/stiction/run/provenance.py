@@ -163,13 +163,17 @@ def start_of(run: Mapping[str, Any]) -> str:
     return f"{datetime.datetime.fromisoformat(run['started']):%Y-%m-%d %H:%M %Z}"
 
 
+#: Digits of a commit that pages show. The record has all.
+_SHOWN = 10
+
+
 def code_of(run: Mapping[str, Any]) -> Iterator[str]:
     """Version and commit of the code of a run, and its changed files, in words."""
     package, git = " ".join(filter(None, ["stiction", run["versions"].get("stiction")])), run["git"]
     if git is None:
         yield f"{package}, installed"
         return
-    yield f"{package}, commit {git['commit']}"
+    yield f"{package}, commit {git['commit'][:_SHOWN]}"
     if git["changed"]:
         yield f"Files that are changed in its folder: {', '.join(git['changed'])}"
 

@@ -431,7 +431,7 @@ def test_a_map_of_a_stopper_has_positive_margins_where_the_restoring_force_excee
     points = [skewed(rms, value) for value in (0, -1) for rms in RANGE8]
     figure = figures_roughness.roughness_map(roughness.curve_or_map(points, "B2", "rms_nm", "skewness"))
     panel, bar = figure.axes
-    assert bar.get_ylabel() == "lg (restoring force / force needed)"
+    assert bar.get_ylabel() == "log$_{10}$ (restoring force / force needed)"
     margins = panel.collections[0]
     np.testing.assert_allclose([margins.zmin, margins.zmax], 3 * np.log10([1 / 4, 2]))
 
