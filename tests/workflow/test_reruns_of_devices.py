@@ -82,6 +82,8 @@ OF_STOPPERS = {"stoppers", "separation", "table_stoppers", "figure_stoppers"}
 SHOWN = {"table_safe_lengths"}
 OF_CHARTS = {"chart", "table_chart", "figure_chart"}
 OF_BEAMS = {"ground", "cracks", "safe_lengths", "fast_strips", "fast_tips"} | SHOWN | OF_CHARTS
+#: Rules that read the changes of a pair by full contact. All of its humidities and tips are one file.
+FULL = "ground safe_lengths chart stoppers budget separation fast_strips fast_tips device_warnings"
 BODY = "surfaces: {B2: {material: Other}}\nmaterials: {Other: "
 
 #: Description of a change; overlay; rules that it affects directly, whose readers rerun as well; rules excepted because
@@ -114,8 +116,7 @@ MATRIX = [
      "tip_edge_contact tip_budget", (), "S1|R1|solids|slopes|choices|heights|contact/b|cracks|safe|chart|budget/C1_rh070.nc"),
     ("uncertainty of a property of the solids", "devices: {C1: {uncertainty: {hamaker_constant_zJ: 15}}}",
      "budget tip_budget", (), "R1|S1|contact|chart"),
-    ("one humidity of a stopper", "devices: {S1: {humidities: [0.7, 0.9]}}", "stoppers budget device_warnings separation", OF_BEAMS,
-     "C1|R1|contact|S1_rh070"),
+    ("one humidity of a stopper", "devices: {S1: {humidities: [0.7, 0.9]}}", FULL, (), "/contact/"),
     ("area of a stopper", "devices: {S1: {contact_um: [3, 2]}}", "device_contact solid_contact device_choice_summits",
      OF_BEAMS, "C1|R1|1500x"),
     ("samples of slopes of measured surfaces", "studies: {slopes: {samples: 200}}", "", (), ""),
@@ -124,7 +125,7 @@ MATRIX = [
     ("beams of slopes", "design: {budget_beams: 150}", "budget", (), "S1|contact|chart|cracks|tip"),
     ("beams, each with a tip", "design: {beams: 900}", "cracks tip_contact chart", OF_STOPPERS,
      "S1|budget/C1_rh070.nc"),
-    ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", "stoppers device_warnings", OF_BEAMS, "C1|R1|budget|contact"),
+    ("range of the worst humidity", "design: {worst_humidities: [0.5, 0.9]}", FULL, (), "/contact/"),
     ("another choice of the model", "studies: {variants: {van_der_waals: [none, dry]}}",
      "device_choice_contact tip_choice_contact", (), "none|identified|slopes|modulus|stoppers|cracks"),
     ("water", "water: {temperature_K: 310}", "ground safe_lengths chart stoppers budget tip_budget separation fast_strips fast_tips process_point",
@@ -141,22 +142,18 @@ MATRIX = [
     # Stated ones let C1 share the strips of its pair.
     ("number of samples", "contact: {samples: 5500}", "contact_chunk device_contact slope_contact process_point", (), "modulus|choices|tip"),
     ("chunks", "contact: {chunks: 2}", "", (), ""),
-    ("edge of tips", "design: {tip_edge: square}", "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact safe_lengths chart",
-     OF_STOPPERS, "cracks|S1|R1|contact/b|budget/C1_rh070.nc"),
+    ("edge of tips", "design: {tip_edge: square}", f"tip_contact tip_slope_contact tip_solid_contact tip_choice_contact {FULL}",
+     (), "contact/b"),
     ("radius of the edge of tips", "design: {edge_radius_um: 0.5}",
-     "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact safe_lengths chart",
-     OF_STOPPERS, "cracks|S1|R1|contact/b|budget/C1_rh070.nc"),
+     f"tip_contact tip_slope_contact tip_solid_contact tip_choice_contact {FULL}", (), "contact/b"),
     ("shares", "design: {shares: [0.02]}", "safe_lengths chart tip_budget", OF_STOPPERS, "cracks|S1|contact|budget/C1_rh070.nc"),
-    # The energies of a pair in full contact at all humidities of beams and charts are one file.
-    ("points of charts", "design: {chart_points: 4}", "ground budget fast_strips", OF_STOPPERS, "S1|/contact/"),
+    ("points of charts", "design: {chart_points: 4}", FULL, (), "/contact/"),
     ("humidities of a chart", "devices: {C1: {chart: {humidities: [0.6, 0.9]}}}",
-     "tip_contact tip_slope_contact tip_solid_contact tip_choice_contact ground budget fast_strips", OF_STOPPERS,
-     "S1|/contact/b|contact/slopes"),
+     f"tip_contact tip_slope_contact tip_solid_contact tip_choice_contact {FULL}", (), "/contact/b|contact/slopes"),
     ("gap of a beam", "devices: {C1: {gap_um: 19}}", "cracks safe_lengths chart budget tip_budget", OF_STOPPERS, "contact|S1|R1"),
     ("width of a beam", "devices: {C1: {width_um: 24}}",
      "device_contact tip_contact device_slope_contact solid_contact device_choice_summits tip_slope_contact"
-     " tip_solid_contact tip_choice_contact",
-     OF_STOPPERS, "S1|R1|b_NG"),
+     f" tip_solid_contact tip_choice_contact {FULL}", (), "b_NG"),
     ("strips of a beam", "devices: {C1: {strip_um: 1.2}}",
      "device_contact device_slope_contact solid_contact device_choice_summits chart tip_budget", OF_STOPPERS, "S1|R1|b_NG|tips"),
     ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "cracks safe_lengths", OF_STOPPERS | OF_CHARTS, "contact|C1|S1|chart"),
