@@ -83,7 +83,7 @@ SHOWN = {"table_safe_lengths"}
 OF_CHARTS = {"chart", "table_chart", "figure_chart"}
 OF_BEAMS = {"ground", "cracks", "safe_lengths", "fast_strips", "fast_tips"} | SHOWN | OF_CHARTS
 #: Rules that read the changes of a pair by full contact. All of its humidities and tips are one file.
-FULL = "ground safe_lengths chart stoppers budget separation fast_strips fast_tips device_warnings"
+FULL = "ground safe_lengths chart stoppers budget separation fast_strips fast_tips device_warnings process_point"
 BODY = "surfaces: {B2: {material: Other}}\nmaterials: {Other: "
 
 #: Description of a change; overlay; rules that it affects directly, whose readers rerun as well; rules excepted because
