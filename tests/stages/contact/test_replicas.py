@@ -1,5 +1,7 @@
 """Energies of surfaces that follow each other, beside a generator of fields of its own."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from plans import surface_datasets
@@ -15,7 +17,7 @@ from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.plan.stage import select
 from stiction.report.limits.words import not_modelled
-from stiction.stages.contact import contact, curves, pairs
+from stiction.stages.contact import contact, curves, full_contact, pairs
 
 LIKE_B2 = {
     "rms_nm": 3.4,
@@ -70,6 +72,19 @@ def test_changed_surfaces_drawn_together_have_the_contact_of_each_alone(replica)
     together = contact.compute_each(alternatives, "r", "NG", settings)
     for surfaces, found in zip(alternatives, together, strict=True):
         assert found.identical(contact.compute(surfaces, "r", "NG", settings))
+
+
+@pytest.mark.parametrize("file", ["studies/full_contact/r", "studies/full_contact/across/r"])
+def test_full_contact_has_the_strips_of_the_copy(file):
+    plan = plan_of({"coherence": 0.9}, rms_nm=3)
+    surface = surface_datasets(plan, "G")
+    stated = in_si(full_contact.Settings, Graph(plan).job(file).settings)
+    settings = replace(stated, beam=replace(stated.beam, width=1e-6), strips=1)
+    ((_, heights, *_),) = full_contact.strips([surface, surface], "r", settings)
+    pair, streams = pairs.surface_pair([surface, surface], "NG", settings), pairs.streams_of_sides(settings.seed, "r")
+    np.testing.assert_array_equal(heights, pair.draw(*streams(0)))
+    independent = pairs.surface_pair([surface, surface], "NG", replace(settings, replica=None))
+    assert np.abs(heights - independent.draw(*streams(0))).max() > pair.beam.rms
 
 
 def test_a_device_says_how_its_underside_follows_and_otherwise_what_a_copy_would_cost():
