@@ -296,7 +296,7 @@ def test_islands_are_refused_with_devices_alone():
         ("design: {beams: 199}", "design.beams", "at least 200"),
         ("design: {shares: [0.06]}", "design.shares[0]", "at most 0.05"),
         ("design: {shares: [0.01, 0.010]}", "design.shares", "each value once; 0.01 is listed twice"),
-        ("surfaces: {B2: {material: Gold}}", "surfaces.B2.material", "must be the name of a section of materials"),
+        ("surfaces: {B2: {material: Gold}}", "surfaces.B2.material", "must be one of gold"),
         ("materials: {Gold: {hamaker_constant_zJ: {water: 250}}}", "materials.Gold.hamaker_constant_zJ.dry", "missing"),
     ],
 )  # fmt: skip

@@ -7,9 +7,10 @@ other module compares a humidity with 0 (`tests/test_architecture.py`).
 from collections.abc import Collection
 from dataclasses import dataclass
 from numbers import Real
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np  # a command that checks its files first must not import it
 
 T = TypeVar("T")
 #: Word for the humidity of dry air in configurations, and the medium of attraction in it.
@@ -23,19 +24,24 @@ def is_possible(humidity: Any) -> bool:
     return isinstance(humidity, Real) and 0 <= humidity < 1
 
 
-def is_humid(humidity: float | np.ndarray) -> bool | np.ndarray:
+def is_humid(humidity: "float | np.ndarray") -> "bool | np.ndarray":
     """Whether air of each humidity [-] has water, in the shape of the humidity."""
     return humidity > 0
 
 
 def humid(humidities: float | Collection[float]) -> list[float]:
     """Humidities, of one or several, without that of dry air, in their order [-]."""
-    return [float(humidity) for humidity in np.ravel(humidities) if is_humid(humidity)]
+    return [float(humidity) for humidity in _listed(humidities) if is_humid(humidity)]
 
 
 def has_dry(humidities: float | Collection[float]) -> bool:
     """Whether dry air is among humidities, one or several [-]."""
-    return 0 in np.ravel(humidities)
+    return 0 in _listed(humidities)
+
+
+def _listed(humidities):
+    """Humidities as a list, one or several."""
+    return [humidities] if isinstance(humidities, Real) else list(humidities)
 
 
 @dataclass(frozen=True)

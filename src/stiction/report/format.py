@@ -4,7 +4,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from stiction.contact.air import DRY_AIR, Air, humid
+from stiction.contact.air import DRY_AIR, Air, has_dry, humid
 
 #: Units in SI, for tables: the stored number is a quantity divided by its unit; a product may differ in the last bit.
 NM, UM, UN, PER_UM2 = 1e-9, 1e-6, 1e-6, 1e12
@@ -73,8 +73,8 @@ def airs(humidities: Collection[float]) -> str:
     >>> airs([0.0, 0.45, 0.67]), airs([0.67]), airs([0.0])
     ('in dry air and at relative humidities of 0.45, 0.67', 'at a relative humidity of 0.67', 'in dry air')
     """
-    values = [f"{humidity:g}" for humidity in humid([*humidities])]
-    dry = [DRY_AIR.where] * (len(values) < len(humidities))
+    values = [f"{humidity:g}" for humidity in humid(humidities)]
+    dry = [DRY_AIR.where] * has_dry(humidities)
     wet = f"{'relative humidities' if len(values) > 1 else 'a relative humidity'} of {', '.join(values)}"
     return " and ".join(dry + [f"at {wet}"] * bool(values))
 

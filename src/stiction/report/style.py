@@ -283,7 +283,7 @@ def humidity_axis(panel: Axes, placed: Mapping[float, float] | None = None) -> N
 
 def dry_tick(panel: Axes, placed: Mapping[float, float]) -> None:
     """Tick for dry air if it is among the `places` of an axis, and a line between it and the lowest humidity."""
-    if not has_dry([*placed]):
+    if not has_dry(placed):
         return
     dry, lowest = (*placed.values(), np.inf)[:2]
     ticks = [tick for tick in panel.get_xticks() if (dry + lowest) / 2 < tick <= panel.get_xlim()[1]]
