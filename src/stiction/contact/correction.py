@@ -90,8 +90,8 @@ class Correction:
     energy: Change  #: of the energies e (h,)
     pull_off: Change  #: of the largest attractions f_max (h,)
     tips: TipChanges | None = None  #: of the largest attractions of tips, if any are on the pair
-    #: Whether changes at the nearest humidity hold beyond these, instead of an error. ASSUME: only shifts of a budget
-    #: are there. Ratios rise with humidity, so that lengths become too short in drier and too long in wetter air.
+    #: Whether changes hold beyond these, where shifts of a budget are, instead of an error. ASSUME: in drier air the
+    #: change is that in the driest. In wetter air ratios below 1 rise to 1 in saturated air, others stay.
     nearest: bool = False
 
     def at(self, humidity: float) -> tuple[Change, Change]:
@@ -124,7 +124,10 @@ class Correction:
                 f"full elastic contact was computed {where} and is not extrapolated to {humidity:g}: add it to the "
                 "humidities of the pair, or choose contact.model: summits"
             )
-        return self._between(changes, np.clip(humidity, low, high))  # rounding can leave it a little outside
+        change = self._between(changes, np.clip(humidity, low, high))  # rounding can leave it a little outside
+        if not (is_near and humidity > high):
+            return change
+        return change._replace(ratio=max(change.ratio, change.ratio ** ((1 - humidity) / (1 - high))))
 
     def _between(self, changes, humidity):
         """Change at a humidity within the computed ones. A power below 1 errs only as far as it may be above."""

@@ -155,7 +155,7 @@ def test_forces_of_a_stopper_in_dry_air_decrease_with_the_roughness(stopper):
 
 
 def test_water_alone_holds_smooth_stoppers_by_its_tension_and_rough_ones_less():
-    wet = {"van_der_waals": "none", "contact": {"samples": 60}}
+    wet = {"van_der_waals": "none", "contact": {"samples": 60, "model": "summits"}}
     wet |= {"devices": {"S1": {"humidities": [0.95], "roughness": {"rms_nm": [0.3, 30]}}}}
     found = stiction.Device("S1", Results.of(stiction.load(SECTIONS, wet))).roughness().isel(humidity=0, shape=0)
     flooded = Water(300.0).film(0.95)[1] * 1e-12

@@ -128,6 +128,52 @@ def test_forces_are_corrected_at_their_humidities_and_between_them_with_the_erro
     assert changes.at(0.95)[1] == NONE, "its error is too large"
 
 
+def test_forces_beyond_the_wettest_hold_as_much_as_summits_in_saturated_air_and_never_less_than_in_drier_air():
+    for ratio, rises in ((0.6, True), (1.2, False)):
+        data = {("b", 0.5): with_forces(ratio, 0.03), ("b", 0.9): found(0.9, 0.02)}
+        changes = corrections.applied(pair_model_error.of_devices(data))
+        stated, beyond = changes.at(0.5)[1], changes.at(0.9)[1]
+        assert beyond.ratio == pytest.approx(ratio**0.2 if rises else ratio)
+        if rises:
+            assert beyond.ratio_error > abs(0.8 * np.log(ratio)), "one humidity does not know the curve"
+        wetter = changes.at(0.95)[1]
+        assert wetter.ratio == pytest.approx(beyond.ratio**0.5 if rises else ratio), "a shift of a budget"
+        assert changes.at(0.45)[1] == stated, "control: drier air"
+
+
+def test_a_humidity_whose_forces_are_not_found_stays_on_summits_though_a_drier_one_is_known():
+    data = {("b", 0.5): with_forces(0.6, 0.03), ("b", 0.9): with_forces(np.nan, np.nan)}
+    error = pair_model_error.of_devices(data)
+    assert error.pull_off_applied.values.tolist() == [True, False]
+    assert np.isnan(error.pull_off_ratio[1])
+    assert corrections.applied(error).at(0.9)[1] == NONE
+
+
+def test_a_strip_that_cannot_be_separated_leaves_its_energy():
+    strips = full_energy.Strips(None, None, {full_energy.FINE: AtRest()}, None, 0.5, forces=True)
+    strips.resisting.append(0)
+    strips.curves.append(())
+    strips.last[0] = np.zeros((4, 4))
+    assert strips.energy(full_energy.FINE, 0) == 2.0
+    with pytest.raises(ValueError, match="was not found"):
+        strips.pull_off(full_energy.FINE, 0)
+
+
+class AtRest:
+    """Level whose strips come to rest and cannot be separated."""
+
+    def at_rest(self, *_):
+        """State at rest."""
+
+    def energy(self, *_):
+        """Energy of the state [J m⁻²]."""
+        return 2.0
+
+    def pull_off(self, *_):
+        """Raise, as a separation that does not settle does."""
+        raise NotConverged("full elastic contact does not settle", 1.0, 0.1, 3)
+
+
 def tips(humidity, ratios, strips=8):
     """Study of tips at one humidity, whose forces are those on summits times a ratio at each slope."""
     summits = np.exp(0.5 * np.random.default_rng(1).standard_normal((strips, len(ratios), 1)))

@@ -171,7 +171,7 @@ def test_only_cantilevers_in_humid_air_are_compared_with_the_paper():
     assert not {"paper", "contact"} & set(inputs["C1_dry"])
     example = Graph(Plan(load(yaml.safe_load((EXAMPLES / "devices.yaml").read_text()))))
     assert set(example.job("devices/safe_lengths/R1_rh067").inputs) == {"cracks"}
-    assert set(example.job("devices/touchdowns/C1_rh067").inputs) == {"cracks", "tips"}
+    assert set(example.job("devices/touchdowns/C1_rh067").inputs) == {"cracks", "tips", "model_error"}
     without = safe_without_tips()
     assert prediction.with_intervals(without, {"cracks": lognormal_cracks()}, wanted()) is without
 

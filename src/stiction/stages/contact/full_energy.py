@@ -81,8 +81,17 @@ class Strips:
         return self._value(level, place).energy
 
     def pull_off(self, level: int, place: int) -> float:
-        """Largest attraction [Pa], as `energy`."""
-        return self._value(level, place).pull_off
+        """Largest attraction [Pa], as `energy`.
+
+        Raises
+        ------
+        ValueError
+            If the fine level finds none.
+        """
+        largest = self._value(level, place).pull_off
+        if level == FINE and np.isnan(largest):
+            raise ValueError("the largest attraction of a strip in full elastic contact was not found")
+        return largest
 
     def _value(self, level, place):
         """Quantities of a strip that resists."""
@@ -116,14 +125,22 @@ class Strips:
             try:
                 on_grid = self.levels[every]
                 state = on_grid.at_rest(heights, curve, start)
-                largest = on_grid.pull_off(heights, curve, state) if self.forces else np.nan
             except (KeyError, NotConverged, ValueError):
                 if every == FINE:
                     raise
                 self.values[every, place] = NOT_FOUND
                 continue
+            largest = self._largest(on_grid, heights, curve, state) if self.forces else np.nan
             self.values[every, place] = Quantities(on_grid.energy(state, heights), largest)
             start = refined(state, 2, self.levels[FINE].space.shape) if every == 2 else None
+
+    @staticmethod
+    def _largest(on_grid, heights, curve, state):
+        """Largest attraction of a strip from its state at rest, NaN if it is not found [Pa]."""
+        try:
+            return on_grid.pull_off(heights, curve, state)
+        except (NotConverged, ValueError):
+            return np.nan
 
 
 def strips_of(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> Strips:

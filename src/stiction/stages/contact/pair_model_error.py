@@ -119,19 +119,31 @@ def _by_levels(energies):
 def _between(forces, applied, at):
     """Ratio and power of forces with their errors (4, h), and whether they are applied, at all humidities (h,).
 
-    Those computed remain. Others are interpolated between applied ones, or those at the nearest, with the error of
-    `stiction.analysis.model_error.interpolation_error`.
+    Those wanted remain, and are NaN where they are not found. Others are on the curve through those applied, with the
+    error of `_off_nodes`. ASSUME: in drier air the change is that in the driest, and beyond the wettest, ratios below 1
+    rise to 1 in saturated air, the safe side.
     """
-    used, computed = applied > 0, np.isfinite(forces[0])
+    used, wanted = applied > 0, np.isfinite(applied)
     if not used.any():
-        return np.where(computed, forces, [[1.0], [0.0], [1.0], [0.0]]), used
+        return np.where(wanted, forces, [[1.0], [0.0], [1.0], [0.0]]), used
     ratio, error, power, power_error = forces[:, used]
-    within = np.clip(at, at[used][0], at[used][-1])
-    others = interpolated(ratio, at[used], within)
-    more = others * interpolation_error(np.log(ratio), at[used], within)
+    within = np.maximum(at, at[used][0])
+    others = _to_saturation(ratio, at[used], within)
     rest = [np.interp(within, at[used], each) for each in (error, power, power_error)]
-    filled = np.array([others, np.hypot(rest[0], more), *rest[1:]])
-    return np.where(computed, forces, filled), np.where(computed, used, True)
+    filled = np.array([others, np.hypot(rest[0], others * _off_nodes(ratio, at[used], within)), *rest[1:]])
+    return np.where(wanted, forces, filled), np.where(wanted, used, True)
+
+
+def _to_saturation(ratio, computed, at):
+    """Ratio (k,) at humidities (h,) from the driest computed one on, to 1 or more in saturated air."""
+    return interpolated(np.append(ratio, max(ratio[-1], 1.0)), np.append(computed, 1.0), at)
+
+
+def _off_nodes(ratio, computed, at):
+    """Relative error of a ratio (k,) between computed humidities (h,), by one of them as large as its change."""
+    if len(computed) > 1:
+        return interpolation_error(np.log(ratio), computed, at)
+    return np.abs(np.log(_to_saturation(ratio, computed, at) / ratio[0]))
 
 
 def _of_tips_in_water(studies, at):
@@ -145,11 +157,10 @@ def _of_tips_in_water(studies, at):
     few = tips_in_full_contact.models_of_devices
     means, errors = np.concatenate([few_tip_ratios(*few(one), POWER_ERROR) for one in studies], axis=1)
     within = np.maximum(at, computed[0])
-    between = [interpolation_error(np.log(each), computed, within) for each in means.T]
-    ends, means = np.append(computed, 1.0), np.vstack([means, np.maximum(means[-1], 1.0)])
+    between = [_off_nodes(each, computed, within) for each in means.T]
     errors = [np.interp(within, computed, each) for each in errors.T]
     over = "humidity", "slope"
-    ratios = [interpolated(each, ends, within) for each in means.T]
+    ratios = [_to_saturation(each, computed, within) for each in means.T]
     return {
         "tip_ratio": (over, np.transpose(ratios), {"units": "1"}),
         "tip_error": (over, np.hypot(errors, between).T, {"units": "1"}),
