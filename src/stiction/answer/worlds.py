@@ -157,9 +157,7 @@ class World:
         if not self._is_simulated:
             exact = np.full(self.draws.number, tail.intercept), np.full(self.draws.number, slope)
             return _to_stated(of, self._once, *exact)
-        at, along = simulated_lines(
-            tail.samples, tail.fitted, stream(self.draws.seed, "answer", "tail"), self.draws.number
-        )
+        at, along = _pivots(tail.samples, tail.fitted, self.draws)
         slopes = slope / along
         intercepts = tail.intercept - at * slopes + of.surfaces_error * normal(self.draws, "surfaces")
         order = np.argsort(intercepts + slopes * ndtri(self._once))
@@ -272,6 +270,12 @@ class World:
                 is_stated = k in self._by_line or v <= _least(self.thresholds[k])
                 least = max(least, min(VERIFIED, self._once, count) if is_stated else count)
         return float(stuck_after(least, self._repeats))
+
+
+@lru_cache(maxsize=8)  # all airs and end states, and every step, ask for the same
+def _pivots(samples, fitted, draws):
+    """Intercepts and slopes of lines through the lowest of normal samples (draws,) each."""
+    return simulated_lines(samples, fitted, stream(draws.seed, "answer", "tail"), draws.number)
 
 
 @lru_cache(maxsize=8)

@@ -13,6 +13,7 @@ from stiction.plan.devices import DevicePlan
 from stiction.plan.numbers import Numbers
 from stiction.run.disk_cache import NOWHERE, Kept
 from stiction.run.fingerprint import PACKAGE, fingerprint
+from stiction.run.provenance import version_of
 
 #: Files that determine what configurations mean.
 _TEXTS = (PAPER.name, "schema.yaml", "materials.yaml")
@@ -100,10 +101,11 @@ def _numbers(config, estimates, kept):
 
 
 def _kept(kept: Kept, file: str, module: str, determined_by: list, compute: Callable[[], Any]) -> Any:
-    """Result of a module, kept until a configuration, the module or one of its imports changes."""
+    """Result of a module, kept until a configuration, the module or one of its imports or libraries changes."""
     if kept.folder is None:
         return compute()
     code = fingerprint(PACKAGE / module, kept.code, silent=())
     texts = [PAPER.with_name(name).read_text(encoding="utf-8") for name in _TEXTS]
+    libraries = [version_of(name) for name in ("numpy", "scipy", "numba")]
     with kept.cache(file) as remember:
-        return remember([*determined_by, code, texts], compute)
+        return remember([*determined_by, code, texts, libraries], compute)
