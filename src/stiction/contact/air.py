@@ -1,7 +1,7 @@
 """Air around two surfaces: its relative humidity, and all that depends on whether it is dry or humid.
 
 Dry air has the humidity 0 in the code. It has no water at all, which is not a film that becomes thinner and thinner. No
-other module compares a humidity with 0 (`tests/test_architecture.py`).
+other module compares a humidity with 0, which a test of the architecture makes sure of.
 """
 
 from collections.abc import Collection

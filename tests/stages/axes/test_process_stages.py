@@ -27,7 +27,7 @@ BUMP = {"kind": "stopper", "pair": "b", "contact_um": [1, 1], "restoring_force_u
 BARE = dict(BUMP)
 BUMP |= {"requirement": {"share": SHARE}}
 SECTIONS = {
-    "contact": {"samples": SAMPLES},
+    "contact": {"samples": SAMPLES, "model": "summits"},
     "design": {"worst_humidities": [0.45, 0.6], "budget_samples": 180},
     "run": {"pairs": [], "studies": []},
 }

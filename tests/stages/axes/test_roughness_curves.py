@@ -36,7 +36,7 @@ C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 10, "wid
 C1 |= {"requirement": {"share": 0.02, "length_um": 300}, "roughness": {"surface": "B2", "rms_nm": [3.4, 8]}}
 SECTIONS = {
     "devices": {"S1": S1, "C1": C1},
-    "contact": {"samples": SAMPLES},
+    "contact": {"samples": SAMPLES, "model": "summits"},
     "chaos": {"order": 2},
     "design": {"beams": 200, "shares": [0.02], "worst_humidities": [0.45, 0.6]},
     "run": {"pairs": [], "studies": []},
