@@ -168,7 +168,7 @@ def models(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
 
 
 def settings_of_devices(plan: Any, at: At) -> dict[str, Any]:
-    """Settings of the tips of devices on a pair in humid air, at one humidity, see the stage."""
+    """Settings of the tips of devices on a pair in humid air, at one humidity."""
     pair = at.case.pair
     own = merged(plan.seen_by(pair, ELASTIC, samples=None), plan.devices.all_tips(pair)) | IN_HUMID_AIR
     return select(Settings, own | {"humidities": [at.case.humidity], "water": plan.air_of_devices.water(pair)})
