@@ -84,7 +84,7 @@ def test_all_files_follow_the_conventions(run):
 
 def test_every_page_states_the_run_and_the_commit_that_made_it(run):
     (record,) = json.loads((run / "results" / "provenance.json").read_text(encoding="utf-8"))
-    code = f"commit {record['git']['commit']}" if record["git"] else "installed"
+    code = f"commit {record['git']['commit'][:10]}" if record["git"] else "installed"
     for path in (run / "results" / "devices").glob("*.html"):
         page = path.read_text(encoding="utf-8")
         assert f"Made by the run of {record['started'][:10]}" in page
