@@ -101,7 +101,7 @@ def accepts(folder):
         return main(["check", str(file), "--directory", str(folder / "run")]) == 0
 
     # No answer depends on the numbers of beams and samples, which a pilot of few samples decides as well.
-    with patch.object(disk_cache, "DiskCache", lambda _: kept), patch.object(accuracy, "PILOT", 40):
+    with patch.object(disk_cache, "DiskCache", lambda *_: kept), patch.object(accuracy, "PILOT", 40):
         yield accepts
 
 
