@@ -47,7 +47,7 @@ READ_BY = {
     "device_choice_summits": "device_choice_contact",
     "device_choice_contact": "budget",
     "plasticity": "device_warnings",
-    "device_warnings": "table_safe_lengths figure_risk table_chart figure_chart table_stoppers figure_stoppers"
+    "device_warnings": "table_safe_lengths figure_risk figure_life table_chart figure_chart table_stoppers figure_stoppers"
     " device_limits device_page table_devices",
     "cracks": "safe_lengths",
     "safe_lengths": "answer table_safe_lengths device_warnings device_page life",
@@ -61,7 +61,7 @@ READ_BY = {
     "tilted_contact": "tilted_stoppers",
     "tilted_stoppers": "answer life device_page",
     "life": "answer table_life figure_life device_page",
-    "answer": "table_devices figure_risk device_page device_limits",
+    "answer": "table_devices figure_risk figure_life device_page device_limits",
     "chart": "table_chart figure_chart device_warnings device_page",
     "tip_slope_contact": "tip_budget",
     "tip_choice_contact": "tip_budget",
