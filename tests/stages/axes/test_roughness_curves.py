@@ -386,7 +386,8 @@ def skewed(rms, skewness):
 @pytest.mark.parametrize("varied", [{"skewness": [-1, 0.5]}, {"rms_nm": [2, 8], "skewness": [-1, 0.5]}])
 def test_a_skewness_comes_with_the_largest_kurtosis_up_to_that_of_the_surface_and_states_it(varied):
     section = {"surface": "B2"} | varied
-    plan = Plan(stiction.load({"devices": {"S1": S1 | {"roughness": section, "humidities": [0.6]}}}))
+    device = S1 | {"roughness": section, "humidities": [0.6]}
+    plan = Plan(stiction.load({"devices": {"S1": device}, "contact": {"model": "summits"}}))
     seen = []
     with patch.object(points.Device, "on", lambda *given: seen.append(given[2][0]["B2"]) or [xr.Dataset()]):
         for number in range(0, 40, POINTS) if len(varied) > 1 else (0, 3, 6):

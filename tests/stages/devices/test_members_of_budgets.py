@@ -34,7 +34,7 @@ def study(beam=LIKE, substrate=None, **more):
         "pairs": {
             "mine": {"beam": "Etched", "substrate": list(surfaces)[-1], "gap_um": 20, "humidities": [HUMIDITY]},
         },
-        "contact": {"samples": SAMPLES, "chunks": 1},
+        "contact": {"samples": SAMPLES, "chunks": 1, "model": "summits"},
         "design": {"budget_samples": SAMPLES},
         "devices": {"S1": STOPPER},
     }
