@@ -132,7 +132,7 @@ MATRIX = [
      (), "/contact/"),
     # It moves the scatter of energies, and with it the number of samples of C1.
     ("adsorbed water", "water: {adsorbed_nm: 0.1}", "device_contact ground safe_lengths chart stoppers budget tip_budget separation fast_strips fast_tips process_point", (),
-     "results/contact|slopes|modulus|choices|contact/tips"),
+     "results/contact|slopes|modulus|choices|/contact/tips"),
     ("uncertainty of the adsorbed water", "devices: {C1: {uncertainty: {adsorbed_nm: 0.1}}}", "budget tip_budget", (),
      "R1|S1|contact|chart"),
     ("attraction across gaps", "attraction: {wavelength_nm: 90}", "ground safe_lengths chart stoppers budget tip_budget separation fast_strips fast_tips process_point", (),
