@@ -93,7 +93,7 @@ def folder(tmp_path_factory):
 @pytest.fixture(scope="module")
 def accepts(folder):
     """Whether ``stiction check`` accepts a study. What samples have shown is kept from check to check."""
-    kept = disk_cache.DiskCache("none")
+    kept = disk_cache.DiskCache(folder / "kept.json")
 
     def accepts(study):
         file = folder / "mine.yaml"
