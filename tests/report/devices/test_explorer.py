@@ -17,7 +17,7 @@ UM, BEAMS = 1e-6, 300
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.5, "gap_um": 15, "width_um": 30, "humidities": [0.67]}
 SIZES = {"thicknesses_um": [2, 4], "gaps_um": [10, 20], "humidities": [0.6, 0.86]}
 SMALL = {
-    "contact": {"samples": 60, "chunks": 2, "distance_step_nm": 0.2},
+    "contact": {"samples": 60, "chunks": 2, "distance_step_nm": 0.2, "model": "summits"},
     "chaos": {"order": 2},
     "design": {"beams": BEAMS, "shares": [0.05, 0.01], "chart_points": 5},
     "devices": {"C1": BEAM | {"chart": SIZES}},
