@@ -46,7 +46,7 @@ def test_scans(run):
 def test_device(run, capsys):
     found = run("device")
     printed = capsys.readouterr().out
-    assert printed.count("safe length") == 4
+    assert printed.count("simulated limit") == 4
     for humidity in (0.44, 0.67):
         lengths = found["device"].safe_lengths(humidity).safe_length.values
         assert np.all(lengths[1:] < lengths[:1]), "a tip holds shorter beams"
