@@ -15,6 +15,7 @@ from stiction.config.cases import Case
 from stiction.config.files import load
 from stiction.config.units import in_si
 from stiction.contact.correction import NONE
+from stiction.contact.full.effort import Effort, TooLong
 from stiction.errors import NotConverged
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
@@ -151,13 +152,29 @@ def test_a_humidity_whose_forces_are_not_found_stays_on_summits_though_a_drier_o
 
 
 def test_a_strip_that_cannot_be_separated_leaves_its_energy():
-    strips = full_energy.Strips(None, None, {full_energy.FINE: AtRest()}, None, 0.5, forces=True)
+    strips = full_energy.Strips(None, None, {full_energy.FINE: AtRest()}, None, 0.5, Effort(np.inf), forces=True)
     strips.resisting.append(0)
     strips.curves.append(())
     strips.last[0] = np.zeros((4, 4))
     assert strips.energy(full_energy.FINE, 0) == 2.0
     with pytest.raises(ValueError, match="was not found"):
         strips.pull_off(full_energy.FINE, 0)
+
+
+def test_what_would_take_too_long_stays_on_summits_with_this_reason(monkeypatch):
+    strips = full_energy.strips_of(small.surfaces(), "b", strips_settings())
+    for place in range(full_energy.PILOT):
+        for grid in full_energy.GRIDS:
+            strips.energy(grid, place)
+    on_coarse_grids = strips.effort.spent
+    strips.effort.most = 2 * on_coarse_grids
+    with pytest.raises(TooLong):
+        strips.energy(FINE, 0)
+    assert strips.effort.spent == on_coarse_grids, "before the first strip on the fine grid"
+    monkeypatch.setattr(full_energy, "EFFORT", on_coarse_grids / 2)
+    unknown = full_energy.compute(small.surfaces(), Case("b_rh044"), strips_settings())
+    assert "takes too long" in unknown.reason
+    assert not unknown.applied
 
 
 class AtRest:

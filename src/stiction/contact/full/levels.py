@@ -7,7 +7,7 @@ without attraction. On 13 strips of pair b, energies of both differ by 0.3 % at 
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,13 +18,17 @@ from stiction.contact.full.halfspace import HalfSpace
 from stiction.errors import NotConverged
 
 
-@dataclass(frozen=True)
+@dataclass
 class Level:
     """Every n-th point of strips in their air."""
 
     every: int  #: n
     space: HalfSpace
     adhesion: Adhesion
+    solvers: tuple[elements.Settle, ...] = (
+        elements.equilibrium,
+        descent.equilibrium,
+    )  #: the one that settled last first
 
     @classmethod
     def of(cls, every: int, fine: HalfSpace, adhesion: Callable[[HalfSpace], Adhesion]) -> "Level":
@@ -36,7 +40,7 @@ class Level:
             If the elements are too large to resolve the van der Waals forces.
         """
         shape = tuple(len(range(0, number, every)) for number in fine.shape)
-        space = HalfSpace(shape, every * fine.spacing, fine.modulus)
+        space = replace(fine, shape=shape, spacing=every * fine.spacing)
         return cls(every, space, adhesion(space))
 
     def on(self, heights: np.ndarray) -> np.ndarray:
@@ -51,50 +55,61 @@ class Level:
         """State without force of a strip with these heights on the fine grid (n1, n2) [m].
 
         ``curve`` is as of `stiction.contact.full.elements.separation`; ``start`` is a state on the elements of this
-        level. Without a start, or where it does not lead to rest, the strip begins without attraction, and by descent
-        where turns do not settle.
+        level. Without a start, or where it does not lead to rest, the strip begins without attraction.
 
         Raises
         ------
         NotConverged, ValueError
             As `stiction.contact.full.elements.at_rest`.
         """
-        strip = self.space, self.on(heights), self.adhesion
-        for settle, moved in self._tries(curve, start):
-            try:
-                return elements.at_rest(*strip, moved, settle)[0]
-            except (NotConverged, ValueError):
-                continue
-        return elements.at_rest(*strip, curve, descent.equilibrium)[0]
+        strip, starts = (self.space, self.on(heights), self.adhesion), ([start] if start else []) + [None]
+
+        def settled(settle):
+            """State at rest by a solver."""
+            for each in starts:
+                try:
+                    return elements.at_rest(*strip, _moved(curve, each), _beginning(settle, each))[0]
+                except (NotConverged, ValueError) as failed:
+                    reason = failed
+            raise reason
+
+        return self._first(settled)
 
     def pull_off(self, heights: np.ndarray, curve: tuple[np.ndarray, np.ndarray], closed: State) -> float:
         """Largest attraction from the state at rest [Pa], on coarse grids in long steps. Otherwise as `at_rest`."""
         strip = self.space, self.on(heights), self.adhesion
-        for settle in (elements.equilibrium, descent.equilibrium):
+        if self.every > 1:
+            return self._first(lambda settle: elements.roughly_pulled_off(strip, closed, curve, settle))
+        return self._first(lambda settle: elements.pulled_off(strip, closed, curve, settle)[0])
+
+    def _first(self, found):
+        """What the first solver finds that settles, which then comes first on other strips."""
+        for settle in self.solvers:
             try:
-                if self.every > 1:
-                    return elements.roughly_pulled_off(strip, closed, curve, settle)
-                return elements.pulled_off(strip, closed, curve, settle)[0]
+                result = found(settle)
             except (NotConverged, ValueError) as failed:
                 reason = failed
+                continue
+            self.solvers = settle, *(each for each in self.solvers if each is not settle)
+            return result
         raise reason
 
-    def _tries(self, curve, start):
-        """Solvers by elements, with the curve that leads each to rest."""
-        if start is not None:
-            distance, force = curve
-            yield _settled_from(start), (distance + (start.distance - limit_distance(distance, force, 0.0)), force)
-        yield elements.equilibrium, curve
+
+def _moved(curve, start):
+    """Curve that leads to the distance of a state at rest, if there is one."""
+    if start is None:
+        return curve
+    distance, force = curve
+    return distance + (start.distance - limit_distance(distance, force, 0.0)), force
 
 
-def _settled_from(start):
-    """Solver of one state that begins with another one."""
-
-    def settle(space, heights, distance, adhesion, before=None, **tolerance):
-        """State at a distance [m]."""
-        return elements.equilibrium(space, heights, distance, adhesion, before or start, **tolerance)
-
-    return settle
+def _beginning(settle, start):
+    """Solver of states of which the first begins with another state, if there is one."""
+    if start is None:
+        return settle
+    return lambda space, heights, distance, adhesion, before=None, **tolerance: settle(
+        space, heights, distance, adhesion, before or start, **tolerance
+    )
 
 
 def refined(state: State, times: int, shape: tuple[int, int]) -> State:

@@ -13,10 +13,11 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis import levels
-from stiction.analysis.levels import FINE, POOL, SUMMITS, Ratio
+from stiction.analysis.levels import COSTS, FINE, PILOT, POOL, SUMMITS, Ratio
 from stiction.config.cases import Case
 from stiction.contact import forcelaw, solids
 from stiction.contact.environment import Water
+from stiction.contact.full.effort import CountedHalfSpace, Effort, TooLong
 from stiction.contact.full.elements import Adhesion
 from stiction.contact.full.levels import Level, refined
 from stiction.contact.materials import ELASTIC
@@ -35,6 +36,9 @@ ALLOWED = 0.04
 OF_FORCES, ALLOWED_OF_FORCES = 0.04, 0.1
 #: Coarse grids: every n-th point.
 GRIDS = (2, 3)
+#: ASSUME: beyond this many displaced elements, about two minutes of a core, the ratio costs too much. Pair b needs 4e8
+#: to 2e9 of them, by humidity, and pairs of heavy tails, whose strips have no control, 7e9.
+EFFORT = 8e9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -63,6 +67,7 @@ class Strips:
     levels: dict[int, Level]  #: by their every n-th point
     water: Water
     humidity: float  #: [-]
+    effort: Effort  #: displaced elements on all levels
     forces: bool = False  #: whether strips are separated
     resisting: list[int] = field(default_factory=list)  #: numbers of the first strips with summits that resist
     curves: list[tuple] = field(default_factory=list)  #: their distances [m] and forces [Pa] on summits
@@ -87,6 +92,8 @@ class Strips:
         ------
         ValueError
             If the fine level finds none.
+        TooLong
+            If there is too much effort.
         """
         largest = self._value(level, place).pull_off
         if level == FINE and np.isnan(largest):
@@ -120,6 +127,10 @@ class Strips:
 
     def _compute(self, level, place):
         """Quantities of a strip on a grid, on the fine one from the state on the next coarser one."""
+        if (
+            level == FINE and (FINE, 0) not in self.values
+        ):  # the pilot on coarse grids says what that on the fine one takes
+            self.effort.require(self.effort.spent * (1 + 1 / sum(COSTS[every] for every in GRIDS)))
         heights, curve, start = self.heights(self.resisting[place]), self.curves[place], None
         for every in (2, FINE) if level == FINE and 2 in self.levels else (level,):
             try:
@@ -157,14 +168,15 @@ def strips_of(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, sett
     adhesion = partial(
         Adhesion.of, water.film(humidity), solids.attraction_between(*materials, medium), across=water.gaps
     )
-    fine, grids = full_contact.elements_of(drawn, materials), {}
+    effort, grids = Effort(EFFORT), {}
+    fine = CountedHalfSpace.of(full_contact.elements_of(drawn, materials), effort)
     grids[FINE] = Level.of(FINE, fine, adhesion)
     for every in GRIDS:
         try:
             grids[every] = Level.of(every, fine, adhesion)
         except ValueError:  # no control
             continue
-    return Strips(drawn, streams_of_sides(settings.seed, pair), grids, water, humidity, settings.forces)
+    return Strips(drawn, streams_of_sides(settings.seed, pair), grids, water, humidity, effort, settings.forces)
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], case: Case, settings: Settings) -> xr.Dataset:
@@ -178,7 +190,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], case: Case, setti
         if settings.forces:
             random = stream(settings.seed, "full_force", case.pair)
             pull_off = levels.ratio_of_means(strips.pull_off, GRIDS, OF_FORCES, random)
-    except (NotConverged, ValueError) as failed:
+    except (NotConverged, TooLong, ValueError) as failed:
         reason = str(failed)
     of_forces = _ratio(pull_off, ALLOWED_OF_FORCES, "pull_off_") if settings.forces else {}
     return layout(energy, means, reason).assign(of_forces)
@@ -212,7 +224,7 @@ def _ratio(found, allowed, prefix=""):
 def settings_of(plan: Any, at: At) -> dict[str, Any]:
     """Settings of the strips of a pair in the air of devices."""
     seen = plan.seen_by(at.case.pair, ELASTIC, samples=None)
-    own = {"humidities": [at.case.humidity], "strips": levels.PILOT}
+    own = {"humidities": [at.case.humidity], "strips": PILOT}
     own |= {"forces": True} if at.case.humidity in plan.devices.airs_of_forces(at.case.pair) else {}
     return select(Settings, seen | own | {"water": plan.air_of_devices.water(at.case.pair)})
 
