@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
-from scipy.special import chdtrc, logsumexp, softmax
+from scipy.special import logsumexp, softmax
 
 from stiction.models import MOMENT_QUANTITIES, SPECTRUM_QUANTITIES
 
@@ -306,13 +306,6 @@ def _weights(position, errors, degree):
     """Weights (..., c, n) of values with these errors (..., n) in the coefficients of a polynomial."""
     root = 1 / errors
     return np.linalg.pinv(root[..., None] * legvander(position, degree)) * root[..., None, :]
-
-
-def fit_probability(law: Law, values: np.ndarray, errors: np.ndarray, quantity: int) -> float:
-    """Probability of a worse agreement of the settings (n,) with their law, by their errors (n,) alone [-]."""
-    residuals = (values - law.at(law.settings)[:, quantity]) / errors
-    freedom = len(values) - 1 - law.degrees[quantity]
-    return float(chdtrc(freedom, np.sum(residuals**2))) if freedom else float("nan")
 
 
 def grid(settings: Sequence[float], intervals: int = 6) -> np.ndarray:
