@@ -29,6 +29,8 @@ _LEFT_OUT = {
     "inputs": "the uncertainty of the inputs, because too few devices stick to show it",
     "voltage": "its voltage, at which the dielectric breaks down",
 }
+#: Relative change of a size that is not worth a word.
+_SAME = 0.01
 #: Signs of verdicts with the tone of their box, for lengths and for forces.
 _SIGNS = {
     Verdict.BUILD: ("good", "Length to build", "Force to build"),
@@ -135,7 +137,7 @@ def decides(answer: Answer) -> str:
     air = air.choose(air.words, "Dry air")
     said = f"{air}, stuck by {'the ' if held != 'beam or tip' else ''}{held}."
     change = largest.factor - 1
-    if not np.isfinite(change) or abs(change) < 0.01:
+    if not np.isfinite(change) or abs(change) < _SAME:
         return said
     by = f"{'+' if change > 0 else '−'}{in_percent(abs(change))} of the {answer.sought.name}"
     return f"{said} Largest step: {CAUSES[largest.cause][1]}, {by}."
@@ -150,10 +152,9 @@ def measure(answer: Answer) -> str:
     group = f"{answer.measure[0].upper()}{answer.measure[1:]}"
     if is_forbidden(answer) or np.isnan(answer.if_measured):
         return f"{group}."
-    left = answer.in_words(answer.if_measured)
-    if abs(np.log(answer.if_measured / answer.build)) < 0.01:
-        return f"Nothing: with {answer.measure} known exactly, it would still be {left}."
-    return f"{group}: known exactly, it would be {left}."
+    if abs(np.log(answer.if_measured / answer.build)) < _SAME:
+        return f"Nothing: with {answer.measure} known exactly, it would change by less than {in_percent(_SAME)}."
+    return f"{group}: known exactly, it would be {answer.in_words(answer.if_measured)}."
 
 
 def reasons(answer: Answer) -> list[str]:
