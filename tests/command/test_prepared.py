@@ -1,5 +1,6 @@
 """A configuration is prepared in one way, and what one process found out the next one need not."""
 
+from datetime import date
 from unittest.mock import patch
 
 import pytest
@@ -61,6 +62,29 @@ def test_an_invalid_configuration_is_refused_each_time(asked, tmp_path):
         with pytest.raises(ConfigError, match="^seed is -1"):
             prepared(stated, Kept(tmp_path))
     assert len(asked) == 2
+
+
+DEVICE = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 5, "humidities": [0.6]}
+
+
+@pytest.mark.parametrize("name", [True, 1, None, 2.5, date(2020, 1, 31)])
+@pytest.mark.parametrize("section", ["devices", "surfaces", "pairs"])
+def test_names_that_yaml_reads_as_no_text_are_refused_before_and_after_those_of_their_text(name, section, tmp_path):
+    kept = Kept(tmp_path)
+    paper_and = {"run": {"pairs": ["b"]}, "devices": {"S": DEVICE}}
+    prepared(joined(paper_and | {"devices": {"true": DEVICE, "S": DEVICE}}), kept)
+    wrong = joined(paper_and)
+    wrong[section] = wrong[section] | {name: {}}
+    with pytest.raises(ConfigError, match="is not a valid name"):
+        prepared(wrong, kept)
+    wrong[section] = {name: {}}
+    with pytest.raises(ConfigError, match="is not a valid name"):
+        prepared(wrong, kept)
+
+
+def test_a_whole_number_of_too_many_digits_is_refused_in_a_sentence(tmp_path):
+    with pytest.raises(ConfigError, match="must contain short numbers"):
+        prepared(joined({"seed": 16**4000}), Kept(tmp_path))
 
 
 def test_scans_are_looked_at_each_time(asked, tmp_path):

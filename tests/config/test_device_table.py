@@ -152,7 +152,8 @@ def test_a_name_that_no_file_can_have_is_refused_as_it_is_written(study, name):
         ([LINES[0] + ",pair", *(line + ",1e5" for line in LINES[1:])], "rows 2 to 4: pair is '1e5', must be one of a"),
         ([LINES[0] + ",humidities", *(line + ",0.45 45" for line in LINES[1:])], "to 4: humidities[1] is 45, must be"),
         ([LINES[0] + ",touchdowns", *(line + ",1e3" for line in LINES[1:])], "touchdowns is 1000.0, must be a whole"),
-        ([LINES[0] + ",contact_um", *(line + ",3 3" for line in LINES[1:])], "2 to 4: kind is 'cantilever', must come"),
+        ([*LINES, "file,250,30,2.6,20"], "row 5: name is 'file', must differ from the key that names this file"),
+        ([*LINES, 'L4,250,30,2.6,"20'], "row 5 of 17 characters cannot be read: unexpected end of data"),
     ],
 )  # fmt: skip
 def test_what_is_wrong_with_a_file_is_one_sentence_with_row_and_column(study, lines, words):
@@ -161,6 +162,25 @@ def test_what_is_wrong_with_a_file_is_one_sentence_with_row_and_column(study, li
     (sentence,) = refused.value.problems
     assert sentence.startswith("devices.file is 'range.csv', ")
     assert words in sentence
+
+
+def refused(path):
+    """The only sentence that refuses a configuration."""
+    with pytest.raises(ConfigError) as refusal:
+        files.load(path)
+    (sentence,) = refusal.value.problems
+    return sentence
+
+
+def test_what_is_wrong_beside_a_file_is_not_said_of_its_rows(study):
+    assert refused(study(*LINES, humidities=[45])).startswith("devices.humidities[0] is 45, must be")
+    assert refused(study(*LINES, uncertainty={"gap_um": -1})).startswith("devices.uncertainty.gap_um is -1, must be")
+    assert refused(study(*LINES, L1={"length_um": 0})).startswith("devices.L1.length_um is 0, must be")
+    assert refused(study(*LINES, L1=None)).startswith("devices.L1 is None, must be")
+    too_wide = refused(study(*LINES, L1={"touchdowns": 3, "humidities": [45]}))
+    assert too_wide.startswith("devices.L1.humidities[0] is 45, must be")
+    of_one = study(LINES[0], "L1,0,30,2.6,20", L1={"touchdowns": 3})
+    assert refused(of_one).startswith("devices.file is 'range.csv', row 2: length_um is 0"), "control: in the file"
 
 
 def test_a_damaged_or_missing_file_is_named(study):

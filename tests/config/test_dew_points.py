@@ -6,6 +6,8 @@ from configurations import problems
 
 import stiction
 from stiction.config.files import joined
+from stiction.config.meetings import LIQUID
+from stiction.config.relations import schema
 
 STUDY = {
     "run": {"pairs": [], "studies": []},
@@ -56,3 +58,28 @@ def test_a_dew_point_that_is_no_number_is_refused(wrong):
     study = {"pairs": {"b": {"humidities": [{"dew_point_C": wrong}]}}}
     (line,) = problems(joined(study))
     assert line.startswith("pairs.b.humidities[0] is {'dew_point_C': ")
+
+
+def test_limits_of_the_temperature_are_those_of_the_schema():
+    water = schema()["properties"]["water"]["properties"]["temperature_K"]
+    assert (water["minimum"], water["maximum"]) == LIQUID
+
+
+@pytest.mark.parametrize("kelvin", [1, 5, 25, 272.9, 1e9])
+def test_a_temperature_of_no_liquid_is_refused_alone(kelvin):
+    (line,) = problems(at(kelvin - 273.15))
+    assert line.startswith("water.temperature_K is ")
+
+
+@pytest.mark.parametrize("dew_point", [100, 374, 500, 1e6])
+def test_a_dew_point_above_the_critical_one_condenses(dew_point):
+    (line,) = problems(at(25, dew_point))
+    assert "water condenses on colder surfaces" in line
+
+
+def test_a_dew_point_is_no_uncertainty_of_a_humidity():
+    study = {"devices": {"S": STUDY["devices"]["S"] | {"uncertainty": {"humidity": {"dew_point_C": 2}}}}}
+    lines = problems(joined(STUDY | study))
+    assert any(
+        line.startswith("devices.S.uncertainty.humidity is {'dew_point_C': 2}, must be a number") for line in lines
+    )

@@ -281,3 +281,19 @@ def test_the_plan_of_a_device_takes_as_long_among_many_devices_as_among_few():
 
     calls_for_each_of(2)  # what is kept from then on
     assert calls_for_each_of(32) < 1.2 * calls_for_each_of(8)
+
+
+def test_the_tips_of_a_device_are_looked_up_once_for_all_jobs_that_ask_for_them(monkeypatch):
+    calls, tips = [], DevicePlan.tips
+
+    def counted(self, device):
+        calls.append(device)
+        return tips(self, device)
+
+    many = {f"C{k}": C1 | {"thickness_um": 2 + 0.01 * k} for k in range(20)}
+    found = DevicePlan(load({"devices": many}))
+    strips = [found.tips(name) for name in many]
+    monkeypatch.setattr(DevicePlan, "tips", counted)
+    slopes = [found.tilt(each)["slopes"] for each in strips]
+    assert len(calls) == 20
+    assert len({tuple(each) for each in slopes}) == len(set(strips))

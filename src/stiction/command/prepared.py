@@ -17,6 +17,8 @@ from stiction.run.provenance import version_of
 
 #: Files that determine what configurations mean.
 _TEXTS = (PAPER.name, "schema.yaml", "materials.yaml")
+#: Whole numbers from here on may have too many digits to be written.
+LARGEST = 2**63
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,10 @@ def prepared(stated: dict[str, Any], kept: Kept = NOWHERE, with_samples: bool = 
 
 
 def _checked(stated, kept):
-    """Complete configuration, and its estimates. A known one without scans is not checked again."""
+    """Complete configuration, and its estimates. A known one without scans is not checked again.
+
+    YAML reads some names as no text, which the check refuses and a key of what is kept cannot tell from text.
+    """
 
     def check():
         """Check it now."""
@@ -65,9 +70,20 @@ def _checked(stated, kept):
 
         return checked(stated, kept.folder and kept.folder / "scans")
 
-    if scans.has_scans(stated) or process.has_scans(stated):
+    if scans.has_scans(stated) or process.has_scans(stated) or not _is_plain(stated):
         return check()
     return _kept(kept, "planning.json", "config/validation.py", [stated], check)
+
+
+def _is_plain(value):
+    """Whether a value and all in it have one meaning in JSON: names are text, and whole numbers short."""
+    if isinstance(value, dict):
+        return all(isinstance(key, str) and _is_plain(each) for key, each in value.items())
+    if isinstance(value, list | tuple):
+        return all(map(_is_plain, value))
+    if isinstance(value, int):
+        return abs(value) < LARGEST
+    return value is None or isinstance(value, str | float)
 
 
 def problems_of_samples(config: dict[str, Any], estimates: dict[str, dict], kept: Kept) -> list[Problem]:

@@ -29,6 +29,8 @@ relation = Relations()
 TEMPERATURE, ADSORBED, _SHOWN = "water.temperature_K", "water.adsorbed_nm", "figures.humidity"
 #: Key of air by its dew point, and the lowest dew point with a vapour pressure [K].
 _DEW_POINT, _COLDEST = "dew_point_C", 150.0
+#: Temperatures of water that the schema allows [K], and a humidity in place of a dew point at another one.
+LIQUID, _ANY = (273, 373), 0.5
 #: Levels above ``test_beams.T.crack_lengths[0].humidity``, the deepest humidity.
 _LEVELS = 5
 
@@ -170,14 +172,18 @@ def at_dew_points(config: Any, path: tuple = (), temperature: float | None = Non
 
 def _is_dew_point(value, path):
     """Whether a value at a path is the dew point in place of a humidity."""
-    is_humidity = "humidities" in path[-2:] or path[-1:] == ("humidity",)
+    is_humidity = ("humidities" in path[-2:] or path[-1:] == ("humidity",)) and "uncertainty" not in path
     return is_humidity and isinstance(value, dict) and {*value} == {_DEW_POINT} and is_number(value[_DEW_POINT])
 
 
 def _humidity_of_dew_point(value, path, temperature):
     """Humidity of a dew point. Refuses air from which water condenses on the surfaces."""
     dew_point = value[_DEW_POINT] + ZERO_CELSIUS
-    humidity = round(humidity_at(temperature, dew_point), 4) if dew_point > _COLDEST else 0.0
+    if not LIQUID[0] <= temperature <= LIQUID[1]:
+        return _ANY  # the schema refuses the temperature
+    humidity = 1.0
+    if dew_point < temperature:
+        humidity = round(humidity_at(temperature, dew_point), 4) if dew_point > _COLDEST else 0.0
     if humidity >= 1:
         words = (
             f"is {one_line(value)}, must be below the temperature of the water, {temperature - ZERO_CELSIUS:.4g} °C: "

@@ -292,10 +292,18 @@ class DevicePlan:
             If no tip has these strips.
         """
         tips = tips._replace(pair=PairInAir(tips.pair).pair)
-        users = [(plan, name) for plan, name in self._with_tips if plan.tips(name) == tips]
+        users = self._by_tips.get(tips, [])
         if not users:
             raise KeyError(f"no device has tips on strips {tips.name}")
         return self._tilt(users, sorted({float(slope) for plan, name in users for slope in plan._slopes(name)}))
+
+    @cached_property
+    def _by_tips(self):
+        """Devices and counted test beams, each with its plan, by the strips of their tips."""
+        users = {}
+        for plan, name in self._with_tips:
+            users.setdefault(plan.tips(name), []).append((plan, name))
+        return users
 
     def all_tips(self, pair: str) -> dict:
         """Settings of strips for all tips on a pair: the least width, and the slopes at both ends and in the middle.

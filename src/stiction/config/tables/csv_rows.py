@@ -53,7 +53,7 @@ def rows(content: str, columns: Sequence[str], needed: Sequence[str], what: str)
 def _cells(number, line):
     """Values of a row."""
     try:
-        return [cell.strip() for cell in next(csv.reader([line]))]
+        return [cell.strip() for cell in next(csv.reader([line], strict=True))]
     except csv.Error as reason:
         raise WrongFileError(f"row {number} of {len(line)} characters cannot be read: {reason}") from None
 

@@ -19,6 +19,8 @@ from stiction.config.tables.csv_rows import WrongFileError, rows
 _NAME = "name"
 #: Beginning of a sentence about a device, its name in quotes if it is no word.
 _DEVICE = re.compile(r"devices\.(?:[\w-]+|'[^']*'|\"[^\"]*\")")
+#: Key of a device after its name.
+_KEY = re.compile(r"(?:\.[\w-]+|\[[0-9]+\])*")
 _WHOLE, _REAL = re.compile(r"[-+]?[0-9]{1,18}"), re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?")
 
 
@@ -27,6 +29,8 @@ class Rows(NamedTuple):
 
     file: str  #: its name
     numbers: dict[str, int]  #: line of the file of each device, in the order of the file
+    shared: list[str]  #: keys beside the file whose values hold for all its devices
+    own: dict[str, list[str]]  #: keys of devices that have values in entries of their own beside the file
 
 
 def in_folder(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
@@ -59,7 +63,9 @@ def with_rows(config: dict[str, Any]) -> dict[str, Any]:
     shared = {key: value for key, value in config["devices"].items() if key in _section_of_a_device()["properties"]}
     others = {key: value for key, value in config["devices"].items() if key not in shared}
     whole = merged({name: merged(shared, device) for name, device in devices.items()}, others)
-    return config | {"devices": whole | {"file": Rows(file, numbers)}}
+    own = {name: list(_dotted(section)) for name, section in others.items() if name in numbers}
+    cells = {column for device in devices.values() for column in _dotted(device)}
+    return config | {"devices": whole | {"file": Rows(file, numbers, [*{*_dotted(shared)} - cells], own)}}
 
 
 def without_file(config: Any) -> tuple[Any, Rows]:
@@ -67,30 +73,57 @@ def without_file(config: Any) -> tuple[Any, Rows]:
     devices = config.get("devices") if isinstance(config, dict) else None
     of_file = devices.get("file") if isinstance(devices, dict) else None
     if not isinstance(of_file, Rows):
-        return config, Rows("", {})
+        return config, Rows("", {}, [], {})
     return config | {"devices": {name: device for name, device in devices.items() if name != "file"}}, of_file
 
 
 def in_rows(sentences: Iterable[str], of_file: Rows) -> list[str]:
     """Sentences with file and row in place of the names of devices from a file. What rows share is one sentence.
 
+    What holds for all rows of a key beside the file is about this key.
+
     Examples
     --------
-    >>> of_file = Rows("range.csv", {"L1": 2, "L2": 3, "L3": 4})
+    >>> of_file = Rows("range.csv", {"L1": 2, "L2": 3, "L3": 4}, ["width_um"], {})
     >>> in_rows([f"devices.{name}.gap_um is 0, must be a number above 0" for name in of_file.numbers], of_file)
     ["devices.file is 'range.csv', rows 2 to 4: gap_um is 0, must be a number above 0"]
+    >>> in_rows([f"devices.{name}.width_um is 0, must be a number above 0" for name in of_file.numbers], of_file)
+    ['devices.width_um is 0, must be a number above 0']
     """
     prefixes = {dotted(("devices", name)): name for name in of_file.numbers}
-    numbers = {}
+    numbers, of_all = {}, set()
     for sentence in sentences:
         prefix = _DEVICE.match(sentence)
-        if prefix and (name := prefixes.get(prefix[0])) is not None:
-            about_cell = sentence.replace(f"{prefix[0]}.", "")
-            sentence = about_cell.replace(prefix[0], f"{_NAME} is {one_line(name)}, which", 1)
-            numbers.setdefault(sentence, []).append(of_file.numbers[name])
-        else:
+        name = prefixes.get(prefix[0]) if prefix else None
+        key = _KEY.match(sentence, prefix.end())[0] if prefix else ""
+        if name is None or name in of_file.own and (not key or _is_among(key, of_file.own[name])):
             numbers.setdefault(sentence, [])
-    return [_of_rows(of_file.file, listed, sentence) for sentence, listed in numbers.items()]
+            continue
+        about_cell = sentence.replace(f"{prefix[0]}.", "")
+        about_cell = about_cell.replace(prefix[0], f"{_NAME} is {one_line(name)}, which", 1)
+        numbers.setdefault(about_cell, []).append(of_file.numbers[name])
+        if _is_among(key, of_file.shared):
+            of_all.add(about_cell)
+    return [
+        f"devices.{sentence}"
+        if sentence in of_all and len(listed) == len(of_file.numbers)
+        else _of_rows(of_file.file, listed, sentence)
+        for sentence, listed in numbers.items()
+    ]
+
+
+def _is_among(key, stated):
+    """Whether a key of a sentence, such as ``.humidities[0]``, is one of the stated ones or in it."""
+    return any(re.match(rf"\.{re.escape(one)}(?![\w])", key) for one in stated)
+
+
+def _dotted(section, above=""):
+    """Yield the dotted keys of the values of a section, which may be none."""
+    for key, value in section.items() if isinstance(section, dict) else ():
+        if isinstance(value, dict):
+            yield from _dotted(value, f"{above}{key}.")
+        else:
+            yield f"{above}{key}"
 
 
 def _of_rows(file, numbers, sentence):
@@ -138,6 +171,8 @@ def _devices(content, section):
         name = cells.pop(_NAME)
         if not name:
             raise WrongFileError(f"row {number}: {_NAME} is empty, must be the name of a device")
+        if name == "file":
+            raise WrongFileError(f"row {number}: {_NAME} is 'file', must differ from the key that names this file")
         if name in numbers:
             raise WrongFileError(f"row {number}: {_NAME} is {one_line(name)} as in row {numbers[name]}, must differ")
         values = {column: _value(cell, columns[column]) for column, cell in cells.items() if cell}
