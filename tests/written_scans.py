@@ -79,7 +79,11 @@ def bad_files(folder, good):
             "files[0]",
             "is 'cut.di', which holds no map with units of length: set them in the program that",
         ),
-        "profile.xyz": (_GIVEN, "files[0]", "is 'profile.xyz', which is a profile; a map of heights is needed"),
+        "profile.xyz": (
+            _GIVEN,
+            "files[0]",
+            "is 'profile.xyz', which is a profile: list it under profiles, in place of scans",
+        ),
         "bare.npy": ({"height_unit": "nm"}, "size_um", "is missing: bare.npy has no size in a unit of length"),
         "bare.npy ": ({"size_um": [1, 1]}, "height_unit", "is missing: bare.npy has no unit; give one of m, mm"),
         "holes.gwy": ({}, "files[0]", "is 'holes.gwy', which has 26.7 % of its points undefined (72 empty"),

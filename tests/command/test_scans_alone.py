@@ -164,7 +164,9 @@ def test_the_command_asks_for_scans_of_a_surface_or_of_a_setting(folder, tmp_pat
     monkeypatch.setattr("stiction.command.main._run", lambda *_: 0)
     path = process_of(folder, *([["B2-1.gwy"]] if has_scans else []))
     assert main(["scans", path, "--directory", str(tmp_path)]) == (0 if has_scans else 2)
-    assert ("add surfaces.NAME.scans, or scans to the settings of process.NAME" in capsys.readouterr().err) != has_scans
+    assert (
+        "add surfaces.NAME.scans or surfaces.NAME.profiles, or scans to the settings" in capsys.readouterr().err
+    ) != has_scans
 
 
 @pytest.mark.slow

@@ -235,13 +235,13 @@ def _devices(arguments):
 
 
 def _scans(arguments):
-    """Evaluate scans without the pairs of their surfaces."""
+    """Evaluate scans and lines without the pairs of their surfaces."""
     from stiction.config import scans  # takes longer than all other imports
     from stiction.config.surfaces import process
 
     contents = reading.contents(arguments.files, arguments.more)
     if not any(scans.has_scans(content) or process.has_scans(content) for content in contents):
-        add = "add surfaces.NAME.scans, or scans to the settings of process.NAME"
+        add = "add surfaces.NAME.scans or surfaces.NAME.profiles, or scans to the settings of process.NAME"
         raise launch.RefusedError(f"{' '.join(arguments.files)} describes no surface by scans: {add}")
     if any(word.startswith("--configfile") for word in arguments.more):
         return _run(arguments, "scans")  # files that Snakemake reads
@@ -249,6 +249,8 @@ def _scans(arguments):
 
     launch.require_folder(directory := Path(arguments.directory))
     found = scans_alone.alone(arguments.files, directory)
+    for words in found.lines:
+        say(f"{words}.")
     arguments.files, ended = [found.write(directory)], Status.DONE
     if found.overlay["surfaces"]:
         arguments.more = ["--keep-going", *arguments.more]

@@ -13,7 +13,7 @@ from stiction.config.merging import expanded
 from stiction.config.messages import ConfigError, schema_problems
 from stiction.config.reading import paper
 from stiction.config.relations import schema
-from stiction.config.surfaces import process
+from stiction.config.surfaces import process, profiles
 from stiction.config.surfaces.process_relations import surfaces_of_processes_are_defined
 from stiction.run.atomic import save_text
 
@@ -29,6 +29,7 @@ class Alone:
 
     overlay: dict[str, Any]  #: changes of the configuration of the paper: the surfaces that can be estimated
     refused: dict[str, tuple[dict, list[str]]]  #: section of every other surface, and why it cannot be estimated
+    lines: tuple[str, ...] = ()  #: numbers of surfaces measured along lines, in words
 
     def write(self, directory: Path) -> str:
         """Write the configuration into the folder of a run, and return its path."""
@@ -46,7 +47,7 @@ def alone(overlays: Iterable[str], directory: Path) -> Alone:
     ConfigError
         If a key of a surface or of a process is wrong on its own, or a process has no surface.
     """
-    config = _of_surfaces(files.joined(*overlays))
+    config, lines = _of_surfaces(files.joined(*overlays), directory / _KEPT)
     measured = {name: _entry(entry) for name, entry in config["surfaces"].items() if scans.is_measured(entry)}
     overlay = {"surfaces": measured, "scans": config["scans"], "seed": config["seed"], "run": {"pairs": []}}
     used, refused = {}, {}
@@ -56,14 +57,18 @@ def alone(overlays: Iterable[str], directory: Path) -> Alone:
             refused[name] = entry, reasons
         else:
             used[name] = usable
-    return Alone(overlay | {"surfaces": used}, refused)
+    return Alone(overlay | {"surfaces": used}, refused, lines)
 
 
-def _of_surfaces(stated):
-    """Sections of the paper, with those about surfaces from a configuration, and all surfaces that it makes."""
+def _of_surfaces(stated, kept):
+    """Sections of the paper, with those about surfaces from a configuration and what it makes, and words of lines."""
     sections = paper() | {key: stated[key] for key in _ABOUT_SURFACES if key in stated} | {"run": {"pairs": []}}
     if faults := schema_problems(sections, schema()):
         raise ConfigError(*map(str, faults))
+    of_lines, faults = profiles.evaluated(sections, kept)
+    if faults:
+        raise ConfigError(*map(str, faults))
+    sections, _ = profiles.with_numbers(sections, kept)
     if compare := sections.pop("compare", None):
         changed = {path: values for path, values in compare.items() if path.partition(".")[0] in _ABOUT_SURFACES}
         sections |= {"compare": changed} if changed else {}
@@ -74,7 +79,7 @@ def _of_surfaces(stated):
     ]
     if faults:
         raise ConfigError(*process.in_settings(faults, config))
-    return config
+    return config, tuple(profiles.in_words(*found) for found in of_lines.items())
 
 
 def _entry(entry: Mapping[str, Any]) -> dict[str, Any]:

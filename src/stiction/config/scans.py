@@ -10,7 +10,7 @@ import hashlib
 import json
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -46,6 +46,8 @@ _MISREAD = {
 #: Keys that say how a file is read, and how its map is evaluated.
 _READING = ("channel", "fast_axis", "size_um", "height_unit")
 _EVALUATION = ("tip_radius_nm", "shortest_nm")
+#: Sections of a surface that name files.
+_FILED = ("scans", "profiles")
 
 
 def is_measured(entry: Mapping[str, Any]) -> bool:
@@ -59,8 +61,8 @@ def quantities(entry: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def has_scans(config: Mapping[str, Any]) -> bool:
-    """Whether a configuration, valid or not, describes a surface by scans."""
-    return any(isinstance(entry, dict) and is_measured(entry) for entry in _surfaces(config).values())
+    """Whether a configuration, valid or not, describes a surface by scans or lines."""
+    return any(isinstance(entry, dict) and not entry.keys().isdisjoint(_FILED) for entry in _surfaces(config).values())
 
 
 def complete(entry: dict[str, Any]) -> dict[str, Any]:
@@ -71,13 +73,16 @@ def complete(entry: dict[str, Any]) -> dict[str, Any]:
 
 
 def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
-    """Configuration, valid or not, with paths of scans relative to the folder of the file naming them."""
-    files = {name: _files(entry) for name, entry in _surfaces(named).items()}
-    scanned = {
-        name: entry for name, entry in _surfaces(config).items() if _files(entry) and _files(entry) == files.get(name)
-    }
-    moved = {name: _in_folder(entry, Path(folder).absolute()) for name, entry in scanned.items()}
-    return config | {"surfaces": config["surfaces"] | moved} if moved else config
+    """Configuration, valid or not, with paths of scans and lines relative to the folder of the file naming them."""
+    for key in _FILED:
+        files = {name: _files(entry, key) for name, entry in _surfaces(named).items()}
+        moved = {
+            name: _in_folder(entry, key, Path(folder).absolute())
+            for name, entry in _surfaces(config).items()
+            if _files(entry, key) and _files(entry, key) == files.get(name)
+        }
+        config = config | {"surfaces": config["surfaces"] | moved} if moved else config
+    return config
 
 
 def _surfaces(config):
@@ -86,16 +91,16 @@ def _surfaces(config):
     return surfaces if isinstance(surfaces, dict) else {}
 
 
-def _files(entry):
-    """Files of the scans of a surface, if they are a list of texts."""
-    scans = entry.get("scans") if isinstance(entry, dict) else None
+def _files(entry, key):
+    """Files of a section of a surface, if they are a list of texts."""
+    scans = entry.get(key) if isinstance(entry, dict) else None
     files = scans.get("files") if isinstance(scans, dict) else None
     return files if isinstance(files, list) and all(isinstance(file, str) for file in files) else None
 
 
-def _in_folder(entry, folder):
-    """Section of a surface with its relative files in a folder."""
-    return entry | {"scans": entry["scans"] | {"files": [str(folder / file) for file in entry["scans"]["files"]]}}
+def _in_folder(entry, key, folder):
+    """Section of a surface with the relative files of one of its sections in a folder."""
+    return entry | {key: entry[key] | {"files": [str(folder / file) for file in entry[key]["files"]]}}
 
 
 def source(entry: Mapping[str, Any]) -> dict[str, Any]:
@@ -189,15 +194,15 @@ def readable(entry: dict[str, Any]) -> Any:
 def _preliminary_numbers(entry, section, kept):
     """Preliminary numbers of one surface, computed if they are not known yet."""
     files = dict(zip(_labels(entry), entry["scans"]["files"], strict=True))
-    contents, settings = _contents(files), (source(entry), evaluation(entry, section))
+    contents, settings = digests(files), (source(entry), evaluation(entry, section))
     text = json.dumps([contents, settings, _code()], sort_keys=True)
     key = hashlib.sha256(text.encode()).hexdigest()
     if key not in _KNOWN:
-        _KNOWN[key] = _kept(key, kept, lambda: _preliminary(files, *settings))
+        _KNOWN[key] = known(key, kept, lambda: _preliminary(files, *settings))
     return _KNOWN[key]
 
 
-def _kept(key, folder, compute):
+def known(key: str, folder: str | Path | None, compute: Callable[[], dict]) -> dict:
     """Numbers kept in a folder under a key, or computed now."""
     if folder is None:
         return compute()
@@ -208,13 +213,17 @@ def _kept(key, folder, compute):
 
 
 def _labels(entry):
-    """Names of the files of a surface in messages: without folders, or as paths if names are equal."""
-    files = entry["scans"]["files"]
+    """Names of the files of the scans of a surface in messages, by `labels`."""
+    return labels(entry["scans"]["files"])
+
+
+def labels(files: list[str]) -> list[str]:
+    """Names of files in messages: without folders, or as paths if names are equal."""
     names = [Path(file).name for file in files]
     return [file if names.count(name) > 1 else name for file, name in zip(files, names, strict=True)]
 
 
-def _contents(files):
+def digests(files: Mapping[str, str]) -> list[list[str]]:
     """Name and SHA-256 of every file, by label. Refuses equal contents, because scans are independent samples."""
     seen = {}
     for label, path in files.items():

@@ -16,7 +16,7 @@ from stiction.config.merging import expanded, merged
 from stiction.config.messages import ConfigError, Problem, schema_problems
 from stiction.config.reading import paper
 from stiction.config.relations import schema
-from stiction.config.surfaces import described, grid, process, process_relations
+from stiction.config.surfaces import described, grid, process, process_relations, profiles
 from stiction.config.tables import device_table
 
 #: Relations between the names and the keys of devices, then between their values. Those of arrays of test beams, too.
@@ -58,6 +58,8 @@ def _checked(stated, kept):
     """Checked configuration without a file of devices. Raises the errors of `checked`."""
     stated = meetings.at_dew_points(stated)
     _refuse(schema_problems(sections := _plain(stated), schema()), stated, {})
+    stated, unreadable = profiles.with_numbers(stated, kept)
+    _refuse(unreadable, stated, {})
     stated = process.with_surfaces(expanded(materials.with_named(stated)))
     if (whole := _plain(stated)) != sections:  # with copies and surfaces of settings
         _refuse(schema_problems(whole, schema()), stated, whole)

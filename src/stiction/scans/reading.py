@@ -100,7 +100,7 @@ def _read(library, path, source):
             )
         channel, notes = height_channel(reader.channels, source.channel, name)
         if channel.dim != 2:
-            raise ScanError(name, "files", "is a profile; a map of heights is needed")
+            raise ScanError(name, "files", "is a profile: list it under profiles, in place of scans")
         if reader.format() in (_LINES, _POINTS):
             _require_all_lines(library, file, reader.format(), channel)
         require_points(channel.nb_grid_pts, name)

@@ -17,7 +17,7 @@ FEWEST_POINTS = 32
 _SQUARE = 1e-3
 #: ASSUME: range of the distances of points [µm], from a tenth of an atom to the coarsest optical profilers; of the rms
 #: of the heights [µm]; and of their rms slope [-], from mirrors of telescopes to needles. Wrong units give others.
-PIXELS, _HEIGHTS, _SLOPES = (1e-5, 10.0), (1e-6, 100.0), (1e-6, 10.0)
+PIXELS, _HEIGHTS, SLOPES = (1e-5, 10.0), (1e-6, 100.0), (1e-6, 10.0)
 #: ASSUME: a point is no part of the surface if it is so many rms of the map away from all its neighbours.
 _OUT = 10.0
 
@@ -88,7 +88,7 @@ class Scan:
             ("size_um", "a distance of its points of {} µm", 1e6 * min(self.frame.pixel), PIXELS),
             ("size_um", "a distance of its points of {} µm", 1e6 * max(self.frame.pixel), PIXELS),
             ("height_unit", "heights with an rms of {} µm", 1e6 * np.nanstd(self.heights), _HEIGHTS),
-            ("height_unit", "an rms slope of {}", self._rms_slope(), _SLOPES),
+            ("height_unit", "an rms slope of {}", self._rms_slope(), SLOPES),
         ):
             if not least <= value <= largest:
                 reason = f"has {what.format(f'{value:.3g}')}, must be from {least:g} to {largest:g}"

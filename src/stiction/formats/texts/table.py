@@ -40,16 +40,18 @@ class _Form:
         return values[:-1] if self.ended and values and not values[-1] else values
 
 
-def plain(text: str, label: str = "text") -> str:
+def plain(text: str, label: str = "text", fewest: int = _FEWEST) -> str:
     r"""Text with white space between the numbers of a table, and points in their decimals.
 
-    A table has at least three numbers in most of its lines. Other texts are returned unchanged.
+    A table has at least ``fewest`` numbers in most of its lines. Other texts are returned unchanged.
 
     Parameters
     ----------
     text : str
     label : str, optional
         Name of the file, for messages.
+    fewest : int, optional
+        Fewest numbers of a line of a table.
 
     Raises
     ------
@@ -64,7 +66,7 @@ def plain(text: str, label: str = "text") -> str:
     lines = text.split("\n")
     filled = [line for line in lines if line.strip() and not line.startswith("#")]
     form = _form(filled[len(filled) // 2 :][:_LINES])
-    if form.columns < _FEWEST:
+    if form.columns < fewest:
         return text
     rows = [None if line.startswith("#") else form.values(line) for line in lines]
     stated = _NO_DATA.findall(text)

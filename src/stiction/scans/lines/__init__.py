@@ -1,0 +1,1 @@
+"""Surfaces measured along lines, by a stylus or in a section."""
