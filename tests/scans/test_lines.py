@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from published import SURFACES
 from scipy.integrate import quad
+from scipy.ndimage import gaussian_filter1d
 
 from stiction.errors import ScanError
 from stiction.scans.estimate import Settings as MapSettings
@@ -134,6 +135,16 @@ def test_estimates_of_skewed_heights_err_by_their_errors():
         found = estimate_lines(cut(z, 3), step, 1, surface=f"skewed-{number}")
         deviations.append((found.values - truth) / found.errors)
     assert np.all(np.mean(np.square(deviations), axis=0) < 1 + 3 * np.sqrt(2 / 12))
+
+
+@pytest.mark.slow
+def test_lines_without_their_short_waves_are_refused_until_these_are_left_out():
+    long = self_affine.spectrum(RMS, SLOPE, 3e6, np.pi / STEP)
+    filtered = [gaussian_filter1d(line, 1) for line in cut(drawn(8, (8192, 256), spectrum=long))]
+    with pytest.raises(ScanError, match="times the χ² of drawn lines: give a longer shortest_nm"):
+        estimated(filtered)
+    found = estimated(filtered, settings=Settings(shortest=12 * STEP))
+    assert abs(found.values[4] - SLOPE) < 3.5 * found.errors[4]
 
 
 def test_lines_without_a_plateau_are_refused():

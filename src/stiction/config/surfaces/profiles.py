@@ -21,8 +21,8 @@ from stiction.run.fingerprint import fingerprint
 
 #: Keys for reading files and for evaluating lines, and keys of a surface that stay beside its numbers.
 _READING, _EVALUATION, _BESIDE = ("x_unit", "height_unit"), ("level", "shortest_nm"), ("material",)
-#: Share of the rms from which noise is named, and χ² over that of drawn lines beyond which a spectrum misfits.
-_NOISY, _MISFIT = 0.1, 2.0
+#: Share of the rms from which noise is named.
+_NOISY = 0.1
 #: Significant digits of computed numbers: the same on every machine.
 _DIGITS = 5
 #: ASSUME: largest errors of ln rms, ln corner and the Hurst exponent that say anything about a surface.
@@ -112,11 +112,6 @@ def _notes(estimate):
     notes = ["No line shows whether the surface is isotropic: it is assumed"]
     if estimate.noise > _NOISY * math.exp(estimate.values[0]):
         notes.append(f"White noise of {from_si(estimate.noise, 'nm'):.2g} nm was subtracted")
-    if estimate.misfit > _MISFIT:
-        notes.append(
-            f"The spectrum along the lines is not that of Eq. (7), with {estimate.misfit:.2g} times the χ² of drawn "
-            "lines, and its errors have grown: give shortest_nm, if tip or filter removed short waves"
-        )
     return notes
 
 

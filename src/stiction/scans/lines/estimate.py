@@ -35,6 +35,8 @@ _FEWEST_WAVELENGTHS = 4
 #: Wavelengths of the corner over which heights are correlated, and period of transforms over that; their least and
 #: largest number of points, and trapezoids per point of a transform.
 _CORRELATED, _PERIOD, _POINTS, _PANELS = 2, 8, (512, 4096), 4
+#: χ² over the mean of drawn lines, and above all of them, from which a spectrum is not of the form of Eq. (7).
+_MISFIT = 1.5
 #: Parts of a line, whose scatter gives the errors of moments that no density has.
 _PARTS = 8
 
@@ -55,7 +57,6 @@ class LineEstimate:
     errors: np.ndarray  #: standard errors at another place, (5,)
     spectrum: CutoffSelfAffine  #: Eq. (7) of these values, up to the shortest wave, or that of two steps
     noise: float  #: root mean square of white noise [m]
-    misfit: float  #: χ² per degree of freedom of the fit over that of drawn lines [-]
 
 
 @dataclass(frozen=True)
@@ -112,19 +113,34 @@ def estimate_lines(
     raw, first = _evaluated(lines, step, settings, None)
     if first.corner * lengths.max() * step / (2 * np.pi) < _FEWEST_WAVELENGTHS:
         raise ScanError(surface, "files", "is measured along lines too short to show the longest waves: measure more")
-    model = _model(raw, lines, first, step, settings)
+    model = _model(raw, lines, first, step, settings)  # up to the Nyquist wave number, as waves beyond those used
     sets = [_drawn(model, lengths, settings, stream(seed, "lines", surface, number)) for number in range(_SETS)]
     drawn = np.array([values for values, _ in sets])
-    misfit = first.misfit / np.mean([fitted.misfit for _, fitted in sets])
+    by_chance = np.array([fitted.misfit for _, fitted in sets])
+    misfit = float(first.misfit / by_chance.mean())
+    if misfit > _MISFIT and first.misfit > by_chance.max():
+        reason = f"has a spectrum that is not that of Eq. (7), with {misfit:.2g} times the χ² of drawn lines"
+        raise ScanError(surface, "files", f"{reason}: give a longer shortest_nm, if tip or filter took short waves")
     wider = np.repeat([1.0, np.sqrt(max(misfit, 1.0))], [3, 2])
     errors = wider * drawn.std(axis=0, ddof=1)
     values = raw - (drawn.mean(axis=0) - model.values)
     nearest = feasible(*map(float, values[1:3]), lambda: np.cov(drawn[:, 1:3].T), np.inf)
-    values[1:3] = (nearest.skewness, nearest.kurtosis) if nearest else model.values[1:3]
-    rms, corner, slope = np.exp(values[0]), np.exp(values[3]), values[4]
-    spectrum = self_affine.spectrum(float(rms), float(slope), float(corner), model.spectrum.cutoff)
+    form = [nearest.skewness, nearest.kurtosis] if nearest else model.values[1:3]
+    errors[1:3] = np.hypot(errors[1:3], values[1:3] - form)
+    values[1:3] = form
+    spectrum = _spectrum(values, 2 * np.pi / max(2 * step, settings.shortest or 0), surface)
     errors *= _places(lines, step, settings, first, errors)
-    return LineEstimate(values, errors, spectrum, model.noise, float(misfit))
+    return LineEstimate(values, errors, spectrum, model.noise)
+
+
+def _spectrum(values, cutoff, surface):
+    """Eq. (7) of the values of an estimate, up to a cut-off [rad m⁻¹]."""
+    log_rms, _, _, log_corner, slope = map(float, values)
+    try:
+        return self_affine.spectrum(np.exp(log_rms), slope, np.exp(log_corner), cutoff)
+    except ValueError:
+        reason = "shows no power law between its longest and its shortest waves: measure with shorter steps"
+        raise ScanError(surface, "files", reason) from None
 
 
 def require_alike(lines: Mapping[str, tuple[np.ndarray, float]]) -> float:
@@ -180,14 +196,13 @@ def _levelled(line, degree):
 
 def _model(values, lines, fitted, step, settings):
     """Surface with such values, or the nearest that has a density. Raises ScanError without any."""
-    cutoff = np.pi / step if settings.shortest is None else min(2 * np.pi / settings.shortest, np.pi / step)
     try:
         nearest = feasible(*map(float, values[1:3]), lambda: _scatter(lines, settings))
         if nearest is None:
             reason = "has heights that skewness and kurtosis do not describe: measure a map, or leave out marks"
             raise ScanError("", "files", reason)
         rms = float(np.exp(values[0]))
-        spectrum = self_affine.spectrum(rms, fitted.slope, fitted.corner, cutoff)
+        spectrum = self_affine.spectrum(rms, fitted.slope, fitted.corner, np.pi / step)
         noise = float(np.sqrt(fitted.variance_of_noise(step)))
         return _Model(rms, Translation(nearest.density), spectrum, step, noise)
     except (ValueError, NotConverged) as reason:
