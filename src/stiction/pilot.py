@@ -8,7 +8,7 @@ then go on with a warning.
 
 The spectrum of measured surfaces and of those whose spectrum is to be identified is preliminary, and so are force laws
 that will be corrected to full elastic contact: these are refused only if none of their samples resists, or if strips
-are far too long.
+are far too long. Coherences of surfaces that follow each other must be feasible.
 """
 
 import warnings
@@ -43,8 +43,11 @@ from stiction.stages.contact.changes.patches import GROUND
 from stiction.stages.contact.pairs import Settings, streams_of_sides, surface_pair
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
 from stiction.stages.surfaces import heights, spectrum
+from stiction.stages.surfaces.rough_surfaces import rough_surface
 from stiction.surface.empirical import MeasuredDensity
+from stiction.surface.field import StripGrid
 from stiction.surface.identify import SummitTarget, estimated_spectrum
+from stiction.surface.replica import ALLOWED, Coherence, Replica
 from stiction.surface.spectrum import CutoffSelfAffine
 
 #: Samples of a strip of the paper, and the least number of samples. Smaller patches have more, in the same time:
@@ -96,7 +99,8 @@ def problems(
     plan = Plan(with_preliminary_estimates(config, preliminary), preliminary)
     if beyond_memory := list(_tips_beyond_memory(plan)):
         return beyond_memory
-    of_patch = cache(partial(Samples, plan, cache(partial(surface, plan)), ["pilot", code], remember))
+    surfaces = cache(partial(surface, plan))
+    of_patch = cache(partial(Samples, plan, surfaces, ["pilot", code], remember))
 
     def samples(use, model, humidity):
         """First samples of the patch of a use, with attraction of its solids through the air of a humidity."""
@@ -105,15 +109,16 @@ def problems(
 
     guessed, by_key = _identified_spectra(config), {}
     uses = list(chain(_pairs(plan), _devices(plan, "devices"), _devices(plan.with_test_beams, "test_beams")))
+    if infeasible := list(_infeasible_copies(plan, surfaces, uses, guessed)):
+        return infeasible
     for use in chain(uses, _in_full_contact(plan, uses)):
         given = [guessed[name] for name in dict.fromkeys(plan.sides(use.patch.pair)) if name in guessed]
         is_changed = plan.variants.corrected(use.patch.pair, use.humidities) and not use.in_full_contact
         given += ["full elastic contact"] * bool(is_changed)
         for path, message in chain(_coarse_elements(plan, use), _refusals(use, samples, preliminary=bool(given))):
-            end = f" (preliminary, given {', '.join(given)})" if given else ""
             value = one_line(reduce(getitem, path, config))
             if not (use.in_full_contact and path in {refused for refused, _ in by_key}):
-                by_key.setdefault((path, use.patch), Problem(path, f"is {value}, {message}{end}"))
+                by_key.setdefault((path, use.patch), Problem(path, f"is {value}, {message}{_preliminary(given)}"))
     return list(by_key.values())
 
 
@@ -138,6 +143,24 @@ def _tips_beyond_memory(plan):
             reason = f"{refusal}; the wedge at the tip of a beam is the longer, the smaller the gap"
             gap = plan.devices.sections[name]["gap_um"]
             yield Problem(("devices", name, "gap_um"), f"is {one_line(gap)}, {reason}")
+
+
+def _infeasible_copies(plan, surfaces, uses, guessed):
+    """Yield coherences that the surfaces of a pair cannot have. ASSUME: preliminary ones err by as much as allowed."""
+    for pair in dict.fromkeys(use.patch.pair for use in uses):
+        if stated := plan.replica(pair):
+            given = [guessed[name] for name in dict.fromkeys(plan.sides(pair)) if name in guessed]
+            grid = StripGrid.periodic(to_si(1, "um"), to_si(plan.config["sampling"]["spacing_nm"], "nm"))
+            sides = (rough_surface(*surfaces(name), "NG", grid) for name in plan.sides(pair))
+            copy = Replica(*sides, in_si(Coherence, stated["replica"]))
+            if refusal := copy.refusal(2 * ALLOWED if given else ALLOWED):
+                path = "pairs", pair, "replica", "coherence"
+                yield Problem(path, f"is {copy.stated.coherence:g}, {refusal}{_preliminary(given)}")
+
+
+def _preliminary(given):
+    """End of a message about preliminary samples, given some settings."""
+    return f" (preliminary, given {', '.join(given)})" if given else ""
 
 
 # What sticks

@@ -12,7 +12,8 @@ The underlying Gaussian waves are correlated. With orthonormal Hermite polynomia
 Gaussian fields. It increases with ρ, so that its inverse gives the coherence of the Gaussian waves.
 """
 
-from dataclasses import dataclass
+from bisect import bisect_left
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -71,22 +72,34 @@ class Replica:
         """Root mean square of z₁ + z₂, as far as the stated coherence is feasible [m]."""
         return self._rms_of_sum(self._waves.reached)
 
-    def require_feasible(self) -> None:
-        """Refuse a coherence that two surfaces with these moments cannot have.
+    def refusal(self, allowed: float = ALLOWED) -> str | None:
+        """Refusal of a coherence that two surfaces with these moments cannot have, the end of a sentence about it.
 
-        Raises
-        ------
-        ValueError
-            If z₁ + z₂ is rougher than stated by more than `ALLOWED`: unless they have opposite skewness, no surface
-            is the negative of the other.
+        They have it if z₁ + z₂ is rougher than stated by at most ``allowed`` of its rms. Unless they have opposite
+        skewness, no surface is the negative of the other.
         """
-        wanted = self._rms_of_sum(self._waves.wanted)
-        if self.rms > (1 + ALLOWED) * wanted:
-            raise ValueError(
-                f"surfaces with these moments cannot have heights of coherence {self.stated.coherence:g}: their sum "
-                f"would have an rms of {1e9 * self.rms:.3g} in place of {1e9 * wanted:.3g} nm; a full replica has the "
-                "opposite skewness of its original"
-            )
+        if self._reaches(allowed):
+            return None
+        return (
+            f"must be at most {self._largest(allowed):g} for surfaces with these moments: their sum would have an rms "
+            f"of {1e9 * self.rms:.3g} in place of {1e9 * self._rms_of_sum(self._waves.wanted):.3g} nm; a full replica "
+            "has the opposite skewness of its original"
+        )
+
+    def require_feasible(self) -> None:
+        """Raise a `refusal` as ``ValueError``."""
+        if refusal := self.refusal():
+            raise ValueError(f"coherence of heights is {self.stated.coherence:g}, {refusal}")
+
+    def _reaches(self, allowed):
+        """Whether z₁ + z₂ is rougher than stated by at most a share of its rms."""
+        return self.rms <= (1 + allowed) * self._rms_of_sum(self._waves.wanted)
+
+    def _largest(self, allowed):
+        """Largest coherence that these surfaces reach, in steps of 0.01 below the stated one [-]."""
+        steps = range(int(100 * self.stated.coherence) + 1)
+        lower = [replace(self, stated=replace(self.stated, coherence=k / 100)) for k in steps]
+        return max(bisect_left(lower, True, key=lambda other: not other._reaches(allowed)) - 1, 0) / 100
 
     def _rms_of_sum(self, correlation):
         """Root mean square of z₁ + z₂ with this correlation of the heights in register [m]."""
