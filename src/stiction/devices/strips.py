@@ -11,8 +11,12 @@ distribution. Adhesion is correlated less than the mean heights that set ρ: on 
 with mean heights correlated by 0.44 to 0.52, works of neighbours (`stiction.devices.sampling`) are correlated by 0.04
 to 0.43, energies and pull-off forces by 0.18 at most. Lengths come out at or below those on these fields, the safe
 side; those of independent strips are 6 to 8 % longer (1 in 10) where works are correlated by 0.3 or 0.4.
+
+A beam above a surface that it follows (`stiction.surface.replica`) moves in its plane as one body. ASSUME: its strips
+are drawn from the samples with the nearest displacements, no larger than its own: adhesion decreases with displacement.
 """
 
+import math
 from collections.abc import Callable
 from functools import partial
 
@@ -24,6 +28,8 @@ DRAWS, LEAST_MEAN, LEAST_SCATTER = 20_000, 0.98, 0.9
 #: Probability to repeat a law below which strips count as independent. That of the pairs of the paper is below 0.02,
 #: and below 0.05 on strips of 0.5 µm under bridges.
 INDEPENDENT = 0.1
+#: Share of the samples from which the strips of one beam above its copy are drawn, and their least number.
+NEAREST, FEWEST = 0.02, 20
 #: Draw of force laws: ``(number, rng) -> (number, 4)`` [SI].
 Draw = Callable[[int, np.random.Generator], np.ndarray]
 
@@ -36,6 +42,18 @@ def is_narrow(drawn: np.ndarray, sampled: np.ndarray) -> bool:
 def resampled(laws: np.ndarray, number: int, rng: np.random.Generator) -> np.ndarray:
     """Draw force laws of samples (m, 4) with replacement, (number, 4)."""
     return laws[rng.integers(len(laws), size=number)]
+
+
+def of_one_body(laws: np.ndarray, displacements: np.ndarray) -> Draw:
+    """Draw whose laws are those of one beam, from samples (m, 4) with displacements (m,) [m]."""
+    return partial(_of_one_body, laws[np.argsort(displacements, kind="stable")])
+
+
+def _of_one_body(laws, number, rng):
+    """Laws of the strips of one beam (number, 4), from samples in the order of their displacements."""
+    nearest = min(max(math.ceil(NEAREST * len(laws)), FEWEST), len(laws))
+    end = max(int(rng.integers(len(laws))) + 1, nearest)
+    return resampled(laws[end - nearest : end], number, rng)
 
 
 def repetition(correlations: np.ndarray) -> float:

@@ -7,6 +7,11 @@ Heights point towards the other surface, so that a full replica is z₁ = -z₂.
 with the coherence c and the offset s along the beam, and z₁ + z₂ has the spectrum
 :math:`s_1 + s_2 - 2 c \sqrt{s_1 s_2} \cos \zeta_1 s`. Both surfaces keep their own spectra and moments.
 
+With play, every strip comes down at an offset of its own. ASSUME: its components along and across the beam are normal,
+of equal standard deviation σ, and added to s. Averaged over strips, the cosine has a factor
+:math:`e^{-\zeta^2 \sigma^2 / 2}`. A beam moves as one body: `stiction.devices.strips` puts strips with nearly equal
+displacements under one beam.
+
 The underlying Gaussian waves are correlated. With orthonormal Hermite polynomials :math:`g_1 = \sum a_k h_k` and
 :math:`g_2 = \sum b_k h_k`, the cross-correlation of the heights is :math:`\sum a_k b_k \rho^k`, where ρ is that of the
 Gaussian fields. It increases with ρ, so that its inverse gives the coherence of the Gaussian waves.
@@ -38,12 +43,14 @@ class Coherence:
     coherence: float  #: c of the waves that are copied [-]
     above: float = 0.0  #: wavelength above which waves are copied; all by default [m]
     offset: float = 0.0  #: distance along the beam by which it lies beside its register [m]
+    play: float = 0.0  #: standard deviation of a random offset in each direction, added to this one [m]
 
     def __post_init__(self):
-        if not (0 <= self.coherence <= 1 and 0 <= self.above < np.inf and 0 <= self.offset < np.inf):
+        lengths = self.above, self.offset, self.play
+        if not (0 <= self.coherence <= 1 and all(0 <= length < np.inf for length in lengths)):
             raise ValueError(
-                f"need a coherence from 0 to 1 and lengths of 0 or more, got {self.coherence:.4g}, {self.above:.4g} m "
-                f"and {self.offset:.4g} m"
+                f"need a coherence from 0 to 1 and lengths of 0 or more, got {self.coherence:.4g}, {self.above:.4g}, "
+                f"{self.offset:.4g} and {self.play:.4g} m"
             )
 
     def __call__(self, wavenumber: np.ndarray) -> np.ndarray:
@@ -112,7 +119,10 @@ class Replica:
 
     @cached_property
     def _mixing(self):
-        """Places of the waves that both surfaces have, their share of own waves, and the factor of the substrate's."""
+        """Waves that both surfaces have: places, share of own ones, factor of the substrate's, and components.
+
+        Components ζ₁ and ζ₂ are (2, n) [rad m⁻¹].
+        """
         (own, amplitude, _), (other, amplitude_of_other, _) = self.beam.modes, self.substrate.modes
         places, of_own, of_other = np.intersect1d(own, other, assume_unique=True, return_indices=True)
         n1, _ = self.beam.grid.field_shape
@@ -121,7 +131,7 @@ class Replica:
         coherence = self._waves.coherence(np.hypot(zeta1, zeta2))
         ratio = amplitude[of_own] / amplitude_of_other[of_other]
         factor = -coherence * ratio * np.exp(-1j * zeta1 * self.stated.offset)
-        return places, np.sqrt(1 - coherence**2).astype(np.float32), factor.astype(np.complex64)
+        return places, np.sqrt(1 - coherence**2).astype(np.float32), factor.astype(np.complex64), (zeta1, zeta2)
 
     def draw(self, beam_rng: np.random.Generator, substrate_rng: np.random.Generator) -> np.ndarray:
         """Draw one strip of z₁ + z₂, (n1, n2) float32 [m]. Without coherence it is that of independent surfaces."""
@@ -134,13 +144,29 @@ class Replica:
         """Draw one strip of z₁, (n1, n2) float32 [m]."""
         return self._beam_above(self.substrate.waves(substrate_rng), beam_rng)
 
+    def displacement(self, beam_rng: np.random.Generator) -> float:
+        """Distance from the register of the strip of a stream [m]."""
+        return float(np.hypot(*(self._play(beam_rng) + (self.stated.offset, 0))))
+
     def _beam_above(self, others, rng):
         """Draw one strip of z₁ above a substrate with these waves, (n1, n2) float32 [m]."""
         waves, heights = self.beam.waves(rng), np.zeros(self.beam.grid.shape, np.float32)
-        places, share, factor = self._mixing
+        places, share, factor, zeta = self._mixing
+        if self.stated.play:
+            factor = factor * np.exp(-1j * (self._play(rng) @ zeta)).astype(np.complex64)
         waves[places] = share * waves[places] + factor * others[places]
         self.beam.add_waves(heights, waves)
         return heights
+
+    def _play(self, rng):
+        """Draw a random offset, along and across the beam (2,) [m], from a stream of its own.
+
+        Surfaces half a period apart are independent. Farther ones would near the next period.
+        """
+        grid, stated = self.beam.grid, np.array([self.stated.offset, 0.0])
+        half = np.array(grid.field_shape) * grid.spacing / 2
+        moved = stated + self.stated.play * rng.spawn(1)[0].standard_normal(2)
+        return np.clip(moved, -half, half) - stated
 
 
 @dataclass(frozen=True)

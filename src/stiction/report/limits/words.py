@@ -447,7 +447,7 @@ _LEFT_OUT = {
 #: What is not known of how both surfaces lie on each other, if the underside is stated to copy the ground and if not.
 #: Energies are of strips 10 and 30 µm wide, as in tests/stages/contact/test_replicas.py.
 _COPIES = {
-    True: "movement of a beam in its plane between touchdowns (in register it sticks most)",
+    True: "movement of a beam in its plane beyond the stated play (in register it sticks most)",
     False: "conformal films, which correlate both surfaces (between two Gaussian surfaces like B2 in humid air, a "
     "coherence of 0.9 raises the energy 100 to 450 times; key replica of the pair states it)",
 }

@@ -37,12 +37,13 @@ def replica_in_words(replica: Mapping) -> str:
 
     Examples
     --------
-    >>> replica_in_words({"coherence": 0.9, "above_nm": 100, "offset_nm": 0})
-    'follows the substrate with a coherence of 0.9, in waves above 100 nm'
+    >>> replica_in_words({"coherence": 0.9, "above_nm": 100, "offset_nm": 0, "play_nm": 20})
+    'follows the substrate with a coherence of 0.9, in waves above 100 nm, with a play of 20 nm in its plane'
     """
     above = [f"in waves above {replica['above_nm']:g} nm"] if replica.get("above_nm") else []
     beside = [f"{replica['offset_nm']:g} nm beside its register"] if replica.get("offset_nm") else []
-    return ", ".join([f"follows the substrate with a coherence of {replica['coherence']:g}", *above, *beside])
+    play = [f"with a play of {replica['play_nm']:g} nm in its plane"] if replica.get("play_nm") else []
+    return ", ".join([f"follows the substrate with a coherence of {replica['coherence']:g}", *above, *beside, *play])
 
 
 def _numbers_in_words(section, words):

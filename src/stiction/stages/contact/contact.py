@@ -54,7 +54,16 @@ def compute_each(
     streams = streams_of_sides(settings.seed, pair)
     contacts = contacts_of_samples(pairs, streams, progress(samples, "surface pairs"))
     datasets = [layout(*curves, rough.distances, samples) for curves, rough in zip(contacts, pairs, strict=True)]
+    datasets = [_displaced(*each, streams) for each in zip(datasets, pairs, strict=True)]
     return [tip_dataset(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
+
+
+def _displaced(contact, pair, streams):
+    """Contact with the displacements of its strips, if the beam plays above a surface that it follows."""
+    if not (pair.replica and pair.replica.stated.play):
+        return contact
+    found = [pair.replica.displacement(streams(int(k))[0]) for k in contact.strip]
+    return contact.assign(displacement=("strip", found, {"units": "m"}))
 
 
 def from_surfaces(data: Mapping[str, Any], pair: str, settings: Settings) -> xr.Dataset:
@@ -113,8 +122,9 @@ def join_chunks(chunks: Iterable[xr.Dataset], settings: Settings) -> xr.Dataset:
     """
     samples = settings.contact.samples
     pressures = areas = grid = None
-    joined_samples = 0
+    joined_samples, displacements = 0, []
     for chunk in chunks:
+        displacements += [chunk[["displacement"]]] if "displacement" in chunk else []
         if grid is None:
             grid = _grid(chunk)
             pressures, areas = (np.empty((samples, n), np.float32) for n in (grid.above, grid.below + grid.above))
@@ -125,7 +135,8 @@ def join_chunks(chunks: Iterable[xr.Dataset], settings: Settings) -> xr.Dataset:
         joined_samples = here.stop
     if joined_samples != samples:
         raise ValueError(f"the chunks contain {joined_samples} of {samples} samples")
-    return layout(pressures, areas, grid, range(samples))
+    joined = layout(pressures, areas, grid, range(samples))
+    return joined.merge(xr.concat(displacements, "strip")) if displacements else joined
 
 
 def _grid(contact):

@@ -45,8 +45,11 @@ def compute(data: Mapping[str, Any], settings: Settings) -> xr.Dataset:
 
 def layout(laws: Laws, rms: float, share_flat: float) -> xr.Dataset:
     """Dataset of force laws, with the rms of the sum of both surfaces [m] and the share of flat samples [-]."""
+    moved = laws.displacements
+    displacements = {} if moved is None else {"displacement": ("sample", moved, {"units": "m"})}
     return xr.Dataset(
         model_variables(laws.model)
+        | displacements
         | {
             "sampled": (("sample", "parameter"), laws.sampled, {"units": "SI"}),
             "rms": ((), rms, {"units": "m"}),
@@ -67,7 +70,8 @@ def ground_from(dataset: xr.Dataset, settings: BeamSettings) -> Ground:
     """Ground without tips from its dataset."""
     change = {name: float(dataset[f"change_{name}"]) for name in Change._fields if f"change_{name}" in dataset}
     of_strips = dataset.sampled.values, bool(dataset.resampled), float(dataset.repetition)
-    laws = Laws(chaos_model(dataset), *of_strips, Change(**change))
+    displacements = dataset.displacement.values if "displacement" in dataset else None
+    laws = Laws(chaos_model(dataset), *of_strips, Change(**change), displacements)
     return ground_of_laws(laws, settings)
 
 

@@ -54,10 +54,11 @@ class Laws:
 
     model: ChaosModel
     sampled: np.ndarray  #: force laws of the samples (m, 4) [SI]
-    is_narrow: bool  #: whether the model lacks mean or scatter of the samples, from which strips are then drawn
+    is_narrow: bool  #: whether strips are drawn from the samples: the model lacks their mean, scatter or displacements
     repetition: float  #: probability that a strip repeats the law of its neighbour [-]
     #: Change of the energies by full elastic contact, in these laws, of which the errors matter.
     change: Change = NONE
+    displacements: np.ndarray | None = None  #: of the samples from their register (m,) [m], if beams have play
 
     @property
     def draw(self) -> strips.Draw:
@@ -66,7 +67,8 @@ class Laws:
 
     def in_row(self, device: DesignedBeam) -> strips.Draw:
         """Draw of the force laws of strips in a row under a device."""
-        return strips.in_row(self.draw, self.repetition, device.opening.arms)
+        of_beam = self.draw if self.displacements is None else strips.of_one_body(self.sampled, self.displacements)
+        return strips.in_row(of_beam, self.repetition, device.opening.arms)
 
 
 @dataclass(frozen=True)
@@ -107,11 +109,13 @@ def fitted_laws(contact: xr.Dataset, humidity: float, settings: LawSettings, sid
     with on_patch(*sides):
         vectors, limit = curves.vectors(contact, humidity, settings.water)
     model = opening.fit_chaos(vectors, limit, settings.chaos)
-    sampled = forcelaw.coefficients(vectors[forcelaw.admissible(vectors, limit)], limit)
+    lawful = forcelaw.admissible(vectors, limit)
+    sampled = forcelaw.coefficients(vectors[lawful], limit)
+    displacements = contact.displacement.values[lawful] if "displacement" in contact else None
     drawn = draw_laws(model, strips.DRAWS, stream(0, "narrow"))
-    is_narrow = strips.is_narrow(forcelaw.energy(drawn), forcelaw.energy(sampled))
+    is_narrow = displacements is not None or strips.is_narrow(forcelaw.energy(drawn), forcelaw.energy(sampled))
     repetition = strips.repetition(contact.correlations.values)
-    return Laws(model, sampled, is_narrow, repetition, settings.water.changes(humidity)[0])
+    return Laws(model, sampled, is_narrow, repetition, settings.water.changes(humidity)[0], displacements)
 
 
 def ground_of_laws(laws: Laws, settings: BeamSettings) -> Ground:
