@@ -26,6 +26,8 @@ from stiction.scans.scan import Scan as Scan
 from stiction.stages.surfaces.maps import height_map as height_map
 from stiction.scans.estimate import estimate as estimate_surface
 from stiction.scans.estimate import SurfaceEstimate as SurfaceEstimate
+from stiction.analysis.facing import facing_coherence as facing_coherence
+from stiction.analysis.facing import FacingCoherence as FacingCoherence
 
 # contact and force laws
 from stiction.contact.vanderwaals import DugdaleAttraction as DugdaleAttraction

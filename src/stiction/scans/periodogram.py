@@ -77,14 +77,19 @@ def in_order(parts: Iterable[Rings]) -> Rings:
 
 def periodogram(scans: Sequence[np.ndarray], size: tuple[float, float]) -> Periodogram:
     """Mean periodogram of levelled scans (n1, n2) of equal size, without undefined points."""
-    from scipy.signal.windows import tukey  # noqa: PLC0415, slow, and needed for scans only
-
     n1, n2 = scans[0].shape
-    tapers = [tukey(n + 1, _TAPERED)[:n] for n in (n1, n2)]
-    window = np.outer(*tapers)
+    along = tapers((n1, n2))
+    window = np.outer(*along)
     power = sum(np.abs(fft.fft2(z * window)) ** 2 for z in scans) / len(scans)
     scale = size[0] * size[1] / (n1 * n2) ** 2 / (np.mean(window**2) * 4 * np.pi**2)
-    return Periodogram(scale * power, size, len(scans), np.array(list(map(_correlation, tapers))))
+    return Periodogram(scale * power, size, len(scans), np.array(list(map(_correlation, along))))
+
+
+def tapers(shape: tuple[int, int]) -> list[np.ndarray]:
+    """Tapers along both axes of a map (n1, n2), (n1,) and (n2,) [-]."""
+    from scipy.signal.windows import tukey  # noqa: PLC0415, slow, and needed for scans only
+
+    return [tukey(n + 1, _TAPERED)[:n] for n in shape]
 
 
 def without_floor(spectrum: Periodogram, floor: float) -> Periodogram:
