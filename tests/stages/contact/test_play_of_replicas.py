@@ -39,6 +39,6 @@ def test_energies_with_play_are_those_at_stated_offsets_by_their_distribution():
     levels = (np.arange(classes) + 0.5) / classes
     distances = play * np.sqrt(-2 * np.log(1 - levels))
     by_class = np.array([works(0, samples=20, offset_nm=float(distance)) for distance in distances])
-    drawn = works(play, samples=200)
+    drawn = works(play, samples=500)
     assert apart(by_class.mean(axis=0), drawn) < ALLOWED
-    assert apart(works(0, samples=200, offset_nm=play * np.sqrt(2)), drawn) > ALLOWED  # at the rms distance alone
+    assert apart(works(0, samples=500, offset_nm=play * np.sqrt(2)), drawn) > ALLOWED  # at the rms distance alone
