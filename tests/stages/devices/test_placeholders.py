@@ -29,6 +29,7 @@ LIMITS = [
     rules.without_gaps({0.1: (-0.2, 0.01)}, shorter=True),
     rules.without_gaps({0.1: (0.2, 0.01)}, shorter=True),
     rules.smooth_pair(1e-9, [0.9]),
+    rules.unknown_full_contact([0.5]),
     rules.large_rotation(20e-6, 100e-6),
     rules.stubby_beam(20e-6, 2e-6),
     rules.flat_patches(0.1),

@@ -243,6 +243,34 @@ def test_a_smooth_pair_is_said_of_what_forces_hold_and_not_of_energies_along_a_b
         assert not any("Forces on summits" in one for one in only(smooth, of, humidity=0.9)), "corrected"
 
 
+def changes_of_forces(**ratios):
+    """Dataset of changes at two humidities, of which those with a ratio are applied."""
+    over = {"tip_ratio": ("slope", "humidity"), "pull_off_ratio": ("humidity",)}
+    known = {name: (over[name], np.array(values)) for name, values in ratios.items()}
+    ends = {name: np.reshape(ratios.get(f"{name}_ratio", np.nan * np.ones(2)), (-1, 2)) for name in ("tip", "pull_off")}
+    flags = {f"{name}_applied": ("humidity", np.isfinite(of).all(axis=0)) for name, of in ends.items()}
+    return xr.Dataset(known | flags, coords={"humidity": [0.5, 0.9]}).assign(nearest=((), True))
+
+
+def test_where_full_contact_of_forces_is_not_known_they_rest_on_summits_and_this_is_said():
+    """A tip is unknown at 0.9 at one slope, at both without a dataset; a device of both needs both."""
+    found, of = device()
+    of = replace(of, on_summits=(0.5, 0.9))
+    tips, both = [[0.4, np.nan], [0.5, 0.6]], {"tip_ratio": [[0.4, 0.5]], "pull_off_ratio": [np.nan, 1.1]}
+    cases = [({"tip_ratio": tips}, False, (0.9,)), ({}, False, (0.5, 0.9)), (both, False, ()), (both, True, (0.5,))]
+    for ratios, dimples, unknown in cases:
+        left = device_warnings._left_on_summits(
+            replace(of, has_dimples=dimples), {"model_error": changes_of_forces(**ratios)}
+        )
+        assert left.unknown == left.on_summits == unknown
+        for humidity in (0.5, 0.9):
+            told = only(found, left, EITHER, humidity=humidity)
+            assert any("does not settle, or takes too long" in one for one in told) == (humidity in unknown)
+    uncertain = changes_of_forces(tip_ratio=[[0.4, 0.5]]).assign(tip_applied=("humidity", [False, True]))
+    left = device_warnings._left_on_summits(of, {"model_error": uncertain})
+    assert (left.on_summits, left.unknown) == ((0.5,), ()), "control: known, and too uncertain to be applied"
+
+
 def test_a_device_is_checked_at_its_safe_length_not_at_the_longer_estimate():
     found, of = device()
     assert only(found.assign(estimate=0.1 * found.estimate), of) == []

@@ -26,7 +26,7 @@ CAUSES: Mapping[Cause, tuple[str, str]] = {
 #: Stated conditions that are not inside, in words.
 _LEFT_OUT = {
     "dimples": "its dimples (see its life below)",
-    "inputs": "the uncertainty of the inputs, because too few devices stick to show it",
+    "inputs": "the uncertainty of the inputs where too few devices stick to show it",
     "voltage": "its voltage, at which the dielectric breaks down",
 }
 #: Relative change of a size that is not worth a word.

@@ -190,7 +190,15 @@ def _smooth_pair(rms, short):
     return (
         f"Surfaces as smooth as these, {TO_NM * rms:.2g} nm rms together, flatten each other in humid air. Forces on "
         f"summits are then too small, the unsafe side: on slopes as gentle as those of B2 by {', '.join(by)}, on "
-        "steeper ones by less. contact.model full computes them."
+        "steeper ones by less. Full elastic contact, the default, computes them where it settles in time."
+    )
+
+
+def _unknown_full_contact(humidities):
+    return (
+        f"Full elastic contact does not settle, or takes too long, {airs(humidities)}. Forces then rest on summits: on "
+        f"rough surfaces they are too large, on smooth ones with gentle slopes too small, by up to "
+        f"{in_percent(largest_shortfall())}."
     )
 
 
@@ -400,6 +408,7 @@ SENTENCES: dict[str, Callable[..., str]] = {
     "without_gaps_safe": _gaps,
     "flat_patches": _flat_patches,
     "smooth_pair": _smooth_pair,
+    "unknown_full_contact": _unknown_full_contact,
     "few_strips": _few_strips,
     "thin_film": _thin_film,
     "no_water": _no_water,

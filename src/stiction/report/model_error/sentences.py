@@ -35,7 +35,7 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     rows = {float(humidity): device_change(errors, device, humidity, shape) for humidity in error.humidity.values}
     known = {humidity: row for humidity, row in rows.items() if np.isfinite(row["model_error_percent"])}
     if not known:
-        return [f"The model's error in the {what} is not known {airs(rows)}, beyond the humidities of the pair."]
+        return [f"The model's error in the {what} is not known {airs(rows)}{_why(error)}."]
     applied = set(error.humidity.values[error.applied.values])
     said, uncorrected = [], {humidity: row for humidity, row in known.items() if humidity not in applied}
     for does, of in ("has changed", applied & known.keys()), ("would change", uncorrected):
@@ -50,6 +50,13 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
         return [*said, "Attraction across gaps is in both models."]
     gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
     return [*said, f"Attraction across gaps is in neither model. It acts {gaps}"]
+
+
+def _why(error):
+    """Why no change is known: by levels, full contact was computed at each humidity."""
+    if error.by_levels.any():
+        return ", where full elastic contact does not settle or takes too long"
+    return ", beyond the humidities of the pair"
 
 
 def _of_tips(error):

@@ -15,6 +15,8 @@ import xarray as xr
 from stiction.analysis import levels
 from stiction.analysis.levels import COSTS, FINE, PILOT, POOL, SUMMITS, Ratio
 from stiction.config.cases import Case
+from stiction.config.merging import merged
+from stiction.config.units import NM_PER_UM
 from stiction.contact import forcelaw, solids
 from stiction.contact.environment import Water
 from stiction.contact.full.effort import CountedHalfSpace, Effort, TooLong
@@ -36,6 +38,8 @@ ALLOWED = 0.04
 OF_FORCES, ALLOWED_OF_FORCES = 0.04, 0.1
 #: Coarse grids: every n-th point.
 GRIDS = (2, 3)
+#: Points of a strip, those of 1.5 x 30 µm on 10 nm. ASSUME: longer strips may be narrower, down to a width [µm].
+POINTS, NARROWEST = 450_000, 2.0
 #: ASSUME: beyond this many displaced elements, about two minutes of a core, the ratio costs too much. Pair b needs 4e8
 #: to 2e9 of them, by humidity, and pairs of heavy tails, whose strips have no control, 7e9.
 EFFORT = 8e9
@@ -224,9 +228,17 @@ def _ratio(found, allowed, prefix=""):
 def settings_of(plan: Any, at: At) -> dict[str, Any]:
     """Settings of the strips of a pair in the air of devices."""
     seen = plan.seen_by(at.case.pair, ELASTIC, samples=None)
+    seen = merged(seen, {"beam": {"width_um": _width(seen)}})
     own = {"humidities": [at.case.humidity], "strips": PILOT}
     own |= {"forces": True} if at.case.humidity in plan.devices.airs_of_forces(at.case.pair) else {}
     return select(Settings, seen | own | {"water": plan.air_of_devices.water(at.case.pair)})
+
+
+def _width(seen):
+    """Width of strips of at most `POINTS` [µm], from the settings of a contact."""
+    point = seen["sampling"]["spacing_nm"] * seen["contact"]["every"] / NM_PER_UM
+    affordable = POINTS * point**2 / seen["sampling"]["strip_length_um"]
+    return min(seen["beam"]["width_um"], max(NARROWEST, round(affordable, 2)))
 
 
 STAGES = (

@@ -54,6 +54,7 @@ class OfDevice:
     materials: StatedProperties = ()  #: of its pair
     learns: bool = False  #: whether it has test beams
     on_summits: tuple[float, ...] = ()  #: humidities with water at which summits alone make its forces [-]
+    unknown: tuple[float, ...] = ()  #: those of these at which full contact of its forces is not known [-]
     has_dimples: bool = False  #: whether forces of dimples decide about all shapes
 
     @property
@@ -67,6 +68,11 @@ class OfDevice:
         has_tip = EITHER in self.device.opening.shapes
         return ("tip_applied",) * has_tip + ("pull_off_applied",) * (self.has_dimples or not has_tip)
 
+    @property
+    def ratios_of_forces(self) -> tuple[str, ...]:
+        """Ratios of these changes."""
+        return tuple(flag.replace("applied", "ratio") for flag in self.changes_of_forces)
+
     def limits(self, dataset: xr.Dataset, plastic: Plastic = NOT_STUDIED, humidity: float = 0.0) -> ByShape:
         """Limits at a humidity by end state, from the dataset of stage safe_lengths.
 
@@ -79,11 +85,13 @@ class OfDevice:
             rules.flat_patches(float(dataset.share_flat)),
             rules.lengths_of_sizes(float(dataset.size_error)),
         )
-        on_summits = [humidity] if humidity in self.on_summits else []
-        smooth = rules.triggered(rules.smooth_pair(float(dataset.rms), on_summits))
+        on_summits, unknown = ([humidity] if humidity in airs else [] for airs in (self.on_summits, self.unknown))
+        of_forces = rules.triggered(
+            rules.smooth_pair(float(dataset.rms), on_summits), rules.unknown_full_contact(unknown)
+        )
         return {
             shape: without
-            + smooth * (self.has_dimples or shape != S_SHAPE)
+            + of_forces * (self.has_dimples or shape != S_SHAPE)
             + _length_warnings(float(shortest.sel(shape=shape)), dataset, self, plastic)
             + _accuracy_warnings(dataset.sel(shape=shape), self)
             for shape in map(str, dataset["shape"].values)
@@ -101,7 +109,9 @@ class OfStopper:
     worst_humidities: tuple[float, float]  #: ends of the axis along which the worst humidity is sought [-]
     materials: StatedProperties = ()  #: of its pair
     on_summits: tuple[float, ...] = ()  #: humidities with water at which summits alone make its forces [-]
+    unknown: tuple[float, ...] = ()  #: those of these at which full contact of its forces is not known [-]
     changes_of_forces: ClassVar[tuple[str, ...]] = ("pull_off_applied",)  #: as of `OfDevice`
+    ratios_of_forces: ClassVar[tuple[str, ...]] = ("pull_off_ratio",)  #: as of `OfDevice`
 
     def limits(self, dataset: xr.Dataset, plastic: Plastic = NOT_STUDIED, _humidity: float = 0.0) -> ByShape:
         """Limits, from the dataset of stage stoppers. Other parameters as of `OfDevice.limits`."""
@@ -113,6 +123,7 @@ class OfStopper:
             rules.wide_meniscus(max(films), self.contact),
             rules.flat_patches(float(dataset.share_flat)),
             rules.smooth_pair(float(dataset.rms), self.on_summits),
+            rules.unknown_full_contact(self.unknown),
             *contact_warnings(plastic, self.materials, is_stopper=True),
         )
         return {FORCE: limits}
@@ -276,8 +287,19 @@ def _left_on_summits(of, data):
     """Device or stopper with those humidities alone at which full contact has not changed all of its forces."""
     if "model_error" not in data or "nearest" not in data["model_error"]:
         return of
-    known = data["model_error"][list(of.changes_of_forces)].sel(humidity=list(of.on_summits))
-    return replace(of, on_summits=tuple(known.humidity.values[~known.to_array().all("variable").values]))
+    error = data["model_error"].sel(humidity=list(of.on_summits))
+    left = ~error[list(of.changes_of_forces)].to_array().all("variable")
+    unknown = left & xr.concat([_is_unknown(error, name) for name in of.ratios_of_forces], "of").any("of")
+    on_summits, unknown = (tuple(error.humidity.values[flags.values].tolist()) for flags in (left, unknown))
+    return replace(of, on_summits=on_summits, unknown=unknown)
+
+
+def _is_unknown(error, ratio):
+    """Whether a ratio of full contact to summits is missing, at some slope if it is one of tips (h,) bool."""
+    if ratio not in error:
+        return xr.full_like(error.humidity, True, bool)
+    missing = error[ratio].isnull()
+    return missing.any([name for name in missing.dims if name != "humidity"])
 
 
 def _few_strips(data, *humidities, of=""):
