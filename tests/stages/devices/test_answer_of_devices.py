@@ -18,6 +18,7 @@ from stiction.contact.voltage import Capacitor, Dielectric
 from stiction.life.freeing import probability_for
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
+from stiction.report.answer import words
 from stiction.stages.answer import answer, conditions
 from stiction.stages.contact import curves
 from stiction.stages.devices import safe_lengths, stoppers
@@ -184,6 +185,15 @@ def test_inputs_of_no_known_effect_are_left_out():
     assert "inputs" in answer.compute(data, settings).left_out
     data, settings = data_of_beam(budgets=CANTILEVER)
     assert answer.compute(data, settings).left_out == ()
+
+
+def test_a_requirement_of_fewer_stuck_devices_than_the_answer_allows_is_left_out():
+    data, settings = data_of_beam()
+    share = answer.compute(data, settings).share
+    for required, left_out in ((share / 10, ("requirement",)), (share, ()), (5 * share, ())):
+        found = answer.compute(data, replace(settings, required=required))
+        assert found.left_out == left_out
+        assert ("the smaller fraction that it requires" in words.contains(found)) == bool(left_out)
 
 
 def test_a_voltage_that_nothing_bounds_is_left_out_by_name():

@@ -27,6 +27,7 @@ CAUSES: Mapping[Cause, tuple[str, str]] = {
 _LEFT_OUT = {
     "dimples": "its dimples (see its life below)",
     "inputs": "the uncertainty of the inputs where too few devices stick to show it",
+    "requirement": "the smaller fraction that it requires (see the curve of the axis below)",
     "voltage": "its voltage, at which the dielectric breaks down",
 }
 #: Relative change of a size that is not worth a word.

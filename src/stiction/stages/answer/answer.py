@@ -36,6 +36,7 @@ class Settings:
     touchdowns: int = 1
     liquids: tuple[str, ...] = ()  #: that are stated
     left_out: tuple[str, ...] = ()  #: conditions that are stated but not inside
+    required: float = 1.0  #: fraction of a requirement, 1 without one [-]
     beam: DesignedBeam | None = None  #: none for a stopper
     budgets: tuple[float, ...] = ()  #: humidities of the budgets [-]
 
@@ -45,7 +46,10 @@ def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
     found, question = _of_beam(data, settings) if settings.beam else _of_stopper(data)
     before = conditions.of_budgets(data["budgets"], settings.budgets)
     unknowns = conditions.of_test_beams(data.get("test_beams")) or before
-    stated = {"touchdowns": settings.touchdowns, "left_out": (*settings.left_out, *_left_out(data, found, unknowns))}
+    left_out = (*settings.left_out, *_left_out(data, found, unknowns))
+    if settings.required < question["share"]:
+        left_out = (*left_out, "requirement")
+    stated = {"touchdowns": settings.touchdowns, "left_out": left_out}
     asked = Question(settings.name, settings.kind, forbidden=_forbidden(data, unknowns), **stated, **question)
     draws = Draws(DRAWS, settings.seed)
     return ladder.answer(asked, found, unknowns, draws, None if unknowns is before else before)
@@ -212,6 +216,7 @@ def _settings(plan, at):
     own = {"seed": plan.config["seed"], "name": at.device, "liquids": sorted(liquids)}
     own |= {"left_out": ["dimples"] if "dimples" in section else []}
     own |= {"budgets": [humidity for humidity, *_ in _budgets(plan, at.device)]}
+    own |= {"required": section["requirement"]["share"]} if "requirement" in section else {}
     return select(Settings, section | own | beam)
 
 
