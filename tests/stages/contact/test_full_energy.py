@@ -300,3 +300,18 @@ def test_by_default_devices_have_changes_by_levels_and_pairs_have_none(model, of
         assert "study" not in inputs
         separated = {rh for (_, rh), file in inputs["energies"].items() if graph.job(file).settings.get("forces")}
         assert separated == {0.67, 0.9, *stopper}
+
+
+@pytest.mark.parametrize(("length", "spacing", "width"), [(1.5, 10, 30), (2.47, 10, 18), (4.49, 10, 10), (90, 10, 2)])
+def test_long_strips_are_narrower_and_have_no_more_points_than_others(length, spacing, width):
+    seen = {
+        "sampling": {"spacing_nm": spacing, "strip_length_um": length},
+        "contact": {"every": 1},
+        "beam": {"width_um": 30},
+    }
+    assert full_energy._width(seen) == width
+    points = (1e3 / spacing) ** 2 * length * width
+    assert points <= full_energy.POINTS or width == full_energy.NARROWEST
+    assert full_energy._width(seen | {"beam": {"width_um": 1.5}}) == 1.5, "those of a narrow beam stay"
+    finer = full_energy._width(seen | {"contact": {"every": 1}, "sampling": seen["sampling"] | {"spacing_nm": 5}})
+    assert finer == max(2, width // 4) or length == 1.5

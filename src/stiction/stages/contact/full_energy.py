@@ -4,6 +4,7 @@ The state at rest alone has the energy. Where devices need forces, each strip is
 summits that resist are left out, as in `stiction.stages.contact.full_contact`.
 """
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import partial
@@ -235,10 +236,10 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
 
 
 def _width(seen):
-    """Width of strips of at most `POINTS` [µm], from the settings of a contact."""
+    """Width of strips of about `POINTS` at most [µm], from the settings of a contact: whole, for fast transforms."""
     point = seen["sampling"]["spacing_nm"] * seen["contact"]["every"] / NM_PER_UM
     affordable = POINTS * point**2 / seen["sampling"]["strip_length_um"]
-    return min(seen["beam"]["width_um"], max(NARROWEST, round(affordable, 2)))
+    return min(seen["beam"]["width_um"], max(NARROWEST, float(math.floor(affordable))))
 
 
 STAGES = (
