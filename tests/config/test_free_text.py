@@ -9,7 +9,11 @@ from hostile import HOSTILE
 
 #: Keys whose text a user chooses. Where it is shown, it is looked at by the tests that import `hostile`: those of the
 #: front page, tables, pages and figures, and tests/workflow/test_hostile_text.py for a whole report.
-FREE = {f"surfaces.NAME.scans.{key}" for key in ("files.0", "channel", "left_out.0")} | {"test_beams.NAME.file"}
+FREE = (
+    {f"surfaces.NAME.scans.{key}" for key in ("files.0", "channel", "left_out.0")}
+    | {"surfaces.NAME.profiles.files.0"}
+    | {"test_beams.NAME.file"}
+)
 FREE |= {"process.NAME.settings.0.scans.0"}
 #: A configuration that has all other keys with names of its own parts.
 FULL = """

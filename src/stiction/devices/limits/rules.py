@@ -174,11 +174,11 @@ def smooth_pair(rms: float, humidities: Sequence[float]) -> Limit | None:
     return Limit("smooth_pair", Side.UNSAFE, False, 1 / (1 - worst) - 1, {"rms": rms, "short": large})
 
 
-def unknown_full_contact(humidities: Sequence[float]) -> Limit | None:
+def unknown_full_contact(unknown: Sequence[float]) -> Limit | None:
     """Forces on summits at humidities [-] with water, at which full contact did not settle or would take too long."""
-    if not humidities:
+    if not unknown:
         return None
-    return Limit("unknown_full_contact", Side.EITHER, False, numbers={"humidities": list(humidities)})
+    return Limit("unknown_full_contact", Side.EITHER, False, numbers={"humidities": list(unknown)})
 
 
 def few_strips(part: float) -> Limit | None:
