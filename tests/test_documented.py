@@ -27,8 +27,9 @@ ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md")), *sorted((ROOT / "examples").rglob("*.md"))]
 TEXT = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
 BLOCKS = re.findall(r"^```yaml\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
-#: Two keys have to agree with a file of scans: tests/scans/test_scan_reading.py reads such files.
+#: Keys that have to agree with files: tests/scans/test_scan_reading.py and test_lines_in_texts.py read them.
 OF_FILES = {("surfaces", "*", "scans", "channel"), ("surfaces", "*", "scans", "height_unit")}
+OF_FILES |= {("surfaces", "*", "profiles", key) for key in ("x_unit", "height_unit")}
 #: A study of the paper's pair b alone, and another whose beam is of a material of its own, with a liquid of its own.
 PAIR_B = {"run": {"pairs": ["b"]}}
 OXIDE = {
@@ -61,7 +62,7 @@ SNIPPETS = sorted(
 )
 EXAMPLES = ("examples/scans/mine", "examples/devices", "examples/roughness", "examples/drawn_beams/mine")
 EXAMPLES += ("examples/test_beams", "examples/sealed", "examples/life", "examples/process/mine", "workflow/smoke")
-EXAMPLES += ("examples/range/mine", "examples/switch")
+EXAMPLES += ("examples/range/mine", "examples/switch", "examples/scans/lines")
 
 
 def module(path):
@@ -84,6 +85,7 @@ def folder(tmp_path_factory):
     draw = module(ROOT / "examples" / "scans" / "draw.py")
     draw.main(path, [replace(scans, side=5e-6, pixel=20e-9) for scans in draw.SCANS])
     module(ROOT / "examples" / "process" / "draw.py").main(path)
+    module(ROOT / "examples" / "scans" / "lines.py").main(path, length=80e-6)
     for name in ("arrayA.csv", "wafer.csv"):
         (path / name).write_text(TEMPLATE, encoding="utf-8")
     shutil.copy2(ROOT / "examples" / "range" / "range.csv", path)

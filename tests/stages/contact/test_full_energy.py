@@ -167,7 +167,7 @@ def test_what_would_take_too_long_stays_on_summits_with_this_reason(monkeypatch)
         for grid in full_energy.GRIDS:
             strips.energy(grid, place)
     on_coarse_grids = strips.effort.spent
-    strips.effort.most = 2 * on_coarse_grids
+    strips.effort.most = 7 * on_coarse_grids
     with pytest.raises(TooLong):
         strips.energy(FINE, 0)
     assert strips.effort.spent == on_coarse_grids, "before the first strip on the fine grid"

@@ -50,16 +50,16 @@ class CountedHalfSpace(HalfSpace):
         return cls(**{each.name: getattr(space, each.name) for each in fields(space)}, effort=effort)
 
     def displacement(self, pressure: np.ndarray) -> np.ndarray:
-        """As of `HalfSpace`."""
+        """Count, and displace as any half-space does."""
         self.effort.spend(pressure.size)
         return super().displacement(pressure)
 
     def traction(self, displacement: np.ndarray) -> np.ndarray:
-        """As of `HalfSpace`."""
+        """Count, and displace as any half-space does."""
         self.effort.spend(displacement.size)
         return super().traction(displacement)
 
     def displacement_on_springs(self, pressure: np.ndarray) -> np.ndarray:
-        """As of `HalfSpace`."""
+        """Count, and displace as any half-space does."""
         self.effort.spend(pressure.size)
         return super().displacement_on_springs(pressure)

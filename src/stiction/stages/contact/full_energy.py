@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis import levels
-from stiction.analysis.levels import COSTS, FINE, PILOT, POOL, SUMMITS, Ratio
+from stiction.analysis.levels import COARSE, COSTS, FINE, PILOT, POOL, SUMMITS, Ratio
 from stiction.config.cases import Case
 from stiction.config.merging import merged
 from stiction.config.units import NM_PER_UM
@@ -44,6 +44,8 @@ POINTS, NARROWEST = 450_000, 2.0
 #: ASSUME: beyond this many displaced elements, about two minutes of a core, the ratio costs too much. Pair b needs 4e8
 #: to 2e9 of them, by humidity, and pairs of heavy tails, whose strips have no control, 7e9.
 EFFORT = 8e9
+#: Effort that follows a pilot on coarse grids, over that of this pilot: one on the fine grid, and more coarse strips.
+_AFTER_PILOT = (COSTS[FINE] + COARSE / PILOT * COSTS[max(GRIDS)]) / sum(COSTS[every] for every in GRIDS)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -132,10 +134,8 @@ class Strips:
 
     def _compute(self, level, place):
         """Quantities of a strip on a grid, on the fine one from the state on the next coarser one."""
-        if (
-            level == FINE and (FINE, 0) not in self.values
-        ):  # the pilot on coarse grids says what that on the fine one takes
-            self.effort.require(self.effort.spent * (1 + 1 / sum(COSTS[every] for every in GRIDS)))
+        if level == FINE and (FINE, 0) not in self.values:
+            self.effort.require(self.effort.spent * (1 + _AFTER_PILOT))
         heights, curve, start = self.heights(self.resisting[place]), self.curves[place], None
         for every in (2, FINE) if level == FINE and 2 in self.levels else (level,):
             try:
