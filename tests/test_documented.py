@@ -29,7 +29,7 @@ TEXT = "\n".join(page.read_text(encoding="utf-8") for page in PAGES)
 BLOCKS = re.findall(r"^```yaml\n(.*?)^```", TEXT, re.MULTILINE | re.DOTALL)
 #: Keys that have to agree with files: tests/scans/test_scan_reading.py and test_lines_in_texts.py read them.
 OF_FILES = {("surfaces", "*", "scans", "channel"), ("surfaces", "*", "scans", "height_unit")}
-OF_FILES |= {("surfaces", "*", "profiles", key) for key in ("x_unit", "height_unit")}
+OF_FILES |= {("surfaces", "*", "profiles", key) for key in ("x_unit", "height_unit", "level")}
 #: A study of the paper's pair b alone, and another whose beam is of a material of its own, with a liquid of its own.
 PAIR_B = {"run": {"pairs": ["b"]}}
 OXIDE = {
