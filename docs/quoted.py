@@ -9,12 +9,12 @@ import re
 import numpy as np
 import pandas as pd
 
-from stiction.analysis import smooth_pairs
 from stiction.answer.data import Cause
 from stiction.beam.energy import apparent_adhesion_energy
 from stiction.beam.foundation import ACCURACY, ELEMENT, STRIP
 from stiction.config.files import paper
 from stiction.config.units import in_si
+from stiction.contact.full import smooth_pairs
 from stiction.devices.limits.rules import FILMS
 from stiction.plan.plan import Plan
 from stiction.report.beams import prediction

@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from test_limits import CASES
 
-from stiction.analysis.smooth_pairs import RATIOS
 from stiction.beam.energy import arrest_length
+from stiction.contact.full.smooth_pairs import RATIOS
 from stiction.contact.gaps import FlatAttraction
 from stiction.devices.limits import rules
 from stiction.devices.limits.limit import Limit, Side, restored

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.special import ndtri
 
 from stiction.contact.air import is_humid
+from stiction.contact.full.smooth_pairs import in_wetter_air
 from stiction.rounding import is_at_most
 
 
@@ -78,6 +79,11 @@ class TipChanges(NamedTuple):
         return Change(ratio, self.change.power, error)
 
 
+def _not_falling(ratio, computed, humidity):
+    """Ratio of energies in air wetter than where it was computed: one above 1 stays, as that of rough pairs falls."""
+    return max(ratio, in_wetter_air(min(ratio, 1.0), computed, humidity))
+
+
 @dataclass(frozen=True)
 class Correction:
     """Changes from the sum over summits to full elastic contact.
@@ -91,7 +97,8 @@ class Correction:
     pull_off: Change  #: of the largest attractions f_max (h,)
     tips: TipChanges | None = None  #: of the largest attractions of tips, if any are on the pair
     #: Whether changes hold beyond these, where shifts of a budget are, instead of an error. ASSUME: in drier air the
-    #: change is that in the driest. In wetter air ratios below 1 rise to 1 in saturated air, others stay.
+    #: change is that in the driest. In wetter air ratios of energies below 1 rise to 1 in saturated air, others stay,
+    #: and those of forces are as `stiction.contact.full.smooth_pairs.in_wetter_air`.
     nearest: bool = False
 
     def at(self, humidity: float) -> tuple[Change, Change]:
@@ -102,15 +109,15 @@ class Correction:
         ValueError
             If the humidity is beyond those at which full contact was computed.
         """
-        return self._at(humidity, self.energy), self._at(humidity, self.pull_off)
+        return self._at(humidity, self.energy), self._at(humidity, self.pull_off, in_wetter_air)
 
     def of_tips(self, humidity: float, slopes: np.ndarray) -> list[Change]:
         """Changes of the largest attraction of tips at slopes (n,) [-], none without tips. Otherwise as `at`."""
         if self.tips is None:
             return [NONE] * len(slopes)
-        return [self._at(humidity, self.tips.at(slope)) for slope in slopes]
+        return [self._at(humidity, self.tips.at(slope), in_wetter_air) for slope in slopes]
 
-    def _at(self, humidity, changes):
+    def _at(self, humidity, changes, wetter=_not_falling):
         """Change at a humidity."""
         in_humid_air = is_humid(humidity)
         known = self.humidities[is_humid(self.humidities) == in_humid_air]
@@ -127,7 +134,7 @@ class Correction:
         change = self._between(changes, np.clip(humidity, low, high))  # rounding can leave it a little outside
         if not (is_near and humidity > high):
             return change
-        return change._replace(ratio=max(change.ratio, change.ratio ** ((1 - humidity) / (1 - high))))
+        return change._replace(ratio=wetter(change.ratio, high, humidity))
 
     def _between(self, changes, humidity):
         """Change at a humidity within the computed ones. A power below 1 errs only as far as it may be above."""

@@ -7,10 +7,10 @@ changes of a length or a force. `stiction.report.limits.words` has the sentences
 import math
 from collections.abc import Mapping, Sequence
 
-from stiction.analysis.smooth_pairs import shortfall
 from stiction.beam.foundation import LONGER, TOO_EARLY
 from stiction.constants import WATER_MOLECULE
 from stiction.contact.air import is_humid
+from stiction.contact.full.smooth_pairs import shortfall
 from stiction.contact.materials import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
 from stiction.devices.limits.limit import Limit, Side
 

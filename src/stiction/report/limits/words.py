@@ -6,10 +6,10 @@ Nothing is decided here: sides and amounts are fields of the limits.
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
-from stiction.analysis.smooth_pairs import largest_shortfall
 from stiction.beam.foundation import ACCURACY, LONGER, TOO_EARLY
 from stiction.constants import WATER_MOLECULE
 from stiction.contact.air import DRY_AIR, has_dry, humid
+from stiction.contact.full.smooth_pairs import largest_shortfall
 from stiction.contact.materials import COATING_ATTRACTION
 from stiction.devices.limits.limit import Limit
 from stiction.devices.limits.rules import FILMS, MOLECULES, PLASTIC, PLATE, RIM, ROTATION, SLENDER

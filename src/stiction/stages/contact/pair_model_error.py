@@ -19,6 +19,7 @@ from stiction.beam.energy import CRACK_LENGTH_POWER
 from stiction.config.cases import case_id
 from stiction.contact.air import has_dry
 from stiction.contact.correction import interpolated
+from stiction.contact.full.smooth_pairs import in_wetter_air
 from stiction.plan.names import by_case
 from stiction.plan.stage import Running, Stage
 from stiction.stages.contact import full_contact, tips_in_full_contact
@@ -120,37 +121,38 @@ def _between(forces, applied, at):
     """Ratio and power of forces with their errors (4, h), and whether they are applied, at all humidities (h,).
 
     Those wanted remain, and are NaN where they are not found. Others are on the curve through those applied, with the
-    error of `_off_nodes`. ASSUME: in drier air the change is that in the driest, and beyond the wettest, ratios below 1
-    rise to 1 in saturated air, the safe side.
+    error of `_off_nodes`. ASSUME: in drier air the change is that in the driest, and beyond the wettest as in
+    `stiction.contact.full.smooth_pairs.in_wetter_air`.
     """
     used, wanted = applied > 0, np.isfinite(applied)
     if not used.any():
         return np.where(wanted, forces, [[1.0], [0.0], [1.0], [0.0]]), used
     ratio, error, power, power_error = forces[:, used]
     within = np.maximum(at, at[used][0])
-    others = _to_saturation(ratio, at[used], within)
+    others = _from_driest(ratio, at[used], within)
     rest = [np.interp(within, at[used], each) for each in (error, power, power_error)]
     filled = np.array([others, np.hypot(rest[0], others * _off_nodes(ratio, at[used], within)), *rest[1:]])
     return np.where(wanted, forces, filled), np.where(wanted, used, True)
 
 
-def _to_saturation(ratio, computed, at):
-    """Ratio (k,) at humidities (h,) from the driest computed one on, to 1 or more in saturated air."""
-    return interpolated(np.append(ratio, max(ratio[-1], 1.0)), np.append(computed, 1.0), at)
+def _from_driest(ratio, computed, at):
+    """Ratio (k,) of forces at humidities (h,) from the driest computed one on, beyond the wettest as in wetter air."""
+    wettest, most = computed[-1], ratio[-1]
+    beyond = [in_wetter_air(most, wettest, one) if one > wettest else most for one in at]
+    return np.where(at > wettest, beyond, interpolated(ratio, computed, np.minimum(at, wettest)))
 
 
 def _off_nodes(ratio, computed, at):
     """Relative error of a ratio (k,) between computed humidities (h,), by one of them as large as its change."""
     if len(computed) > 1:
         return interpolation_error(np.log(ratio), computed, at)
-    return np.abs(np.log(_to_saturation(ratio, computed, at) / ratio[0]))
+    return np.abs(np.log(_from_driest(ratio, computed, at) / ratio[0]))
 
 
 def _of_tips_in_water(studies, at):
     """Variables of the changes of tips at all humidities (h,), between those computed as `_between`.
 
-    The power is 1 with `POWER_ERROR`. ASSUME: beyond the wettest, ratios below 1 rise to 1 in saturated air, the safe
-    side, and others stay.
+    The power is 1 with `POWER_ERROR`.
     """
     studies = sorted(studies, key=lambda one: float(one.humidity[0]))
     computed = np.array([float(one.humidity[0]) for one in studies])
@@ -160,7 +162,7 @@ def _of_tips_in_water(studies, at):
     between = [_off_nodes(each, computed, within) for each in means.T]
     errors = [np.interp(within, computed, each) for each in errors.T]
     over = "humidity", "slope"
-    ratios = [_to_saturation(each, computed, within) for each in means.T]
+    ratios = [_from_driest(each, computed, within) for each in means.T]
     return {
         "tip_ratio": (over, np.transpose(ratios), {"units": "1"}),
         "tip_error": (over, np.hypot(errors, between).T, {"units": "1"}),

@@ -38,6 +38,31 @@ def shortfall(rms: float, humidity: float) -> tuple[float, float]:
     return max(1 - 1 / ratio, 0.0), error / ratio**2
 
 
+def in_wetter_air(ratio: float, computed: float, humidity: float) -> float:
+    """Ratio of full contact to summits of a force in air wetter than where it was computed.
+
+    ASSUME: a ratio above 1 grows as that of the pair of the table that has it where it was computed. One below 1 rises
+    to 1 in saturated air, with a logarithm that is linear in the humidity. Both are the safe side.
+
+    Examples
+    --------
+    >>> [round(in_wetter_air(ratio, 0.67, 0.9), 3) for ratio in (1.139, 0.8)]
+    [1.32, 0.935]
+    """
+    if ratio <= 1:
+        return ratio ** ((1 - humidity) / (1 - computed))
+    drier, wetter = _of_pairs(computed), _of_pairs(humidity)
+    like = float(np.interp(ratio, drier, np.arange(len(drier))))
+    return ratio * float(np.interp(like, np.arange(len(drier)), wetter / drier))
+
+
+def _of_pairs(humidity):
+    """Ratios of the pairs of the table from the roughest on, 1 at humidity 0 and nowhere falling [-]."""
+    table = np.vstack([np.ones(len(RMS)), RATIOS])[:, ::-1]
+    rising = np.maximum.accumulate(np.maximum.accumulate(table, axis=0), axis=1)
+    return np.array([np.interp(humidity, np.append(0.0, HUMIDITIES), column) for column in rising.T])
+
+
 def largest_shortfall() -> float:
     """Largest shortfall of the table [-], two standard errors above its estimate.
 

@@ -7,9 +7,17 @@ import pytest
 from numpy.testing import assert_allclose
 
 from stiction.analysis.model_error import mean_ratios
-from stiction.analysis.smooth_pairs import ERRORS, HUMIDITIES, RATIOS, RMS, largest_shortfall, shortfall
 from stiction.config.files import load
 from stiction.config.units import in_si
+from stiction.contact.full.smooth_pairs import (
+    ERRORS,
+    HUMIDITIES,
+    RATIOS,
+    RMS,
+    in_wetter_air,
+    largest_shortfall,
+    shortfall,
+)
 from stiction.devices.limits import rules as limits
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
@@ -39,6 +47,19 @@ def test_rough_pairs_lack_nothing_and_smooth_ones_more_in_wetter_air():
         assert np.all(np.diff([shortfall(rms, humidity)[0] for humidity in HUMIDITIES]) > 0)
 
 
+def test_in_wetter_air_a_ratio_follows_its_pair_and_never_falls():
+    for pair in RATIOS.T[1:3]:
+        assert_allclose([in_wetter_air(pair[0], 0.67, humidity) for humidity in (0.67, 0.9)], pair[:2])
+    rng = np.random.default_rng(2)
+    for _ in range(200):
+        ratio, computed = rng.uniform(0.3, 2), rng.uniform(0.1, 0.9)
+        found = [in_wetter_air(ratio, computed, humidity) for humidity in np.linspace(computed, 0.99, 30)]
+        assert_allclose(found[0], ratio)
+        assert np.all(np.diff(found) > -1e-12)
+        assert (found[-1] > 1) == (ratio > 1)
+    assert in_wetter_air(0.8, 0.5, 1.0) == 1
+
+
 def of_strips(rms_nm, humidity, strips):
     """Ratio of the mean largest attractions, full contact over summits, of strips of 1.5 x 4 µm and its error [-]."""
     config = {
@@ -66,6 +87,14 @@ def test_full_elastic_contact_of_other_strips_has_the_forces_of_the_table(rms_nm
     # Errors of four strips are known to 40 %.
     assert abs(ratio - RATIOS[row, column]) < 4 * np.hypot(1.4 * error, ERRORS[row, column])
     assert (ratio > 1.2) == (rms_nm == 1.0), "control: rougher pairs lack less"
+
+
+@pytest.mark.slow
+def test_strips_of_a_pair_have_the_ratio_in_wetter_air_that_follows_from_drier():
+    (drier, error), (wetter, own) = (of_strips(0.7, humidity, strips=4) for humidity in (0.7, 0.85))
+    followed, allowed = in_wetter_air(drier, 0.7, 0.85), 3 * 1.4 * np.hypot(error, own)
+    assert abs(followed - wetter) < allowed + 0.05 * wetter, "the table is known to 5 % between its points"
+    assert wetter - drier > 0.05, "control: one that stays is too small"
 
 
 STOPPER = {"kind": "stopper", "pair": "p", "contact_um": [3, 3], "restoring_force_uN": 20}
