@@ -133,6 +133,11 @@ class Answer:
         return Verdict.SAFE if self.is_enough else Verdict.OPEN
 
     @property
+    def known_steps(self) -> tuple[Step, ...]:
+        """Steps after which the size is known."""
+        return tuple(step for step in self.steps if np.isfinite(step.size))
+
+    @property
     def stated_steps(self) -> tuple[Step, ...]:
         """Steps inside the size to build."""
         return tuple(step for step in self.steps if step.stated)

@@ -1,11 +1,14 @@
 """The pictures of an answer show its numbers: curves, the size to build, and no number where one is forbidden."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 from scipy.special import ndtr
 
 from stiction.answer.data import Answer, Cause, InAir, Step
+from stiction.report.answer import tables
 from stiction.report.answer.figures import ladder, risk
 from stiction.report.style import humidity_colour
 
@@ -69,3 +72,13 @@ def test_the_ladder_has_a_row_for_each_step_and_the_curve_beside_it():
         "uncertainty of the inputs",
     ]
     assert "all airs, RH 0.92 decides" in lines_of(stuck)
+
+
+@pytest.mark.parametrize("known", [3, 1])
+def test_the_ladder_has_the_known_steps_alone(known):
+    whole = answered()
+    steps = tuple(replace(step, size=step.size if k < known else np.nan) for k, step in enumerate(whole.steps))
+    panel = ladder(replace(whole, steps=steps, build=np.nan if known < 3 else whole.build)).axes[0]
+    assert len(panel.texts) == known
+    assert not any("nan" in text.get_text() for text in panel.texts)
+    assert len(tables.steps(replace(whole, steps=steps))) == known

@@ -135,6 +135,17 @@ def test_the_controls_of_a_stopper_are_its_answer_in_its_own_airs(section, per, 
     assert deviations(faces(view.grid, answer, per)).max() < np.diff(SHOWN).max()
 
 
+@pytest.mark.parametrize("restoring", [3e-6, 5e-6, 9e-6])
+def test_the_controls_begin_with_the_words_of_the_answer_where_no_device_begins_to_stick(restoring):
+    forces = 1e-6 * np.append([2, 4], np.linspace(10, 90, 78))  # none is between 4 and 10 µN
+    settings = replace(SETTINGS, restoring_force=restoring, humidities=(0.67,))
+    stopper = stoppers.layout(settings, forces[None], np.array([0.67]), forces[None])
+    answer = answered.of_stopper(stopper)
+    grid = explorer.views_of_stopper(STOPPER | {"restoring_force_uN": 1e6 * restoring}, stopper, answer)[0].grid
+    assert np.isnan(answer.build)
+    assert says(grid.stuck(grid.start)) == words.stuck_in_words(answer.stuck)
+
+
 def test_the_controls_of_a_stopper_whose_worst_air_is_dry_begin_there():
     forces = 1e-6 * np.exp(0.2 * np.random.default_rng(4).normal(size=4000))
     settings = replace(SETTINGS, restoring_force=1e-6, humidities=(0.67, 0.0, 0.88))

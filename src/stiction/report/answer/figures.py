@@ -37,8 +37,8 @@ _LABEL = {"xycoords": ("axes fraction", "data"), "va": "bottom", "fontsize": 7, 
 
 @styled
 def ladder(answer: Answer) -> Figure:
-    """Draw the steps from the estimate to the size to build, one row each, and beside them P(stuck)."""
-    figure, grid = panels(1, 2, (2 * SINGLE, _AROUND + _ROW * len(answer.steps)))
+    """Draw the steps from the estimate to the size to build that are known, one row each, and beside them P(stuck)."""
+    figure, grid = panels(1, 2, (2 * SINGLE, _AROUND + _ROW * len(answer.known_steps)))
     _steps(grid[0, 0], answer)
     _stuck(grid[0, 1], answer)
     grid[0, 1].set_ylabel(_STUCK)
@@ -47,8 +47,9 @@ def ladder(answer: Answer) -> Figure:
 
 def _steps(panel: Axes, answer):
     """Steps from the estimate to the size to build, one row each, with its size and change."""
-    (scale, label), before = _axis(answer), answer.steps[0].size
-    for row, step in enumerate(answer.steps):
+    (scale, label), steps = _axis(answer), answer.known_steps
+    before = steps[0].size
+    for row, step in enumerate(steps):
         colour, ends = _INSIDE if step.stated else _BESIDE, np.array([before, step.size]) / scale
         panel.plot(ends, [row, row], color=colour, linewidth=5, solid_capstyle="butt")
         panel.plot(ends[1], row, "|", color=colour, markersize=11)
@@ -56,12 +57,12 @@ def _steps(panel: Axes, answer):
         said = f"{words.CAUSES[step.cause][0]}: {answer.in_words(step.size)}{change}"
         panel.annotate(said, (0.02, row - 0.2), **_LABEL)
         before = step.size if step.stated else before
-    ends = [step.size for step in answer.steps]
+    ends = [step.size for step in steps]
     if np.isfinite(answer.build):
         panel.axvline(answer.build / scale, color=BUILD, linewidth=1.2, zorder=0)
     if 0.5 * min(ends) < answer.size < 2 * max(ends):
         panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, zorder=0)
-    panel.set(xlabel=label, yticks=[], ylim=(len(answer.steps) - 0.6, -0.75))
+    panel.set(xlabel=label, yticks=[], ylim=(len(steps) - 0.6, -0.75))
     panel.margins(x=0.1)
 
 

@@ -95,7 +95,7 @@ def steps(answer: Answer) -> pd.DataFrame:
             "change [%]": number(100 * (step.factor - 1), "+.1f") if k else "",
             "air": Air(step.humidity).words,
         }
-        for k, step in enumerate(answer.steps)
+        for k, step in enumerate(answer.known_steps)
     )
 
 

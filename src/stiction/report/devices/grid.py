@@ -17,6 +17,8 @@ from stiction.report.devices.levels import SHOWN
 
 #: Significant digits of the numbers in a page, and an error too small to show, which has a logarithm.
 _DIGITS, _EXACT = 7, 1e-9
+#: Relative difference of sizes that rounding makes.
+_SAME = 1e-6
 #: Fractions of layers where they have no levels: nothing is known, or no more than that a fraction is from 0 to 1.
 _UNKNOWN = np.nan, 0.0, 1.0
 #: Coordinate of a value along an axis, by its scale.
@@ -113,9 +115,10 @@ class Grid:
         levels, scores = levels[known], self.scores[known]
         rising = np.maximum.accumulate(levels), np.minimum.accumulate(levels[::-1])[::-1]
         levels = rising[unknown != 0]
-        if (unknown == 0 and v < levels[0]) or (unknown == 1 and v > levels[-1]):
+        below, above = v < levels[0] - _SAME, v > levels[-1] + _SAME
+        if (unknown == 0 and below) or (unknown == 1 and above):
             return unknown, 0
-        return float(ndtr(np.interp(v, levels, scores))), int(v > levels[-1]) - int(v < levels[0])
+        return float(ndtr(np.interp(v, levels, scores))), int(above) - int(below)
 
     @cached_property
     def noise(self) -> np.ndarray:

@@ -92,7 +92,11 @@ def _inverted(answer, air, scores):
         rows = np.insert(rows, k, (air.stuck.value, air.stuck.low, air.stuck.high), axis=1)
         v = np.insert(v, k, sign * np.log(answer.size))
     heights = np.maximum.accumulate(np.clip(ndtri(rows), _NONE, _ALL), axis=1)
-    return np.exp([sign * np.interp(scores, row, v, left=np.nan, right=np.nan) for row in heights])
+    found = np.exp([sign * np.interp(scores, row, v, left=np.nan, right=np.nan) for row in heights])
+    if air.stuck is not None:  # also where the curve is flat, without devices that begin to stick near this size
+        stated = ndtri([air.stuck.value, air.stuck.low, air.stuck.high])
+        found = np.where(scores == stated[:, None], answer.size, found)
+    return found
 
 
 def _ratio(states: Simulated, own: Simulated, scores: np.ndarray) -> np.ndarray:

@@ -255,9 +255,9 @@ def _liquids(answers, name):
 
 
 def _fast(answers):
-    """Safe length, or restoring force, of fast separation in words, if it differs from slow and a bound is known."""
+    """Safe length, or restoring force, of fast separation in words, if both are known and read differently."""
     limit = answers.get(Name.FAST) or answers.get(Name.RESTORING)
-    if limit is None or not limit.low < limit.high < np.inf:
+    if limit is None or not limit.low < limit.high < np.inf or _low(limit) == _high(limit):
         return []
     needs = _SIMULATED[limit.unit][2].format(low=_low(limit), high=_high(limit))
     return [f"If it separates faster than water evaporates, as in a shock, {needs}."]

@@ -78,14 +78,19 @@ def device_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], 
     shown = screen.screen(answer, section, forbidding, (of_model or [_NO_ERROR])[0])
     briefly = [] if roughness is None else sentences_roughness.briefly(roughness)
     said = [*said, *filter(None, told), *briefly, *of_model[1:]]
-    steps = Section(
-        "From the estimate to the answer", (_LADDER,), tables_answer.steps(answer), figures_answer.ladder(answer)
-    )
-    sections = [steps, *sections, *_sure(name, budgets or {}, errors), *_test_beam_sections(name, test_beams)]
+    sections = [*_steps(answer), *sections, *_sure(name, budgets or {}, errors), *_test_beam_sections(name, test_beams)]
     sections += _how_rough(name, roughness)
     terms = words | _words_of_budgets(budgets)
     title = f"{name}: {kind_of(section).words}"
     return Page(title, _facts_of(section), said, sections, listed, terms, summary=shown, more=said)
+
+
+def _steps(answer):
+    """Section with the steps from the estimate to the size to build, none where no size is known."""
+    if not answer.known_steps:
+        return []
+    ladder = tables_answer.steps(answer), figures_answer.ladder(answer)
+    return [Section("From the estimate to the answer", (_LADDER,), *ladder)]
 
 
 def _words_of_budgets(budgets):

@@ -15,6 +15,7 @@ function opened(number) {
   root.replaceChildren();
   const controls = [...grid.axes, grid.size, grid.share];
   const MISSING = "\u2013", Z95 = 1.959963984540054, DIGITS = 4, STEPS = 400, POINTS = 120;
+  const SAME = 1e-6; // relative difference of sizes that rounding makes
 
   // Formulas
 
@@ -141,7 +142,7 @@ function opened(number) {
 
   /** Fractions of the layers at v; where an end has no levels, no more than that it is from 0 to 1. */
   const fractionsAt = (layers, v) => layers.map(([levels, scores], k) => {
-    const isOpen = !levels.length || (k === 1 && v < levels[0]) || (k === 2 && v > levels[levels.length - 1]);
+    const isOpen = !levels.length || (k === 1 && v < levels[0] - SAME) || (k === 2 && v > levels[levels.length - 1] + SAME);
     return isOpen ? [NaN, 0, 1][k] : probability(line(levels, scores, v));
   });
 
@@ -149,7 +150,7 @@ function opened(number) {
   function stuckAt(size, {layers, first}) {
     const v = sign * Math.log(size), [levels] = layers[0];
     const [share, low, high] = fractionsAt(layers, v);
-    const beyond = levels.length ? (v > levels[levels.length - 1]) - (v < levels[0]) : 0;
+    const beyond = levels.length ? (v > levels[levels.length - 1] + SAME) - (v < levels[0] - SAME) : 0;
     return !grid.first || v >= first ? {share, low, high, beyond} : {share, low: 0, high, beyond: -1};
   }
 
