@@ -50,11 +50,11 @@ define("sensitivity_contact")
 #   heights, spectrum, estimate -> results/studies/choices/{pair}_{choice}.nc
 define("choice_contact")
 
-# Contact of pair {pair}, {length} x {width} nm, with {side} {solid_property} of the solids.
+# Contact of pair {pair}, {length} x {width} nm, with {side} {solid_property}.
 #   heights, spectrum -> results/devices/contact/{solid_property}/{pair}_{length}x{width}_{side}.nc
 define("solid_contact")
 
-# Contact of pair {pair}, {length} x {width} nm, at the tips of beams, with {side} {solid_property} of the solids.
+# Contact of pair {pair}, {length} x {width} nm, at the tips of beams, with {side} {solid_property}.
 #   heights, spectrum -> results/devices/contact/tips/{solid_property}/{pair}_{length}x{width}_{side}.nc
 define("tip_solid_contact")
 

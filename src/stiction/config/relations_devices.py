@@ -36,7 +36,7 @@ from stiction.config.surfaces import process as process_surfaces
 from stiction.config.test_beams import DATA, shared_uncertainty
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.air import Air, humid, is_humid
-from stiction.contact.materials import COATING_ATTRACTION, OF_CONTACT
+from stiction.contact.materials import COATING_ATTRACTION, COHERENCE, OF_CONTACT
 from stiction.contact.tilt import EDGE_RADIUS, Edge
 from stiction.rounding import is_at_most
 from stiction.surface.feasible import largest_kurtosis
@@ -256,6 +256,21 @@ def uncertain_hamaker_constants_are_those_of_bare_solids(config):
         if deviation and COATING_ATTRACTION in _material(config, name):
             message = f"must be left out if the material states {COATING_ATTRACTION}"
             yield f"devices.{name}.{key}", message
+
+
+@relation
+def uncertain_coherences_are_those_of_copies(config):
+    """Require a pair with a coherence, from which a step of its slope leaves some, for an uncertain one."""
+    key, step = f"uncertainty.{COHERENCE.key}", COHERENCE.step
+    for name, deviation, pair in config.entries("devices", key, "pair"):
+        replica, message, given = config["pairs"].get(pair, {}).get("replica"), None, f"devices.{name}.pair"
+        if not replica:
+            message = f"must be left out, because pair {pair} has no replica"
+        elif step.ends(replica["coherence"])[0] < 0:
+            least, given = step.size / (1 + step.size), f"pairs.{pair}.replica.coherence"
+            message = f"must be left out below a coherence of {least:.2g}"
+        if deviation and message:
+            yield f"devices.{name}.{key}", message, given
 
 
 @relation

@@ -73,6 +73,10 @@ class Step:
         """
         return float(value * np.exp(by)) if self.relative else value + by
 
+    def error(self, value: float, deviation: float) -> float:
+        """Error of an input of this value with a standard uncertainty, of its logarithm if the step is relative."""
+        return deviation / value if self.relative else deviation
+
     @property
     def difference(self) -> float:
         """Difference of the logarithm of the input between both ends, or of the input."""
@@ -80,8 +84,32 @@ class Step:
 
 
 @dataclass(frozen=True)
+class StepOfRest(Step):
+    """Change of a share, relative in the rest of one: less of the share is more of the rest."""
+
+    def ends(self, value: float) -> tuple[float, float]:
+        """Less and more of a share.
+
+        Examples
+        --------
+        >>> [round(end, 3) for end in StepOfRest(0.2).ends(0.9)]
+        [0.88, 0.92]
+        """
+        less, more = super().ends(1 - value)
+        return 1 - more, 1 - less
+
+    def moved(self, value: float, by: float) -> float:
+        """Share whose rest has another logarithm, smaller by an error."""
+        return 1 - super().moved(1 - value, -by)
+
+    def error(self, value: float, deviation: float) -> float:
+        """Error of the logarithm of the rest."""
+        return super().error(1 - value, deviation)
+
+
+@dataclass(frozen=True)
 class Property:
-    """Property of a body, or of its edge."""
+    """Property of a body, of its edge, or of both surfaces."""
 
     key: str  #: of the configuration, where materials and uncertainties have it
     words: str
@@ -108,3 +136,7 @@ OF_COATINGS = {COATING: "coating", COATING_ATTRACTION: "Hamaker constant of the 
 #: Those on which contact depends and that may be uncertain, and the keys of all on which it depends.
 OF_CONTACT = {name: entry for name, entry in PROPERTIES.items() if entry.step}
 ELASTIC = (*(entry.key for entry in OF_CONTACT.values()), *OF_COATINGS)
+#: Coherence of the heights of two surfaces that follow each other: the variance of z₁ + z₂ falls like its rest of one.
+COHERENCE = Property("coherence", "coherence of both surfaces", StepOfRest(0.2))
+#: All that may be uncertain in the contact of a pair, without tips, by name.
+OF_PAIRS = OF_CONTACT | {COHERENCE.key: COHERENCE}

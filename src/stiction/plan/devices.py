@@ -20,7 +20,7 @@ from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, st
 from stiction.config.surfaces.members import is_itself, like, members
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.air import DRY_AIR, has_dry, humid, is_humid
-from stiction.contact.materials import OF_CONTACT
+from stiction.contact.materials import OF_PAIRS
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.contact.tilt import EDGE_RADIUS, Edge, length_of_edge
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
@@ -476,10 +476,10 @@ class DevicePlan:
         given = {name: any(device.get("uncertainty", {}).values()) for name, device in self.sections.items()}
         return [name for name in self.sections if given[name] or self.quantities(name) or self.members(name)]
 
-    def uncertain_solids(self, device: str) -> list[str]:
-        """Uncertain properties of the material of a device, keys of ``OF_CONTACT``."""
+    def uncertain_properties(self, device: str) -> list[str]:
+        """Uncertain properties of the contact of a device, keys of ``OF_PAIRS``."""
         stated = self.sections[device].get("uncertainty", {})
-        return [name for name, entry in OF_CONTACT.items() if stated.get(entry.key)]
+        return [name for name, entry in OF_PAIRS.items() if stated.get(entry.key)]
 
     def has_uncertain_edge(self, device: str) -> bool:
         """Whether the tip of a device has a rounded edge with an uncertain radius."""

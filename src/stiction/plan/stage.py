@@ -19,7 +19,7 @@ from typing import Any, get_args, get_origin, get_type_hints
 from stiction.config.cases import BEFORE_AIR, CASE, PAIR_IN_AIR, Case, PairInAir
 from stiction.config.units import in_si, without_unit
 from stiction.contact.air import DRY_AIR
-from stiction.contact.materials import OF_CONTACT
+from stiction.contact.materials import OF_PAIRS
 from stiction.models import (
     ALTERNATIVES_OF_SCANS,
     BEAM_MODELS,
@@ -47,7 +47,7 @@ WILDCARDS = {
     "quantity": "|".join(dict.fromkeys((*MOMENT_QUANTITIES, *MODE_QUANTITIES, *SPECTRUM_QUANTITIES))),
     "member": "[A-Za-z][A-Za-z0-9]*",
     "side": "|".join(SHIFTS),
-    "solid_property": "|".join(OF_CONTACT),
+    "solid_property": "|".join(OF_PAIRS),
     "choice": "|".join(ALTERNATIVES_OF_SCANS),
     "variant": VARIANT,
     "length": "[0-9]+",

@@ -18,7 +18,7 @@ from stiction.report.devices.levels import SHOWN
 #: Significant digits of the numbers in a page, and an error too small to show, which has a logarithm.
 _DIGITS, _EXACT = 7, 1e-9
 #: Relative difference of sizes that rounding makes.
-_SAME = 1e-6
+_SAME = 2e-6
 #: Fractions of layers where they have no levels: nothing is known, or no more than that a fraction is from 0 to 1.
 _UNKNOWN = np.nan, 0.0, 1.0
 #: Coordinate of a value along an axis, by its scale.

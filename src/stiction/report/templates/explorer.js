@@ -15,7 +15,7 @@ function opened(number) {
   root.replaceChildren();
   const controls = [...grid.axes, grid.size, grid.share];
   const MISSING = "\u2013", Z95 = 1.959963984540054, DIGITS = 4, STEPS = 400, POINTS = 120;
-  const SAME = 1e-6; // relative difference of sizes that rounding makes
+  const SAME = 2e-6; // relative difference of sizes that rounding makes
 
   // Formulas
 

@@ -22,6 +22,7 @@ from stiction.config.cases import Case, case_id
 from stiction.config.surfaces.members import like
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
+from stiction.contact.materials import COHERENCE
 from stiction.contact.tilt import EDGE_RADIUS
 from stiction.devices import arcs
 from stiction.devices.budget import Budget, choice_effect, joined, log_slope, weights_of_kind
@@ -427,7 +428,9 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     stated = {key: value for key, value in section.get("uncertainty", {}).items() if key != EDGE_RADIUS.key}
     own = {"uncertainty": stated, "humidity": at.case.humidity}
     own |= plan.materials.modulus(pair)
-    if "hamaker_constant" in devices.uncertain_solids(name):
+    properties = devices.uncertain_properties(name)
+    own |= subsection(plan.replica(pair)["replica"], [COHERENCE.key]) if COHERENCE.key in properties else {}
+    if "hamaker_constant" in properties:
         own |= {"hamaker_constant_zJ": plan.air.beam_hamaker_constant(pair), "alike": plan.materials.alike(pair)}
     beam = own_section(plan, name, pair)
     own |= beam | {"beams": plan.config["design"]["budget_beams"]} if beam else subsection(section, ["contact_um"])

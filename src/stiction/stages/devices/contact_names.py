@@ -131,7 +131,11 @@ def _members(plan, device, patch, place):
 
 def _less_and_more(plan, device, patch, of_surfaces, of_solids):
     """Contacts of a patch with less and more of every uncertain input of a device, by the kind of patch of each."""
-    sides, quantities, solids = patch._asdict(), plan.devices.quantities(device), plan.devices.uncertain_solids(device)
+    sides, quantities, properties = (
+        patch._asdict(),
+        plan.devices.quantities(device),
+        plan.devices.uncertain_properties(device),
+    )
     shifted = {
         shift: {
             (surface, quantity): file_of(QUANTITY, of_surfaces, **sides, surface=surface, quantity=quantity, each=shift)
@@ -141,7 +145,7 @@ def _less_and_more(plan, device, patch, of_surfaces, of_solids):
     }
     uncertain = {
         f"properties_{shift}": {
-            name: file_of(SOLID, of_solids, **sides, solid_property=name, side=shift) for name in solids
+            name: file_of(SOLID, of_solids, **sides, solid_property=name, side=shift) for name in properties
         }
         for shift in SHIFTS
     }

@@ -17,7 +17,7 @@ from scipy.linalg import block_diag
 
 from stiction.config.units import without_unit
 from stiction.contact.environment import Water
-from stiction.contact.materials import OF_CONTACT, Step
+from stiction.contact.materials import COHERENCE, OF_CONTACT, OF_PAIRS, Step
 from stiction.contact.tilt import EDGE_RADIUS
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.scans import moments
@@ -102,7 +102,7 @@ class Varied:
         ends = self.step.ends(value) if self.step else around(value, deviation, self.least)
         states = tuple(self.changed(state, end) for end in ends)
         step = self.step.difference if self.step else ends[1] - ends[0]
-        relative = deviation / value if self.step and self.step.relative else deviation
+        relative = self.step.error(value, deviation) if self.step else deviation
         return Input(self.name, self.group or f"the {self.name}", states, step), relative
 
     def moved(self, state: State, by: float) -> State:
@@ -152,8 +152,8 @@ OF_AIR = (
         least=0.0,
     ),
 )
-#: Uncertain properties that change the contact, by the name of this change: of solids, and of edges.
-_OF_CONTACTS = OF_CONTACT | {without_unit(EDGE_RADIUS.key): EDGE_RADIUS}
+#: Uncertain properties that change the contact, by the name of this change: of pairs, and of edges.
+_OF_CONTACTS = OF_PAIRS | {without_unit(EDGE_RADIUS.key): EDGE_RADIUS}
 #: Fields of their uncertainties.
 _FIELDS = {name: without_unit(one.key) for name, one in _OF_CONTACTS.items()}
 #: Standard uncertainties of all inputs in SI, zero where not stated; ``scan`` is the side of the scan that gave the
@@ -179,6 +179,7 @@ class Settings:
     surfaces: tuple[str, ...]  #: names of those of the pair
     young_modulus: float  #: E of the body of the beam or stopper [Pa]
     edge_radius: float = 0.0  #: of the edges of tips that are budgeted [m]
+    coherence: float = 0.0  #: of both surfaces, if it is uncertain [-]
     hamaker_constant: float | None = None  #: of two bodies like the beam or stopper [J], if it is uncertain
     alike: tuple[str, ...] = SIDES  #: as of `State`
     waters: dict[str, Water] = field(
@@ -235,7 +236,8 @@ def changed(state: State, errors: Mapping[str, float]) -> State:
 def countable(sizes: Sequence[str], settings: Settings) -> list[str]:
     """Names of all possible measurements of a device with these sizes."""
     surfaces = [part for name in settings.surfaces for part in _parts_of_surface(name, settings)]
-    bodies = [entry.group for entry in (*OF_CONTACT.values(), *[EDGE_RADIUS] * bool(settings.edge_radius))]
+    others = [COHERENCE] * bool(settings.coherence) + [EDGE_RADIUS] * bool(settings.edge_radius)
+    bodies = [entry.group for entry in (*OF_CONTACT.values(), *others)]
     air = [entry.group or f"the {entry.name}" for entry in OF_AIR if settings.water.film(settings.humidity)[0]]
     return [*surfaces, *(f"the {name.replace('_', ' ')}" for name in sizes), *bodies, *dict.fromkeys(air)]
 
@@ -276,7 +278,7 @@ def number_blocks(state: State, varied: Sequence[Varied], stated: Uncertainty) -
 def property_blocks(
     state: State, properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings
 ) -> Iterator[Block]:
-    """Uncertain properties of solids and of edges. The slopes of those with a relative step are in their logarithms.
+    """Uncertain properties of pairs and of edges. The slopes of those with a relative step are in their logarithms.
 
     ASSUME: a beam bends with Young's modulus alone, without the 1 - ν² of a plate; only the contact has the other two.
     """
@@ -291,7 +293,7 @@ def property_blocks(
         if name == "hamaker_constant":
             states = [of.attracting(end) for of, end in zip(states, step.ends(1.0), strict=True)]
         deviation = getattr(settings.uncertainty, _FIELDS[name])
-        relative = deviation / getattr(settings, _FIELDS[name]) if step.relative else deviation
+        relative = step.error(getattr(settings, _FIELDS[name], np.nan), deviation)
         found = Input(entry.words, entry.group, tuple(states), step.difference)
         yield Block([found], np.array([[relative**2]]))
 

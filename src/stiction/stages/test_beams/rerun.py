@@ -16,7 +16,7 @@ import xarray as xr
 from stiction.analysis.shifts import moved
 from stiction.config.cases import case_id
 from stiction.config.units import in_si
-from stiction.contact.materials import OF_CONTACT
+from stiction.contact.materials import OF_PAIRS
 from stiction.errors import NotConverged
 from stiction.plan.stage import At, Running, Stage
 from stiction.stages.contact import contact as stage_contact
@@ -84,7 +84,7 @@ def at_mean(
     The surfaces are datasets (heights, spectrum) by name; ``base`` has the settings of the contact with the stated
     inputs, as of a job. The name of the pair is part of the addresses of random numbers.
     """
-    for name, entry in OF_CONTACT.items():
+    for name, entry in OF_PAIRS.items():
         if entry.words in errors:
             base = with_property(base, name, partial(entry.step.moved, by=errors[entry.words]))
     settings, drawn = in_si(Settings, base), {}

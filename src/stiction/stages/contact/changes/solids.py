@@ -1,4 +1,4 @@
-"""Less and more of a property of the solids in contact: other settings, and nothing else.
+"""Less and more of a property of the solids in contact, or of the coherence of their surfaces: other settings alone.
 
 A body that is not of the material of the beam keeps its properties.
 """
@@ -7,18 +7,22 @@ from collections.abc import Callable
 from typing import Any
 
 from stiction.config.materials import hamaker_constants
-from stiction.contact.materials import OF_CONTACT
+from stiction.contact.materials import COHERENCE, OF_CONTACT, OF_PAIRS
 from stiction.models import SHIFTS, SIDES
+from stiction.stages.contact import contact
 from stiction.stages.contact.changes.patches import Change
+from stiction.stages.surfaces.rough_surfaces import both
 
 
 def less_or_more(settings: dict[str, Any], name: str, shift: str) -> dict[str, Any]:
-    """Settings of a contact with less or more of a property, a key of `stiction.contact.materials.OF_CONTACT`."""
-    return with_property(settings, name, lambda value: OF_CONTACT[name].step.ends(value)[SHIFTS.index(shift)])
+    """Settings of a contact with less or more of a property, a key of `stiction.contact.materials.OF_PAIRS`."""
+    return with_property(settings, name, lambda value: OF_PAIRS[name].step.ends(value)[SHIFTS.index(shift)])
 
 
 def with_property(settings: dict[str, Any], name: str, change: Callable[[float], float]) -> dict[str, Any]:
-    """Settings of a contact with another value of a property of the beam's material, in both bodies of it."""
+    """Settings of a contact with another coherence, or value of a property of the beam's material in both bodies."""
+    if name == COHERENCE.key:
+        return settings | {"replica": settings["replica"] | {name: change(settings["replica"][name])}}
     key, solid = OF_CONTACT[name].key, settings["solid"]
     if "materials" not in settings and key in solid:
         return settings | {"solid": _with_other(solid, name, change)}
@@ -37,10 +41,16 @@ def _with_other(material, name, change):
     return material | {key: change(value)}
 
 
-#: A property of the material of the beam.
+def _changed(data, at, settings):
+    """Contact under a change. ASSUME: surfaces have as much of a slightly larger coherence as is feasible."""
+    return contact.compute(both(data), at.pair, "NG", settings)
+
+
+#: A property of the material of the beam, or the coherence.
 SOLID = Change(
-    words="with {side} {solid_property} of the solids",
+    words="with {side} {solid_property}",
     end="_{side}",
+    compute=_changed,
     settings=lambda plan, at, place: less_or_more(
         place.settings(plan, at, place.fewer(plan, at)), at.solid_property, at.side
     ),
