@@ -16,7 +16,8 @@
 #   make print      the paper under the reading nearest to its printed Table III, beside the base case, after make paper
 #                   (14 minutes on two cores), in runs/print/ and runs/print-finer/
 #   make supplement     baseline, sizes and shares beside the paper's statements, after make paper (1 minute), in
-#                   runs/supplement/ and runs/experiments/
+#                   runs/supplement/
+#   make validation     every experiment of validation/ beside its prediction (8 minutes on two cores), in runs/validation/
 #   make pressing       how much more a pair sticks after its surfaces were pressed (2 minutes on two cores)
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
@@ -53,7 +54,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement sealed tails full-contact-times deformed attraction figures run report test test-all test-slow nightly lint libraries format slurm cluster mutants bench peers times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement validation sealed tails full-contact-times deformed attraction figures run report test test-all test-slow nightly lint libraries format slurm cluster mutants bench peers times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -107,7 +108,10 @@ print: $(VENV)/ready
 
 supplement: $(VENV)/ready
 	$(BIN)/python examples/supplement.py .
-	$(BIN)/python examples/other_experiments.py .
+
+# One job for each experiment; continues where it was stopped.
+validation: $(VENV)/ready
+	$(BIN)/snakemake --snakefile examples/validation/Snakefile --directory runs/validation --cores all $(ARGS)
 
 sealed: $(VENV)/ready
 	$(STICTION) devices examples/sealed.yaml --directory runs/sealed -- $(ARGS)
@@ -158,12 +162,12 @@ nightly:
 lint: $(VENV)/ready
 	$(BIN)/ruff format --check src tests workflow docs examples
 	$(BIN)/ruff check src tests workflow docs examples
-	$(BIN)/snakefmt --check Snakefile workflow
+	$(BIN)/snakefmt --check Snakefile workflow examples
 
 format: $(VENV)/ready
 	$(BIN)/ruff format src tests workflow docs examples
 	$(BIN)/ruff check --fix src tests workflow docs examples
-	$(BIN)/snakefmt Snakefile workflow
+	$(BIN)/snakefmt Snakefile workflow examples
 
 # The plugin of Snakemake.
 slurm: $(VENV)/ready

@@ -29,11 +29,19 @@ ACROSS = "reach_all"
 #: Measured skewness and kurtosis of nearly Gaussian surfaces, as examples.
 NEARLY_GAUSSIAN = ((-0.1, 3.05), (0.05, 3.02), (-0.3, 3.5), (-0.5, 4.0))
 
+#: Experiments that stick more than predicted, by the names of their numbers.
+UNSAFE = {
+    "gold": "caltech_gold",
+    "silicon": "stanford_force",
+    "plates": "plates_polysilicon",
+    "tips": "worcester_rms",
+}
+
 
 def numbers(tables):
     """All numbers, from a dict of the name of each table to its frame."""
     texts = crack_lengths(tables["table_3"]) | deviations(tables["table_3"]) | energies(tables["table_3"])
-    texts |= supplement(tables) | flat_tips(tables["flat_tips"]) | finer(tables["print_finer"])
+    texts |= supplement(tables) | finer(tables["print_finer"])
     texts |= statements(tables["table_3"], tables["variants"])
     texts |= intervals(tables["table_3"]) | printed(tables["print"], tables["print_studies"])
     texts |= surfaces(tables["table_1"]) | identification(tables["table_2"]) | fits(tables["fit_quality"])
@@ -52,6 +60,7 @@ def numbers(tables):
     texts |= measured_beams(tables["measured_beams"]) | said(tables["test_beams"]) | skewed(tables["roughness"])
     texts |= said(tables["process_answers"])
     texts |= tails(tables["tails"]) | texts_of(tables["studies"]) | checks(tables["checks"]) | mesh(tables["checks"])
+    texts |= validation(tables["validation"])
     texts |= scans(tables["example_scans"]) | timings(tables["timings"]) | constants() | nearly_gaussian()
     return texts | forces_on_summits()
 
@@ -59,6 +68,35 @@ def numbers(tables):
 def measured_beams(frame):
     """``beams_b_slope``: what the crack lengths of the paper say as test beams, by pair and name."""
     return {f"beams_{row.pair}_{row.name}": str(row.text) for row in frame.itertuples(index=False)}
+
+
+def validation(frame):
+    """``valid_inside``: how many measured values lie within their intervals; other counts, and how far levels miss.
+
+    ``valid_factor`` is the median factor between measured and predicted levels, ``valid_off`` the same of crack lengths
+    [%]; ``valid_gold``, ``valid_gold_measured``: predicted and measured value of one of `UNSAFE`, and so on.
+    """
+    known = frame[frame.predicted.notna()]
+    named = known[~known.laboratory.str.startswith("not shown")]
+    bounds, values = known[known.value.isna()], known[known.value.notna()]
+    levels, is_crack = values[values.kind == "level"], values.experiment.str.startswith("crack_lengths")
+    parts = {"lengths": values[is_crack], "levels": levels[~is_crack[levels.index]]}
+    parts |= {"laws": values[values.kind != "level"], "bounds": bounds}
+    counts = {f"valid_{name}_inside": int(part.inside.sum()) for name, part in parts.items()}
+    counts |= {f"valid_{name}": len(part) for name, part in parts.items()}
+    counts |= {"valid_inside": int(values.inside.sum()), "valid_values": len(values)}
+    counts |= {"valid_experiments": known.experiment.nunique(), "valid_laboratories": named.laboratory.nunique()}
+    counts |= {"valid_left_out": frame.experiment.nunique() - known.experiment.nunique()}
+    away = {
+        name: np.exp(np.abs(np.log(parts[name].value / parts[name].predicted)).median())
+        for name in ("lengths", "levels")
+    }
+    texts = {name: str(count) for name, count in counts.items()}
+    first = values.drop_duplicates("experiment").set_index("experiment")
+    for name, experiment in UNSAFE.items():
+        row = first.loc[experiment]
+        texts |= {f"valid_{name}": f"{row.predicted:.1g}", f"valid_{name}_measured": f"{row.value:.2g}"}
+    return texts | {"valid_factor": f"{away['levels']:.2g}", "valid_off": f"{100 * (away['lengths'] - 1):.0f}"}
 
 
 def said(frame):
@@ -237,6 +275,8 @@ def statements(table_3, variants):
     nearer_g = ", ".join(f"{pair} {humidity:.2f}" for pair, humidity in off.index[~is_nearer])
     texts = {"nearer_ng": str(is_nearer.sum()), "nearer_ng_alone": str(off.G.isna().sum()), "nearer_g": nearer_g}
     texts["steadier_ng"] = str((scatter.NG < scatter.G).sum())
+    texts |= {"stickier_ng": str((models.meso_energy_J_per_m2.NG > models.meso_energy_J_per_m2.G).sum())}
+    texts |= trends(models.xs("NG", axis=1, level="model"))
     for name, variant in (("with", "psd_identified"), ("without", "base")):
         rows = variants[(variants.pair == "a") & (variants.variant == variant)]
         texts[f"{name}_summits_a"] = f"{np.sqrt(np.mean(rows.experiment_deviation_percent**2)):.1f}"
@@ -248,6 +288,21 @@ def statements(table_3, variants):
         energies = TO_MJ * apparent_adhesion_energy(np.array([longest, shortest]) / TO_UM, beam)
         texts[f"printed_energies_c{name}"] = "{:.2g} to {:.2g}".format(*energies)
     return texts
+
+
+def trends(models):
+    """``growing_pairs``: pairs whose ē grows with every humidity; ``energies_at_080``: ē of all pairs [mJ/m²].
+
+    ``scatter_ends_a``: std / mean of ē at the ends of the humidities [%].
+    """
+    energies, scatter = models.meso_energy_J_per_m2, 100 * models.meso_energy_cv
+    growing = [of.is_monotonic_increasing for _, of in energies.groupby("pair")]
+    texts = {"growing_pairs": str(sum(growing))}
+    texts["energies_at_080"] = ", ".join(
+        f"{TO_MJ * energy:.2g}" for energy in energies.xs(0.8, level="relative_humidity")
+    )
+    ends = {pair: of.iloc[[0, -1]] for pair, of in scatter.groupby("pair")}
+    return texts | {f"scatter_ends_{pair}": "{:.2g} to {:.2g}".format(*of) for pair, of in ends.items()}
 
 
 def intervals(table_3):
@@ -331,21 +386,6 @@ def equal_shares(shares):
             around = [below[0], below[0] - 1]
             found[pair] = round(float(np.exp(np.interp(0.0, ratio[around], places[around]))), 6)
     return found
-
-
-def flat_tips(table):
-    """``flat_a``: largest pull-off force of a flat tip [µN], ``flat_at_a``: its humidity.
-
-    ``flat_ratio_a``: force between smooth wafers over it at RH 0.46.
-    """
-    forces = table.set_index("pair")
-    smooth = forces.loc["smooth", "RH 0.46 [µN]"]
-    texts = {}
-    for row in table.to_dict("records"):
-        pair = row["pair"]
-        texts |= {f"flat_{pair}": f"{row['largest [µN]']:.2g}", f"flat_at_{pair}": f"{row['at RH']:g}"}
-        texts[f"flat_ratio_{pair}"] = _rounded(smooth / row["RH 0.46 [µN]"])
-    return texts
 
 
 def _rounded(ratio):
@@ -640,6 +680,11 @@ def of_markdown(path):
     """A table in Markdown as texts."""
     head, _, *rows = ([cell.strip() for cell in line.split("|")[1:-1]] for line in path.read_text("utf-8").splitlines())
     return pd.DataFrame(rows, columns=head)
+
+
+def licensed(path):
+    """A table in CSV whose first line is its licence."""
+    return pd.read_csv(path, skiprows=1)
 
 
 def frame(path):

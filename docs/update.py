@@ -3,8 +3,8 @@
 1. If the folder holds a finished run of the paper, its tables and small copies of its pictures go to ``docs/tables``
    and ``docs/pictures``. Otherwise those from an earlier run are kept. The same holds for the runs of ``make example``,
    ``make example-process``, ``make measured-beams``, ``make devices``, ``make sealed``, ``make attraction``, ``make
-   print``, ``stiction devices examples/NAME.yaml --directory runs/NAME`` with the names roughness and test_beams in
-   folders of ``runs`` beside it.
+   print``, ``make validation``, ``stiction devices examples/NAME.yaml --directory runs/NAME`` with the names roughness
+   and test_beams in folders of ``runs`` beside it.
 2. ``docs/results.json`` receives the numbers quoted by the pages, and a checksum of each table and picture. The package
    receives the lengths from which runs of devices learn how far the model errs.
 3. The drawings are drawn, the tables of keys and of rules and the files of ``workflow/rules`` are written, and the
@@ -124,10 +124,14 @@ PRINT, PRINT_STUDIES = "print", "print_studies"
 PRINT_FINER, OF_PRINT_FINER = "print_finer", "print-finer/results/tables/variants"
 #: Tables of ``make supplement`` by their place in ``runs``, and its picture.
 SUPPLEMENT = {
-    **{f"supplement_{name}": f"supplement/{name}" for name in ("greenwood_williamson", "sizes", "surfaces", "shares")},
-    "flat_tips": "experiments/flat_tips",
+    f"supplement_{name}": f"supplement/{name}" for name in ("greenwood_williamson", "sizes", "surfaces", "shares")
 }
 SUPPLEMENT_PICTURE = "supplement"
+#: Tables of ``make validation`` by their files in its folder, and its picture with its width [pixels].
+VALIDATION = {"validation.csv": "validation.csv", "validation.md": "validation.md", "validation_misses.md": "misses.md"}
+VALIDATION_PICTURE = ("validation", 1400)
+#: Statements of the paper one by one: a table with a template.
+BESIDE = "beside_the_paper"
 #: Table of ``make tails``, in Markdown alone.
 TAILS = "tails"
 #: Largest picture [bytes].
@@ -157,6 +161,7 @@ def main(results):
         (runs / "print", unfinished_print, collect_print),
         (runs, unfinished_finer, collect_finer),
         (runs, unfinished_supplement, collect_supplement),
+        (runs / "validation", unfinished_validation, collect_validation),
     ):
         if reason := why(folder):
             print(f"{reason}: the docs keep their present numbers")  # noqa: T201
@@ -245,6 +250,11 @@ def unfinished_supplement(runs):
     """Why folders do not hold the tables of ``make supplement``; empty if they do, of whatever code."""
     missing = [place for place in SUPPLEMENT.values() if not (runs / f"{place}.csv").exists()]
     return f"{runs} does not hold {' and '.join(missing)} of make supplement" if missing else ""
+
+
+def unfinished_validation(folder):
+    """Why a folder does not hold the tables of ``make validation``; empty if it does, of whatever code."""
+    return "" if (folder / "validation.csv").exists() else f"{folder} holds no finished run"
 
 
 def up_to_date(folder, *arguments):
@@ -345,6 +355,14 @@ def collect_supplement(runs):
         for kind in ("csv", "md"):
             shutil.copyfile(runs / f"{place}.{kind}", DOCS / "tables" / f"{name}.{kind}")
     shrink(runs / "supplement" / "supplement.png", DOCS / "pictures" / f"{SUPPLEMENT_PICTURE}.png", 1100)
+
+
+def collect_validation(folder):
+    """Copy tables and picture of the benchmark."""
+    for name, file in VALIDATION.items():
+        shutil.copyfile(folder / file, DOCS / "tables" / name)
+    name, width = VALIDATION_PICTURE
+    shrink(folder / f"{name}.png", DOCS / "pictures" / f"{name}.png", width)
 
 
 def collect_roughness(folder):
@@ -458,8 +476,10 @@ def shrink(picture, smaller, width):
 
 
 def tables():
-    """Path to text of every file that is written from the schema, or from the declarations of the stages."""
+    """Path to text of every table and rule that is written from schema, stages, or a template with numbers."""
     made = {"keys_of_the_simulation": keys.of_simulation(), "materials": keys.materials()}
+    template = (DOCS / "templates" / "tables" / f"{BESIDE}.md").read_text(encoding="utf-8")
+    made[BESIDE] = filled(template, quoted_numbers()).strip()
     return {DOCS / "tables" / f"{name}.md": text + "\n" for name, text in made.items()} | rules.written()
 
 
@@ -524,6 +544,7 @@ def quoted_numbers():
             "timings",
         )
     }
+    frames |= {"validation": quoted.licensed(DOCS / "tables" / "validation.csv")}
     return quoted.numbers(frames | {TAILS: quoted.of_markdown(DOCS / "tables" / f"{TAILS}.md")})
 
 
@@ -539,7 +560,7 @@ def record(numbers):
 
 def templates():
     """Text of all templates."""
-    return [path.read_text(encoding="utf-8") for path in sorted((DOCS / "templates").glob("*.md"))]
+    return [path.read_text(encoding="utf-8") for path in sorted((DOCS / "templates").rglob("*.md"))]
 
 
 def filled(template, numbers):

@@ -60,6 +60,7 @@ WRITTEN = [
     *(DOCS / "pictures" / f"{name}.svg" for name in ("beam", "method", "stopper_and_bridge")),
     DOCS / "tables" / "keys_of_the_simulation.md",
     DOCS / "tables" / "materials.md",
+    DOCS / "tables" / "beside_the_paper.md",
     *(ROOT / "workflow" / "rules" / f"{name}.smk" for name in ("chain", *update.rules.ROOMS)),
     DOCS / "tables" / "rules.md",
     DOCS / "pictures" / "chain.svg",
@@ -146,6 +147,21 @@ def test_tables_and_picture_of_the_supplement_are_copied(tmp_path, monkeypatch):
     made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
     tables = {f"{name}.{kind}" for name in update.SUPPLEMENT for kind in ("csv", "md")}
     assert made == tables | {"supplement.png"}
+    assert made <= {path.name for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir()}
+
+
+def test_tables_and_picture_of_the_benchmark_are_copied(tmp_path, monkeypatch):
+    assert "no finished run" in update.unfinished_validation(tmp_path)
+    monkeypatch.setattr(update, "DOCS", tmp_path / "docs")
+    for part in ("tables", "pictures"):
+        (tmp_path / "docs" / part).mkdir(parents=True)
+    for file in update.VALIDATION.values():
+        (tmp_path / file).write_text(file)
+    Image.new("RGB", (20, 10)).save(tmp_path / "validation.png")
+    assert not update.unfinished_validation(tmp_path)
+    update.collect_validation(tmp_path)
+    made = {path.name for path in (tmp_path / "docs").rglob("*.*")}
+    assert made == {*update.VALIDATION, "validation.png"}
     assert made <= {path.name for folder in ("tables", "pictures") for path in (DOCS / folder).iterdir()}
 
 
