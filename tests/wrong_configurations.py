@@ -133,7 +133,7 @@ WRONG_RELATIONS = [
      "surfaces is thinner than 3 molecules, 0.84 nm, which are no liquid"),
     ("figures: {humidity: 0.01}", "figures.humidity", "0.01", "must be at least 0.2903"),
     ("pairs: {b: {humidities: [dry, 0.29]}}\nattraction: {reach: all}", "pairs.b.humidities", "['dry', 0.29]",
-     "dry air and for the driest air that is allowed do not bound those between, because thinner films pull harder"),
+     "which are no liquid; only the humidities of a device can be lower"),
     (TOUCHING + "pairs: {b: {humidities: [dry, 0.6]}}", "attraction.reach", "'touching'",
      "must be all for pair b, in dry air: without attraction across gaps, energies in dry air are 5 to 30 times too"),
     (TOUCHING + IN_DRY_AIR + "}}", "attraction.reach", "'touching'",

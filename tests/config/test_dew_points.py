@@ -49,7 +49,7 @@ def test_below_the_dew_point_water_condenses(celsius):
 def test_air_far_above_its_dew_point_is_too_dry_for_a_film_but_not_dry(celsius, dew_point):
     lines = problems(at(celsius, dew_point))
     assert any(
-        "humidities is [" in line and "the film between the surfaces is thinner than 3" in line for line in lines
+        "humidities is [" in line and "the film between the surfaces is thinner than 1" in line for line in lines
     )
 
 

@@ -87,7 +87,7 @@ def with_roughness(**keys):
 
 
 WRONG = [
-    ({"humidities": [0.67, 0.2]}, "devices.C1.humidities", "must be at least 0.2903: in drier air"),
+    ({"humidities": [0.67, 0.02]}, "devices.C1.humidities", "must be at least 0.0245: in drier air"),
     ({"chart": CHART | {"humidities": [0.1, 0.9]}}, "devices.C1.chart.humidities", "must be at least 0.2903"),
     (
         {"humidities": [0.3], "uncertainty": {"humidity": 0.02}},

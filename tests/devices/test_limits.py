@@ -43,6 +43,19 @@ CASES = [
     (limits.few_strips, (0.45,), "hardly known", (np.nan,)),
     (limits.thin_film, (1 * NM,), "1 nm high, thinner than 4 molecules, 1.12 nm", (1.13 * NM,)),
     (limits.thin_film, (1 * NM,), "dry air and for the next humidity above do not bound it", (0.0,)),
+    (limits.thin_film, (0.5 * NM,), "0.5 nm high, thinner than 3 molecules.*worst of three airs", (1.13 * NM,)),
+    (
+        limits.condensing,
+        ([{"temperature_C": -20, "dew_point_C": 10}, {"temperature_C": 10, "dew_point_C": 10}],),
+        "-20 °C with a dew point of 10 °C, 10 °C with a dew point of 10 °C. That is not in the model, and unsafe",
+        ([{"temperature_C": 11, "dew_point_C": 10}, {"temperature_C": -20, "humidity": 0.5}],),
+    ),
+    (
+        limits.supercooled,
+        ([{"temperature_C": -5, "dew_point_C": -10}, {"temperature_C": -20, "humidity": 0.5}],),
+        "^At -20 and -5 °C water counts as a supercooled liquid",
+        ([{"temperature_C": 0, "humidity": 0.5}, {"temperature_C": -20, "dew_point_C": 10}],),
+    ),
     (
         limits.no_water,
         (0.0, 0.45),

@@ -77,6 +77,7 @@ class InAir:
     #: Expected fraction stuck, and ends of its band, at `Answer.sizes` (3, n) [-].
     curve: np.ndarray = field(default_factory=lambda: np.empty((3, 0)), compare=False)
     first: float = field(default=np.nan, compare=False)  #: size from which a lower end is known [m, N]
+    temperature: float = np.nan  #: of the water in a condition of the device, NaN elsewhere [K]
 
 
 @dataclass(frozen=True)

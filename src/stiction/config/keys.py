@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from functools import reduce
 from operator import getitem
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 from stiction.config.cases import in_words
 from stiction.config.messages import Problem, dotted, one_line
@@ -50,6 +50,8 @@ class Keys:
     config: dict
     files: dict[str, list] = field(default_factory=dict)  #: of the scans of measured surfaces, by name
     origins: dict[tuple, tuple] = field(default_factory=dict)  #: paths and values that users stated, by what follows
+    #: Whether devices have what bounds films that are no liquid, see `stiction.config.mission.airs`.
+    bounds_films: ClassVar[bool] = True
 
     def __getitem__(self, key: str) -> Any:
         """Value of a key. Raises `Unknown` if it is not given."""

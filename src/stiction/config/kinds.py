@@ -22,6 +22,7 @@ COMMON = (
     "process",
     "second_process",
     "touchdowns",
+    "conditions",
 )
 COMMON += ("voltage_V", "offset_V", "dielectric")
 #: Keys that depend on the kind, what they are called and their unit.

@@ -14,11 +14,12 @@ from stiction.config.keys import Keys, Relations
 from stiction.config.kinds import KINDS
 from stiction.config.materials import material_of
 from stiction.config.messages import ConfigError, Problem, is_number, one_line
+from stiction.config.mission.conditions import humidity_of_air, temperatures
 from stiction.config.reading import is_stated
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.air import has_dry, humid
 from stiction.contact.materials import COATING
-from stiction.contact.meniscus import ZERO_CELSIUS, dry_air, humidity_at, is_wetted, meniscus_height
+from stiction.contact.meniscus import BRIDGE, MOLECULES, ZERO_CELSIUS, dry_air, is_wetted, meniscus_height
 from stiction.devices.limits import rules
 from stiction.models import SIDES
 from stiction.rounding import is_at_most
@@ -27,8 +28,8 @@ from stiction.rounding import is_at_most
 relation = Relations()
 
 TEMPERATURE, ADSORBED, _SHOWN = "water.temperature_K", "water.adsorbed_nm", "figures.humidity"
-#: Key of air by its dew point, and the lowest dew point with a vapour pressure [K].
-_DEW_POINT, _COLDEST = "dew_point_C", 150.0
+#: Key of air by its dew point.
+_DEW_POINT = "dew_point_C"
 #: Temperatures of water that the schema allows [K], and a humidity in place of a dew point at another one.
 LIQUID, _ANY = (273, 373), 0.5
 #: Levels above ``test_beams.T.crack_lengths[0].humidity``, the deepest humidity.
@@ -47,6 +48,7 @@ class Meeting:
     asked: tuple[str, ...] = ()  #: key that says whether it is computed
     deviation: str = ""  #: key of the uncertainty of the humidities
     others: tuple[tuple[str, float], ...] = ()  #: surfaces with another rms [nm] than in their sections
+    bracketed: str = ""  #: key of the humidities that have what bounds thin films beside them
 
     def keys_behind(self, *more: str) -> list[str]:
         """List the keys behind a refusal, ``more`` among them."""
@@ -83,10 +85,26 @@ class Meeting:
         """Whether water condenses in humid air."""
         return bool(self.wetting())
 
-    def too_dry(self, humidities: float | list, more: float = 0, warmer: float = 0) -> str | None:
-        """Refusal of the lowest humidity if the film is no liquid there, at larger angles [degrees] or warmer [K]."""
-        angles, wet = self.wetting(more), humid(humidities)
-        return dry_air(min(wet), self.config[TEMPERATURE] + warmer, angles) if angles and wet else None
+    @cached_property
+    def _temperatures(self):
+        """Temperatures of the conditions of devices by humidity [K]."""
+        return temperatures(self.config.config, self.pair) if self.bracketed else {}
+
+    def temperature(self, humidity: float) -> float:
+        """Temperature of the water at a humidity [K]."""
+        return self._temperatures.get(humidity, self.config[TEMPERATURE])
+
+    def molecules(self, key: str) -> int:
+        """Fewest molecules across a film at the humidities of a key: fewer than a liquid where other airs bound it."""
+        return BRIDGE if key == self.bracketed else MOLECULES
+
+    def too_dry(
+        self, humidities: float | list, more: float = 0, warmer: float = 0, molecules: int = MOLECULES
+    ) -> str | None:
+        """Refusal of a humidity if its film has too few molecules, at larger angles [degrees] or warmer [K]."""
+        angles, wet = self.wetting(more), sorted(humid(humidities)) if self.wetting(more) else []
+        refusals = (dry_air(air, self.temperature(air) + warmer, angles, molecules) for air in wet)
+        return next(filter(None, refusals), None)
 
 
 def surfaces_of(pair: str, config: Keys) -> list[str]:
@@ -123,7 +141,8 @@ def device_meeting(name: str, config: Keys) -> Meeting:
     if KINDS[config[f"{section}.kind"]].release.in_any_air and humid(config[humidities]):
         airs.append("design.worst_humidities")
     scanned = config.scanned(*surfaces_of(pair, config))
-    return Meeting(config, pair, airs, gaps, scanned, deviation=f"{section}.uncertainty.humidity")
+    deviation, bracketed = f"{section}.uncertainty.humidity", humidities if config.bounds_films else ""
+    return Meeting(config, pair, airs, gaps, scanned, deviation=deviation, bracketed=bracketed)
 
 
 def shown_humidity(config: Keys) -> float:
@@ -181,17 +200,15 @@ def _humidity_of_dew_point(value, path, temperature):
     dew_point = value[_DEW_POINT] + ZERO_CELSIUS
     if not LIQUID[0] <= temperature <= LIQUID[1]:
         return _ANY  # the schema refuses the temperature
-    humidity = 1.0
-    if dew_point < temperature:
-        humidity = round(humidity_at(temperature, dew_point), 4) if dew_point > _COLDEST else 0.0
-    if humidity >= 1:
+    humidity = humidity_of_air(temperature, dew_point)
+    if humidity is None:
         words = (
             f"is {one_line(value)}, must be below the temperature of the water, {temperature - ZERO_CELSIUS:.4g} °C: "
             "water condenses on colder surfaces, which is not in the model, and unsafe "
             f"(given {TEMPERATURE} = {temperature:g})"
         )
         raise ConfigError(str(Problem(path, words)))
-    return max(humidity, 1e-4)  # not dry air, but too dry for a film
+    return humidity
 
 
 @relation
@@ -224,8 +241,8 @@ def least_gap(humidities: float | list, meeting: Meeting) -> tuple[float, str]:
     adsorbed = sum(value for _, value in meeting.config.given(ADSORBED))
     angles, wet = meeting.wetting(), humid(humidities)
     is_wet = angles and wet
-    heights = meniscus_height(wet, meeting.config[TEMPERATURE], angles) + to_si(adsorbed, "nm") if is_wet else 0.0
-    height, rms = float(np.max(heights)), to_si(meeting.rms, "nm")
+    films = [float(meniscus_height(air, meeting.temperature(air), angles)) for air in wet] if is_wet else []
+    height, rms = max(films) + to_si(adsorbed, "nm") if films else 0.0, to_si(meeting.rms, "nm")
     least = from_si(rules.least_gap(height, rms), "um")
     return least, (
         f"must be at least {least:.4g} µm, {rules.FILMS} times the sum of the height of the water film, "
@@ -250,7 +267,7 @@ def water_is_a_liquid(config):
     refused = {}
     for meeting in meetings(config):
         for key, humidities in config.given(*meeting.airs):
-            if refusal := meeting.too_dry(humidities):
+            if refusal := meeting.too_dry(humidities, molecules=meeting.molecules(key)):
                 refused.setdefault(key, (key, refusal, *meeting.keys_behind(TEMPERATURE)))
     yield from refused.values()
 

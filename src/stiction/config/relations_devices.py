@@ -37,6 +37,7 @@ from stiction.config.test_beams import DATA, shared_uncertainty
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.air import Air, humid, is_humid
 from stiction.contact.materials import COATING_ATTRACTION, COHERENCE, OF_CONTACT
+from stiction.contact.meniscus import MOLECULES
 from stiction.contact.tilt import EDGE_RADIUS, Edge
 from stiction.rounding import is_at_most
 from stiction.surface.feasible import largest_kurtosis
@@ -183,12 +184,15 @@ def uncertain_water_of_devices_is_a_liquid(config):
                 (deviation * (key == wrong) for wrong in keys),
             )
             driest = min(humid(humidities), default=0) - drier
-            if not is_humid(driest) or _freezes_or_boils(warmer, config[TEMPERATURE]) or meeting.too_dry(humidities):
+            given = f"devices.{name}.humidities"
+            molecules = meeting.molecules(given) if meeting.too_dry(humidities) else MOLECULES
+            if not is_humid(driest) or _freezes_or_boils(warmer, config[TEMPERATURE]):
                 continue  # other relations report it
-            if refusal := meeting.too_dry(driest, more, warmer):
+            if meeting.too_dry(humidities, molecules=molecules):
+                continue
+            if refusal := meeting.too_dry(driest, more, warmer, molecules):
                 message = f"must leave water that is a liquid: the humidity, {driest:g}, {refusal}"
-                given = f"devices.{name}.humidities", *meeting.keys_behind(TEMPERATURE)
-                yield f"devices.{name}.uncertainty.{key}", message, *given
+                yield f"devices.{name}.uncertainty.{key}", message, given, *meeting.keys_behind(TEMPERATURE)
 
 
 @relation

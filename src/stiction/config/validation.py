@@ -6,14 +6,17 @@ types, then with names of what exists, then with surfaces by numbers.
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from stiction.config import materials, meetings, relations, relations_devices, scans, test_beams
 from stiction.config.cases import in_numbers, in_words
 from stiction.config.keys import Keys, Relations
 from stiction.config.merging import expanded, merged
 from stiction.config.messages import ConfigError, Problem, schema_problems
+from stiction.config.mission import airs
+from stiction.config.mission.conditions import CONDITIONS
 from stiction.config.reading import paper
 from stiction.config.relations import schema
 from stiction.config.surfaces import described, grid, process, process_relations, profiles
@@ -23,8 +26,10 @@ from stiction.config.tables import device_table
 _NAMES_OF_DEVICES = relations_devices.relation_of_names
 _OF_DEVICES = Relations([*meetings.relation, *relations_devices.relation])
 #: Relations between names and keys that are given or not, and those between values, where the first hold.
-NAMES = Relations([*relations.relation_of_names, *_NAMES_OF_DEVICES, *process_relations.relation])
-RELATIONS = Relations([*relations.relation, *_OF_DEVICES, *relations_devices.relation_of_tips])
+NAMES = Relations(
+    [*relations.relation_of_names, *_NAMES_OF_DEVICES, *process_relations.relation, *airs.relation_of_names]
+)
+RELATIONS = Relations([*relations.relation, *airs.relation, *_OF_DEVICES, *relations_devices.relation_of_tips])
 #: Sections that a configuration need not have.
 _OPTIONAL = {"materials": {}, "devices": {}, "test_beams": {}, "process": {}}
 
@@ -56,7 +61,7 @@ def checked(stated: Any, kept: Path | None = None) -> Checked:
 
 def _checked(stated, kept):
     """Checked configuration without a file of devices. Raises the errors of `checked`."""
-    stated = meetings.at_dew_points(stated)
+    stated = meetings.at_dew_points(airs.expanded(stated))
     _refuse(schema_problems(sections := _plain(stated), schema()), stated, {})
     stated, unreadable = profiles.with_numbers(stated, kept)
     _refuse(unreadable, stated, {})
@@ -66,6 +71,7 @@ def _checked(stated, kept):
     library = paper()["surfaces"]
     _refuse(_broken(NAMES, _NAMES_OF_DEVICES, Keys(_OPTIONAL | whole)), stated, whole)
     _refuse(described.problems(whole, library), stated, whole)
+    whole = airs.bracketed(whole)
     estimates, unusable = scans.preliminary_estimates(whole, kept)
     _refuse(unusable, stated, whole)
     config = grid.completed(described.completed(whole, library), estimates)
@@ -121,6 +127,8 @@ def _problems_of_arrays(relation, single):
 class _KeysOfArrays(Keys):
     """Keys of arrays as devices, each at one of its humidities. Problems name the keys of users."""
 
+    bounds_films: ClassVar[bool] = False
+
     devices: dict = field(default_factory=dict)  #: those of the configuration
 
     def _origin(self, key):
@@ -155,9 +163,16 @@ def normalised(config: dict) -> dict:
     return _in_order(config | in_order | {"surfaces": surfaces})
 
 
+#: Lists of pairs and devices whose order has no meaning, and how they are sorted.
+_ORDER = {"humidities": sorted, CONDITIONS: partial(sorted, key=lambda condition: sorted(condition.items()))}
+
+
 def _sorted(entries):
-    """Pairs or devices with their humidities sorted."""
-    return {name: entry | {"humidities": sorted(entry["humidities"])} for name, entry in entries.items()}
+    """Pairs or devices with their humidities and conditions sorted."""
+    return {
+        name: entry | {key: _ORDER[key](entry[key]) for key in _ORDER if key in entry}
+        for name, entry in entries.items()
+    }
 
 
 def _in_order(value):

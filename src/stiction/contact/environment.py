@@ -23,6 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from stiction.contact import forcelaw, gaps, vanderwaals
+from stiction.contact.air import Air
 from stiction.contact.correction import NONE, Change, Correction
 from stiction.contact.materials import Solid
 from stiction.contact.meniscus import film
@@ -84,6 +85,12 @@ class Water:
     #: Height that films adsorbed on both solids add to the water between them [m]. ASSUME: the same at any humidity,
     #: and none in the paper.
     adsorbed: float = 0.0
+    #: How much warmer the water is in some conditions of devices [K], by humidity in words.
+    warmer: dict[str, float] = field(default_factory=dict)
+
+    def temperature_at(self, humidity: float) -> float:
+        """Temperature of the water at a humidity [K]."""
+        return self.temperature + self.warmer.get(Air(humidity).name, 0.0)
 
     @property
     def reaches_across(self) -> bool:
@@ -112,7 +119,7 @@ class Water:
 
         The height has what adsorbed films add. Whether the water is a liquid does not depend on it.
         """
-        height, tension = film(humidity, self.temperature, self.contact_angles)
+        height, tension = film(humidity, self.temperature_at(humidity), self.contact_angles)
         return height + self.adsorbed if height else height, tension
 
     def at(self, humidity: float) -> "Water":

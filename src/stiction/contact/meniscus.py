@@ -15,6 +15,11 @@ from stiction.contact.air import is_humid, is_possible
 #: Kim, J. Phys. Chem. B 109, 16760, 2005); on mica, water is solid-like between RH 0.2 and 0.4 (Hu, Xiao, Ogletree and
 #: Salmeron, Surf. Sci. 344, 221, 1995). Eqs. (8) and (9) give thinner films a tension that grows without limit.
 MOLECULES = 3
+#: ASSUME: fewest molecules across a meniscus. Water that is thinner bridges no gap.
+BRIDGE = 1
+#: ASSUME: largest tension of films that are no liquid [Pa], above the 140 MPa that water in quartz bore (Zheng et al.,
+#: Science 254, 829, 1991). Films of three molecules have less from 0 °C on.
+STRENGTH = 180e6
 #: Rounding of the sum of two cosines that are opposite to each other.
 _ROUNDING = 1e-9
 #: 0 °C [K], exact; SI.
@@ -153,11 +158,13 @@ def meniscus_height(
     return -_wetting(contact_angles) * kelvin_radius(humidity, temperature)
 
 
-def least_humidity(temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:
-    r"""Humidity of a film `MOLECULES` molecules thick between two flats [-]. Below, it is no liquid.
+def least_humidity(
+    temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0), molecules: int = MOLECULES
+) -> float:
+    r"""Humidity of a film n molecules thick between two flats [-]. Below `MOLECULES`, it is no liquid.
 
     .. math:: \mathrm{RH} = \exp \Bigl( -\frac{\gamma V_m (\cos\theta_1 + \cos\theta_2)}
-        {\mathcal{R} T \cdot 3 d_{H_2 O}} \Bigr)
+        {\mathcal{R} T \, n \, d_{H_2 O}} \Bigr)
 
     Parameters as in `meniscus_height`, which raises an error where no water condenses.
 
@@ -167,20 +174,29 @@ def least_humidity(temperature: float, contact_angles: tuple[float, float] = (0.
     0.29
     """
     height = float(meniscus_height(np.exp(-1), temperature, contact_angles))  # it is inverse to -ln RH
-    return float(np.exp(-height / (MOLECULES * WATER_MOLECULE)))
+    return float(np.exp(-height / (molecules * WATER_MOLECULE)))
 
 
-def dry_air(humidity: float, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> str | None:
+#: Why films of fewer molecules are refused, and what to write.
+_TOO_THIN = {
+    MOLECULES: "which are no liquid; only the humidities of a device can be lower",
+    BRIDGE: "which bridges no gap; write dry",
+}
+
+
+def dry_air(
+    humidity: float, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0), molecules: int = MOLECULES
+) -> str | None:
     """Refusal of a humidity below the `least_humidity`, as the end of a sentence, otherwise ``None``."""
-    least = least_humidity(temperature, contact_angles)
+    least = least_humidity(temperature, contact_angles, molecules)
     if humidity >= least:
         return None
     degrees = " and ".join(f"{np.degrees(angle):.3g}" for angle in contact_angles)
+    number = f"{molecules} molecule{'s' * (molecules > 1)}"
     return (
         f"must be at least {np.ceil(1e4 * least) / 1e4:.4g}: in drier air, at {temperature:g} K and contact angles of "
-        f"{degrees} degrees, the film between the surfaces is thinner than {MOLECULES} molecules, "
-        f"{1e9 * MOLECULES * WATER_MOLECULE:.2g} nm, which are no liquid; results for dry air and for the driest "
-        "air that is allowed do not bound those between, because thinner films pull harder"
+        f"{degrees} degrees, the film between the surfaces is thinner than {number}, "
+        f"{1e9 * molecules * WATER_MOLECULE:.2g} nm, {_TOO_THIN[molecules]}"
     )
 
 
@@ -193,20 +209,26 @@ def require_humidity(humidity: float) -> None:
 def film(humidity: float, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
     """Height h_C [m] and tension -ΔP [Pa] of the water at one humidity, see `meniscus_height`.
 
-    Both are zero in dry air, whose humidity is 0, and at any humidity between surfaces that are not `is_wetted`.
+    Both are zero in dry air, whose humidity is 0, and at any humidity between surfaces that are not `is_wetted`. Films
+    below `MOLECULES` count as a liquid with at most the tension `STRENGTH` and the same work between flats; what bounds
+    them is in `stiction.config.mission.airs`.
 
     Raises
     ------
     ValueError
-        If no air has this humidity, or if it is not dry, and too dry for a film that is a liquid.
+        If no air has this humidity, or if it is not dry, and too dry for a film of `BRIDGE` molecules.
     """
     require_humidity(humidity)
     if not (is_humid(humidity) and is_wetted(contact_angles)):
         return 0.0, 0.0
-    if refusal := dry_air(humidity, temperature, contact_angles):
+    if refusal := dry_air(humidity, temperature, contact_angles, BRIDGE):
         raise ValueError(f"a relative humidity of {humidity:g} {refusal}")
     height = float(meniscus_height(humidity, temperature, contact_angles))
-    return height, -float(laplace_pressure(humidity, temperature))
+    tension = -float(laplace_pressure(humidity, temperature))
+    work, thinnest = height * tension, MOLECULES * WATER_MOLECULE
+    if height >= thinnest or tension <= (most := max(STRENGTH, work / thinnest)):
+        return height, tension
+    return work / most, most
 
 
 def flooded_energy(temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> float:

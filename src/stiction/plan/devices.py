@@ -14,12 +14,13 @@ from stiction.config import test_beams
 from stiction.config.cases import PairInAir, case_id
 from stiction.config.kinds import BEAM, ROUGHNESSES, STOPPER, Kind, kind_of
 from stiction.config.materials import Materials
+from stiction.config.mission.conditions import temperatures
 from stiction.config.reading import is_stated, paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
 from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, stated
 from stiction.config.surfaces.members import is_itself, like, members
 from stiction.config.units import NM_PER_UM, from_si, to_si
-from stiction.contact.air import DRY_AIR, has_dry, humid, is_humid
+from stiction.contact.air import DRY_AIR, has_dry, humid
 from stiction.contact.materials import OF_PAIRS
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.contact.tilt import EDGE_RADIUS, Edge, length_of_edge
@@ -402,7 +403,7 @@ class DevicePlan:
         modulus = Materials(self.config).modulus(device["pair"])
         sizes = to_si(device["width_um"], "um"), to_si(thickness, "um")
         beam = Beam(1.0, *sizes, to_si(modulus["young_modulus_GPa"], "GPa"), to_si(gap, "um"), 1)
-        return tip_slope(arc_length(flooded_energy(self.config["water"]["temperature_K"]), beam), beam.gap)
+        return tip_slope(arc_length(flooded_energy(min(self._temperatures(device).values())), beam), beam.gap)
 
     def _reach(self, device):
         """Depth of a wet tip below the mean plane of its edge: film in the wettest air and peaks [nm].
@@ -411,12 +412,17 @@ class DevicePlan:
         ASSUME: peaks of three times the rms of both surfaces.
         """
         section = self.sections[device]
-        wettest = max(section["humidities"] + section.get("chart", {}).get("humidities", []))
-        water = self.config["water"]
-        film = from_si(float(meniscus_height(wettest, water["temperature_K"])), "nm") if is_humid(wettest) else 0.0
-        adsorbed = water.get("adsorbed_nm", 0) if is_humid(wettest) else 0
-        least = film + adsorbed + 3 * self._roughest_of_both(section["pair"])
+        at = self._temperatures(section)
+        films = [from_si(float(meniscus_height(air, at[air])), "nm") for air in humid(at)]
+        adsorbed = self.config["water"].get("adsorbed_nm", 0) if films else 0
+        least = max(films, default=0.0) + adsorbed + 3 * self._roughest_of_both(section["pair"])
         return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
+
+    def _temperatures(self, section):
+        """Temperatures of the water of a device by humidity, those of its chart and dry air among them [K]."""
+        humidities = section["humidities"] + section.get("chart", {}).get("humidities", [])
+        own = temperatures(self.config, section["pair"])
+        return {air: own.get(air, self.config["water"]["temperature_K"]) for air in humidities}
 
     def _rms_of_both(self, pair):
         """Standard deviation of the sum of the heights of both surfaces of a pair [nm]."""

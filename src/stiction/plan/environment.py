@@ -10,8 +10,9 @@ from typing import Any
 
 from stiction.config.cases import TOO_LITTLE, PairInAir
 from stiction.config.materials import Materials, hamaker_constant, hamaker_constants
+from stiction.config.mission.conditions import temperatures
 from stiction.config.units import to_si
-from stiction.contact.air import humid
+from stiction.contact.air import Air, humid
 from stiction.contact.materials import COATING, COATING_ATTRACTION, OF_COATINGS
 from stiction.contact.meniscus import is_wetted, require_humidity
 from stiction.contact.vanderwaals import combined
@@ -123,7 +124,19 @@ class Environment:
         angles = self._contact_angles(contact)
         gaps = self._gaps(contact, self.around(contact, config))
         water = {key: value for key, value in (config or self.config)["water"].items() if value}
-        return water | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
+        return water | self._warmer(contact) | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
+
+    def temperature(self, pair: str, humidity: float) -> float:
+        """Temperature of the water of a pair at a humidity: that of a condition of its devices where they stick [K]."""
+        own = temperatures(self.config, PairInAir(pair).pair) if self.of_devices else {}
+        return own.get(humidity, self.config["water"]["temperature_K"])
+
+    def _warmer(self, contact):
+        """How much warmer the water of a pair is in conditions of its devices."""
+        own = temperatures(self.config, PairInAir(contact).pair) if self.of_devices else {}
+        differences = {Air(air).name: round(at - self.config["water"]["temperature_K"], 6) for air, at in own.items()}
+        warmer = {air: differences[air] for air in sorted(differences) if differences[air]}
+        return {"warmer_K": warmer} if warmer else {}
 
     def across_gaps(self, contact: str) -> dict[str, Any]:
         """Settings of `water`, with attraction across gaps."""

@@ -12,6 +12,7 @@ from stiction.constants import WATER_MOLECULE
 from stiction.contact.air import is_humid
 from stiction.contact.full.smooth_pairs import shortfall
 from stiction.contact.materials import COATING, COATING_ATTRACTION, OF_COATINGS, PROPERTIES
+from stiction.contact.meniscus import MOLECULES as LIQUID
 from stiction.devices.limits.limit import Limit, Side
 
 #: Largest plastic share of the contact area. Pair c has 58 %, and its beams stick at 72 % of the predicted length.
@@ -20,7 +21,7 @@ PLASTIC = 0.02
 #: short compared with the gap: with a film of half the gap, Eq. (13) gives half of the adhesion energy.
 FILMS = 20
 #: Fewest molecules across a film for which results are within the range of validity, RH 0.395 at 300 K where water wets
-#: both surfaces perfectly. Films of less than `stiction.contact.meniscus.MOLECULES` are refused.
+#: both surfaces perfectly.
 MOLECULES = 4
 #: ASSUME: largest share of the force on a patch that the surface tension along its rim may add.
 RIM = 0.1
@@ -191,10 +192,31 @@ def few_strips(part: float) -> Limit | None:
 
 
 def thin_film(film: float) -> Limit | None:
-    """Film of height h_C too thin for a liquid. At height zero, there is none."""
+    """Film of height h_C too thin for a liquid. At height zero, there is none.
+
+    Thinner ones than the thinnest liquid are those of devices with what bounds them beside them.
+    """
     if not 0 < film < MOLECULES * WATER_MOLECULE:
         return None
+    if film < LIQUID * WATER_MOLECULE:
+        return Limit("solid_film", Side.SAFE, False, numbers={"film": film})
     return Limit("thin_film", Side.EITHER, False, numbers={"film": film})
+
+
+def condensing(conditions: Sequence[Mapping[str, float]]) -> Limit | None:
+    """Conditions of a device at or below their dew points. Both in °C, of those with a ``dew_point_C``."""
+    found = [one for one in conditions if one.get("dew_point_C", -math.inf) >= one["temperature_C"]]
+    if not found:
+        return None
+    numbers = {"airs": [[one["temperature_C"], one["dew_point_C"]] for one in found]}
+    return Limit("condensing", Side.UNSAFE, False, numbers=numbers)
+
+
+def supercooled(conditions: Sequence[Mapping[str, float]]) -> Limit | None:
+    """Conditions of a device in which water is below 0 °C, and does not condense."""
+    airs = [one for one in conditions if one.get("dew_point_C", -math.inf) < one["temperature_C"] < 0]
+    celsius = sorted({one["temperature_C"] for one in airs})
+    return Limit("supercooled", Side.EITHER, False, numbers={"celsius": celsius}) if celsius else None
 
 
 def no_water(film: float, humidity: float) -> Limit | None:

@@ -6,8 +6,9 @@ import numpy as np
 
 from stiction.answer.data import INPUTS, Answer, Cause, Probability, Verdict
 from stiction.contact.air import Air
+from stiction.contact.meniscus import ZERO_CELSIUS
 from stiction.devices.risk import one_in
-from stiction.report.format import airs, humidity_text
+from stiction.report.format import airs, humidity_text, number
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
 
@@ -134,9 +135,7 @@ def decides(answer: Answer) -> str:
     last, largest = answer.stated_steps[-1], answer.largest_step
     held = END_STATES[last.shape].by if last.shape in END_STATES else "liquid that dries"
     held = "tip" if answer.is_by_tip else held
-    air = Air(last.humidity)
-    air = air.choose(air.words, "Dry air")
-    said = f"{air}, stuck by {'the ' if held != 'beam or tip' else ''}{held}."
+    said = f"{_air(answer, last.humidity)}, stuck by {'the ' if held != 'beam or tip' else ''}{held}."
     change = largest.factor - 1
     if not np.isfinite(change) or abs(change) < _SAME:
         return said
@@ -175,13 +174,28 @@ def of_airs(answer: Answer) -> list[dict[str, str]]:
     """Rows of the table of a first screen: size to build and P(stuck) in each stated air alone."""
     rows, sought = [], answer.sought
     for air in answer.airs:
-        row = {"RH": humidity_text(air.humidity), f"{sought.name} to build [{sought.shown}]": _size(answer, air.build)}
+        row = {"RH": humidity_text(air.humidity)} | _celsius(answer, air)
+        row |= {f"{sought.name} to build [{sought.shown}]": _size(answer, air.build)}
         if np.isfinite(air.without_tip):
             row["if the tip cannot touch [µm]"] = _size(answer, air.without_tip)
         if air.stuck is not None:
             row[f"P(stuck) at {answer.size / sought.scale:.4g} {sought.shown}"] = stuck_in_words(air.stuck)
         rows.append(row)
     return rows
+
+
+def _air(answer, humidity):
+    """Air that decides, with its temperature if it is a condition of the device."""
+    air = Air(humidity)
+    at = next((one.temperature for one in answer.airs if one.humidity == humidity), np.nan)
+    return air.choose(air.words, "Dry air") + (f" at {at - ZERO_CELSIUS:.3g} °C" if np.isfinite(at) else "")
+
+
+def _celsius(answer, air):
+    """Cell with the temperature of an air, none for a device without conditions."""
+    if not np.isfinite([one.temperature for one in answer.airs]).any():
+        return {}
+    return {"°C": number(air.temperature - ZERO_CELSIUS, ".3g")}
 
 
 def _size(answer, size):

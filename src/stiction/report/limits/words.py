@@ -11,6 +11,7 @@ from stiction.constants import WATER_MOLECULE
 from stiction.contact.air import DRY_AIR, has_dry, humid
 from stiction.contact.full.smooth_pairs import largest_shortfall
 from stiction.contact.materials import COATING_ATTRACTION
+from stiction.contact.meniscus import MOLECULES as LIQUID
 from stiction.devices.limits.limit import Limit
 from stiction.devices.limits.rules import FILMS, MOLECULES, PLASTIC, PLATE, RIM, ROTATION, SLENDER
 from stiction.report.format import TO_MPA, TO_NM, TO_UM, airs, with_error
@@ -220,6 +221,29 @@ def _thin_film(film):
     )
 
 
+def _solid_film(film):
+    return (
+        f"The film of water is {TO_NM * film:.2g} nm high, thinner than {LIQUID} molecules, which are no liquid. The "
+        "answer is the worst of three airs: this one as if it had a liquid, the driest with a liquid film, and dry air."
+    )
+
+
+def _condensing(airs):
+    where = ", ".join(f"{celsius:g} °C with a dew point of {dew_point:g} °C" for celsius, dew_point in airs)
+    return (
+        f"Water condenses on the device: {where}. That is not in the model, and unsafe: drops that dry pull surfaces "
+        "together. Keep the dew point lower; without this condition, you get the answer for all others."
+    )
+
+
+def _supercooled(celsius):
+    listed = " and ".join(f"{value:g}" for value in celsius)
+    return (
+        f"At {listed} °C water counts as a supercooled liquid, and dew points are those over it. Ice and frost are not "
+        "in the model, so that this result can be off to either side."
+    )
+
+
 def _no_water():
     return (
         "No water condenses between the surfaces, because the cosines of their contact angles add up to zero or less: "
@@ -411,6 +435,9 @@ SENTENCES: dict[str, Callable[..., str]] = {
     "unknown_full_contact": _unknown_full_contact,
     "few_strips": _few_strips,
     "thin_film": _thin_film,
+    "solid_film": _solid_film,
+    "condensing": _condensing,
+    "supercooled": _supercooled,
     "no_water": _no_water,
     "wide_meniscus": _wide_meniscus,
     "filled_gap": _filled_gap,

@@ -1,7 +1,7 @@
 """Stage answer: the size to build of a device, the steps that lead to it, and P(stuck) at its own size, as data."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,9 @@ from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, Step
 from stiction.answer.ladder import Question
 from stiction.answer.unknowns import Draws, OfBudgets
 from stiction.answer.worlds import DRAWS
+from stiction.config.mission.conditions import CONDITIONS, temperatures
 from stiction.config.units import in_si
+from stiction.contact.air import Air
 from stiction.devices.budget import LARGEST
 from stiction.plan.stage import Stage, select
 from stiction.stages.answer import conditions
@@ -39,6 +41,7 @@ class Settings:
     required: float = 1.0  #: fraction of a requirement, 1 without one [-]
     beam: DesignedBeam | None = None  #: none for a stopper
     budgets: tuple[float, ...] = ()  #: humidities of the budgets [-]
+    temperatures: dict[str, float] = field(default_factory=dict)  #: of its conditions, by humidity in words [K]
 
 
 def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
@@ -52,7 +55,10 @@ def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
     stated = {"touchdowns": settings.touchdowns, "left_out": left_out}
     asked = Question(settings.name, settings.kind, forbidden=_forbidden(data, unknowns), **stated, **question)
     draws = Draws(DRAWS, settings.seed)
-    return ladder.answer(asked, found, unknowns, draws, None if unknowns is before else before)
+    answer = ladder.answer(asked, found, unknowns, draws, None if unknowns is before else before)
+    at = [settings.temperatures.get(Air(one.humidity).name, np.nan) for one in answer.airs]
+    airs = [replace(one, temperature=kelvin) for one, kelvin in zip(answer.airs, at, strict=True)]
+    return replace(answer, airs=tuple(airs))
 
 
 def _of_beam(data, settings):
@@ -120,7 +126,7 @@ _TEXTS, _LISTS = ("device", "kind", "measure"), ("left_out", "forbidden")
 _STUCK = ("value", "low", "high", "none_seen")
 #: Rows of an answer by the dimension of their dataset.
 _STEPS = {"size": True, "factor": False, "humidity": False, "shape": None, "source": None, "stated": None}
-_AIRS = ("build", "without_tip", "first")
+_AIRS = {"build": None, "without_tip": None, "first": None, "temperature": "K"}
 
 
 def layout(answer: Answer) -> xr.Dataset:
@@ -134,8 +140,9 @@ def layout(answer: Answer) -> xr.Dataset:
         values = [getattr(step, name) for step in answer.steps]
         note = {} if is_size is None else size if is_size else none
         variables[f"step_{name}"] = ("step", np.array(values, dtype=int if name == "stated" else None), note)
-    for name in _AIRS:
-        variables[f"air_{name}"] = ("air", [getattr(one, name) for one in answer.airs], size)
+    for name, unit in _AIRS.items():
+        note = {"units": unit} if unit else size
+        variables[f"air_{name}"] = ("air", [getattr(one, name) for one in answer.airs], note)
     for name in _STUCK:
         every = [answer.stuck, *(air.stuck for air in answer.airs)]
         at = [np.nan if stuck is None else float(getattr(stuck, name)) for stuck in every]
@@ -167,6 +174,7 @@ def answer_of(dataset: xr.Dataset) -> Answer:
             _probability(row, "air_stuck_"),
             row.air_curve.values,
             float(row.air_first),
+            float(row.air_temperature),
         )
         for row in (dataset.isel(air=k) for k in range(dataset.sizes["air"]))
     ]
@@ -216,6 +224,8 @@ def _settings(plan, at):
     own = {"seed": plan.config["seed"], "name": at.device, "liquids": sorted(liquids)}
     own |= {"left_out": ["dimples"] if "dimples" in section else []}
     own |= {"budgets": [humidity for humidity, *_ in _budgets(plan, at.device)]}
+    at = {Air(air).name: at for air, at in temperatures(plan.config, section["pair"]).items()}
+    own |= {"temperatures_K": at} if CONDITIONS in section else {}
     own |= {"required": section["requirement"]["share"]} if "requirement" in section else {}
     return select(Settings, section | own | beam)
 

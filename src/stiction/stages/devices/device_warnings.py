@@ -56,6 +56,7 @@ class OfDevice:
     on_summits: tuple[float, ...] = ()  #: humidities with water at which summits alone make its forces [-]
     unknown: tuple[float, ...] = ()  #: those of these at which full contact of its forces is not known [-]
     has_dimples: bool = False  #: whether forces of dimples decide about all shapes
+    conditions: tuple[dict, ...] = ()  #: of its mission, as in the configuration
 
     @property
     def pair(self) -> str:
@@ -84,6 +85,8 @@ class OfDevice:
             rules.no_water(float(dataset.film), humidity),
             rules.flat_patches(float(dataset.share_flat)),
             rules.lengths_of_sizes(float(dataset.size_error)),
+            rules.condensing(self.conditions),
+            rules.supercooled(self.conditions),
         )
         on_summits, unknown = ([humidity] if humidity in airs else [] for airs in (self.on_summits, self.unknown))
         of_forces = rules.triggered(
@@ -110,6 +113,7 @@ class OfStopper:
     materials: StatedProperties = ()  #: of its pair
     on_summits: tuple[float, ...] = ()  #: humidities with water at which summits alone make its forces [-]
     unknown: tuple[float, ...] = ()  #: those of these at which full contact of its forces is not known [-]
+    conditions: tuple[dict, ...] = ()  #: of its mission, as in the configuration
     changes_of_forces: ClassVar[tuple[str, ...]] = ("pull_off_applied",)  #: as of `OfDevice`
     ratios_of_forces: ClassVar[tuple[str, ...]] = ("pull_off_ratio",)  #: as of `OfDevice`
 
@@ -120,6 +124,8 @@ class OfStopper:
         limits = rules.triggered(
             rules.no_water(max(films), max(self.humidities)),
             rules.thin_film(min(films)),
+            rules.condensing(self.conditions),
+            rules.supercooled(self.conditions),
             rules.wide_meniscus(max(films), self.contact),
             rules.flat_patches(float(dataset.share_flat)),
             rules.smooth_pair(float(dataset.rms), self.on_summits),

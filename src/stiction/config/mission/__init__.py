@@ -1,0 +1,1 @@
+"""Conditions of the life of devices, and the airs that stand for them."""

@@ -1,0 +1,166 @@
+"""Mission of a device: its conditions as humidities, and what bounds films that are no liquid.
+
+``conditions: [{temperature_C: 25, dew_point_C: 10}, {temperature_C: 15, dew_point_C: 10}]`` adds the humidities 0.3875
+and 0.7201 to a device. At each of them its water has the temperature of the condition, see
+`stiction.config.mission.conditions.temperatures`: no stage knows of missions.
+
+ASSUME: all touchdowns happen in the worst condition, at the largest voltage, the safe side.
+"""
+
+import math
+from typing import Any
+
+from stiction.config.cases import in_numbers
+from stiction.config.keys import Keys, Relations
+from stiction.config.meetings import TEMPERATURE, device_meeting
+from stiction.config.messages import ConfigError, Problem, is_number, one_line
+from stiction.config.mission.conditions import CONDITIONS, DECIMALS, airs, humidity_of, kelvin
+from stiction.contact.air import DRY_AIR, humid, is_humid, is_possible
+from stiction.contact.meniscus import BRIDGE, ZERO_CELSIUS, least_humidity
+
+#: Keys of the air of a condition, of which it has one, and those that become keys of the device.
+_AIR, _OF_DEVICE = ("humidity", "dew_point_C"), ("touchdowns", "voltage_V")
+#: Relations between the keys of a condition, and between the conditions of devices.
+relation_of_names, relation = Relations(), Relations()
+
+
+def expanded(config: Any) -> Any:
+    """Configuration, valid or not, in which devices have the humidities of their conditions.
+
+    Raises
+    ------
+    ConfigError
+        If water condenses in all conditions of a device.
+    """
+    devices = config.get("devices") if isinstance(config, dict) else None
+    if not isinstance(devices, dict):
+        return config
+    return config | {"devices": {name: _with_airs(device, ("devices", name)) for name, device in devices.items()}}
+
+
+def _with_airs(device, path):
+    """Section of a device with the humidities, touchdowns and voltage of its conditions. The schema refuses wrong ones.
+
+    A device with wrong conditions has some humidity, so that nothing but these is refused.
+    """
+    if not isinstance(device, dict) or CONDITIONS not in device:
+        return device
+    conditions, stated = in_numbers(device[CONDITIONS]), device.get("humidities", [])
+    is_list = conditions and isinstance(conditions, list) and isinstance(stated, list)
+    if not (is_list and all(map(_is_condition, conditions))):
+        return {"humidities": [DRY_AIR.humidity]} | device
+    found = dict.fromkeys(map(humidity_of, conditions))
+    if not stated and {*found} == {None}:
+        words = f"is {one_line(conditions)}, must have a condition above its dew point: in all of these water condenses"
+        raise ConfigError(str(Problem((*path, CONDITIONS), words)))
+    added = [air for air in found if air is not None and air not in stated]
+    kept = [{key: value for key, value in each.items() if key not in _OF_DEVICE} for each in conditions]
+    own = _touchdowns(device, conditions) | _voltage(device, conditions)
+    return device | own | {"humidities": [*stated, *added], CONDITIONS: kept}
+
+
+def _is_condition(condition):
+    """Whether a condition has numbers for all that its device gets."""
+    if not isinstance(condition, dict):
+        return False
+    stated = [condition[key] for key in _AIR if key in condition]
+    others = [condition[key] for key in _OF_DEVICE if key in condition]
+    is_air = len(stated) == 1 and is_possible(condition.get("humidity", 0))
+    return is_air and all(map(is_number, [condition.get("temperature_C"), *stated, *others]))
+
+
+def _touchdowns(device, conditions):
+    """Touchdowns of a device in all conditions together, and those that it has beside them."""
+    counts = [section["touchdowns"] for section in (device, *conditions) if "touchdowns" in section]
+    return {"touchdowns": sum(counts)} if counts and all(map(is_number, counts)) else {}
+
+
+def _voltage(device, conditions):
+    """Voltage of the condition, or of the device, with the largest potential."""
+    offset = device.get("offset_V", 0)
+    volts = [section["voltage_V"] for section in (device, *conditions) if "voltage_V" in section]
+    is_known = volts and all(map(is_number, [offset, *volts]))
+    return {"voltage_V": max(volts, key=lambda volt: (abs(volt + offset), volt))} if is_known else {}
+
+
+def bracketed(config: dict[str, Any]) -> dict[str, Any]:
+    r"""Configuration in which each film of a device that is too thin for a liquid has what bounds it beside it.
+
+    Whatever its structure, a film attracts flats at a gap g with some f(g) and needs the work
+    :math:`\int f \, dg = \gamma (\cos\theta_1 + \cos\theta_2)` to separate them. ASSUME: f decreases, its tension is at
+    most that of its humidity, or `STRENGTH`, and it reaches no farther than the thinnest liquid. It then is a mixture
+    of films with heights h from that of its humidity to that of the thinnest liquid, with tensions
+    :math:`\gamma (\cos\theta_1 + \cos\theta_2) / h`. Where the bearing area A is convex, so is A(d - h) / h in 1 / h:
+    energy and largest force are at most the larger of those at both ends. Without a meniscus, they are those of dry
+    air. The answer is the worst of the three airs.
+
+    ASSUME: below one molecule there is no meniscus. A condition in such air counts as dry.
+    """
+    keys, changed = Keys({"materials": {}} | config), {}
+    for name, device in config.get("devices", {}).items():
+        if angles := device_meeting(name, keys).wetting():
+            changed[name] = _bracketed(device, angles, keys[TEMPERATURE])
+    return config | {"devices": config["devices"] | changed} if changed else config
+
+
+def _bracketed(device, angles, temperature):
+    """Section of a device with the airs that bound those of thin films, between surfaces with contact angles [rad]."""
+    conditions, stated, bounds = device.get(CONDITIONS, []), [], []
+    own = {humidity_of(condition): kelvin(condition) for condition in conditions}
+    for air in device["humidities"]:
+        at = own.get(air, temperature)
+        thinnest = _thinnest(at, angles)
+        if not is_humid(air) or air >= thinnest:
+            stated.append(air)
+        elif air < least_humidity(at, angles, BRIDGE):
+            stated.append(DRY_AIR.humidity if air in own else air)  # a relation refuses it
+        else:
+            stated.append(air)
+            bounds += [DRY_AIR.humidity, thinnest]
+            conditions = conditions + _same(at, thinnest) * (air in own and thinnest not in own)
+    airs = [*stated, *(air for air in dict.fromkeys(bounds) if air not in stated)]
+    return device | {"humidities": airs} | ({CONDITIONS: conditions} if conditions else {})
+
+
+def _same(temperature, humidity):
+    """Condition at a temperature [K] and a humidity, as a list."""
+    return [{"temperature_C": round(temperature - ZERO_CELSIUS, 6), "humidity": humidity}]
+
+
+def _thinnest(temperature, angles):
+    """Lowest humidity of a liquid film that names of files can contain [-]."""
+    steps = 10**DECIMALS
+    return min(math.ceil(least_humidity(temperature, angles) * steps), steps - 1) / steps
+
+
+@relation_of_names
+def conditions_state_their_air_once(config):
+    """Require either the humidity or the dew point of a condition."""
+    for name, conditions in config.entries("devices", CONDITIONS):
+        for number, condition in enumerate(conditions):
+            if len({*_AIR} & {*condition}) != 1:
+                yield f"devices.{name}.{CONDITIONS}.{number}", f"must have either {' or '.join(_AIR)}"
+
+
+@relation
+def air_has_one_temperature_at_a_humidity(config):
+    """Require one temperature of the water between two surfaces at a humidity, which names its results."""
+    for pair in dict.fromkeys(pair for _, pair in config.entries("devices", "pair")):
+        found = {}
+        for key, humidity, temperature in [*_other_airs(config, pair), *airs(config.config, pair)]:
+            before, other = found.setdefault(humidity, (temperature, key))
+            if before != temperature:
+                another = f"{humidity + 10**-DECIMALS:.4g}"
+                yield (
+                    key,
+                    f"must have another humidity than {humidity:g}, such as {another}, at another temperature",
+                    other,
+                )
+
+
+def _other_airs(config, pair):
+    """Yield key, humidity and temperature of the humidities of devices without a condition [K]."""
+    for name, on, humidities in config.entries("devices", "pair", "humidities"):
+        own = {humidity_of(condition) for condition in config["devices"][name].get(CONDITIONS, ())}
+        for humidity in humid([air for air in humidities if air not in own]) if on == pair else ():
+            yield f"devices.{name}.humidities", humidity, config[TEMPERATURE]
