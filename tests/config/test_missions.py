@@ -50,6 +50,13 @@ def test_conditions_are_the_humidities_of_tables_at_their_temperatures():
         assert Plan(config).air.temperature("b", humidity) == 300  # pairs keep the temperature of the water
 
 
+def test_a_dew_point_in_place_of_the_humidity_is_that_of_the_condition():
+    as_humidity = {"temperature_C": 12, "humidity": {"dew_point_C": 10}}
+    assert lever(conditions=[as_humidity])[0] == lever(conditions=MISSION[:1])[0]
+    lines = problems(configuration(conditions=[as_humidity, {"temperature_C": "cold", "humidity": 0.5}]))
+    assert any(line.startswith("devices.Lever.conditions[1].temperature_C is 'cold'") for line in lines)
+
+
 def test_the_film_follows_the_temperature_of_its_condition():
     water = in_si(Water, select(Water, Plan(lever(conditions=MISSION)[1]).air_of_devices.water("b")))
     for condition in MISSION:

@@ -14,7 +14,7 @@ from stiction.config.keys import Keys, Relations
 from stiction.config.kinds import KINDS
 from stiction.config.materials import material_of
 from stiction.config.messages import ConfigError, Problem, is_number, one_line
-from stiction.config.mission.conditions import humidity_of_air, temperatures
+from stiction.config.mission.conditions import CONDITIONS, humidity_of_air, temperatures
 from stiction.config.reading import is_stated
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.air import has_dry, humid
@@ -191,8 +191,9 @@ def at_dew_points(config: Any, path: tuple = (), temperature: float | None = Non
 
 def _is_dew_point(value, path):
     """Whether a value at a path is the dew point in place of a humidity."""
-    is_humidity = ("humidities" in path[-2:] or path[-1:] == ("humidity",)) and "uncertainty" not in path
-    return is_humidity and isinstance(value, dict) and {*value} == {_DEW_POINT} and is_number(value[_DEW_POINT])
+    is_humidity = "humidities" in path[-2:] or path[-1:] == ("humidity",)
+    is_air = is_humidity and not {"uncertainty", CONDITIONS} & {*path}
+    return is_air and isinstance(value, dict) and {*value} == {_DEW_POINT} and is_number(value[_DEW_POINT])
 
 
 def _humidity_of_dew_point(value, path, temperature):

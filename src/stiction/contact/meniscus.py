@@ -179,7 +179,7 @@ def least_humidity(
 
 #: Why films of fewer molecules are refused, and what to write.
 _TOO_THIN = {
-    MOLECULES: "which are no liquid; only the humidities of a device can be lower",
+    MOLECULES: "which are no liquid; only the humidities of a device can be lower: leave its pair out of run.pairs",
     BRIDGE: "which bridges no gap; write dry",
 }
 

@@ -46,6 +46,7 @@ def _with_airs(device, path):
     if not isinstance(device, dict) or CONDITIONS not in device:
         return device
     conditions, stated = in_numbers(device[CONDITIONS]), device.get("humidities", [])
+    conditions = list(map(_with_dew_point, conditions)) if isinstance(conditions, list) else conditions
     is_list = conditions and isinstance(conditions, list) and isinstance(stated, list)
     if not (is_list and all(map(_is_condition, conditions))):
         return {"humidities": [DRY_AIR.humidity]} | device
@@ -57,6 +58,14 @@ def _with_airs(device, path):
     kept = [{key: value for key, value in each.items() if key not in _OF_DEVICE} for each in conditions]
     own = _touchdowns(device, conditions) | _voltage(device, conditions)
     return device | own | {"humidities": [*stated, *added], CONDITIONS: kept}
+
+
+def _with_dew_point(condition):
+    """Condition with its dew point in a key of its own, if it has one in place of the humidity."""
+    air = condition.get("humidity") if isinstance(condition, dict) else None
+    if not isinstance(air, dict) or {*air} != {"dew_point_C"}:
+        return condition
+    return {key: value for key, value in condition.items() if key != "humidity"} | air
 
 
 def _is_condition(condition):
