@@ -148,6 +148,15 @@ def test_wrong_conditions_are_refused_in_one_sentence(keys, words):
     assert line.startswith(f"devices.Lever.{words}")
 
 
+def test_test_beams_are_at_the_temperature_of_the_water():
+    array = {"pair": "b", "length_um": 1500, "thickness_um": 2.5, "gap_um": 2, "width_um": 30}
+    array["crack_lengths"] = [{"humidity": 0.67, "mean_um": 700, "std_um": 20, "beams": 9}]
+    beams, keys = {"test_beams": {"A": array}}, {"test_beams": ["A"]}
+    assert problems(configuration(beams, conditions=[{"temperature_C": 50, "humidity": 0.66}], **keys)) == ()
+    (line,) = problems(configuration(beams, conditions=[{"temperature_C": 50, "humidity": 0.67}], **keys))
+    assert "must have another humidity than 0.67, such as 0.6701" in line
+
+
 def test_touchdowns_add_up_and_the_largest_voltage_counts():
     own = [{"touchdowns": 5, "voltage_V": -8}, {"touchdowns": 7, "voltage_V": 6}, {}]
     mission = [one | more for one, more in zip(MISSION, own, strict=True)]

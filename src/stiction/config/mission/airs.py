@@ -10,6 +10,7 @@ ASSUME: all touchdowns happen in the worst condition, at the largest voltage, th
 import math
 from typing import Any
 
+from stiction.config import test_beams
 from stiction.config.cases import in_numbers
 from stiction.config.keys import Keys, Relations
 from stiction.config.meetings import TEMPERATURE, device_meeting
@@ -168,7 +169,10 @@ def air_has_one_temperature_at_a_humidity(config):
 
 
 def _other_airs(config, pair):
-    """Yield key, humidity and temperature of the humidities of devices without a condition [K]."""
+    """Yield key, humidity and temperature of the humidities of test beams, and of devices without a condition [K]."""
+    for name, on in config.entries("test_beams", "pair"):
+        for humidity in humid(test_beams.humidities(config["test_beams"][name])) if on == pair else ():
+            yield f"test_beams.{name}.pair", humidity, config[TEMPERATURE]
     for name, on, humidities in config.entries("devices", "pair", "humidities"):
         own = {humidity_of(condition) for condition in config["devices"][name].get(CONDITIONS, ())}
         for humidity in humid([air for air in humidities if air not in own]) if on == pair else ():
