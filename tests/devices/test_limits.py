@@ -47,7 +47,7 @@ CASES = [
     (
         limits.condensing,
         ([{"temperature_C": -20, "dew_point_C": 10}, {"temperature_C": 10, "dew_point_C": 10}],),
-        "-20 °C with a dew point of 10 °C, 10 °C with a dew point of 10 °C. That is not in the model, and unsafe",
+        "-20 °C with a dew point of 10 °C, 10 °C with a dew point of 10 °C.*not in the model: this is the unsafe side",
         ([{"temperature_C": 11, "dew_point_C": 10}, {"temperature_C": -20, "humidity": 0.5}],),
     ),
     (

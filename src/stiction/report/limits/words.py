@@ -231,8 +231,8 @@ def _solid_film(film):
 def _condensing(airs):
     where = ", ".join(f"{celsius:g} °C with a dew point of {dew_point:g} °C" for celsius, dew_point in airs)
     return (
-        f"Water condenses on the device: {where}. That is not in the model, and unsafe: drops that dry pull surfaces "
-        "together. Keep the dew point lower; without this condition, you get the answer for all others."
+        f"Water condenses on the device: {where}. Drops that dry pull surfaces together, which is not in the model: "
+        "this is the unsafe side. Keep the dew point lower, or leave this condition out for the answer in all others."
     )
 
 
