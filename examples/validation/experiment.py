@@ -148,7 +148,7 @@ def relations(stated: dict) -> Iterator[str]:
             yield f"assumed.{name}.range must be positive on a scale of logarithms"
     rows = stated["measured"]
     used = set(variables([stated.get("setup", {}), [[row.get("with"), row.get("along")] for row in rows]]))
-    for name in assumed.keys() - used:
+    for name in sorted(assumed.keys() - used):
         yield f"assumed.{name} is used nowhere in setup: write ${name} there"
     for number, row in enumerate(rows):
         yield from (f"measured[{number}] {problem}" for problem in _problems_of(row, used - assumed.keys()))

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pandas as pd
+from experiment import LINEAR
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
@@ -13,8 +14,6 @@ INSIDE, OUTSIDE = ("#0072B2", "o"), ("#D55E00", "D")
 LINE, AROUND = 0.145, 0.9
 #: Columns of the panels of laws.
 ACROSS = 2
-#: Laws on a linear axis.
-LINEAR = ("exponent", "maximum")
 
 
 @styled

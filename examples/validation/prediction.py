@@ -113,9 +113,9 @@ def value(state: dict, contacts: "Contacts") -> tuple[float, float]:
         return factor * crack(state["pair"], state["air"], state["quantile"]), 0.0
     energies, pressures = contacts.of(state)
     of_strips = energies if observable in ("energy", "sphere") else pressures
-    of_strips = of_strips[: state.get("devices", len(of_strips))]
-    error = of_strips.std() / of_strips.mean() / np.sqrt(max(1, len(of_strips) - 1))
-    return factor * scale(state) * float(of_strips.mean()), float(error)
+    devices = of_strips[: state.get("devices", len(of_strips))]
+    error = of_strips.std(ddof=1) / of_strips.mean() / np.sqrt(len(devices))
+    return factor * scale(state) * float(devices.mean()), float(error)
 
 
 def scale(state: dict) -> float:
