@@ -10,8 +10,9 @@ from hypothesis import strategies as st
 
 from stiction.config.files import joined
 from stiction.config.merging import merged
-from stiction.config.mission.airs import expanded
+from stiction.config.mission.airs import COLDEST, HOTTEST, expanded
 from stiction.config.mission.conditions import temperatures
+from stiction.config.relations import schema
 from stiction.config.units import in_si
 from stiction.config.validation import checked
 from stiction.constants import WATER_MOLECULE
@@ -129,6 +130,10 @@ def test_condensing_conditions_give_no_air_and_a_limit_each():
             {"conditions": [{"temperature_C": -60, "humidity": 0.5}]},
             "conditions[0].temperature_C is -60, must be a number",
         ),
+        (
+            {"conditions": [{"temperature_C": 1e6, "dew_point_C": 10}]},
+            "conditions[0].temperature_C is 1000000.0, must be",
+        ),
         ({"conditions": [{"temperature_C": 20, "humidity": 1.5}]}, "conditions[0].humidity is 1.5, must be a number"),
         ({"conditions": []}, "conditions is [], must be a list"),
         ({"conditions": {"temperature_C": 20}}, "conditions is {'temperature_C': 20}, must be a list"),
@@ -155,6 +160,12 @@ def test_test_beams_are_at_the_temperature_of_the_water():
     assert problems(configuration(beams, conditions=[{"temperature_C": 50, "humidity": 0.66}], **keys)) == ()
     (line,) = problems(configuration(beams, conditions=[{"temperature_C": 50, "humidity": 0.67}], **keys))
     assert "must have another humidity than 0.67, such as 0.6701" in line
+
+
+def test_limits_of_the_temperature_are_those_of_the_schema():
+    allowed = schema()["properties"]["devices"]["additionalProperties"]["properties"]["conditions"]["items"]
+    celsius = allowed["properties"]["temperature_C"]
+    assert (celsius["minimum"], celsius["maximum"]) == (COLDEST, HOTTEST)
 
 
 def test_touchdowns_add_up_and_the_largest_voltage_counts():

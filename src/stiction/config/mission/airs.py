@@ -21,6 +21,8 @@ from stiction.contact.meniscus import BRIDGE, ZERO_CELSIUS, least_humidity
 
 #: Keys of the air of a condition, of which it has one, and those that become keys of the device.
 _AIR, _OF_DEVICE = ("humidity", "dew_point_C"), ("touchdowns", "voltage_V")
+#: Temperatures of conditions that the schema allows [°C].
+COLDEST, HOTTEST = -40, 99
 #: Relations between the keys of a condition, and between the conditions of devices.
 relation_of_names, relation = Relations(), Relations()
 
@@ -76,7 +78,8 @@ def _is_condition(condition):
     stated = [condition[key] for key in _AIR if key in condition]
     others = [condition[key] for key in _OF_DEVICE if key in condition]
     is_air = len(stated) == 1 and is_possible(condition.get("humidity", 0))
-    return is_air and all(map(is_number, [condition.get("temperature_C"), *stated, *others]))
+    is_whole = is_air and all(map(is_number, [condition.get("temperature_C"), *stated, *others]))
+    return is_whole and COLDEST <= condition["temperature_C"] <= HOTTEST
 
 
 def _touchdowns(device, conditions):
