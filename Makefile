@@ -19,6 +19,7 @@
 #                   runs/supplement/
 #   make validation     every experiment of validation/ beside its prediction (8 minutes on two cores), in runs/validation/
 #   make pressing       how much more a pair sticks after its surfaces were pressed (2 minutes on two cores)
+#   make surrogate  learn the estimate at once from drawn surfaces (25 minutes of a core), in runs/surrogate/
 #   make figures    redraw the figures                       (takes CONFIG=... too)
 #   make report     results/report.html                      (takes CONFIG=... too)
 #
@@ -54,7 +55,7 @@ ifneq (,$(findstring $(SPACE),$(CONFIG)))
 $(error the name of the file in CONFIG contains a space ($(CONFIG)): rename the file)
 endif
 
-.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing print supplement validation sealed tails full-contact-times deformed attraction figures run report test test-all test-slow nightly lint libraries format slurm cluster mutants bench peers times jobs docs numbers lock clean
+.PHONY: help paper smoke example example-process example-beams measured-beams devices model-error asperities pressing surrogate print supplement validation sealed tails full-contact-times deformed attraction figures run report test test-all test-slow nightly lint libraries format slurm cluster mutants bench peers times jobs docs numbers lock clean
 .DELETE_ON_ERROR:
 .DEFAULT_GOAL := help
 
@@ -130,6 +131,14 @@ full-contact-times: $(VENV)/ready
 
 attraction: $(VENV)/ready
 	$(STICTION) run $(or $(CONFIG),examples/attraction.yaml) --directory runs/attraction -- results/tables/variants.csv $(ARGS)
+
+# Table, page and errors of stiction estimate. Points that are there are not computed again.
+surrogate: export OPENBLAS_NUM_THREADS := 1
+surrogate: $(VENV)/ready
+	$(BIN)/python -m stiction.estimate.training runs/surrogate
+	$(BIN)/python -m stiction.estimate.make runs/surrogate
+	$(BIN)/python -m stiction.estimate.page docs/_static/estimate.html
+	$(BIN)/python -m stiction.estimate.held_out runs/surrogate > docs/tables/estimate.md
 
 figures: $(VENV)/ready
 	$(STICTION) figures $(CONFIG) -- $(ARGS)

@@ -37,7 +37,7 @@ ORDER = [
         "stages.test_beams",
         "stages.answer",
     ),
-    *("pilot", "accuracy", "report", "described_surface", "study", "device", "process", "command"),
+    *("pilot", "accuracy", "estimate", "report", "described_surface", "study", "device", "process", "command"),
 ]
 
 

@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from stiction.command import explain, launch, output_streams
+from stiction.command.at_once import estimate
 from stiction.command.last_lines import PRINTED, Status, fault, last_lines, status
 from stiction.command.output_streams import say
 from stiction.command.run_state import RUN
@@ -81,6 +82,10 @@ def _parser():
     _add(commands, "report", _report, "put the results into one file, results/report.html", files="*")
     _add(commands, "show", _show, "open the index of the results, results/index.html", files=None)
     _add(commands, "explain", _explain, "say what would be computed, and why", files="*")
+    words = "estimate the length to build at once, in a tenth of a second"
+    added = commands.add_parser("estimate", help=words, description=estimate.PURPOSE)
+    estimate.add_options(added)
+    added.set_defaults(run=estimate.run, directory=".")
     return parser
 
 

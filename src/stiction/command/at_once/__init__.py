@@ -1,0 +1,1 @@
+"""The command for an estimate, which needs few imports."""

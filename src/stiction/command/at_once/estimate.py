@@ -1,0 +1,116 @@
+"""Command ``stiction estimate``: the length to build at once, without the libraries for numbers."""
+
+import argparse
+import sys
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from stiction.command.output_streams import say
+from stiction.config.units import from_si
+from stiction.estimate.answer import CHOSEN, FRACTIONS, Answer, answer
+from stiction.estimate.length import NotLearnt
+from stiction.estimate.question import of_numbers, questions, surface
+from stiction.estimate.table import content, process
+
+#: Options of a cantilever on a described surface: key in a file, metavar, help, default.
+OPTIONS = {
+    "rms": ("rms_nm", "NM", "rms of the heights of the underside", None),
+    "like": ("like", "SURFACE", "typical surface for what is not known: B1, B2, Sub1 or Sub2", None),
+    "hurst": ("hurst", "H", "Hurst exponent", None),
+    "corner": ("corner_rad_per_um", "RAD/UM", "corner of the spectrum", None),
+    "cutoff": ("cutoff_rad_per_um", "RAD/UM", "cut-off of the spectrum", None),
+    "skewness": ("skewness", "S", "skewness of the heights", None),
+    "kurtosis": ("kurtosis", "K", "kurtosis of the heights, 3 for Gaussian ones", None),
+    "thickness": ("thickness_um", "UM", "thickness of the beam", None),
+    "gap": ("gap_um", "UM", "gap below the beam", None),
+    "width": ("width_um", "UM", "width of the beam (default: 30)", 30.0),
+    "length": ("length_um", "UM", "length of the beam, for the probability that it sticks", None),
+}
+_OF_SURFACE = ("rms", "like", "hurst", "corner", "cutoff", "skewness", "kurtosis")
+#: Opposite surface without a file.
+OPPOSITE = "Sub1"
+#: What the command does.
+PURPOSE = "Estimate the length to build at once, from runs on drawn surfaces. A run computes it exactly."
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of the command."""
+    parser.add_argument("files", nargs="*", metavar="FILE", help="file with devices; or state a cantilever by options")
+    for name, (_, unit, words, default) in OPTIONS.items():
+        kind = str if name == "like" else float
+        parser.add_argument(f"--{name}", type=kind, metavar=unit, help=words, default=default)
+    parser.add_argument("--rh", type=float, nargs="+", metavar="RH", help="relative humidities, such as 0.45")
+    parser.add_argument("--touchdowns", type=int, default=1, metavar="N", help="number of touchdowns (default: 1)")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print the estimates that are asked for, and return the exit status: 2 if one of them is not known."""
+    status, name_of_file = 0, " ".join(arguments.files) or "mine.yaml"
+    for name, question in _questions(arguments).items():
+        try:
+            if isinstance(question, NotLearnt):
+                raise question
+            for line in shown(answer(question, content(), process("tips"), process("full"))):
+                say(line)
+            say(f"  Computed exactly by: stiction devices {name_of_file}")
+        except NotLearnt as reason:
+            status = 2
+            say(f"{name} is not known at once: {reason}. Run: stiction devices {name_of_file}")
+    return status
+
+
+def main(words: Sequence[str]) -> int:
+    """Print the estimates for the words after ``stiction estimate``."""
+    parser = argparse.ArgumentParser("stiction estimate", description=PURPOSE)
+    add_options(parser)
+    try:
+        return run(parser.parse_args(words))
+    except (OSError, ValueError) as error:
+        say(str(error), sys.stderr)
+        return 2
+
+
+def _questions(arguments):
+    """Questions by the name of the device."""
+    library = content()["library"]
+    if arguments.files:
+        from stiction.config.reading import read  # imports the parser of YAML
+
+        return {name: one for file in arguments.files for name, one in questions(read(file), content()).items()}
+    try:
+        return {"The cantilever": _of_options(arguments, library)}
+    except NotLearnt as reason:
+        return {"The cantilever": reason}
+
+
+def _of_options(arguments, library):
+    """Question by the options alone."""
+    for name in ("rms", "rh", "thickness", "gap"):
+        if getattr(arguments, name) is None:
+            raise NotLearnt(f"--{name} is missing")
+    stated = {OPTIONS[name][0]: getattr(arguments, name) for name in OPTIONS if getattr(arguments, name) is not None}
+    entry = {key: stated.pop(key) for key in [OPTIONS[name][0] for name in _OF_SURFACE] if key in stated}
+    device = stated | {"humidities": arguments.rh, "touchdowns": arguments.touchdowns}
+    averaged = "like" not in entry
+    side = surface({"like": "B2"} | entry, library)
+    return of_numbers("The cantilever", device, [side, surface(library[OPPOSITE], library)], averaged=averaged)
+
+
+def shown(found: Answer) -> Iterator[str]:
+    """Lines of an answer."""
+    asked = found.question
+    yield f"{asked.name}: estimate at RH {found.humidity:g}, the worst air, for exact inputs"
+    yield "  stuck            length [µm]    90 %            95 %"
+    for row in found.rows:
+        ends = "    ".join(f"{_um(low):>5} to {_um(high):<5}" for low, high in row.intervals.values())
+        yield f"  1 in {1 / row.fraction:<10.0f}  {_um(row.length):>8}     {ends}"
+    if found.stuck is not None:
+        value, low, high = (f"{max(part, FRACTIONS[-1]):.2g}" for part in found.stuck)
+        yield f"  P(stuck) at {_um(asked.length)} µm: {value}, with 95 % between {low} and {high} (at least 1e-06)"
+    low = found.chosen.intervals["90"][0]
+    yield f"  Build at most {_um(low)} µm: 1 in {1 / CHOSEN:.0f} stick at most, with 95 % confidence in the estimate."
+
+
+def _um(length: Any) -> str:
+    """Length in µm, with three digits."""
+    return f"{from_si(length, 'um'):.3g}"

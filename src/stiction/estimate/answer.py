@@ -1,0 +1,156 @@
+r"""Answer to a question: lengths for fractions of stuck cantilevers, with intervals. Plain Python.
+
+The interval of a length has two parts. The estimate errs by a factor that is known from surfaces that were not learnt:
+split conformal prediction of errors over their `difficulty`. Where a surface is partly assumed, the logarithm of the
+length has on m typical surfaces the mean :math:`\bar v` and the scatter s, and on another one
+:math:`\bar v + s \sqrt{1 + 1/m} \, t_{m-1}`, as in `stiction.answer.unknowns`.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from stiction.estimate.length import Lengths, fraction_of, lengths, normal_score
+from stiction.estimate.question import Question
+from stiction.estimate.state import State, film, stiffness_of
+from stiction.estimate.statistics import Heights
+from stiction.estimate.table import Process
+
+#: Fractions of stuck devices in the answer.
+FRACTIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+#: Fraction for the length to build.
+CHOSEN = FRACTIONS[2]
+#: Confidences of the intervals, and quantiles of Student's distribution with three degrees of freedom for them.
+CONFIDENCES = ("90", "95")
+_STUDENT = {"90": 2.353363, "95": 3.182446}
+#: ASSUME: least difficulty, where all tips are alike.
+_ROUNDING = 0.02
+
+
+@dataclass(frozen=True)
+class Row:
+    """Length at which a fraction sticks."""
+
+    fraction: float
+    length: float  #: [m]
+    intervals: dict[str, tuple[float, float]]  #: by confidence [m]
+
+
+@dataclass(frozen=True)
+class Answer:
+    """Estimate of one cantilever."""
+
+    question: Question
+    rows: tuple[Row, ...]
+    stuck: tuple[float, float, float] | None  #: fraction at the stated length, and its ends of 95 %
+    humidity: float  #: air that decides
+
+    @property
+    def chosen(self) -> Row:
+        """Row of the length to build."""
+        return next(row for row in self.rows if row.fraction == CHOSEN)
+
+
+def answer(question: Question, table: Mapping[str, Any], tips: Process, full: Process | None) -> Answer:
+    """Answer to a question.
+
+    Raises
+    ------
+    NotLearnt
+        If the estimate does not know it.
+    """
+    found = {air: _in_air(question, air, table, tips, full) for air in question.humidities}
+    of_once = {p: -math.expm1(math.log1p(-p) / question.touchdowns) for p in FRACTIONS}
+    rows = tuple(_worst([one.row(p, normal_score(of_once[p]), table) for one in found.values()]) for p in FRACTIONS)
+    decides = min(found, key=lambda air: found[air].length(normal_score(of_once[CHOSEN])))
+    stuck = None if question.length is None else _stuck(question, list(found.values()), table)
+    return Answer(question, rows, stuck, decides)
+
+
+@dataclass(frozen=True)
+class InAir:
+    """Lengths of a cantilever in one air."""
+
+    stated: Lengths
+    members: tuple[Lengths, ...]  #: on typical surfaces in place of a partly assumed one
+    averaged: bool  #: as of `Question`
+
+    def centre(self, score: float) -> tuple[float, float]:
+        """Mean and scatter of the logarithm of a length [m] over surfaces like those that are assumed."""
+        if not self.members:
+            return math.log(self.stated.at(score)), 0.0
+        values = [math.log(one.at(score)) for one in self.members]
+        m, mean = len(values), sum(values) / len(values)
+        scatter = math.sqrt(sum((value - mean) ** 2 for value in values) / (m - 1))
+        return mean, scatter * math.sqrt(1 + 1 / m)
+
+    def length(self, score: float) -> float:
+        """Length at a normal score [m]."""
+        return math.exp(self.centre(score)[0]) if self.averaged else self.stated.at(score)
+
+    def row(self, fraction: float, score: float, table: Mapping[str, Any]) -> Row:
+        """Length and intervals at a normal score."""
+        mean, scatter = self.centre(score)
+        ends = {}
+        for confidence in CONFIDENCES:
+            half = math.hypot(_margin(table, confidence, score, self.stated.slope), _STUDENT[confidence] * scatter)
+            ends[confidence] = math.exp(mean - half), math.exp(mean + half)
+        return Row(fraction, self.length(score), ends)
+
+
+def difficulty(slope: float) -> float:
+    """Size of errors of a length [-], from the slope of its logarithm by the normal score: few tips differ, too."""
+    return slope + _ROUNDING
+
+
+def _margin(table, confidence, score, slope):
+    """Half of the interval of the logarithm of a length by the error of the estimate.
+
+    ASSUME: beyond the score that was tested, it grows in proportion to the score.
+    """
+    return table["margins"][confidence] * difficulty(slope) * max(1.0, score / table["tested_score"])
+
+
+def _worst(rows):
+    """Shortest length and ends of some rows of one fraction."""
+    ends = {key: tuple(min(row.intervals[key][side] for row in rows) for side in (0, 1)) for key in CONFIDENCES}
+    return Row(rows[0].fraction, min(row.length for row in rows), ends)
+
+
+def _stuck(question, airs, table):
+    """Fraction stuck at the stated length in the worst air, with the ends of 95 %, after all touchdowns."""
+
+    def after(score):
+        """Fraction after all touchdowns."""
+        return -math.expm1(question.touchdowns * math.log1p(-fraction_of(score)))
+
+    found = []
+    for one in airs:
+        score = one.stated.score(question.length)
+        mean, scatter = one.centre(score)
+        half = math.hypot(_margin(table, "95", score, one.stated.slope), _STUDENT["95"] * scatter)
+        shift = mean - math.log(one.stated.at(score))
+        moves = [-shift if question.averaged else 0.0, -shift - half, -shift + half]
+        found.append([after(one.stated.score(question.length * math.exp(move))) for move in moves])
+    return tuple(max(column) for column in zip(*found, strict=True))
+
+
+def _in_air(question, air, table, tips, full):
+    """Lengths at one humidity, as stated and on typical surfaces in place of each that is partly assumed.
+
+    ASSUME: where both surfaces are partly assumed, both are like the same typical surface.
+    """
+    beam, substrate = question.surfaces
+    names = dict.fromkeys(name for members in question.members for name in members)
+    pairs = [beam + substrate]
+    pairs += [question.members[0].get(name, beam) + question.members[1].get(name, substrate) for name in names]
+    stated, *members = (_lengths(question, heights, air, table, tips, full) for heights in pairs)
+    return InAir(stated, tuple(members), question.averaged)
+
+
+def _lengths(question: Question, heights: Heights, air: float, table, tips, full):
+    """Lengths on the sum of two surfaces at one humidity."""
+    stiffness = stiffness_of(table["modulus"], question.thickness, question.gap)
+    water = film(air, table["temperature"], 2.0, table["water"])
+    return lengths(State(heights, water, stiffness, question.width, table["modulus"]), question.gap, tips, full)

@@ -1,0 +1,156 @@
+// Arithmetic of stiction.estimate in JavaScript: the same steps in SI units, compared with Python in tests/estimate/test_page.py.
+"use strict";
+const SCORES = [0, -1, -2], LEAST = 2e-3, GAS = 8.31446261815324;
+const sum = (values) => values.reduce((total, value) => total + value, 0);
+const dot = (left, right) => sum(left.map((x, k) => x * right[k]));
+
+// statistics
+function momentsOf(corner, cutoff, slope) {
+  const moment = (order) => {
+    const power = order + 2 + slope, ratio = cutoff / corner;
+    const beyond = Math.abs(power) < 1e-9 ? Math.log(ratio) : (ratio ** power - 1) / power;
+    return corner ** (order + 2) * (1 / (order + 2) + beyond);
+  };
+  return [-1, 2, 4].map((order) => moment(order) / moment(0));
+}
+function heights(surface) {
+  const {rms_nm, skewness, kurtosis, hurst, corner_rad_per_um, cutoff_rad_per_um} = surface;
+  return {rms: rms_nm * 1e-9, skewness, kurtosis, moments: momentsOf(corner_rad_per_um * 1e6, cutoff_rad_per_um * 1e6, -2 * (1 + hurst))};
+}
+function added(one, other) {
+  const rms = Math.hypot(one.rms, other.rms), both = [one, other];
+  const weighted = (power, value) => sum(both.map((each) => (each.rms / rms) ** power * value(each)));
+  return {rms, skewness: weighted(3, (each) => each.skewness), kurtosis: 3 + weighted(4, (each) => each.kurtosis - 3),
+    moments: [0, 1, 2].map((k) => weighted(2, (each) => each.moments[k]))};
+}
+
+// state
+function film(humidity, temperature, wetting, [tension, volume]) {
+  const energy = tension * wetting;
+  return {height: energy * volume / (-GAS * temperature * Math.log(humidity)), energy};
+}
+const floodedSlope = (state) => (13.5 * state.film.energy / state.stiffness) ** 0.25;
+function coordinates(state) {
+  const [low, second, fourth] = state.heights.moments, summits = Math.sqrt(fourth / second);
+  const slope = state.heights.rms * Math.sqrt(second), {height, energy} = state.film;
+  return [Math.log(state.heights.rms / height), Math.log(energy / height / (state.modulus * slope)), Math.log(fourth / second ** 2),
+    Math.log(low ** 2 * second), state.heights.skewness, state.heights.kurtosis, Math.log(floodedSlope(state) / slope),
+    Math.log(state.width * summits), Math.log(height), Math.log(summits)];
+}
+
+// table
+function at(process, all) {
+  const known = process.columns.map((k) => all[k]);
+  const standard = known.map((x, k) => (x - process.centre[k]) / process.scale[k]);
+  const place = standard.map((x, k) => x / process.lengths[k]);
+  const squares = process.nodes.map((node) => sum(place.map((x, k) => (x - node[k]) ** 2)));
+  const near = squares.map((square) => Math.exp(-0.5 * square)), terms = [1, ...standard], of = {};
+  for (const name in process.trend) of[name] = dot(process.trend[name], terms) + dot(process.weights[name], near);
+  const outside = process.columns.filter((_, k) => !(process.low[k] <= known[k] && known[k] <= process.high[k]));
+  return {of, distance: Math.sqrt(Math.min(...squares)), outside};
+}
+
+// length
+class NotLearnt extends Error {}
+function known(process, state, names) {
+  const values = at(process, coordinates(state));
+  if (values.outside.length) throw new NotLearnt(values.outside.map((k) => names[k]).join(" and ") + " beyond what was learnt");
+  if (values.distance > process.farthest) throw new NotLearnt("unlike all surfaces and beams that were learnt");
+  return values.of;
+}
+function onSummits(state, gap, table) {
+  const values = known(table.tips, state, table.coordinates), flooded = Math.log(1.5 * gap / floodedSlope(state));
+  const first = values.at_0 + flooded, second = Math.min(first - LEAST, values.at_1 + flooded);
+  const third = Math.min(second - LEAST, values.at_2 + flooded);
+  return {logarithms: [first, second, third], slope: Math.max(LEAST, values.slope)};
+}
+function lengthAt({logarithms: [first, second, third], slope}, score) {
+  const [, b, c] = SCORES;
+  if (score <= c) return Math.exp(third + slope * (score - c));
+  const [low, step, start] = score <= b ? [third, second - third, c] : [second, first - second, b];
+  return Math.exp(low + step * (score - start));
+}
+function scoreOf({logarithms: [first, second, third], slope}, length) {
+  const [a, b, c] = SCORES, value = Math.log(length);
+  if (value <= third) return c + (value - third) / slope;
+  if (value <= second) return c + (value - third) / (second - third);
+  return Math.min(b + (value - second) / (first - second), a);
+}
+function change(state, found, gap, table) {
+  const slope = 1.5 * gap / lengthAt(found, -2);
+  const ratio = Math.exp(known(table.full, {...state, stiffness: 13.5 * state.film.energy / slope ** 4}, table.coordinates).ratio);
+  const scatter = 3.5 * found.slope, ofMeans = 1.22 * scatter * Math.sqrt(1 / 8 + 1 / 64);
+  return ratio * Math.exp(1.645 * Math.hypot(ofMeans, 0.1 * scatter * Math.max(3.09 - scatter, 0)));
+}
+function lengths(state, gap, table) {
+  let found = onSummits(state, gap, table);
+  for (let k = 0; k < 2; k++) {
+    found = onSummits({...state, stiffness: state.stiffness / change(state, found, gap, table)}, gap, table);
+  }
+  return found;
+}
+
+// normal distribution: continued fraction and series of erfc
+function fractionOf(score) {
+  const x = Math.abs(score) / Math.SQRT2, square = x * x;
+  let tail;
+  if (x < 2.5) {
+    let term = x, total = x;
+    for (let n = 1; n < 80; n++) { term *= -square / n; total += term / (2 * n + 1); }
+    tail = 1 - 2 / Math.sqrt(Math.PI) * total;
+  } else {
+    let below = 0;
+    for (let n = 60; n > 0; n--) below = n / 2 / (x + below);
+    tail = Math.exp(-square) / Math.sqrt(Math.PI) / (x + below);
+  }
+  return score < 0 ? 0.5 * tail : 1 - 0.5 * tail;
+}
+function normalScore(fraction) {
+  let low = -9, high = 9;
+  for (let k = 0; k < 60; k++) {
+    const middle = 0.5 * (low + high);
+    if (fractionOf(middle) < fraction) low = middle; else high = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+// answer
+const FRACTIONS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], STUDENT = {90: 2.353363, 95: 3.182446};
+function margin(table, confidence, score, slope) {
+  return table.margins[confidence] * (slope + 0.02) * Math.max(1, score / table.tested_score);
+}
+function centre(one, score) {
+  if (!one.members.length) return [Math.log(lengthAt(one.stated, score)), 0];
+  const values = one.members.map((each) => Math.log(lengthAt(each, score))), m = values.length, mean = sum(values) / m;
+  return [mean, Math.sqrt(sum(values.map((value) => (value - mean) ** 2)) / (m - 1)) * Math.sqrt(1 + 1 / m)];
+}
+function answer(question, table) {
+  const stiffness = table.modulus * question.thickness ** 3 / question.gap ** 2;
+  const of = (sumOfBoth, air) => lengths({heights: sumOfBoth, film: film(air, table.temperature, 2, table.water), stiffness,
+    width: question.width, modulus: table.modulus}, question.gap, table);
+  const airs = question.humidities.map((air) => ({stated: of(question.stated, air), members: question.members.map((each) => of(each, air))}));
+  const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
+  const rows = FRACTIONS.map((fraction) => {
+    const score = normalScore(once(fraction)), ends = {};
+    for (const confidence of ["90", "95"]) {
+      const both = airs.map((one) => {
+        const [mean, scatter] = centre(one, score), half = Math.hypot(margin(table, confidence, score, one.stated.slope), STUDENT[confidence] * scatter);
+        return [Math.exp(mean - half), Math.exp(mean + half)];
+      });
+      ends[confidence] = [0, 1].map((side) => Math.min(...both.map((each) => each[side])));
+    }
+    const length = (one) => question.averaged ? Math.exp(centre(one, score)[0]) : lengthAt(one.stated, score);
+    return {fraction, length: Math.min(...airs.map(length)), intervals: ends};
+  });
+  return {rows, stuck: question.length ? stuck(question, airs, table) : null};
+}
+function stuck(question, airs, table) {
+  const after = (score) => -Math.expm1(question.touchdowns * Math.log1p(-fractionOf(score)));
+  const found = airs.map((one) => {
+    const score = scoreOf(one.stated, question.length), [mean, scatter] = centre(one, score);
+    const half = Math.hypot(margin(table, "95", score, one.stated.slope), STUDENT["95"] * scatter), shift = mean - Math.log(lengthAt(one.stated, score));
+    return [question.averaged ? -shift : 0, -shift - half, -shift + half]
+      .map((move) => after(scoreOf(one.stated, question.length * Math.exp(move))));
+  });
+  return [0, 1, 2].map((k) => Math.max(...found.map((each) => each[k])));
+}

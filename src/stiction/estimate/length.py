@@ -1,0 +1,126 @@
+"""Length at which a fraction of cantilevers sticks, with its interval, or the reason why it is not known.
+
+Plain Python: the page has the same arithmetic in JavaScript.
+"""
+
+import math
+from dataclasses import dataclass, replace
+
+from stiction.estimate.state import COORDINATES, State
+from stiction.estimate.table import Process
+
+#: Normal scores of the learnt lengths: the last one and the slope there give all shorter lengths.
+SCORES = (0.0, -1.0, -2.0)
+NAMES = ("at_0", "at_1", "at_2", "slope")
+#: Confidence with which tips count as held harder than full contact of few strips says, in standard errors.
+_AT_MOST = 1.645
+#: Strips of a run in full contact and on summits, half of two standard errors of Student's t of them, error of their
+#: power, and normal score of the largest tips: `stiction.stages.contact.tips_in_full_contact`.
+_FULL, _SUMMITS, _STUDENT, _POWER_ERROR, _LARGEST = 8, 64, 1.22, 0.1, 3.09
+
+
+@dataclass(frozen=True)
+class Lengths:
+    """Distribution of the shortest length that sticks, of tips in one state."""
+
+    logarithms: tuple[float, float, float]  #: of the length [m] at `SCORES`
+    slope: float  #: by the normal score below the last one
+
+    def at(self, score: float) -> float:
+        """Length at a normal score up to the first one [m]."""
+        (first, second, third), (_, b, c) = self.logarithms, SCORES
+        if score <= c:
+            return math.exp(third + self.slope * (score - c))
+        low, step, start = (third, second - third, c) if score <= b else (second, first - second, b)
+        return math.exp(low + step * (score - start))
+
+    def score(self, length: float) -> float:
+        """Normal score of a length [m], at most the first one."""
+        (first, second, third), (a, b, c), value = self.logarithms, SCORES, math.log(length)
+        if value <= third:
+            return c + (value - third) / self.slope
+        if value <= second:
+            return c + (value - third) / (second - third)
+        return min(b + (value - second) / (first - second), a)
+
+
+class NotLearnt(Exception):
+    """Refusal to estimate, in words."""
+
+
+def lengths(state: State, gap: float, tips: Process, full: Process | None) -> Lengths:
+    """Lengths of beams over a gap [m] in a state.
+
+    Full contact changes an attraction by a factor, as a stiffer beam would.
+
+    Raises
+    ------
+    NotLearnt
+        If the state is beyond what was learnt.
+    """
+    found = _on_summits(state, gap, tips)
+    for _ in range(2 if full else 0):
+        changed = replace(state, stiffness=state.stiffness / change(state, found, gap, full))
+        found = _on_summits(changed, gap, tips)
+    return found
+
+
+def _on_summits(state, gap, tips):
+    """Lengths on summits alone."""
+    values = _known(tips, state)
+    flooded = math.log(1.5 * gap / state.flooded_slope)
+    first, second, third = (values[name] + flooded for name in NAMES[:3])
+    second = min(first - _LEAST, second)
+    return Lengths((first, second, min(second - _LEAST, third)), max(_LEAST, values["slope"]))
+
+
+#: Least fall of the logarithm of a length by one normal score.
+_LEAST = 2e-3
+
+
+def _known(process, state):
+    """Quantities of a process in a state."""
+    values = process.at(state.coordinates)
+    if values.outside:
+        raise NotLearnt(f"{' and '.join(COORDINATES[k] for k in values.outside)} beyond what was learnt")
+    if values.distance > process.farthest:
+        raise NotLearnt("unlike all surfaces and beams that were learnt")
+    return values.of
+
+
+def change(state: State, found: Lengths, gap: float, full: Process) -> float:
+    """Factor of the attraction of tips by full contact, as a run applies it."""
+    slope = 1.5 * gap / found.at(SCORES[-1])
+    at_slope = replace(state, stiffness=13.5 * state.film.energy / slope**4)  # flooded flats hold up to this slope
+    return most(math.exp(_known(full, at_slope)["ratio"]), found.slope)
+
+
+def most(ratio: float, slope: float) -> float:
+    """Upper end of a ratio of the means of few tips, which a run applies, from the slope of the lengths.
+
+    ASSUME: P grows as 1/√θ, between that of a smooth tip and a constant one, so that ln P scatters 3.5 times as ln L.
+    """
+    scatter = 3.5 * slope
+    of_means = _STUDENT * scatter * math.sqrt(1 / _FULL + 1 / _SUMMITS)
+    error = math.hypot(of_means, _POWER_ERROR * scatter * max(_LARGEST - scatter, 0.0))
+    return ratio * math.exp(_AT_MOST * error)
+
+
+def normal_score(fraction: float) -> float:
+    """Normal score of a fraction [-].
+
+    Examples
+    --------
+    >>> round(normal_score(1e-3), 4), round(fraction_of(-3.0902), 6)
+    (-3.0902, 0.001)
+    """
+    low, high = -9.0, 9.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if fraction_of(middle) < fraction else (low, middle)
+    return 0.5 * (low + high)
+
+
+def fraction_of(score: float) -> float:
+    """Fraction below a normal score [-]."""
+    return 0.5 * math.erfc(-score / math.sqrt(2))

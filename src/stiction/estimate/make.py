@@ -1,0 +1,85 @@
+"""Table of the estimate from a trained design, and its errors on surfaces that were not learnt.
+
+python -m stiction.estimate.make FOLDER
+"""
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+from stiction.config.reading import paper
+from stiction.config.units import to_si
+from stiction.constants import WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
+from stiction.estimate.answer import CHOSEN, CONFIDENCES
+from stiction.estimate.design import FILMS
+from stiction.estimate.errors import by_surface, conformal, tested
+from stiction.estimate.fit import fitted, rounded
+from stiction.estimate.length import normal_score
+from stiction.estimate.rows import OF_FULL, rows_of_full, rows_of_tips
+from stiction.estimate.state import COORDINATES
+from stiction.estimate.table import FILE
+from stiction.estimate.training import SETS, Tips, base, full_contact_of, plan_of
+from stiction.models import SIDES
+from stiction.progress import without_progress
+from stiction.run.atomic import save_text
+
+#: Temperature of the design [K].
+_TEMPERATURE = 300.0
+#: Keys of the library that the estimate reads.
+_OF_LIBRARY = ("rms_nm", "skewness", "kurtosis", "psd", "published_psd")
+
+
+def table_of(folder: Path) -> dict[str, Any]:
+    """Content of the table."""
+    modulus = to_si(paper()["solid"]["young_modulus_GPa"], "GPa")
+    tips, of_tips_left_out = fitted(rows_of_tips(folder, "learn", modulus), "at_2", range(len(COORDINATES)))
+    full, of_full_left_out = fitted(rows_of_full(folder, "learn", modulus), "ratio", OF_FULL, 60)
+    library = {name: {key: entry[key] for key in _OF_LIBRARY} for name, entry in paper()["surfaces"].items()}
+    table = {
+        "modulus": modulus,
+        "temperature": _TEMPERATURE,
+        "water": [WATER_SURFACE_ENERGY, WATER_MOLAR_VOLUME],
+        "library": library,
+        "pairs": {name: {side: pair[side] for side in SIDES} for name, pair in paper()["pairs"].items()},
+        "tested_score": round(normal_score(CHOSEN), 6),
+        "sets": {name: vars(effort) for name, effort in SETS.items()},
+        "coordinates": COORDINATES,
+        "left_out": of_tips_left_out | of_full_left_out,
+        "tips": tips,
+        "full": full,
+    }
+    return table | {
+        "margins": margins(folder, table),
+        "control": {"slopes": control_of_slopes(), "forces": control_of_forces()},
+    }
+
+
+def _control_point():
+    """Point of the control numbers, its plan, and its film."""
+    (point,) = SETS["control"].all
+    return point, plan_of(point, base()), to_si(FILMS[0], "nm")
+
+
+def control_of_slopes() -> list[float]:
+    """Slopes of a few tips, by which a test sees that contacts are still those that were learnt."""
+    point, plan, height = _control_point()
+    return Tips.of(point, plan, SETS["control"].tips, SETS["control"].seed).slopes(height, 1.0).ravel().tolist()
+
+
+def control_of_forces() -> list[float]:
+    """Forces of one tip in full contact at three slopes, as `control_of_slopes`."""
+    point, plan, height = _control_point()
+    return full_contact_of(point, plan, height, "control")["full"].ravel().tolist()
+
+
+def margins(folder: Path, table: dict[str, Any]) -> dict[str, float]:
+    """Half of the intervals of the logarithm of a length by confidence."""
+    errors = by_surface(list(tested(folder, "test", table, table["tested_score"], changed=True)))
+    return {confidence: round(conformal(errors, int(confidence) / 100), 4) for confidence in CONFIDENCES}
+
+
+if __name__ == "__main__":
+    with without_progress():
+        content = table_of(Path(sys.argv[1]))
+    save_text(json.dumps(rounded(content), separators=(",", ":")) + "\n", FILE)

@@ -1,0 +1,90 @@
+// Sliders, table and file of the page. The arithmetic is in estimate.js.
+const TABLE = JSON.parse(document.getElementById("content").textContent);
+const INPUTS = [
+  ["like", "Typical surface for what you do not know", Object.keys(TABLE.library), "B2"],
+  ["rms_nm", "rms of the underside [nm]", 1, 8, 0.1, 3],
+  ["hurst", "Hurst exponent", 0.3, 2.5, 0.05, null],
+  ["corner_rad_per_um", "corner of the spectrum [rad/µm]", 8, 60, 1, null],
+  ["cutoff_rad_per_um", "cut-off of the spectrum [rad/µm]", 100, 290, 5, null],
+  ["skewness", "skewness", -1.2, 0, 0.02, null],
+  ["kurtosis", "kurtosis", 3, 6, 0.05, null],
+  ["substrate", "opposite surface", Object.keys(TABLE.library), "Sub1"],
+  ["humidity", "relative humidity", 0.35, 0.92, 0.01, 0.6],
+  ["thickness_um", "thickness of the beam [µm]", 1, 6, 0.1, 2.6],
+  ["gap_um", "gap [µm]", 2, 30, 0.5, 20],
+  ["width_um", "width of the beam [µm]", 8, 40, 1, 30],
+  ["length_um", "length of the beam [µm]", 50, 600, 5, 250],
+  ["touchdowns", "touchdowns", 1, 1000, 1, 1],
+];
+const OPEN = ["hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis"], byId = (id) => document.getElementById(id);
+
+function slider([key, words, low, high, step, start]) {
+  if (Array.isArray(low)) {
+    const options = low.map((name) => `<option${name === high ? " selected" : ""}>${name}</option>`).join("");
+    return `<label for="${key}">${words}<select id="${key}">${options}</select></label>`;
+  }
+  const known = OPEN.includes(key) ? `<label for="known_${key}">${words} is known<input type="checkbox" id="known_${key}"></label>` : "";
+  return `${known}<label for="${key}">${words}<output id="of_${key}"></output>
+    <input type="range" id="${key}" min="${low}" max="${high}" step="${step}" value="${start ?? typical("B2")[key]}"></label>`;
+}
+function typical(name) {
+  const entry = TABLE.library[name], psd = entry.published_psd;
+  const slope = Math.log(psd.floor_nm4 / psd.plateau_nm4) / Math.log(psd.cutoff_rad_per_um / psd.corner_rad_per_um);
+  return {...psd, skewness: entry.skewness, kurtosis: entry.kurtosis, rms_nm: entry.rms_nm, hurst: -slope / 2 - 1};
+}
+function stated() {
+  const value = (key) => Number(byId(key).value), known = OPEN.filter((key) => byId("known_" + key).checked);
+  const own = Object.fromEntries(["rms_nm", ...known].map((key) => [key, value(key)]));
+  return {own, like: byId("like").value, substrate: byId("substrate").value, value, open: known.length < OPEN.length};
+}
+function questionOf({own, like, substrate, value, open}) {
+  const of = (name) => added(heights({...typical(name), ...own}), heights(typical(substrate)));
+  return {stated: of(like), members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false, humidities: [value("humidity")],
+    thickness: value("thickness_um") * 1e-6, gap: value("gap_um") * 1e-6, width: value("width_um") * 1e-6,
+    length: value("length_um") * 1e-6, touchdowns: value("touchdowns")};
+}
+const um = (length) => Number((length * 1e6).toPrecision(3)).toString();
+function show() {
+  for (const [key, , low] of INPUTS) if (!Array.isArray(low)) byId("of_" + key).textContent = byId(key).value;
+  const given = stated();
+  for (const key of OPEN) byId(key).disabled = !(key in given.own);
+  byId("yaml").textContent = yamlOf(given);
+  try { write(answer(questionOf(given), TABLE), given); }
+  catch (reason) { if (!(reason instanceof NotLearnt)) throw reason; refuse(reason); }
+  draw(given);
+}
+function write(found, {value}) {
+  const row = ({fraction, length, intervals}) => `<tr><th scope="row">1 in ${Math.round(1 / fraction)}</th><td>${um(length)}</td>` +
+    ["90", "95"].map((key) => `<td>${intervals[key].map(um).join(" to ")}</td>`).join("") + "</tr>";
+  const caption = "<caption>Length at which a fraction sticks [µm]</caption>";
+  byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">length</th><th scope="col">90 %</th>` +
+    `<th scope="col">95 %</th></tr></thead><tbody>${found.rows.map(row).join("")}</tbody>`;
+  byId("said").className = "said";
+  byId("said").textContent = `Build at most ${um(found.rows[2].intervals["90"][0])} µm: 1 in 1000 stick at most, with 95 % confidence in the estimate.`;
+  const [middle, low, high] = found.stuck.map((part) => part.toPrecision(2));
+  byId("stuck").textContent = `At ${value("length_um")} µm, a fraction of ${middle} sticks (95 %: ${low} to ${high}).`;
+}
+function refuse(reason) {
+  byId("said").className = "said refused";
+  byId("said").textContent = `Not known at once: ${reason.message}. A run computes it.`;
+  byId("table").innerHTML = "<caption>No number</caption>";
+  byId("stuck").textContent = "";
+}
+function yamlOf({own, like, substrate, value, open}) {
+  const surface = Object.entries({...own, ...(open ? {like} : {})}).map(([key, of]) => `${key}: ${of}`).join(", ");
+  const sizes = ["length_um", "thickness_um", "gap_um", "width_um", "touchdowns"].map((key) => `${key}: ${value(key)}`).join(", ");
+  const air = `humidities: [${value("humidity")}]`;
+  return `run: {pairs: [mine], studies: []}\nsurfaces:\n  Mine: {${surface}}\npairs:\n` +
+    `  mine: {beam: Mine, substrate: ${substrate}, gap_um: ${value("gap_um")}, ${air}}\ndevices:\n` +
+    `  Lever: {kind: cantilever, pair: mine, ${sizes}, ${air}}\n`;
+}
+function draw({value}) {
+  const gap = 10 + 1.3 * value("gap_um"), thickness = 2 + 2 * value("thickness_um"), y = 75 - gap;
+  const curve = `M30 ${y} C 120 ${y} 200 ${y + 0.35 * gap} 285 75`;
+  byId("drawing").innerHTML = `<rect x="0" y="75" width="300" height="12" fill="#8c959f"/><rect x="0" y="${y - thickness}" width="30" ` +
+    `height="${75 - y + thickness}" fill="#57606a"/><path d="${curve}" fill="none" stroke="#0969da" stroke-width="${thickness}"/>`;
+}
+byId("form").innerHTML = INPUTS.map(slider).join("");
+byId("form").addEventListener("input", show);
+byId("copy").addEventListener("click", () => navigator.clipboard.writeText(byId("yaml").textContent));
+show();

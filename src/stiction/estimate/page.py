@@ -1,0 +1,22 @@
+"""Static page of the estimate: sliders and the arithmetic in JavaScript, in one file without network.
+
+python -m stiction.estimate.page FILE
+"""
+
+import sys
+
+from stiction.estimate.table import FILE
+from stiction.run.atomic import save_text
+
+
+def page() -> str:
+    """Page as a text."""
+    parts = {"table": FILE.name, "script": "estimate.js", "page": "page.js"}
+    text = FILE.with_name("estimate.html").read_text(encoding="utf-8")
+    for name, file in parts.items():
+        text = text.replace(f"{{{{ {name} }}}}", FILE.with_name(file).read_text(encoding="utf-8").strip())
+    return text
+
+
+if __name__ == "__main__":
+    save_text(page(), sys.argv[1])

@@ -1,0 +1,124 @@
+"""Question to the estimate: a cantilever on two described surfaces, from a file or from options. Plain Python."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from stiction.config.kinds import KINDS
+from stiction.config.units import to_si
+from stiction.contact.air import is_humid, is_possible
+from stiction.estimate.length import NotLearnt
+from stiction.estimate.statistics import Heights, heights_of, moments_of, slope_of
+
+Library = Mapping[str, Mapping[str, Any]]
+
+#: Keys of a surface, of a pair and of a device that the estimate knows.
+OF_SURFACES = ("rms_nm", "like", "hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis")
+OF_SURFACES += ("psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
+OF_PAIRS = ("beam", "substrate", "gap_um", "humidities")
+OF_DEVICES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "humidities", "touchdowns")
+#: Keys that change the length to build alone: the estimate is of exact inputs, and leaves out what a run adds.
+LEFT_OUT = ("uncertainty", "requirement", "chart", "roughness")
+#: Sections of a file that change no length of a cantilever.
+OF_FILES = ("run", "surfaces", "pairs", "devices", "figures", "studies", "beam", "chaos", "character", "seed")
+#: Numbers that a surface may leave open.
+_OPEN = ("skewness", "kurtosis", "hurst", "corner_rad_per_um", "cutoff_rad_per_um")
+
+
+@dataclass(frozen=True)
+class Question:
+    """Question about one cantilever."""
+
+    name: str
+    surfaces: tuple[Heights, Heights]  #: as stated
+    members: tuple[dict[str, Heights], dict[str, Heights]]  #: typical surfaces in place of each that is partly assumed
+    humidities: tuple[float, ...]  #: [-]
+    thickness: float  #: [m]
+    gap: float  #: [m]
+    width: float  #: [m]
+    length: float | None = None  #: [m]
+    touchdowns: int = 1
+    left_out: tuple[str, ...] = ()  #: keys that a run would read as well
+    averaged: bool = False  #: whether the length is the mean over typical surfaces, not that on the stated one
+
+
+def surface(entry: Mapping[str, Any], library: Library) -> tuple[Heights, dict[str, Heights]]:
+    """Statistics of a surface, and of each typical surface in its place where numbers are left open.
+
+    As `stiction.config.surfaces.described.complete` and `stiction.config.surfaces.members.members`.
+    """
+    if unknown := [key for key in entry if key not in OF_SURFACES]:
+        raise NotLearnt(f"{unknown[0]} of a surface is not among what was learnt")
+    if "psd" in entry and entry["psd"] != "published":
+        raise NotLearnt("a spectrum that is identified from summits was not learnt: state its corner and slope")
+    if "psd" in entry:
+        return heights_of(entry), {}
+    left_open = [key for key in _OPEN if key not in entry]
+    members = {name: _as(other, entry, left_open) for name, other in library.items()} if left_open else {}
+    if "like" in entry:
+        if entry["like"] not in library:
+            raise NotLearnt(f"like must be one of {', '.join(library)}")
+        return _as(library[entry["like"]], entry, left_open), members
+    if needed := [key for key in left_open if key in _OPEN[2:]]:
+        raise NotLearnt(f"a surface without {needed[0]} needs like: one of {', '.join(library)}")
+    means = {key: sum(other[key] for other in library.values()) / len(library) for key in _OPEN[:2]}
+    return _statistics(means | entry), members
+
+
+def _as(other, entry, left_open):
+    """Statistics of a surface with those numbers of another one that it leaves open."""
+    psd = other["published_psd"]
+    numbers = {key: other[key] for key in _OPEN[:2]} | {"hurst": -slope_of(psd) / 2 - 1} | psd
+    return _statistics({key: numbers[key] for key in left_open} | entry)
+
+
+def _statistics(numbers):
+    """Statistics of a surface by all of its numbers."""
+    ends = (to_si(numbers[key], "rad_per_um") for key in _OPEN[3:])
+    moments = moments_of(*ends, -2 * (1 + numbers["hurst"]))
+    return Heights(to_si(numbers["rms_nm"], "nm"), numbers["skewness"], numbers["kurtosis"], moments)
+
+
+def questions(content: Mapping[str, Any], table: Mapping[str, Any]) -> dict[str, Question | NotLearnt]:
+    """Questions of the devices of a file as it is written, or why the estimate does not know them.
+
+    The table has the typical surfaces, and the pairs of the paper.
+    """
+    found = {}
+    for name, device in content.get("devices", {}).items():
+        try:
+            found[name] = _question(name, device, content, table)
+        except NotLearnt as reason:
+            found[name] = reason
+        except (KeyError, TypeError, AttributeError) as wrong:
+            found[name] = NotLearnt(f"its file is not complete, at {wrong}; stiction check says what is wrong")
+    return found
+
+
+def _question(name, device, content, table):
+    """Question of one device."""
+    if others := [key for key in content if key not in OF_FILES]:
+        raise NotLearnt(f"section {others[0]} of the file was not learnt")
+    kind = KINDS.get(device["kind"])
+    if kind is None or not kind.has_tip:
+        raise NotLearnt("only cantilevers were learnt")
+    left_out = tuple(key for key in LEFT_OUT if key in device)
+    if others := [key for key in device if key not in OF_DEVICES + LEFT_OUT]:
+        raise NotLearnt(f"{others[0]} was not learnt")
+    pair, library = (table["pairs"] | content.get("pairs", {}))[device["pair"]], table["library"]
+    if others := [key for key in pair if key not in OF_PAIRS]:
+        raise NotLearnt(f"{others[0]} of a pair was not learnt")
+    if not all(is_possible(air) and is_humid(air) for air in device["humidities"]):
+        raise NotLearnt("dry air was not learnt")
+    surfaces = library | content.get("surfaces", {})
+    sides = [surface(surfaces[pair[side]], library) for side in ("beam", "substrate")]
+    return of_numbers(name, device, sides, left_out=left_out)
+
+
+def of_numbers(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) -> Question:
+    """Question by the numbers of a device in the units of files, and both surfaces with their members."""
+    surfaces, members = zip(*sides, strict=True)
+    sizes = [to_si(device[f"{size}_um"], "um") for size in ("thickness", "gap", "width")]
+    length = to_si(device["length_um"], "um") if "length_um" in device else None
+    airs = tuple(device["humidities"])
+    return Question(name, surfaces, members, airs, *sizes, length, device.get("touchdowns", 1), **more)

@@ -1,0 +1,86 @@
+"""Rows of the design: coordinates and learnt quantities from the files of `stiction.estimate.training`."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.special import ndtr
+
+from stiction.config.units import to_si
+from stiction.constants import WATER_SURFACE_ENERGY
+from stiction.devices.tail import fit_tail
+from stiction.estimate.design import Point
+from stiction.estimate.fit import Rows
+from stiction.estimate.length import NAMES, SCORES
+from stiction.estimate.state import Film, State
+from stiction.estimate.statistics import of_pair
+from stiction.estimate.training import FACTORS, SETS
+
+#: More than the points of a set.
+_SET = 10_000
+#: Part of the tips whose line gives the shortest lengths, and their least number.
+PART, FEW = 0.2, 10
+
+
+def stored(folder: Path, start: str) -> Iterator[tuple[Point, dict[str, Any]]]:
+    """Points of all sets of a purpose that are computed, with their numbers, each under a number of its own."""
+    for k, (name, effort) in enumerate(SETS.items()):
+        for point in effort.all if name.startswith(start) else ():
+            if (file := folder / name / f"{point.number:04}.npz").exists():
+                with np.load(file) as numbers:
+                    yield replace(point, number=_SET * k + point.number), dict(numbers)
+
+
+def states_of(point: Point, airs: np.ndarray, modulus: float) -> list[list[State]]:
+    """States of a point, by air and stiffness."""
+    heights, width = of_pair(point.sides), to_si(point.width, "um")
+    return [
+        [
+            State(heights, Film(height, 2 * WATER_SURFACE_ENERGY * wetting), factor * point.stiffness, width, modulus)
+            for factor in FACTORS
+        ]
+        for height, wetting in airs
+    ]
+
+
+def of_tips(slopes: np.ndarray) -> dict[str, float]:
+    """Quantities of tips that stick up to some slopes over that of flooded flats (n,) [-]."""
+    lengths = 1 / np.sort(slopes)[::-1]
+    line = fit_tail(lengths, max(PART, FEW / len(lengths)))
+    first, second = np.log(np.quantile(lengths, ndtr(SCORES[:2])))
+    return dict(zip(NAMES, (first, second, line.logarithm(ndtr(SCORES[2])), line.slope), strict=True))
+
+
+def rows_of_tips(folder: Path, name: str, modulus: float) -> Rows:
+    """Rows of all tips of a set on summits."""
+    coordinates, values, surface = [], [], []
+    for point, numbers in stored(folder, name):
+        for states, slopes in zip(states_of(point, numbers["airs"], modulus), numbers["slopes"], strict=True):
+            for state, of_beam in zip(states, slopes, strict=True):
+                coordinates.append(state.coordinates)
+                values.append(of_tips(of_beam / state.flooded_slope))
+                surface.append(point.number)
+    columns = {key: np.array([row[key] for row in values]) for key in NAMES}
+    return Rows(np.array(coordinates), columns, np.array(surface))
+
+
+#: Coordinates that the change by full contact depends on: ASSUME: no others. Few points have it.
+OF_FULL = (0, 1, 2, 6, 8)
+
+
+def rows_of_full(folder: Path, name: str, modulus: float) -> Rows:
+    """Rows of the logarithm of the change of tips by full contact, at three slopes of some points."""
+    coordinates, values, surface = [], [], []
+    for point, numbers in stored(folder, name):
+        if "slope" not in numbers or not np.isfinite(numbers["full"]).all():
+            continue
+        film = states_of(point, numbers["airs"], modulus)[0][1].film
+        ratios = np.log(numbers["full"].mean(axis=0) / numbers["summits"].mean(axis=0))
+        for slope, ratio in zip(numbers["slope"], ratios, strict=True):
+            state = State(of_pair(point.sides), film, 13.5 * film.energy / slope**4, to_si(point.width, "um"), modulus)
+            coordinates.append(state.coordinates)
+            values.append(ratio)
+            surface.append(point.number)
+    return Rows(np.array(coordinates), {"ratio": np.array(values)}, np.array(surface))

@@ -1,0 +1,73 @@
+r"""Table of the estimate: a Gaussian process on a linear trend, through some points of the design. Plain Python.
+
+With coordinates c in units of their scatter, and of the lengths l over which they matter, every quantity is
+
+.. math:: q(c) = a + \sum_i b_i c_i + \sum_k w_k \, \exp \Bigl( -\sum_i \frac{(c_i - c_{ki})^2}{2 l_i^2} \Bigr) .
+"""
+
+import json
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+FILE = Path(__file__).with_name("table.json")
+
+
+@dataclass(frozen=True)
+class Process:
+    """Quantities over coordinates."""
+
+    columns: Sequence[int]  #: numbers of the coordinates that it knows
+    centre: Sequence[float]  #: of these
+    scale: Sequence[float]  #: scatter of the coordinates over the design
+    lengths: Sequence[float]  #: over which they matter, in scatters
+    nodes: Sequence[Sequence[float]]  #: points in units of both
+    trend: Mapping[str, Sequence[float]]  #: factors of 1 and of the coordinates, by name of a quantity
+    weights: Mapping[str, Sequence[float]]
+    low: Sequence[float]  #: ends of the coordinates of the design
+    high: Sequence[float]
+    farthest: float  #: largest distance from the nearest node at which the process is trusted
+
+    def at(self, coordinates: Sequence[float]) -> "Values":
+        """Quantities at some coordinates, with the distance from the nearest node."""
+        known = [coordinates[k] for k in self.columns]
+        standard = [(x - mean) / scale for x, mean, scale in zip(known, self.centre, self.scale, strict=True)]
+        place = [x / length for x, length in zip(standard, self.lengths, strict=True)]
+        squares = [sum((x - y) * (x - y) for x, y in zip(place, node, strict=True)) for node in self.nodes]
+        near, terms = [math.exp(-0.5 * square) for square in squares], [1.0, *standard]
+        found = {name: _dot(self.trend[name], terms) + _dot(self.weights[name], near) for name in self.trend}
+        return Values(found, math.sqrt(min(squares)), self._outside(known))
+
+    def _outside(self, known):
+        """Numbers of the coordinates beyond the design."""
+        ends = zip(self.columns, known, self.low, self.high, strict=True)
+        return tuple(k for k, x, low, high in ends if not low <= x <= high)
+
+
+@dataclass(frozen=True)
+class Values:
+    """Quantities at one place."""
+
+    of: Mapping[str, float]
+    distance: float  #: from the nearest node, in the units of the process
+    outside: tuple[int, ...]  #: coordinates beyond the design
+
+
+def _dot(left, right):
+    """Scalar product."""
+    return sum(x * y for x, y in zip(left, right, strict=True))
+
+
+@cache
+def content() -> dict[str, Any]:
+    """Content of the file."""
+    return json.loads(FILE.read_text(encoding="utf-8"))
+
+
+@cache
+def process(name: str) -> Process:
+    """Process of the file by name: ``tips`` on summits, or the change of their forces in ``full`` contact."""
+    return Process(**content()[name])

@@ -1,0 +1,207 @@
+"""Contacts of the design: steepest slopes at which tips stick, and full contact of some of them, as devices compute it.
+
+Every point is a file, so that a stopped run goes on where it was:
+
+    python -m stiction.estimate.training FOLDER [SET [FIRST LAST]]
+"""
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.special import ndtri
+
+from stiction.analysis.model_error import few_tip_ratios
+from stiction.config.cases import Case, case_id
+from stiction.config.files import load
+from stiction.config.units import from_si, in_si, to_si
+from stiction.contact import meniscus
+from stiction.contact.environment import Water
+from stiction.devices.arcs import longest_free, tip_slope
+from stiction.devices.risk import CONFIDENCE
+from stiction.estimate.design import Law, Point, points, states
+from stiction.pilot import surface
+from stiction.plan.plan import Plan
+from stiction.plan.stage import At
+from stiction.progress import without_progress
+from stiction.run.atomic import replacing
+from stiction.stages.contact import contact, curves, tips_in_full_contact
+from stiction.stages.contact.changes.patches import TIPS
+from stiction.stages.contact.pair_model_error import POWER_ERROR
+from stiction.stages.contact.pairs import Settings
+from stiction.stages.devices.contact_names import patch_of_tips
+from stiction.stages.devices.opening import DesignedBeam, section_of_beam
+
+#: Names of pair and device of every point.
+PAIR, DEVICE = "p", "D"
+#: Thickness of the beams [µm]: the estimate knows E t³ / h² alone.
+_THICKNESS = 2.6
+#: Humidities of which the wettest decides how long tips are.
+_HUMIDITIES = [0.5, 0.92]
+#: Stiffnesses of the beams of a point, over its own.
+FACTORS = (0.5, 1.0, 2.0)
+
+
+@dataclass(frozen=True)
+class Effort:
+    """Points of a set, and numbers that decide their errors."""
+
+    points: int
+    seed: int
+    law: Law
+    tips: int  #: at least
+    tips_by_width: float  #: width of more tips together [m]
+    states: int
+    every: int  #: one of so many points has full contact
+    strips: tuple[int, int]  #: in full contact, and on summits with them
+
+    @property
+    def all(self) -> list[Point]:
+        """Points."""
+        return points(self.points, self.seed, self.law)
+
+
+#: Sets of points by name: to learn from, to state errors by, and to check these.
+SETS = {
+    "learn_any": Effort(80, 1, Law.ANY, 20, to_si(800, "um"), 8, 4, (6, 60)),
+    "learn_typical": Effort(48, 3, Law.TYPICAL, 20, to_si(800, "um"), 8, 1, (6, 60)),
+    "test_typical": Effort(20, 4, Law.TYPICAL, 40, to_si(1600, "um"), 4, 1, (8, 64)),
+    "test_any": Effort(20, 2, Law.ANY, 40, to_si(1600, "um"), 4, 1, (8, 64)),
+    "check_paper": Effort(6, 5, Law.PAPER, 400, 0.0, 4, 1, (8, 64)),
+    "check_typical": Effort(12, 5, Law.TYPICAL, 40, to_si(1600, "um"), 4, 1, (8, 64)),
+    "check_any": Effort(8, 6, Law.ANY, 40, to_si(1600, "um"), 4, 1, (8, 64)),
+    "control": Effort(1, 1, Law.ANY, 3, 0.0, 1, 1, (1, 1)),
+}
+#: Width of strips in full contact [m]. On B2 and Sub1 at RH 0.44, strips of 2, 4, 10 and 30 µm have ratios of 0.36,
+#: 0.35, 0.31 and 0.25 (± 0.06), and scatter alike.
+_NARROW = to_si(4, "um")
+
+
+def plan_of(point: Point, base: dict[str, Any]) -> Plan:
+    """Plan of a point, from a valid configuration with one pair and one device."""
+    modulus, thickness = to_si(base["solid"]["young_modulus_GPa"], "GPa"), to_si(_THICKNESS, "um")
+    gap = from_si((modulus * thickness**3 / point.stiffness) ** 0.5, "um")
+    device = base["devices"][DEVICE] | {"gap_um": round(gap, 4), "width_um": point.width}
+    surfaces = base["surfaces"] | dict(zip("ST", point.sides, strict=True))
+    pairs = {PAIR: base["pairs"][PAIR] | {"gap_um": round(gap, 4)}}
+    return Plan(base | {"surfaces": surfaces, "pairs": pairs, "devices": {DEVICE: device}})
+
+
+def base() -> dict[str, Any]:
+    """Configuration of the points: all that devices have by default."""
+    device = {"kind": "cantilever", "pair": PAIR, "thickness_um": _THICKNESS, "gap_um": 20, "width_um": 30}
+    pair = {"beam": "S", "substrate": "T", "gap_um": 20, "humidities": _HUMIDITIES}
+    return load(
+        {
+            "run": {"pairs": [], "studies": []},
+            "surfaces": {"S": {"rms_nm": 3, "like": "B2"}, "T": {"rms_nm": 0.2, "like": "Sub1"}},
+            "pairs": {PAIR: pair},
+            "devices": {DEVICE: device | {"humidities": _HUMIDITIES}},
+        }
+    )
+
+
+@dataclass(frozen=True)
+class Tips:
+    """Tips of a point on its strips."""
+
+    contact: xr.Dataset
+    water: Water
+    device: DesignedBeam
+
+    @classmethod
+    def of(cls, point: Point, plan: Plan, tips: int, seed: int) -> "Tips":
+        """Draw a number of tips."""
+        case = Case(case_id(DEVICE, _HUMIDITIES[0]))
+        at = At(**{name: str(value) for name, value in patch_of_tips(plan, case)._asdict().items()})
+        settings = replace(in_si(Settings, TIPS.settings(plan, at, tips)), seed=seed)
+        found = contact.compute(_surfaces(plan), f"estimate{point.number}", "NG", settings)
+        return cls(found, _water(plan), in_si(DesignedBeam, section_of_beam(plan, DEVICE)))
+
+    def slopes(self, height: float, wetting: float, change: Callable = np.ones_like) -> np.ndarray:
+        """Slopes up to which tips stick, by `FACTORS` (stiffnesses, tips) [-].
+
+        In a film of a height [m] and a mean cosine of the contact angles, with a change of forces by the slope (s,).
+        """
+        humidity, angle = air_of(height, wetting, self.water.temperature)
+        at, forces = curves.tip_forces(self.contact, humidity, replace(self.water, contact_angles=(angle, angle)))
+        beams = [replace(self.device, gap=self.device.gap / factor**0.5).beam for factor in FACTORS]
+        return np.array([tip_slope(longest_free(at, forces * change(at), beam), beam.gap) for beam in beams])
+
+
+def full_contact_of(point: Point, plan: Plan, height: float, name: str) -> dict[str, np.ndarray]:
+    """Largest attractions of few tips in full contact and of more on summits, at three slopes, wetting perfectly."""
+    effort, (humidity, _) = SETS[name], air_of(height, 1.0, _water(plan).temperature)
+    stated = tips_in_full_contact.settings_of_devices(plan, At(case=Case(case_id(PAIR, round(humidity, 4)))))
+    settings = in_si(tips_in_full_contact.Settings, stated)
+    own = replace(settings, strips=effort.strips[0], on_summits=effort.strips[1], seed=effort.seed)
+    own = replace(own, beam=replace(own.beam, width=min(own.beam.width, _NARROW)))
+    study = tips_in_full_contact.compute_for_devices(_surfaces(plan), f"estimate{point.number}", own)
+    full, summits = tips_in_full_contact.models_of_devices(study)
+    return {"slope": study.slope.values, "full": full[:, 0], "summits": summits[:, 0]}
+
+
+def change_of(study: dict[str, np.ndarray]) -> Callable:
+    """Change of forces by the slope, as devices apply it: with the upper end of its errors."""
+    ratios, errors = few_tip_ratios(study["full"][:, None], study["summits"][:, None], POWER_ERROR)
+    most = np.log(ratios[0]) + ndtri(CONFIDENCE) * errors[0]
+    return lambda slopes: np.exp(np.interp(np.log(slopes), np.log(study["slope"]), most))
+
+
+def air_of(height: float, wetting: float, temperature: float) -> tuple[float, float]:
+    """Humidity [-] of a film of a height [m], and contact angle [rad] of a mean cosine."""
+    perfect = float(meniscus.meniscus_height(np.exp(-1), temperature))
+    return float(np.exp(-wetting * perfect / height)), float(np.arccos(wetting))
+
+
+def _water(plan):
+    """Water between the surfaces of the pair."""
+    return in_si(Water, plan.air_of_devices.water(PAIR))
+
+
+def _surfaces(plan):
+    """Datasets of both surfaces."""
+    return [surface(plan, name) for name in "ST"]
+
+
+def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
+    """Numbers of one point of a set."""
+    effort, plan = SETS[name], plan_of(point, valid)
+    seed = effort.seed
+    airs, number = states(effort.states, point.number, seed), effort.tips
+    tips = Tips.of(point, plan, number + round(effort.tips_by_width / to_si(point.width, "um")), seed)
+    found = {"airs": airs, "slopes": np.array([tips.slopes(*air) for air in airs], np.float32)}
+    if point.number % effort.every == 0:
+        study = full_contact_of(point, plan, airs[0, 0], name)
+        found |= study | {"changed": tips.slopes(*airs[0], change_of(study)).astype(np.float32)}
+    return found
+
+
+def train(folder: Path, name: str, chosen: range) -> None:
+    """Compute all missing points of a set among the chosen ones."""
+    valid = base()
+    for point in SETS[name].all:
+        target = folder / name / f"{point.number:04}.npz"
+        if point.number in chosen and not target.exists():
+            with without_progress():
+                save(computed(point, name, valid), target)
+
+
+def save(numbers: dict[str, Any], target: Path) -> None:
+    """Save arrays in one file, whole or not at all."""
+    with replacing(target) as path, path.open("wb") as file:
+        np.savez(file, **numbers)
+
+
+def main(folder: str, name: str = "", *ends: str) -> None:
+    """Compute all sets, or some points of one."""
+    for each in [name] if name else SETS:
+        train(Path(folder), each, range(*map(int, ends)) if ends else range(SETS[each].points))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,141 @@
+"""The command for an estimate: at once, without the libraries for numbers, and silent about what it does not know."""
+
+import json
+import re
+import subprocess
+import sys
+
+import pytest
+
+from stiction.command.at_once import estimate
+from stiction.command.main import main
+from stiction.config.reading import paper
+
+OPTIONS = ["--rms", "3", "--like", "B2", "--rh", "0.6", "--thickness", "2.6", "--gap", "20"]
+FILE = """
+run: {pairs: [mine], studies: []}
+surfaces: {Etched: {like: B2, rms_nm: 3}}
+pairs: {mine: {beam: Etched, substrate: Sub1, gap_um: 20, humidities: [0.6]}}
+devices:
+  Lever: {kind: cantilever, pair: mine, thickness_um: 2.6, width_um: 30, gap_um: 20, humidities: [0.6]}
+"""
+#: Runs the command as its script does, and says what it cost.
+MEASURED = """
+import json, resource, sys
+from stiction.command.at_once.entry import main
+sys.argv[1:1] = ["estimate"]
+status = main()
+used = resource.getrusage(resource.RUSAGE_SELF)
+print(json.dumps([status, sorted({name.split(".")[0] for name in sys.modules}), used.ru_utime + used.ru_stime]))
+"""
+
+
+def measured(*words):
+    """Lines of the command in a process of its own, and its status, libraries and time."""
+    done = subprocess.run([sys.executable, "-c", MEASURED, *words], capture_output=True, text=True, check=True)
+    *lines, last = done.stdout.splitlines()
+    return lines, *json.loads(last)
+
+
+def lengths(lines):
+    """Lengths [µm] of the table with the ends of both intervals, by the fraction 1 in n."""
+    rows = [re.findall(r"[\d.]+", line) for line in lines if line.startswith("  1 in ")]
+    return {int(float(row[1])): [float(value) for value in row[2:]] for row in rows}
+
+
+def said(capsys, *words):
+    """Lines of the command."""
+    status = estimate.main(list(words))
+    return status, capsys.readouterr().out.splitlines()
+
+
+def test_an_estimate_needs_no_library_for_numbers_and_a_tenth_of_a_second():
+    tries = [measured(*OPTIONS) for _ in range(3)]
+    for lines, status, libraries, _ in tries:
+        assert status == 0
+        assert lengths(lines)
+        assert not {"numpy", "scipy", "xarray", "netCDF4", "numba", "snakemake", "matplotlib"} & set(libraries)
+    assert min(seconds for *_, seconds in tries) < 0.3  # 0.1 on a machine without other work
+
+
+def test_a_file_and_options_give_the_same_lengths(tmp_path, capsys):
+    (tmp_path / "mine.yaml").write_text(FILE)
+    of_file, of_options = said(capsys, str(tmp_path / "mine.yaml"))[1], said(capsys, *OPTIONS)[1]
+    assert lengths(of_file) == lengths(of_options)
+    assert of_file[0].startswith("Lever: ")
+    assert any(f"stiction devices {tmp_path / 'mine.yaml'}" in line for line in of_file)
+
+
+def test_the_whole_command_knows_it_too(capsys):
+    assert main(["estimate", *OPTIONS]) == 0
+    assert lengths(capsys.readouterr().out.splitlines()) == lengths(said(capsys, *OPTIONS)[1])
+
+
+def test_lengths_fall_with_the_fraction_and_are_within_their_intervals(capsys):
+    rows = lengths(said(capsys, *OPTIONS)[1])
+    assert sorted(rows) == [10, 100, 1000, 10_000, 100_000, 1_000_000]
+    shorter = list(rows.values())
+    assert all(one[0] > other[0] for one, other in zip(shorter, shorter[1:], strict=False))
+    for length, low90, high90, low95, high95 in shorter:
+        assert low95 <= low90 < high90 <= high95
+        assert low95 < length < high95
+
+
+def test_assumed_numbers_widen_an_interval_and_the_worst_air_decides(capsys):
+    surface = [f"--{word}={value}" for word, value in {"hurst": 1.3, "corner": 12, "cutoff": 125}.items()]
+    known = lengths(said(capsys, *OPTIONS, *surface, "--skewness=-0.76", "--kurtosis=3.9")[1])[1000]
+    assumed = lengths(said(capsys, *OPTIONS)[1])[1000]
+    assert known[2] / known[1] < 0.9 * assumed[2] / assumed[1]
+    drier, wetter = (lengths(said(capsys, *OPTIONS, f"--rh={rh}")[1])[1000][0] for rh in (0.5, 0.8))
+    both = lengths(said(capsys, *OPTIONS, "--rh", "0.5", "0.8")[1])[1000][0]
+    assert wetter < drier
+    assert both == wetter
+
+
+def test_more_touchdowns_need_shorter_beams_and_a_stated_length_has_a_probability(capsys):
+    once = lengths(said(capsys, *OPTIONS)[1])
+    often = lengths(said(capsys, *OPTIONS, "--touchdowns=10")[1])
+    assert often[100][0] == pytest.approx(once[1000][0], rel=0.01)  # 1 in 100 after ten is 1 in 1000 at each
+    _, lines = said(capsys, *OPTIONS, f"--length={once[1000][0]}")
+    (stuck,) = [line for line in lines if "P(stuck)" in line]
+    value, low, high = map(float, re.findall(r"[\d.]+(?:e-\d+)?", stuck.partition(":")[2].replace("95 %", ""))[:3])
+    assert value == pytest.approx(1e-3, rel=0.3)  # the length has three digits
+    assert low <= value <= high
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("kind: cantilever", "kind: bridge", "only cantilevers"),
+        ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, voltage_V: 5, humidities: [0.6]}\n", "voltage_V"),
+        ("humidities: [0.6]}\n", "humidities: [0.999]}\n", "beyond what was learnt"),
+        ("humidities: [0.6]}\n", "humidities: [dry]}\n", "dry"),
+        ("rms_nm: 3", "rms_nm: 60", "beyond what was learnt"),
+        ("rms_nm: 3}", "rms_nm: 3, material: gold}", "material"),
+        ("run:", "water: {temperature_K: 280}\nrun:", "water"),
+        ("substrate: Sub1", "substrate: Sub1, replica: {coherence: 0.9}", "replica"),
+    ],
+)
+def test_what_was_not_learnt_has_no_number_but_the_command_that_computes_it(tmp_path, capsys, old, new, reason):
+    text = FILE.replace(old, new)
+    assert text != FILE
+    (tmp_path / "mine.yaml").write_text(text)
+    status, lines = said(capsys, str(tmp_path / "mine.yaml"))
+    assert status == 2
+    (line,) = lines
+    assert "not known" in line
+    assert reason in line
+    assert line.endswith(f"stiction devices {tmp_path / 'mine.yaml'}")
+
+
+@pytest.mark.parametrize("missing", ["rms", "rh", "thickness", "gap"])
+def test_a_missing_option_is_named(capsys, missing):
+    k = OPTIONS.index(f"--{missing}")
+    status, lines = said(capsys, *OPTIONS[:k], *OPTIONS[k + 2 :])
+    assert status == 2
+    assert f"--{missing} is missing" in lines[0]
+
+
+def test_the_library_is_that_of_the_paper():
+    for name, entry in estimate.content()["library"].items():
+        assert entry.items() <= paper()["surfaces"][name].items()

@@ -1,0 +1,100 @@
+"""Arithmetic of the page in JavaScript beside that of Python, at random questions."""
+
+import json
+import math
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import stiction.estimate.table as table_of_estimate
+from stiction.estimate.answer import CONFIDENCES, answer
+from stiction.estimate.length import NotLearnt
+from stiction.estimate.question import Question, surface
+
+NODE = shutil.which("node")
+STATES = 200
+#: Script that answers questions from standard input.
+SCRIPT = """
+const input = JSON.parse(require("fs").readFileSync(0, "utf8"));
+const answers = input.questions.map((question) => {
+  try { return answer({...question, ...sides(question)}, input.table); }
+  catch (reason) { if (reason instanceof NotLearnt) return {unknown: reason.message}; throw reason; }
+});
+function sides({beams, substrate}) {
+  const [stated, ...members] = beams.map((beam) => added(heights(beam), heights(substrate)));
+  return {stated, members};
+}
+console.log(JSON.stringify(answers));
+"""
+
+
+def drawn(rng):
+    """Random question, with all numbers of the surface or some typical ones in its place."""
+    beams = [
+        {
+            "rms_nm": math.exp(rng.uniform(0, 2.3)),
+            "hurst": rng.uniform(0.4, 2.5),
+            "corner_rad_per_um": rng.uniform(8, 60),
+            "cutoff_rad_per_um": rng.uniform(90, 290),
+            "skewness": rng.uniform(-1.2, 0),
+            "kurtosis": rng.uniform(3, 5),
+        }
+        for _ in range(rng.choice([1, 5]))
+    ]
+    substrate = beams[0] | {"rms_nm": 0.2, "corner_rad_per_um": 10.0}
+    device = {"thickness": 2.6e-6, "gap": rng.uniform(5e-6, 25e-6), "width": rng.uniform(8e-6, 40e-6)}
+    device |= {"length": rng.uniform(1e-4, 4e-4), "touchdowns": int(rng.choice([1, 1000]))}
+    airs = rng.uniform(0.4, 0.92, rng.choice([1, 2])).tolist()
+    return {"beams": beams, "substrate": substrate, "humidities": airs, "averaged": bool(rng.random() < 0.5)} | device
+
+
+def in_python(question, table):
+    """Numbers of an answer, or why it is not known."""
+    library = table["library"]
+    (stated, *members), (other, _) = (
+        [surface(one, library)[0] for one in question["beams"]],
+        surface(question["substrate"], library),
+    )
+    own = {key: question[key] for key in ("thickness", "gap", "width", "length", "touchdowns", "averaged")}
+    named = {str(k): member for k, member in enumerate(members)}
+    asked = Question("", (stated, other), (named, {}), tuple(question["humidities"]), **own)
+    try:
+        found = answer(asked, table, table_of_estimate.process("tips"), table_of_estimate.process("full"))
+    except NotLearnt as reason:
+        return str(reason)
+    rows = [[row.length, *(end for name in CONFIDENCES for end in row.intervals[name])] for row in found.rows]
+    return [*np.ravel(rows), *found.stuck]
+
+
+def in_javascript(answers):
+    """The same of the answers of the script."""
+    for found in answers:
+        if "unknown" in found:
+            yield found["unknown"]
+        else:
+            rows = [
+                [row["length"], *(end for name in CONFIDENCES for end in row["intervals"][name])]
+                for row in found["rows"]
+            ]
+            yield [*np.ravel(rows), *found["stuck"]]
+
+
+@pytest.mark.skipif(NODE is None, reason="node is not on this machine")
+def test_the_page_computes_what_python_does():
+    rng, table = np.random.default_rng(7), table_of_estimate.content()
+    questions = [drawn(rng) for _ in range(STATES)]
+    source = Path(table_of_estimate.FILE).with_name("estimate.js").read_text(encoding="utf-8") + SCRIPT
+    given = json.dumps({"questions": questions, "table": table})
+    done = subprocess.run([NODE, "-e", source], input=given, capture_output=True, text=True, check=True)
+    numbers = 0
+    for question, found in zip(questions, in_javascript(json.loads(done.stdout)), strict=True):
+        expected = in_python(question, table)
+        if isinstance(expected, str):
+            assert found == expected
+        else:
+            np.testing.assert_allclose(found, expected, rtol=1e-6, atol=1e-12)
+            numbers += 1
+    assert numbers > STATES / 10

@@ -1,0 +1,66 @@
+"""The table of the estimate is that of the code: control numbers, page, and the design that it was learnt from."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stiction.estimate import training
+from stiction.estimate.answer import CONFIDENCES
+from stiction.estimate.design import FILMS, Law, points, states
+from stiction.estimate.make import control_of_forces, control_of_slopes
+from stiction.estimate.page import page
+from stiction.estimate.state import COORDINATES
+from stiction.estimate.table import FILE, content, process
+from stiction.progress import without_progress
+
+DOCS = Path(__file__).parents[2] / "docs"
+AGAIN = "tips have changed since the estimate was learnt: run make surrogate"
+
+
+def test_tips_are_still_those_that_were_learnt():
+    with without_progress():
+        slopes = control_of_slopes()
+    np.testing.assert_allclose(slopes, content()["control"]["slopes"], rtol=1e-4, err_msg=AGAIN)
+
+
+@pytest.mark.slow
+def test_full_contact_is_still_the_one_that_was_learnt():
+    with without_progress():
+        forces = control_of_forces()
+    np.testing.assert_allclose(forces, content()["control"]["forces"], rtol=1e-3, err_msg=AGAIN)
+
+
+def test_the_table_is_small_and_the_page_of_the_docs_has_it():
+    assert FILE.stat().st_size < 1e6
+    assert (DOCS / "_static" / "estimate.html").read_text(encoding="utf-8") == page()
+    assert len(page()) < 2e6
+
+
+def test_the_table_has_what_the_estimate_reads():
+    assert list(COORDINATES) == content()["coordinates"]
+    assert 0 < content()["margins"][CONFIDENCES[0]] <= content()["margins"][CONFIDENCES[1]] < 5
+    for name in ("tips", "full"):
+        assert len(process(name).nodes[0]) == len(process(name).columns)
+
+
+@pytest.mark.parametrize("law", [Law.ANY, Law.TYPICAL])
+def test_more_points_begin_with_fewer_and_other_seeds_are_other_surfaces(law):
+    assert points(9, 1, law)[:4] == points(4, 1, law)
+    assert not {str(point.sides) for point in points(9, 1, law)} & {str(point.sides) for point in points(9, 2, law)}
+
+
+def test_films_of_a_point_are_within_their_range_and_its_own():
+    films = states(8, 3, 1)[:, 0]
+    assert np.all((films >= 1e-9 * FILMS[0]) & (films <= 1e-9 * FILMS[1]))
+    np.testing.assert_array_equal(films, states(8, 3, 1)[:, 0])
+    assert not np.any(films == states(8, 4, 1)[:, 0])
+
+
+def test_training_goes_on_where_it_was(monkeypatch, tmp_path):
+    done = []
+    monkeypatch.setattr(training, "base", dict)
+    monkeypatch.setattr(training, "computed", lambda point, *_: done.append(point.number) or {"airs": np.zeros(1)})
+    for chosen in (range(2), range(1, 4), range(4)):
+        training.train(tmp_path, "check_any", chosen)
+    assert done == [0, 1, 2, 3]

@@ -1,0 +1,63 @@
+"""The page of the estimate in a browser: from a file, on a phone, with every slider at both ends."""
+
+import math
+
+import pytest
+from browser import Browser, missing
+
+from stiction.estimate.page import page
+
+pytestmark = [pytest.mark.slow, pytest.mark.browser, pytest.mark.skipif(bool(missing()), reason=missing())]
+SAID = "return document.getElementById('said').textContent"
+
+
+@pytest.fixture(scope="module")
+def opened(tmp_path_factory):
+    path = tmp_path_factory.mktemp("page") / "estimate.html"
+    path.write_text(page(), encoding="utf-8")
+    with Browser() as browser:
+        browser.open(path)
+        yield browser
+
+
+def test_every_slider_moves_without_an_error_and_each_state_has_a_sentence(opened):
+    moved = """
+    const said = [];
+    for (const slider of document.querySelectorAll('input[type=range]')) {
+      const start = slider.value;
+      for (const end of [slider.min, slider.max, start]) {
+        slider.value = end;
+        slider.dispatchEvent(new Event('input', {bubbles: true}));
+        said.push(document.getElementById('said').textContent);
+      }
+    }
+    return said;
+    """
+    said = opened.run(moved)
+    assert all(line.startswith(("Build at most", "Not known at once")) for line in said)
+    assert sum(line.startswith("Build at most") for line in said) > len(said) / 2
+    assert opened.errors() == []
+
+
+def test_the_page_fits_a_phone(opened):
+    opened.resize(390, 844)
+    assert opened.run("return document.documentElement.scrollWidth") <= 390
+    opened.resize(1500, 1000)
+
+
+def test_the_page_asks_nothing_of_a_network(opened):
+    assert opened.run("return performance.getEntriesByType('resource').length") == 0
+    assert "http" not in page().replace("http-equiv", "")
+
+
+def test_the_page_has_no_barrier(opened):
+    pytest.importorskip("axe_core_python")
+    assert opened.violations() == []
+
+
+def test_the_file_of_the_page_is_that_of_its_sliders(opened):
+    text = opened.run("return document.getElementById('yaml').textContent")
+    assert "like: B2" in text
+    opened.run("const box = document.getElementById('known_skewness'); box.click(); return 1")
+    assert "skewness:" in opened.run("return document.getElementById('yaml').textContent")
+    assert math.isfinite(float(opened.run("return document.getElementById('of_skewness').textContent")))
