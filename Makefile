@@ -138,7 +138,8 @@ surrogate: $(VENV)/ready
 	$(BIN)/python -m stiction.estimate.training runs/surrogate
 	$(BIN)/python -m stiction.estimate.make runs/surrogate
 	$(BIN)/python -m stiction.estimate.page docs/_static/estimate.html
-	$(BIN)/python -m stiction.estimate.held_out runs/surrogate > docs/tables/estimate.md
+	$(BIN)/python -m stiction.estimate.held_out runs/surrogate docs/tables/safe_lengths.csv examples/devices.yaml \
+	  > docs/tables/estimate.md
 
 figures: $(VENV)/ready
 	$(STICTION) figures $(CONFIG) -- $(ARGS)

@@ -13,8 +13,13 @@ from stiction.accuracy import decided
 from stiction.answer.data import Answer
 from stiction.config.cases import case_id, in_numbers
 from stiction.config.kinds import BEAM, KEYS, KINDS, STOPPER, Kind, Release, kind_of
+from stiction.config.reading import paper
 from stiction.contact.air import Air
 from stiction.devices.limits.limit import Limit, restored
+from stiction.estimate.answer import Answer as Estimate
+from stiction.estimate.answer import answer as estimated
+from stiction.estimate.question import questions
+from stiction.estimate.table import known
 from stiction.plan.devices import DevicePlan
 from stiction.plan.graph import Results
 from stiction.report.answer import words as answer_words
@@ -158,6 +163,18 @@ class Device:
         """
         answer = answer_of(self.results[f"devices/answer/{self.name}"])
         return with_limits(answer, [limit for dataset in self._simulated.values() for limit in self.limits(dataset)])
+
+    def estimate(self) -> Estimate:
+        """Estimate at once of the lengths at which few stick, for exact inputs and one answer in all airs.
+
+        Raises
+        ------
+        NotLearnt
+            If the estimate does not know the device.
+        """
+        config = self._plan.config
+        own = {key: section for key, section in config.items() if section != paper().get(key)}
+        return estimated(questions(own, known()[0])[self.name], *known())
 
     def chart(self, humidity: float | str) -> xr.Dataset:
         """Safe lengths of the thicknesses and gaps of its chart. Dataset of `stiction.stages.devices.chart`."""

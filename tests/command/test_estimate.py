@@ -7,9 +7,12 @@ import sys
 
 import pytest
 
+import stiction
 from stiction.command.at_once import estimate
 from stiction.command.main import main
 from stiction.config.reading import paper
+from stiction.estimate.length import NotLearnt
+from stiction.plan.graph import Results
 
 OPTIONS = ["--rms", "3", "--like", "B2", "--rh", "0.6", "--thickness", "2.6", "--gap", "20"]
 FILE = """
@@ -139,3 +142,22 @@ def test_a_missing_option_is_named(capsys, missing):
 def test_the_library_is_that_of_the_paper():
     for name, entry in estimate.content()["library"].items():
         assert entry.items() <= paper()["surfaces"][name].items()
+
+
+def test_a_device_in_python_has_the_same_estimate(tmp_path, capsys):
+    (tmp_path / "mine.yaml").write_text(FILE)
+    device = stiction.Device("Lever", Results.of(stiction.load(tmp_path / "mine.yaml")))
+    rows = lengths(said(capsys, str(tmp_path / "mine.yaml"))[1])
+    for row in device.estimate().rows:
+        assert 1e6 * row.length == pytest.approx(rows[round(1 / row.fraction)][0], rel=5e-3)  # three digits
+    stiffer = stiction.load(tmp_path / "mine.yaml", {"solid": {"young_modulus_GPa": 170}})
+    with pytest.raises(NotLearnt, match="solid"):
+        stiction.Device("Lever", Results.of(stiffer)).estimate()
+
+
+def test_a_check_ends_with_the_estimate(tmp_path, capsys):
+    (tmp_path / "mine.yaml").write_text(FILE)
+    assert main(["check", str(tmp_path / "mine.yaml"), "-d", str(tmp_path)]) == 0
+    last = capsys.readouterr().out.splitlines()[-1]
+    build = lengths(said(capsys, str(tmp_path / "mine.yaml"))[1])[1000][1]
+    assert f"build Lever at most {build:.3g} µm" in last

@@ -22,7 +22,8 @@ def drawn(number, seed, noise=0.0):
     x, y, z = coordinates.T
     values = np.sin(2 * x) + y * z + 0.5 * np.cos(2 * y)
     values = values + noise * rng.normal(size=number).repeat(3)
-    return Rows(coordinates, {"f": values, "g": 2 * values + x}, np.arange(number).repeat(3))
+    of_rows = np.arange(number).repeat(3), np.ones(3 * number)
+    return Rows(coordinates, {"f": values, "g": 2 * values + x}, *of_rows)
 
 
 def test_a_process_follows_a_smooth_function_and_its_trend_alone_does_not():
@@ -45,6 +46,20 @@ def test_noise_of_a_surface_is_not_followed():
     process = Process(**fitted(learnt, "f", range(3), 100)[0])
     errors = [process.at(row).of["f"] - value for row, value in zip(other.coordinates, other.values["f"], strict=True)]
     assert np.std(errors) < noise
+
+
+def test_rows_with_less_noise_decide():
+    learnt, other = drawn(80, 1), drawn(40, 2)
+    loud = learnt.surface % 2 == 0
+    wrong = {name: y + 1.0 * loud * np.random.default_rng(4).normal(size=len(y)) for name, y in learnt.values.items()}
+
+    def error(noise):
+        """Scatter of the errors of a process that is told the noise."""
+        process = Process(**fitted(Rows(learnt.coordinates, wrong, learnt.surface, noise), "f", range(3), 100)[0])
+        found = [process.at(row).of["f"] for row in other.coordinates]
+        return np.std(found - other.values["f"])
+
+    assert error(np.where(loud, 9.0, 1.0)) < 0.7 * error(np.ones(len(loud)))
 
 
 def test_a_place_beyond_the_design_is_named():

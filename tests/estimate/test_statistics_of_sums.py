@@ -82,6 +82,11 @@ def test_a_described_surface_is_the_one_that_a_run_reads(entry):
         assert not none
         np.testing.assert_allclose(of_members[name].moments, again.moments, rtol=1e-6)
         assert of_members[name].kurtosis == pytest.approx(again.kurtosis)
+    normal, of_normal = surface(whole, LIBRARY)  # the same from its normal form
+    np.testing.assert_allclose(normal.moments, expected.moments, rtol=1e-6)
+    assert of_normal.keys() == of_members.keys()
+    for name, member in of_normal.items():
+        np.testing.assert_allclose(member.moments, of_members[name].moments, rtol=1e-6)
 
 
 @pytest.mark.parametrize(

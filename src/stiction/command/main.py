@@ -186,6 +186,8 @@ def _check(arguments):
     if ready.numbers:
         say(str(ready.numbers))
     say(f"It takes {cost}, less for results that are already there.")
+    for line in estimate.in_short(arguments.files):
+        say(line)
     of_pairs = {name: {pair[side] for side in SIDES} for name, pair in config["pairs"].items()}
     if long := [name for name, device in devices.items() if of_pairs[device["pair"]] & {*scanned}]:
         say(

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from stiction.estimate.length import Lengths, fraction_of, lengths, normal_score
+from stiction.estimate.length import Lengths, NotLearnt, fraction_of, lengths, normal_score
 from stiction.estimate.question import Question
 from stiction.estimate.state import State, film, stiffness_of
 from stiction.estimate.statistics import Heights
@@ -52,7 +52,7 @@ class Answer:
         return next(row for row in self.rows if row.fraction == CHOSEN)
 
 
-def answer(question: Question, table: Mapping[str, Any], tips: Process, full: Process | None) -> Answer:
+def answer(question: Question | NotLearnt, table: Mapping[str, Any], tips: Process, full: Process | None) -> Answer:
     """Answer to a question.
 
     Raises
@@ -60,6 +60,8 @@ def answer(question: Question, table: Mapping[str, Any], tips: Process, full: Pr
     NotLearnt
         If the estimate does not know it.
     """
+    if isinstance(question, NotLearnt):
+        raise question
     found = {air: _in_air(question, air, table, tips, full) for air in question.humidities}
     of_once = {p: -math.expm1(math.log1p(-p) / question.touchdowns) for p in FRACTIONS}
     rows = tuple(_worst([one.row(p, normal_score(of_once[p]), table) for one in found.values()]) for p in FRACTIONS)

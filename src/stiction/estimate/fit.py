@@ -36,12 +36,17 @@ class Rows:
     coordinates: np.ndarray  #: (n, c)
     values: dict[str, np.ndarray]  #: (n,) each
     surface: np.ndarray  #: number of the point of the design (n,)
+    noise: np.ndarray  #: of the rows, in any unit (n,)
+
+    @property
+    def weights(self) -> np.ndarray:
+        """Weights of the rows by their noise in units of its median, which is no less than a third (n,)."""
+        return 1 / np.maximum(self.noise / np.median(self.noise), 1 / 3)
 
     def of(self, chosen: np.ndarray) -> "Rows":
         """Some of the rows (n,) bool or numbers."""
-        return Rows(
-            self.coordinates[chosen], {name: y[chosen] for name, y in self.values.items()}, self.surface[chosen]
-        )
+        values = {name: y[chosen] for name, y in self.values.items()}
+        return Rows(self.coordinates[chosen], values, self.surface[chosen], self.noise[chosen])
 
 
 @dataclass(frozen=True)
@@ -76,14 +81,14 @@ def kernel_of(rows: Rows, name: str) -> Kernel:
     """Kernel of greatest likelihood for one quantity on one row of each surface."""
     centre, scale = rows.coordinates.mean(axis=0), rows.coordinates.std(axis=0)
     _, first = np.unique(rows.surface, return_index=True)
-    z, y = ((rows.coordinates - centre) / scale)[first], rows.values[name][first]
+    z, y, inverse = ((rows.coordinates - centre) / scale)[first], rows.values[name][first], rows.weights[first] ** -2
     b, c = terms(z), z.shape[1]
 
     def cost(p):
         """Negative logarithm of the likelihood, the scatter at its best and the trend by least squares."""
         own = Kernel(np.zeros(c), np.ones(c), np.exp(p[:c]), np.exp(p[c]))
         try:
-            factor = cho_factor(own.between(z, z) + own.noise**2 * np.eye(len(z)), lower=True)
+            factor = cho_factor(own.between(z, z) + own.noise**2 * np.diag(inverse), lower=True)
         except np.linalg.LinAlgError:
             return 1e9
         rest = y - b @ np.linalg.lstsq(b, y, rcond=None)[0]
@@ -113,13 +118,13 @@ def coefficients(kernel: Kernel, rows: Rows, nodes: np.ndarray) -> dict[str, tup
     """Coefficients of the trend and weights of nodes (m, c) for all quantities."""
     z = kernel.standard(rows.coordinates)
     b, k = terms(z), kernel.between(z, nodes)
-    features = np.hstack([b, k])
+    features = rows.weights[:, None] * np.hstack([b, k])
     penalty = np.zeros((features.shape[1],) * 2)
     t = b.shape[1]
     penalty[:t, :t] = _RIDGE * len(z) * np.eye(t)
     penalty[t:, t:] = kernel.noise**2 * (kernel.between(nodes, nodes) + _JITTER * np.eye(len(nodes)))
     factor = cho_factor(features.T @ features + penalty)
-    found = {name: cho_solve(factor, features.T @ y) for name, y in rows.values.items()}
+    found = {name: cho_solve(factor, features.T @ (rows.weights * y)) for name, y in rows.values.items()}
     return {name: (each[:t], each[t:]) for name, each in found.items()}
 
 

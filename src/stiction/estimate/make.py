@@ -34,7 +34,7 @@ def table_of(folder: Path) -> dict[str, Any]:
     """Content of the table."""
     modulus = to_si(paper()["solid"]["young_modulus_GPa"], "GPa")
     tips, of_tips_left_out = fitted(rows_of_tips(folder, "learn", modulus), "at_2", range(len(COORDINATES)))
-    full, of_full_left_out = fitted(rows_of_full(folder, "learn", modulus), "ratio", OF_FULL, 60)
+    full, of_full_left_out = fitted(rows_of_full(folder, "learn", modulus), "ratio", OF_FULL, 90)
     library = {name: {key: entry[key] for key in _OF_LIBRARY} for name, entry in paper()["surfaces"].items()}
     table = {
         "modulus": modulus,

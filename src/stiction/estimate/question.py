@@ -8,21 +8,25 @@ from stiction.config.kinds import KINDS
 from stiction.config.units import to_si
 from stiction.contact.air import is_humid, is_possible
 from stiction.estimate.length import NotLearnt
-from stiction.estimate.statistics import Heights, heights_of, moments_of, slope_of
+from stiction.estimate.statistics import Heights, moments_of, slope_of
 
 Library = Mapping[str, Mapping[str, Any]]
 
 #: Keys of a surface, of a pair and of a device that the estimate knows.
 OF_SURFACES = ("rms_nm", "like", "hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis")
-OF_SURFACES += ("psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
-OF_PAIRS = ("beam", "substrate", "gap_um", "humidities")
+OF_SURFACES += ("unknown", "psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
+OF_PAIRS = ("beam", "substrate", "gap_um", "humidities", "attraction", "coarser_mesh")
 OF_DEVICES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "humidities", "touchdowns")
 #: Keys that change the length to build alone: the estimate is of exact inputs, and leaves out what a run adds.
 LEFT_OUT = ("uncertainty", "requirement", "chart", "roughness")
 #: Sections of a file that change no length of a cantilever.
 OF_FILES = ("run", "surfaces", "pairs", "devices", "figures", "studies", "beam", "chaos", "character", "seed")
+#: Keys of section ``design`` that change no length of a cantilever but by its numbers of samples.
+OF_DESIGN = ("beams", "shares", "chart_points", "budget_beams", "budget_samples", "worst_humidities")
 #: Numbers that a surface may leave open.
 _OPEN = ("skewness", "kurtosis", "hurst", "corner_rad_per_um", "cutoff_rad_per_um")
+#: These by the words of key ``unknown``. An unknown rms is not among them.
+_WORDS = dict(zip(("skewness", "kurtosis", "hurst", "corner", "cutoff"), _OPEN, strict=True))
 
 
 @dataclass(frozen=True)
@@ -52,7 +56,11 @@ def surface(entry: Mapping[str, Any], library: Library) -> tuple[Heights, dict[s
     if "psd" in entry and entry["psd"] != "published":
         raise NotLearnt("a spectrum that is identified from summits was not learnt: state its corner and slope")
     if "psd" in entry:
-        return heights_of(entry), {}
+        numbers = _numbers(entry)
+        left_open = [_WORDS[word] for word in entry.get("unknown", ())]
+        known = {key: value for key, value in numbers.items() if key not in left_open}
+        members = {name: _as(other, known, left_open) for name, other in library.items()} if left_open else {}
+        return _statistics(numbers), members
     left_open = [key for key in _OPEN if key not in entry]
     members = {name: _as(other, entry, left_open) for name, other in library.items()} if left_open else {}
     if "like" in entry:
@@ -67,9 +75,15 @@ def surface(entry: Mapping[str, Any], library: Library) -> tuple[Heights, dict[s
 
 def _as(other, entry, left_open):
     """Statistics of a surface with those numbers of another one that it leaves open."""
-    psd = other["published_psd"]
-    numbers = {key: other[key] for key in _OPEN[:2]} | {"hurst": -slope_of(psd) / 2 - 1} | psd
+    numbers = _numbers(other)
     return _statistics({key: numbers[key] for key in left_open} | entry)
+
+
+def _numbers(entry):
+    """Numbers of a surface in normal form, as files describe it."""
+    psd = entry["published_psd"]
+    own = {key: entry[key] for key in ("rms_nm", *_OPEN[:2])} | {key: psd[key] for key in _OPEN[3:]}
+    return own | {"hurst": -slope_of(psd) / 2 - 1}
 
 
 def _statistics(numbers):
@@ -97,8 +111,9 @@ def questions(content: Mapping[str, Any], table: Mapping[str, Any]) -> dict[str,
 
 def _question(name, device, content, table):
     """Question of one device."""
-    if others := [key for key in content if key not in OF_FILES]:
-        raise NotLearnt(f"section {others[0]} of the file was not learnt")
+    others = [f"design.{key}" for key in content.get("design", {}) if key not in OF_DESIGN]
+    if others := [*others, *(key for key in content if key not in (*OF_FILES, "design"))]:
+        raise NotLearnt(f"{others[0]} was not learnt")
     kind = KINDS.get(device["kind"])
     if kind is None or not kind.has_tip:
         raise NotLearnt("only cantilevers were learnt")

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 from scipy.special import ndtr
+from scipy.stats import variation
 
 from stiction.config.units import to_si
 from stiction.constants import WATER_SURFACE_ENERGY
@@ -55,15 +56,18 @@ def of_tips(slopes: np.ndarray) -> dict[str, float]:
 
 def rows_of_tips(folder: Path, name: str, modulus: float) -> Rows:
     """Rows of all tips of a set on summits."""
-    coordinates, values, surface = [], [], []
+    coordinates, values, surface, noise = [], [], [], []
     for point, numbers in stored(folder, name):
+        if "slopes" not in numbers:
+            continue
         for states, slopes in zip(states_of(point, numbers["airs"], modulus), numbers["slopes"], strict=True):
             for state, of_beam in zip(states, slopes, strict=True):
                 coordinates.append(state.coordinates)
                 values.append(of_tips(of_beam / state.flooded_slope))
                 surface.append(point.number)
+                noise.append(values[-1]["slope"] / len(of_beam) ** 0.5)
     columns = {key: np.array([row[key] for row in values]) for key in NAMES}
-    return Rows(np.array(coordinates), columns, np.array(surface))
+    return Rows(np.array(coordinates), columns, np.array(surface), np.array(noise))
 
 
 #: Coordinates that the change by full contact depends on: ASSUME: no others. Few points have it.
@@ -72,15 +76,17 @@ OF_FULL = (0, 1, 2, 6, 8)
 
 def rows_of_full(folder: Path, name: str, modulus: float) -> Rows:
     """Rows of the logarithm of the change of tips by full contact, at three slopes of some points."""
-    coordinates, values, surface = [], [], []
+    coordinates, values, surface, noise = [], [], [], []
     for point, numbers in stored(folder, name):
         if "slope" not in numbers or not np.isfinite(numbers["full"]).all():
             continue
         film = states_of(point, numbers["airs"], modulus)[0][1].film
-        ratios = np.log(numbers["full"].mean(axis=0) / numbers["summits"].mean(axis=0))
+        full, summits = numbers["full"], numbers["summits"]
+        ratios = np.log(full.mean(axis=0) / summits.mean(axis=0))
+        noise += np.hypot(*(variation(each, axis=0) / len(each) ** 0.5 for each in (full, summits))).tolist()
         for slope, ratio in zip(numbers["slope"], ratios, strict=True):
             state = State(of_pair(point.sides), film, 13.5 * film.energy / slope**4, to_si(point.width, "um"), modulus)
             coordinates.append(state.coordinates)
             values.append(ratio)
             surface.append(point.number)
-    return Rows(np.array(coordinates), {"ratio": np.array(values)}, np.array(surface))
+    return Rows(np.array(coordinates), {"ratio": np.array(values)}, np.array(surface), np.array(noise))

@@ -71,3 +71,8 @@ def content() -> dict[str, Any]:
 def process(name: str) -> Process:
     """Process of the file by name: ``tips`` on summits, or the change of their forces in ``full`` contact."""
     return Process(**content()[name])
+
+
+def known() -> tuple[dict[str, Any], Process, Process]:
+    """All that an answer needs: the content of the file, and its processes of tips on summits and in full contact."""
+    return content(), process("tips"), process("full")

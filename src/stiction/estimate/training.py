@@ -6,23 +6,19 @@ Every point is a file, so that a stopped run goes on where it was:
 """
 
 import sys
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy.special import ndtri
 
-from stiction.analysis.model_error import few_tip_ratios
 from stiction.config.cases import Case, case_id
 from stiction.config.files import load
 from stiction.config.units import from_si, in_si, to_si
 from stiction.contact import meniscus
 from stiction.contact.environment import Water
 from stiction.devices.arcs import longest_free, tip_slope
-from stiction.devices.risk import CONFIDENCE
 from stiction.estimate.design import Law, Point, points, states
 from stiction.pilot import surface
 from stiction.plan.plan import Plan
@@ -31,7 +27,6 @@ from stiction.progress import without_progress
 from stiction.run.atomic import replacing
 from stiction.stages.contact import contact, curves, tips_in_full_contact
 from stiction.stages.contact.changes.patches import TIPS
-from stiction.stages.contact.pair_model_error import POWER_ERROR
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices.contact_names import patch_of_tips
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
@@ -53,7 +48,7 @@ class Effort:
     points: int
     seed: int
     law: Law
-    tips: int  #: at least
+    tips: int  #: at least, 0 for full contact alone
     tips_by_width: float  #: width of more tips together [m]
     states: int
     every: int  #: one of so many points has full contact
@@ -69,11 +64,11 @@ class Effort:
 SETS = {
     "learn_any": Effort(80, 1, Law.ANY, 20, to_si(800, "um"), 8, 4, (6, 60)),
     "learn_typical": Effort(48, 3, Law.TYPICAL, 20, to_si(800, "um"), 8, 1, (6, 60)),
+    "learn_full": Effort(36, 7, Law.TYPICAL, 0, 0.0, 2, 1, (6, 60)),
     "test_typical": Effort(20, 4, Law.TYPICAL, 40, to_si(1600, "um"), 4, 1, (8, 64)),
     "test_any": Effort(20, 2, Law.ANY, 40, to_si(1600, "um"), 4, 1, (8, 64)),
     "check_paper": Effort(6, 5, Law.PAPER, 400, 0.0, 4, 1, (8, 64)),
-    "check_typical": Effort(12, 5, Law.TYPICAL, 40, to_si(1600, "um"), 4, 1, (8, 64)),
-    "check_any": Effort(8, 6, Law.ANY, 40, to_si(1600, "um"), 4, 1, (8, 64)),
+    "check_typical": Effort(12, 8, Law.TYPICAL, 40, to_si(1600, "um"), 4, 1, (8, 64)),
     "control": Effort(1, 1, Law.ANY, 3, 0.0, 1, 1, (1, 1)),
 }
 #: Width of strips in full contact [m]. On B2 and Sub1 at RH 0.44, strips of 2, 4, 10 and 30 µm have ratios of 0.36,
@@ -122,15 +117,15 @@ class Tips:
         found = contact.compute(_surfaces(plan), f"estimate{point.number}", "NG", settings)
         return cls(found, _water(plan), in_si(DesignedBeam, section_of_beam(plan, DEVICE)))
 
-    def slopes(self, height: float, wetting: float, change: Callable = np.ones_like) -> np.ndarray:
+    def slopes(self, height: float, wetting: float) -> np.ndarray:
         """Slopes up to which tips stick, by `FACTORS` (stiffnesses, tips) [-].
 
-        In a film of a height [m] and a mean cosine of the contact angles, with a change of forces by the slope (s,).
+        In a film of a height [m] and a mean cosine of the contact angles.
         """
         humidity, angle = air_of(height, wetting, self.water.temperature)
         at, forces = curves.tip_forces(self.contact, humidity, replace(self.water, contact_angles=(angle, angle)))
         beams = [replace(self.device, gap=self.device.gap / factor**0.5).beam for factor in FACTORS]
-        return np.array([tip_slope(longest_free(at, forces * change(at), beam), beam.gap) for beam in beams])
+        return np.array([tip_slope(longest_free(at, forces, beam), beam.gap) for beam in beams])
 
 
 def full_contact_of(point: Point, plan: Plan, height: float, name: str) -> dict[str, np.ndarray]:
@@ -143,13 +138,6 @@ def full_contact_of(point: Point, plan: Plan, height: float, name: str) -> dict[
     study = tips_in_full_contact.compute_for_devices(_surfaces(plan), f"estimate{point.number}", own)
     full, summits = tips_in_full_contact.models_of_devices(study)
     return {"slope": study.slope.values, "full": full[:, 0], "summits": summits[:, 0]}
-
-
-def change_of(study: dict[str, np.ndarray]) -> Callable:
-    """Change of forces by the slope, as devices apply it: with the upper end of its errors."""
-    ratios, errors = few_tip_ratios(study["full"][:, None], study["summits"][:, None], POWER_ERROR)
-    most = np.log(ratios[0]) + ndtri(CONFIDENCE) * errors[0]
-    return lambda slopes: np.exp(np.interp(np.log(slopes), np.log(study["slope"]), most))
 
 
 def air_of(height: float, wetting: float, temperature: float) -> tuple[float, float]:
@@ -171,13 +159,14 @@ def _surfaces(plan):
 def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     """Numbers of one point of a set."""
     effort, plan = SETS[name], plan_of(point, valid)
-    seed = effort.seed
-    airs, number = states(effort.states, point.number, seed), effort.tips
-    tips = Tips.of(point, plan, number + round(effort.tips_by_width / to_si(point.width, "um")), seed)
-    found = {"airs": airs, "slopes": np.array([tips.slopes(*air) for air in airs], np.float32)}
+    airs, number = states(effort.states, point.number, effort.seed), effort.tips
+    found = {"airs": airs}
+    if number:
+        number += round(effort.tips_by_width / to_si(point.width, "um"))
+        tips = Tips.of(point, plan, number, effort.seed)
+        found["slopes"] = np.array([tips.slopes(*air) for air in airs], np.float32)
     if point.number % effort.every == 0:
-        study = full_contact_of(point, plan, airs[0, 0], name)
-        found |= study | {"changed": tips.slopes(*airs[0], change_of(study)).astype(np.float32)}
+        found |= full_contact_of(point, plan, airs[0, 0], name)
     return found
 
 

@@ -3,6 +3,7 @@
 import argparse
 import sys
 from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from typing import Any
 
 from stiction.command.output_streams import say
@@ -10,7 +11,7 @@ from stiction.config.units import from_si
 from stiction.estimate.answer import CHOSEN, FRACTIONS, Answer, answer
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import of_numbers, questions, surface
-from stiction.estimate.table import content, process
+from stiction.estimate.table import content, known
 
 #: Options of a cantilever on a described surface: key in a file, metavar, help, default.
 OPTIONS = {
@@ -48,15 +49,21 @@ def run(arguments: argparse.Namespace) -> int:
     status, name_of_file = 0, " ".join(arguments.files) or "mine.yaml"
     for name, question in _questions(arguments).items():
         try:
-            if isinstance(question, NotLearnt):
-                raise question
-            for line in shown(answer(question, content(), process("tips"), process("full"))):
+            for line in shown(answer(question, *known())):
                 say(line)
             say(f"  Computed exactly by: stiction devices {name_of_file}")
         except NotLearnt as reason:
             status = 2
             say(f"{name} is not known at once: {reason}. Run: stiction devices {name_of_file}")
     return status
+
+
+def in_short(files: Sequence[str]) -> Iterator[str]:
+    """Lines with the length to build of each device of some valid files that the estimate knows."""
+    for name, question in _of_files(files).items():
+        with suppress(NotLearnt):
+            build = answer(question, *known()).chosen.intervals["90"][0]
+            yield f"Estimate: build {name} at most {_um(build)} µm; stiction estimate {' '.join(files)} says more."
 
 
 def main(words: Sequence[str]) -> int:
@@ -72,15 +79,19 @@ def main(words: Sequence[str]) -> int:
 
 def _questions(arguments):
     """Questions by the name of the device."""
-    library = content()["library"]
     if arguments.files:
-        from stiction.config.reading import read  # imports the parser of YAML
-
-        return {name: one for file in arguments.files for name, one in questions(read(file), content()).items()}
+        return _of_files(arguments.files)
     try:
-        return {"The cantilever": _of_options(arguments, library)}
+        return {"The cantilever": _of_options(arguments, content()["library"])}
     except NotLearnt as reason:
         return {"The cantilever": reason}
+
+
+def _of_files(files):
+    """Questions of all devices of some files."""
+    from stiction.config.reading import read  # imports the parser of YAML
+
+    return {name: one for file in files for name, one in questions(read(file), content()).items()}
 
 
 def _of_options(arguments, library):
