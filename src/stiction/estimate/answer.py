@@ -153,6 +153,10 @@ def _in_air(question, air, table, tips, full):
 
 def _lengths(question: Question, heights: Heights, air: float, table, tips, full):
     """Lengths on the sum of two surfaces at one humidity."""
-    stiffness = stiffness_of(table["modulus"], question.thickness, question.gap)
-    water = film(air, table["temperature"], 2.0, table["water"])
-    return lengths(State(heights, water, stiffness, question.width, table["modulus"]), question.gap, tips, full)
+    try:
+        stiffness = stiffness_of(table["modulus"], question.thickness, question.gap)
+        water = film(air, table["temperature"], 2.0, table["water"])
+        state = State(heights, water, stiffness, question.width, table["modulus"])
+        return lengths(state, question.gap, tips, full)
+    except (ArithmeticError, ValueError) as impossible:  # such as the logarithm of a negative number
+        raise NotLearnt("one of its numbers is impossible") from impossible
