@@ -76,7 +76,7 @@ class InAir:
 
     stated: Lengths
     members: tuple[Lengths, ...]  #: on typical surfaces in place of a partly assumed one
-    averaged: bool  #: as of `Question`
+    averaged: bool  #: as of `stiction.estimate.question.Question`
 
     def centre(self, score: float) -> tuple[float, float]:
         """Mean and scatter of the logarithm of a length [m] over surfaces like those that are assumed."""
