@@ -110,7 +110,8 @@ def _of_options(arguments, library):
 def shown(found: Answer) -> Iterator[str]:
     """Lines of an answer."""
     asked = found.question
-    yield f"{asked.name}: estimate at RH {found.humidity:g}, the worst air, for exact inputs"
+    left_open = ", typical surfaces stand for what is not stated" * any(asked.members)
+    yield f"{asked.name}: estimate at RH {found.humidity:g}, the worst air; stated inputs count as exact{left_open}"
     yield "  stuck            length [µm]    90 %            95 %"
     for row in found.rows:
         ends = "    ".join(f"{_um(low):>5} to {_um(high):<5}" for low, high in row.intervals.values())
