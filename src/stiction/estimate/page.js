@@ -43,7 +43,9 @@ function questionOf({own, like, substrate, value, open}) {
     thickness: value("thickness_um") * 1e-6, gap: value("gap_um") * 1e-6, width: value("width_um") * 1e-6,
     length: value("length_um") * 1e-6, touchdowns: value("touchdowns")};
 }
+const RAREST = 1e-6; // of which the table has a length
 const um = (length) => Number((length * 1e6).toPrecision(3)).toString();
+const percent = (part) => part < RAREST ? `less than ${(100 * RAREST).toFixed(4)}` : Number((100 * part).toPrecision(2)).toString();
 function show() {
   for (const [key, , low] of INPUTS) if (!Array.isArray(low)) byId("of_" + key).textContent = byId(key).value;
   const given = stated();
@@ -61,8 +63,8 @@ function write(found, {value}) {
     `<th scope="col">95 %</th></tr></thead><tbody>${found.rows.map(row).join("")}</tbody>`;
   byId("said").className = "said";
   byId("said").textContent = `Build at most ${um(found.rows[2].intervals["90"][0])} µm: 1 in 1000 stick at most, with 95 % confidence in the estimate.`;
-  const [middle, low, high] = found.stuck.map((part) => part.toPrecision(2));
-  byId("stuck").textContent = `At ${value("length_um")} µm, a fraction of ${middle} sticks (95 %: ${low} to ${high}).`;
+  const [middle, low, high] = found.stuck.map(percent);
+  byId("stuck").textContent = `At ${value("length_um")} µm, ${middle} % stick (95 %: ${low} to ${high} %).`;
 }
 function refuse(reason) {
   byId("said").className = "said refused";

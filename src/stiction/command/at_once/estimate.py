@@ -117,10 +117,15 @@ def shown(found: Answer) -> Iterator[str]:
         ends = "    ".join(f"{_um(low):>5} to {_um(high):<5}" for low, high in row.intervals.values())
         yield f"  1 in {1 / row.fraction:<10.0f}  {_um(row.length):>8}     {ends}"
     if found.stuck is not None:
-        value, low, high = (f"{max(part, FRACTIONS[-1]):.2g}" for part in found.stuck)
-        yield f"  P(stuck) at {_um(asked.length)} µm: {value}, with 95 % between {low} and {high} (at least 1e-06)"
+        value, low, high = map(_percent, found.stuck)
+        yield f"  At {_um(asked.length)} µm, {value} % stick (95 %: {low} to {high} %)."
     low = found.chosen.intervals["90"][0]
     yield f"  Build at most {_um(low)} µm: 1 in {1 / CHOSEN:.0f} stick at most, with 95 % confidence in the estimate."
+
+
+def _percent(part):
+    """Fraction in percent, not below the smallest one with a length."""
+    return f"{100 * part:.2g}" if part >= FRACTIONS[-1] else f"less than {100 * FRACTIONS[-1]:.4f}"
 
 
 def _um(length: Any) -> str:
