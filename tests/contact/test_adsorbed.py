@@ -60,8 +60,8 @@ def test_the_tension_stays_and_dry_or_repellent_surfaces_have_no_film():
 
 
 def test_a_thick_film_lets_no_air_that_is_too_dry_condense_water():
-    with pytest.raises(ValueError, match="bridges no gap"):
-        replace(WATER, adsorbed=3 * NM).film(0.02)
+    with pytest.raises(ValueError, match="no liquid"):
+        replace(WATER, adsorbed=3 * NM).film(0.2)
 
 
 def test_flats_in_contact_need_the_work_of_the_films_as_well_and_nothing_more_in_saturated_air():

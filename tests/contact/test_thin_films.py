@@ -6,7 +6,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from scipy.stats import norm
 
+from stiction.config.files import load
 from stiction.constants import WATER_MOLECULE
+from stiction.contact.environment import Water
 from stiction.contact.forcelaw import humid_curves
 from stiction.contact.meniscus import (
     BRIDGE,
@@ -18,6 +20,7 @@ from stiction.contact.meniscus import (
     least_humidity,
     meniscus_height,
 )
+from stiction.plan.plan import Plan
 
 NM, STEP = 1e-9, 0.05e-9
 ONE_SIDE = (0.0, np.radians(110))
@@ -108,3 +111,20 @@ def test_films_have_no_jump_where_they_stop_to_be_a_liquid(humidity, temperature
     height, tension = film(humidity, temperature, angles)
     assert height <= max(meniscus_height(humidity, temperature, angles), MOLECULES * WATER_MOLECULE * (1 + 1e-9))
     assert tension <= -laplace_pressure(humidity, temperature)
+
+
+def test_films_that_are_no_liquid_are_computed_with_what_bounds_them_alone():
+    water, thin = Water(300.0), least_humidity(300.0) - 0.01
+    with pytest.raises(ValueError, match="thinner than 3 molecules"):
+        water.film(thin)
+    assert Water(300.0, bounded=True).film(thin) == film(thin, 300.0)
+    assert water.film(0.3) == Water(300.0, bounded=True).film(0.3)
+
+
+@pytest.mark.parametrize(("humidities", "bounded"), [([0.45], {}), ([0.2, 0.45], {"bounded": True}), (["dry"], {})])
+def test_a_pair_has_such_films_where_a_device_has(humidities, bounded):
+    stopper = {"kind": "stopper", "pair": "b", "contact_um": [2, 2], "restoring_force_uN": 5, "humidities": humidities}
+    plan = Plan(load({"devices": {"S": stopper}}))
+    of_devices = plan.air_of_devices.water("b")
+    assert {key: of_devices[key] for key in ("bounded",) if key in of_devices} == bounded
+    assert "bounded" not in plan.air.water("b"), "the paper's own"

@@ -26,7 +26,7 @@ from stiction.contact import forcelaw, gaps, vanderwaals
 from stiction.contact.air import Air
 from stiction.contact.correction import NONE, Change, Correction
 from stiction.contact.materials import Solid
-from stiction.contact.meniscus import film
+from stiction.contact.meniscus import BRIDGE, MOLECULES, film
 from stiction.contact.solids import attraction_between, interfaces
 from stiction.contact.voltage import Capacitor
 from stiction.models import SIDES
@@ -87,6 +87,8 @@ class Water:
     adsorbed: float = 0.0
     #: How much warmer the water is in some conditions of devices [K], by humidity in words.
     warmer: dict[str, float] = field(default_factory=dict)
+    #: Whether films that are no liquid are computed: those of devices, which have what bounds them beside them.
+    bounded: bool = False
 
     def temperature_at(self, humidity: float) -> float:
         """Temperature of the water at a humidity [K]."""
@@ -118,8 +120,14 @@ class Water:
         """Height h_C [m] and tension -ΔP [Pa] at a relative humidity, see `stiction.contact.meniscus.film`.
 
         The height has what adsorbed films add. Whether the water is a liquid does not depend on it.
+
+        Raises
+        ------
+        ValueError
+            If the film is no liquid, and nothing bounds it.
         """
-        height, tension = film(humidity, self.temperature_at(humidity), self.contact_angles)
+        fewest = BRIDGE if self.bounded else MOLECULES
+        height, tension = film(humidity, self.temperature_at(humidity), self.contact_angles, fewest)
         return height + self.adsorbed if height else height, tension
 
     def at(self, humidity: float) -> "Water":

@@ -206,7 +206,9 @@ def require_humidity(humidity: float) -> None:
         raise ValueError(f"relative humidity must be 0, in dry air, or above 0 and below 1, got {humidity}")
 
 
-def film(humidity: float, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
+def film(
+    humidity: float, temperature: float, contact_angles: tuple[float, float] = (0.0, 0.0), fewest: int = BRIDGE
+) -> tuple[float, float]:
     """Height h_C [m] and tension -ΔP [Pa] of the water at one humidity, see `meniscus_height`.
 
     Both are zero in dry air, whose humidity is 0, and at any humidity between surfaces that are not `is_wetted`. Films
@@ -216,12 +218,12 @@ def film(humidity: float, temperature: float, contact_angles: tuple[float, float
     Raises
     ------
     ValueError
-        If no air has this humidity, or if it is not dry, and too dry for a film of `BRIDGE` molecules.
+        If no air has this humidity, or if it is not dry, and too dry for a film of the ``fewest`` molecules.
     """
     require_humidity(humidity)
     if not (is_humid(humidity) and is_wetted(contact_angles)):
         return 0.0, 0.0
-    if refusal := dry_air(humidity, temperature, contact_angles, BRIDGE):
+    if refusal := dry_air(humidity, temperature, contact_angles, fewest):
         raise ValueError(f"a relative humidity of {humidity:g} {refusal}")
     height = float(meniscus_height(humidity, temperature, contact_angles))
     tension = -float(laplace_pressure(humidity, temperature))

@@ -14,7 +14,7 @@ from stiction.config.mission.conditions import temperatures
 from stiction.config.units import to_si
 from stiction.contact.air import Air, humid
 from stiction.contact.materials import COATING, COATING_ATTRACTION, OF_COATINGS
-from stiction.contact.meniscus import is_wetted, require_humidity
+from stiction.contact.meniscus import is_wetted, least_humidity, require_humidity
 from stiction.contact.vanderwaals import combined
 from stiction.models import SIDES
 from stiction.plan.stage import subsection
@@ -124,7 +124,8 @@ class Environment:
         angles = self._contact_angles(contact)
         gaps = self._gaps(contact, self.around(contact, config))
         water = {key: value for key, value in (config or self.config)["water"].items() if value}
-        return water | self._warmer(contact) | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
+        own = self._warmer(contact) | self._bounded(contact, angles)
+        return water | own | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
 
     def temperature(self, pair: str, humidity: float) -> float:
         """Temperature of the water of a pair at a humidity: that of a condition of its devices where they stick [K]."""
@@ -137,6 +138,16 @@ class Environment:
         differences = {Air(air).name: round(at - self.config["water"]["temperature_K"], 6) for air, at in own.items()}
         warmer = {air: differences[air] for air in sorted(differences) if differences[air]}
         return {"warmer_K": warmer} if warmer else {}
+
+    def _bounded(self, contact, angles):
+        """Whether films of a pair that are no liquid have what bounds them beside them, as those of devices."""
+        pair, wetting = PairInAir(contact).pair, tuple(to_si(angle, "deg") for angle in angles)
+        if not (self.of_devices and is_wetted(wetting)):
+            return {}
+        on_pair = [device for device in self.config.get("devices", {}).values() if device["pair"] == pair]
+        airs = humid([air for device in on_pair for air in device["humidities"]])
+        thin = [air for air in airs if air < least_humidity(self.temperature(pair, air), wetting)]
+        return {"bounded": True} if thin else {}
 
     def across_gaps(self, contact: str) -> dict[str, Any]:
         """Settings of `water`, with attraction across gaps."""
