@@ -10,7 +10,6 @@ from enum import StrEnum
 from typing import Any
 
 import numpy as np
-from scipy.stats import qmc
 
 from stiction.config.reading import paper
 from stiction.config.surfaces.described import complete
@@ -66,7 +65,7 @@ def points(number: int, seed: int, law: Law) -> list[Point]:
     if law is Law.PAPER:
         return _of_paper()[:number]
     found: list[Point] = []
-    for row in qmc.Sobol(_COLUMNS, seed=seed).random(1 << (3 * number).bit_length()):
+    for row in _sobol(_COLUMNS, seed).random(1 << (3 * number).bit_length()):
         if (point := _point(len(found), row, law is Law.TYPICAL)) is not None:
             found.append(point)
         if len(found) == number:
@@ -134,6 +133,13 @@ def states(number: int, point: int, seed: int) -> np.ndarray:
 
     Films are even in the logarithm of their height. ASSUME: both sides wet perfectly.
     """
-    u = qmc.Sobol(1, seed=stream(seed, "estimate", "states", point)).random(number)[:, 0]
+    u = _sobol(1, stream(seed, "estimate", "states", point)).random(number)[:, 0]
     low, high = (math.log(to_si(end, "nm")) for end in FILMS)
     return np.column_stack([np.exp(low + (high - low) * u), np.ones(number)])
+
+
+def _sobol(columns, seed):
+    """Scrambled Sobol sequence."""
+    from scipy.stats import qmc  # takes a second, and jobs of a run import this module
+
+    return qmc.Sobol(columns, seed=seed)

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 from scipy.special import ndtr
-from scipy.stats import variation
 
 from stiction.config.units import to_si
 from stiction.constants import WATER_SURFACE_ENERGY
@@ -83,7 +82,9 @@ def rows_of_full(folder: Path, name: str, modulus: float) -> Rows:
         film = states_of(point, numbers["airs"], modulus)[0][1].film
         full, summits = numbers["full"], numbers["summits"]
         ratios = np.log(full.mean(axis=0) / summits.mean(axis=0))
-        noise += np.hypot(*(variation(each, axis=0) / len(each) ** 0.5 for each in (full, summits))).tolist()
+        noise += np.hypot(
+            *(each.std(axis=0) / each.mean(axis=0) / len(each) ** 0.5 for each in (full, summits))
+        ).tolist()
         for slope, ratio in zip(numbers["slope"], ratios, strict=True):
             state = State(of_pair(point.sides), film, 13.5 * film.energy / slope**4, to_si(point.width, "um"), modulus)
             coordinates.append(state.coordinates)
