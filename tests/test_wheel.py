@@ -150,7 +150,7 @@ def command(python, tmp_path):
 
 def test_the_wheel_installs_the_command_and_the_plugin_of_snakemake(site):
     (scripts,) = site.glob("*.dist-info/entry_points.txt")
-    assert "stiction = stiction.command.main:main" in scripts.read_text(encoding="utf-8")
+    assert "stiction = stiction.command.at_once.entry:main" in scripts.read_text(encoding="utf-8")
     assert (site / "snakemake_logger_plugin_stiction" / "__init__.py").exists()
 
 
