@@ -99,12 +99,12 @@ def _voltage(device, conditions):
 def bracketed(config: dict[str, Any]) -> dict[str, Any]:
     r"""Configuration in which each film of a device that is too thin for a liquid has what bounds it beside it.
 
-    Whatever its structure, a film attracts flats at a gap g with some f(g) and needs the work
-    :math:`\int f \, dg = \gamma (\cos\theta_1 + \cos\theta_2)` to separate them. ASSUME: f decreases, its tension is at
-    most that of its humidity, or `stiction.contact.meniscus.STRENGTH`, and it reaches no farther than the thinnest
-    liquid. It then is a mixture of films with heights h from that of its humidity to that of the thinnest liquid, with
-    tensions :math:`\gamma (\cos\theta_1 + \cos\theta_2) / h`. Where the bearing area A is convex, so is A(d - h) / h
-    in 1 / h: energy and largest force are at most the larger of those at both ends. Without a meniscus, they are those of dry
+    Whatever its structure, a film attracts flats at a gap g with some f(g) and needs the work :math:`\int f \, dg =
+    \gamma (\cos\theta_1 + \cos\theta_2)` to separate them. ASSUME: f decreases, its tension is at most that of its
+    humidity, or `stiction.contact.meniscus.STRENGTH`, and it reaches no farther than the thinnest liquid. It then is a
+    mixture of films with heights h from that of its humidity to that of the thinnest liquid, with tensions
+    :math:`\gamma (\cos\theta_1 + \cos\theta_2) / h`. Where the bearing area A is convex, so is A(d - h) / h in 1 / h:
+    energy and largest force are at most the larger of those at both ends. Without a meniscus, they are those of dry
     air. The answer is the worst of the three airs.
 
     ASSUME: below one molecule there is no meniscus. A condition in such air counts as dry.
