@@ -162,5 +162,5 @@ def test_a_check_ends_with_the_estimate(tmp_path, capsys):
     (tmp_path / "mine.yaml").write_text(FILE)
     assert main(["check", str(tmp_path / "mine.yaml"), "-d", str(tmp_path)]) == 0
     last = capsys.readouterr().out.splitlines()[-1]
-    build = lengths(said(capsys, str(tmp_path / "mine.yaml"))[1])[1000][1]
-    assert f"build Lever at most {build:.3g} µm" in last
+    length = lengths(said(capsys, str(tmp_path / "mine.yaml"))[1])[1000][0]
+    assert f"1 in 1000 of Lever sticks at about {length:.3g} µm" in last

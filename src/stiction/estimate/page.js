@@ -62,7 +62,7 @@ function write(found, {value}) {
   byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">length</th><th scope="col">90 %</th>` +
     `<th scope="col">95 %</th></tr></thead><tbody>${found.rows.map(row).join("")}</tbody>`;
   byId("said").className = "said";
-  byId("said").textContent = `Build at most ${um(found.rows[2].intervals["90"][0])} µm: 1 in 1000 stick at most, with 95 % confidence in the estimate.`;
+  byId("said").textContent = `1 in 1000 sticks at about ${um(found.rows[2].length)} µm. The estimate is no length to build: a run adds what it leaves out.`;
   const [middle, low, high] = found.stuck.map(percent);
   byId("stuck").textContent = `At ${value("length_um")} µm, ${middle} % stick (95 %: ${low} to ${high} %).`;
 }

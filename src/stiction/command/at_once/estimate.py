@@ -62,8 +62,9 @@ def in_short(files: Sequence[str]) -> Iterator[str]:
     """Lines with the length to build of each device of some valid files that the estimate knows."""
     for name, question in _of_files(files).items():
         with suppress(NotLearnt):
-            build = answer(question, *known()).chosen.intervals["90"][0]
-            yield f"Estimate: build {name} at most {_um(build)} µm; stiction estimate {' '.join(files)} says more."
+            length = answer(question, *known()).chosen.length
+            said = f"1 in {1 / CHOSEN:.0f} of {name} sticks at about {_um(length)} µm"
+            yield f"Estimate: {said}; stiction estimate {' '.join(files)} says more."
 
 
 def main(words: Sequence[str]) -> int:
@@ -119,8 +120,7 @@ def shown(found: Answer) -> Iterator[str]:
     if found.stuck is not None:
         value, low, high = map(_percent, found.stuck)
         yield f"  At {_um(asked.length)} µm, {value} % stick (95 %: {low} to {high} %)."
-    low = found.chosen.intervals["90"][0]
-    yield f"  Build at most {_um(low)} µm: 1 in {1 / CHOSEN:.0f} stick at most, with 95 % confidence in the estimate."
+    yield "  The estimate is no length to build: a run adds what it leaves out."
 
 
 def _percent(part):
