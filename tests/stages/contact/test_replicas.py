@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from plans import surface_datasets
+from plans import LIKE_B2, surface_datasets
 from scipy import fft
 from standard_errors import ALLOWED, errors_off
 
@@ -18,14 +18,6 @@ from stiction.plan.plan import Plan
 from stiction.plan.stage import select
 from stiction.report.limits.words import not_modelled
 from stiction.stages.contact import contact, curves, full_contact, pairs
-
-LIKE_B2 = {
-    "rms_nm": 3.4,
-    "skewness": 0,
-    "kurtosis": 3,
-    "psd": "published",
-    "published_psd": {"corner_rad_per_um": 12, "cutoff_rad_per_um": 125, "floor_nm4": 0.3, "plateau_nm4": 14380},
-}
 
 
 def plan_of(replica, **surface):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from plans import surface_datasets
+from plans import LIKE_B2, surface_datasets
 from standard_errors import ALLOWED
 
 from stiction.config.files import load
@@ -16,21 +16,14 @@ from stiction.plan.plan import Plan
 from stiction.plan.stage import select
 from stiction.stages.contact import contact, curves, pairs
 
-GAUSSIAN = {
-    "rms_nm": 3.4,
-    "skewness": 0,
-    "kurtosis": 3,
-    "psd": "published",
-    "published_psd": {"corner_rad_per_um": 12, "cutoff_rad_per_um": 125, "floor_nm4": 0.3, "plateau_nm4": 14380},
-}
 LEVER = {"kind": "cantilever", "pair": "r", "thickness_um": 4, "gap_um": 2, "width_um": 20, "humidities": [0.45]}
 
 
 def study(replica, uncertainty=None, factor=1.0):
     """Configuration of a lever on two such surfaces whose heights have a factor."""
-    psd = GAUSSIAN["published_psd"]
+    psd = LIKE_B2["published_psd"]
     scaled = psd | {name: factor**2 * psd[name] for name in ("floor_nm4", "plateau_nm4")}
-    surfaces = {"G": GAUSSIAN | {"rms_nm": factor * 3.4, "published_psd": scaled}}
+    surfaces = {"G": LIKE_B2 | {"rms_nm": factor * 3.4, "published_psd": scaled}}
     pair = {"beam": "G", "substrate": "G", "gap_um": 2, "humidities": [0.45]} | (
         {"replica": replica} if replica else {}
     )
