@@ -112,7 +112,7 @@ def bases() -> dict[str, dict]:
     found = {Path(name).parent.name + Path(name).name: (ROOT / f"{name}.yaml").read_text() for name in EXAMPLES}
     found |= {f"block{number}": block for number, block in enumerate(BLOCKS)}
     own = {"paper": PAIR_B, "oxide": PAIR_B | OXIDE, "life": PAIR_B | LIFE, "processes": PAIR_B | PROCESSES}
-    own["replica"] = merged(PAIR_B, {"pairs": {"b": {"replica": {"coherence": 0.5}}}})
+    own["replica"] = merged(PAIR_B, {"pairs": {"b": {"replica": {"coherence": 0.5}}}, "devices": {"C": BEAM}})
     return own | {name: yaml.safe_load(text) for name, text in found.items()}
 
 

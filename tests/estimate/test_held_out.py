@@ -1,0 +1,81 @@
+"""Table of the errors of the estimate: its numbers follow from the errors, and rows beside a run from its lengths."""
+
+import math
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from stiction.config.reading import read
+from stiction.estimate import errors as of_estimates
+from stiction.estimate import held_out
+from stiction.estimate.answer import difficulty
+from stiction.estimate.question import questions
+from stiction.estimate.table import content
+
+ROOT = Path(__file__).parents[2]
+DEVICES, LENGTHS = ROOT / "examples" / "devices.yaml", ROOT / "docs" / "tables" / "safe_lengths.csv"
+SLOPE = 0.1
+
+
+def of_surfaces(*errors):
+    """One length of each surface that is longer than its estimate by an error, in units of the half of 90 %."""
+    half = content()["margins"]["90"] * difficulty(SLOPE)
+    return half, [of_estimates.Tested(k, SLOPE, math.exp(half * error), 1.0) for k, error in enumerate(errors)]
+
+
+def cells(line):
+    return [cell.strip() for cell in line.strip("|").split("|")]
+
+
+@pytest.mark.parametrize(("errors", "inside"), [((0.5, -0.9, 0.99), 3), ((0.5, -1.1, 0.99), 2), ((2.0, 3.0, -4.0), 0)])
+def test_a_row_has_the_errors_and_the_surfaces_within_the_intervals(monkeypatch, errors, inside):
+    half, found = of_surfaces(*errors)
+    refused = of_estimates.Tested(len(errors), math.nan, 1.0, math.nan)
+    monkeypatch.setattr(held_out, "tested", lambda folder, name, *_, **__: [*found, refused] * (name == "check_any"))
+    monkeypatch.setattr(held_out, "SETS", {"check_any": "any", "check_none": "none"})
+    (line,) = [line for line in held_out.lines(Path()) if line.startswith("| any")]
+    assert not [line for line in held_out.lines(Path()) if line.startswith("| none")]
+    words, number, of_refused, rms, largest, shown, at_90, _ = cells(line)
+    assert (words, int(number), int(of_refused)) == ("any", len(errors) + 1, 1)
+    assert float(rms) == pytest.approx(100 * half * math.sqrt(np.mean(np.square(errors))), abs=0.06)
+    assert float(largest) == pytest.approx(100 * half * np.abs(errors).max(), abs=0.06)
+    assert float(shown) == pytest.approx(100 * half, abs=0.06)
+    assert at_90 == f"{inside} of {len(errors)}"
+
+
+def test_a_surface_is_outside_if_one_of_its_lengths_is(monkeypatch):
+    half, found = of_surfaces(0.5, 0.5)
+    found.append(of_estimates.Tested(1, SLOPE, math.exp(1.5 * half), 1.0))
+    monkeypatch.setattr(held_out, "tested", lambda *_, **__: found)
+    rows = [line for line in held_out.lines(Path()) if line.startswith("| of the paper")]
+    assert [cells(row)[-2] for row in rows] == ["1 of 2"]
+
+
+def rows_of_c1():
+    """Estimates [µm] of a cantilever in the rows beside a run, by humidity, from many to few that stick."""
+    found = {}
+    for line in held_out.of_runs(LENGTHS, DEVICES):
+        if re.match(r"\| C1 \| 0", line):
+            _, air, _, _, estimate, interval = cells(line)
+            low, high = map(float, interval.split(" to "))
+            assert low < float(estimate) < high
+            found.setdefault(air, []).append(float(estimate))
+    return found
+
+
+def test_rows_beside_a_run_are_shorter_in_wetter_air_and_where_fewer_stick():
+    found = rows_of_c1()
+    assert found["0.92"] < found["0.67"]
+    for lengths in found.values():
+        assert lengths == sorted(lengths, reverse=True)
+
+
+def test_rows_beside_a_run_are_of_one_touchdown(monkeypatch):
+    asked = questions(read(DEVICES), content())["C1"]
+    assert asked.touchdowns > 1
+    found = rows_of_c1()
+    monkeypatch.setattr(held_out, "questions", lambda *_: {"C1": replace(asked, touchdowns=1)})
+    assert rows_of_c1() == found
