@@ -25,6 +25,7 @@ from SurfaceTopography.Generation import fourier_synthesis  # noqa: E402
 from stiction.beam.release import released_beam  # noqa: E402
 from stiction.chaos.coordinates import principal_coordinates  # noqa: E402
 from stiction.chaos.density import conditional_quantiles, kernel_density  # noqa: E402
+from stiction.contact.environment import Water  # noqa: E402
 from stiction.contact.full import elements  # noqa: E402
 from stiction.contact.full.halfspace import HalfSpace  # noqa: E402
 from stiction.streams import stream  # noqa: E402
@@ -32,6 +33,11 @@ from stiction.study import PairStudy  # noqa: E402
 
 #: Rows of conditional quantiles that a library computes, and that the fit of a chaos model needs.
 FEW, NEEDED = 5, 2000
+#: E' of two silicon half-spaces [Pa].
+MODULUS = 86.6e9
+#: Humidity, height of its film [m], and tension in it [Pa].
+HUMIDITY = 0.67
+FILM, TENSION = Water(300.0).film(HUMIDITY)
 
 
 def in_turn(work, ours, peers, repeats):
@@ -81,26 +87,31 @@ def surface_rows():
     )
 
 
-def contact_rows():
-    """Elastic contact of a patch without adhesion, at equal mean pressure."""
+def patch():
+    """Heights [m] of a patch of pair b, its sides [m], half-space, and a distance at which summits touch [m]."""
     pair = PairStudy.of(CONFIG, "b").surfaces
     heights = pair.draw(stream(1, 1), stream(2, 1))[:, :1000].copy()
-    spacing, modulus = pair.beam.grid.spacing, 86.6e9
+    spacing = pair.beam.grid.spacing
     sides = tuple(n * spacing for n in heights.shape)
-    space, distance = HalfSpace(heights.shape, spacing, modulus), float(heights.mean() + 1.5 * heights.std())
+    return heights, sides, HalfSpace(heights.shape, spacing, MODULUS), float(heights.mean() + 1.5 * heights.std())
+
+
+def contact_rows():
+    """Elastic contact of a patch without adhesion, at equal mean pressure."""
+    heights, sides, space, distance = patch()
     state = elements.equilibrium(space, heights, distance)
     pressure, touching = float(state.pressure.mean(dtype=float)), np.mean(state.pressure > 0)
     double, found = heights.astype(float), {}
 
     def polonsky_keer(_):
         model = tamaas.Model(tamaas.model_type.basic_2d, list(sides), list(heights.shape))
-        model.E, model.nu = modulus, 0.0
+        model.E, model.nu = MODULUS, 0.0
         tamaas.PolonskyKeerRey(model, double, 1e-6).solve(pressure)
         found["tamaas"] = np.mean(model.traction[:] > 0)
 
     def constrained(_):
         topography = SurfaceTopography.Topography(double, sides, periodic=True)
-        half_space = ContactMechanics.PeriodicFFTElasticHalfSpace(heights.shape, modulus, sides)
+        half_space = ContactMechanics.PeriodicFFTElasticHalfSpace(heights.shape, MODULUS, sides)
         system = ContactMechanics.make_system(substrate=half_space, surface=topography)
         result = system.minimize_proxy(external_force=pressure * np.prod(sides), pentol=2e-12)
         found["ContactMechanics"] = np.mean(result.jac > 0)
@@ -114,6 +125,38 @@ def contact_rows():
         f"elastic contact of {heights.shape[0]} × {heights.shape[1]} points",
         lambda _: elements.equilibrium(space, heights, distance),
         {name: (call, 1, said[name]) for name, call in peers.items()},
+        3,
+    )
+
+
+def meniscus_rows():
+    """Elastic contact of a patch in a film of water, at equal mean gap: its suction does not depend on the gap."""
+    heights, sides, space, distance = patch()
+    film, double = elements.Adhesion(FILM, TENSION), heights.astype(float)
+    state = elements.equilibrium(space, heights, distance, film)
+    gap, found = float(state.gap.mean(dtype=float)), {}
+
+    def cohesive(_):
+        model = tamaas.Model(tamaas.model_type.basic_2d, list(sides), list(heights.shape))
+        model.E, model.nu = MODULUS, 0.0
+        by_gap = tamaas.PolonskyKeerRey.gap
+        solver = tamaas.PolonskyKeerRey(model, double, 1e-6, by_gap, by_gap)
+        potential = tamaas.MaugisAdhesionFunctional(double)
+        potential.parameters = {"rho": FILM, "surface_energy": TENSION * FILM}
+        solver.addFunctionalTerm(potential)
+        solver.solve(gap)
+        gaps = model.displacement[:] - double
+        found.update(force=model.traction[:].mean(), wet=np.mean(gaps - gaps.min() < FILM))
+
+    cohesive(0)
+    said = (
+        f"force {found['force'] / 1e6:.3g} MPa, here {state.force / 1e6:.3g}; "
+        f"{100 * found['wet']:.1f} % wet, here {100 * np.mean(state.gap < FILM):.1f} %"
+    )
+    yield from in_turn(
+        f"the same patch with menisci, RH {HUMIDITY}",
+        lambda _: elements.equilibrium(space, heights, distance, film),
+        {"tamaas": (cohesive, 1, said)},
         3,
     )
 
@@ -199,7 +242,7 @@ def main():
     libraries = ", ".join(f"{name} {version(name)}" for name in names)
     print(f"{model}, {os.cpu_count()} cores, Python {platform.python_version()}, one core used; {libraries}\n")  # noqa: T201
     print("| work | stiction | library | its time | ratio | results |\n|---|---|---|---|---|---|")  # noqa: T201
-    for rows in (surface_rows, contact_rows, quantile_rows, beam_rows):
+    for rows in (surface_rows, contact_rows, meniscus_rows, quantile_rows, beam_rows):
         for row in rows():
             print("| " + " | ".join(row) + " |", flush=True)  # noqa: T201
 
