@@ -170,7 +170,17 @@ def table(measured, gained):
 
 def draw(measured, path):
     """Seconds and memory over size, each relative to the smallest, on logarithmic axes."""
-    from stiction.report.style import DOUBLE, dashes, marker, panels, styled  # noqa: PLC0415
+    from stiction.report.style import (  # noqa: PLC0415
+        DOUBLE,
+        dashes,
+        handles,
+        legend_outside,
+        letter,
+        marker,
+        panels,
+        plain_log,
+        styled,
+    )
 
     curves = defaultdict(list)
     for name, *point in measured:
@@ -178,17 +188,20 @@ def draw(measured, path):
 
     @styled
     def figure():
-        drawn, ((left, right),) = panels(1, 2, (DOUBLE, 2.9))
+        drawn, ((left, right),) = panels(1, 2, (DOUBLE, 3.2))
         for k, (name, points) in enumerate(curves.items()):
             size, seconds, megabytes = np.array(points).T
-            style = {"marker": marker(k), "linestyle": dashes(k), "label": name}
+            style = {"marker": marker(k), "linestyle": dashes(k), "label": f"{name}, {size[0]:g} to {size[-1]:g}"}
             left.loglog(size / size[0], seconds / seconds[0], **style)
-            right.loglog(size / size[0], megabytes, **style)
+            right.semilogx(size / size[0], megabytes, **style)
         factor = np.array([1, 20])
         left.loglog(factor, factor, color="0.6", linewidth=0.8, label="proportional")
-        left.set(xlabel="size / smallest size", ylabel="time / time of the smallest")
-        right.set(xlabel="size / smallest size", ylabel="peak memory [MB]", ylim=(100, 2000))
-        left.legend(fontsize="x-small")
+        for axis in (left.xaxis, left.yaxis, right.xaxis):
+            plain_log(axis)
+        left.set(xlabel="size / smallest size [–]", ylabel="time / time of the smallest [–]")
+        right.set(xlabel="size / smallest size [–]", ylabel="peak memory [MB]", ylim=(0, None))
+        letter([left, right], ["time", "memory"])
+        legend_outside(drawn, handles(left), "lower", 2)
         return drawn
 
     figure().savefig(path, dpi=200)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from stiction.report.style import columns_of_panels, legend_outside, on_a_page, small_png, strips, styled
+from stiction.report.style import columns_of_panels, legend_outside, on_a_page, picture, strips, styled
 
 RNG = np.random.default_rng(11)
 
@@ -20,7 +20,7 @@ def test_no_colour_of_a_picture_changes_by_more_than_half_a_level(colours):
     drawn = RNG.integers(0, 256, (colours, 3), dtype=np.uint8)[RNG.integers(0, colours, (80, 90))]
     drawn[:2] = 0
     drawn[2:4] = 255
-    shown = decoded(small_png(drawn))
+    shown = decoded(picture(drawn))
     assert np.abs(shown - drawn).max() <= 255 / 15 / 2 + 0.5
     assert (shown[:2] == 0).all()
     assert (shown[2:4] == 255).all()
@@ -31,7 +31,7 @@ def test_colours_of_areas_and_lines_stay():
     drawn[10:40] = 211, 231, 230
     drawn[50, :20] = 0, 114, 178
     drawn[70, 3] = 100, 100, 100
-    shown = decoded(small_png(drawn))
+    shown = decoded(picture(drawn))
     assert (shown[:60] == drawn[:60]).all()
     assert (shown[70, 3] == 102).all(), "a single pixel has the nearest level"
 

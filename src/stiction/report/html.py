@@ -27,6 +27,7 @@ def _texts(cells):
 
 
 _ENVIRONMENT.filters["texts"] = _texts
+_ENVIRONMENT.policies["json.dumps_kwargs"] = {"sort_keys": True, "separators": (",", ":")}
 
 
 def rendered(template: str, **values: Any) -> str:

@@ -39,7 +39,7 @@ class Section:
 
     @property
     def pictures(self) -> list[str]:
-        """Panels and legends of the figure as PNG in Base64."""
+        """Panels and legends of the figure in Base64."""
         return [base64.b64encode(strip).decode() for strip in strips(self.figure)]
 
 

@@ -53,7 +53,8 @@ def test_a_band_leads_from_the_simulated_limit_to_the_size_to_build_which_is_sta
     (panel,) = risk({"C1": answered()}).axes
     (band,) = panel.patches
     assert (band.get_x(), band.get_x() + band.get_width()) == pytest.approx((155, 140))
-    assert "build 140 µm" in [text.get_text() for text in panel.texts]
+    (said,) = (text for text in panel.texts if text.get_text() == "build 140 µm")
+    assert said.get_ha() == "right", "a shorter beam sticks less: the curve is on the other side"
     upright = [line.get_xdata()[0] for line in panel.lines if len(set(line.get_xdata())) == 1]
     assert sorted(upright) == pytest.approx([140, 250]), "to build, and stated"
 

@@ -171,10 +171,10 @@ def charts():
 def test_the_chart_shows_the_middle_share_of_every_thickness_gap_and_shape():
     figure, panels = charts()
     assert [axes.get_title(loc="left") for axes in figure.axes] == [
-        "(a) C1, gap 10 µm, held by the beam",
-        "(b) C1, gap 10 µm, held by beam or tip",
-        "(c) C1, gap 20 µm, held by the beam",
-        "(d) C1, gap 20 µm, held by beam or tip",
+        "(a) C1, gap 10 µm, beam",
+        "(b) C1, gap 10 µm, beam or tip",
+        "(c) C1, gap 20 µm, beam",
+        "(d) C1, gap 20 µm, beam or tip",
     ]
     for shape, length in ((S_SHAPE, 105), (EITHER, 107)):  # p = 0.001, thin, wide gap
         curve = next(line for line in panels[20, shape].lines if len(line.get_xdata()) == 3)

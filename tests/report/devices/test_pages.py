@@ -50,9 +50,9 @@ def stopper():
 
 def test_a_page_is_one_file_with_its_figures(stopper):
     assert stopper.startswith("<!DOCTYPE html>")
-    pictures = re.findall(r'src="data:image/png;base64,([^"]+)"', stopper)
+    pictures = re.findall(r'src="data:image/webp;base64,([^"]+)"', stopper)
     assert stopper.count('class="panels"') == 3
-    assert {base64.b64decode(picture)[:4] for picture in pictures} == {b"\x89PNG"}
+    assert {base64.b64decode(picture)[8:12] for picture in pictures} == {b"WEBP"}
     assert not re.findall(r'(?:src|href)="(?!data:|#)', stopper)
 
 

@@ -7,8 +7,8 @@ import pytest
 from answers import BEAMS, BUDGETS, STOPPERS, safe
 from charted import charted
 from drawn_curves import etched, law_of, mapped, rough
-from matplotlib.image import imread
 from matplotlib.text import Text
+from PIL import Image
 from test_stage_life import OF
 
 from stiction.report.axes import figures as of_axes
@@ -37,18 +37,33 @@ FIGURES = {
 }
 
 
+def decoded(content):
+    """Pixels of a picture, (rows, columns, 3)."""
+    return np.asarray(Image.open(io.BytesIO(content)).convert("RGB"))
+
+
 @pytest.mark.parametrize("name", FIGURES)
 def test_a_page_has_a_picture_of_every_panel_readable_on_a_phone_and_not_cut(name):
     count, draw = FIGURES[name]
     with on_a_page():
         figure = draw()
-    pictures = [imread(io.BytesIO(strip))[..., :3] for strip in strips(figure)]
+    pictures = list(map(decoded, strips(figure)))
     assert len(pictures) == count, "a legend belongs to its panel"
     assert {picture.shape[1] for picture in pictures} == {round(PAGE * figure.dpi)}
     for picture in pictures:
-        assert (picture[:, [0, -1]] == 1).all(), "nothing reaches beyond the sides"
+        assert (picture[:, [0, -1]] == 255).all(), "nothing reaches beyond the sides"
     shown = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
     assert min(text.get_fontsize() for text in shown) / 72 * PHONE / PAGE >= LEAST
+
+
+@pytest.mark.parametrize(("build", "short"), [(1e-6, False), (1e-2, True)])
+def test_the_legend_of_a_life_names_what_is_drawn_alone(build, short):
+    answers = layout(beam_answers({0.67: safe()}, {}, OF), OF, length=250e-6)
+    figure = life.figure({"C1": answers}, {"C1": build})
+    names = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "hold" not in names, "no row of a beam that is a length is about what holds it"
+    assert ("does not allow this size" in names) == short
+    assert ("stick" in names) == (not short)
 
 
 @styled
@@ -65,7 +80,7 @@ def test_what_is_too_long_for_a_panel_is_broken_on_a_page_and_other_figures_stay
     assert len({panel.get_position().x0 for panel in figure.axes}) == 2
     with on_a_page():
         short, broken = drawn("short"), drawn("a title that is longer than any page of this width has room for " * 2)
-    heights = [[imread(io.BytesIO(strip)).shape[0] for strip in strips(one)] for one in (short, broken)]
+    heights = [[len(decoded(strip)) for strip in strips(one)] for one in (short, broken)]
     assert [len(one) for one in heights] == [4, 4]
-    assert np.all(imread(io.BytesIO(strips(broken)[0]))[:, [0, -1]] == 1)
+    assert np.all(decoded(strips(broken)[0])[:, [0, -1]] == 255)
     assert len({panel.get_position().x0 for panel in short.axes}) == 1

@@ -113,9 +113,10 @@ def _size_to_build(panel, answer, scale):
         (limit,) = (step.size for step in answer.steps if step.cause is Cause.SIMULATION)
         panel.axvspan(limit / scale, answer.build / scale, color=BUILD, alpha=0.15, linewidth=0)
         panel.axvline(answer.build / scale, color=BUILD, linewidth=1.5)
-        place = {"xytext": (3, -3), "textcoords": "offset points", "va": "top", "rotation": 90, "color": BUILD}
+        side, end = (3, "left") if answer.sought.more_is_better else (-3, "right")  # clear of the curve
+        place = {"xytext": (side, -3), "textcoords": "offset points", "ha": end, "va": "top", "rotation": 90}
         said = f"build {answer.in_words(answer.build)}"
-        panel.annotate(said, (answer.build / scale, 1), xycoords=("data", "axes fraction"), **place)
+        panel.annotate(said, (answer.build / scale, 1), xycoords=("data", "axes fraction"), color=BUILD, **place)
     if answer.sizes.min() < answer.size < answer.sizes.max():
         panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, label="stated size")
 

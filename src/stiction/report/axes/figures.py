@@ -32,13 +32,15 @@ from stiction.stages.devices.end_states import END_STATES
 #: Quantities of a surface on an axis: words and function of the unscaled quantity.
 _SHOWN = {
     "rms": ("rms [nm]", lambda values: TO_NM * np.exp(values)),
-    "skewness": ("skewness", lambda values: values),
-    "kurtosis": ("kurtosis", lambda values: values),
+    "skewness": ("skewness [–]", lambda values: values),
+    "kurtosis": ("kurtosis [–]", lambda values: values),
     "corner": ("corner [rad/µm]", lambda values: np.exp(values) / TO_UM),
-    "slope": ("slope of the spectrum", lambda values: values),
+    "slope": ("slope of the spectrum [–]", lambda values: values),
 }
 #: Number of values along a law.
 _POINTS = 101
+#: Numbers along a logarithmic axis of less than a decade.
+_WITHIN_A_DECADE = (1, 1.5, 2, 3, 4, 6, 8)
 
 
 # Curves
@@ -53,7 +55,13 @@ def roughness(dataset: xr.Dataset) -> Figure:
     as_given = (one for one in curves_of(dataset) if "other" not in one.coords or one.other == one.other_given)
     curve = next(as_given)
     given = axes_of(curve)[0].in_unit(float(curve.given))
-    return _curves(curve, _simulated, lambda panel: panel.axvline(given, color="0.6", linestyle=":", label="as given"))
+
+    def marks(panel):
+        """The given roughness, and what a dash means at any humidity."""
+        panel.axvline(given, color="0.6", linestyle=":", label="as given")
+        panel.plot([], [], "_", color="0.3", markersize=8, label="simulated limit")
+
+    return _curves(curve, _simulated, marks)
 
 
 @styled
@@ -87,12 +95,17 @@ def _curves(curve, draw, mark):
         panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label=sought.required)
         mark(panel)
         panel.set_yscale("log")
-        plain_log(panel.yaxis)
+        _plain(panel.yaxis)
         _show(panel.xaxis, panel.set_xscale, curve, axes_of(curve)[0])
     axes[0, 0].set_ylabel(f"{sought.response} [{sought.shown}], p = {float(curve.share):g}")
-    letter(axes, [END_STATES[shape].by for shape in shapes])
+    letter(axes, _held_by(shapes))
     legend_outside(figure, handles(*axes[0]), "lower", 2 * len(shapes))
     return figure
+
+
+def _held_by(shapes, end=""):
+    """What holds a device in each end state, for the titles of panels; nothing where there is one."""
+    return [END_STATES[shape].by + end for shape in shapes] if len(shapes) > 1 else [""]
 
 
 def _simulated(panel, line, colour):
@@ -102,7 +115,7 @@ def _simulated(panel, line, colour):
     reach = INTERVAL * TO_UM * line.error.values
     panel.fill_between(x, estimate - reach, estimate + reach, color=colour, alpha=0.2, linewidth=0)
     panel.plot(x, estimate, ".-", color=colour, label=f"{Air(float(line.humidity)).words}, estimate and 95 % band")
-    panel.plot(x, TO_UM * line.safe.values, "_", color=colour, markersize=8, label="simulated limit")
+    panel.plot(x, TO_UM * line.safe.values, "_", color=colour, markersize=8)
     if np.isfinite(line.bound.values).any():
         style, label = END_STATES[shape].lines[1], f"flat surfaces, {END_STATES[shape].by}"
         panel.plot(x, TO_UM * line.bound.values, style, color=colour, linewidth=0.8, label=label)
@@ -123,12 +136,18 @@ def _band(panel, line, colour):
     panel.plot(x, estimate, ".-", color=colour, label=label)
 
 
+def _plain(side):
+    """Plain numbers along a logarithmic axis, more of them within a decade."""
+    low, high = side.get_view_interval()
+    plain_log(side, _WITHIN_A_DECADE if high < 10 * low else (1, 2, 5))
+
+
 def _show(side, scale, data, axis):
     """Scale and label of an axis. A skewness has its kurtosis in brackets at every computed value."""
     side.set_label_text(axis.label)
     if axis.logarithmic:
         scale("log")
-        plain_log(side)
+        _plain(side)
     if axis.name == "skewness":
         along = data[KURTOSIS].isel({other: 0 for other in data[KURTOSIS].dims if other != axis.dimension})
         pairs = zip(axis.values, along.values, strict=True)
@@ -156,7 +175,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
             _filled(panel, data, (margins_of(curve), margins_of(curve, "safe")), label)
             place = along.in_unit(float(data.given)), across.in_unit(float(data.other_given))
             panel.plot(*place, "k+", markersize=8, linestyle="none", label="surface as given")
-    letter(axes, [f"{END_STATES[shape].by}, {Air(humidity).words}" for humidity in humidities for shape in shapes])
+    letter(axes, [f"{by}{Air(humidity).words}" for humidity in humidities for by in _held_by(shapes, ", ")])
     legend_outside(figure, handles(*axes.flat), "lower", 2)
     return figure
 
@@ -215,6 +234,7 @@ def laws(law: xr.Dataset) -> Figure:
         )
         panel.set_xlabel(f"{process.words_of(law.variable)} [{process.unit_of(law.variable)}]")
         panel.set_ylabel(words)
+    letter(columns[:, 0])
     legend_outside(figure, handles(columns[0][0]), "lower", 3)
     return figure
 

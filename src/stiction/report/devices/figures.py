@@ -158,7 +158,7 @@ def chart(
     subjects = [
         (name, *at) for name, whole in wholes.items() for at in product(whole.gap.values, whole["shape"].values)
     ]
-    most = max(whole.sizes["thickness"] for whole in wholes.values()) + 2
+    most = max(whole.sizes["thickness"] for whole in wholes.values()) + 3
     figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
         whole = wholes[name].sel(gap=gap, shape=shape)
@@ -171,10 +171,7 @@ def chart(
         humidity_axis(panel, placed[name])
     for line in lines:
         line[0, 0].set_ylabel(on_own_axes("simulated limit [µm]", line))
-    letter_lines(
-        lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].legend}" for name, gap, shape in subjects]
-    )
-    legend_outside(figure, handles(*columns[:, 0]), "upper", 2)
+    letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].by}" for name, gap, shape in subjects])
     refer_to_warnings(figure, warnings)
     return figure
 
@@ -184,7 +181,7 @@ def _thicknesses(panel, whole, shape, marks, placed):
 
     Points are at the places of their humidities; no line leads to dry air.
 
-    Returns the entries of a legend of the thicknesses.
+    Returns the entries of the legend of the panel.
     """
     share, named = whole.share.values[len(whole.share) // 2], []
     state = END_STATES[shape]
@@ -203,11 +200,10 @@ def _thicknesses(panel, whole, shape, marks, placed):
             panel.plot(*_curve(at, TO_UM * part.flooded_length.values), styles[1], color=shade, linewidth=0.8)
         label = f"thickness {TO_UM * thickness:g} µm{mark}"
         named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
-    panel.plot([], [], line, color="0.3", label=f"{state.legend}, p = {share:g}")
-    panel.plot([], [], dotted, color="0.3", label=f"{state.legend}, flat surfaces")
-    if np.isfinite(error := largest_error_between(whole.sel(share=share))):
-        label = f"cubic between, band ± {in_percent(error)}"
-        named.append(Line2D([], [], color="0.3", marker=".", linestyle="-", label=label))
+    error = largest_error_between(whole.sel(share=share))
+    band = f", cubic, ± {in_percent(error)}" if np.isfinite(error) else ""
+    named.append(Line2D([], [], color="0.3", marker=".", linestyle=line, label=f"p = {share:g}{band}"))
+    named.append(Line2D([], [], color="0.3", linestyle=dotted, linewidth=0.8, label="flat surfaces"))
     if not whole.by_elements.all():
         label = f"by a power law, ± {in_percent(float(whole.power_law_error.max()))}"
         named.append(Line2D([], [], color="0.3", marker="o", fillstyle="none", linestyle="", label=label))

@@ -309,9 +309,10 @@ def figure(life: Mapping[str, xr.Dataset], builds: Mapping[str, float]) -> Figur
         dots.draw(panel, marks)
         panel.set(xlabel=f"{'length' if unit == 'µm' else 'force'} [{unit}]")
     letter(axes[:, 0], list(rows))
-    entries = [Line2D([], [], color=colour, linewidth=4, label=name) for name, colour in _COLOURS.items()]
-    entries.append(Line2D([], [], color=_SHORT, linewidth=4, label="does not allow this size"))
-    entries.insert(4, Line2D([], [], color=BUILD, label="size to build"))
+    drawn = {mark.color for marks in rows.values() for row in marks.values() for mark in row}
+    named = _COLOURS | {"does not allow this size": _SHORT}
+    entries = [Line2D([], [], color=of, linewidth=4, label=name) for name, of in named.items() if of in drawn]
+    entries.append(Line2D([], [], color=BUILD, label="size to build"))
     legend_outside(made, (entries, [entry.get_label() for entry in entries]), "upper", 6)
     return made
 
