@@ -137,7 +137,15 @@ def test_condensing_conditions_give_no_air_and_a_limit_each():
         ({"conditions": [{"temperature_C": 20, "humidity": 1.5}]}, "conditions[0].humidity is 1.5, must be a number"),
         ({"conditions": []}, "conditions is [], must be a list"),
         ({"conditions": {"temperature_C": 20}}, "conditions is {'temperature_C': 20}, must be a list"),
-        ({"conditions": [{"temperature_C": 20, "humidity": 0.5, "share": 1}]}, "conditions[0].share"),
+        ({"conditions": [{"temperature_C": 20, "humidity": 0.5, "part": 1}]}, "conditions[0].part"),
+        ({"conditions": [MISSION[0] | {"share": 2}]}, "conditions[0].share is 2, must be a number"),
+        ({"conditions": [MISSION[0] | {"share": 0.9}]}, "conditions is [{'temperature_C': 12, "),
+        ({"conditions": [MISSION[0] | {"share": 1}, MISSION[1]]}, "conditions is [{'temperature_C': 12, "),
+        ({"conditions": [MISSION[0] | {"share": 1, "touchdowns": 9}]}, "conditions[0] is {"),
+        (
+            {"conditions": [MISSION[0] | {"share": 0.99}, MISSION[1] | {"share": 0.01}], "touchdowns": 50},
+            "conditions[1].share is 0.01, must be at least 0.02, one of the touchdowns of the device, 50",
+        ),
         (
             {"conditions": [{"temperature_C": 20, "humidity": 0.5}, {"temperature_C": 30, "humidity": 0.5}]},
             "conditions[1] is {'temperature_C': 30, 'humidity': 0.5}, must have another humidity than 0.5, such as",
