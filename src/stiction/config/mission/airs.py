@@ -17,8 +17,9 @@ from stiction.config.keys import Keys, Relations
 from stiction.config.meetings import TEMPERATURE, device_meeting
 from stiction.config.messages import ConfigError, Problem, is_number, one_line
 from stiction.config.mission.conditions import CONDITIONS, DECIMALS, airs, humidity_of, kelvin
+from stiction.config.mission.stays import with_bounds
 from stiction.contact.air import DRY_AIR, humid, is_humid, is_possible
-from stiction.contact.meniscus import BRIDGE, ZERO_CELSIUS, least_humidity
+from stiction.contact.meniscus import ZERO_CELSIUS
 
 #: Keys of the air of a condition, of which it has one, and those that become keys of the device.
 _AIR, _OF_DEVICE = ("humidity", "dew_point_C"), ("touchdowns", "voltage_V")
@@ -126,7 +127,7 @@ def _bracketed(device, angles, temperature):
     shared = {"share": 0} if any("share" in condition for condition in conditions) else {}
     for air in device["humidities"]:
         at = own.get(air, temperature)
-        first, *others = _with_bounds(air, at, angles)
+        first, *others = with_bounds(air, at, angles)
         stated.append(first if air in own else air)  # a relation refuses that of a stated humidity
         bounds += others
         new = [humidity for humidity in others if is_humid(humidity) and air in own and humidity not in own]
@@ -135,42 +136,9 @@ def _bracketed(device, angles, temperature):
     return device | {"humidities": airs} | ({CONDITIONS: conditions} if conditions else {})
 
 
-def _with_bounds(air, temperature, angles):
-    """Air of a condition with those that bound its film, at a temperature [K] and between contact angles [rad]."""
-    thinnest = _thinnest(temperature, angles) if angles else 0.0
-    if not is_humid(air) or air >= thinnest:
-        return (air,)
-    is_bridge = air >= least_humidity(temperature, angles, BRIDGE)
-    return (air, DRY_AIR.humidity, thinnest) if is_bridge else (DRY_AIR.humidity,)
-
-
-def stays(config: dict[str, Any], name: str) -> dict[str, dict[str, Any]]:
-    """Airs and touchdowns of each condition of a device by number; none unless shares of the touchdowns are stated.
-
-    All touchdowns happen in the air that bounds the film of a condition worst, or in a humidity beside the conditions.
-    """
-    device, angles = config["devices"][name], device_meeting(name, Keys({"materials": {}} | config)).wetting()
-    conditions = [one for one in device.get(CONDITIONS, ()) if "share" in one and humidity_of(one) is not None]
-    found = [_with_bounds(humidity_of(one), kelvin(one), angles) for one in conditions]
-    inside = {air for own in found for air in own}
-    others = [air for air in device["humidities"] if air not in inside]
-    shares = [one["share"] for one in conditions]
-    return {
-        str(k): {"humidities": [*own, *others], "touchdowns": share / sum(shares) * device.get("touchdowns", 1)}
-        for k, (own, share) in enumerate(zip(found, shares, strict=True))
-        if share
-    }
-
-
 def _same(temperature, humidity):
     """Condition at a temperature [K] and a humidity."""
     return {"temperature_C": round(temperature - ZERO_CELSIUS, 6), "humidity": humidity}
-
-
-def _thinnest(temperature, angles):
-    """Lowest humidity of a liquid film that names of files can contain [-]."""
-    steps = 10**DECIMALS
-    return min(math.ceil(least_humidity(temperature, angles) * steps), steps - 1) / steps
 
 
 @relation_of_names

@@ -12,8 +12,8 @@ from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, Stay
 from stiction.answer.ladder import Question
 from stiction.answer.unknowns import Draws, OfBudgets
 from stiction.answer.worlds import DRAWS
-from stiction.config.mission.airs import stays
 from stiction.config.mission.conditions import CONDITIONS, temperatures
+from stiction.config.mission.stays import stays
 from stiction.config.units import in_si
 from stiction.contact.air import Air
 from stiction.devices.budget import LARGEST
@@ -240,7 +240,7 @@ def _settings(plan, at):
     own |= {"budgets": [humidity for humidity, *_ in _budgets(plan, name)]}
     at = {Air(air).name: at for air, at in temperatures(plan.config, section["pair"]).items()}
     own |= {"temperatures_K": at} if CONDITIONS in section else {}
-    own |= {"stays": found} if (found := stays(plan.config, name)) else {}
+    own |= {"stays": found} if (found := stays(section, plan.air_of_devices.wetting(section["pair"]))) else {}
     own |= {"required": section["requirement"]["share"]} if "requirement" in section else {}
     return select(Settings, section | own | beam)
 
