@@ -8,7 +8,7 @@ import xarray as xr
 from drawn_answers import ALONG, ARC, air, asked, budgets, lognormal
 from numpy.testing import assert_equal
 
-from stiction.answer.data import Cause
+from stiction.answer.data import Cause, Stay
 from stiction.answer.unknowns import OfTestBeams
 from stiction.answer.worlds import Condition, Sampled
 from stiction.stages.answer.answer import answer_of, layout
@@ -26,6 +26,7 @@ ANSWERS = {
     "no bound": lambda: asked(UNBOUNDED, unit="N", size=2.0),
     "none sticks": lambda: asked([NEVER], size=0.8, touchdowns=100),
     "test beams": lambda: asked([ONE], LEFT, size=0.7, before=budgets([ONE])),
+    "mission": lambda: asked(BOTH, touchdowns=10, stays=(Stay((0.5, 0.8), 9.0), Stay((0.8,), 1.0))),
     "forbidden": lambda: asked([ONE], left_out=("dimples",), forbidden=("inputs", "test_beams")),
 }
 

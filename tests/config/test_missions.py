@@ -12,6 +12,7 @@ from stiction.config.files import joined
 from stiction.config.merging import merged
 from stiction.config.mission.airs import COLDEST, HOTTEST, expanded
 from stiction.config.mission.conditions import temperatures
+from stiction.config.mission.stays import stays
 from stiction.config.relations import schema
 from stiction.config.units import in_si
 from stiction.config.validation import checked
@@ -137,7 +138,15 @@ def test_condensing_conditions_give_no_air_and_a_limit_each():
         ({"conditions": [{"temperature_C": 20, "humidity": 1.5}]}, "conditions[0].humidity is 1.5, must be a number"),
         ({"conditions": []}, "conditions is [], must be a list"),
         ({"conditions": {"temperature_C": 20}}, "conditions is {'temperature_C': 20}, must be a list"),
-        ({"conditions": [{"temperature_C": 20, "humidity": 0.5, "share": 1}]}, "conditions[0].share"),
+        ({"conditions": [{"temperature_C": 20, "humidity": 0.5, "part": 1}]}, "conditions[0].part"),
+        ({"conditions": [MISSION[0] | {"share": 2}]}, "conditions[0].share is 2, must be a number"),
+        ({"conditions": [MISSION[0] | {"share": 0.9}]}, "conditions is [{'temperature_C': 12, "),
+        ({"conditions": [MISSION[0] | {"share": 1}, MISSION[1]]}, "conditions is [{'temperature_C': 12, "),
+        ({"conditions": [MISSION[0] | {"share": 1, "touchdowns": 9}]}, "conditions[0] is {"),
+        (
+            {"conditions": [MISSION[0] | {"share": 0.99}, MISSION[1] | {"share": 0.01}], "touchdowns": 50},
+            "conditions[1].share is 0.01, must be at least 0.02, one of the touchdowns of the device, 50",
+        ),
         (
             {"conditions": [{"temperature_C": 20, "humidity": 0.5}, {"temperature_C": 30, "humidity": 0.5}]},
             "conditions[1] is {'temperature_C': 30, 'humidity': 0.5}, must have another humidity than 0.5, such as",
@@ -174,6 +183,30 @@ def test_touchdowns_add_up_and_the_largest_voltage_counts():
     device, _ = lever(conditions=mission, touchdowns=100, voltage_V=1, offset_V=3, **DIELECTRIC)
     assert (device["touchdowns"], device["voltage_V"]) == (112, 6)  # 9 V with the offset, -8 V have 5 V
     assert all(not {"touchdowns", "voltage_V"} & {*condition} for condition in device["conditions"])
+
+
+def stays_of(shares, more=(), **keys):
+    """Touchdowns of the lever for shares of some conditions, and the airs in which they happen."""
+    device, config = lever(more, conditions=[one | {"share": share} for one, share in shares], **keys)
+    assert checked(config).config == config
+    found = stays(device, Plan(config).air_of_devices.wetting("b"))
+    return sorted((round(stay["touchdowns"], 6), sorted(stay["humidities"])) for stay in found.values())
+
+
+def test_shares_of_touchdowns_are_in_the_airs_that_bound_each_condition():
+    shares = [({"temperature_C": 85, "dew_point_C": 10}, 0.5), ({"temperature_C": 60, "humidity": 0.2}, 0.3)]
+    shares += [(MISSION[0], 0.2)]
+    wet, liquid = (pytest.approx(air, abs=1e-4) for air in (0.8755, least_humidity(333.15)))
+    assert stays_of(shares, touchdowns=50) == [(10, [wet]), (15, [0, 0.2, liquid]), (25, [0])]
+    assert stays_of([(MISSION[0], 1)], touchdowns=9, humidities=[0.6]) == [(9, [0.6, wet])]  # all may happen beside it
+    assert stays_of([(MISSION[0], 1), (MISSION[1], 0)], touchdowns=9) == [(9, [wet])]
+    rounded = [(one, 0.3333) for one in MISSION]
+    assert [number for number, _ in stays_of(rounded, touchdowns=9)] == [3, 3, 3]
+    coat = {"materials": {"Coat": {"contact_angle_deg": 120}}, "surfaces": {"B2": {"material": "Coat"}}}
+    coat["surfaces"]["Sub1"] = {"material": "Coat"}
+    assert stays_of([(MISSION[2], 1)], coat, touchdowns=9) == [(9, [0.6])]
+    device, config = lever(conditions=MISSION, touchdowns=9)
+    assert not stays(device, Plan(config).air_of_devices.wetting("b"))
 
 
 # Thin films

@@ -81,6 +81,14 @@ class InAir:
 
 
 @dataclass(frozen=True)
+class Stay:
+    """Part of a mission: touchdowns in the worst of some airs."""
+
+    humidities: tuple[float, ...]  #: [-]
+    touchdowns: float  #: at least one
+
+
+@dataclass(frozen=True)
 class Answer:
     """Everything that a page, a table or a picture shows about the main question of a device."""
 
@@ -95,6 +103,7 @@ class Answer:
     size: float = np.nan  #: stated, NaN without one
     stuck: Probability | None = None  #: at the stated size, in the worst stated air
     touchdowns: int = 1
+    stays: tuple[Stay, ...] = ()  #: airs of the touchdowns; without these, all count in the worst air
     extrapolated: bool = False  #: whether the size rests on a line beyond what was verified, on either side
     left_out: tuple[str, ...] = ()  #: conditions that are stated but not inside
     forbidden: tuple[str, ...] = ()  #: kinds of the limits that forbid a number
@@ -142,6 +151,10 @@ class Answer:
     def stated_steps(self) -> tuple[Step, ...]:
         """Steps inside the size to build."""
         return tuple(step for step in self.steps if step.stated)
+
+    def touchdowns_in(self, humidity: float) -> float:
+        """Touchdowns in an air or in one that bounds it with others."""
+        return sum(stay.touchdowns for stay in self.stays if humidity in stay.humidities)
 
     @property
     def largest_step(self) -> Step:

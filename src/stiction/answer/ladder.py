@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stiction.answer.data import Answer, Cause, InAir, Probability, Step, band
+from stiction.answer.data import Answer, Cause, InAir, Probability, Stay, Step, band
 from stiction.answer.sought import SOUGHT
 from stiction.answer.unknowns import Draws, OfBudgets, OfTestBeams, Unknowns
 from stiction.answer.worlds import Condition, World
@@ -26,6 +26,7 @@ class Question:
     unit: str  #: of sizes, m or N
     size: float = np.nan  #: stated, NaN without one
     touchdowns: int = 1
+    stays: tuple[Stay, ...] = ()  #: airs of the touchdowns; without these, all count in the worst air
     left_out: tuple[str, ...] = ()  #: conditions that are stated but not inside
     forbidden: tuple[str, ...] = ()  #: kinds of the limits that forbid a number
 
@@ -55,7 +56,8 @@ def answer(
 
     With test beams, ``before`` are the errors of the inputs without them.
     """
-    start = World(tuple(conditions), unknowns, frozenset(), question.share, question.touchdowns, draws)
+    stated = question.share, question.touchdowns
+    start = World(tuple(conditions), unknowns, frozenset(), *stated, draws, stays=question.stays)
     steps = _steps(question, start, _present(question, start))
     inside = frozenset(step.cause for step in steps if step.stated) - {Cause.ESTIMATE}
     world = replace(start, causes=inside)

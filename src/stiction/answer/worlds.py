@@ -5,6 +5,11 @@ A stopper with the restoring force F sticks if :math:`v = -\ln F` is above minus
 
 A *condition* is one set of circumstances: an air, an end state, with or without voltage. The answer belongs to the
 worst condition in every draw, so that one more condition never makes a beam longer.
+
+If a mission says which touchdowns happen in which airs, those of air i are :math:`n_i`, each on other summits, and in
+the worst condition of this air:
+
+.. math:: P(v) = 1 - \prod_i (1 - \max_k P_{ik}(v))^{n_i} .
 """
 
 from collections.abc import Callable
@@ -15,7 +20,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import betaincinv, expit, logit, ndtr, ndtri
 
-from stiction.answer.data import Cause
+from stiction.answer.data import Cause, Stay
 from stiction.answer.unknowns import Draws, Unknowns, normal
 from stiction.devices.risk import CONFIDENCE, DECADE, VERIFIED, upper_bound
 from stiction.devices.tail import FEWEST, TAIL, TailFit, fit_tail, simulated_lines
@@ -28,6 +33,8 @@ DRAWS = 20_000
 _ALIKE = 1e-9
 #: Distance of the normal scores of two points of a line that tell its slope.
 _APART = 0.5
+#: Halvings of an interval of v. They leave 1e-7 of it.
+_HALVES = 24
 #: Normal scores at which distributions of counted fractions are tabulated.
 _SCORES = np.linspace(-4.0, 4.0, 33)
 
@@ -59,6 +66,11 @@ class Sampled:
         within = np.where(self.values <= self.reach, self.values, np.inf)
         enough = min(np.isfinite(within).sum(), int(TAIL * len(within))) >= FEWEST
         return fit_tail(np.exp(within)) if enough and self.is_bounded else None
+
+    @property
+    def last(self) -> float:
+        """Largest threshold that is known."""
+        return float(min(self.reach, np.max(self.values, where=np.isfinite(self.values), initial=-np.inf)))
 
     def stated_for(self, share: float) -> Stated | None:
         """Statement for a fraction, none if there is none."""
@@ -109,6 +121,7 @@ class World:
     touchdowns: int = 1
     draws: Draws = Draws(DRAWS, 0)
     exact: frozenset[str] = field(default_factory=frozenset)  #: groups of inputs that count as known
+    stays: tuple[Stay, ...] = ()  #: without these, all touchdowns happen in the worst condition
 
     @cached_property
     def inside(self) -> tuple[Condition, ...]:
@@ -173,8 +186,7 @@ class World:
                 intercepts, slopes = self._lines[k]
                 rows.append(np.maximum(intercepts + slopes * score, one.sampled.floor))
             else:
-                bound = one.sampled.bound_for(self._once) if one.sampled else one.bound
-                rows.append(np.full(self.draws.number, bound))
+                rows.append(np.full(self.draws.number, self._bound(one)))
         return np.array(rows) + self._shifts
 
     @cached_property
@@ -184,14 +196,78 @@ class World:
         return frozenset(k for k, one in stated.items() if one is None or np.isfinite(one.estimate))
 
     @cached_property
+    def _spread(self):
+        """Parts of the mission if they count, each with the places of its conditions."""
+        stays = self.stays if Cause.TOUCHDOWNS in self.causes else ()
+        found = [([k for k, one in enumerate(self.inside) if one.humidity in stay.humidities], stay) for stay in stays]
+        return [(places, stay.touchdowns) for places, stay in found if places]
+
+    def _after_all(self, once):
+        """Fraction stuck after all touchdowns (draws,), from that of one in each condition (conditions, draws)."""
+        if not self._spread:
+            return stuck_after(once.max(axis=0), self._repeats)
+        with np.errstate(divide="ignore"):  # all stick
+            free = [number * np.log1p(-once[places].max(axis=0)) for places, number in self._spread]
+        return -np.expm1(np.sum(free, axis=0))
+
+    @cached_property
+    def _together(self):
+        """Values at which the allowed fraction is stuck in all conditions together (draws,).
+
+        At the least threshold, the product over a mission is at most the power for all touchdowns in its worst air.
+        """
+        low = self.thresholds.min(axis=0)
+        if not self._spread:
+            return low
+        known = np.isfinite(low)
+        low, high = np.where(known, low, 0.0), np.maximum(low, self._ends)
+        for _ in range(_HALVES):
+            middle = np.where(known, (low + high) / 2, 0.0)
+            is_safe = self._after_all(self._at_most(middle)) <= self.share
+            low, high = np.where(is_safe, middle, low), np.where(is_safe, high, middle)
+        return np.where(known, low, -np.inf)
+
+    @cached_property
+    def _ends(self):
+        """Least value beyond which a condition says nothing (draws,)."""
+        ends = [one.sampled.last if k in self._by_line else self._bound(one) for k, one in enumerate(self.inside)]
+        return (np.array(ends)[:, None] + self._shifts).min(axis=0)
+
+    def _bound(self, one):
+        """Threshold of the allowed fraction without a line."""
+        return one.sampled.bound_for(self._once) if one.sampled else one.bound
+
+    def _at_most(self, v):
+        """Fraction stuck at one touchdown in every condition that is safe to state at v (draws,): (conditions, draws).
+
+        That is the allowed one up to a bound, none on what holds no device, and all beyond what is known.
+        """
+        rows = []
+        for k, one in enumerate(self.inside):
+            at = v - self._shifts[k]
+            if k in self._by_line:
+                rows.append(np.where(at <= one.sampled.last, self._stuck(k, at), 1.0))
+            else:
+                free = max(one.sampled.flat, one.sampled.floor) if one.sampled else one.bound
+                rows.append(np.where(at <= free, 0.0, np.where(at <= self._bound(one), self._once, 1.0)))
+        return np.array(rows)
+
+    @cached_property
     def _size(self):
         """Size to build as v, and the place of what decides: it is worst in most draws near the size."""
-        least = self.thresholds.min(axis=0)
+        least = self._together
         order, number = np.argsort(least), len(least)
         at = int((1 - CONFIDENCE) * number) if self._is_simulated else number // 2
         near = order[max(at - number // 100, 0) : at + number // 100]
-        decides = np.bincount(self.thresholds[:, near].argmin(axis=0), minlength=len(self.inside)).argmax()
-        return float(least[order[at]]), int(decides)
+        worst = self._most_stuck(near) if self._spread else self.thresholds[:, near].argmin(axis=0)
+        return float(least[order[at]]), int(np.bincount(worst, minlength=len(self.inside)).argmax())
+
+    def _most_stuck(self, near):
+        """Places of the conditions with most stuck devices over the life, in some draws at their sizes."""
+        once, counts = self._at_most(self._together)[:, near], np.zeros(len(self.inside))
+        for places, number in self._spread:
+            counts[places] += number
+        return (counts[:, None] * once).argmax(axis=0)
 
     @property
     def size(self) -> float:
@@ -211,9 +287,10 @@ class World:
         return self._once < VERIFIED or len(self.decides.sampled.values) * self._once < DECADE
 
     def stuck(self, v: float) -> np.ndarray:
-        """Fraction stuck at v in the worst sampled condition, in every draw (draws,)."""
-        rows = [self._stuck(k, v - self._shifts[k]) for k, one in enumerate(self.inside) if one.sampled]
-        return stuck_after(np.max(rows, axis=0), self._repeats)
+        """Fraction stuck at v in the worst sampled condition, or over a mission, in every draw (draws,)."""
+        none = np.zeros(self.draws.number)
+        rows = [self._stuck(k, v - self._shifts[k]) if one.sampled else none for k, one in enumerate(self.inside)]
+        return self._after_all(np.array(rows))
 
     def _stuck(self, k, at):
         """Fraction stuck at one touchdown in one condition at values (draws,): by counts, or a line where few stick.

@@ -94,6 +94,18 @@ class Water:
         """Temperature of the water at a humidity [K]."""
         return self.temperature + self.warmer.get(Air(humidity).name, 0.0)
 
+    def between(self, stated: Collection[float], humidities: Collection[float]) -> "Water":
+        """Water with temperatures at some humidities (n,) between those of humid airs in which devices are stated [-].
+
+        ASSUME: from one of these to the next, the temperature follows the humidity linearly. Beyond them it stays.
+        """
+        if not self.warmer or not stated:
+            return self
+        known = sorted(stated)
+        differences = np.interp(humidities, known, [self.temperature_at(air) - self.temperature for air in known])
+        added = zip(map(float, humidities), map(float, differences), strict=True)
+        return replace(self, warmer=self.warmer | {Air(air).name: more for air, more in added})
+
     @property
     def reaches_across(self) -> bool:
         """Whether anything attracts across the gaps between the surfaces."""

@@ -63,7 +63,12 @@ class Environment:
 
     def is_wetted(self, pair: str) -> bool:
         """Whether water condenses between the surfaces of a pair at some humidity."""
-        return is_wetted(tuple(to_si(angle, "deg") for angle in self._contact_angles(pair)))
+        return bool(self.wetting(pair))
+
+    def wetting(self, pair: str) -> tuple[float, ...]:
+        """Contact angles between the surfaces of a pair [rad], empty without water."""
+        angles = tuple(to_si(angle, "deg") for angle in self._contact_angles(pair))
+        return angles if is_wetted(angles) else ()
 
     def humid(self, pair: str) -> list[float]:
         """Humidities of a pair with condensation of water: studies against humidity leave out dry air."""

@@ -61,6 +61,28 @@ def test_a_thin_film_has_the_worst_of_three_airs(more, humidity):
 
 
 @pytest.mark.slow
+def test_shares_of_touchdowns_lie_between_the_worst_condition_and_each_alone():
+    """The wet air decides, whatever happens in the dry one, and a mission in one air is the device in it."""
+    keys = {"touchdowns": 3, "restoring_force_uN": 17}
+
+    def mission(*shares):
+        """Answer for a share at 12 and one at 85 °C."""
+        at = [one | {"share": share} for one, share in zip((AT_12, AT_85), shares, strict=True) if share]
+        return device(conditions=at, **keys).answer()
+
+    worst = device(conditions=[AT_12, AT_85], **keys).answer()
+    third = mission(1 / 3, 2 / 3)
+    assert third.build <= worst.build * (1 + 1e-6)
+    assert third.stuck.value < worst.stuck.value
+    assert third.stuck.value >= third.airs[0].stuck.value
+    assert {row["touchdowns"] for row in words.of_airs(third)} == {"1", "2"}
+    assert "after 3 touchdowns, shared among its conditions, in dry air" in words.promise(third)
+    assert mission(1, 0).build == pytest.approx(device(conditions=[AT_12], **keys).answer().build, rel=1e-6)
+    with pytest.raises(stiction.ConfigError, match=r"conditions\[0\].share is 0.1, must be at least 0.3333, one of"):
+        mission(0.1, 0.9)
+
+
+@pytest.mark.slow
 def test_water_that_condenses_leaves_no_number():
     condensing = device(conditions=[AT_25, {"temperature_C": -20, "dew_point_C": 10}]).answer()
     assert condensing.verdict is Verdict.NONE

@@ -47,6 +47,25 @@ def test_a_device_humidity_and_the_same_point_of_the_axis_have_the_same_forces()
     assert_allclose(both.quantile_along[:, -1], np.quantile(both.pull_off, [0.05, 0.5, 0.95]), rtol=1e-14)
 
 
+def test_the_worst_humidity_is_sought_at_the_temperature_of_the_conditions(found):
+    """Two conditions at 350 K are a stopper whose water has 350 K, also between and beyond them."""
+    ends = {"0.67": 50.0, "0.88": 50.0}
+    warm = stoppers.compute(small.contact_of_pair(), replace(SETTINGS, water=Water(300.0, warmer=ends)))
+    stated = stoppers.compute(small.contact_of_pair(), replace(SETTINGS, water=Water(350.0)))
+    for name in ("mean_along", "pull_off", "share_flat", "worst_humidity"):
+        assert_allclose(warm[name], stated[name], rtol=1e-12)
+    assert (found.mean_along > 1.05 * warm.mean_along).all()  # control: at 300 K the tension is larger
+
+
+def test_between_two_conditions_the_temperature_follows_the_humidity():
+    water = Water(300.0, warmer={"0.4": 25.0, "0.8": -15.0, "0.6": 99.0})  # the last one is of another device
+    along = water.between([0.8, 0.4], [0.3, 0.4, 0.5, 0.6, 0.8, 0.9])
+    assert_allclose([along.temperature_at(air) for air in (0.3, 0.4, 0.5, 0.6, 0.8, 0.9)],
+                    [325, 325, 315, 305, 285, 285])  # fmt: skip
+    assert along.temperature_at(0.7) == 300
+    assert Water(300.0).between([0.4], [0.5]) == Water(300.0)
+
+
 def test_the_fine_axis_has_its_ends_and_a_point_at_every_percent():
     assert_allclose(stoppers.fine_axis(0.4, 0.98), np.arange(40, 99) / 100)
     assert_allclose(stoppers.fine_axis(0.9, 0.905), [0.9, 0.9025, 0.905])

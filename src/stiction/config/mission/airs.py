@@ -4,7 +4,8 @@
 and 0.7201 to a device. At each of them its water has the temperature of the condition, see
 `stiction.config.mission.conditions.temperatures`: no stage knows of missions.
 
-ASSUME: all touchdowns happen in the worst condition, at the largest voltage, the safe side.
+ASSUME: all touchdowns happen at the largest voltage and, where no ``share`` says in which condition, in the worst one.
+Both are the safe side.
 """
 
 import math
@@ -16,8 +17,9 @@ from stiction.config.keys import Keys, Relations
 from stiction.config.meetings import TEMPERATURE, device_meeting
 from stiction.config.messages import ConfigError, Problem, is_number, one_line
 from stiction.config.mission.conditions import CONDITIONS, DECIMALS, airs, humidity_of, kelvin
+from stiction.config.mission.stays import with_bounds
 from stiction.contact.air import DRY_AIR, humid, is_humid, is_possible
-from stiction.contact.meniscus import BRIDGE, ZERO_CELSIUS, least_humidity
+from stiction.contact.meniscus import ZERO_CELSIUS
 
 #: Keys of the air of a condition, of which it has one, and those that become keys of the device.
 _AIR, _OF_DEVICE = ("humidity", "dew_point_C"), ("touchdowns", "voltage_V")
@@ -77,6 +79,8 @@ def _is_condition(condition):
         return False
     stated = [condition[key] for key in _AIR if key in condition]
     others = [condition[key] for key in _OF_DEVICE if key in condition]
+    if {"share", "touchdowns"} <= {*condition}:
+        return False
     is_air = len(stated) == 1 and is_possible(condition.get("humidity", 0))
     is_whole = is_air and all(map(is_number, [condition.get("temperature_C"), *stated, *others]))
     return is_whole and COLDEST <= condition["temperature_C"] <= HOTTEST
@@ -120,30 +124,21 @@ def _bracketed(device, angles, temperature):
     """Section of a device with the airs that bound those of thin films, between surfaces with contact angles [rad]."""
     conditions, stated, bounds = device.get(CONDITIONS, []), [], []
     own = {humidity_of(condition): kelvin(condition) for condition in conditions}
+    shared = {"share": 0} if any("share" in condition for condition in conditions) else {}
     for air in device["humidities"]:
         at = own.get(air, temperature)
-        thinnest = _thinnest(at, angles)
-        if not is_humid(air) or air >= thinnest:
-            stated.append(air)
-        elif air < least_humidity(at, angles, BRIDGE):
-            stated.append(DRY_AIR.humidity if air in own else air)  # a relation refuses it
-        else:
-            stated.append(air)
-            bounds += [DRY_AIR.humidity, thinnest]
-            conditions = conditions + _same(at, thinnest) * (air in own and thinnest not in own)
-    airs = [*stated, *(air for air in dict.fromkeys(bounds) if air not in stated)]
+        first, *others = with_bounds(air, at, angles)
+        stated.append(first if air in own else air)  # a relation refuses that of a stated humidity
+        bounds += others
+        new = [humidity for humidity in others if is_humid(humidity) and air in own and humidity not in own]
+        conditions = conditions + [_same(at, humidity) | shared for humidity in new]
+    airs = [*dict.fromkeys((*stated, *bounds))]
     return device | {"humidities": airs} | ({CONDITIONS: conditions} if conditions else {})
 
 
 def _same(temperature, humidity):
-    """Condition at a temperature [K] and a humidity, as a list."""
-    return [{"temperature_C": round(temperature - ZERO_CELSIUS, 6), "humidity": humidity}]
-
-
-def _thinnest(temperature, angles):
-    """Lowest humidity of a liquid film that names of files can contain [-]."""
-    steps = 10**DECIMALS
-    return min(math.ceil(least_humidity(temperature, angles) * steps), steps - 1) / steps
+    """Condition at a temperature [K] and a humidity."""
+    return {"temperature_C": round(temperature - ZERO_CELSIUS, 6), "humidity": humidity}
 
 
 @relation_of_names
@@ -153,6 +148,31 @@ def conditions_state_their_air_once(config):
         for number, condition in enumerate(conditions):
             if len({*_AIR} & {*condition}) != 1:
                 yield f"devices.{name}.{CONDITIONS}.{number}", f"must have either {' or '.join(_AIR)}"
+
+
+@relation_of_names
+def shares_are_of_all_touchdowns(config):
+    """Require shares of either all conditions or none, that add up to one, in place of their touchdowns."""
+    for name, conditions in config.entries("devices", CONDITIONS):
+        key = f"devices.{name}.{CONDITIONS}"
+        for number, condition in enumerate(conditions):
+            if {"share", "touchdowns"} <= {*condition}:
+                yield f"{key}.{number}", "must have either share, of the touchdowns of the device, or touchdowns"
+        shares = [condition["share"] for condition in conditions if "share" in condition]
+        if shares and len(shares) < len(conditions):
+            yield key, "must have a share in all conditions or in none"
+        elif shares and not math.isclose(sum(shares), 1, abs_tol=10**-DECIMALS):
+            yield key, f"must have shares that add up to 1, these to {sum(shares):.6g}"
+        else:
+            yield from _too_few_touchdowns(key, conditions, config["devices"][name].get("touchdowns", 1))
+
+
+def _too_few_touchdowns(key, conditions, touchdowns):
+    """Yield refusals of shares of less than one touchdown."""
+    for number, condition in enumerate(conditions):
+        if 0 < condition.get("share", 0) * touchdowns < 1 - 10**-DECIMALS:
+            refusal = f"must be at least {1 / touchdowns:.4g}, one of the touchdowns of the device, {touchdowns}"
+            yield f"{key}.{number}.share", refusal
 
 
 @relation

@@ -107,7 +107,8 @@ def headline(answer: Answer) -> str:
 
 def promise(answer: Answer) -> str:
     """What the size to build promises."""
-    after = f" after {answer.touchdowns} touchdowns" * (answer.touchdowns > 1)
+    shared = ", shared among its conditions," * bool(answer.stays)
+    after = f" after {answer.touchdowns} touchdowns{shared}" * (answer.touchdowns > 1)
     where = airs([one.humidity for one in answer.airs])
     said = f"At most {one_in(answer.share)} sticks{after} {where} (95 % confidence)."
     if answer.stuck is None or not answer.is_enough or answer.stuck.value <= answer.share:
@@ -175,6 +176,7 @@ def of_airs(answer: Answer) -> list[dict[str, str]]:
     rows, sought = [], answer.sought
     for air in answer.airs:
         row = {"RH": humidity_text(air.humidity)} | _celsius(answer, air)
+        row |= {"touchdowns": f"{answer.touchdowns_in(air.humidity):.5g}"} if answer.stays else {}
         row |= {f"{sought.name} to build [{sought.shown}]": _size(answer, air.build)}
         if np.isfinite(air.without_tip):
             row["if the tip cannot touch [µm]"] = _size(answer, air.without_tip)

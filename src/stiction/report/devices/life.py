@@ -115,8 +115,11 @@ _SIMULATED = {
 }
 
 
-def sentences(dataset: xr.Dataset, build: float = np.nan) -> list[str]:
-    """Life of a device in words: causes of contact, drying, and many touchdowns, beside its size to build [m, N]."""
+def sentences(dataset: xr.Dataset, build: float = np.nan, has_shares: bool = False) -> list[str]:
+    """Life of a device in words: causes of contact, drying, and many touchdowns, beside its size to build [m, N].
+
+    The latter counts touchdowns in their conditions if these have shares, the limits here never do.
+    """
     answers = {answer.name: answer for answer in answers_of(dataset) if not answer.needs}
     unknown = [answer for answer in answers_of(dataset) if answer.needs]
     length = float(dataset.length)
@@ -125,7 +128,7 @@ def sentences(dataset: xr.Dataset, build: float = np.nan) -> list[str]:
     said = [*_beside(build, _sought(dataset)), *_touching(answers, at)]
     said += _asking(one for one in unknown if one.question == TOUCH)
     said += [*_pulled_in(answers, potential), *_drying(answers, at, length), *_on_dimples(answers), *_at_tilts(answers)]
-    said += [*_at_voltage(answers, potential), *_fast(answers), *_often(answers, int(dataset.touchdowns))]
+    said += [*_at_voltage(answers, potential), *_fast(answers), *_often(answers, int(dataset.touchdowns), has_shares)]
     return [*said, *_asking(one for one in unknown if one.question != TOUCH)]
 
 
@@ -263,7 +266,7 @@ def _fast(answers):
     return [f"If it separates faster than water evaporates, as in a shock, {needs}."]
 
 
-def _often(answers, touchdowns):
+def _often(answers, touchdowns, has_shares):
     """What is safe for many touchdowns, as far as it is known."""
     if Name.AFTER not in answers:
         return []
@@ -271,10 +274,9 @@ def _often(answers, touchdowns):
     sought = SOUGHT[limit.unit]
     bounds = [f"{bound(limit)} {sought.shown}" for bound in (_low, _high)]
     others, same = reversed(bounds) if sought.more_is_better else bounds
-    return [
-        f"For {touchdowns} touchdowns {_SIMULATED[limit.unit][0]} {others} if each meets other summits, and {same} "
-        "if all meet the same ones."
-    ]
+    where = ", all in the worst air," * has_shares
+    number = f"For {touchdowns} touchdowns{where} {_SIMULATED[limit.unit][0]} {others}"
+    return [f"{number} if each meets other summits, and {same} if all meet the same ones."]
 
 
 def _low(answer: Answer) -> str:

@@ -253,7 +253,7 @@ def with_life(page: Page, name: str, answers: xr.Dataset, answer: Answer) -> Pag
     build = np.nan if answer.forbidden else answer.build
     picture = life.figure({name: answers}, {name: build})
     section = Section("From the first contact to the last", (life.CAPTION,), cells, picture)
-    said, sections = life.sentences(answers, build), [first, section, *others]
+    said, sections = life.sentences(answers, build, bool(answer.stays)), [first, section, *others]
     return replace(page, answer=[*said, *page.answer], more=[*said, *page.more], sections=sections)
 
 

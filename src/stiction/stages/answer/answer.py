@@ -8,11 +8,12 @@ import numpy as np
 import xarray as xr
 
 from stiction.answer import ladder, sought
-from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, Step
+from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, Stay, Step
 from stiction.answer.ladder import Question
 from stiction.answer.unknowns import Draws, OfBudgets
 from stiction.answer.worlds import DRAWS
 from stiction.config.mission.conditions import CONDITIONS, temperatures
+from stiction.config.mission.stays import stays
 from stiction.config.units import in_si
 from stiction.contact.air import Air
 from stiction.devices.budget import LARGEST
@@ -42,6 +43,7 @@ class Settings:
     beam: DesignedBeam | None = None  #: none for a stopper
     budgets: tuple[float, ...] = ()  #: humidities of the budgets [-]
     temperatures: dict[str, float] = field(default_factory=dict)  #: of its conditions, by humidity in words [K]
+    stays: dict[str, Stay] = field(default_factory=dict)  #: touchdowns of its conditions, by number
 
 
 def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
@@ -52,7 +54,7 @@ def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
     left_out = (*settings.left_out, *_left_out(data, found, unknowns))
     if settings.required < question["share"]:
         left_out = (*left_out, "requirement")
-    stated = {"touchdowns": settings.touchdowns, "left_out": left_out}
+    stated = {"touchdowns": settings.touchdowns, "stays": tuple(settings.stays.values()), "left_out": left_out}
     asked = Question(settings.name, settings.kind, forbidden=_forbidden(data, unknowns), **stated, **question)
     draws = Draws(DRAWS, settings.seed)
     answer = ladder.answer(asked, found, unknowns, draws, None if unknowns is before else before)
@@ -151,6 +153,10 @@ def layout(answer: Answer) -> xr.Dataset:
     curves, note = [one.curve for one in answer.airs], none | {"long_name": "P(stuck) with its 95 % band"}
     variables |= {"air_curve": (("air", "end", "point"), curves, note), "curve": (("end", "point"), answer.curve, note)}
     variables["curve_size"] = "point", answer.sizes, size
+    if answer.stays:
+        inside = [[int(one.humidity in stay.humidities) for one in answer.airs] for stay in answer.stays]
+        variables |= {"stay_air": (("stay", "air"), inside, none)}
+        variables |= {"stay_touchdowns": ("stay", [stay.touchdowns for stay in answer.stays], none)}
     coords = {"step": [str(step.cause) for step in answer.steps], "air": [one.humidity for one in answer.airs]}
     coords["end"] = ["value", "low", "high"]
     return xr.Dataset(variables, coords, {name: getattr(answer, name) for name in _TEXTS})
@@ -187,10 +193,18 @@ def answer_of(dataset: xr.Dataset) -> Answer:
         airs=tuple(airs),
         stuck=_probability(dataset, "stuck_"),
         touchdowns=int(dataset.touchdowns),
+        stays=tuple(_stays(dataset)),
         extrapolated=bool(dataset.extrapolated),
         sizes=dataset["curve_size"].values,
         curve=dataset["curve"].values,
     )
+
+
+def _stays(dataset):
+    """Yield the parts of the mission of a dataset, if it has some."""
+    for row in (dataset.isel(stay=k) for k in range(dataset.sizes.get("stay", 0))):
+        humidities = row.air.values[row.stay_air.values > 0]
+        yield Stay(tuple(map(float, humidities)), float(row.stay_touchdowns))
 
 
 def _probability(dataset, start):
@@ -219,13 +233,14 @@ def _budgets(plan, device):
 
 def _settings(plan, at):
     """Settings of a device."""
-    section, beam = plan.config["devices"][at.device], own_section(plan, at.device, key="beam")
+    section, beam, name = plan.config["devices"][at.device], own_section(plan, at.device, key="beam"), at.device
     liquids = plan.config.get("liquids", {}) if beam else {}
-    own = {"seed": plan.config["seed"], "name": at.device, "liquids": sorted(liquids)}
+    own = {"seed": plan.config["seed"], "name": name, "liquids": sorted(liquids)}
     own |= {"left_out": ["dimples"] if "dimples" in section else []}
-    own |= {"budgets": [humidity for humidity, *_ in _budgets(plan, at.device)]}
+    own |= {"budgets": [humidity for humidity, *_ in _budgets(plan, name)]}
     at = {Air(air).name: at for air, at in temperatures(plan.config, section["pair"]).items()}
     own |= {"temperatures_K": at} if CONDITIONS in section else {}
+    own |= {"stays": found} if (found := stays(section, plan.air_of_devices.wetting(section["pair"]))) else {}
     own |= {"required": section["requirement"]["share"]} if "requirement" in section else {}
     return select(Settings, section | own | beam)
 

@@ -120,7 +120,9 @@ class OfStopper:
     def limits(self, dataset: xr.Dataset, plastic: Plastic = NOT_STUDIED, _humidity: float = 0.0) -> ByShape:
         """Limits, from the dataset of stage stoppers. Other parameters as of `OfDevice.limits`."""
         stated = humid(self.humidities)
-        films = [self.water.film(rh)[0] for rh in (*stated, *(self.worst_humidities if stated else ()))] or [0.0]
+        airs = (*stated, *(self.worst_humidities if stated else ()))
+        water = self.water.between(stated, airs)
+        films = [water.film(rh)[0] for rh in airs] or [0.0]
         limits = rules.triggered(
             rules.no_water(max(films), max(self.humidities)),
             rules.thin_film(min(films)),

@@ -67,6 +67,7 @@ def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = No
     The contact is that in the wettest air of the device, and in dry air if that is one of its humidities.
     """
     axis = axis_of(settings)
+    settings = replace(settings, water=settings.water.between(humid(settings.humidities), humid(axis)))
     contacts = {float(h): Air(h).choose(contact, dry) for h in (*settings.humidities, *axis)}
     at = {h: forces(one, h, settings) for h, one in progress(contacts.items(), "humidities", total=len(contacts))}
     chosen = np.array([at[h] for h in settings.humidities])
