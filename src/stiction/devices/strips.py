@@ -44,6 +44,11 @@ def resampled(laws: np.ndarray, number: int, rng: np.random.Generator) -> np.nda
     return laws[rng.integers(len(laws), size=number)]
 
 
+def drawn_from(laws: np.ndarray, displacements: np.ndarray | None) -> Draw:
+    """Draw from samples (m, 4): of one body if they have displacements, see `of_one_body`, otherwise `resampled`."""
+    return partial(resampled, laws) if displacements is None else of_one_body(laws, displacements)
+
+
 def of_one_body(laws: np.ndarray, displacements: np.ndarray) -> Draw:
     """Draw whose laws are those of one beam, from samples (m, 4) with displacements (m,) [m]."""
     return partial(_of_one_body, laws[np.argsort(displacements, kind="stable")])
