@@ -10,7 +10,7 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from stiction.devices.budget import Budget
+from stiction.devices.budget import SUBTRACTED, Budget
 from stiction.streams import stream
 
 
@@ -83,6 +83,7 @@ class Slopes:
     bends: np.ndarray  #: curvatures b in g x + b x² (k,)
     covariance: np.ndarray  #: of the inputs (k, k)
     members: tuple[Members, ...] = ()
+    limits: np.ndarray | None = None  #: errors of the inputs beyond which they count as there (k, 2); all count without
 
     @property
     def total(self) -> float:
@@ -92,7 +93,21 @@ class Slopes:
     @property
     def margin(self) -> float:
         """Half of a margin for inputs with slopes, with their curvature, see `stiction.devices.budget` [-]."""
-        return Budget(self.names, self.slopes, self.covariance).unsafe_total(-self.bends)
+        return Budget(self.names, self.slopes, self._counted_covariance).unsafe_total(-self.bends)
+
+    @property
+    def _counted_covariance(self):
+        """Covariance of errors of which the subtracted ones are within their limits on the unsafe side (k, k)."""
+        if self.limits is None:
+            return self.covariance
+        deviations = np.sqrt(np.diag(self.covariance))
+        ends = np.where(self.slopes > 0, -self.limits[:, 0], self.limits[:, 1]) / SUBTRACTED
+        shares = np.divide(ends, deviations, out=np.ones(len(ends)), where=deviations > ends)
+        return self.covariance * np.outer(shares, shares)
+
+    def counted(self, k: int, errors: np.ndarray) -> np.ndarray:
+        """Errors of one input as they count (n,)."""
+        return errors if self.limits is None else np.clip(errors, *self.limits[k])
 
     @property
     def is_known(self) -> bool:
@@ -140,7 +155,8 @@ class OfBudgets:
                 if self.own_errors:
                     slope = slope + budget.errors[k] * normal(draws, "slope", name, at[1])
                 # ASSUME: what bends to the safe side counts as linear, as in `Budget.unsafe_total`.
-                shift += slope * errors[name] + min(budget.bends[k], 0.0) * errors[name] ** 2
+                error = budget.counted(k, errors[name])
+                shift += slope * error + min(budget.bends[k], 0.0) * error**2
         for members in budget.members:
             if _OF_SURFACE.format(members.surface) not in exact:
                 shift += members.further(draws, at[1] if self.own_errors else "")

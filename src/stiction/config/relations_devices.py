@@ -36,7 +36,7 @@ from stiction.config.surfaces import process as process_surfaces
 from stiction.config.test_beams import DATA, shared_uncertainty
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.air import Air, humid, is_humid
-from stiction.contact.materials import COATING_ATTRACTION, COHERENCE, OF_CONTACT
+from stiction.contact.materials import COATING_ATTRACTION, COHERENCE, OF_CONTACT, OF_REPLICAS, PLAY
 from stiction.contact.meniscus import MOLECULES
 from stiction.contact.tilt import EDGE_RADIUS, Edge
 from stiction.rounding import is_at_most
@@ -263,18 +263,49 @@ def uncertain_hamaker_constants_are_those_of_bare_solids(config):
 
 
 @relation
-def uncertain_coherences_are_those_of_copies(config):
-    """Require a pair with a coherence, from which a step of its slope leaves some, for an uncertain one."""
+def uncertain_replicas_are_stated(config):
+    """Require a pair with a replica for an uncertain one, and test beams with the same."""
+    for entry in OF_REPLICAS.values():
+        for name, deviation, pair in config.entries("devices", f"uncertainty.{entry.key}", "pair"):
+            key, replica = f"devices.{name}.uncertainty.{entry.key}", config["pairs"].get(pair, {}).get("replica")
+            if deviation and not replica:
+                yield key, f"must be left out, because pair {pair} has no replica", f"devices.{name}.pair"
+            for used in _pairs_of_arrays(config, name) if deviation and replica else ():
+                if config["pairs"].get(used, {}).get("replica") != replica:
+                    yield key, f"must be left out, because pair {used} of its test beams has another replica"
+
+
+def _pairs_of_arrays(config, device):
+    """Pairs of the test beams of a device, where they are known."""
+    arrays = (config["test_beams"].get(name, {}) for name in config["devices"][device].get("test_beams", ()))
+    return dict.fromkeys(array["pair"] for array in arrays if "pair" in array)
+
+
+@relation
+def uncertain_coherences_leave_some(config):
+    """Require a coherence of which a step of its slope leaves some for an uncertain one."""
     key, step = f"uncertainty.{COHERENCE.key}", COHERENCE.step
     for name, deviation, pair in config.entries("devices", key, "pair"):
-        replica, message, given = config["pairs"].get(pair, {}).get("replica"), None, f"devices.{name}.pair"
-        if not replica:
-            message = f"must be left out, because pair {pair} has no replica"
-        elif step.ends(replica["coherence"])[0] < 0:
-            least, given = step.size / (1 + step.size), f"pairs.{pair}.replica.coherence"
-            message = f"must be left out below a coherence of {least:.2g}"
-        if deviation and message:
-            yield f"devices.{name}.{key}", message, given
+        replica = config["pairs"].get(pair, {}).get("replica")
+        if deviation and replica and step.ends(replica["coherence"])[0] < 0:
+            message = f"must be left out below a coherence of {step.size / (1 + step.size):.2g}"
+            yield f"devices.{name}.{key}", message, f"pairs.{pair}.replica.coherence"
+
+
+@relation
+def uncertain_plays_are_those_of_pairs(config):
+    """Require one uncertainty of the play on a pair: all budgets share its contacts with less and with more."""
+    key, stated = f"uncertainty.{PLAY.key}", {}
+    for name, deviation, pair in config.entries("devices", key, "pair"):
+        for used in (pair, *_pairs_of_arrays(config, name)) if deviation else ():
+            other, same = stated.setdefault(used, (name, deviation))
+            if deviation != same:
+                yield (
+                    f"devices.{name}.{key}",
+                    f"must be that of device {other} on pair {used}",
+                    f"devices.{other}.{key}",
+                )
+                break
 
 
 @relation

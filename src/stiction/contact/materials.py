@@ -82,6 +82,18 @@ class Step:
         """Difference of the logarithm of the input between both ends, or of the input."""
         return float(np.log((1 + self.size) / (1 - self.size))) if self.relative else 2 * self.size
 
+    def around(self, _value: float) -> float:
+        """Difference between both ends of an input of this value."""
+        return self.difference
+
+    def limits(self, _value: float) -> tuple[float, float]:
+        """Errors of an input of this value that count: all."""
+        return -np.inf, np.inf
+
+    def by(self, _deviation: float) -> "Step":
+        """Step for an input with a standard uncertainty in its unit."""
+        return self
+
 
 @dataclass(frozen=True)
 class StepOfRest(Step):
@@ -105,6 +117,48 @@ class StepOfRest(Step):
     def error(self, value: float, deviation: float) -> float:
         """Error of the logarithm of the rest."""
         return super().error(1 - value, deviation)
+
+
+@dataclass(frozen=True)
+class StepOfError(Step):
+    """Change of a length by its standard uncertainty, the unit of its errors. It is never below zero.
+
+    ASSUME: beyond one standard uncertainty more, errors count as that. Where more of it is safe, this is the safe side.
+    """
+
+    size: float = np.nan
+    relative: bool = False
+
+    def by(self, deviation: float) -> "StepOfError":
+        """Step for a length with a standard uncertainty in its unit."""
+        return StepOfError(deviation)
+
+    def ends(self, value: float) -> tuple[float, float]:
+        """Less and more of a length.
+
+        Examples
+        --------
+        >>> StepOfError(5.0).ends(20.0), StepOfError(50.0).ends(20.0), StepOfError(50.0).limits(20.0)
+        ((15.0, 25.0), (0.0, 70.0), (-0.4, 1.0))
+        """
+        return max(value - self.size, 0.0), value + self.size
+
+    def around(self, value: float) -> float:
+        """Difference between both ends in standard uncertainties."""
+        less, more = self.ends(value)
+        return (more - less) / self.size
+
+    def limits(self, value: float) -> tuple[float, float]:
+        """Errors at which the length is zero, and where it is not computed any more."""
+        return -value / self.size, 1.0
+
+    def moved(self, value: float, by: float) -> float:
+        """Length after an error."""
+        return max(float(value + np.clip(by, *self.limits(value)) * self.size), 0.0)
+
+    def error(self, _value: float, deviation: float) -> float:
+        """Error in standard uncertainties."""
+        return deviation / self.size
 
 
 @dataclass(frozen=True)
@@ -138,5 +192,8 @@ OF_CONTACT = {name: entry for name, entry in PROPERTIES.items() if entry.step}
 ELASTIC = (*(entry.key for entry in OF_CONTACT.values()), *OF_COATINGS)
 #: Coherence of the heights of two surfaces that follow each other: the variance of z₁ + z₂ falls like its rest of one.
 COHERENCE = Property("coherence", "coherence of both surfaces", StepOfRest(0.2))
-#: All that may be uncertain in the contact of a pair, without tips, by name.
-OF_PAIRS = OF_CONTACT | {COHERENCE.key: COHERENCE}
+#: Play of a beam above a surface that it follows. In register it sticks most, far away as on independent surfaces.
+PLAY = Property("play_nm", "play in the plane", StepOfError())
+#: What may be uncertain in two surfaces that follow each other, and in the contact of a pair, without tips, by name.
+OF_REPLICAS = {"coherence": COHERENCE, "play": PLAY}
+OF_PAIRS = OF_CONTACT | OF_REPLICAS

@@ -44,14 +44,29 @@ def resampled(laws: np.ndarray, number: int, rng: np.random.Generator) -> np.nda
     return laws[rng.integers(len(laws), size=number)]
 
 
+def drawn_from(laws: np.ndarray, displacements: np.ndarray | None) -> Draw:
+    """Draw from samples (m, 4): of one body if they have displacements, see `of_one_body`, otherwise `resampled`."""
+    return partial(resampled, laws) if displacements is None else of_one_body(laws, displacements)
+
+
 def of_one_body(laws: np.ndarray, displacements: np.ndarray) -> Draw:
     """Draw whose laws are those of one beam, from samples (m, 4) with displacements (m,) [m]."""
     return partial(_of_one_body, laws[np.argsort(displacements, kind="stable")])
 
 
+def in_register(laws: np.ndarray, displacements: np.ndarray) -> Draw:
+    """Draw from the samples (m, 4) nearest to their register: those of the body that moved least."""
+    return partial(resampled, laws[np.argsort(displacements, kind="stable")][: _nearest(len(laws))])
+
+
+def _nearest(samples):
+    """Number of samples of one beam."""
+    return min(max(math.ceil(NEAREST * samples), FEWEST), samples)
+
+
 def _of_one_body(laws, number, rng):
     """Laws of the strips of one beam (number, 4), from samples in the order of their displacements."""
-    nearest = min(max(math.ceil(NEAREST * len(laws)), FEWEST), len(laws))
+    nearest = _nearest(len(laws))
     end = max(int(rng.integers(len(laws))) + 1, nearest)
     return resampled(laws[end - nearest : end], number, rng)
 

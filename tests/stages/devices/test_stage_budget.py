@@ -49,6 +49,7 @@ def given(monkeypatch, request):
         return found, 1.1 * found[:, 1].max()
 
     monkeypatch.setattr(curves, "vectors", vectors)
+    monkeypatch.setattr(curves, "displacements", lambda *_: None)
     monkeypatch.setattr(curves, "pull_offs", lambda contact, *_: contact * VECTORS[:, 1])
     monkeypatch.setattr(curves, "tip_forces", lambda contact, *_: (SLOPES, contact * VECTORS[:, :1] / SLOPES))
 

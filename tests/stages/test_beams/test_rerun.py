@@ -149,10 +149,10 @@ def test_an_error_of_one_step_gives_the_contact_of_the_slope_bit_for_bit(stopper
         name: (stopper.results[f"heights/{name}"], stopper.results[f"spectrum/{name}"]) for name in ("B2", "Sub1")
     }
     pair, plain = job.settings["contacts"]["b_1000x1000"]
-    found = rerun.at_mean(surfaces, pair, plain, {"rms of B2": 0.05})
+    found = rerun.at_mean(surfaces, pair, plain, {"rms of B2": 0.05}, {})
     slope = stopper.results["devices/contact/slopes/b_1000x1000_B2_rms_more"]
     xr.testing.assert_equal(found.reset_coords(drop=True), slope.drop_vars("difference").reset_coords(drop=True))
-    same = rerun.at_mean(surfaces, pair, plain, dict.fromkeys(map(str, stopper.test_beams().input.values), 0.0))
+    same = rerun.at_mean(surfaces, pair, plain, dict.fromkeys(map(str, stopper.test_beams().input.values), 0.0), {})
     xr.testing.assert_allclose(same, stopper.contact, rtol=1e-5)
 
 

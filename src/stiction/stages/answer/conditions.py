@@ -180,4 +180,5 @@ def _slopes(dataset, sign):
             Members(str(name), sign * part.member_shift.values, part.member_error.values)
             for name, part in members_of(dataset).items()
         )
-    return Slopes(names, groups, *numbers, dataset.covariance.values, members)
+    limits = dataset.limit.values if "limit" in dataset else None
+    return Slopes(names, groups, *numbers, dataset.covariance.values, members, limits)

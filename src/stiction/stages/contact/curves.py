@@ -33,6 +33,11 @@ def parametrised(sampled: ForceCurves, humidity: float, water: Water) -> tuple[n
     return np.column_stack([*changed, vectors[:, 2:]]), float(changes[1](limit))
 
 
+def displacements(contact: xr.Dataset, kept: np.ndarray) -> np.ndarray | None:
+    """Displacements from their register of those samples that are kept [m], none without play."""
+    return contact.displacement.values[kept] if "displacement" in contact else None
+
+
 def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
     found = forcelaw.adhesion_energies(*force_curves(contact, humidity, water))

@@ -22,12 +22,12 @@ from stiction.config.cases import Case, case_id
 from stiction.config.surfaces.members import like
 from stiction.config.units import in_si
 from stiction.contact import forcelaw
-from stiction.contact.materials import COHERENCE
+from stiction.contact.materials import OF_REPLICAS
 from stiction.contact.tilt import EDGE_RADIUS
 from stiction.devices import arcs
 from stiction.devices.budget import Budget, choice_effect, joined, log_slope, weights_of_kind
 from stiction.devices.stoppers import pull_off_force
-from stiction.devices.strips import resampled
+from stiction.devices.strips import drawn_from
 from stiction.devices.tail import FEWEST, TAIL, fit_tail
 from stiction.plan.stage import At, Running, Stage, subsection
 from stiction.progress import progress
@@ -74,6 +74,8 @@ OF_ARRAYS, HALF = "devices/test_beams/budget", 0.5
 #: Part of the tips that is fitted for slopes. ASSUME: inputs move the lowest quarter as the lowest 5 %. Slopes of 1000
 #: tips of pair b by both differ by less than their errors, and those by the quarter have 0.6 times the error.
 _OF_SLOPES = 0.25
+#: Factor of the lengths of beams where an input changes adhesion many times: cracks on weak ground scatter most.
+_LONGER = 2
 #: Devices at several states.
 Respond = Callable[[Sequence[State]], Responses]
 
@@ -100,11 +102,14 @@ class BeamBudget(Settings):
         """State with the stated inputs."""
         return State(contact, self.humidity, self.water, self.device, alike=self.alike)
 
-    def responder(self, *states: State) -> Respond:
-        """How the devices respond: cracks of beams that are long enough at some states."""
+    def responder(self, *states: State, longer: int = 1) -> Respond:
+        """How the devices respond: cracks of beams that are long enough at some states, or longer by a factor."""
         laws = [shared_laws([curves.vectors(state.contact, state.humidity, state.water)])[0] for state in states]
-        mesh = around([ground_of(self.device, of_state) for of_state in laws])
-        return partial(beam_responses, mesh=mesh, number=self.beams, address=addresses(self), known={})
+        part, strips = around([ground_of(self.device, of_state) for of_state in laws])
+        part = replace(part, length=longer * part.length, elements=longer * part.elements)
+        return partial(
+            beam_responses, mesh=(part, longer * strips), number=self.beams, address=addresses(self), known={}
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,7 +122,7 @@ class TipBudget(Settings):
 
     sizes, state = BeamBudget.sizes, BeamBudget.state
 
-    def responder(self, *_states: State) -> Respond:
+    def responder(self, *_states: State, **_longer: int) -> Respond:
         """Response of the devices: arcs of all tips."""
         return partial(tip_responses, share=self.share)
 
@@ -135,7 +140,7 @@ class PatchBudget(Settings):
         """State with the stated inputs."""
         return State(contact, self.humidity, self.water, area=self.contact[0] * self.contact[1], alike=self.alike)
 
-    def responder(self, *_states: State) -> Respond:
+    def responder(self, *_states: State, **_longer: int) -> Respond:
         """Response of the devices: pull-off forces of all patches."""
         return stopper_responses
 
@@ -164,8 +169,9 @@ def compute(
     is that of the first ones.
     """
     state = settings.state(contact)
-    respond = settings.responder(state)
     inputs, covariance = uncertain(state, shifted, properties, known, settings)
+    far = [end for entry in inputs if np.isfinite(entry.limits).any() for end in entry.states]
+    respond = settings.responder(state, *far, longer=_LONGER if far else 1)
     slopes_with_errors = slopes(inputs, respond)
     changes = {}
     for name, changed in choices.items():
@@ -174,7 +180,7 @@ def compute(
             under = replace(state, contact=changed, water=settings.water_under(name))
             changes[name] = effect_if_known(base, under, respond)
     found = layout(inputs, slopes_with_errors, covariance, respond([state]), changes, settings)
-    return found.assign(bend=("input", bends(inputs, respond)))
+    return found.assign(bend=("input", bends(inputs, respond))).assign(limits_of(inputs))
 
 
 def with_members(
@@ -256,14 +262,15 @@ def beam_responses(
     ASSUME: for a cantilever, the two foundation lengths that hold its crack are left out, 1 % of the length.
     ASSUME: neighbouring strips are independent, also on ground with blocks (`stiction.devices.strips`).
     """
-    laws = shared_laws([curves.vectors(state.contact, state.humidity, state.water) for state in states])
+    laws, lawful = lawful_at_all([curves.vectors(state.contact, state.humidity, state.water) for state in states])
     (of_mesh, strips), known = mesh, {} if known is None else known
 
     def lengths(state, laws):
         """Crack lengths in a state on force laws [m]."""
         if (key := (state.device, laws.tobytes())) not in known:
             part = replace(state.device.beam, length=of_mesh.length, elements=of_mesh.elements)
-            known[key] = arrests(state.device, (part, strips), partial(resampled, laws), number, address)
+            draw = drawn_from(laws, curves.displacements(state.contact, lawful))
+            known[key] = arrests(state.device, (part, strips), draw, number, address)
         return known[key]
 
     values = np.array([lengths(state, of_state) for state, of_state in zip(states, laws, strict=True)])
@@ -276,8 +283,13 @@ def beam_responses(
 
 def shared_laws(parametrised: Sequence[tuple[np.ndarray, float]]) -> list[np.ndarray]:
     """Force laws of the samples lawful at every state, from vectors and f_limit of each, (m, 4) each."""
+    return lawful_at_all(parametrised)[0]
+
+
+def lawful_at_all(parametrised: Sequence[tuple[np.ndarray, float]]) -> tuple[list[np.ndarray], np.ndarray]:
+    """Force laws as of `shared_laws`, and which of the samples they are of (n,)."""
     lawful = np.logical_and.reduce([forcelaw.admissible(vectors, limit) for vectors, limit in parametrised])
-    return [forcelaw.coefficients(vectors[lawful], limit) for vectors, limit in parametrised]
+    return [forcelaw.coefficients(vectors[lawful], limit) for vectors, limit in parametrised], lawful
 
 
 # Slopes
@@ -295,6 +307,12 @@ def slopes(inputs: Sequence[Input], respond: Respond) -> np.ndarray:
 def bends(inputs: Sequence[Input], respond: Respond) -> np.ndarray:
     """Curvatures b of the logarithm of the response, g x + b x² around an input, zero without a middle (inputs,)."""
     return np.array([_bend(entry, respond) if entry.middle else 0.0 for entry in inputs])
+
+
+def limits_of(inputs: Sequence[Input]) -> dict[str, tuple]:
+    """Variable with the errors of the inputs beyond which they count as there, none if all errors count."""
+    limits = np.reshape([entry.limits for entry in inputs], (-1, 2))
+    return {"limit": (("input", "end"), limits)} if np.isfinite(limits).any() else {}
 
 
 def _bend(entry, respond):
@@ -429,7 +447,8 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     own = {"uncertainty": stated, "humidity": at.case.humidity}
     own |= plan.materials.modulus(pair)
     properties = devices.uncertain_properties(name)
-    own |= subsection(plan.replica(pair)["replica"], [COHERENCE.key]) if COHERENCE.key in properties else {}
+    replica = plan.replica(pair).get("replica", {})
+    own |= {entry.key: replica.get(entry.key, 0.0) for name, entry in OF_REPLICAS.items() if name in properties}
     if "hamaker_constant" in properties:
         own |= {"hamaker_constant_zJ": plan.air.beam_hamaker_constant(pair), "alike": plan.materials.alike(pair)}
     beam = own_section(plan, name, pair)

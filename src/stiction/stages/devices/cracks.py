@@ -19,10 +19,11 @@ from stiction.config.cases import Case, case_id
 from stiction.contact import forcelaw
 from stiction.devices.sampling import SampledSurfaces
 from stiction.devices.sizes import PowerLaws, fitted
+from stiction.devices.strips import in_register
 from stiction.plan.stage import At, Running, Stage, select
 from stiction.stages.devices.contact_names import name_of_ground
 from stiction.stages.devices.ground import ground_from, ground_inputs
-from stiction.stages.devices.opening import BEAMS, DesignedBeam, ground_of, settings_of_beam
+from stiction.stages.devices.opening import BEAMS, DesignedBeam, addresses, arrests, ground_of, settings_of_beam
 from stiction.stages.devices.sticking import Released, release_beams, released
 
 
@@ -59,11 +60,22 @@ def compute(ground: xr.Dataset, settings: Settings, of_sizes: xr.Dataset | None 
     else:
         beams = release_beams(device, met, settings)
     dataset = layout(beams, ground_of(device, met.laws)[0], met.laws, float(ground.rms))
+    dataset = dataset.assign(_in_register(met, settings))
     return dataset.assign(
         longest_strip=((), device.opening.longest_strip(device, met.laws), {"units": "m"}),
         size_error=((), laws.error if by_laws else 0.0, {"units": "1", "long_name": "error of power laws of the size"}),
         **ground[["share_flat", "resampled", "repetition"]],
     )
+
+
+def _in_register(met, settings):
+    """Variable with the lengths of the same beams in register [m], none without play."""
+    device, laws = settings.device, met.strips
+    if laws.displacements is None:
+        return {}
+    draw = in_register(laws.sampled, laws.displacements)
+    arrested = arrests(device, ground_of(device, met.laws), draw, settings.beams, addresses(settings))
+    return {"register_length": ("device", arrested, {"units": "m"})}
 
 
 def compute_sizes(ground: xr.Dataset, settings: OfSizes) -> xr.Dataset:
@@ -120,7 +132,7 @@ def beams_of(cracks: xr.Dataset, device: DesignedBeam, held: np.ndarray | None) 
 
 def with_lengths(cracks: xr.Dataset, changed: Callable[[np.ndarray], np.ndarray]) -> xr.Dataset:
     """Dataset with other lengths, a function of those of any shape [m]."""
-    names = _name(cracks), "uniform_length"
+    names = [name for name in (_name(cracks), "uniform_length", "register_length") if name in cracks]
     return cracks.assign({name: cracks[name].copy(data=changed(cracks[name].values)) for name in names})
 
 

@@ -51,8 +51,16 @@ def compute(cracks: xr.Dataset, settings: Settings, tips: xr.Dataset | None = No
     dataset = layout(beams.lengths, by_shape(beams, settings, without_samples), without_samples, settings).assign(
         cracks[["rms", "share_flat", "longest_strip", "resampled", "repetition", "size_error", "mean_energy"]]
     )
-    dataset = dataset.assign(_thresholds(beams.lengths, without_samples))
+    dataset = dataset.assign(_thresholds(beams.lengths, without_samples) | _in_register(beams, cracks))
     return dataset if settings.length is None else dataset.assign(at_length(beams, settings.length))
+
+
+def _in_register(beams, cracks):
+    """Variable of the sticking lengths of all devices along the beam in register, none without play."""
+    if "register_length" not in cracks:
+        return {}
+    along = next(iter(replace(beams, arrested=cracks.register_length.values).lengths.values()))
+    return {"register_sticking_length": ("device", np.sort(along), {"units": "m"})}
 
 
 def _thresholds(sticking, without_samples):

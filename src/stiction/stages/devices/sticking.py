@@ -111,7 +111,7 @@ def fitted_laws(contact: xr.Dataset, humidity: float, settings: LawSettings, sid
     model = opening.fit_chaos(vectors, limit, settings.chaos)
     lawful = forcelaw.admissible(vectors, limit)
     sampled = forcelaw.coefficients(vectors[lawful], limit)
-    displacements = contact.displacement.values[lawful] if "displacement" in contact else None
+    displacements = curves.displacements(contact, lawful)
     drawn = draw_laws(model, strips.DRAWS, stream(0, "narrow"))
     is_narrow = displacements is not None or strips.is_narrow(forcelaw.energy(drawn), forcelaw.energy(sampled))
     repetition = strips.repetition(contact.correlations.values)

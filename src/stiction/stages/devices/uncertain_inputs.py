@@ -17,7 +17,7 @@ from scipy.linalg import block_diag
 
 from stiction.config.units import without_unit
 from stiction.contact.environment import Water
-from stiction.contact.materials import COHERENCE, OF_CONTACT, OF_PAIRS, Step
+from stiction.contact.materials import OF_CONTACT, OF_PAIRS, OF_REPLICAS, Step
 from stiction.contact.tilt import EDGE_RADIUS
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.scans import moments
@@ -60,6 +60,7 @@ class Input:
     step: float  #: difference of the input between both
     #: State between both, if they are as far around it as the uncertainty of the input and its curvature counts.
     middle: State | None = None
+    limits: tuple[float, float] = (-np.inf, np.inf)  #: beyond which errors count as there
 
 
 @dataclass(frozen=True)
@@ -180,6 +181,7 @@ class Settings:
     young_modulus: float  #: E of the body of the beam or stopper [Pa]
     edge_radius: float = 0.0  #: of the edges of tips that are budgeted [m]
     coherence: float = 0.0  #: of both surfaces, if it is uncertain [-]
+    play: float | None = None  #: of the beam above a surface that it follows, if it is uncertain [m]
     hamaker_constant: float | None = None  #: of two bodies like the beam or stopper [J], if it is uncertain
     alike: tuple[str, ...] = SIDES  #: as of `State`
     waters: dict[str, Water] = field(
@@ -236,7 +238,8 @@ def changed(state: State, errors: Mapping[str, float]) -> State:
 def countable(sizes: Sequence[str], settings: Settings) -> list[str]:
     """Names of all possible measurements of a device with these sizes."""
     surfaces = [part for name in settings.surfaces for part in _parts_of_surface(name, settings)]
-    others = [COHERENCE] * bool(settings.coherence) + [EDGE_RADIUS] * bool(settings.edge_radius)
+    others = [entry for name, entry in OF_REPLICAS.items() if getattr(settings.uncertainty, name)]
+    others += [EDGE_RADIUS] * bool(settings.edge_radius)
     bodies = [entry.group for entry in (*OF_CONTACT.values(), *others)]
     air = [entry.group or f"the {entry.name}" for entry in OF_AIR if settings.water.film(settings.humidity)[0]]
     return [*surfaces, *(f"the {name.replace('_', ' ')}" for name in sizes), *bodies, *dict.fromkeys(air)]
@@ -285,16 +288,19 @@ def property_blocks(
     for name, entry in _OF_CONTACTS.items():
         if name not in properties:
             continue
-        states, step = [replace(state, contact=contact) for contact in properties[name]], entry.step
+        deviation = getattr(settings.uncertainty, _FIELDS[name])
+        states, step = [replace(state, contact=contact) for contact in properties[name]], entry.step.by(deviation)
         if name == "modulus" and state.device:
             moduli = step.ends(settings.young_modulus)
             beams = [replace(state.device, young_modulus=modulus) for modulus in moduli]
             states = [replace(of, device=beam) for of, beam in zip(states, beams, strict=True)]
         if name == "hamaker_constant":
             states = [of.attracting(end) for of, end in zip(states, step.ends(1.0), strict=True)]
-        deviation = getattr(settings.uncertainty, _FIELDS[name])
-        relative = step.error(getattr(settings, _FIELDS[name], np.nan), deviation)
-        found = Input(entry.words, entry.group, tuple(states), step.difference)
+        value = getattr(settings, _FIELDS[name], np.nan)
+        relative, limits = step.error(value, deviation), step.limits(value)
+        at_value = replace(state, contact=first(state.contact, states[0].contact.sizes["strip"]))
+        middle = at_value if -np.inf < limits[0] <= -1 else None  # as far from both ends
+        found = Input(entry.words, entry.group, tuple(states), step.around(value), middle, limits)
         yield Block([found], np.array([[relative**2]]))
 
 

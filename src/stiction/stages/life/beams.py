@@ -21,6 +21,9 @@ from stiction.stages.life.dimples import dimple_answers
 from stiction.stages.life.inputs import Liquid, OfBeam
 from stiction.stages.life.separation import of_beam
 
+#: Forms of the rows of a beam with play.
+_NEAREST = "beams on the samples nearest to their register"
+_OFFSETS = "the same offset each time (at least); 1 - (1 - p)^n, another one each time (at most)"
 #: Relative step of a length for the derivative of the one at a voltage.
 _STEP = 1e-4
 #: Rows of a beam: name, question, what, unit and keys.
@@ -69,6 +72,7 @@ def beam_answers(
     answers += beam_touched(of, length) + beam_held(of, length) if 0 < length < np.inf else []
     answers += [answer for name, liquid in of.liquids.items() for answer in lengths_after_drying(of, name, liquid)]
     answers += beam_after_touchdowns(of, share, min(safe.values()), after) if after else []
+    answers += beam_at_registers(of, length, lengths)
     answers += separated_fast(lengths, separation) if separation is not None else []
     answers += beam_at_voltage(of, min(safe.values()), biased)
     return in_order(answers + shared.missing(answers, _BEAM))
@@ -214,6 +218,26 @@ def beam_after_touchdowns(
             f"probability of sticking after {numbers} at the limit of one",
             *(np.nan, stuck, np.nan, "1", "1 - (1 - p)^n; p with the same summits each time", "stiction.life.freeing"),
         ),
+    ]
+
+
+def beam_at_registers(of: OfBeam, length: float, lengths: Mapping[float, xr.Dataset]) -> list[Answer]:
+    """P(stuck) along a beam of a length [m] with play: in register, at a random offset, and after all touchdowns.
+
+    The worst of all airs counts. ASSUME: each touchdown has an offset of its own, and is then another meeting. Of ten
+    touchdowns of strips like B2 with a coherence of 0.9, 10 ± 1 count at a play of 20 nm, and 6 ± 1 at 5 nm.
+    """
+    with_play = [dataset for dataset in lengths.values() if "register_sticking_length" in dataset]
+    if not with_play:
+        return []
+    shares = [[each.register_sticking_length, each.sticking_length[0]] for each in with_play]
+    (register, once), number = np.max(np.mean(np.less(shares, length), axis=-1), axis=0), of.touchdowns
+    stuck, many = freeing.stuck_after(once, number), f"{number} touchdowns" if number > 1 else "one touchdown"
+    errors = [float(np.sqrt(p * (1 - p) / with_play[0].sizes["device"])) for p in (register, once)]
+    what = "probability of sticking along the beam"
+    return [
+        Answer("register", FREE, f"{what} in register", register, register, errors[0], "1", _NEAREST, "stage cracks"),
+        Answer("offsets", FREE, f"{what} after {many}", once, stuck, errors[1], "1", _OFFSETS, "stage cracks"),
     ]
 
 

@@ -77,16 +77,22 @@ def change_of_response(
 
 
 def at_mean(
-    surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset]], pair: str, base: dict[str, Any], errors: Mapping[str, float]
+    surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
+    pair: str,
+    base: dict[str, Any],
+    errors: Mapping[str, float],
+    uncertainty: Mapping[str, float],
 ) -> xr.Dataset:
     """Contact of a pair after errors of surfaces and solids, by the name of the input, such as ``rms of B2``.
 
     The surfaces are datasets (heights, spectrum) by name; ``base`` has the settings of the contact with the stated
-    inputs, as of a job. The name of the pair is part of the addresses of random numbers.
+    inputs, and ``uncertainty`` those of a device, as of a job. The name of the pair is part of the addresses of random
+    numbers.
     """
     for name, entry in OF_PAIRS.items():
         if entry.words in errors:
-            base = with_property(base, name, partial(entry.step.moved, by=errors[entry.words]))
+            step = entry.step.by(uncertainty.get(entry.key, 0.0))
+            base = with_property(base, name, partial(step.moved, by=errors[entry.words]))
     settings, drawn = in_si(Settings, base), {}
     for name in settings.surfaces:
         surface = description(*surfaces[name])
@@ -152,7 +158,7 @@ def _settings(plan, at):
 def _rerun(data, settings):
     """Contacts with the errors of the update, and all recomputed results, or the reason against them."""
     surfaces = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
-    update = data["updated"]
+    update, uncertainty = data["updated"], settings["budgets"][0]["uncertainty"]
     errors, contacts, model_errors = errors_of(update), {}, data["by_levels"] | data["model_errors"]
     wanted = [
         with_correction(budget_settings(own), {"model_error": model_errors[patch]} if patch in model_errors else {})
@@ -160,7 +166,7 @@ def _rerun(data, settings):
     ]
     try:
         for name, (pair, own) in settings["contacts"].items():
-            contacts[name] = data["contacts"][name], at_mean(surfaces, pair, own, errors)
+            contacts[name] = data["contacts"][name], at_mean(surfaces, pair, own, errors, uncertainty)
         return compute(update, data["budgets"], settings["patches"], contacts, wanted)
     except (ValueError, NotConverged) as reason:
         traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code

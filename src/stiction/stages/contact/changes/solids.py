@@ -1,4 +1,4 @@
-"""Less and more of a property of the solids in contact, or of the coherence of their surfaces: other settings alone.
+"""Less and more of a property of the solids in contact, or of how their surfaces follow each other: settings alone.
 
 A body that is not of the material of the beam keeps its properties.
 """
@@ -7,22 +7,23 @@ from collections.abc import Callable
 from typing import Any
 
 from stiction.config.materials import hamaker_constants
-from stiction.contact.materials import COHERENCE, OF_CONTACT, OF_PAIRS
+from stiction.contact.materials import OF_CONTACT, OF_REPLICAS, Step
 from stiction.models import SHIFTS, SIDES
 from stiction.stages.contact import contact
 from stiction.stages.contact.changes.patches import Change
 from stiction.stages.surfaces.rough_surfaces import both
 
 
-def less_or_more(settings: dict[str, Any], name: str, shift: str) -> dict[str, Any]:
+def less_or_more(settings: dict[str, Any], name: str, shift: str, step: Step) -> dict[str, Any]:
     """Settings of a contact with less or more of a property, a key of `stiction.contact.materials.OF_PAIRS`."""
-    return with_property(settings, name, lambda value: OF_PAIRS[name].step.ends(value)[SHIFTS.index(shift)])
+    return with_property(settings, name, lambda value: step.ends(value)[SHIFTS.index(shift)])
 
 
 def with_property(settings: dict[str, Any], name: str, change: Callable[[float], float]) -> dict[str, Any]:
-    """Settings of a contact with another coherence, or value of a property of the beam's material in both bodies."""
-    if name == COHERENCE.key:
-        return settings | {"replica": settings["replica"] | {name: change(settings["replica"][name])}}
+    """Settings of a contact with another replica, or value of a property of the beam's material in both bodies."""
+    if name in OF_REPLICAS:
+        key, replica = OF_REPLICAS[name].key, settings["replica"]
+        return settings | {"replica": replica | {key: change(replica.get(key, 0.0))}}
     key, solid = OF_CONTACT[name].key, settings["solid"]
     if "materials" not in settings and key in solid:
         return settings | {"solid": _with_other(solid, name, change)}
@@ -46,13 +47,16 @@ def _changed(data, at, settings):
     return contact.compute(both(data), at.pair, "NG", settings)
 
 
-#: A property of the material of the beam, or the coherence.
+#: A property of the material of the beam, or of surfaces that follow each other.
 SOLID = Change(
     words="with {side} {solid_property}",
     end="_{side}",
     compute=_changed,
     settings=lambda plan, at, place: less_or_more(
-        place.settings(plan, at, place.fewer(plan, at)), at.solid_property, at.side
+        place.settings(plan, at, place.fewer(plan, at)),
+        at.solid_property,
+        at.side,
+        plan.devices.step(at.pair, at.solid_property),
     ),
 )
 #: The solids of a variant of the model, on surfaces drawn for it.
