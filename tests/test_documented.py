@@ -62,7 +62,7 @@ SNIPPETS = sorted(
 )
 EXAMPLES = ("examples/scans/mine", "examples/devices", "examples/roughness", "examples/drawn_beams/mine")
 EXAMPLES += ("examples/test_beams", "examples/sealed", "examples/life", "examples/process/mine", "workflow/smoke")
-EXAMPLES += ("examples/range/mine", "examples/switch", "examples/scans/lines", "examples/mission")
+EXAMPLES += ("examples/range/mine", "examples/switch", "examples/scans/lines", "examples/mission", "examples/probe")
 
 
 def module(path):

@@ -239,16 +239,20 @@ def with_rms(config: Keys, device: str, rms: Mapping[str, float]) -> Meeting:
 
 def least_gap(humidities: float | list, meeting: Meeting) -> tuple[float, str]:
     """Smallest gap [µm] far above the film at the highest humidity, and its message."""
-    adsorbed = sum(value for _, value in meeting.config.given(ADSORBED))
-    angles, wet = meeting.wetting(), humid(humidities)
-    is_wet = angles and wet
-    films = [float(meniscus_height(air, meeting.temperature(air), angles)) for air in wet] if is_wet else []
-    height, rms = max(films) + to_si(adsorbed, "nm") if films else 0.0, to_si(meeting.rms, "nm")
+    height, rms = max(films(humidities, meeting), default=0.0), to_si(meeting.rms, "nm")
     least = from_si(rules.least_gap(height, rms), "um")
     return least, (
         f"must be at least {least:.4g} µm, {rules.FILMS} times the sum of the height of the water film, "
         f"{from_si(height, 'nm'):.5g} nm, and the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
     )
+
+
+def films(humidities: float | list, meeting: Meeting) -> list[float]:
+    """Heights of the water at those of some humidities at which it condenses, with what adsorbs [m]."""
+    adsorbed = to_si(sum(value for _, value in meeting.config.given(ADSORBED)), "nm")
+    angles, wet = meeting.wetting(), humid(humidities)
+    heights = (meniscus_height(air, meeting.temperature(air), angles) for air in wet if angles)
+    return [float(height) + adsorbed for height in heights]
 
 
 @relation

@@ -247,7 +247,13 @@ class DevicePlan:
         if self.ground(device).name in self._samples_of_patches:
             return False
         main = self.config["sampling"]["strip_length_um"], self.config["beam"]["width_um"]
-        return self.ground(device) == patch(self.sections[device]["pair"], *main)
+        return not self.kind(device).shape and self.ground(device) == patch(self.sections[device]["pair"], *main)
+
+    def probe(self, area: Patch) -> dict:
+        """Setting ``probe`` of the contact of a patch, empty under what is flat."""
+        area = area._replace(pair=PairInAir(area.pair).pair)
+        shapes = (self.kind(name).shape_of(self.sections[name]) for name in self.stoppers if self.ground(name) == area)
+        return {"probe": shape} if (shape := next(filter(None, shapes), None)) else {}
 
     # Tilted stoppers
 
