@@ -111,12 +111,12 @@ def measured_sentences(section: Mapping[str, Any], stopper: xr.Dataset, budgets:
     force, error = (to_si(section[key], "nN") for key in ("measured_nN", "measured_error_nN"))
     forces, inputs = stopper.pull_off.values[0], max((budget_of(one).total for one in budgets), default=0.0)
     above = probes.share_above(forces, math.hypot(inputs, float(stopper.full_contact_error[0])), force, error)
-    low, high = (f"{end / NN:.3g}" for end in np.quantile(forces, [0.05, 0.95]))
+    mean, low, high = (f"{float(f'{one / NN:.3g}'):g}" for one in (forces.mean(), *np.quantile(forces, [0.05, 0.95])))
     known = f"an error of {in_percent(inputs)} by the inputs is inside" if inputs else "all inputs count as exact"
     return [
         f"The measured {with_error(force / NN, error / NN)} nN {'fit' if probes.fits(above) else 'do not fit'} these "
         f"surfaces: a place holds more with a probability of {in_percent(above)}. By simulation, places hold "
-        f"{forces.mean() / NN:.3g} nN on average, nine of ten between {low} and {high} nN; {known}."
+        f"{mean} nN on average, nine of ten between {low} and {high} nN; {known}."
     ]
 
 
