@@ -101,6 +101,33 @@ def test_probes_that_the_grid_or_their_patch_cannot_represent_are_refused(keys, 
     assert words in str(line)
 
 
+GROWN = {"humidities": [0.3, 0.75], "thickness_nm": [0.8, 1.2]}
+
+
+@pytest.mark.parametrize(
+    ("keys", "key", "words"),
+    [
+        ({"humidities": [0.75, 0.3]}, "humidities", "must be in increasing order"),
+        ({"thickness_nm": [0.8]}, "thickness_nm", "must have 2 values, one for each humidity"),
+        ({"thickness_nm": [0.8, 0.2]}, "thickness_nm", "must not fall with the humidity"),
+    ],
+)
+def test_isotherms_that_shrink_or_have_holes_are_refused(keys, key, words):
+    (line,) = problems(merged(PAPER, {"water": {"isotherm": GROWN | keys}}))
+    assert str(line).startswith(f"water.isotherm.{key} is")
+    assert words in str(line)
+
+
+def test_films_of_an_isotherm_widen_the_least_gap_and_reach_of_tips_and_reach_the_water_of_jobs():
+    narrow = {"devices": {"C1": C1 | {"gap_um": 0.27, "humidities": [0.9]}}, "water": {"isotherm": GROWN}}
+    assert "20 times the sum of the height of the water film, 12" in str(problems(merged(PAPER, narrow))[0])
+    assert problems(merged(PAPER, narrow | {"water": {}})) == ()
+    grown, plain = (Plan(load({"devices": {"C1": C1}}, {"water": water})) for water in ({"isotherm": GROWN}, {}))
+    assert grown.devices.tips("C1").length > plain.devices.tips("C1").length
+    assert grown.air_of_devices.water("b")["isotherm"] == GROWN
+    assert "isotherm" not in plain.air_of_devices.water("b")
+
+
 def test_probes_beside_others_have_the_area_that_they_attract():
     devices = {
         "P": PROBE,
