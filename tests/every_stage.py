@@ -34,6 +34,7 @@ DIMPLED = {
 ETCHED = [{"value": value, "rms_nm": value / 20, "uncertainty": {"rms_nm": 0.1}} for value in (30, 60, 90)]
 ETCH = {"variable": "etch_time_s", "surface": "B2", "settings": ETCHED}
 MORE = {"devices": {"C1": BIASED | DIMPLED, "S1": BIASED | {"tilt_deg": [0, 0.1]}, "Lever": {"process": "etch"}}}
+MORE["devices"]["Probe"] = {"kind": "probe", "pair": "b", "radius_um": 5, "humidities": [0.6], "restoring_force_uN": 1}
 MORE["devices"]["Bump"] = {"process": "etch", "second_process": "deposition"}
 DEPOSITION = ETCH | {"variable": "deposition_time_min", "surface": "Sub1"}
 MORE |= {"studies": ISLANDS, "process": {"etch": ETCH, "deposition": DEPOSITION}}

@@ -62,7 +62,7 @@ SNIPPETS = sorted(
 )
 EXAMPLES = ("examples/scans/mine", "examples/devices", "examples/roughness", "examples/drawn_beams/mine")
 EXAMPLES += ("examples/test_beams", "examples/sealed", "examples/life", "examples/process/mine", "workflow/smoke")
-EXAMPLES += ("examples/range/mine", "examples/switch", "examples/scans/lines", "examples/mission")
+EXAMPLES += ("examples/range/mine", "examples/switch", "examples/scans/lines", "examples/mission", "examples/probe")
 
 
 def module(path):
@@ -113,6 +113,8 @@ def bases() -> dict[str, dict]:
     found |= {f"block{number}": block for number, block in enumerate(BLOCKS)}
     own = {"paper": PAIR_B, "oxide": PAIR_B | OXIDE, "life": PAIR_B | LIFE, "processes": PAIR_B | PROCESSES}
     own["replica"] = merged(PAIR_B, {"pairs": {"b": {"replica": {"coherence": 0.5}}}, "devices": {"C": BEAM}})
+    films = {"humidities": [0.3, 0.75, 0.9], "thickness_nm": [0.8, 1.2, 1.8]}
+    own["isotherm"] = merged(PAIR_B, {"water": {"isotherm": films}})
     return own | {name: yaml.safe_load(text) for name, text in found.items()}
 
 

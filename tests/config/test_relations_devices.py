@@ -34,6 +34,14 @@ from stiction.stages.devices import chart, cracks, device_warnings, ground, safe
 C1 = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67, 0.44]}
 R1 = {"kind": "bridge", "pair": "b", "thickness_um": 2, "gap_um": 2, "width_um": 30, "residual_stress_MPa": 50}
 S1 = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.44, 0.9]}
+PROBE = {
+    "kind": "probe",
+    "pair": "b",
+    "radius_um": 10,
+    "measured_nN": 80,
+    "measured_error_nN": 30,
+    "humidities": [0.67],
+}
 CHART = {"thicknesses_um": [2.0, 2.6], "gaps_um": [10, 20], "humidities": [0.4, 0.9]}
 GOLD = {"young_modulus_GPa": 79, "poisson_ratio": 0.42, "hardness_GPa": 1.2, "contact_angle_deg": 60}
 GOLD |= {"hamaker_constant_zJ": {"water": 250, "dry": 400}, "density_kg_per_m3": 19300}
@@ -60,6 +68,7 @@ DEVICES = {
         "dielectric": {"thickness_nm": 100, "permittivity": 3.9},
         "tilt_deg": [0, 0.1],
     },
+    "P1": PROBE | {"flat_um": 1},
 }
 ALL = merged(PAPER, {"devices": DEVICES, "materials": {"Gold": GOLD}, "surfaces": {"B2": {"material": "Gold"}}})
 
@@ -71,6 +80,62 @@ def with_device(**keys):
 
 def plan(**changes):
     return Plan(load({"devices": {"C1": C1, "R1": R1 | {"humidities": [0.67]}}}, changes))
+
+
+WRONG_PROBES = [
+    ({"radius_um": 0.02}, {}, "P.radius_um", "sampling.spacing_nm at most 4: the grid has 3.3 points in the water"),
+    ({"humidities": [0.99]}, {}, "P.pair", "6 times the rms of both surfaces are 124 nm, more than the 100 nm"),
+    ({"humidities": [0.6, 0.7]}, {}, "P.humidities", "must be the one of measured_nN"),
+    ({"tilt_deg": [0.1]}, {}, "P.kind", "must come without tilt_deg"),
+    ({"contact_um": [2.005, 2]}, {}, "P.contact_um", "whole number of contact points"),
+    ({}, PROBE | {"radius_um": 10.001}, "Q.contact_um", "must differ from the area of P"),
+    ({}, S1 | {"contact_um": [2.83, 2.83]}, "P.contact_um", "must differ from the area of Q"),
+]
+
+
+@pytest.mark.parametrize(("keys", "other", "key", "words"), WRONG_PROBES)
+def test_probes_that_the_grid_or_their_patch_cannot_represent_are_refused(keys, other, key, words):
+    devices = {"P": PROBE | keys} | ({"Q": other} if other else {})
+    (line,) = problems(merged(PAPER, {"devices": devices}))
+    assert str(line).startswith(f"devices.{key} is")
+    assert words in str(line)
+
+
+GROWN = {"humidities": [0.3, 0.75], "thickness_nm": [0.8, 1.2]}
+
+
+@pytest.mark.parametrize(
+    ("keys", "key", "words"),
+    [
+        ({"humidities": [0.75, 0.3]}, "humidities", "must be in increasing order"),
+        ({"thickness_nm": [0.8]}, "thickness_nm", "must have 2 values, one for each humidity"),
+        ({"thickness_nm": [0.8, 0.2]}, "thickness_nm", "must not fall with the humidity"),
+    ],
+)
+def test_isotherms_that_shrink_or_have_holes_are_refused(keys, key, words):
+    (line,) = problems(merged(PAPER, {"water": {"isotherm": GROWN | keys}}))
+    assert str(line).startswith(f"water.isotherm.{key} is")
+    assert words in str(line)
+
+
+def test_films_of_an_isotherm_widen_the_least_gap_and_reach_of_tips_and_reach_the_water_of_jobs():
+    narrow = {"devices": {"C1": C1 | {"gap_um": 0.27, "humidities": [0.9]}}, "water": {"isotherm": GROWN}}
+    assert "20 times the sum of the height of the water film, 12" in str(problems(merged(PAPER, narrow))[0])
+    assert problems(merged(PAPER, narrow | {"water": {}})) == ()
+    grown, plain = (Plan(load({"devices": {"C1": C1}}, {"water": water})) for water in ({"isotherm": GROWN}, {}))
+    assert grown.devices.tips("C1").length > plain.devices.tips("C1").length
+    assert grown.air_of_devices.water("b")["isotherm"] == GROWN
+    assert "isotherm" not in plain.air_of_devices.water("b")
+
+
+def test_probes_beside_others_have_the_area_that_they_attract():
+    devices = {
+        "P": PROBE,
+        "Fine": PROBE | {"radius_um": 12},
+        "Own": PROBE | {"radius_um": 10.001, "contact_um": [3, 2]},
+    }
+    found = load({"devices": devices | {"S1": S1}})["devices"]
+    assert [found[name]["contact_um"] for name in devices] == [[2.83, 2.83], [3.1, 3.1], [3, 2]]
 
 
 def test_devices_and_materials_with_all_their_keys_are_valid():
@@ -396,7 +461,7 @@ def test_a_configuration_without_devices_has_no_cases():
 def test_cases_are_beams_at_their_humidities():
     devices = DevicePlan(load({"devices": DEVICES}))
     assert devices.cases == ["C1_rh044", "C1_rh067", "R1_rh067"]
-    assert devices.stoppers == ["S1", "S2"]
+    assert devices.stoppers == ["P1", "S1", "S2"]
     assert devices.with_chart == ["C1"]
     assert devices.pressed_pairs == ["b"]
     other = {"pairs": {"d": PAPER["pairs"]["b"]}, "devices": {"C1": C1 | {"pair": "d"}}}

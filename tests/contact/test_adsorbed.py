@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq, minimize_scalar
 
 from stiction.contact.environment import Gaps, Water, flooded_law, force_curves
-from stiction.contact.meniscus import film, laplace_pressure, surface_energy
+from stiction.contact.meniscus import Isotherm, film, laplace_pressure, surface_energy
 from stiction.stages.contact import curves
 from stiction.stages.contact.contact import tables
 
@@ -111,3 +111,37 @@ def test_the_film_is_part_of_the_force_curve_between_contact_and_its_height():
         near = curve(3)[4 : len(thin(3))].copy()
         assert_allclose(near, thin(3)[: len(near)], rtol=1e-6, atol=1e-3)
         assert distance[0] == starts[0]
+
+
+# Films that grow with the humidity
+
+
+def test_an_isotherm_of_van_der_waals_films_adds_three_times_their_thickness():
+    """The closed form of films in the humidity, measured at many of them up to near saturation."""
+    at = 1 - np.geomspace(0.95, 1e-6, 4000)
+    thickness = (HAMAKER_CONSTANT / (6 * np.pi * -laplace_pressure(at, 300.0))) ** (1 / 3)
+    isotherm = Isotherm(tuple(at), tuple(thickness))
+    for humidity in (0.44, 0.67, 0.9):
+        tension = -float(laplace_pressure(humidity, 300.0))
+        own = (HAMAKER_CONSTANT / (6 * np.pi * tension)) ** (1 / 3)
+        assert_allclose(isotherm.height(humidity), 3 * own, rtol=3e-3)
+        assert isotherm.height(humidity) > 2.5 * own  # control: twice the thickness there is too little
+
+
+def test_water_has_the_height_of_its_isotherm_and_that_of_other_films():
+    isotherm = Isotherm((0.3, 0.75, 0.9), (0.8 * NM, 1.2 * NM, 1.8 * NM))
+    grown = replace(WATER, isotherm=isotherm)
+    added = [grown.film(humidity)[0] - WATER.film(humidity)[0] for humidity in (0.3, 0.6, 0.9)]
+    assert_allclose(added, [isotherm.height(humidity) for humidity in (0.3, 0.6, 0.9)], rtol=1e-9)
+    assert added == sorted(added)
+    assert_allclose(added[2], 3.6 * NM, rtol=1e-9)  # both films, which grow no further
+    assert_allclose(replace(grown, adsorbed=NM).film(0.6)[0] - grown.film(0.6)[0], NM, rtol=1e-9)
+    assert grown.film(0.0) == (0.0, 0.0)
+    assert grown.film(0.6)[1] == WATER.film(0.6)[1]
+
+
+def test_below_the_driest_measured_air_a_film_vanishes_with_the_humidity():
+    isotherm, x = Isotherm((0.5, 0.8), (1 * NM, 2 * NM)), np.linspace(0.2, 1, 200_001)
+    thickness = np.interp(x, [0, 0.5, 0.8], [0, NM, 2 * NM])
+    expected = 2 * np.trapezoid(thickness / x, x) / np.log(1 / 0.2)
+    assert_allclose(isotherm.height(0.2), expected, rtol=1e-6)

@@ -22,6 +22,7 @@ SECTIONS = {
     "cantilever": {"thickness_um": 2.6, "gap_um": 20, "width_um": 30, "length_um": 1234.5},
     "bridge": {"thickness_um": 2, "gap_um": 0.12, "width_um": 30, "residual_stress_MPa": 50},
     "stopper": {"contact_um": [3, 12.5], "restoring_force_uN": 18.99},
+    "probe": {"radius_um": 12.5, "restoring_force_uN": 0.0899},
 }
 DRAWINGS = {name: (PICTURES / f"{name}.svg").read_text("utf-8") for name in ("beam", "stopper_and_bridge", "method")}
 DRAWINGS |= {kind: device_drawing({"kind": kind} | section) for kind, section in SECTIONS.items()}
@@ -137,6 +138,8 @@ def test_every_kind_of_device_has_a_drawing_with_its_own_sizes():
     assert "0.12 µm" in said["bridge"]
     assert "3 x 12.5 µm" in said["stopper"]
     assert "18.99 µN" in said["stopper"]
+    assert "radius 12.5 µm" in said["probe"]
+    assert "0.0899 µN" in said["probe"]
 
 
 def test_words_are_shown_as_their_characters():

@@ -127,6 +127,14 @@ define("plasticity")
 #   heights, spectrum -> results/studies/pressing/{pair}.nc
 define("pressed")
 
+# Full elastic contact of probe {device}, beside the sum over summits.
+#   heights, spectrum -> results/studies/full_contact/probes/{device}.nc
+define("probe_in_full_contact")
+
+# Full elastic contact of probe {device}, over the sum over summits.
+#   probe_in_full_contact -> results/studies/model_error/probes/{device}.nc
+define("model_error_of_probes")
+
 # Full elastic contact of the tips of beams of pair {pair}, beside the sum over summits.
 #   heights, spectrum -> results/studies/full_contact/tips/{pair}.nc
 define("tips_in_full_contact")

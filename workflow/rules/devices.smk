@@ -38,11 +38,11 @@ define("cracks")
 define("sizes")
 
 # Error of the model of the contact in the predictions of {device}.
-#   model_error_of_devices, full_contact_dry -> results/devices/model_error/{device}.nc
+#   model_error_of_devices, full_contact_dry, probe_in_full_contact -> results/devices/model_error/{device}.nc
 define("device_model_error")
 
 # Where the results of device {device} are beyond the model.
-#   safe_lengths, plasticity, model_error_of_devices, stoppers, chart, left_out_gaps ->
+#   safe_lengths, plasticity, model_error_of_devices, model_error_of_probes, stoppers, chart, left_out_gaps ->
 #     results/devices/warnings/{device}.json
 define("device_warnings")
 
@@ -69,7 +69,7 @@ define("touchdowns")
 define("at_voltage")
 
 # Pull-off force of stopper {device}.
-#   device_contact, model_error_of_devices -> results/devices/stoppers/{device}.nc
+#   device_contact, model_error_of_devices, model_error_of_probes -> results/devices/stoppers/{device}.nc
 define("stoppers")
 
 # Pull-off force of the dimples of {case}.
@@ -85,7 +85,7 @@ define("tilted_stoppers")
 define("stoppers_at_voltage")
 
 # Fast separation of stopper {device}.
-#   device_contact, model_error_of_devices -> results/devices/separation/{device}.nc
+#   device_contact, model_error_of_devices, model_error_of_probes -> results/devices/separation/{device}.nc
 define("separation")
 
 # Fast separation of {case}, strips of {length} x {width} nm.

@@ -10,6 +10,9 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import NamedTuple
 
+from stiction.config.units import NN_PER_UN, from_si, in_si
+from stiction.contact.probes.shape import Probe
+
 #: Keys that every device may have.
 COMMON = (
     "kind",
@@ -35,6 +38,10 @@ KEYS = {
     "contact_um": ("sides of the area in contact", "µm"),
     "stiffness_N_per_m": ("stiffness of the spring", "N/m"),
     "restoring_force_uN": ("restoring force", "µN"),
+    "radius_um": ("radius", "µm"),
+    "flat_um": ("radius of the flat", "µm"),
+    "measured_nN": ("measured pull-off force", "nN"),
+    "measured_error_nN": ("its standard uncertainty", "nN"),
     "mass_ng": ("moving mass", "ng"),
     "voltage_V": ("voltage", "V"),
     "offset_V": ("offset of the voltage", "V"),
@@ -80,7 +87,7 @@ BEAM = Release(
 #: Others are pulled off at once with their whole area.
 STOPPER = Release(
     name="stopper",
-    sides=lambda _kind, device, _of_pairs: tuple(device["contact_um"]),
+    sides=lambda kind, device, _of_pairs: kind.area(device),
     refusal="must come without length_um, for a stopper has a force",
     in_any_air=True,
 )
@@ -105,6 +112,7 @@ class Kind:
     release: Release = BEAM
     has_tip: bool = False  #: whether a free end may hold it
     longest_strip: float = math.inf  #: of its strips where not stated [µm]; short ones resolve the middle of a beam
+    shape: tuple[str, ...] = ()  #: keys of a `stiction.contact.probes.shape.Probe`, none of what is flat
 
     @property
     def allowed_keys(self) -> tuple[str, ...]:
@@ -148,6 +156,23 @@ class Kind:
         """Sides of its patch of contact [µm]: of a strip along a beam, or of the whole area of a stopper."""
         return self.release.sides(self, device, of_pairs)
 
+    def shape_of(self, device: Mapping) -> dict:
+        """Section of the shape of a device, empty if it is flat."""
+        return {key: device[key] for key in self.shape if key in device}
+
+    def area(self, device: Mapping) -> tuple[float, float]:
+        """Sides of the area under a device [µm], as stated or from its shape.
+
+        Examples
+        --------
+        >>> KINDS["probe"].area({"radius_um": 5})
+        (2.0, 2.0)
+        """
+        if "contact_um" in device or not self.shape:
+            return tuple(device["contact_um"])
+        side = round(from_si(in_si(Probe, self.shape_of(device)).side, "um"), 6)
+        return side, side
+
     def way(self, device: Mapping) -> Way:
         """Way in which the section of a device states its restoring force."""
         return next(way for way in self.ways if way.keys[0] in device)
@@ -166,6 +191,11 @@ class Kind:
         return device | {"restoring_force_uN": device[way.keys[0]] * way.per(device)}
 
 
+#: Ways to state what pulls a stopper or a probe off.
+_PULLED = (
+    Way(("restoring_force_uN",), lambda _: 1),
+    Way(("stiffness_N_per_m", "gap_um"), lambda device: device["gap_um"]),
+)
 #: All kinds by name.
 KINDS = {
     "cantilever": Kind(
@@ -190,12 +220,18 @@ KINDS = {
         words="stopper",
         drawing="stopper.svg",
         keys=("contact_um",),
-        ways=(
-            Way(("restoring_force_uN",), lambda _: 1),
-            Way(("stiffness_N_per_m", "gap_um"), lambda device: device["gap_um"]),
-        ),
+        ways=_PULLED,
         optional=("mass_ng", "electrode", "tilt_deg"),
         release=STOPPER,
+    ),
+    "probe": Kind(
+        words="probe",
+        drawing="probe.svg",
+        keys=("radius_um",),
+        ways=(*_PULLED, Way(("measured_nN", "measured_error_nN"), lambda _: 1 / NN_PER_UN)),
+        optional=("mass_ng", "electrode", "flat_um", "contact_um"),
+        release=STOPPER,
+        shape=("radius_um", "flat_um"),
     ),
 }
 

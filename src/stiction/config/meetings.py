@@ -2,7 +2,7 @@
 
 import math
 import operator
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -16,10 +16,10 @@ from stiction.config.materials import material_of
 from stiction.config.messages import ConfigError, Problem, is_number, one_line
 from stiction.config.mission.conditions import CONDITIONS, humidity_of_air, temperatures
 from stiction.config.reading import is_stated
-from stiction.config.units import NM_PER_UM, from_si, to_si
+from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
 from stiction.contact.air import has_dry, humid
 from stiction.contact.materials import COATING
-from stiction.contact.meniscus import BRIDGE, MOLECULES, ZERO_CELSIUS, dry_air, is_wetted, meniscus_height
+from stiction.contact.meniscus import BRIDGE, MOLECULES, ZERO_CELSIUS, Isotherm, dry_air, is_wetted, meniscus_height
 from stiction.devices.limits import rules
 from stiction.models import SIDES
 from stiction.rounding import is_at_most
@@ -239,16 +239,27 @@ def with_rms(config: Keys, device: str, rms: Mapping[str, float]) -> Meeting:
 
 def least_gap(humidities: float | list, meeting: Meeting) -> tuple[float, str]:
     """Smallest gap [µm] far above the film at the highest humidity, and its message."""
-    adsorbed = sum(value for _, value in meeting.config.given(ADSORBED))
-    angles, wet = meeting.wetting(), humid(humidities)
-    is_wet = angles and wet
-    films = [float(meniscus_height(air, meeting.temperature(air), angles)) for air in wet] if is_wet else []
-    height, rms = max(films) + to_si(adsorbed, "nm") if films else 0.0, to_si(meeting.rms, "nm")
+    height, rms = max(films(humidities, meeting), default=0.0), to_si(meeting.rms, "nm")
     least = from_si(rules.least_gap(height, rms), "um")
     return least, (
         f"must be at least {least:.4g} µm, {rules.FILMS} times the sum of the height of the water film, "
         f"{from_si(height, 'nm'):.5g} nm, and the rms of the surfaces, {from_si(rms, 'nm'):.3g} nm"
     )
+
+
+def films(humidities: float | list, meeting: Meeting) -> list[float]:
+    """Heights of the water at those of some humidities at which it condenses, with what adsorbs [m]."""
+    adsorbed = to_si(sum(value for _, value in meeting.config.given(ADSORBED)), "nm")
+    angles, wet = meeting.wetting(), humid(humidities) if meeting.wetting() else []
+    grown = adsorbed_heights(meeting.config["water"], wet)
+    heights = (meniscus_height(air, meeting.temperature(air), angles) for air in wet)
+    return [float(height) + adsorbed + more for height, more in zip(heights, grown, strict=True)]
+
+
+def adsorbed_heights(water: Mapping[str, Any], humidities: Iterable[float]) -> list[float]:
+    """Heights that an isotherm adds to the water at some humidities, zero without one [m]."""
+    isotherm = in_si(Isotherm, water["isotherm"]) if "isotherm" in water else None
+    return [isotherm.height(humidity) if isotherm else 0.0 for humidity in humidities]
 
 
 @relation

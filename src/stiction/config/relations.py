@@ -75,6 +75,23 @@ def something_is_computed(config):
 
 
 @relation_of_names
+def isotherms_grow(config):
+    """Require a thickness for each humidity of an isotherm, both increasing: wetter air thins no film."""
+    for key, water in config.given("water.isotherm"):
+        humidities, thickness = water["humidities"], water["thickness_nm"]
+        if np.any(np.diff(humidities) <= 0):
+            yield f"{key}.humidities", "must be in increasing order, each value once"
+        elif len(thickness) != len(humidities):
+            yield (
+                f"{key}.thickness_nm",
+                f"must have {len(humidities)} values, one for each humidity",
+                f"{key}.humidities",
+            )
+        elif np.any(np.diff(thickness) < 0):
+            yield f"{key}.thickness_nm", "must not fall with the humidity", f"{key}.humidities"
+
+
+@relation_of_names
 def selected_pairs_exist(config):
     """Require pairs in the run to be defined."""
     pairs = config.names("pairs")

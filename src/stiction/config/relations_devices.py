@@ -15,6 +15,7 @@ from stiction.config.materials import hamaker_constant, material_of
 from stiction.config.meetings import (
     TEMPERATURE,
     device_meeting,
+    films,
     least_gap,
     surfaces_of,
     with_rms,
@@ -34,10 +35,11 @@ from stiction.config.relations import (
 )
 from stiction.config.surfaces import process as process_surfaces
 from stiction.config.test_beams import DATA, shared_uncertainty
-from stiction.config.units import NM_PER_UM, from_si, to_si
+from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
 from stiction.contact.air import Air, humid, is_humid
 from stiction.contact.materials import COATING_ATTRACTION, COHERENCE, OF_CONTACT, OF_REPLICAS, PLAY
 from stiction.contact.meniscus import MOLECULES
+from stiction.contact.probes.shape import RISE, Probe
 from stiction.contact.tilt import EDGE_RADIUS, Edge
 from stiction.rounding import is_at_most
 from stiction.surface.feasible import largest_kurtosis
@@ -129,6 +131,68 @@ def electrodes_pull_on_a_spring_across_a_gap(config):
         elif electrode["gap_um"] < device["gap_um"]:
             message = "must be at least gap_um of the stopper, which would not touch otherwise"
             yield f"{key}.gap_um", message, f"devices.{name}.gap_um"
+
+
+#: Points of the grid in the water under a probe, of which more no longer change its mean force by more than 1 %.
+POINTS_UNDER_PROBE = 20
+#: Heights of both surfaces together under a probe, in their rms.
+HEIGHTS_UNDER_PROBE = 6
+
+
+@relation_of_names
+def measured_forces_are_those_of_one_air(config):
+    """Require one humidity beside a measured pull-off force."""
+    for name, _, humidities in config.entries("devices", "measured_nN", "humidities"):
+        if len(humidities) > 1:
+            message = "must be the one of measured_nN; state a device for each measurement"
+            yield f"devices.{name}.humidities", message, f"devices.{name}.measured_nN"
+
+
+@relation
+def water_under_probes_is_resolved(config):
+    """Require some points of the grid in the water under a smooth probe, in the driest air with water."""
+    for name, _ in config.entries("devices", "radius_um"):
+        device = config["devices"][name]
+        probe, step = in_si(Probe, kind_of(device).shape_of(device)), math.prod(config[key] for key in _GRID)
+        for height in sorted(films(device["humidities"], device_meeting(name, config)))[:1]:
+            points = math.pi * (probe.zone(height) / to_si(step, "nm")) ** 2
+            if points < POINTS_UNDER_PROBE:
+                finer = math.sqrt(points / POINTS_UNDER_PROBE) * config["sampling.spacing_nm"]
+                message = (
+                    f"must be larger, or sampling.spacing_nm at most {finer:.2g}: the grid has {points:.2g} points"
+                )
+                message += f" in the water under the probe, fewer than {POINTS_UNDER_PROBE}"
+                yield f"devices.{name}.radius_um", message, *_GRID, f"devices.{name}.humidities"
+
+
+@relation
+def probes_rise_above_the_film(config):
+    """Require what acts under a probe, film and heights, within the rise at the sides of its patch."""
+    for name, _ in config.entries("devices", "radius_um"):
+        meeting, humidities = device_meeting(name, config), config[f"devices.{name}.humidities"]
+        height = max(films(humidities, meeting), default=0.0)
+        needed, most = from_si(height, "nm") + HEIGHTS_UNDER_PROBE * meeting.rms, from_si(RISE, "nm")
+        if needed > most:
+            message = (
+                f"must have smoother surfaces or drier air: the film and {HEIGHTS_UNDER_PROBE} times the rms of both "
+                f"surfaces are {needed:.3g} nm, more than the {most:g} nm by which a probe rises"
+            )
+            yield f"devices.{name}.pair", message, f"devices.{name}.humidities", *meeting.keys_behind()
+
+
+@relation
+def probes_have_files_of_their_own(config):
+    """Require another patch under each probe of a pair, which names its files."""
+    seen = {}
+    for name, pair in config.entries("devices", "pair"):
+        device, kind = config["devices"][name], KINDS[config[f"devices.{name}.kind"]]
+        sides = kind.sides(device, config[_STRIP])
+        shape = kind.shape_of(device)
+        other, of_other = seen.setdefault((pair, *sides), (name, shape))
+        if shape != of_other:
+            probe, flat = (name, other) if shape else (other, name)
+            message = f"must differ from the area of {flat}, whose files would have the same names: state another one"
+            yield f"devices.{probe}.contact_um", message
 
 
 #: Fewest independent beams on dimples whose forces are sums of sampled patches.

@@ -20,6 +20,7 @@ _POWERS = {
     "GPa": 9,
     "MPa": 6,
     "uN": -6,
+    "nN": -9,
     "N_per_m": 0,
     "zJ": -21,
     "um2": -12,
@@ -34,8 +35,8 @@ _POWERS = {
 _TO_SI = {unit: float(f"1e{power}") for unit, power in _POWERS.items()} | {"deg": math.pi / 180}
 #: Not one over the factors to SI: 1 / 1e-9 is not 1e9.
 _FROM_SI = {unit: float(f"1e{-power}") for unit, power in _POWERS.items()} | {"deg": 180 / math.pi}
-#: Lengths of the configuration are in two units, memory is stated in two: nanometres in a micrometre, MB in a GB.
-NM_PER_UM, MB_PER_GB = 1e3, 1e3
+#: Lengths, forces and memory are in two units each: nanometres in a micrometre, nN in a µN, MB in a GB.
+NM_PER_UM, NN_PER_UN, MB_PER_GB = 1e3, 1e3, 1e3
 _UNIT = re.compile("_(" + "|".join(sorted(_TO_SI, key=len, reverse=True)) + ")$")
 
 T = TypeVar("T")

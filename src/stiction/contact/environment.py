@@ -26,7 +26,7 @@ from stiction.contact import forcelaw, gaps, vanderwaals
 from stiction.contact.air import Air
 from stiction.contact.correction import NONE, Change, Correction
 from stiction.contact.materials import Solid
-from stiction.contact.meniscus import BRIDGE, MOLECULES, film
+from stiction.contact.meniscus import BRIDGE, MOLECULES, Isotherm, film
 from stiction.contact.solids import attraction_between, interfaces
 from stiction.contact.voltage import Capacitor
 from stiction.models import SIDES
@@ -85,6 +85,7 @@ class Water:
     #: Height that films adsorbed on both solids add to the water between them [m]. ASSUME: the same at any humidity,
     #: and none in the paper.
     adsorbed: float = 0.0
+    isotherm: Isotherm | None = None  #: of films that grow with the humidity, beside this height
     #: How much warmer the water is in some conditions of devices [K], by humidity in words.
     warmer: dict[str, float] = field(default_factory=dict)
     #: Whether films that are no liquid are computed: those of devices, which have what bounds them beside them.
@@ -140,7 +141,9 @@ class Water:
         """
         fewest = BRIDGE if self.bounded else MOLECULES
         height, tension = film(humidity, self.temperature_at(humidity), self.contact_angles, fewest)
-        return height + self.adsorbed if height else height, tension
+        if not height:
+            return height, tension
+        return height + self.adsorbed + (self.isotherm.height(humidity) if self.isotherm else 0.0), tension
 
     def at(self, humidity: float) -> "Water":
         """Water at a humidity. Without condensation, the summits attract each other through air."""

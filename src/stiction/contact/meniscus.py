@@ -5,6 +5,8 @@ at its 300 K: a published correlation gives only their ratio to 300 K. The paper
 correlations give 71.7 and 18.08), and its numbers are to be reproduced.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from stiction.constants import GAS_CONSTANT, WATER_MOLAR_VOLUME, WATER_MOLECULE, WATER_SURFACE_ENERGY
@@ -36,6 +38,37 @@ _POWERS = np.array([1, 1.5, 3, 3.5, 4, 7.5])
 #: Density of water, Kell (1975), J. Chem. Eng. Data 20, 97: numerator and denominator, in powers of t [°C]; [kg m⁻³].
 _MASS = (999.83952, 16.945176, -7.9870401e-3, -46.170461e-6, 105.56302e-9, -280.54253e-12)
 _EXPANSION = (1.0, 16.879850e-3)
+
+
+@dataclass(frozen=True)
+class Isotherm:
+    r"""Film adsorbed on each of two equal solids, of a thickness t measured at some humidities.
+
+    ASSUME: t is linear in the humidity between these, 0 in dry air, and beyond the wettest as there, where films grow
+    without limit: heights in wetter air are too small.
+    """
+
+    humidities: tuple[float, ...]  #: increasing [-]
+    thickness: tuple[float, ...]  #: [m]
+
+    def height(self, humidity: float) -> float:
+        r"""Height that both films add to water between the solids [m], see `stiction.contact.environment`.
+
+        With the tension :math:`p \propto \ln(1 / \mathrm{RH})` it is
+
+        .. math:: \frac{1}{p} \int_0^p 2 t \, dp' = \frac{2}{\ln(1 / \mathrm{RH})} \int_\mathrm{RH}^1 t \, \frac{dx}{x}
+
+        Examples
+        --------
+        >>> round(1e9 * Isotherm((0.3,), (0.5e-9,)).height(0.6), 12)  # layers of a fixed thickness
+        1.0
+        """
+        wetter = [each for each in self.humidities if each > humidity]
+        x = np.array([humidity, *wetter, 1.0])
+        t = np.interp(x, (0.0, *self.humidities), (0.0, *self.thickness))
+        slope = np.diff(t) / np.diff(x)
+        parts = (t[:-1] - slope * x[:-1]) * np.log(x[1:] / x[:-1]) + np.diff(t)
+        return float(2 * parts.sum() / -np.log(humidity))
 
 
 def tabulated_surface_tension(temperature: float) -> float:

@@ -112,6 +112,10 @@ class EquivalentSurface:
             self.substrate.add_to(heights, substrate_rng)
         return np.ascontiguousarray(heights[:: self.every, :: self.every])
 
+    def met(self, heights: np.ndarray) -> np.ndarray:
+        """Heights that a flat meets in place of one equivalent surface z (n1, n2) [m]: these."""
+        return heights
+
     def asperities(self, heights: np.ndarray) -> Summits:
         """Asperities of one equivalent surface z (n1, n2) [m], by the chosen definition."""
         return self.summits(heights) if self.definition == Definition.SUMMIT else self.islands(heights)

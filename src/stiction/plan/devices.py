@@ -14,6 +14,7 @@ from stiction.config import test_beams
 from stiction.config.cases import PairInAir, case_id
 from stiction.config.kinds import BEAM, ROUGHNESSES, STOPPER, Kind, kind_of
 from stiction.config.materials import Materials
+from stiction.config.meetings import adsorbed_heights
 from stiction.config.mission.conditions import temperatures
 from stiction.config.reading import is_stated, paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
@@ -247,7 +248,13 @@ class DevicePlan:
         if self.ground(device).name in self._samples_of_patches:
             return False
         main = self.config["sampling"]["strip_length_um"], self.config["beam"]["width_um"]
-        return self.ground(device) == patch(self.sections[device]["pair"], *main)
+        return not self.kind(device).shape and self.ground(device) == patch(self.sections[device]["pair"], *main)
+
+    def probe(self, area: Patch) -> dict:
+        """Setting ``probe`` of the contact of a patch, empty under what is flat."""
+        area = area._replace(pair=PairInAir(area.pair).pair)
+        shapes = (self.kind(name).shape_of(self.sections[name]) for name in self.stoppers if self.ground(name) == area)
+        return {"probe": shape} if (shape := next(filter(None, shapes), None)) else {}
 
     # Tilted stoppers
 
@@ -413,8 +420,12 @@ class DevicePlan:
         """
         section = self.sections[device]
         at = self._temperatures(section)
-        films = [from_si(float(meniscus_height(air, at[air])), "nm") for air in humid(at)]
-        adsorbed = self.config["water"].get("adsorbed_nm", 0) if films else 0
+        wet, water = humid(at), self.config["water"]
+        grown = adsorbed_heights(water, wet)
+        films = [
+            from_si(float(meniscus_height(air, at[air])) + more, "nm") for air, more in zip(wet, grown, strict=True)
+        ]
+        adsorbed = water.get("adsorbed_nm", 0) if films else 0
         least = max(films, default=0.0) + adsorbed + 3 * self._roughest_of_both(section["pair"])
         return round(2 ** (math.ceil(4 * math.log2(least)) / 4), 3)
 

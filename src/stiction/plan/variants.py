@@ -147,7 +147,9 @@ class Variants:
         return [name for name in self.choices(pair) if self.with_summits_of(pair, name) == "base"]
 
     def choices_of_device(self, case: Case) -> list[str]:
-        """Variants of `choices` for a device at a humidity. Short strips have those of the solids alone."""
+        """Variants of `choices` for a device at a humidity: short strips have those of the solids, probes none."""
+        if self.plan.devices.kind(case.device).shape:
+            return []
         of_pair = self.choices_of_solids if self.plan.devices.kind(case.device).has_short_strips else self.choices
         return of_pair(self.plan.contact_of_device(case))
 

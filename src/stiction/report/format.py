@@ -7,7 +7,7 @@ import numpy as np
 from stiction.contact.air import DRY_AIR, Air, has_dry, humid
 
 #: Units in SI, for tables: the stored number is a quantity divided by its unit; a product may differ in the last bit.
-NM, UM, UN, PER_UM2 = 1e-9, 1e-6, 1e-6, 1e12
+NM, UM, NN, UN, PER_UM2 = 1e-9, 1e-6, 1e-9, 1e-6, 1e12
 #: Factors from SI, for axes and sentences, mJ m⁻² among them; exact in single precision, in which most data are stored.
 TO_NM, TO_UM, TO_UN, TO_MPA, TO_GPA, TO_MJ = 1e9, 1e6, 1e6, 1e-6, 1e-9, 1e3
 

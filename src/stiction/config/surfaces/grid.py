@@ -86,6 +86,7 @@ def _with_whole_strips(config):
         config = _with_filled_elements(_with_whole(config, "beam", "width_um", step), step)
     short = {name: _bridge_strip(device, config, step) for name, device in config.get("devices", {}).items()}
     whole = {name: {"strip_um": length} for name, length in short.items() if length}
+    whole |= {name: {"contact_um": sides} for name, sides in _areas_under_shapes(config, step).items()}
     return merged(config, {"devices": whole}) if whole else config
 
 
@@ -124,6 +125,15 @@ def _bridge_strip(device, config, step):
     if not kind.has_short_strips or "strip_um" in device or is_multiple(length, step):
         return None
     return round(max(math.floor(length / step), 1) * step, _PICOMETRES)
+
+
+def _areas_under_shapes(config, step):
+    """Sides of the patches under devices that are not flat [µm], whole on the grid, where they are not stated."""
+    devices = config.get("devices", {}).items()
+    areas = {name: kind_of(one).area(one) for name, one in devices if kind_of(one).shape and "contact_um" not in one}
+    return {
+        name: [round(math.ceil(side / step) * step, _PICOMETRES) for side in sides] for name, sides in areas.items()
+    }
 
 
 def used_surfaces(config: Mapping[str, Any]) -> Iterator[str]:

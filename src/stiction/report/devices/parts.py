@@ -9,6 +9,7 @@ import yaml
 from matplotlib.figure import Figure
 
 from stiction.answer.data import Answer
+from stiction.config.kinds import kind_of
 from stiction.plan.names import by_case
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
@@ -114,15 +115,17 @@ def _views_of_beam(name, section, data, answer):
 # Stoppers
 
 
-def _parts_of_stopper(name, _section, data, _answer):
+def _parts_of_stopper(name, section, data, _answer):
     """Parts of the page of a stopper."""
     stopper = data["stopper"]
     table = tables_budget.stoppers({name: stopper}, {name: []}, data.get("errors")).cells.drop(columns=["device"])
     picture = figures_budget.stoppers({name: stopper}, {})
     sections = [Section("By simulation alone", (_SIMULATED,), table, picture)]
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
-    said = [*sentences.safe_force_sentences(stopper), *worst]
-    words = terms()["stoppers"] | (terms()["worst_humidity"] if worst else {})
+    measured = sentences.measured_sentences(section, stopper, data.get("budgets", {}).values())
+    said = [*measured, *sentences.safe_force_sentences(stopper), *worst]
+    words = terms()["stoppers"] | (terms()["probes"] if kind_of(section).shape else {})
+    words |= terms()["worst_humidity"] if worst else {}
     return sections, said, texts(data["warnings"].patches[name]), words
 
 

@@ -1,7 +1,7 @@
 """Sentences on the pages of devices: the length to build, the sufficient force, and devices stuck in each air."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -10,11 +10,13 @@ import xarray as xr
 from stiction.answer.data import Answer, Cause
 from stiction.config.units import to_si
 from stiction.contact.air import is_humid
+from stiction.devices import probes
 from stiction.devices.limits import rules
 from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import Basis, one_in, samples_for
-from stiction.report.format import UM, UN, airs, fraction_with_band, with_error
+from stiction.report.format import NN, UM, UN, airs, fraction_with_band, with_error
 from stiction.rounding import in_percent
+from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import BEAMS, S_SHAPE
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end
@@ -99,6 +101,22 @@ def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
         + (f"; at any humidity{_range(stopper)}, {float(more) / UN:.3g} µN are needed." if ends(stopper) else ".")
         for force, more in zip(stated, in_any_air(stopper)[1], strict=True)
         if np.isfinite(force)
+    ]
+
+
+def measured_sentences(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Iterable[xr.Dataset]) -> list[str]:
+    """Whether the measured pull-off force of a probe fits its surfaces, nothing where none is stated."""
+    if "measured_nN" not in section:
+        return []
+    force, error = (to_si(section[key], "nN") for key in ("measured_nN", "measured_error_nN"))
+    forces, inputs = stopper.pull_off.values[0], max((budget_of(one).total for one in budgets), default=0.0)
+    above = probes.share_above(forces, math.hypot(inputs, float(stopper.full_contact_error[0])), force, error)
+    mean, low, high = (f"{float(f'{one / NN:.3g}'):g}" for one in (forces.mean(), *np.quantile(forces, [0.05, 0.95])))
+    known = f"an error of {in_percent(inputs)} by the inputs is inside" if inputs else "all inputs count as exact"
+    return [
+        f"The measured {with_error(force / NN, error / NN)} nN {'fit' if probes.fits(above) else 'do not fit'} these "
+        f"surfaces: a place holds more with a probability of {in_percent(above)}. By simulation, places hold "
+        f"{mean} nN on average, nine of ten between {low} and {high} nN; {known}."
     ]
 
 

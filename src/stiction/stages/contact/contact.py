@@ -55,7 +55,14 @@ def compute_each(
     contacts = contacts_of_samples(pairs, streams, progress(samples, "surface pairs"))
     datasets = [layout(*curves, rough.distances, samples) for curves, rough in zip(contacts, pairs, strict=True)]
     datasets = [_displaced(*each, streams) for each in zip(datasets, pairs, strict=True)]
+    if settings.probe:
+        return [_under_probe(*each) for each in zip(datasets, pairs, strict=True)]
     return [tip_dataset(*each) for each in zip(datasets, pairs, strict=True)] if settings.tilt else datasets
+
+
+def _under_probe(contact, pair):
+    """Contact with the rms of z₁ + z₂, which its bearing area does not show."""
+    return contact.assign(rms=((), pair.rms, {"units": "m"}))
 
 
 def _displaced(contact, pair, streams):
@@ -164,7 +171,12 @@ def with_correlations(
 
 
 def surface_rms(contact: xr.Dataset) -> float:
-    r"""Root mean square of z₁ + z₂ from the mean bearing area, :math:`m_2 = 2 \int z (A(z) - [z < 0]) dz` [m]."""
+    r"""Root mean square of z₁ + z₂ from the mean bearing area, :math:`m_2 = 2 \int z (A(z) - [z < 0]) dz` [m].
+
+    That under a probe is stated.
+    """
+    if "rms" in contact:
+        return float(contact.rms)
     height = contact.height.values
     area = contact.bearing_area.values.mean(axis=0, dtype=float)
     return float(np.sqrt(2 * float(contact.step) * np.sum(height * (area - (height < 0)))))

@@ -39,7 +39,7 @@ MOST = 120
 #: Strips in dry air whose sum over summits is computed, 7 ms each.
 ON_SUMMITS = 500
 #: Variables of a sample at a humidity: unit and meaning.
-_VARIABLES = {
+VARIABLES = {
     "adhesion_energy": ("J m-2", "e under full elastic contact"),
     "pull_off": ("Pa", "f_max under full elastic contact"),
     "summit_energy": ("J m-2", "e of the sum over summits"),
@@ -125,7 +125,7 @@ def strips(
     streams = streams_of_sides(settings.seed, pair)
     space, airs = _airs(surfaces, pair, settings, settings.strips)
     for k in progress(range(settings.strips), "strips"):
-        yield space, drawn.draw(*streams(k)), [of_strip(k) for of_strip in airs]
+        yield space, drawn.met(drawn.draw(*streams(k))), [of_strip(k) for of_strip in airs]
 
 
 def _airs(surfaces, pair, settings, number):
@@ -227,7 +227,7 @@ def layout(
     """
     columns = {
         name: (("strip", "humidity"), values[..., i], {"units": unit, "long_name": meaning})
-        for i, (name, (unit, meaning)) in enumerate(_VARIABLES.items())
+        for i, (name, (unit, meaning)) in enumerate(VARIABLES.items())
     }
     if more is not None:
         columns["more"] = ("more_samples", "humidity", "quantity"), more, {"units": "SI"}

@@ -15,6 +15,8 @@ from stiction.config.cases import PairInAir
 from stiction.contact.asperity import Asperity
 from stiction.contact.materials import Solid
 from stiction.contact.pair import Definition, EquivalentSurface, SurfacePair
+from stiction.contact.probes.pair import ProbedPair
+from stiction.contact.probes.shape import Probe
 from stiction.contact.solids import asperity_between
 from stiction.contact.tilt import Tilt
 from stiction.contact.tilted import TiltedPair
@@ -68,6 +70,7 @@ class Settings:
     materials: SolidBySide = field(default_factory=dict)
     tilt: Tilt | None = None  #: of the tips of beams, with the step of their distances; none for surfaces without slope
     replica: Coherence | None = None  #: of the beam's underside and the substrate, if one follows the other
+    probe: Probe | None = None  #: in place of a flat
 
 
 def sides_of_strip(settings: Surfaces) -> tuple[float, float]:
@@ -121,6 +124,8 @@ def surface_pairs(
     build = partial(SurfacePair, asperity=solid)
     if settings.tilt:
         build = partial(TiltedPair, asperity=solid, tilt=settings.tilt)
+    if settings.probe:
+        build = partial(ProbedPair, asperity=solid, probe=settings.probe)
     both = ([built[id(one)] for one in surfaces] for surfaces in alternatives)
     return [
         build(*sides, *_discretisation(settings.contact), replica=_replica(*sides, settings.replica)) for sides in both

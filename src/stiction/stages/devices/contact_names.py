@@ -84,9 +84,17 @@ def corrections_of(plan: Any, device: str, *humidities: float) -> dict[str, str]
     """Corrections of the pair of a device at some humidities, by default all of its own: by levels, or of its study."""
     section = plan.config["devices"][device]
     pair, airs = section["pair"], humidities or section["humidities"]
+    if plan.devices.kind(device).shape:
+        return changes_of_probe(plan, device)
     if plan.air_of_devices.by_levels(pair, airs):
         return {"model_error": f"studies/model_error/devices/{pair}"}
     return correction_inputs(plan, pair, airs, water=plan.air_of_devices.water(pair))
+
+
+def changes_of_probe(plan: Any, device: str) -> dict[str, str]:
+    """Changes of the forces of a probe by its own full contact, none of what is flat or if summits are wanted."""
+    is_changed = plan.devices.kind(device).shape and plan.config["contact"].get("model") != "summits"
+    return {"model_error": f"studies/model_error/probes/{device}"} if is_changed else {}
 
 
 def contacts_of_budget(plan: Any, case: Case) -> dict[str, Any]:

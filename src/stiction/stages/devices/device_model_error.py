@@ -11,6 +11,7 @@ from stiction.contact.air import has_dry, is_humid
 from stiction.plan.stage import Stage, select
 from stiction.stages.contact import full_contact
 from stiction.stages.contact.corrections import study_of
+from stiction.stages.devices.contact_names import changes_of_probe
 from stiction.stages.devices.opening import EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam, own_section
 
 
@@ -147,6 +148,8 @@ def _inputs(plan, at):
     """Study of the pair of a device, with the attraction across gaps that the device has, and its changes by levels."""
     section = plan.config["devices"][at.device]
     pair, water = section["pair"], plan.air_of_devices.water(section["pair"])
+    if plan.devices.kind(at.device).shape:
+        return {"study": f"studies/full_contact/probes/{at.device}"}
     study = {"study": study_of(plan, "studies/full_contact", pair, water)}
     if not plan.air_of_devices.by_levels(pair, section["humidities"]):
         return study
@@ -156,7 +159,8 @@ def _inputs(plan, at):
 def _settings(plan, at):
     """Humidities of a device, and its dimensions."""
     section = plan.config["devices"][at.device]
-    applied = plan.variants.corrected(section["pair"], section["humidities"])
+    is_changed = bool(changes_of_probe(plan, at.device))
+    applied = section["humidities"] if is_changed else plan.variants.corrected(section["pair"], section["humidities"])
     gaps = {"across_gaps": True} if "gaps" in plan.air_of_devices.water(section["pair"]) else {}
     dry = {} if plan.air_of_devices.is_wetted(section["pair"]) else {"condenses": False}
     said = {"humidities": section["humidities"]} | ({"applied": applied} if applied else {})

@@ -51,6 +51,11 @@ def _size(_plan, at):
     return {"sampling": {"strip_length_um": length}, "beam": {"width_um": width}}
 
 
+def _size_of_ground(plan, at):
+    """Patch under a device, with the shape of a probe."""
+    return _size(plan, at) | plan.devices.probe(Patch(at.pair, int(at.length), int(at.width)))
+
+
 def _size_of_tips(plan, at):
     """Tilted strips with larger steps of the distance."""
     step = OF_TIPS * plan.config["contact"]["distance_step_nm"]
@@ -68,7 +73,7 @@ def _size_of_tilted(plan, at):
 #: Strips along the beam, as in the paper.
 STRIPS = Place("{pair}", "", lambda plan, at: {}, changed=_changed_strips)
 #: Patch on which a device sticks: strips of another size, or the whole area of a stopper.
-GROUND = Place("{pair}_{length}x{width}", ", {length} x {width} nm,", _size, _samples)
+GROUND = Place("{pair}_{length}x{width}", ", {length} x {width} nm,", _size_of_ground, _samples)
 #: Tilted strips that hold the tips of cantilevers, one for each beam.
 TIPS = Place(
     GROUND.file,

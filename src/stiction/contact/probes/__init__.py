@@ -1,0 +1,1 @@
+"""Contact under a probe: its shape, and two surfaces below it."""

@@ -1,0 +1,128 @@
+"""Probes from their section to their page: forces, changes by full contact, and a measured force that fits or not."""
+
+import dataclasses
+import json
+import re
+
+import numpy as np
+import pytest
+from drawn_devices import RUN, SMALL, Files
+from numpy.testing import assert_allclose, assert_array_equal
+from plans import job_settings
+
+import stiction
+from stiction.config.units import in_si
+from stiction.contact.vanderwaals import attraction
+from stiction.errors import NotConverged
+from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
+from stiction.stages.contact import full_contact, probes_in_full_contact
+from stiction.stages.contact.pairs import Settings, surface_pair
+
+PROBE = {"kind": "probe", "pair": "b", "radius_um": 0.5, "humidities": [0.45]}
+PROBE |= {"measured_nN": 300, "measured_error_nN": 100}
+AREA = 0.64e-6**2
+FAR = PROBE | {"measured_nN": 3000}
+DRY = PROBE | {"humidities": ["dry"], "contact_um": [0.5, 0.5]}
+DEVICES = {"P": PROBE | {"uncertainty": {"humidity": 0.02}}, "Far": FAR, "Dry": DRY}
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("probes")
+    (folder / "provenance.json").write_text(json.dumps([RUN]), encoding="utf-8")
+    config = stiction.load(SMALL | {"contact": {"samples": 300, "chunks": 1}, "devices": DEVICES})
+    return Files(Graph(Plan(config)), folder=folder)
+
+
+def test_forces_are_those_of_the_probe_changed_by_its_own_full_contact(results):
+    stopper, change = results["devices/stoppers/P"], results["studies/model_error/probes/P"]
+    study = results["studies/full_contact/probes/P"]
+    both = study.pull_off.mean() / study.summit_pull_off.mean()
+    assert change.pull_off_ratio == pytest.approx(float(both), rel=0.05)
+    assert bool(change.pull_off_applied.all() & change.nearest)
+    # The first places of both stages are the same.
+    first = stopper.pull_off.values[0, : study.sizes["strip"]] / AREA
+    on_summits = study.summit_pull_off.values[:, 0]
+    assert np.corrcoef(np.log(first), np.log(on_summits))[0, 1] > 0.999
+    of_water, of_solids = 4 * np.pi * 0.5e-6 * 0.072, 2 * np.pi * 0.5e-6 * attraction("water").work_of_adhesion
+    assert stopper.pull_off.mean() < of_water + of_solids  # if they were smooth
+    assert float(stopper.rms) == pytest.approx(np.hypot(3.4e-9, 0.17e-9), rel=0.01)
+
+
+def test_its_contact_has_the_shape_and_one_of_a_stopper_does_not(results):
+    plan = results.graph.plan
+    name = "devices/contact/b_640x640"
+    assert job_settings(plan, name)["probe"] == {"radius_um": 0.5}
+    flat = {
+        "S": {"kind": "stopper", "pair": "b", "contact_um": [0.64, 0.64], "restoring_force_uN": 1, "humidities": [0.45]}
+    }
+    of_flat = job_settings(Plan(stiction.load(SMALL | {"devices": flat})), name)
+    assert "probe" not in of_flat
+    assert of_flat == {key: value for key, value in job_settings(plan, name).items() if key != "probe"} | {
+        "contact": of_flat["contact"]
+    }
+
+
+def test_water_holds_a_probe_more_than_dry_solids_do(results):
+    humid, dry = (results[f"devices/stoppers/{name}"].pull_off.mean() for name in ("P", "Dry"))
+    assert 0 < dry < min(0.8 * humid, 2 * np.pi * 0.5e-6 * attraction("dry").work_of_adhesion)
+
+
+def page(results, name):
+    results.write(results.graph.job(f"devices/{name}.html"))
+    text = (results.folder / "devices" / f"{name}.html").read_text(encoding="utf-8")
+    return re.sub(r"\s+", " ", re.sub(r"<[^>]+>", " ", text))
+
+
+def test_the_page_says_whether_the_measured_force_fits(results):
+    assert "The measured 300 ± 100 nN fit these surfaces" in page(results, "P")
+    assert "by the inputs is inside" in page(results, "P")
+    assert "The measured 3000 ± 100 nN do not fit these surfaces: a place holds more with a probability of 0" in page(
+        results, "Far"
+    )
+    assert "all inputs count as exact" in page(results, "Far")
+
+
+def test_places_that_do_not_settle_leave_forces_on_summits_and_say_so(monkeypatch, results):
+    settings = in_si(probes_in_full_contact.Settings, job_settings(results.graph.plan, "studies/full_contact/probes/P"))
+    for error in (NotConverged("no end", 1.0, 0.1, 5), ValueError("too soft")):
+
+        def fail(*_, error=error):
+            raise error
+
+        monkeypatch.setattr(full_contact, "compute", fail)
+        found = probes_in_full_contact.changes(probes_in_full_contact.compute([], settings))
+        assert not found.pull_off_applied.any()
+        assert np.isnan(found.pull_off_ratio).all()
+    assert results["studies/model_error/probes/P"].pull_off_applied.all()  # control
+
+
+def test_the_largest_residual_is_that_of_one_place(results):
+    study = results["studies/full_contact/probes/P"]
+    apart = study.assign(pull_off=study.summit_pull_off.copy())
+    apart.pull_off[0] *= 2
+    residual = probes_in_full_contact.changes(apart).pull_off_largest_residual
+    assert 0.5 < float(residual[0]) <= 1
+    assert float(probes_in_full_contact.changes(study).pull_off_largest_residual[0]) < 1
+
+
+def test_drawn_heights_are_those_of_the_flat_pair(results):
+    """Alternatives of one surface are drawn once, and the probe meets each of them."""
+    settings = in_si(Settings, job_settings(results.graph.plan, "devices/contact/b_640x640"))
+    surfaces = [(results[f"heights/{name}"], results[f"spectrum/{name}"]) for name in ("B2", "Sub1")]
+    probed = surface_pair(surfaces, "NG", settings)
+    flat = surface_pair(surfaces, "NG", dataclasses.replace(settings, probe=None))
+    drawn = [one.draw(*(np.random.default_rng(k) for k in (1, 2))) for one in (probed, flat)]
+    assert_array_equal(*drawn)
+    rise = flat.met(drawn[0]) - probed.met(drawn[0]) + probed.depth
+    assert_allclose(rise, probed.probe.rise(rise.shape, probed.spacing), atol=1e-13)
+
+
+def test_a_finished_probe_states_no_full_contact_on_summits():
+    config = stiction.load(
+        SMALL | {"contact": {"samples": 80, "chunks": 1, "model": "summits"}, "devices": {"P": PROBE}}
+    )
+    jobs = {job.stage.name for job in Graph(Plan(config)).needed("devices")}
+    assert "stoppers" in jobs
+    assert "probe_in_full_contact" not in jobs
