@@ -110,7 +110,8 @@ def test_more_touchdowns_need_shorter_beams_and_a_stated_length_has_a_probabilit
     ("old", "new", "reason"),
     [
         ("kind: cantilever", "kind: bridge", "only cantilevers"),
-        ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, voltage_V: 5, humidities: [0.6]}\n", "voltage_V"),
+        ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, voltage_V: 5, humidities: [0.6]}\n", "dielectric"),
+        ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, strip_um: 1, humidities: [0.6]}\n", "strip_um"),
         ("humidities: [0.6]}\n", "humidities: [0.999]}\n", "beyond what was learnt"),
         ("humidities: [0.6]}\n", "humidities: [dry]}\n", "dry"),
         ("rms_nm: 3", "rms_nm: 60", "beyond what was learnt"),
@@ -132,6 +133,19 @@ def test_what_was_not_learnt_has_no_number_but_the_command_that_computes_it(tmp_
     assert "not known" in line
     assert reason in line
     assert line.endswith(f"stiction devices {tmp_path / 'mine.yaml'}")
+
+
+def test_a_voltage_shortens_and_needs_its_dielectric(tmp_path, capsys):
+    (tmp_path / "mine.yaml").write_text(
+        FILE.replace("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, humidities: [0.6], voltage_V: 5, ")
+        + "dielectric: {thickness_nm: 100, permittivity: 3.9}}\n"
+    )
+    of_file = lengths(said(capsys, str(tmp_path / "mine.yaml"))[1])
+    assert of_file == lengths(said(capsys, *OPTIONS, "--voltage=5", "--dielectric", "100", "3.9")[1])
+    assert of_file[1000][0] < lengths(said(capsys, *OPTIONS)[1])[1000][0]
+    status, lines = said(capsys, *OPTIONS, "--voltage=5")
+    assert status == 2
+    assert "--dielectric is missing" in lines[0]
 
 
 @pytest.mark.parametrize("missing", ["rms", "rh", "thickness", "gap"])

@@ -47,6 +47,7 @@ def drawn(rng):
     substrate = beams[0] | {"rms_nm": 0.2, "corner_rad_per_um": 10.0}
     device = {"thickness": 2.6e-6, "gap": rng.uniform(5e-6, 25e-6), "width": rng.uniform(8e-6, 40e-6)}
     device |= {"length": rng.uniform(1e-4, 4e-4), "touchdowns": int(rng.choice([1, 1000]))}
+    device["added"] = float(rng.choice([0, 10 ** rng.uniform(-5, -1)]))  # 0.1 J/m² alone holds many of these lengths
     airs = rng.uniform(0.4, 0.92, rng.choice([1, 2])).tolist()
     return {"beams": beams, "substrate": substrate, "humidities": airs, "averaged": bool(rng.random() < 0.5)} | device
 
@@ -58,7 +59,7 @@ def in_python(question, table):
         [surface(one, library)[0] for one in question["beams"]],
         surface(question["substrate"], library),
     )
-    own = {key: question[key] for key in ("thickness", "gap", "width", "length", "touchdowns", "averaged")}
+    own = {key: question[key] for key in ("thickness", "gap", "width", "length", "touchdowns", "averaged", "added")}
     named = {str(k): member for k, member in enumerate(members)}
     asked = Question("", (stated, other), (named, {}), tuple(question["humidities"]), **own)
     try:

@@ -16,6 +16,7 @@ from stiction.estimate.question import Question
 from stiction.estimate.state import State, film, stiffness_of
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Process
+from stiction.estimate.voltage import at_voltage, drive_of, without_voltage
 
 #: Fractions of stuck devices in the answer.
 FRACTIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
@@ -77,6 +78,7 @@ class InAir:
     stated: Lengths
     members: tuple[Lengths, ...]  #: on typical surfaces in place of a partly assumed one
     averaged: bool  #: as of `stiction.estimate.question.Question`
+    drive: float = 0.0  #: of a voltage [m⁻⁴]
 
     def centre(self, score: float) -> tuple[float, float]:
         """Mean and scatter of the logarithm of a length [m] over surfaces like those that are assumed."""
@@ -89,7 +91,11 @@ class InAir:
 
     def length(self, score: float) -> float:
         """Length at a normal score [m]."""
-        return math.exp(self.centre(score)[0]) if self.averaged else self.stated.at(score)
+        return self._driven(math.exp(self.centre(score)[0]) if self.averaged else self.stated.at(score))
+
+    def _driven(self, length):
+        """Length at the voltage from that without it [m]."""
+        return at_voltage(length, self.drive) if self.drive else length
 
     def row(self, fraction: float, score: float, table: Mapping[str, Any]) -> Row:
         """Length and intervals at a normal score."""
@@ -97,7 +103,7 @@ class InAir:
         ends = {}
         for confidence in CONFIDENCES:
             half = math.hypot(_margin(table, confidence, score, self.stated.slope), _STUDENT[confidence] * scatter)
-            ends[confidence] = math.exp(mean - half), math.exp(mean + half)
+            ends[confidence] = self._driven(math.exp(mean - half)), self._driven(math.exp(mean + half))
         return Row(fraction, self.length(score), ends)
 
 
@@ -129,12 +135,13 @@ def _stuck(question, airs, table):
 
     found = []
     for one in airs:
-        score = one.stated.score(question.length)
+        length = without_voltage(question.length, one.drive)
+        score = one.stated.score(length)
         mean, scatter = one.centre(score)
         half = math.hypot(_margin(table, "95", score, one.stated.slope), _STUDENT["95"] * scatter)
         shift = mean - math.log(one.stated.at(score))
         moves = [-shift if question.averaged else 0.0, -shift - half, -shift + half]
-        found.append([after(one.stated.score(question.length * math.exp(move))) for move in moves])
+        found.append([after(one.stated.score(length * math.exp(move))) for move in moves])
     return tuple(max(column) for column in zip(*found, strict=True))
 
 
@@ -148,7 +155,9 @@ def _in_air(question, air, table, tips, full):
     pairs = [beam + substrate]
     pairs += [question.members[0].get(name, beam) + question.members[1].get(name, substrate) for name in names]
     stated, *members = (_lengths(question, heights, air, table, tips, full) for heights in pairs)
-    return InAir(stated, tuple(members), question.averaged)
+    stiffness = stiffness_of(table["modulus"], question.thickness, question.gap)
+    drive = drive_of(question.added, stiffness, question.gap)
+    return InAir(stated, tuple(members), question.averaged, drive)
 
 
 def _lengths(question: Question, heights: Heights, air: float, table, tips, full):

@@ -114,6 +114,20 @@ function normalScore(fraction) {
   return 0.5 * (low + high);
 }
 
+// voltage
+const PERMITTIVITY = 8.8541878128e-12;
+function energyOf(potential, distance, gap) { return PERMITTIVITY * potential ** 2 / 2 * (1 / distance - 1 / (distance + gap)); }
+function atVoltage(length, drive) {
+  const bare = 1 / length;
+  let inverse = bare + drive ** 0.25;
+  for (let n = 0; n < 8; n++) inverse -= (inverse ** 4 - bare ** 3 * inverse - drive) / (4 * inverse ** 3 - bare ** 3);
+  return 1 / inverse;
+}
+function withoutVoltage(length, drive) {
+  const cube = length ** -3 - drive * length;
+  return cube > 0 ? cube ** (-1 / 3) : Infinity;
+}
+
 // answer
 const FRACTIONS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], STUDENT = {90: 2.353363, 95: 3.182446};
 function margin(table, confidence, score, slope) {
@@ -129,28 +143,30 @@ function answer(question, table) {
   const of = (sumOfBoth, air) => lengths({heights: sumOfBoth, film: film(air, table.temperature, 2, table.water), stiffness,
     width: question.width, modulus: table.modulus}, question.gap, table);
   const airs = question.humidities.map((air) => ({stated: of(question.stated, air), members: question.members.map((each) => of(each, air))}));
+  const drive = 8 * (question.added || 0) / (3 * stiffness * question.gap ** 4);
+  const driven = (length) => drive ? atVoltage(length, drive) : length;
   const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
   const rows = FRACTIONS.map((fraction) => {
     const score = normalScore(once(fraction)), ends = {};
     for (const confidence of ["90", "95"]) {
       const both = airs.map((one) => {
         const [mean, scatter] = centre(one, score), half = Math.hypot(margin(table, confidence, score, one.stated.slope), STUDENT[confidence] * scatter);
-        return [Math.exp(mean - half), Math.exp(mean + half)];
+        return [mean - half, mean + half].map((end) => driven(Math.exp(end)));
       });
       ends[confidence] = [0, 1].map((side) => Math.min(...both.map((each) => each[side])));
     }
     const length = (one) => question.averaged ? Math.exp(centre(one, score)[0]) : lengthAt(one.stated, score);
-    return {fraction, length: Math.min(...airs.map(length)), intervals: ends};
+    return {fraction, length: driven(Math.min(...airs.map(length))), intervals: ends};
   });
-  return {rows, stuck: question.length ? stuck(question, airs, table) : null};
+  return {rows, stuck: question.length ? stuck(question, airs, table, withoutVoltage(question.length, drive)) : null};
 }
-function stuck(question, airs, table) {
+function stuck(question, airs, table, bare) {
   const after = (score) => -Math.expm1(question.touchdowns * Math.log1p(-fractionOf(score)));
   const found = airs.map((one) => {
-    const score = scoreOf(one.stated, question.length), [mean, scatter] = centre(one, score);
+    const score = scoreOf(one.stated, bare), [mean, scatter] = centre(one, score);
     const half = Math.hypot(margin(table, "95", score, one.stated.slope), STUDENT["95"] * scatter), shift = mean - Math.log(lengthAt(one.stated, score));
     return [question.averaged ? -shift : 0, -shift - half, -shift + half]
-      .map((move) => after(scoreOf(one.stated, question.length * Math.exp(move))));
+      .map((move) => after(scoreOf(one.stated, bare * Math.exp(move))));
   });
   return [0, 1, 2].map((k) => Math.max(...found.map((each) => each[k])));
 }

@@ -15,6 +15,8 @@ const INPUTS = [
   ["width_um", "width of the beam [µm]", 8, 40, 1, 30],
   ["length_um", "length of the beam [µm]", 50, 600, 5, 250],
   ["touchdowns", "touchdowns", 1, 1000, 1, 1],
+  ["voltage_V", "voltage in contact [V]", 0, 50, 0.5, 0],
+  ["dielectric_nm", "dielectric, thickness over permittivity [nm]", 10, 1000, 10, 100],
 ];
 const OPEN = ["hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis"], byId = (id) => document.getElementById(id);
 
@@ -39,8 +41,9 @@ function stated() {
 }
 function questionOf({own, like, substrate, value, open}) {
   const of = (name) => added(heights({...typical(name), ...own}), heights(typical(substrate)));
-  return {stated: of(like), members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false, humidities: [value("humidity")],
-    thickness: value("thickness_um") * 1e-6, gap: value("gap_um") * 1e-6, width: value("width_um") * 1e-6,
+  const gap = value("gap_um") * 1e-6, added = energyOf(value("voltage_V"), value("dielectric_nm") * 1e-9, gap);
+  return {stated: of(like), added, members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false, humidities: [value("humidity")],
+    thickness: value("thickness_um") * 1e-6, gap, width: value("width_um") * 1e-6,
     length: value("length_um") * 1e-6, touchdowns: value("touchdowns")};
 }
 const RAREST = 1e-6; // of which the table has a length
@@ -75,10 +78,11 @@ function refuse(reason) {
 function yamlOf({own, like, substrate, value, open}) {
   const surface = Object.entries({...own, ...(open ? {like} : {})}).map(([key, of]) => `${key}: ${of}`).join(", ");
   const sizes = ["length_um", "thickness_um", "gap_um", "width_um", "touchdowns"].map((key) => `${key}: ${value(key)}`).join(", ");
-  const air = `humidities: [${value("humidity")}]`;
+  const air = `humidities: [${value("humidity")}]`, dielectric = `dielectric: {thickness_nm: ${value("dielectric_nm")}, permittivity: 1}`;
+  const voltage = value("voltage_V") ? `voltage_V: ${value("voltage_V")}, ${dielectric}, ` : "";
   return `run: {pairs: [mine], studies: []}\nsurfaces:\n  Mine: {${surface}}\npairs:\n` +
     `  mine: {beam: Mine, substrate: ${substrate}, gap_um: ${value("gap_um")}, ${air}}\ndevices:\n` +
-    `  Lever: {kind: cantilever, pair: mine, ${sizes}, ${air}}\n`;
+    `  Lever: {kind: cantilever, pair: mine, ${sizes}, ${voltage}${air}}\n`;
 }
 function draw({value}) {
   const gap = 10 + 1.3 * value("gap_um"), thickness = 2 + 2 * value("thickness_um"), y = 75 - gap;

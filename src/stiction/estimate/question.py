@@ -9,6 +9,8 @@ from stiction.config.units import to_si
 from stiction.contact.air import is_humid, is_possible
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.statistics import Heights, moments_of, slope_of
+from stiction.estimate.voltage import KEYS as OF_VOLTAGES
+from stiction.estimate.voltage import energy_of
 
 Library = Mapping[str, Mapping[str, Any]]
 
@@ -17,6 +19,7 @@ OF_SURFACES = ("rms_nm", "like", "hurst", "corner_rad_per_um", "cutoff_rad_per_u
 OF_SURFACES += ("unknown", "psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
 OF_PAIRS = ("beam", "substrate", "gap_um", "humidities", "attraction", "coarser_mesh")
 OF_DEVICES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "humidities", "touchdowns")
+OF_DEVICES += OF_VOLTAGES
 #: Keys that change the length to build alone: the estimate is of exact inputs, and leaves out what a run adds.
 LEFT_OUT = ("uncertainty", "requirement", "chart", "roughness")
 #: Sections of a file that change no length of a cantilever.
@@ -44,6 +47,7 @@ class Question:
     touchdowns: int = 1
     left_out: tuple[str, ...] = ()  #: keys that a run would read as well
     averaged: bool = False  #: whether the length is the mean over typical surfaces, not that on the stated one
+    added: float = 0.0  #: energy that a voltage adds [J m⁻²]
 
 
 def surface(entry: Mapping[str, Any], library: Library) -> tuple[Heights, dict[str, Heights]]:
@@ -135,5 +139,5 @@ def of_numbers(name: str, device: Mapping[str, Any], sides: Sequence, **more: An
     surfaces, members = zip(*sides, strict=True)
     sizes = [to_si(device[f"{size}_um"], "um") for size in ("thickness", "gap", "width")]
     length = to_si(device["length_um"], "um") if "length_um" in device else None
-    airs = tuple(device["humidities"])
+    airs, more = tuple(device["humidities"]), more | {"added": energy_of(device, sizes[1])}
     return Question(name, surfaces, members, airs, *sizes, length, device.get("touchdowns", 1), **more)

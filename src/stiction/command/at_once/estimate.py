@@ -26,6 +26,7 @@ OPTIONS = {
     "gap": ("gap_um", "UM", "gap below the beam", None),
     "width": ("width_um", "UM", "width of the beam (default: 30)", 30.0),
     "length": ("length_um", "UM", "length of the beam, for the probability that it sticks", None),
+    "voltage": ("voltage_V", "V", "voltage in contact; needs --dielectric", None),
 }
 _OF_SURFACE = ("rms", "like", "hurst", "corner", "cutoff", "skewness", "kurtosis")
 #: Opposite surface without a file.
@@ -40,6 +41,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     for name, (_, unit, words, default) in OPTIONS.items():
         kind = str if name == "like" else float
         parser.add_argument(f"--{name}", type=kind, metavar=unit, help=words, default=default)
+    words = "thickness and relative permittivity of the dielectric"
+    parser.add_argument("--dielectric", type=float, nargs=2, metavar=("NM", "PERMITTIVITY"), help=words)
     parser.add_argument("--rh", type=float, nargs="+", metavar="RH", help="relative humidities, such as 0.45")
     parser.add_argument("--touchdowns", type=int, default=1, metavar="N", help="number of touchdowns (default: 1)")
 
@@ -97,13 +100,16 @@ def _of_files(files):
 
 def _of_options(arguments, library):
     """Question by the options alone."""
-    for name in ("rms", "rh", "thickness", "gap"):
+    needed = ("rms", "rh", "thickness", "gap") + ("dielectric",) * (arguments.voltage is not None)
+    for name in needed:
         if getattr(arguments, name) is None:
             raise NotLearnt(f"--{name} is missing")
     stated = {OPTIONS[name][0]: getattr(arguments, name) for name in OPTIONS if getattr(arguments, name) is not None}
     entry = {key: stated.pop(key) for key in [OPTIONS[name][0] for name in _OF_SURFACE] if key in stated}
     device = stated | {"humidities": arguments.rh, "touchdowns": arguments.touchdowns}
     averaged = "like" not in entry
+    if arguments.dielectric:
+        device["dielectric"] = dict(zip(("thickness_nm", "permittivity"), arguments.dielectric, strict=True))
     side = surface({"like": "B2"} | entry, library)
     return of_numbers("The cantilever", device, [side, surface(library[OPPOSITE], library)], averaged=averaged)
 
