@@ -164,7 +164,7 @@ def test_a_device_that_does_not_exist_is_refused_with_those_that_do():
     [
         ("S1", lambda device: device.safe_lengths(0.5), "S1 is a stopper; only a cantilever or bridge"),
         ("S1", lambda device: device.chart(0.5), "S1 is a stopper"),
-        ("C1", lambda device: device.forces(), "C1 is a cantilever; only a stopper has this"),
+        ("C1", lambda device: device.forces(), "C1 is a cantilever; only a stopper or probe has this"),
         ("R1", lambda device: device.chart(0.5), "R1 has no chart: state devices.R1.chart"),
         ("C1", lambda device: device.budget(0.5), "C1 has no uncertainty: state devices.C1.uncertainty"),
     ],

@@ -2,7 +2,7 @@
 
 import math
 import operator
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -14,12 +14,13 @@ from stiction.config.keys import Keys, Relations
 from stiction.config.kinds import KINDS
 from stiction.config.materials import material_of
 from stiction.config.messages import ConfigError, Problem, is_number, one_line
+from stiction.config.mission.adsorption import adsorbed_heights
 from stiction.config.mission.conditions import CONDITIONS, humidity_of_air, temperatures
 from stiction.config.reading import is_stated
-from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
+from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.air import has_dry, humid
 from stiction.contact.materials import COATING
-from stiction.contact.meniscus import BRIDGE, MOLECULES, ZERO_CELSIUS, Isotherm, dry_air, is_wetted, meniscus_height
+from stiction.contact.meniscus import BRIDGE, MOLECULES, ZERO_CELSIUS, dry_air, is_wetted, meniscus_height
 from stiction.devices.limits import rules
 from stiction.models import SIDES
 from stiction.rounding import is_at_most
@@ -254,12 +255,6 @@ def films(humidities: float | list, meeting: Meeting) -> list[float]:
     grown = adsorbed_heights(meeting.config["water"], wet)
     heights = (meniscus_height(air, meeting.temperature(air), angles) for air in wet)
     return [float(height) + adsorbed + more for height, more in zip(heights, grown, strict=True)]
-
-
-def adsorbed_heights(water: Mapping[str, Any], humidities: Iterable[float]) -> list[float]:
-    """Heights that an isotherm adds to the water at some humidities, zero without one [m]."""
-    isotherm = in_si(Isotherm, water["isotherm"]) if "isotherm" in water else None
-    return [isotherm.height(humidity) if isotherm else 0.0 for humidity in humidities]
 
 
 @relation

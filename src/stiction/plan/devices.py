@@ -14,7 +14,7 @@ from stiction.config import test_beams
 from stiction.config.cases import PairInAir, case_id
 from stiction.config.kinds import BEAM, ROUGHNESSES, STOPPER, Kind, kind_of
 from stiction.config.materials import Materials
-from stiction.config.meetings import adsorbed_heights
+from stiction.config.mission.adsorption import adsorbed_heights
 from stiction.config.mission.conditions import temperatures
 from stiction.config.reading import is_stated, paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
@@ -502,7 +502,8 @@ class DevicePlan:
         """Step of a property of the contact of a pair, a key of ``OF_PAIRS``. Devices and test beams on it share it."""
         users = (*self.sections.values(), *test_beams.as_cantilevers(self.config).values())
         stated = [user.get("uncertainty", {}) for user in users if user["pair"] == PairInAir(pair).pair]
-        return OF_PAIRS[name].step.by(max(one.get(OF_PAIRS[name].key, 0.0) for one in stated))
+        deviations = [one.get(OF_PAIRS[name].key, 0.0) for one in stated]
+        return OF_PAIRS[name].step.by(max(deviations, default=0.0))
 
     def has_uncertain_edge(self, device: str) -> bool:
         """Whether the tip of a device has a rounded edge with an uncertain radius."""

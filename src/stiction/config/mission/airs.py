@@ -132,7 +132,8 @@ def _bracketed(device, angles, temperature):
         bounds += others
         new = [humidity for humidity in others if is_humid(humidity) and air in own and humidity not in own]
         conditions = conditions + [_same(at, humidity) | shared for humidity in new]
-    airs = [*dict.fromkeys((*stated, *bounds))]
+    airs = [*stated, *(air for air in dict.fromkeys(bounds) if air not in stated)]
+    airs = [*dict.fromkeys(airs)] if own else airs  # several conditions may be dry
     return device | {"humidities": airs} | ({CONDITIONS: conditions} if conditions else {})
 
 

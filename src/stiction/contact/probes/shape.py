@@ -9,9 +9,12 @@ with the radius a of its flat, 0 for a sphere, and the radius R of the sphere or
 ASSUME: R is far above the height of the film, so that parabolas stand for spheres.
 """
 
+import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-import numpy as np
+if TYPE_CHECKING:
+    import numpy as np
 
 #: Rise of a probe at the sides of the patch under it [m]. ASSUME: nothing acts across larger gaps.
 RISE = 100e-9
@@ -37,9 +40,11 @@ class Probe:
 
     def zone(self, rise: float) -> float:
         """Radius of the circle in which it has risen by no more than this [m]."""
-        return self.flat + float(np.sqrt(2 * self.radius * rise))
+        return self.flat + math.sqrt(2 * self.radius * rise)
 
-    def rise(self, shape: tuple[int, int], spacing: float) -> np.ndarray:
+    def rise(self, shape: tuple[int, int], spacing: float) -> "np.ndarray":
         """Rise u over points with this spacing, with the axis on one in the middle (n1, n2) [m]."""
+        import numpy as np  # not before: every start of the command reads the kinds of devices
+
         x, y = (spacing * (np.arange(number) - number // 2) for number in shape)
         return np.maximum(np.hypot(x[:, None], y) - self.flat, 0) ** 2 / (2 * self.radius)

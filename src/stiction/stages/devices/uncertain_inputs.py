@@ -298,8 +298,9 @@ def property_blocks(
             states = [of.attracting(end) for of, end in zip(states, step.ends(1.0), strict=True)]
         value = getattr(settings, _FIELDS[name], np.nan)
         relative, limits = step.error(value, deviation), step.limits(value)
-        at_value = replace(state, contact=first(state.contact, states[0].contact.sizes["strip"]))
-        middle = at_value if -np.inf < limits[0] <= -1 else None  # as far from both ends
+        middle = None
+        if -np.inf < limits[0] <= -1:  # as far from both ends
+            middle = replace(state, contact=first(state.contact, states[0].contact.sizes["strip"]))
         found = Input(entry.words, entry.group, tuple(states), step.around(value), middle, limits)
         yield Block([found], np.array([[relative**2]]))
 
