@@ -46,7 +46,9 @@ class ProbedPair(SurfacePair):
         return (heights + lowered).astype(np.float32)
 
     def contact(self, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Solid pressure and bearing area of a surface z (n1, n2) [m] under the probe, as by `SurfacePair.contact`.
+        """Solid pressure and bearing area of a surface z (n1, n2) [m] under the probe.
+
+        As by `stiction.contact.pair.SurfacePair.contact`.
 
         Both refer to the whole patch: away from the axis nothing touches, so that sides without summits miss none.
         """
