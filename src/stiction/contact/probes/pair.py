@@ -48,7 +48,7 @@ class ProbedPair(SurfacePair):
     def contact(self, heights: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solid pressure and bearing area of a surface z (n1, n2) [m] under the probe.
 
-        As by `stiction.contact.pair.SurfacePair.contact`.
+        As by ``SurfacePair.contact``.
 
         Both refer to the whole patch: away from the axis nothing touches, so that sides without summits miss none.
         """

@@ -30,7 +30,7 @@ class Settings(full_contact.Settings):
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Settings) -> xr.Dataset:
     """Places of a probe in full contact, of unknown forces where one does not settle.
 
-    Variables as of `stiction.stages.contact.full_contact.compute`.
+    Variables as of ``full_contact.compute``.
     """
     try:
         return full_contact.compute(surfaces, settings.pair, settings)

@@ -15,7 +15,7 @@ from stiction.stages.surfaces.rough_surfaces import both
 
 
 def less_or_more(settings: dict[str, Any], name: str, shift: str, step: Step) -> dict[str, Any]:
-    """Settings of a contact with less or more of a property, a key of ``OF_PAIRS`` in `stiction.contact.materials`."""
+    """Settings of a contact with less or more of a property, a key of ``OF_PAIRS`` in ``contact.materials``."""
     return with_property(settings, name, lambda value: step.ends(value)[SHIFTS.index(shift)])
 
 
