@@ -83,7 +83,7 @@ def plan(**changes):
 
 
 WRONG_PROBES = [
-    ({"radius_um": 0.02}, {}, "P.radius_um", "sampling.spacing_nm at most 4: the grid has 3.3 points in the water"),
+    ({"radius_um": 0.02}, {}, "P.radius_um", "sampling.spacing_nm at most 1.3: the grid has 3.3 points in the water"),
     ({"humidities": [0.99]}, {}, "P.pair", "6 times the rms of both surfaces are 124 nm, more than the 100 nm"),
     ({"humidities": [0.6, 0.7]}, {}, "P.humidities", "must be the one of measured_nN"),
     ({"tilt_deg": [0.1]}, {}, "P.kind", "must come without tilt_deg"),

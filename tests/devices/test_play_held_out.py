@@ -23,9 +23,6 @@ from stiction.streams import stream
 
 #: Coherence and play [nm] that are used nowhere else, and offsets for the play, each of a pair of surfaces of its own.
 COHERENCE, PLAY, OFFSETS, BEAMS = 0.8, 35, 36, 2000
-#: Foundation length of the lever, over which its crack tip spreads [m]. Half and three times as much move lengths by up
-#: to 5 %.
-SPREAD = 8e-6
 #: Shares at which lengths and P(stuck) are compared. ASSUME: 6 % of a length, and 0.06 of a share, for the crack tip
 #: and the sampling: either half of the offsets moves lengths by up to 5 %.
 SHARES, ALLOWED = (0.05, 0.1, 0.2, 0.5), 0.06
@@ -51,7 +48,18 @@ def computed(plan):
     ground = ground_from(results["devices/ground/copied_rh045_1500x20000"], settings)
     part, address = opening.ground_of(settings.device, ground.laws), opening.addresses(settings)
     draws = ground.strips.in_row(settings.device), ground.strips.draw
-    return settings.device, [opening.arrests(settings.device, part, draw, BEAMS, address) for draw in draws]
+    lengths = [opening.arrests(settings.device, part, draw, BEAMS, address) for draw in draws]
+    return settings.device, lengths, spread(settings.device, ground.strips.sampled)
+
+
+def spread(device, laws):
+    """Foundation length of a lever, over which its crack tip spreads, by the energies that hold it: 7.9 µm here [m].
+
+    Half and three times as much move lengths by up to 5 %; from twice as much on, they miss what is allowed.
+    """
+    largest, _, before, _ = laws.T
+    lengths = (device.young_modulus * device.thickness**3 / (12 * before * largest)) ** 0.25
+    return np.average(lengths, weights=largest / before)
 
 
 def energies_at_offsets(plan):
@@ -73,12 +81,12 @@ def energies_at_offsets(plan):
 @pytest.mark.slow
 def test_2000_beams_on_other_surfaces_stick_as_computed():
     plan = plan_of(play_nm=PLAY)
-    device, (body, alone) = computed(plan)
+    device, (body, alone), of_tip = computed(plan)
     energies, rng = energies_at_offsets(plan)
     number = int(1.2e-3 / (STRIP[0] * SPACING))
     offset = np.arange(BEAMS)[:, None] % OFFSETS
     drawn = energies[offset, rng.integers(energies.shape[1], size=(BEAMS, number))]
-    found = crack_lengths(drawn, STRIP[0] * SPACING, device, SPREAD)
+    found = crack_lengths(drawn, STRIP[0] * SPACING, device, of_tip)
     ratios, shares = (np.array([of(lengths, found) for lengths in (body, alone)]) for of in (differences, stuck))
     assert np.abs(ratios[0]).max() < ALLOWED
     assert np.abs(shares[0] - SHARES).max() < ALLOWED

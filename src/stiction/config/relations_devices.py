@@ -133,8 +133,8 @@ def electrodes_pull_on_a_spring_across_a_gap(config):
             yield f"{key}.gap_um", message, f"devices.{name}.gap_um"
 
 
-#: Points of the grid in the water under a probe, of which more no longer change its mean force by more than 1 %.
-POINTS_UNDER_PROBE = 20
+#: Points of the grid in the water under a probe: these and more know the area of a circle around one of them to 4.2 %.
+POINTS_UNDER_PROBE = 200
 #: Heights of both surfaces together under a probe, in their rms.
 HEIGHTS_UNDER_PROBE = 6
 

@@ -13,7 +13,7 @@ from stiction.contact.air import is_humid
 from stiction.devices import probes
 from stiction.devices.limits import rules
 from stiction.devices.limits.limit import Limit
-from stiction.devices.risk import Basis, one_in, samples_for
+from stiction.devices.risk import Basis, one_in, samples_for, upper_bound
 from stiction.report.format import NN, UM, UN, airs, fraction_with_band, with_error
 from stiction.rounding import in_percent
 from stiction.stages.devices.budget import budget_of
@@ -115,9 +115,16 @@ def measured_sentences(section: Mapping[str, Any], stopper: xr.Dataset, budgets:
     known = f"an error of {in_percent(inputs)} by the inputs is inside" if inputs else "all inputs count as exact"
     return [
         f"The measured {with_error(force / NN, error / NN)} nN {'fit' if probes.fits(above) else 'do not fit'} these "
-        f"surfaces: a place holds more with a probability of {in_percent(above)}. By simulation, places hold "
+        f"surfaces: a place holds {_beyond(above, forces.size)}. By simulation, places hold "
         f"{mean} nN on average, nine of ten between {low} and {high} nN; {known}."
     ]
+
+
+def _beyond(above, places):
+    """Rarer side of a force in words, of which a fraction of places is above: a bound where it has none of them."""
+    fewest, rare = float(upper_bound(0, places)), min(above, 1 - above)
+    known = f"at most {in_percent(fewest)}" if rare < fewest else in_percent(rare)
+    return f"{'more' if above <= rare else 'less'} with a probability of {known}"
 
 
 def worst_sentence(stopper: xr.Dataset) -> str:
