@@ -318,3 +318,12 @@ def test_a_bridge_has_the_budget_of_its_middle_and_not_that_of_tips():
     lengths = {0.67: safe("bridge")}
     tip = beam_answer(BRIDGE, lengths, {(0.67, "tip"): budget_dataset(5.0, TIPS)})
     assert tip.build == beam_answer(BRIDGE, lengths).build
+
+
+@pytest.mark.parametrize("fraction", [0.9899, 0.9901, 0.9949, 0.9951, 0.9962, 0.998994])
+def test_nearly_all_is_not_rounded_to_all(fraction):
+    for end in ("", "low", "high"):
+        shown = float(words.percent(fraction, end).removesuffix(" %"))
+        assert shown < 100
+        digits = 100 * min(fraction, 1 - fraction) if fraction > 0.99 else 100 * fraction
+        assert shown == pytest.approx(100 * fraction, abs=0.05 * digits)  # half of a step of two digits

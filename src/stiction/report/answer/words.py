@@ -46,19 +46,24 @@ _REASONS = {
     INPUTS: "The inputs are too uncertain for a number. Were all exact, it would be {exact}. First measure {measure}.",
 }
 
+#: Fraction beyond which two digits would round to all.
+_NEARLY_ALL = 0.99
+
 
 def percent(fraction: float, end: str = "") -> str:
-    """Fraction in percent with two digits, as an ``end`` of a band or alone.
+    """Fraction in percent with two digits, near all of them of the rest, as an ``end`` of a band or alone.
 
     Examples
     --------
-    >>> percent(0.1812), percent(0.000242), percent(3e-9), percent(3e-9, "low"), percent(0.99992)
-    ('18 %', '0.024 %', 'less than 0.001 %', '0 %', 'more than 99.9 %')
+    >>> percent(0.1812), percent(0.000242), percent(3e-9), percent(3e-9, "low"), percent(0.99992), percent(0.9962)
+    ('18 %', '0.024 %', 'less than 0.001 %', '0 %', 'more than 99.9 %', '99.62 %')
     """
     if fraction < 1e-5:
         return "0 %" if end else "less than 0.001 %"
     if fraction > 1 - 1e-3:
         return "100 %" if end else "more than 99.9 %"
+    if fraction > _NEARLY_ALL:
+        return f"{100 - float(f'{100 * (1 - fraction):.2g}'):.4g} %"
     return f"{float(f'{100 * fraction:.2g}'):g} %"
 
 

@@ -163,10 +163,11 @@ function opened(number) {
   }
   const oneIn = share => `1 in ${text(1 / share)}`;
 
-  /** Fraction in percent with two digits, as an end of a band or alone, as in report/answer/words.py. */
+  /** Fraction in percent with two digits, near all of them of the rest, as in report/answer/words.py. */
   function percent(share, isEnd) {
     if (share < 1e-5) return isEnd ? "0 %" : "less than 0.001 %";
     if (share > 1 - 1e-3) return isEnd ? "100 %" : "more than 99.9 %";
+    if (share > 0.99) return `${Number((100 - Number((100 * (1 - share)).toPrecision(2))).toPrecision(4))} %`;
     return `${Number((100 * share).toPrecision(2))} %`;
   }
 
