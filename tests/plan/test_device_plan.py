@@ -5,7 +5,8 @@ import sys
 from dataclasses import MISSING, fields
 
 import pytest
-from configurations import PAPER, problems
+import yaml
+from configurations import PAPER, ROOT, problems
 from plans import job_settings
 
 from stiction.config.files import load
@@ -297,3 +298,16 @@ def test_the_tips_of_a_device_are_looked_up_once_for_all_jobs_that_ask_for_them(
     slopes = [found.tilt(each)["slopes"] for each in strips]
     assert len(calls) == 20
     assert len({tuple(each) for each in slopes}) == len(set(strips))
+
+
+def test_devices_do_not_depend_on_the_pairs_of_the_run():
+    example = yaml.safe_load((ROOT / "examples" / "roughness.yaml").read_text(encoding="utf-8"))
+    of_runs = [jobs_of_devices(example | {"run": {"pairs": pairs}}) for pairs in ([], ["a", "b", "c"], ["b"])]
+    assert of_runs[0] == of_runs[1] == of_runs[2]
+    assert jobs_of_devices(example | {"run": {"pairs": []}, "seed": 5}) != of_runs[0], "control"
+
+
+def jobs_of_devices(study):
+    """Settings and inputs of all jobs of the devices of a study, by the names of their files."""
+    jobs = Graph(Plan(load(study))).needed("devices")
+    return {name: (job.settings, dict(job.inputs)) for job in jobs for name in job.names}
