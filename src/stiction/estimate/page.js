@@ -41,8 +41,8 @@ function stated() {
 }
 function questionOf({own, like, substrate, value, open}) {
   const of = (name) => added(heights({...typical(name), ...own}), heights(typical(substrate)));
-  const gap = value("gap_um") * 1e-6, added = energyOf(value("voltage_V"), value("dielectric_nm") * 1e-9, gap);
-  return {stated: of(like), added, members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false, humidities: [value("humidity")],
+  const gap = value("gap_um") * 1e-6, energy = energyOf(value("voltage_V"), value("dielectric_nm") * 1e-9, gap);
+  return {stated: of(like), added: energy, members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false, humidities: [value("humidity")],
     thickness: value("thickness_um") * 1e-6, gap, width: value("width_um") * 1e-6,
     length: value("length_um") * 1e-6, touchdowns: value("touchdowns")};
 }

@@ -51,8 +51,8 @@ _ON_A_PAGE = ContextVar("on a page", default=False)
 #: Space around a strip of a figure [in].
 _AROUND = 0.04
 #: Levels of red, green and blue of rare colours in a picture of a page, which err by half of their step; part of the
-#: pixels that a common colour has; pixels of an inch.
-_LEVELS, _COMMON, _ON_SCREEN = 16, 1e-3, 160
+#: pixels that a common colour has.
+_LEVELS, _COMMON = 16, 1e-3
 #: Points of an inch; height of the labels below a panel, in points.
 _POINTS, _LABELLED = 72, 24
 #: Mean width of a character and of a handle with its space, in units of the size of the text of a legend.
@@ -408,7 +408,6 @@ def strips(figure: Figure) -> list[bytes]:
     A legend of the figure is part of the panel below it, or of the last one. A page arranges the panels in as many
     columns as fit.
     """
-    figure.set_dpi(_ON_SCREEN)
     canvas = FigureCanvasAgg(figure)
     for panel in figure.axes:
         for text in (panel.title, panel._left_title, panel.xaxis.label):
