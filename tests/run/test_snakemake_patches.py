@@ -137,7 +137,8 @@ def test_a_job_with_several_threads_starts_as_a_new_interpreter(both):
 
 
 def messages(output):
-    """Printed lines about failed jobs, without numbers, times, paths and commands."""
+    """Printed lines about failed jobs, without numbers, times, paths and commands, apart where jobs write into them."""
+    output = re.sub("(DataError: a sentence|Error in rule fails:)", r"\n\1\n", output)
     lines = [line for line in output.splitlines() if re.search("Error|failed|exit status|signal|Removing", line)]
     lines = [re.sub(r"Command '.*?'|Command \[.*?\]", "Command", line) for line in lines]
     return sorted(re.sub(r"jobid: \d+|tmp\w+|\d+ of|line \d+|-?\d+|died with.*|returned.*", "", line) for line in lines)
