@@ -215,9 +215,9 @@ class _Pilot:
         try:
             with without_progress():
                 contact, *tips = (self._contact(*one) for one in self._places(case))
-                met = ground(contact, tips[0] if tips else None, case.humidity, settings)
-                beams = release_beams(settings.device, met, settings)
-            return spreads_of(beams, _middle(self.plan.config["design"]["shares"]), len(met.strips.sampled))
+                below = ground(contact, tips[0] if tips else None, case.humidity, settings)
+                beams = release_beams(settings.device, below, settings)
+            return spreads_of(beams, _middle(self.plan.config["design"]["shares"]), len(below.strips.sampled))
         except (ValueError, ArithmeticError):  # which the jobs of the case state
             return []
 

@@ -123,7 +123,7 @@ def test_drawn_heights_are_those_of_the_flat_pair(results):
     flat = surface_pair(surfaces, "NG", dataclasses.replace(settings, probe=None))
     drawn = [one.draw(*(np.random.default_rng(k) for k in (1, 2))) for one in (probed, flat)]
     assert_array_equal(*drawn)
-    rise = flat.met(drawn[0]) - probed.met(drawn[0]) + probed.depth
+    rise = flat.under_flat(drawn[0]) - probed.under_flat(drawn[0]) + probed.depth
     assert_allclose(rise, probed.probe.rise(rise.shape, probed.spacing), atol=1e-13)
 
 

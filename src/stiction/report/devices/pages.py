@@ -46,7 +46,7 @@ from stiction.stages.devices.results import is_biased
 
 #: What a map over two quantities shows.
 _OF_MAPS = (
-    "Blue: the requirement is met, by the factor of which the decimal logarithm is shown. Solid line: the estimate "
+    "Blue: the requirement is met. Colours show log10 of the margin. Solid line: the estimate "
     "meets it; dashed: the simulated limit does. Dots: computed points; cross: the surface as it is given.",
 )
 #: Why a table of a budget has cells without a number.

@@ -82,12 +82,14 @@ class OfBeam:
 
     def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> Found:
         """Safe lengths at a humidity by shape, and the limit of strips that are too long."""
-        met = sticking.ground(contact, tips, humidity, self)
-        beams = sticking.release_beams(self.device, met, self)
+        ground = sticking.ground(contact, tips, humidity, self)
+        beams = sticking.release_beams(self.device, ground, self)
         known = sticking.lengths_without_samples(self.device, self.water, humidity, self.edge_radius, beams.reach)
         safe = sticking.by_shape(beams, self, known)
         limit = long_strips(
-            self.device.strip, self.device.opening.longest_strip(self.device, met.laws), self.device.opening.arms == 2
+            self.device.strip,
+            self.device.opening.longest_strip(self.device, ground.laws),
+            self.device.opening.arms == 2,
         )
         found = [self._response(held, *safe[shape], known[shape]) for shape, held in beams.lengths.items()]
         return found, triggered(limit)

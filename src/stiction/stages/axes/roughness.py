@@ -150,8 +150,8 @@ def _with_tables(found):
     dimensions, crossed, ranges = [name for name in ("other", "humidity", "shape") if name in found.dims], [], []
     for at in product(*(found[name].values for name in dimensions)):
         curve = found.sel(dict(zip(dimensions, at, strict=True)))
-        met = crossings(axis, margins_of(curve), relative_errors(curve))
-        crossed += [(*at, crossing.place, crossing.error) for crossing in met]
+        places = crossings(axis, margins_of(curve), relative_errors(curve))
+        crossed += [(*at, crossing.place, crossing.error) for crossing in places]
         ranges += [(*at, *ends) for ends in sufficient(axis, margins_of(curve, "safe"))]
     columns = _columns("crossing", crossed, [*dimensions, "place", "error"])
     columns |= _columns("range", ranges, [*dimensions, "low", "high"])
