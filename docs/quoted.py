@@ -34,7 +34,6 @@ UNSAFE = {
     "gold": "caltech_gold",
     "silicon": "stanford_force",
     "plates": "plates_polysilicon",
-    "tips": "worcester_rms",
 }
 
 
