@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from stiction.config.files import joined
 from stiction.config.merging import merged
-from stiction.config.mission.airs import COLDEST, HOTTEST, expanded
+from stiction.config.mission.airs import COLDEST, HOTTEST, OF_DEVICE, expanded
 from stiction.config.mission.conditions import temperatures
 from stiction.config.mission.stays import stays
 from stiction.config.relations import schema
@@ -171,10 +171,21 @@ def test_test_beams_are_at_the_temperature_of_the_water():
     assert "must have another humidity than 0.67, such as 0.6701" in line
 
 
-def test_limits_of_the_temperature_are_those_of_the_schema():
+@pytest.mark.parametrize("key", OF_DEVICE)
+def test_a_wrong_value_is_refused_where_it_was_written(key):
+    for value in (OF_DEVICE[key][0] - 1, OF_DEVICE[key][1] + 1, "much", True, *[2.5] * (key == "touchdowns")):
+        (line,) = problems(configuration(conditions=[MISSION[0] | {key: value}], **DIELECTRIC, offset_V=1))
+        assert line.startswith(f"devices.Lever.conditions[0].{key} is {value!r}, must be a")
+    for value in (OF_DEVICE[key][0], OF_DEVICE[key][1]):
+        lever(conditions=[MISSION[0] | {key: value}], **DIELECTRIC, offset_V=1)
+
+
+def test_limits_of_conditions_are_those_of_the_schema():
     allowed = schema()["properties"]["devices"]["additionalProperties"]["properties"]["conditions"]["items"]
     celsius = allowed["properties"]["temperature_C"]
     assert (celsius["minimum"], celsius["maximum"]) == (COLDEST, HOTTEST)
+    for key, ends in OF_DEVICE.items():
+        assert (allowed["properties"][key]["minimum"], allowed["properties"][key]["maximum"]) == ends
 
 
 def test_touchdowns_add_up_and_the_largest_voltage_counts():
@@ -183,6 +194,22 @@ def test_touchdowns_add_up_and_the_largest_voltage_counts():
     device, _ = lever(conditions=mission, touchdowns=100, voltage_V=1, offset_V=3, **DIELECTRIC)
     assert (device["touchdowns"], device["voltage_V"]) == (112, 6)  # 9 V with the offset, -8 V have 5 V
     assert all(not {"touchdowns", "voltage_V"} & {*condition} for condition in device["conditions"])
+
+
+def test_the_largest_shock_of_a_mission_is_that_of_the_device():
+    def shocked(*shocks, **keys):
+        """Section of the lever with shocks in its first conditions, without these."""
+        own = [{"shock_g": shock} if shock else {} for shock in (*shocks, None, None, None)]
+        device, config = lever(conditions=[one | more for one, more in zip(MISSION, own, strict=False)], **keys)
+        assert checked(config).config == config
+        return device
+
+    device = shocked(None, shock_g=3000)
+    assert shocked(None, 3000) == shocked(3000) == device
+    assert shocked(3000, shock_g=200) == shocked(200, 3000) == shocked(200, shock_g=3000) == device
+    assert shocked(200) != device  # control
+    assert "shock_g" not in shocked(None)
+    assert shocked(None) == {key: value for key, value in device.items() if key != "shock_g"}
 
 
 def stays_of(shares, more=(), **keys):

@@ -27,7 +27,7 @@ COMMON = (
     "touchdowns",
     "conditions",
 )
-COMMON += ("voltage_V", "offset_V", "dielectric")
+COMMON += ("voltage_V", "offset_V", "dielectric", "shock_g")
 #: Keys that depend on the kind, what they are called and their unit.
 KEYS = {
     "thickness_um": ("thickness", "µm"),

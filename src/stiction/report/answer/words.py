@@ -16,7 +16,7 @@ from stiction.stages.devices.end_states import END_STATES
 CAUSES: Mapping[Cause, tuple[str, str]] = {
     Cause.ESTIMATE: ("estimate", "the estimate"),
     Cause.SIMULATION: ("error of the simulation", "the simulation"),
-    Cause.FAST: ("fast separation, as in a shock (not stated)", "fast separation"),
+    Cause.FAST: ("fast separation, as in a shock", "fast separation"),
     Cause.TOUCHDOWNS: ("all touchdowns", "all touchdowns"),
     Cause.TILT: ("worst of its tilts", "its tilts"),
     Cause.VOLTAGE: ("voltage", "its voltage"),
@@ -29,6 +29,7 @@ _LEFT_OUT = {
     "dimples": "its dimples (see its life below)",
     "inputs": "the uncertainty of the inputs where too few devices stick to show it",
     "requirement": "the smaller fraction that it requires (see the curve of the axis below)",
+    "shock": "the fast separation in its shock, which nothing bounds",
     "voltage": "its voltage, at which the dielectric breaks down",
 }
 #: Relative change of a size that is not worth a word.

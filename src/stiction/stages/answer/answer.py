@@ -37,6 +37,7 @@ class Settings:
     kind: str
     length: float = np.nan  #: of a beam, NaN if none is stated [m]
     touchdowns: int = 1
+    shock: float = 0.0  #: peak [m s⁻²]
     liquids: tuple[str, ...] = ()  #: that are stated
     left_out: tuple[str, ...] = ()  #: conditions that are stated but not inside
     required: float = 1.0  #: fraction of a requirement, 1 without one [-]
@@ -49,9 +50,10 @@ class Settings:
 def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
     """Answer about a device."""
     found, question = _of_beam(data, settings) if settings.beam else _of_stopper(data)
+    found = [replace(one, stated=settings.shock > 0) if one.cause is Cause.FAST else one for one in found]
     before = conditions.of_budgets(data["budgets"], settings.budgets)
     unknowns = conditions.of_test_beams(data.get("test_beams")) or before
-    left_out = (*settings.left_out, *_left_out(data, found, unknowns))
+    left_out = (*settings.left_out, *_left_out(data, found, unknowns, settings.shock))
     if settings.required < question["share"]:
         left_out = (*left_out, "requirement")
     stated = {"touchdowns": settings.touchdowns, "stays": tuple(settings.stays.values()), "left_out": left_out}
@@ -96,15 +98,16 @@ def _of_stopper(data):
     return found, {"share": share or float(stopper.share.max()), "unit": sought.FORCE.unit, "size": size}
 
 
-def _left_out(data, found, unknowns):
+def _left_out(data, found, unknowns, shock):
     """Stated conditions and inputs that no dataset bounds.
 
-    That is a voltage on a bridge at which its dielectric breaks down, and inputs of end states in which too few devices
-    stick to show what they change.
+    That is a voltage on a bridge at which its dielectric breaks down, a shock where no summits stop some strips, and
+    inputs of end states in which too few devices stick to show what they change.
     """
-    is_biased = any(one.cause is Cause.VOLTAGE for one in found)
+    inside = {one.cause for one in found}
     at = {(one.humidity, one.shape) for one in found} & set(getattr(unknowns, "budgets", ()))
-    left_out = ["voltage"] if float(data["life"].potential) > 0 and not is_biased else []
+    left_out = ["voltage"] if float(data["life"].potential) > 0 and Cause.VOLTAGE not in inside else []
+    left_out += ["shock"] if shock and data.get("fast_strips") and Cause.FAST not in inside else []
     return left_out + (["inputs"] if any(unknowns.of(one) is None for one in at) else [])
 
 

@@ -42,6 +42,7 @@ class Stated:
     voltage: float = 0.0  #: [V]
     offset: float = 0.0  #: by charge and contact potential [V]
     dielectric: Dielectric | None = None
+    shock: float = 0.0  #: peak [m s⁻²]
 
     @property
     def capacitor(self) -> Capacitor | None:
