@@ -34,11 +34,12 @@ from stiction.report.limits.words import not_modelled, texts
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.style import STYLE, on_a_page
-from stiction.report.surfaces.words import replica_in_words, surface_in_words
+from stiction.report.surfaces.words import adhesion_in_words, replica_in_words, surface_in_words
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import provenance
 from stiction.run.atomic import save_text
+from stiction.stages.contact.adhesion_parameter import adhesion_parameters
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budgets_of
 from stiction.stages.devices.opening import section_of_beam
@@ -107,6 +108,8 @@ def _words_of_budgets(budgets):
 def _facts_of(section):
     """Dimensions and conditions of a device, by name."""
     facts = {"surfaces": f"pair {section['pair']}"} | section.get("surfaces", {})
+    if "adhesion_parameters" in section:
+        facts["adhesion parameter θ"] = adhesion_in_words(section["adhesion_parameters"])
     stated = kind_of(section).stated(section)
     for key in (key for key in KEYS if key in stated):
         (name, unit), value = KEYS[key], stated[key]
@@ -222,7 +225,8 @@ def _settings(plan, at):
     left_out = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
     assumed = plan.devices.assumed_inputs(at.device)
     measured = [name for name in names.values() if is_measured(plan.config["surfaces"][name])]
-    known = {"assumed": assumed, "measured": measured}
+    parameters = adhesion_parameters(plan, plan.air_of_devices, section["pair"], section["humidities"])
+    known = {"assumed": assumed, "measured": measured, "adhesion_parameters": list(parameters.values())}
     if plan.devices.kind(at.device).has_tip:
         known["tip_edge"] = plan.devices.edge_in_words
     if plan.devices.kind(at.device).has_tip and is_biased(plan, at.device):
