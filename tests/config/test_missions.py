@@ -7,6 +7,7 @@ import pytest
 from configurations import problems
 from hypothesis import given
 from hypothesis import strategies as st
+from plans import job_settings
 
 from stiction.config.files import joined
 from stiction.config.merging import merged
@@ -273,3 +274,10 @@ def test_pairs_and_charts_are_still_refused_where_a_film_is_no_liquid():
     chart = {"thicknesses_um": [2.6], "humidities": [0.2, 0.9]}
     (line,) = problems(configuration(humidities=[0.5], chart=chart))
     assert line.startswith("devices.Lever.chart.humidities is [0.2, 0.9], must be at least 0.2903")
+
+
+def test_an_answer_knows_the_temperature_of_all_water_of_its_mission():
+    _, config = lever(conditions=MISSION[:1], humidities=[0.0, 0.5])
+    assert job_settings(Plan(config), "devices/answer/Lever")["temperatures_K"] == {"0.5": 300, "0.8755": 285.15}
+    _, plain = lever(humidities=[0.0, 0.5])
+    assert "temperatures_K" not in job_settings(Plan(plain), "devices/answer/Lever")

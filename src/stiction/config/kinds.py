@@ -137,6 +137,17 @@ class Kind:
             return f"must come with {either}{', or '.join(map(' and '.join, ways))}"
         return None
 
+    def unasked(self, device: Mapping) -> list[str]:
+        """Optional keys of devices that say nothing about one: those of other kinds, and all where it was measured.
+
+        Examples
+        --------
+        >>> KINDS["probe"].unasked({"radius_um": 5}), KINDS["probe"].unasked({"measured_nN": 80})
+        ([], ['electrode', 'mass_ng', 'voltage_V'])
+        """
+        asked = {"mass_ng", "electrode", "voltage_V"}
+        return sorted(asked if "measured_nN" in device else asked - set(self.allowed_keys))
+
     @property
     def has_short_strips(self) -> bool:
         """Whether its strips may be shorter than those of pairs and than the correlation of the surfaces."""

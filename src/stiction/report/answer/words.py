@@ -193,17 +193,17 @@ def of_airs(answer: Answer) -> list[dict[str, str]]:
 
 
 def _air(answer, humidity):
-    """Air that decides, with its temperature if it is a condition of the device."""
+    """Air that decides, with its temperature if the device has a mission."""
     air = Air(humidity)
     at = next((one.temperature for one in answer.airs if one.humidity == humidity), np.nan)
     return air.choose(air.words, "Dry air") + (f" at {at - ZERO_CELSIUS:.3g} °C" if np.isfinite(at) else "")
 
 
 def _celsius(answer, air):
-    """Cell with the temperature of an air, none for a device without conditions."""
+    """Cell with the temperature of an air, any if it has no water; none for a device without conditions."""
     if not np.isfinite([one.temperature for one in answer.airs]).any():
         return {}
-    return {"°C": number(air.temperature - ZERO_CELSIUS, ".3g")}
+    return {"°C": Air(air.humidity).choose(number(air.temperature - ZERO_CELSIUS, ".3g"), "any")}
 
 
 def _size(answer, size):

@@ -12,6 +12,7 @@ import xarray as xr
 from stiction.answer.data import Answer
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
 from stiction.config.merging import differing
+from stiction.config.mission.conditions import CONDITIONS
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured
 from stiction.contact.air import DRY, Air
@@ -29,7 +30,7 @@ from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import curve_views, explorer, life
 from stiction.report.devices.parts import GLOSSARY, OF_RELEASE, terms
-from stiction.report.format import MISSING, humidity_text
+from stiction.report.format import MISSING, conditions_in_words, humidity_text
 from stiction.report.limits.words import not_modelled, texts
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
@@ -117,6 +118,8 @@ def _facts_of(section):
         facts[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
     if "tip_edge" in section:
         facts["edge of the tip"] = section["tip_edge"]
+    if CONDITIONS in section:
+        facts["conditions"] = conditions_in_words(section[CONDITIONS])
     name = "relative humidities" if len(section["humidities"]) > 1 else "relative humidity"
     facts[name] = ", ".join(map(humidity_text, section["humidities"]))
     return facts | _requirement(section)

@@ -12,10 +12,10 @@ from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, Stay
 from stiction.answer.ladder import Question
 from stiction.answer.unknowns import Draws, OfBudgets
 from stiction.answer.worlds import DRAWS
-from stiction.config.mission.conditions import CONDITIONS, temperatures
+from stiction.config.mission.conditions import CONDITIONS
 from stiction.config.mission.stays import stays
 from stiction.config.units import in_si
-from stiction.contact.air import Air
+from stiction.contact.air import Air, humid
 from stiction.devices.budget import LARGEST
 from stiction.plan.stage import Stage, select
 from stiction.stages.answer import conditions
@@ -43,7 +43,7 @@ class Settings:
     required: float = 1.0  #: fraction of a requirement, 1 without one [-]
     beam: DesignedBeam | None = None  #: none for a stopper
     budgets: tuple[float, ...] = ()  #: humidities of the budgets [-]
-    temperatures: dict[str, float] = field(default_factory=dict)  #: of its conditions, by humidity in words [K]
+    temperatures: dict[str, float] = field(default_factory=dict)  #: of the water of a mission, by humidity in words [K]
     stays: dict[str, Stay] = field(default_factory=dict)  #: touchdowns of its conditions, by number
 
 
@@ -241,7 +241,7 @@ def _settings(plan, at):
     own = {"seed": plan.config["seed"], "name": name, "liquids": sorted(liquids)}
     own |= {"left_out": ["dimples"] if "dimples" in section else []}
     own |= {"budgets": [humidity for humidity, *_ in _budgets(plan, name)]}
-    at = {Air(air).name: at for air, at in temperatures(plan.config, section["pair"]).items()}
+    at = {Air(air).name: plan.air_of_devices.temperature(section["pair"], air) for air in humid(section["humidities"])}
     own |= {"temperatures_K": at} if CONDITIONS in section else {}
     own |= {"stays": found} if (found := stays(section, plan.air_of_devices.wetting(section["pair"]))) else {}
     own |= {"required": section["requirement"]["share"]} if "requirement" in section else {}
