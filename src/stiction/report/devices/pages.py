@@ -22,6 +22,7 @@ from stiction.report import drawings, html
 from stiction.report.answer import figures as figures_answer
 from stiction.report.answer import judged, screen
 from stiction.report.answer import tables as tables_answer
+from stiction.report.at_once import tables as tables_at_once
 from stiction.report.axes import figures as figures_axes
 from stiction.report.axes import roughness as sentences_roughness
 from stiction.report.axes import section as process_section
@@ -208,7 +209,7 @@ def _inputs(plan, at):
     own |= {"warnings": device_warnings.files_of(at.device)[at.device]} | model_errors.error_inputs(plan, at.device)
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
-    own |= process_section.inputs(plan, at.device)
+    own |= process_section.inputs(plan, at.device) | tables_at_once.inputs(plan, at.device)
     own |= {"style": File(STYLE), "templates": [File(GLOSSARY), *html.files(TEMPLATE), *drawings.FILES]}
     return own | _of_release(section).inputs(plan, at.device)
 
@@ -245,6 +246,7 @@ def _page(data, at, settings):
     page, views = device_page(at.device, settings, data, answer), _of_release(settings).views
     views = [*views(at.device, settings, data, answer), *curve_views.views(at.device, settings, data)]
     page = process_section.with_process(with_life(page, at.device, data["life"], answer), at.device, data)
+    page = tables_at_once.with_estimate(page, data)
     return replace(
         page,
         not_modelled=not_modelled(**settings["not_modelled"]),
