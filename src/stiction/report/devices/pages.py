@@ -41,6 +41,7 @@ from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import provenance
 from stiction.run.atomic import save_text
+from stiction.stages.axes.roughness import OF_COPIES
 from stiction.stages.contact.adhesion_parameter import adhesion_parameters
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budgets_of
@@ -183,7 +184,8 @@ def _how_rough(name, roughness):
     cells = tables_axes.of_roughness({name: roughness}).cells.drop(columns="device")
     of_map = "other" in roughness.dims
     said = [*sentences_roughness.answers(roughness), sentences_roughness.form(roughness)]
-    sections = [Section("How rough must it be?", said, cells, figures_axes.roughness(roughness))]
+    asked = "How closely may it follow?" if roughness.key in OF_COPIES else "How rough must it be?"
+    sections = [Section(asked, said, cells, figures_axes.roughness(roughness))]
     if of_map:
         sections.append(Section("Over two quantities", _OF_MAPS, None, figures_axes.roughness_map(roughness)))
     return sections
