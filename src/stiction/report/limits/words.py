@@ -228,6 +228,13 @@ def _solid_film(film):
     )
 
 
+def _beyond_isotherm(measured, wettest):
+    return (
+        f"Air at RH {wettest:g} is wetter than the wettest of the isotherm, RH {measured:g}. Films grow there and "
+        "count as constant: this is the unsafe side. State water.isotherm up to this humidity."
+    )
+
+
 def _condensing(airs):
     where = ", ".join(f"{celsius:g} °C with a dew point of {dew_point:g} °C" for celsius, dew_point in airs)
     return (
@@ -436,6 +443,7 @@ SENTENCES: dict[str, Callable[..., str]] = {
     "few_strips": _few_strips,
     "thin_film": _thin_film,
     "solid_film": _solid_film,
+    "beyond_isotherm": _beyond_isotherm,
     "condensing": _condensing,
     "supercooled": _supercooled,
     "no_water": _no_water,
