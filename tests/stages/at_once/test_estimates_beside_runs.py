@@ -17,6 +17,7 @@ from stiction.estimate.table import known
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.report.at_once import tables
+from stiction.run import storage
 from stiction.stages.at_once import beside
 from stiction.stages.devices.opening import EITHER
 
@@ -186,3 +187,11 @@ def test_a_page_ends_with_the_estimate_beside_the_run():
     assert section.cells["stuck"].tolist() == ["1 in 100", "1 in 1000", "1 in 10000"]
     assert tables.counted([found]) in section.paragraphs[0]
     assert tables.with_estimate(page, {}) is page
+
+
+def test_a_stored_estimate_makes_the_same_table(tmp_path):
+    found = dataset({0.0: safe(), 0.6: safe()}, planned(humidities=["dry", 0.6]))
+    storage.save(found, tmp_path / "a.nc", "device_estimate", {}, [])
+    again = storage.load(tmp_path / "a.nc", "device_estimate")
+    assert tables.table({"Lever": again}).csv == tables.table({"Lever": found}).csv
+    assert tables.refusals(again) == tables.refusals(found) != []
