@@ -164,6 +164,7 @@ def test_only_cantilevers_in_humid_air_have_it():
         ({"surfaces": {"B1": {"rms_nm": 1.8}}}, False),
         ({"devices": {"Lever": {"length_um": 200, "touchdowns": 10, "uncertainty": {"gap_um": 1}}}}, False),
         ({"contact": {"samples": 100, "chunks": 1}, "design": {"accuracy": {"length": 0.05}}}, False),
+        ({"surfaces": {"Etched": {"uncertainty": {"rms_nm": 0.1}}}}, False),
         ({"devices": {"Other": BEAM | {"gap_um": 10}}}, False),
     ],
 )
