@@ -16,7 +16,7 @@ Library = Mapping[str, Mapping[str, Any]]
 
 #: Keys of a surface, of a pair and of a device that the estimate knows.
 OF_SURFACES = ("rms_nm", "like", "hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis")
-OF_SURFACES += ("unknown", "psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
+OF_SURFACES += ("unknown", "uncertainty", "psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
 OF_PAIRS = ("beam", "substrate", "gap_um", "humidities", "attraction", "coarser_mesh")
 OF_DEVICES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "humidities", "touchdowns")
 OF_DEVICES += OF_VOLTAGES

@@ -17,6 +17,7 @@ from stiction.estimate.table import known
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.report.at_once import tables
+from stiction.run import storage
 from stiction.stages.at_once import beside
 from stiction.stages.devices.opening import EITHER
 
@@ -163,6 +164,7 @@ def test_only_cantilevers_in_humid_air_have_it():
         ({"surfaces": {"B1": {"rms_nm": 1.8}}}, False),
         ({"devices": {"Lever": {"length_um": 200, "touchdowns": 10, "uncertainty": {"gap_um": 1}}}}, False),
         ({"contact": {"samples": 100, "chunks": 1}, "design": {"accuracy": {"length": 0.05}}}, False),
+        ({"surfaces": {"Etched": {"uncertainty": {"rms_nm": 0.1}}}}, False),
         ({"devices": {"Other": BEAM | {"gap_um": 10}}}, False),
     ],
 )
@@ -186,3 +188,11 @@ def test_a_page_ends_with_the_estimate_beside_the_run():
     assert section.cells["stuck"].tolist() == ["1 in 100", "1 in 1000", "1 in 10000"]
     assert tables.counted([found]) in section.paragraphs[0]
     assert tables.with_estimate(page, {}) is page
+
+
+def test_a_stored_estimate_makes_the_same_table(tmp_path):
+    found = dataset({0.0: safe(), 0.6: safe()}, planned(humidities=["dry", 0.6]))
+    storage.save(found, tmp_path / "a.nc", "device_estimate", {}, [])
+    again = storage.load(tmp_path / "a.nc", "device_estimate")
+    assert tables.table({"Lever": again}).csv == tables.table({"Lever": found}).csv
+    assert tables.refusals(again) == tables.refusals(found) != []
