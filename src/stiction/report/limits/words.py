@@ -58,8 +58,8 @@ def _longer_strips(strip, longest, is_bridge):
 
 def _nothing_simulated(is_bridge, **strips):
     return (
-        f"{_longer_strips(**strips, is_bridge=is_bridge)}, by so much that nothing is simulated: all beams count as "
-        "stuck that surfaces could hold which are everywhere like their strongest patch, the safe side."
+        f"{_longer_strips(**strips, is_bridge=is_bridge)}, by so much that nothing is simulated: every beam "
+        "counts as stuck that a surface made of its strongest patch alone would hold (safe side)."
     )
 
 
