@@ -22,6 +22,7 @@ from stiction.estimate.complete import question_of
 from stiction.estimate.table import known
 from stiction.plan.devices import DevicePlan
 from stiction.plan.graph import Results
+from stiction.report.answer import screen as answer_screen
 from stiction.report.answer import words as answer_words
 from stiction.report.answer.judged import with_limits
 from stiction.report.format import conditions_in_words
@@ -115,9 +116,9 @@ class Device:
 
     def plot(self) -> "Figure":
         """Figure of P(stuck) by simulation alone, at all humidities: over lengths of beams, or forces of stoppers."""
-        from stiction.report.devices.parts import OF_RELEASE
+        from stiction.report.devices.parts import OF_QUESTION
 
-        return OF_RELEASE[self.kind.release.name].figure(self.name, self._simulated)
+        return OF_QUESTION[self.kind.question(self._section)].figure(self.name, self._simulated)
 
     @property
     def kind(self) -> Kind:
@@ -148,7 +149,7 @@ class Device:
         if self.results.has(f"devices/answer/{self.name}"):
             answer = self.answer()
             known = (
-                {answer_words.sign_of(answer)[1]: answer_words.headline(answer)}
+                {answer_words.sign_of(answer)[1]: answer_screen.headline(answer)}
                 if not answer_words.is_forbidden(answer)
                 else {}
             )

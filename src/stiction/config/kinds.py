@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import NamedTuple
 
-from stiction.config.units import NN_PER_UN, from_si, in_si
+from stiction.config.units import from_si, in_si
 from stiction.contact.probes.shape import Probe
 
 #: Keys that every device may have.
@@ -28,6 +28,11 @@ COMMON = (
     "conditions",
 )
 COMMON += ("voltage_V", "offset_V", "dielectric", "shock_g")
+#: Keys of a life under a spring, and of what changes it.
+OF_SPRINGS = ("requirement", "roughness", "process", "second_process", "test_beams", "touchdowns", "conditions")
+OF_SPRINGS += ("voltage_V", "offset_V", "dielectric", "mass_ng", "electrode", "shock_g")
+#: Question about a device without a spring, a name of tables as that of a `Release`.
+PULL_OFF = "pull_off"
 #: Keys that depend on the kind, what they are called and their unit.
 KEYS = {
     "thickness_um": ("thickness", "µm"),
@@ -98,10 +103,10 @@ STOPPER = Release(
 
 
 class Way(NamedTuple):
-    """Way to state the restoring force of a device."""
+    """Way to state the restoring force of a device, or that none pulls it and its pull-off force is asked for."""
 
     keys: tuple[str, ...]  #: first the number that grows with the force
-    per: Callable[[Mapping], float]  #: force for one unit of this number [µN]
+    per: Callable[[Mapping], float] | None = None  #: force for one unit of this number [µN], none without a spring
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,19 +143,26 @@ class Kind:
         ways = [way.keys for way in self.ways]
         if ways and set(keys) & set(chain(*ways)) not in map(set, ways):
             either = "either " if len(ways) > 1 else ""
-            return f"must come with {either}{', or '.join(map(' and '.join, ways))}"
-        return None
+            return f"must come with {either}{', or '.join(' and '.join(way) for way in ways if way)}"
+        return self._without_spring(keys)
 
-    def unasked(self, device: Mapping) -> list[str]:
-        """Optional keys of devices that say nothing about one: those of other kinds, and all where it was measured.
+    def _without_spring(self, keys):
+        """Refusal of keys of a spring where none is stated."""
+        if not self.ways or self.way(keys).per or not (strange := [key for key in keys if key in OF_SPRINGS]):
+            return None
+        springs = ", or ".join(" and ".join(way.keys) for way in self.ways if way.per)
+        return f"must come without {', '.join(sorted(strange))}, or with a spring: {springs}"
+
+    @property
+    def unasked(self) -> list[str]:
+        """Optional keys of the life of devices that are of other kinds alone.
 
         Examples
         --------
-        >>> KINDS["probe"].unasked({"radius_um": 5}), KINDS["probe"].unasked({"measured_nN": 80})
-        ([], ['electrode', 'mass_ng', 'voltage_V'])
+        >>> KINDS["probe"].unasked, KINDS["bridge"].unasked
+        ([], ['electrode', 'mass_ng'])
         """
-        asked = {"mass_ng", "electrode", "voltage_V"}
-        return sorted(asked if "measured_nN" in device else asked - set(self.allowed_keys))
+        return sorted({"mass_ng", "electrode", "voltage_V"} - set(self.allowed_keys))
 
     @property
     def has_short_strips(self) -> bool:
@@ -188,21 +200,30 @@ class Kind:
         side = round(from_si(in_si(Probe, self.shape_of(device)).side, "um"), 6)
         return side, side
 
-    def way(self, device: Mapping) -> Way:
-        """Way in which the section of a device states its restoring force."""
-        return next(way for way in self.ways if way.keys[0] in device)
+    def way(self, device: Collection[str]) -> Way:
+        """Way in which the section of a device, or its keys, states its restoring force."""
+        return next(way for way in self.ways if set(way.keys) <= set(device))
+
+    def question(self, device: Mapping) -> str:
+        """Question about a device, a name of tables: how it releases, or its pull-off force where no spring pulls it.
+
+        Examples
+        --------
+        >>> KINDS["probe"].question({"radius_um": 5}), KINDS["probe"].question({"restoring_force_uN": 1})
+        ('pull_off', 'stopper')
+        """
+        return PULL_OFF if self.ways and self.way(device).per is None else self.release.name
 
     def stated(self, device: Mapping) -> dict:
-        """Section of a device, with the restoring force [µN] that follows from it.
+        """Section of a device, with the restoring force [µN] that follows from it, if it has a spring.
 
         Examples
         --------
         >>> KINDS["stopper"].stated({"stiffness_N_per_m": 2, "gap_um": 1.5})["restoring_force_uN"]
         3.0
         """
-        if not self.ways:
+        if not self.ways or not (way := self.way(device)).per:
             return dict(device)
-        way = self.way(device)
         return device | {"restoring_force_uN": device[way.keys[0]] * way.per(device)}
 
 
@@ -243,7 +264,7 @@ KINDS = {
         words="probe",
         drawing="probe.svg",
         keys=("radius_um",),
-        ways=(*_PULLED, Way(("measured_nN", "measured_error_nN"), lambda _: 1 / NN_PER_UN)),
+        ways=(*_PULLED, Way(("measured_nN", "measured_error_nN")), Way(())),
         optional=("mass_ng", "electrode", "flat_um", "contact_um"),
         release=STOPPER,
         shape=("radius_um", "flat_um"),

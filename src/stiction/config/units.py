@@ -38,7 +38,7 @@ _TO_SI = {unit: float(f"1e{power}") for unit, power in _POWERS.items()} | {"deg"
 #: Not one over the factors to SI: 1 / 1e-9 is not 1e9.
 _FROM_SI = {unit: float(f"1e{-power}") for unit, power in _POWERS.items()} | {"deg": 180 / math.pi, "g": 1 / FREE_FALL}
 #: Lengths, forces and memory are in two units each: nanometres in a micrometre, nN in a µN, MB in a GB.
-NM_PER_UM, NN_PER_UN, MB_PER_GB = 1e3, 1e3, 1e3
+NM_PER_UM, MB_PER_GB = 1e3, 1e3
 _UNIT = re.compile("_(" + "|".join(sorted(_TO_SI, key=len, reverse=True)) + ")$")
 
 T = TypeVar("T")

@@ -285,7 +285,7 @@ TILTS = (0.0, 0.001, 0.01)
 def data_of_stopper(patches=4000, touchdowns=1, voltage=0.0, tilted=False, force=18.99e-6, scale=5e-6):
     """Datasets of a stopper with lognormal forces, and the settings of its answer."""
     rng = np.random.default_rng(5)
-    own = stoppers.Settings(1, WATER, (3e-6, 3e-6), force, tuple(AIRS), (0.4, 0.9))
+    own = stoppers.Settings(1, WATER, (3e-6, 3e-6), tuple(AIRS), (0.4, 0.9), restoring_force=force)
     axis = np.linspace(0.4, 0.9, 11)
     forces = np.outer(list(AIRS.values()), scale * np.exp(0.3 * rng.standard_normal(patches)))
     along = np.outer(1 - (axis - 0.6) ** 2, forces[0])

@@ -344,20 +344,6 @@ def test_a_bridge_states_the_energy_of_the_voltage_alone():
     assert found["voltage_energy"].high > 0
 
 
-MEASURED = {"measured_nN": 80, "measured_error_nN": 30}
-
-
-@pytest.mark.parametrize(
-    ("more", "keys"), [(MEASURED, set()), ({"restoring_force_uN": 5}, {"mass_ng", "electrode", "voltage_V"})]
-)
-def test_a_measured_force_is_asked_for_nothing_that_frees_a_probe(more, keys):
-    probe = {"kind": "probe", "pair": "b", "radius_um": 5, "humidities": [0.67]} | more
-    config = load({"run": {"pairs": [], "studies": []}, "devices": {"P": probe}})
-    of = in_si(OfStopper, job_settings(Plan(config), "devices/life/P")["stopper"])
-    asked = {one.needs.split(",")[0].split()[0] for one in stopper_answers(stopper_dataset(), of) if one.needs}
-    assert asked & {"mass_ng", "electrode", "voltage_V"} == keys
-
-
 def test_sentences_compare_a_stated_shock_with_those_that_bring_a_device_down(lengths):
     limit = answers(OF, lengths)["shock"]
     words = {0.9 * limit.low: "does not bring it down", 1.1 * limit.low: "can bring it", 1.1 * limit.high: "brings it"}

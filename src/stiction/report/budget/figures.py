@@ -83,6 +83,13 @@ def _stuck_over_force(panel, dataset):
         panel.fill_between(at, low, high, color=colour, alpha=0.2, linewidth=0)
     panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
     panel.set(yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
+    if np.isfinite(restoring):
+        _name_restoring_force(panel, restoring)
+    legend_below(panel, handles(panel)[0])
+
+
+def _name_restoring_force(panel, restoring):
+    """Name the line of the restoring force."""
     is_left = restoring < np.mean(panel.get_xlim())
     panel.annotate(
         "restoring force",
@@ -94,7 +101,6 @@ def _stuck_over_force(panel, dataset):
         ha="left" if is_left else "right",
         path_effects=OUTLINED,
     )
-    legend_below(panel, handles(panel)[0])
 
 
 def _force_over_humidity(panel, dataset):

@@ -361,16 +361,16 @@ def _marks(answers, build, widest):
 
 #: What table and figure declare alike.
 _OF_ALL: dict = {
-    "inputs": lambda plan, at: {"life": by_name("devices/life", plan.devices.sections)},
-    "jobs": lambda plan: [{}] if plan.devices.sections else [],
+    "inputs": lambda plan, at: {"life": by_name("devices/life", plan.devices.with_life)},
+    "jobs": lambda plan: [{}] if plan.devices.with_life else [],
     "targets": ("devices",),
 }
 
 
 def _inputs_of_figure(plan, at):
     """Lives, answers and warnings of all devices."""
-    answers = by_name("devices/answer", plan.devices.sections)
-    warnings = device_warnings.files_of(*plan.devices.sections)
+    answers = by_name("devices/answer", plan.devices.with_life)
+    warnings = device_warnings.files_of(*plan.devices.with_life)
     return _OF_ALL["inputs"](plan, at) | {"answers": answers, "warnings": warnings}
 
 

@@ -30,7 +30,7 @@ from stiction.report.axes import tables as tables_axes
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import curve_views, explorer, life
-from stiction.report.devices.parts import GLOSSARY, OF_RELEASE, terms
+from stiction.report.devices.parts import GLOSSARY, OF_QUESTION, terms
 from stiction.report.format import MISSING, conditions_in_words, humidity_text
 from stiction.report.limits.words import not_modelled, texts
 from stiction.report.model_error import sentences as model_errors
@@ -71,7 +71,7 @@ def device_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], 
     ``warnings`` are those of `stiction.stages.devices.device_warnings.read`. A ``stopper`` has one dataset. Charts,
     budgets, ``test_beams``, ``errors`` of the model and ``roughness`` may be missing.
     """
-    sections, said, listed, words = _of_release(section).parts(name, section, data, answer)
+    sections, said, listed, words = _of_question(section).parts(name, section, data, answer)
     budgets, errors, test_beams, roughness = (data.get(key) for key in ("budgets", "errors", "test_beams", "roughness"))
     of_model, told = model_errors.sentences(name, errors), []
     limits = judged.limits_of(name, data["warnings"])
@@ -127,9 +127,9 @@ def _facts_of(section):
     return facts | _requirement(section)
 
 
-def _of_release(section):
-    """Parts of pages of the release of a device."""
-    return OF_RELEASE[kind_of(section).release.name]
+def _of_question(section):
+    """Parts of pages by the question about a device."""
+    return OF_QUESTION[kind_of(section).question(section)]
 
 
 def _requirement(section):
@@ -206,14 +206,15 @@ def _inputs(plan, at):
     """Inputs of the page of a device."""
     devices, section = plan.devices, plan.config["devices"][at.device]
     budgets = budgets_of(plan, at.device) if at.device in devices.with_budget else {}
-    own = {"answer": f"devices/answer/{at.device}", "life": f"devices/life/{at.device}"}
+    own = {"answer": f"devices/answer/{at.device}"}
+    own |= {"life": f"devices/life/{at.device}"} if at.device in devices.with_life else {}
     own |= {"budgets": {key[1:]: name for key, name in budgets.items()}}
     own |= {"warnings": device_warnings.files_of(at.device)[at.device]} | model_errors.error_inputs(plan, at.device)
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
     own |= process_section.inputs(plan, at.device) | tables_at_once.inputs(plan, at.device)
     own |= {"style": File(STYLE), "templates": [File(GLOSSARY), *html.files(TEMPLATE), *drawings.FILES]}
-    return own | _of_release(section).inputs(plan, at.device)
+    return own | _of_question(section).inputs(plan, at.device)
 
 
 def _settings(plan, at):
@@ -245,9 +246,10 @@ def _page(data, at, settings):
     """Page of a device."""
     data = dict(data) | {"warnings": device_warnings.read({at.device: data["warnings"]})}
     answer = judged.judged(data["answer"], data["warnings"])
-    page, views = device_page(at.device, settings, data, answer), _of_release(settings).views
+    page, views = device_page(at.device, settings, data, answer), _of_question(settings).views
     views = [*views(at.device, settings, data, answer), *curve_views.views(at.device, settings, data)]
-    page = process_section.with_process(with_life(page, at.device, data["life"], answer), at.device, data)
+    page = with_life(page, at.device, data["life"], answer) if "life" in data else page
+    page = process_section.with_process(page, at.device, data)
     page = tables_at_once.with_estimate(page, data)
     return replace(
         page,

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.answer import ladder, sought
-from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, Stay, Step
+from stiction.answer import ladder, places, sought
+from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, PullOff, Stay, Step
 from stiction.answer.ladder import Question
 from stiction.answer.unknowns import Draws, OfBudgets
 from stiction.answer.worlds import DRAWS
@@ -20,7 +20,7 @@ from stiction.devices.budget import LARGEST
 from stiction.plan.stage import Stage, select
 from stiction.stages.answer import conditions
 from stiction.stages.devices.budget import budgets_of
-from stiction.stages.devices.opening import DesignedBeam, own_section
+from stiction.stages.devices.opening import FORCE, DesignedBeam, own_section
 from stiction.stages.devices.results import results_of
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import bounded_share
@@ -45,10 +45,36 @@ class Settings:
     budgets: tuple[float, ...] = ()  #: humidities of the budgets [-]
     temperatures: dict[str, float] = field(default_factory=dict)  #: of the water of a mission, by humidity in words [K]
     stays: dict[str, Stay] = field(default_factory=dict)  #: touchdowns of its conditions, by number
+    question: str = ""  #: about what has no spring
+    measured: float = np.nan  #: pull-off force [N]
+    measured_error: float = np.nan  #: its standard error [N]
 
 
 def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
     """Answer about a device."""
+    return _of_pull_off(data, settings) if settings.question else _of_size(data, settings)
+
+
+def _of_pull_off(data, settings):
+    """Answer about a probe without a spring."""
+    stopper, unknowns = data["stopper"], conditions.of_budgets(data["budgets"], settings.budgets)
+    forces, errors = stopper.pull_off, stopper.full_contact_error
+    found = {
+        float(rh): places.Places(forces.sel(humidity=rh).values, float(errors.sel(humidity=rh)))
+        for rh in stopper.humidity.values
+    }
+    numbers = settings.measured, settings.measured_error
+    left_out = (
+        ("inputs",) if isinstance(unknowns, OfBudgets) and any(unknowns.of((rh, FORCE)) is None for rh in found) else ()
+    )
+    asked = places.Asked(
+        settings.name, settings.kind, FORCE, "stoppers", *numbers, left_out, _forbidden(data, unknowns)
+    )
+    return places.answer(asked, found, unknowns, Draws(DRAWS, settings.seed))
+
+
+def _of_size(data, settings):
+    """Answer about a beam, or about what a spring pulls off."""
     found, question = _of_beam(data, settings) if settings.beam else _of_stopper(data)
     found = [replace(one, stated=settings.shock > 0) if one.cause is Cause.FAST else one for one in found]
     before = conditions.of_budgets(data["budgets"], settings.budgets)
@@ -160,9 +186,39 @@ def layout(answer: Answer) -> xr.Dataset:
         inside = [[int(one.humidity in stay.humidities) for one in answer.airs] for stay in answer.stays]
         variables |= {"stay_air": (("stay", "air"), inside, none)}
         variables |= {"stay_touchdowns": ("stay", [stay.touchdowns for stay in answer.stays], none)}
+    variables |= _of_places(answer.pull_offs)
     coords = {"step": [str(step.cause) for step in answer.steps], "air": [one.humidity for one in answer.airs]}
     coords["end"] = ["value", "low", "high"]
     return xr.Dataset(variables, coords, {name: getattr(answer, name) for name in _TEXTS})
+
+
+#: Probabilities of a measured force.
+_RANKS = ("less", "more", "two_sided")
+
+
+def _of_places(pull_offs):
+    """Variables of pull-off forces by air, none for a device that is not asked for them."""
+    if not pull_offs:
+        return {}
+    newton, none = {"units": "N"}, {"units": "1"}
+    ranks = [[_numbers(getattr(one, name)) for one in pull_offs] for name in _RANKS]
+    found = {name: (("air", "end"), rank, none) for name, rank in zip(_RANKS, ranks, strict=True)}
+    found["place_pull_off"] = (("air", "share_below", "end"), [one.quantiles for one in pull_offs], newton)
+    found["measured_error"] = ("air", [one.error for one in pull_offs], newton)
+    return found | {"share_below": ("share_below", list(places.SHARES), none)}
+
+
+def _numbers(probability):
+    """Value and ends of the band of a probability, NaN where there is none."""
+    return [np.nan] * 3 if probability is None else [probability.value, probability.low, probability.high]
+
+
+def _pull_offs(dataset):
+    """Yield the pull-off forces of a dataset, if it has some."""
+    for row in (dataset.isel(air=k) for k in range(dataset.sizes["air"]) if "place_pull_off" in dataset):
+        ranks = [row[name].values for name in _RANKS]
+        known = [None if np.isnan(rank).any() else Probability(*map(float, rank)) for rank in ranks]
+        yield PullOff(float(row.air), row.place_pull_off.values, float(row.measured_error), *known)
 
 
 def answer_of(dataset: xr.Dataset) -> Answer:
@@ -200,6 +256,7 @@ def answer_of(dataset: xr.Dataset) -> Answer:
         extrapolated=bool(dataset.extrapolated),
         sizes=dataset["curve_size"].values,
         curve=dataset["curve"].values,
+        pull_offs=tuple(_pull_offs(dataset)),
     )
 
 
@@ -222,8 +279,10 @@ def _probability(dataset, start):
 def _inputs(plan, at):
     """All datasets of a device that bear on its size."""
     section, device = plan.config["devices"][at.device], at.device
-    own = {"budgets": list(_budgets(plan, device).values()), "life": f"devices/life/{device}"}
-    own |= separation_inputs(plan, device)
+    own = {"budgets": list(_budgets(plan, device).values())}
+    if device not in plan.devices.with_life:
+        return own | results_of(plan, device, "stopper")
+    own |= {"life": f"devices/life/{device}"} | separation_inputs(plan, device)
     own |= {"test_beams": f"devices/test_beams/{device}"} if "test_beams" in section else {}
     return own | results_of(plan, device, "tilted", "biased", "stopper", "after", "lengths")
 
@@ -245,6 +304,7 @@ def _settings(plan, at):
     own |= {"temperatures_K": at} if CONDITIONS in section else {}
     own |= {"stays": found} if (found := stays(section, plan.air_of_devices.wetting(section["pair"]))) else {}
     own |= {"required": section["requirement"]["share"]} if "requirement" in section else {}
+    own |= {} if name in plan.devices.with_life else {"question": plan.devices.question(name)}
     return select(Settings, section | own | beam)
 
 
