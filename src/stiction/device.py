@@ -13,6 +13,7 @@ from stiction.accuracy import decided
 from stiction.answer.data import Answer
 from stiction.config.cases import case_id, in_numbers
 from stiction.config.kinds import BEAM, KEYS, KINDS, STOPPER, Kind, Release, kind_of
+from stiction.config.mission.conditions import CONDITIONS
 from stiction.contact.air import Air
 from stiction.devices.limits.limit import Limit, restored
 from stiction.estimate.answer import Answer as Estimate
@@ -23,6 +24,7 @@ from stiction.plan.devices import DevicePlan
 from stiction.plan.graph import Results
 from stiction.report.answer import words as answer_words
 from stiction.report.answer.judged import with_limits
+from stiction.report.format import conditions_in_words
 from stiction.report.limits import words
 from stiction.stages.answer.answer import answer_of
 from stiction.stages.devices import device_warnings
@@ -133,7 +135,8 @@ class Device:
         }
         pair = " on ".join(self._plan.sides(section["pair"]))
         humidities = ", ".join(Air(humidity).name for humidity in section["humidities"])
-        return sizes | {"surfaces": f"{pair}, pair {section['pair']}", "relative humidity": humidities}
+        mission = {"conditions": conditions_in_words(section[CONDITIONS])} if CONDITIONS in section else {}
+        return sizes | {"surfaces": f"{pair}, pair {section['pair']}"} | mission | {"relative humidity": humidities}
 
     def __repr__(self):
         facts = ", ".join(f"{name} {value}" for name, value in self.facts.items())

@@ -212,12 +212,6 @@ return [Math.min(1, ...alone.map(one => width(one) / whole)),
 LEVELS = "return [...document.querySelectorAll('h1, h2, h3, h4')].map(head => Number(head.tagName[1]))"
 
 
-@pytest.fixture(scope="module")
-def browser():
-    with Browser() as browser:
-        yield browser
-
-
 def page_of(run, device):
     return run / "results" / "devices" / f"{device}.html"
 
