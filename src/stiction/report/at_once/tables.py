@@ -16,8 +16,8 @@ from stiction.report.table import DEVICE, HUMIDITY, Table, table_stage, with_lis
 from stiction.stages.at_once.beside import CONFIDENCE, estimated
 
 _CAPTION = (
-    "Lengths at which a fraction sticks, by beam or tip: of the run with its standard error, and of `stiction "
-    "estimate`. One touchdown, no voltage, exact inputs, surfaces as stated."
+    "Lengths at which a fraction sticks, by beam or tip: of the run with its standard error, and of stiction "
+    "estimate. One touchdown, no voltage, exact inputs, surfaces as stated."
 )
 #: Title of the section.
 _TITLE = "The estimate at once beside the run"
