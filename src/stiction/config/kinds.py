@@ -27,7 +27,7 @@ COMMON = (
     "touchdowns",
     "conditions",
 )
-COMMON += ("voltage_V", "offset_V", "dielectric")
+COMMON += ("voltage_V", "offset_V", "dielectric", "shock_g")
 #: Keys that depend on the kind, what they are called and their unit.
 KEYS = {
     "thickness_um": ("thickness", "µm"),
@@ -140,6 +140,17 @@ class Kind:
             either = "either " if len(ways) > 1 else ""
             return f"must come with {either}{', or '.join(map(' and '.join, ways))}"
         return None
+
+    def unasked(self, device: Mapping) -> list[str]:
+        """Optional keys of devices that say nothing about one: those of other kinds, and all where it was measured.
+
+        Examples
+        --------
+        >>> KINDS["probe"].unasked({"radius_um": 5}), KINDS["probe"].unasked({"measured_nN": 80})
+        ([], ['electrode', 'mass_ng', 'voltage_V'])
+        """
+        asked = {"mass_ng", "electrode", "voltage_V"}
+        return sorted(asked if "measured_nN" in device else asked - set(self.allowed_keys))
 
     @property
     def has_short_strips(self) -> bool:

@@ -208,6 +208,13 @@ def thin_film(film: float) -> Limit | None:
     return Limit("thin_film", Side.EITHER, False, numbers={"film": film})
 
 
+def beyond_isotherm(measured: float, wettest: float) -> Limit | None:
+    """Wettest air in which an isotherm was measured, and that of some results. Films do not grow beyond it [-]."""
+    if wettest <= measured:
+        return None
+    return Limit("beyond_isotherm", Side.UNSAFE, False, numbers={"measured": measured, "wettest": wettest})
+
+
 def condensing(conditions: Sequence[Mapping[str, float]]) -> Limit | None:
     """Conditions of a device at or below their dew points. Both in °C, of those with a ``dew_point_C``."""
     found = [one for one in conditions if one.get("dew_point_C", -math.inf) >= one["temperature_C"]]

@@ -99,7 +99,7 @@ STAGES = (
             "plasticity_runs": "plasticity" in plan.studies,
             "not_modelled": plan.air.not_modelled((case.pair, case.humidity) for case in plan.cases),
             "surfaces": {pair: plan.scans.sides(pair) for pair in plan.pairs},
-            "assumed": plan.assumptions(*plan.pairs),
+            "assumed": plan.limits_of_pairs(),
         },
         compute=_of_pairs,
         save=save,

@@ -58,8 +58,8 @@ def _longer_strips(strip, longest, is_bridge):
 
 def _nothing_simulated(is_bridge, **strips):
     return (
-        f"{_longer_strips(**strips, is_bridge=is_bridge)}, by so much that nothing is simulated: all beams count as "
-        "stuck that surfaces could hold which are everywhere like their strongest patch, the safe side."
+        f"{_longer_strips(**strips, is_bridge=is_bridge)}, by so much that nothing is simulated: every beam "
+        "counts as stuck that a surface made of its strongest patch alone would hold (safe side)."
     )
 
 
@@ -233,6 +233,13 @@ def _solid_film(film):
     return (
         f"The film of water is {TO_NM * film:.2g} nm high, thinner than {LIQUID} molecules, which are no liquid. The "
         "answer is the worst of three airs: this one as if it had a liquid, the driest with a liquid film, and dry air."
+    )
+
+
+def _beyond_isotherm(measured, wettest):
+    return (
+        f"Air at RH {wettest:g} is wetter than the wettest of the isotherm, RH {measured:g}. Films grow there and "
+        "count as constant: this is the unsafe side. State water.isotherm up to this humidity."
     )
 
 
@@ -445,6 +452,7 @@ SENTENCES: dict[str, Callable[..., str]] = {
     "few_strips": _few_strips,
     "thin_film": _thin_film,
     "solid_film": _solid_film,
+    "beyond_isotherm": _beyond_isotherm,
     "condensing": _condensing,
     "supercooled": _supercooled,
     "no_water": _no_water,

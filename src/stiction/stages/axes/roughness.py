@@ -140,12 +140,12 @@ def curve_or_map(points: Sequence[xr.Dataset], surface: str, key: str, other: st
     if other:
         over, attrs = ["other", *over], attrs | {"other_key": other}
         rows, given = _rows_apart(rows), given | {"other_given": points[-1].other_given}
-    found = joined([point for row in rows for point in _apart(row)], *over).sortby(over)
-    found = found.assign(given).assign_attrs(attrs)
-    smoother = ROUGHNESSES[key].smooths * (found.roughness - found.given) > 0
+    curves = joined([point for row in rows for point in _apart(row)], *over).sortby(over)
+    curves = curves.assign(given).assign_attrs(attrs)
+    smoother = ROUGHNESSES[key].smooths * (curves.roughness - curves.given) > 0
     if other:
-        smoother = smoother | (ROUGHNESSES[other].smooths * (found.other - found.other_given) > 0)
-    return _with_tables(flagged(found, smoother))
+        smoother = smoother | (ROUGHNESSES[other].smooths * (curves.other - curves.other_given) > 0)
+    return _with_tables(flagged(curves, smoother))
 
 
 def _apart(row):
@@ -163,13 +163,13 @@ def _rows_apart(rows):
     return [[point.drop_vars("other_given") for point in row] for row in (rows[0], *apart)]
 
 
-def _with_tables(found):
+def _with_tables(curves):
     """Curve or map with its crossings of the requirement and its sufficient ranges, one after the other."""
-    scale = SCALES[ROUGHNESSES[found.attrs["key"]].scale]
-    axis = scale.place(found.roughness.values)
-    dimensions, crossed, ranges = [name for name in ("other", "humidity", "shape") if name in found.dims], [], []
-    for at in product(*(found[name].values for name in dimensions)):
-        curve = found.sel(dict(zip(dimensions, at, strict=True)))
+    scale = SCALES[ROUGHNESSES[curves.attrs["key"]].scale]
+    axis = scale.place(curves.roughness.values)
+    dimensions, crossed, ranges = [name for name in ("other", "humidity", "shape") if name in curves.dims], [], []
+    for at in product(*(curves[name].values for name in dimensions)):
+        curve = curves.sel(dict(zip(dimensions, at, strict=True)))
         met = crossings(axis, margins_of(curve), relative_errors(curve))
         crossed += [(*at, crossing.place, crossing.error) for crossing in met]
         ranges += [(*at, *ends) for ends in sufficient(axis, margins_of(curve, "safe"))]
@@ -177,7 +177,7 @@ def _with_tables(found):
     columns |= _columns("range", ranges, [*dimensions, "low", "high"])
     columns |= {name: scale.value(columns[name]) for name in ("crossing_place", "range_low", "range_high")}
     columns["crossing_error"] = scale.slope(columns["crossing_place"]) * columns["crossing_error"]
-    return found.assign({name: (name.partition("_")[0], column) for name, column in columns.items()})
+    return curves.assign({name: (name.partition("_")[0], column) for name, column in columns.items()})
 
 
 def _columns(table, rows, names):
@@ -186,12 +186,12 @@ def _columns(table, rows, names):
     return {f"{table}_{name}": np.array(column, str if name == "shape" else float) for name, column in columns}
 
 
-def curves_of(found: xr.Dataset) -> list[xr.Dataset]:
+def curves_of(curves: xr.Dataset) -> list[xr.Dataset]:
     """Curve of a device, or all curves of its map, each with its value of the second quantity as ``other``."""
-    if "other" not in found.dims:
-        return [found]
-    own = [{name: np.flatnonzero(found[f"{name}_other"] == value) for name in _TABLES} for value in found.other]
-    return [found.sel(other=value).isel(rows) for value, rows in zip(found.other.values, own, strict=True)]
+    if "other" not in curves.dims:
+        return [curves]
+    rows_of = [{name: np.flatnonzero(curves[f"{name}_other"] == value) for name in _TABLES} for value in curves.other]
+    return [curves.sel(other=value).isel(rows) for value, rows in zip(curves.other.values, rows_of, strict=True)]
 
 
 def _what(plan, at):
