@@ -77,7 +77,7 @@ class InAir:
     #: Expected fraction stuck, and ends of its band, at `Answer.sizes` (3, n) [-].
     curve: np.ndarray = field(default_factory=lambda: np.empty((3, 0)), compare=False)
     first: float = field(default=np.nan, compare=False)  #: size from which a lower end is known [m, N]
-    temperature: float = np.nan  #: of the water in a condition of the device, NaN elsewhere [K]
+    temperature: float = np.nan  #: of the water of a mission, NaN in dry air and without a mission [K]
 
 
 @dataclass(frozen=True)

@@ -492,6 +492,16 @@ def varied_surfaces_are_in_the_pair(config):
 
 
 @relation_of_names
+def varied_replicas_are_stated(config):
+    """Require a pair with a replica for a range of its coherence or play."""
+    for key in (key for key, quantity in ROUGHNESSES.items() if quantity.of_replica):
+        for name, _, pair in config.entries("devices", f"roughness.{key}", "pair"):
+            if "replica" not in config["pairs"].get(pair, {}):
+                message = f"must be left out, because pair {pair} has no replica; state replica: {{coherence: 0}}"
+                yield f"devices.{name}.roughness.{key}", message, f"devices.{name}.pair"
+
+
+@relation_of_names
 def varied_skewnesses_are_those_of_moments(config):
     """Require heights by their moments for a range of the skewness."""
     for name, surface, _ in config.entries("devices", "roughness.surface", "roughness.skewness"):
