@@ -84,6 +84,7 @@ CASES = [
     (limits.lengths_of_sizes, (0.004,), "err by 0.4% at sizes between these", (0.0,)),
     (limits.repeated_strips, (0.44, 1.5 * UM, False), "of 1.5 µm.* 0.44.* the safe side.$", (0, 1.5 * UM, False)),
     (limits.repeated_strips, (0.44, 1.5 * UM, True), "this is the unsafe side", (0, 1.5 * UM, True)),
+    (limits.strips_move_alone, (35 * NM,), "a play of 35 nm.*the unsafe side: state a device", (0.0,)),
     (limits.missed_accuracy, (0.03, 0.04, 0.02), "5 %, more than the 2 %.*more contact.samples", (0.01, 0.01, 0.02)),
     (limits.missed_accuracy, (0.03, float("nan"), 0.02), "is 3 %.*more design.beams", (0.01, float("nan"), 0.02)),
     (limits.stretched_bridge, (2 * UM, 2 * UM), "gap is equal to the thickness of", (0.9 * UM, 2 * UM)),

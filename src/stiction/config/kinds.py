@@ -27,7 +27,7 @@ COMMON = (
     "touchdowns",
     "conditions",
 )
-COMMON += ("voltage_V", "offset_V", "dielectric")
+COMMON += ("voltage_V", "offset_V", "dielectric", "shock_g")
 #: Keys that depend on the kind, what they are called and their unit.
 KEYS = {
     "thickness_um": ("thickness", "µm"),
@@ -49,18 +49,22 @@ KEYS = {
 
 
 class Roughness(NamedTuple):
-    """Varied quantity of a surface, the axis of a computation."""
+    """Varied quantity of a surface, or of one that follows another, the axis of a computation."""
 
     words: str  #: what it is called
     unit: str  #: with a space before it; empty without a unit
-    logarithmic: bool  #: whether its values are spaced by equal factors
+    scale: str  #: of `stiction.devices.roughness.SCALES`, in which its values are evenly spaced
+    smooths: int = 0  #: sign of a change that makes the sum of both surfaces smoother, zero where neither does
+    of_replica: bool = False  #: whether it is one of key ``replica`` of the pair
 
 
 #: Quantities of section ``roughness`` by their keys.
 ROUGHNESSES = {
-    "rms_nm": Roughness("rms", " nm", True),
-    "skewness": Roughness("skewness", "", False),
-    "corner_rad_per_um": Roughness("corner of the spectrum", " rad/µm", True),
+    "rms_nm": Roughness("rms", " nm", "log", -1),
+    "skewness": Roughness("skewness", "", "linear"),
+    "corner_rad_per_um": Roughness("corner of the spectrum", " rad/µm", "log"),
+    "coherence": Roughness("coherence", "", "rest", 1, of_replica=True),
+    "play_nm": Roughness("play", " nm", "linear", -1, of_replica=True),
 }
 
 
@@ -136,6 +140,17 @@ class Kind:
             either = "either " if len(ways) > 1 else ""
             return f"must come with {either}{', or '.join(map(' and '.join, ways))}"
         return None
+
+    def unasked(self, device: Mapping) -> list[str]:
+        """Optional keys of devices that say nothing about one: those of other kinds, and all where it was measured.
+
+        Examples
+        --------
+        >>> KINDS["probe"].unasked({"radius_um": 5}), KINDS["probe"].unasked({"measured_nN": 80})
+        ([], ['electrode', 'mass_ng', 'voltage_V'])
+        """
+        asked = {"mass_ng", "electrode", "voltage_V"}
+        return sorted(asked if "measured_nN" in device else asked - set(self.allowed_keys))
 
     @property
     def has_short_strips(self) -> bool:

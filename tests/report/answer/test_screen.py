@@ -327,3 +327,9 @@ def test_nearly_all_is_not_rounded_to_all(fraction):
         assert shown < 100
         digits = 100 * min(fraction, 1 - fraction) if fraction > 0.99 else 100 * fraction
         assert shown == pytest.approx(100 * fraction, abs=0.05 * digits)  # half of a step of two digits
+
+
+def test_nothing_is_to_change_where_a_force_was_measured():
+    answer = stopper_answer(stopper_dataset())
+    assert screen_of(answer, STOPPER).points["What to change"].startswith("A restoring force of")
+    assert "What to change" not in screen_of(answer, STOPPER | {"measured_nN": 80}).points

@@ -16,6 +16,7 @@ from answers import (
     STOPPER,
     STOPPERS,
     TIPS,
+    beam_answer,
     beam_page,
     budget_dataset,
     least,
@@ -299,3 +300,19 @@ def test_the_page_does_not_say_again_what_its_first_screen_says():
     assert screen == f"{page.summary.sign}: {page.summary.answer}"
     assert said[len(page.summary.basis) + len(page.summary.points) :] == page.answer
     assert page.summary.answer not in page.more
+
+
+def test_the_facts_of_a_mission_name_all_its_conditions_and_its_table_has_no_dash():
+    conditions = [{"temperature_C": 12, "dew_point_C": 10}, {"temperature_C": 85, "humidity": 0.0}]
+    mission = CANTILEVER | {"humidities": [0.0, 0.67], "conditions": conditions}
+    lengths = {0.0: of_length(300e-6), 0.67: of_length(300e-6)}
+    plain = beam_answer(mission, lengths)
+    airs = [replace(one, temperature=293.15 if one.humidity else np.nan) for one in plain.airs]
+    found = replace(plain, airs=tuple(airs))
+    page = beam_page(mission, lengths, answer=found)
+    assert page.facts["conditions"] == "12 °C at a dew point of 10 °C: RH 0.8755; 85 °C: dry"
+    assert [str(cell) for cell in page.summary.cells["°C"]] == ["any", "20"]
+    assert not page.summary.has_missing
+    without = beam_page(CANTILEVER, {0.67: of_length(300e-6)})
+    assert "conditions" not in without.facts
+    assert "°C" not in without.summary.cells

@@ -96,6 +96,11 @@ def repeated_strips(repetition: float, strip: float, learns: bool) -> Limit | No
     return Limit(kind, side, False, numbers={"repetition": repetition, "strip": strip})
 
 
+def strips_move_alone(play: float) -> Limit | None:
+    """Strips of the beams of a pair that each draw an offset, with a play [m], where a beam moves as one body."""
+    return Limit("strips_move_alone", Side.UNSAFE, False, numbers={"play": play}) if play else None
+
+
 def missed_accuracy(of_beams: float, of_surfaces: float, asked: float) -> Limit | None:
     """Relative errors of a length, by beams and by sampled surfaces, NaN without one, beyond the asked accuracy."""
     parts = {"design.beams": of_beams, "contact.samples": of_surfaces}

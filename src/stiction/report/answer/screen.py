@@ -21,7 +21,8 @@ def screen(answer: Answer, section: Mapping[str, Any], forbidding: Sequence[str]
     Its section of the configuration, the sentences of the limits that forbid a number, and one on the error of the
     model.
     """
-    points = {"What decides": words.decides(answer), "What to change": change(answer, section)}
+    points = {"What decides": words.decides(answer)}
+    points |= {} if "measured_nN" in section else {"What to change": change(answer, section)}
     points["What to measure"] = words.measure(answer)
     cells = pd.DataFrame(words.of_airs(answer))
     if words.is_forbidden(answer):

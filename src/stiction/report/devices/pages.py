@@ -12,6 +12,7 @@ import xarray as xr
 from stiction.answer.data import Answer
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
 from stiction.config.merging import differing
+from stiction.config.mission.conditions import CONDITIONS
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured
 from stiction.contact.air import DRY, Air
@@ -21,6 +22,7 @@ from stiction.report import drawings, html
 from stiction.report.answer import figures as figures_answer
 from stiction.report.answer import judged, screen
 from stiction.report.answer import tables as tables_answer
+from stiction.report.at_once import tables as tables_at_once
 from stiction.report.axes import figures as figures_axes
 from stiction.report.axes import roughness as sentences_roughness
 from stiction.report.axes import section as process_section
@@ -29,7 +31,7 @@ from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import curve_views, explorer, life
 from stiction.report.devices.parts import GLOSSARY, OF_RELEASE, terms
-from stiction.report.format import MISSING, humidity_text
+from stiction.report.format import MISSING, conditions_in_words, humidity_text
 from stiction.report.limits.words import not_modelled, texts
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
@@ -39,6 +41,7 @@ from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import provenance
 from stiction.run.atomic import save_text
+from stiction.stages.axes.roughness import OF_COPIES
 from stiction.stages.contact.adhesion_parameter import adhesion_parameters
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budgets_of
@@ -47,7 +50,7 @@ from stiction.stages.devices.results import is_biased
 
 #: What a map over two quantities shows.
 _OF_MAPS = (
-    "Blue: the requirement is met, by the factor of which the decimal logarithm is shown. Solid line: the estimate "
+    "Blue: the requirement is met. Colours show log10 of the margin. Solid line: the estimate "
     "meets it; dashed: the simulated limit does. Dots: computed points; cross: the surface as it is given.",
 )
 #: Why a table of a budget has cells without a number.
@@ -117,6 +120,8 @@ def _facts_of(section):
         facts[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
     if "tip_edge" in section:
         facts["edge of the tip"] = section["tip_edge"]
+    if CONDITIONS in section:
+        facts["conditions"] = conditions_in_words(section[CONDITIONS])
     name = "relative humidities" if len(section["humidities"]) > 1 else "relative humidity"
     facts[name] = ", ".join(map(humidity_text, section["humidities"]))
     return facts | _requirement(section)
@@ -179,7 +184,8 @@ def _how_rough(name, roughness):
     cells = tables_axes.of_roughness({name: roughness}).cells.drop(columns="device")
     of_map = "other" in roughness.dims
     said = [*sentences_roughness.answers(roughness), sentences_roughness.form(roughness)]
-    sections = [Section("How rough must it be?", said, cells, figures_axes.roughness(roughness))]
+    asked = "How closely may it follow?" if roughness.key in OF_COPIES else "How rough must it be?"
+    sections = [Section(asked, said, cells, figures_axes.roughness(roughness))]
     if of_map:
         sections.append(Section("Over two quantities", _OF_MAPS, None, figures_axes.roughness_map(roughness)))
     return sections
@@ -205,7 +211,7 @@ def _inputs(plan, at):
     own |= {"warnings": device_warnings.files_of(at.device)[at.device]} | model_errors.error_inputs(plan, at.device)
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
-    own |= process_section.inputs(plan, at.device)
+    own |= process_section.inputs(plan, at.device) | tables_at_once.inputs(plan, at.device)
     own |= {"style": File(STYLE), "templates": [File(GLOSSARY), *html.files(TEMPLATE), *drawings.FILES]}
     return own | _of_release(section).inputs(plan, at.device)
 
@@ -242,6 +248,7 @@ def _page(data, at, settings):
     page, views = device_page(at.device, settings, data, answer), _of_release(settings).views
     views = [*views(at.device, settings, data, answer), *curve_views.views(at.device, settings, data)]
     page = process_section.with_process(with_life(page, at.device, data["life"], answer), at.device, data)
+    page = tables_at_once.with_estimate(page, data)
     return replace(
         page,
         not_modelled=not_modelled(**settings["not_modelled"]),
