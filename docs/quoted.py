@@ -41,7 +41,7 @@ def numbers(tables):
     """All numbers, from a dict of the name of each table to its frame."""
     texts = crack_lengths(tables["table_3"]) | deviations(tables["table_3"]) | energies(tables["table_3"])
     texts |= supplement(tables) | finer(tables["print_finer"])
-    texts |= statements(tables["table_3"], tables["variants"])
+    texts |= statements(tables["table_3"], tables["variants"]) | statements_of_studies(tables)
     texts |= intervals(tables["table_3"]) | printed(tables["print"], tables["print_studies"])
     texts |= surfaces(tables["table_1"]) | identification(tables["table_2"]) | fits(tables["fit_quality"])
     texts |= (
@@ -287,6 +287,29 @@ def statements(table_3, variants):
         energies = TO_MJ * apparent_adhesion_energy(np.array([longest, shortest]) / TO_UM, beam)
         texts[f"printed_energies_c{name}"] = "{:.2g} to {:.2g}".format(*energies)
     return texts
+
+
+def statements_of_studies(tables):
+    """What our studies say about statements of the paper.
+
+    ``radius_B2_NG``: mean radius of the summits of B2 with its heights, ``…_G`` with Gaussian ones [µm];
+    ``slope_rms_dry``, ``…_wet``: slope of ln ē over the rms in the driest and wettest air, and so on; ``off_a``: mean
+    deviation from measured lengths [%], ``off_b_088`` that of one; ``without_vdw_least``, ``…_most``: how much less ē
+    is without van der Waals forces [%]; ``gamma_a_060``: Γ/2γ [%].
+    """
+    surfaces, slopes, variants = (tables[name] for name in ("table_1", "sensitivity", "variants"))
+    radii = surfaces[surfaces.surface == "B2"].set_index("column").mean_summit_radius_um
+    texts = {f"radius_B2_{model}": f"{radii[model]:.2f}" for model in ("NG", "G")}
+    for moment, rows in slopes[slopes.statistic == "mean"].groupby("moment"):
+        ends = rows.sort_values("relative_humidity").slope.values
+        texts |= {f"slope_{moment}_dry": f"{ends[0]:.2g}", f"slope_{moment}_wet": f"{ends[-1]:.2g}"}
+    known = tables["table_3"].query("model == 'NG' and experiment_um.notna()").set_index(["pair", "relative_humidity"])
+    off = 100 * np.abs(known.crack_length_um / known.experiment_um - 1)
+    texts |= {f"off_{pair}": f"{mean:.2g}" for pair, mean in off.groupby("pair").mean().items()}
+    without = -variants[variants.variant == "van_der_waals_none"].meso_energy_shift_percent
+    texts |= {"without_vdw_least": f"{without.min():.2g}", "without_vdw_most": f"{without.max():.2g}"}
+    shares = tables["supplement_shares"].set_index(["pair", "RH"])["Γ/2γ [%]"]
+    return texts | {"off_b_088": f"{off['b', 0.88]:.2g}", "gamma_a_060": f"{shares['a', 0.6]:.2g}"}
 
 
 def trends(models):
