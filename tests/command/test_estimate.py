@@ -101,7 +101,7 @@ def test_more_touchdowns_need_shorter_beams_and_a_stated_length_has_a_probabilit
     assert often[100][0] == pytest.approx(once[1000][0], rel=0.01)  # 1 in 100 after ten is 1 in 1000 at each
     _, lines = said(capsys, *OPTIONS, f"--length={once[1000][0]}")
     (stuck,) = [line for line in lines if "% stick (95 %:" in line]
-    value, low, high = map(float, re.findall(r"[\d.]+", stuck.partition(",")[2].replace("95 %", ""))[:3])
+    value, low, high = map(float, re.findall(r"[\d.]+", stuck.partition(",")[2].replace("(95 %", ""))[:3])
     assert value == pytest.approx(0.1, rel=0.3)  # percent; the length has three digits
     assert low <= value <= high
 

@@ -26,8 +26,6 @@ CHOSEN = FRACTIONS[2]
 #: Confidences of the intervals, and quantiles of Student's distribution with three degrees of freedom for them.
 CONFIDENCES = ("90", "95")
 _STUDENT = {"90": 2.353363, "95": 3.182446}
-#: ASSUME: least difficulty, where all tips are alike.
-_ROUNDING = 0.02
 
 
 @dataclass(frozen=True)
@@ -122,9 +120,12 @@ class InAir:
         return Row(fraction, self.length(score), ends)
 
 
-def difficulty(slope: float) -> float:
-    """Size of errors of a length [-], from the slope of its logarithm by the normal score: few tips differ, too."""
-    return slope + _ROUNDING
+def difficulty(slope: float, rest: float) -> float:
+    """Size of errors of a length [-], in any unit.
+
+    From the slope of its logarithm by the normal score, because few tips differ, and a rest where all tips are alike.
+    """
+    return math.hypot(slope, rest)
 
 
 def _margin(table, confidence, score, slope):
@@ -132,7 +133,7 @@ def _margin(table, confidence, score, slope):
 
     ASSUME: beyond the score that was tested, it grows in proportion to the score.
     """
-    return table["margins"][confidence] * difficulty(slope) * max(1.0, score / table["tested_score"])
+    return table["margins"][confidence] * difficulty(slope, table["rest"]) * max(1.0, score / table["tested_score"])
 
 
 def _worst(rows):

@@ -1,24 +1,28 @@
 """Errors of the estimate on surfaces that were not learnt, and the intervals that follow from them."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import islice
 from pathlib import Path
-from typing import Any
 
 import numpy as np
+from scipy.optimize import minimize_scalar
+from scipy.stats import beta
 
 from stiction.estimate.answer import difficulty
-from stiction.estimate.length import NAMES, SCORES, Lengths, NotLearnt, lengths, most
+from stiction.estimate.design import Point
+from stiction.estimate.length import NAMES, Lengths, NotLearnt, lengths
 from stiction.estimate.rows import of_tips, states_of, stored
 from stiction.estimate.table import Process
 from stiction.estimate.training import FACTORS
 
+#: Numbers between which the rest of `stiction.estimate.answer.difficulty` is found.
+_RESTS = 1e-3, 1.0
+
 
 @dataclass(frozen=True)
 class Tested:
-    """Length of a state that was not learnt, by its tips and by the estimate."""
+    """Length of a surface that was not learnt, by its tips in full contact as of a run and by the estimate."""
 
     surface: int
     slope: float  #: of the estimate, NaN where it refuses
@@ -26,30 +30,37 @@ class Tested:
     estimate: float  #: NaN where the estimate refuses [m]
 
     @property
+    def is_known(self) -> bool:
+        """Whether the estimate does not refuse."""
+        return not math.isnan(self.estimate)
+
+    @property
     def error(self) -> float:
         """Logarithm of the true length over the estimate."""
         return math.log(self.true / self.estimate)
 
-    @property
-    def score(self) -> float:
-        """Error over its difficulty."""
-        return abs(self.error) / difficulty(self.slope)
+    def score(self, rest: float) -> float:
+        """Size of the error over its difficulty."""
+        return abs(self.error) / difficulty(self.slope, rest)
 
 
-def tested(folder: Path, sets: str, table: Mapping[str, Any], score: float, changed: bool) -> Iterator[Tested]:
-    """Lengths of some sets at a normal score up to -2, on summits alone, or in the first air by full contact."""
-    tips, full = Process(**table["tips"]), Process(**table["full"]) if changed else None
+#: Processes of tips on summits and in full contact that have not learnt a point.
+Processes = Callable[[Point], tuple[Process, Process]]
+
+
+def tested(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
+    """Lengths of some sets at a normal score up to -2, in the first air, by the full contact that settles."""
     for point, numbers in stored(folder, sets):
-        airs = zip(states_of(point, numbers["airs"], table["modulus"]), numbers["slopes"], strict=True)
-        for states, slopes in islice(airs, 1 if changed else None):
-            own = [_of_tips(each) for each in slopes]
-            true = _at_stiffness(own, math.log(_change_of(numbers, own[1]))) if changed else own[1]
-            try:
-                found = lengths(states[1], 1.0, tips, full)
-            except NotLearnt:
-                yield Tested(point.number, math.nan, true.at(score), math.nan)
-            else:
-                yield Tested(point.number, found.slope, true.at(score), found.at(score))
+        if "changed" not in numbers or not np.isfinite(numbers["changed"]).all():
+            continue
+        state = states_of(point, numbers["airs"][:1], modulus)[0][FACTORS.index(1.0)]
+        true = _of_tips(numbers["changed"]).at(score)
+        try:
+            found = lengths(state, 1.0, *processes(point))
+        except NotLearnt:
+            yield Tested(point.number, math.nan, true, math.nan)
+        else:
+            yield Tested(point.number, found.slope, true, found.at(score))
 
 
 def _of_tips(slopes):
@@ -59,19 +70,20 @@ def _of_tips(slopes):
     return Lengths(tuple(logarithms), quantities["slope"])
 
 
-def _change_of(numbers, own):
-    """Factor of the attraction by the own full contact of a point, at the slope of its own tips."""
-    ratios = np.log(numbers["full"].mean(axis=0) / numbers["summits"].mean(axis=0))
-    slope = math.log(1.5 / own.at(SCORES[-1]))
-    return most(math.exp(np.interp(slope, np.log(numbers["slope"]), ratios)), own.slope)
+def rest_of(found: Sequence[Tested]) -> float:
+    r"""Rest r of the difficulty, of greatest likelihood where errors are normal with a scatter in proportion to it.
 
+    It minimises :math:`\frac 1 2 \ln \overline{(\epsilon / d)^2} + \overline{\ln d}`, with :math:`d^2 = s^2 + r^2`.
+    """
+    slopes, errors = np.array([(one.slope, one.error) for one in found if one.is_known]).T
 
-def _at_stiffness(own, change):
-    """Lengths under a change of the attraction, which acts as a change of the stiffness between those computed."""
-    at = np.log(FACTORS)
-    columns = np.array([[*each.logarithms, each.slope] for each in own]).T
-    *logarithms, slope = (float(np.interp(-change, at, column)) for column in columns)
-    return Lengths(tuple(logarithms), slope)
+    def cost(logarithm):
+        """Negative logarithm of the likelihood of one error, the scatter at its best."""
+        of_all = np.hypot(slopes, math.exp(logarithm))
+        return 0.5 * np.log(np.mean((errors / of_all) ** 2)) + np.log(of_all).mean()
+
+    ends = tuple(map(math.log, _RESTS))
+    return math.exp(minimize_scalar(cost, bounds=ends, method="bounded").x)
 
 
 def conformal(errors: np.ndarray, confidence: float) -> float:
@@ -80,7 +92,19 @@ def conformal(errors: np.ndarray, confidence: float) -> float:
     return float(np.sort(np.abs(errors))[rank - 1]) if rank <= len(errors) else math.inf
 
 
-def by_surface(found: Sequence[Tested]) -> np.ndarray:
-    """Largest error over its difficulty on each surface that the estimate does not refuse."""
-    known = [one for one in found if not math.isnan(one.estimate)]
-    return np.array([max(one.score for one in known if one.surface == k) for k in {one.surface for one in known}])
+def scores(found: Sequence[Tested], rest: float) -> np.ndarray:
+    """Sizes of errors over their difficulties on the surfaces that the estimate does not refuse."""
+    return np.array([one.score(rest) for one in found if one.is_known])
+
+
+def coverage(inside: int, number: int, confidence: float = 0.95) -> tuple[float, float]:
+    """Ends of the share inside, from the number of surfaces inside: C. J. Clopper, E. S. Pearson, Biometrika 26, 404.
+
+    Examples
+    --------
+    >>> [round(end, 3) for end in coverage(9, 10)]
+    [0.555, 0.997]
+    """
+    tail, out = (1 - confidence) / 2, number - inside
+    low = float(beta.ppf(tail, inside, out + 1)) if inside else 0.0
+    return low, float(beta.ppf(1 - tail, inside + 1, out)) if out else 1.0

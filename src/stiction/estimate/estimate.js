@@ -79,7 +79,8 @@ function scoreOf({logarithms: [first, second, third], slope}, length) {
 function change(state, found, gap, table) {
   const slope = 1.5 * gap / lengthAt(found, -2);
   const ratio = Math.exp(known(table.full, {...state, stiffness: 13.5 * state.film.energy / slope ** 4}, table.coordinates).ratio);
-  const scatter = 3.5 * found.slope, ofMeans = 1.22 * scatter * Math.sqrt(1 / 8 + 1 / 64);
+  const scatter = 4 * (found.logarithms[0] - found.logarithms[2]) / 2;
+  const ofMeans = 1.17 * Math.sqrt(Math.expm1(scatter ** 2) * (1 / 7 + 1 / 63));
   return ratio * Math.exp(1.645 * Math.hypot(ofMeans, 0.1 * scatter * Math.max(3.09 - scatter, 0)));
 }
 function lengths(state, gap, table) {
@@ -131,7 +132,7 @@ function withoutVoltage(length, drive) {
 // answer
 const FRACTIONS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], STUDENT = {90: 2.353363, 95: 3.182446};
 function margin(table, confidence, score, slope) {
-  return table.margins[confidence] * (slope + 0.02) * Math.max(1, score / table.tested_score);
+  return table.margins[confidence] * Math.hypot(slope, table.rest) * Math.max(1, score / table.tested_score);
 }
 function centre(one, score) {
   if (!one.members.length) return [Math.log(lengthAt(one.stated, score)), 0];

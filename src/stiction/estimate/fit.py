@@ -6,9 +6,10 @@ coefficients minimise
 .. math:: |y - B a - K w|^2 / \sigma^2 + w^T M w .
 
 Lengths of the kernel maximise the likelihood of one row of each surface, because rows of one surface err together. The
-noise σ of all rows is that with the least error on surfaces that are left out.
+noise σ of all rows is that with the least weighted error on surfaces that are left out.
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -18,9 +19,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import minimize
 
 #: Nodes, groups of surfaces that are left out in turn, and noises among which they decide, over that of one row.
-NODES, FOLDS, NOISES = 450, 6, (1.0, 3.0, 6.0, 12.0)
-#: Share of distances of surfaces that were left out, from the nearest node, up to which the process is trusted.
-TRUSTED = 0.99
+NODES, FOLDS, NOISES = 450, 7, (1.0, 3.0, 6.0, 12.0)
 #: ASSUME: so far beyond the design, in scatters of a coordinate, the process is trusted if a node is near.
 BEYOND = 0.5
 #: Digits of the numbers of the table.
@@ -128,46 +127,31 @@ def coefficients(kernel: Kernel, rows: Rows, nodes: np.ndarray) -> dict[str, tup
     return {name: (each[:t], each[t:]) for name, each in found.items()}
 
 
-def predicted(kernel: Kernel, nodes: np.ndarray, found: Mapping[str, Any], at: np.ndarray) -> dict[str, np.ndarray]:
-    """Quantities at coordinates (n, c)."""
-    z = kernel.standard(at)
-    b, k = terms(z), kernel.between(z, nodes)
-    return {name: b @ trend + k @ weights for name, (trend, weights) in found.items()}
+@dataclass(frozen=True)
+class Fitted:
+    """Process that is fitted to rows, with those that are fitted without some surfaces."""
+
+    content: dict[str, Any]  #: for the table
+    without: tuple[dict[str, Any], ...]  #: contents without the surfaces of each group
+    errors: dict[str, np.ndarray]  #: of all quantities on rows whose surface is left out (n,)
+
+    @property
+    def scatter(self) -> dict[str, float]:
+        """Scatter of the errors by quantity."""
+        return {name: float(np.std(errors)) for name, errors in self.errors.items()}
 
 
-def left_out(kernel: Kernel, rows: Rows, number: int) -> tuple[dict[str, np.ndarray], np.ndarray]:
-    """Errors of all rows when their surface is left out, and their distances from the nearest node (n,)."""
-    errors = {name: np.empty(len(rows.surface)) for name in rows.values}
-    distances = np.empty(len(rows.surface))
-    for fold in range(FOLDS):
-        out = rows.surface % FOLDS == fold
-        kept, at = rows.of(~out), rows.coordinates[out]
-        z = kernel.standard(kept.coordinates)
-        nodes = z[nodes_of(kernel, z, number)]
-        values = predicted(kernel, nodes, coefficients(kernel, kept, nodes), at)
-        for name, value in values.items():
-            errors[name][out] = rows.values[name][out] - value
-        distances[out] = np.sqrt(np.maximum(kernel.squares(kernel.standard(at), nodes), 0).min(axis=1))
-    return errors, distances
+def group(surface: Any) -> Any:
+    """Group of a surface, or of some (n,), by its number. Those of a group are left out together."""
+    return surface % FOLDS
 
 
-def fitted(
-    rows: Rows, name: str, columns: Sequence[int], number: int = NODES
-) -> tuple[dict[str, Any], dict[str, float]]:
-    """Content of a process for the table, and errors of all quantities on surfaces that are left out.
-
-    The quantity with this name decides the kernel, over some columns of the coordinates.
-    """
-    rows = replace(rows, coordinates=rows.coordinates[:, columns])
-    start = kernel_of(rows, name)
-    kernels = [Kernel(start.centre, start.scale, start.lengths, start.noise * factor) for factor in NOISES]
-    tried = [left_out(kernel, rows, number) for kernel in kernels]
-    best = int(np.argmin([np.std(errors[name]) for errors, _ in tried]))
-    kernel, (errors, distances) = kernels[best], tried[best]
+def content_of(kernel: Kernel, rows: Rows, columns: Sequence[int], number: int) -> dict[str, Any]:
+    """Content of a process over rows of some columns of the coordinates, that is trusted at every distance."""
     z = kernel.standard(rows.coordinates)
     nodes = z[nodes_of(kernel, z, number)]
     found = coefficients(kernel, rows, nodes)
-    content = {
+    return {
         "columns": list(columns),
         "centre": kernel.centre,
         "scale": kernel.scale,
@@ -177,9 +161,40 @@ def fitted(
         "weights": {key: weights for key, (_, weights) in found.items()},
         "low": rows.coordinates.min(axis=0) - BEYOND * kernel.scale,
         "high": rows.coordinates.max(axis=0) + BEYOND * kernel.scale,
-        "farthest": float(np.quantile(distances, TRUSTED)),
+        "farthest": math.inf,
     }
-    return rounded(content), {key: float(np.std(error)) for key, error in errors.items()}
+
+
+def predicted(kernel: Kernel, content: Mapping[str, Any], at: np.ndarray) -> tuple[dict[str, np.ndarray], np.ndarray]:
+    """Quantities of a process at coordinates, and their distances from the nearest node (n,)."""
+    z, nodes = kernel.standard(at), content["nodes"] * kernel.lengths
+    b, k = terms(z), kernel.between(z, nodes)
+    values = {name: b @ trend + k @ content["weights"][name] for name, trend in content["trend"].items()}
+    return values, np.sqrt(np.maximum(kernel.squares(z, nodes), 0).min(axis=1))
+
+
+def left_out(kernel: Kernel, rows: Rows, columns: Sequence[int], number: int) -> Fitted:
+    """Process that is trusted up to the farthest row when its surface is left out."""
+    errors = {name: np.empty(len(rows.surface)) for name in rows.values}
+    without, farthest = [], 0.0
+    for fold in range(FOLDS):
+        out = group(rows.surface) == fold
+        without.append(content_of(kernel, rows.of(~out), columns, number))
+        values, distances = predicted(kernel, without[-1], rows.coordinates[out])
+        farthest = max(farthest, float(distances.max()))
+        for name, value in values.items():
+            errors[name][out] = rows.values[name][out] - value
+    content = content_of(kernel, rows, columns, number) | {"farthest": farthest}
+    return Fitted(rounded(content), tuple(without), errors)
+
+
+def fitted(rows: Rows, name: str, columns: Sequence[int], number: int = NODES) -> Fitted:
+    """Process over some columns of the coordinates. The quantity with this name decides the kernel."""
+    rows = replace(rows, coordinates=rows.coordinates[:, columns])
+    start = kernel_of(rows, name)
+    kernels = [Kernel(start.centre, start.scale, start.lengths, start.noise * factor) for factor in NOISES]
+    tried = [left_out(kernel, rows, columns, number) for kernel in kernels]
+    return min(tried, key=lambda one: np.std(rows.weights * one.errors[name]))
 
 
 def rounded(content: Any) -> Any:

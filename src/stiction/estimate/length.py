@@ -15,8 +15,10 @@ NAMES = ("at_0", "at_1", "at_2", "slope")
 #: Confidence with which tips count as held harder than full contact of few strips says, in standard errors.
 _AT_MOST = 1.645
 #: Strips of a run in full contact and on summits, half of two standard errors of Student's t of them, error of their
-#: power, and normal score of the largest tips: `stiction.stages.contact.tips_in_full_contact`.
-_FULL, _SUMMITS, _STUDENT, _POWER_ERROR, _LARGEST = 8, 64, 1.22, 0.1, 3.09
+#: power, and normal score of the largest tips: `stiction.analysis.model_error.few_tip_ratios`.
+_FULL, _SUMMITS, _STUDENT, _POWER_ERROR, _LARGEST = 8, 64, 1.17, 0.1, 3.09
+#: Scatter of the logarithm of P over that of the length. ASSUME: P falls as θ⁻¹ as that of smooth tips, the safe side.
+_OF_FORCES = 4.0
 
 
 @dataclass(frozen=True)
@@ -25,6 +27,11 @@ class Lengths:
 
     logarithms: tuple[float, float, float]  #: of the length [m] at `SCORES`
     slope: float  #: by the normal score below the last one
+
+    @property
+    def fall(self) -> float:
+        """Fall of the logarithm from the median to the last score, by the normal score."""
+        return (self.logarithms[0] - self.logarithms[-1]) / (SCORES[0] - SCORES[-1])
 
     def at(self, score: float) -> float:
         """Length at a normal score up to the first one [m]."""
@@ -92,16 +99,13 @@ def change(state: State, found: Lengths, gap: float, full: Process) -> float:
     """Factor of the attraction of tips by full contact, as a run applies it."""
     slope = 1.5 * gap / found.at(SCORES[-1])
     at_slope = replace(state, stiffness=13.5 * state.film.energy / slope**4)  # flooded flats hold up to this slope
-    return most(math.exp(_known(full, at_slope)["ratio"]), found.slope)
+    return most(math.exp(_known(full, at_slope)["ratio"]), found.fall)
 
 
-def most(ratio: float, slope: float) -> float:
-    """Upper end of a ratio of the means of few tips, which a run applies, from the slope of the lengths.
-
-    ASSUME: P grows as 1/√θ, between that of a smooth tip and a constant one, so that ln P scatters 3.5 times as ln L.
-    """
-    scatter = 3.5 * slope
-    of_means = _STUDENT * scatter * math.sqrt(1 / _FULL + 1 / _SUMMITS)
+def most(ratio: float, fall: float) -> float:
+    """Upper end of a ratio of the means of few tips, which a run applies, from the `Lengths.fall` of the lengths."""
+    scatter = _OF_FORCES * fall
+    of_means = _STUDENT * math.sqrt(math.expm1(scatter**2) * (1 / (_FULL - 1) + 1 / (_SUMMITS - 1)))
     error = math.hypot(of_means, _POWER_ERROR * scatter * max(_LARGEST - scatter, 0.0))
     return ratio * math.exp(_AT_MOST * error)
 

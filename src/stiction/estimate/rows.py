@@ -57,8 +57,6 @@ def rows_of_tips(folder: Path, name: str, modulus: float) -> Rows:
     """Rows of all tips of a set on summits."""
     coordinates, values, surface, noise = [], [], [], []
     for point, numbers in stored(folder, name):
-        if "slopes" not in numbers:
-            continue
         for states, slopes in zip(states_of(point, numbers["airs"], modulus), numbers["slopes"], strict=True):
             for state, of_beam in zip(states, slopes, strict=True):
                 coordinates.append(state.coordinates)
@@ -74,7 +72,10 @@ OF_FULL = (0, 1, 2, 6, 8)
 
 
 def rows_of_full(folder: Path, name: str, modulus: float) -> Rows:
-    """Rows of the logarithm of the change of tips by full contact, at three slopes of some points."""
+    """Rows of the logarithm of the change of tips by full contact, at three slopes of some points.
+
+    Their noise is in proportion to the scatter on summits, of which there are more strips.
+    """
     coordinates, values, surface, noise = [], [], [], []
     for point, numbers in stored(folder, name):
         if "slope" not in numbers or not np.isfinite(numbers["full"]).all():
@@ -82,9 +83,7 @@ def rows_of_full(folder: Path, name: str, modulus: float) -> Rows:
         film = states_of(point, numbers["airs"], modulus)[0][1].film
         full, summits = numbers["full"], numbers["summits"]
         ratios = np.log(full.mean(axis=0) / summits.mean(axis=0))
-        noise += np.hypot(
-            *(each.std(axis=0) / each.mean(axis=0) / len(each) ** 0.5 for each in (full, summits))
-        ).tolist()
+        noise += (summits.std(axis=0) / summits.mean(axis=0)).tolist()
         for slope, ratio in zip(numbers["slope"], ratios, strict=True):
             state = State(of_pair(point.sides), film, 13.5 * film.energy / slope**4, to_si(point.width, "um"), modulus)
             coordinates.append(state.coordinates)

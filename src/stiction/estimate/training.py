@@ -1,4 +1,4 @@
-"""Contacts of the design: steepest slopes at which tips stick, and full contact of some of them, as devices compute it.
+"""Contacts of the design: slopes up to which tips stick, and full contact that changes some of them as a run does.
 
 Every point is a file, so that a stopped run goes on where it was:
 
@@ -13,10 +13,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from stiction.analysis.model_error import few_tip_ratios
 from stiction.config.cases import Case, case_id
 from stiction.config.files import load
 from stiction.config.units import from_si, in_si, to_si
 from stiction.contact import meniscus
+from stiction.contact.correction import NONE, Change, Correction, TipChanges
 from stiction.contact.environment import Water
 from stiction.devices.arcs import longest_free, tip_slope
 from stiction.estimate.design import Law, Point, points, states
@@ -27,6 +29,7 @@ from stiction.progress import without_progress
 from stiction.run.atomic import replacing
 from stiction.stages.contact import contact, curves, tips_in_full_contact
 from stiction.stages.contact.changes.patches import TIPS
+from stiction.stages.contact.pair_model_error import POWER_ERROR
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices.contact_names import patch_of_tips
 from stiction.stages.devices.opening import DesignedBeam, section_of_beam
@@ -48,11 +51,11 @@ class Effort:
     points: int
     seed: int
     law: Law
-    tips: int  #: at least, 0 for full contact alone
+    tips: int  #: at least
     tips_by_width: float  #: width of more tips together [m]
     states: int
-    every: int  #: one of so many points has full contact
-    strips: tuple[int, int]  #: in full contact, and on summits with them
+    every: int  #: one of so many points has full contact, in its first air
+    strips: tuple[int, int] = (8, 64)  #: in full contact and on summits, by default those of a run
 
     @property
     def all(self) -> list[Point]:
@@ -60,20 +63,21 @@ class Effort:
         return points(self.points, self.seed, self.law)
 
 
-#: Sets of points by name: to learn from, to state errors by, and to check these.
+#: Sets of points by name: to learn from, to decide intervals, to check these, and for control numbers. Seeds of sets
+#: that check are in no other set.
 SETS = {
-    "learn_any": Effort(80, 1, Law.ANY, 20, to_si(800, "um"), 8, 4, (6, 60)),
-    "learn_typical": Effort(48, 3, Law.TYPICAL, 20, to_si(800, "um"), 8, 1, (6, 60)),
-    "learn_full": Effort(36, 7, Law.TYPICAL, 0, 0.0, 2, 1, (6, 60)),
-    "test_typical": Effort(20, 4, Law.TYPICAL, 40, to_si(1600, "um"), 4, 1, (8, 64)),
-    "test_any": Effort(20, 2, Law.ANY, 40, to_si(1600, "um"), 4, 1, (8, 64)),
-    "check_paper": Effort(6, 5, Law.PAPER, 400, 0.0, 4, 1, (8, 64)),
-    "check_typical": Effort(12, 8, Law.TYPICAL, 40, to_si(1600, "um"), 4, 1, (8, 64)),
+    "learn_any": Effort(80, 1, Law.ANY, 20, to_si(800, "um"), 8, 2),
+    "learn_typical": Effort(96, 3, Law.TYPICAL, 20, to_si(800, "um"), 8, 1),
+    "decide_typical": Effort(50, 4, Law.TYPICAL, 40, to_si(1600, "um"), 1, 1),
+    "decide_any": Effort(50, 2, Law.ANY, 40, to_si(1600, "um"), 1, 1),
+    "check_paper": Effort(6, 5, Law.PAPER, 400, 0.0, 1, 1),
+    "check_typical": Effort(20, 11, Law.TYPICAL, 40, to_si(1600, "um"), 1, 1),
+    "check_any": Effort(20, 12, Law.ANY, 40, to_si(1600, "um"), 1, 1),
     "control": Effort(1, 1, Law.ANY, 3, 0.0, 1, 1, (1, 1)),
 }
 #: Width of strips in full contact [m]. On B2 and Sub1 at RH 0.44, strips of 2, 4, 10 and 30 µm have ratios of 0.36,
 #: 0.35, 0.31 and 0.25 (± 0.06), and scatter alike.
-_NARROW = to_si(4, "um")
+_NARROW = to_si(12, "um")
 
 
 def plan_of(point: Point, base: dict[str, Any]) -> Plan:
@@ -117,13 +121,15 @@ class Tips:
         found = contact.compute(_surfaces(plan), f"estimate{point.number}", "NG", settings)
         return cls(found, _water(plan), in_si(DesignedBeam, section_of_beam(plan, DEVICE)))
 
-    def slopes(self, height: float, wetting: float) -> np.ndarray:
+    def slopes(self, height: float, wetting: float, changes: TipChanges | None = None) -> np.ndarray:
         """Slopes up to which tips stick, by `FACTORS` (stiffnesses, tips) [-].
 
-        In a film of a height [m] and a mean cosine of the contact angles.
+        In a film of a height [m] and a mean cosine of the contact angles, on summits or changed by full contact.
         """
         humidity, angle = air_of(height, wetting, self.water.temperature)
-        at, forces = curves.tip_forces(self.contact, humidity, replace(self.water, contact_angles=(angle, angle)))
+        change = None if changes is None else Correction(np.array([humidity]), NONE, NONE, changes)
+        water = replace(self.water, contact_angles=(angle, angle), correction=change)
+        at, forces = curves.tip_forces(self.contact, humidity, water)
         beams = [replace(self.device, gap=self.device.gap / factor**0.5).beam for factor in FACTORS]
         return np.array([tip_slope(longest_free(at, forces, beam), beam.gap) for beam in beams])
 
@@ -138,6 +144,12 @@ def full_contact_of(point: Point, plan: Plan, height: float, name: str) -> dict[
     study = tips_in_full_contact.compute_for_devices(_surfaces(plan), f"estimate{point.number}", own)
     full, summits = tips_in_full_contact.models_of_devices(study)
     return {"slope": study.slope.values, "full": full[:, 0], "summits": summits[:, 0]}
+
+
+def changes_of(slope: np.ndarray, full: np.ndarray, summits: np.ndarray) -> TipChanges:
+    """Changes of tips that a run applies, from slopes (s,) and attractions (n, s) and (N, s)."""
+    ratio, error = few_tip_ratios(full[:, None], summits[:, None], POWER_ERROR)
+    return TipChanges(slope, Change(ratio, np.ones(1), error))
 
 
 def air_of(height: float, wetting: float, temperature: float) -> tuple[float, float]:
@@ -159,14 +171,14 @@ def _surfaces(plan):
 def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     """Numbers of one point of a set."""
     effort, plan = SETS[name], plan_of(point, valid)
-    airs, number = states(effort.states, point.number, effort.seed), effort.tips
-    found = {"airs": airs}
-    if number:
-        number += round(effort.tips_by_width / to_si(point.width, "um"))
-        tips = Tips.of(point, plan, number, effort.seed)
-        found["slopes"] = np.array([tips.slopes(*air) for air in airs], np.float32)
+    airs = states(effort.states, point.number, effort.seed)
+    number = effort.tips + round(effort.tips_by_width / to_si(point.width, "um"))
+    tips = Tips.of(point, plan, number, effort.seed)
+    found = {"airs": airs, "slopes": np.array([tips.slopes(*air) for air in airs], np.float32)}
     if point.number % effort.every == 0:
-        found |= full_contact_of(point, plan, airs[0, 0], name)
+        of_full = full_contact_of(point, plan, airs[0, 0], name)
+        changed = tips.slopes(*airs[0], changes_of(**of_full))[FACTORS.index(1.0)]
+        found |= of_full | {"changed": changed.astype(np.float32)}
     return found
 
 
