@@ -160,19 +160,31 @@ def fraction_with_band(share: float, low: float, high: float, unit: str = "") ->
 
 
 def fraction_between(low: float, high: float, unit: str = "") -> str:
-    """Fraction of devices between two ends in percent. Ends of none and of all are left out.
+    """Fraction of devices between two ends in percent, without ends of none and of all. No other is rounded to these.
 
     Examples
     --------
     >>> fraction_between(0.0101, 0.0149), fraction_between(0.0, 0.00037, " %"), fraction_between(0.0, 1.0, " %")
     ('1.01 to 1.49', 'at most 0.037 %', '0 to 100 %')
+    >>> fraction_between(0.0, 0.9999995, " %"), fraction_between(0.9999, 0.99998)
+    ('at most 99.99995 %', '99.99 to 99.998')
     """
-    least, most = f"{100 - float(f'{100 * (1 - low):.2g}'):g}", f"{100 * high:.3g}"
+    least, most = _of_the_rest(low), _percent(high)
     if low <= 0 and high < 1:
         return f"at most {most}{unit}"
     if 0 < low < 1 <= high:
         return f"at least {least}{unit}"
-    return f"{100 * low:.3g} to {most}{unit}"
+    return f"{_percent(low)} to {most}{unit}"
+
+
+def _percent(fraction):
+    """Fraction in percent with three digits, near all of them with two of the rest."""
+    return _of_the_rest(fraction) if 0.999 < fraction < 1 else f"{100 * fraction:.3g}"
+
+
+def _of_the_rest(fraction):
+    """Fraction in percent with two digits of what it leaves."""
+    return f"{100 - float(f'{100 * (1 - fraction):.2g}'):.12g}"
 
 
 def with_band(stuck: float, low: float, high: float) -> str:
