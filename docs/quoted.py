@@ -34,7 +34,6 @@ UNSAFE = {
     "gold": "caltech_gold",
     "silicon": "stanford_force",
     "plates": "plates_polysilicon",
-    "tips": "worcester_rms",
 }
 
 
@@ -346,14 +345,15 @@ def supplement(tables):
     """Numbers of ``make supplement``.
 
     ``greenwood_a``: energy of model NG over that of Greenwood and Williamson's at the lowest humidity, ``…_wet_a`` at
-    the highest; ``index_a``: plasticity index; ``size_a``: cv √area of the smallest patch over that of the largest;
-    ``neighbours_B1``: correlation of neighbouring strips [%]; ``equal_b``: Γ/2γ at which both sources scatter Γ equally
-    [%]; ``least_gamma_a``, ``most_gamma_a``: Γ/2γ over the humidities [%].
+    the highest; ``theta_a``: adhesion parameter; ``index_a``: plasticity index; ``size_a``: cv √area of the smallest
+    patch over that of the largest; ``neighbours_B1``: correlation of neighbouring strips [%]; ``equal_b``: Γ/2γ at
+    which both sources scatter Γ equally [%]; ``least_gamma_a``, ``most_gamma_a``: Γ/2γ over the humidities [%].
     """
     texts = {}
     for pair, rows in tables["supplement_greenwood_williamson"].groupby("pair"):
         ratio = (rows["ē, NG [mJ/m²]"] / rows["ē, GW [mJ/m²]"]).values
         texts |= {f"greenwood_{pair}": _rounded(ratio[0]), f"greenwood_wet_{pair}": _rounded(ratio[-1])}
+        texts[f"theta_{pair}"] = f"{rows['θ'].iloc[0]:.0f}"
         texts[f"index_{pair}"] = f"{rows['plasticity index'].iloc[0]:.2f}"
     for pair, rows in tables["supplement_sizes"].groupby("pair"):
         scaled = rows["cv √area [µm]"].values

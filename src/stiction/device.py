@@ -14,12 +14,11 @@ from stiction.answer.data import Answer
 from stiction.config.cases import case_id, in_numbers
 from stiction.config.kinds import BEAM, KEYS, KINDS, STOPPER, Kind, Release, kind_of
 from stiction.config.mission.conditions import CONDITIONS
-from stiction.config.reading import paper
 from stiction.contact.air import Air
 from stiction.devices.limits.limit import Limit, restored
 from stiction.estimate.answer import Answer as Estimate
 from stiction.estimate.answer import answer as estimated
-from stiction.estimate.question import questions
+from stiction.estimate.complete import question_of
 from stiction.estimate.table import known
 from stiction.plan.devices import DevicePlan
 from stiction.plan.graph import Results
@@ -175,9 +174,7 @@ class Device:
         NotLearnt
             If the estimate does not know the device.
         """
-        config = self._plan.config
-        own = {key: section for key, section in config.items() if section != paper().get(key)}
-        return estimated(questions(own, known()[0])[self.name], *known())
+        return estimated(question_of(self._plan.config, self.name, self._section), *known())
 
     def chart(self, humidity: float | str) -> xr.Dataset:
         """Safe lengths of the thicknesses and gaps of its chart. Dataset of `stiction.stages.devices.chart`."""

@@ -90,7 +90,7 @@ class Stay:
 
 @dataclass(frozen=True)
 class Answer:
-    """Everything that a page, a table or a picture shows about the main question of a device."""
+    """Size to build of a device and what leads to it: the source of pages, tables and pictures."""
 
     device: str
     kind: str
@@ -117,7 +117,7 @@ class Answer:
 
     @property
     def sought(self) -> Sought:
-        """Number that sizes are of."""
+        """Sought quantity: a length or a force."""
         return SOUGHT[self.unit]
 
     def in_words(self, size: float) -> str:

@@ -49,18 +49,22 @@ KEYS = {
 
 
 class Roughness(NamedTuple):
-    """Varied quantity of a surface, the axis of a computation."""
+    """Varied quantity of a surface, or of one that follows another, the axis of a computation."""
 
     words: str  #: what it is called
     unit: str  #: with a space before it; empty without a unit
-    logarithmic: bool  #: whether its values are spaced by equal factors
+    scale: str  #: of `stiction.devices.roughness.SCALES`, in which its values are evenly spaced
+    smooths: int = 0  #: sign of a change that makes the sum of both surfaces smoother, zero where neither does
+    of_replica: bool = False  #: whether it is one of key ``replica`` of the pair
 
 
 #: Quantities of section ``roughness`` by their keys.
 ROUGHNESSES = {
-    "rms_nm": Roughness("rms", " nm", True),
-    "skewness": Roughness("skewness", "", False),
-    "corner_rad_per_um": Roughness("corner of the spectrum", " rad/µm", True),
+    "rms_nm": Roughness("rms", " nm", "log", -1),
+    "skewness": Roughness("skewness", "", "linear"),
+    "corner_rad_per_um": Roughness("corner of the spectrum", " rad/µm", "log"),
+    "coherence": Roughness("coherence", "", "rest", 1, of_replica=True),
+    "play_nm": Roughness("play", " nm", "linear", -1, of_replica=True),
 }
 
 

@@ -30,8 +30,11 @@ from hostile import HOSTILE, Reading
 from matplotlib.figure import Figure
 from noted import noted
 
+import stiction
 from stiction.contact.environment import Water
 from stiction.devices.risk import VERIFIED
+from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
 from stiction.report.devices import pages, sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.page import Page, Section, Summary
@@ -154,6 +157,24 @@ def test_surfaces_are_described_by_their_numbers_or_their_scans():
         "rms 2 nm, density of summits 40 per µm²"
     )
     assert surface_in_words({"scans": {"files": ["a.gwy", "b.gwy"]}}, {}) == "described by 2 scans"
+
+
+def test_the_adhesion_parameter_of_a_pair_is_a_fact_where_its_summits_are_stated():
+    bump = {"kind": "stopper", "pair": "b", "contact_um": [1, 1], "restoring_force_uN": 1, "humidities": ["dry", 0.6]}
+
+    def facts(config):
+        section = Graph(Plan(stiction.load(config))).job("devices/S1.html").settings
+        return pages._facts_of(section)
+
+    stated = facts({"devices": {"S1": bump}})["adhesion parameter θ"]
+    assert stated == "81.1 to 113 (wafers bond below 1, and do not adhere above 12)"
+    mine = {"rms_nm": 5, "hurst": 0.8, "correlation_length_nm": 100, "cutoff_rad_per_um": 138, "like": "B2"}
+    unknown = {
+        "surfaces": {"Mine": mine},
+        "pairs": {"mine": {"beam": "Mine", "substrate": "Sub1", "gap_um": 2, "humidities": [0.6]}},
+    }
+    others = facts(unknown | {"devices": {"S1": bump | {"pair": "mine"}}})
+    assert "adhesion parameter θ" not in others
 
 
 def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():

@@ -388,6 +388,9 @@ def test_sentences_warn_of_breakdown_and_of_a_voltage_that_pulls_in(lengths, vol
     assert any("break down" in sentence for sentence in said) == breaks
     assert any("pulls it in" in sentence for sentence in said) == pulls
     assert any(f"While {report.significant(voltage)} V are on" in sentence for sentence in said)
+    assert any("can stay after grounding" in sentence for sentence in said)
+    without = report.sentences(layout(beam_answers(lengths, {}, OF), OF, length_of(lengths, OF)))
+    assert not any("grounding" in sentence for sentence in without), "control"
 
 
 # Configuration, files, report
