@@ -194,7 +194,7 @@ WRONG = [
     (
         {"requirement": {"share": 0.001, "length_um": 300}},
         "devices.C1.requirement",
-        "must come with roughness",
+        "must come with roughness or process; design.shares has the fractions of all answers",
     ),
     (
         {"requirement": {"share": 0.1}, "roughness": ROUGH},

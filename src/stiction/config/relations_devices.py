@@ -467,7 +467,8 @@ def requirements_and_roughnesses_come_together(config):
     ):
         for name, _ in config.entries("devices", stated):
             if not set(others) & set(config.names(f"devices.{name}")):
-                yield f"devices.{name}.{stated}", f"must come with {' or '.join(others)}"
+                hint = "; design.shares has the fractions of all answers" if stated == "requirement" else ""
+                yield f"devices.{name}.{stated}", f"must come with {' or '.join(others)}{hint}"
 
 
 @relation

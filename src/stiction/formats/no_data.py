@@ -12,6 +12,8 @@ _ROUNDING = 1e-7
 _OFTEN = 3
 #: ASSUME: no surface has one point that stands out by so many times the range of all others.
 _ALONE = 1000
+#: Fewest different heights with a range of all but one.
+_FEWEST = 4
 
 
 def without_marks(heights: np.ndarray) -> tuple[np.ndarray, str]:
@@ -66,8 +68,10 @@ def require_no_mark(heights: np.ndarray) -> None:
         In words.
     """
     values, counts = np.unique(heights[np.isfinite(heights)], return_counts=True)
-    for value, count, rest in ((values[0], counts[0], values[1:]), (values[-1], counts[-1], values[:-1])):
-        if len(rest) > 2 and np.abs(rest - value).min() > np.ptp(rest) * (1 if count > 1 else _ALONE):
+    if len(values) < _FEWEST:
+        return
+    for value, count, rest in zip(values[[0, -1]], counts[[0, -1]], (values[1:], values[:-1]), strict=True):
+        if np.abs(rest - value).min() > np.ptp(rest) * (1 if count > 1 else _ALONE):
             raise ValueError(_doubt(value, count))
 
 
