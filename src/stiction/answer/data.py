@@ -82,7 +82,7 @@ class InAir:
     #: Expected fraction stuck, and ends of its band, at `Answer.sizes` (3, n) [-].
     curve: np.ndarray = field(default_factory=lambda: np.empty((3, 0)), compare=False)
     first: float = field(default=np.nan, compare=False)  #: size from which a lower end is known [m, N]
-    temperature: float = np.nan  #: of the water in a condition of the device, NaN elsewhere [K]
+    temperature: float = np.nan  #: of the water of a mission, NaN in dry air and without a mission [K]
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ class Stay:
 
 @dataclass(frozen=True)
 class Answer:
-    """Everything that a page, a table or a picture shows about the main question of a device."""
+    """Size to build of a device and what leads to it: the source of pages, tables and pictures."""
 
     device: str
     kind: str

@@ -27,10 +27,10 @@ COMMON = (
     "touchdowns",
     "conditions",
 )
-COMMON += ("voltage_V", "offset_V", "dielectric")
+COMMON += ("voltage_V", "offset_V", "dielectric", "shock_g")
 #: Keys of a life under a spring, and of what changes it.
 OF_SPRINGS = ("requirement", "roughness", "process", "second_process", "test_beams", "touchdowns", "conditions")
-OF_SPRINGS += ("voltage_V", "offset_V", "dielectric", "mass_ng", "electrode")
+OF_SPRINGS += ("voltage_V", "offset_V", "dielectric", "mass_ng", "electrode", "shock_g")
 #: Question about a device without a spring, a name of tables as that of a `Release`.
 PULL_OFF = "pull_off"
 #: Keys that depend on the kind, what they are called and their unit.
@@ -54,18 +54,22 @@ KEYS = {
 
 
 class Roughness(NamedTuple):
-    """Varied quantity of a surface, the axis of a computation."""
+    """Varied quantity of a surface, or of one that follows another, the axis of a computation."""
 
     words: str  #: what it is called
     unit: str  #: with a space before it; empty without a unit
-    logarithmic: bool  #: whether its values are spaced by equal factors
+    scale: str  #: of `stiction.devices.roughness.SCALES`, in which its values are evenly spaced
+    smooths: int = 0  #: sign of a change that makes the sum of both surfaces smoother, zero where neither does
+    of_replica: bool = False  #: whether it is one of key ``replica`` of the pair
 
 
 #: Quantities of section ``roughness`` by their keys.
 ROUGHNESSES = {
-    "rms_nm": Roughness("rms", " nm", True),
-    "skewness": Roughness("skewness", "", False),
-    "corner_rad_per_um": Roughness("corner of the spectrum", " rad/µm", True),
+    "rms_nm": Roughness("rms", " nm", "log", -1),
+    "skewness": Roughness("skewness", "", "linear"),
+    "corner_rad_per_um": Roughness("corner of the spectrum", " rad/µm", "log"),
+    "coherence": Roughness("coherence", "", "rest", 1, of_replica=True),
+    "play_nm": Roughness("play", " nm", "linear", -1, of_replica=True),
 }
 
 
@@ -148,6 +152,17 @@ class Kind:
             return None
         springs = ", or ".join(" and ".join(way.keys) for way in self.ways if way.per)
         return f"must come without {', '.join(sorted(strange))}, or with a spring: {springs}"
+
+    @property
+    def unasked(self) -> list[str]:
+        """Optional keys of the life of devices that are of other kinds alone.
+
+        Examples
+        --------
+        >>> KINDS["probe"].unasked, KINDS["bridge"].unasked
+        ([], ['electrode', 'mass_ng'])
+        """
+        return sorted({"mass_ng", "electrode", "voltage_V"} - set(self.allowed_keys))
 
     @property
     def has_short_strips(self) -> bool:

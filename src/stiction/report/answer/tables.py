@@ -140,7 +140,7 @@ def steps(answer: Answer) -> pd.DataFrame:
     """Steps from the estimate to the size to build, for reading."""
     return pd.DataFrame(
         {
-            "step": words.CAUSES[step.cause][0],
+            "step": words.CAUSES[step.cause][0] + " (not stated)" * (not step.stated),
             f"{answer.sought.name} after it": answer.in_words(step.size),
             "change [%]": number(100 * (step.factor - 1), "+.1f") if k else "",
             "air": Air(step.humidity).words,

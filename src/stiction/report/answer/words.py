@@ -17,7 +17,7 @@ from stiction.stages.devices.end_states import END_STATES
 CAUSES: Mapping[Cause, tuple[str, str]] = {
     Cause.ESTIMATE: ("estimate", "the estimate"),
     Cause.SIMULATION: ("error of the simulation", "the simulation"),
-    Cause.FAST: ("fast separation, as in a shock (not stated)", "fast separation"),
+    Cause.FAST: ("fast separation, as in a shock", "fast separation"),
     Cause.TOUCHDOWNS: ("all touchdowns", "all touchdowns"),
     Cause.TILT: ("worst of its tilts", "its tilts"),
     Cause.VOLTAGE: ("voltage", "its voltage"),
@@ -30,6 +30,7 @@ _LEFT_OUT = {
     "dimples": "its dimples (see its life below)",
     "inputs": "the uncertainty of the inputs where too few devices stick to show it",
     "requirement": "the smaller fraction that it requires (see the curve of the axis below)",
+    "shock": "the fast separation in its shock, which nothing bounds",
     "voltage": "its voltage, at which the dielectric breaks down",
 }
 #: Relative change of a size that is not worth a word.
@@ -208,17 +209,17 @@ def of_airs(answer: Answer) -> list[dict[str, str]]:
 
 
 def _air(answer, humidity):
-    """Air that decides, with its temperature if it is a condition of the device."""
+    """Air that decides, with its temperature if the device has a mission."""
     air = Air(humidity)
     at = next((one.temperature for one in answer.airs if one.humidity == humidity), np.nan)
     return air.choose(air.words, "Dry air") + (f" at {at - ZERO_CELSIUS:.3g} °C" if np.isfinite(at) else "")
 
 
 def _celsius(answer, air):
-    """Cell with the temperature of an air, none for a device without conditions."""
+    """Cell with the temperature of an air, any if it has no water; none for a device without conditions."""
     if not np.isfinite([one.temperature for one in answer.airs]).any():
         return {}
-    return {"°C": number(air.temperature - ZERO_CELSIUS, ".3g")}
+    return {"°C": Air(air.humidity).choose(number(air.temperature - ZERO_CELSIUS, ".3g"), "any")}
 
 
 def _size(answer, size):

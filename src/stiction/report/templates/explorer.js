@@ -42,8 +42,8 @@ function opened(number) {
     return (low + high) / 2;
   }
 
-  const PLACES = {linear: value => value, log: Math.log, score};
-  const VALUES = {linear: place => place, log: Math.exp, score: probability};
+  const PLACES = {linear: value => value, log: Math.log, rest: value => -Math.log1p(-value), score};
+  const VALUES = {linear: place => place, log: Math.exp, rest: place => -Math.expm1(-place), score: probability};
 
   /** Slope of a monotone cubic at its k-th place. */
   function slope(k, widths, secants) {

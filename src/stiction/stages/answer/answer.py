@@ -12,10 +12,10 @@ from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, Pull
 from stiction.answer.ladder import Question
 from stiction.answer.unknowns import Draws, OfBudgets
 from stiction.answer.worlds import DRAWS
-from stiction.config.mission.conditions import CONDITIONS, temperatures
+from stiction.config.mission.conditions import CONDITIONS
 from stiction.config.mission.stays import stays
 from stiction.config.units import in_si
-from stiction.contact.air import Air
+from stiction.contact.air import Air, humid
 from stiction.devices.budget import LARGEST
 from stiction.plan.stage import Stage, select
 from stiction.stages.answer import conditions
@@ -37,12 +37,13 @@ class Settings:
     kind: str
     length: float = np.nan  #: of a beam, NaN if none is stated [m]
     touchdowns: int = 1
+    shock: float = 0.0  #: peak [m s⁻²]
     liquids: tuple[str, ...] = ()  #: that are stated
     left_out: tuple[str, ...] = ()  #: conditions that are stated but not inside
     required: float = 1.0  #: fraction of a requirement, 1 without one [-]
     beam: DesignedBeam | None = None  #: none for a stopper
     budgets: tuple[float, ...] = ()  #: humidities of the budgets [-]
-    temperatures: dict[str, float] = field(default_factory=dict)  #: of its conditions, by humidity in words [K]
+    temperatures: dict[str, float] = field(default_factory=dict)  #: of the water of a mission, by humidity in words [K]
     stays: dict[str, Stay] = field(default_factory=dict)  #: touchdowns of its conditions, by number
     question: str = ""  #: about what has no spring
     measured: float = np.nan  #: pull-off force [N]
@@ -75,9 +76,10 @@ def _of_pull_off(data, settings):
 def _of_size(data, settings):
     """Answer about a beam, or about what a spring pulls off."""
     found, question = _of_beam(data, settings) if settings.beam else _of_stopper(data)
+    found = [replace(one, stated=settings.shock > 0) if one.cause is Cause.FAST else one for one in found]
     before = conditions.of_budgets(data["budgets"], settings.budgets)
     unknowns = conditions.of_test_beams(data.get("test_beams")) or before
-    left_out = (*settings.left_out, *_left_out(data, found, unknowns))
+    left_out = (*settings.left_out, *_left_out(data, found, unknowns, settings.shock))
     if settings.required < question["share"]:
         left_out = (*left_out, "requirement")
     stated = {"touchdowns": settings.touchdowns, "stays": tuple(settings.stays.values()), "left_out": left_out}
@@ -122,15 +124,16 @@ def _of_stopper(data):
     return found, {"share": share or float(stopper.share.max()), "unit": sought.FORCE.unit, "size": size}
 
 
-def _left_out(data, found, unknowns):
+def _left_out(data, found, unknowns, shock):
     """Stated conditions and inputs that no dataset bounds.
 
-    That is a voltage on a bridge at which its dielectric breaks down, and inputs of end states in which too few devices
-    stick to show what they change.
+    That is a voltage on a bridge at which its dielectric breaks down, a shock where no summits stop some strips, and
+    inputs of end states in which too few devices stick to show what they change.
     """
-    is_biased = any(one.cause is Cause.VOLTAGE for one in found)
+    inside = {one.cause for one in found}
     at = {(one.humidity, one.shape) for one in found} & set(getattr(unknowns, "budgets", ()))
-    left_out = ["voltage"] if float(data["life"].potential) > 0 and not is_biased else []
+    left_out = ["voltage"] if float(data["life"].potential) > 0 and Cause.VOLTAGE not in inside else []
+    left_out += ["shock"] if shock and data.get("fast_strips") and Cause.FAST not in inside else []
     return left_out + (["inputs"] if any(unknowns.of(one) is None for one in at) else [])
 
 
@@ -297,7 +300,7 @@ def _settings(plan, at):
     own = {"seed": plan.config["seed"], "name": name, "liquids": sorted(liquids)}
     own |= {"left_out": ["dimples"] if "dimples" in section else []}
     own |= {"budgets": [humidity for humidity, *_ in _budgets(plan, name)]}
-    at = {Air(air).name: at for air, at in temperatures(plan.config, section["pair"]).items()}
+    at = {Air(air).name: plan.air_of_devices.temperature(section["pair"], air) for air in humid(section["humidities"])}
     own |= {"temperatures_K": at} if CONDITIONS in section else {}
     own |= {"stays": found} if (found := stays(section, plan.air_of_devices.wetting(section["pair"]))) else {}
     own |= {"required": section["requirement"]["share"]} if "requirement" in section else {}

@@ -162,7 +162,7 @@ def _statistics(settings, pull_off):
 
 @dataclass(frozen=True)
 class Dimples:
-    """Everything that the forces of rows of dimples depend on apart from the contact of one."""
+    """Settings of the forces of rows of dimples, without the contact of one."""
 
     water: Water
     humidity: float  #: [-]
