@@ -17,6 +17,7 @@ class Sought:
     response: str  #: number with the allowed fraction stuck, in words
     devices: str  #: devices with such a number
     bound: str  #: how a number that is safe bounds all safe ones
+    fraction: str = "P(stuck)"  #: fraction that the number decides about, in short
     scale: float = 1e-6  #: unit for readers in that of datasets
 
     @property
@@ -51,7 +52,8 @@ FORCE = Sought(
 )  # fmt: skip
 PULL_OFF = Sought(
     name="pull_off", unit="N", shown="nN", digits=".4g", more_is_better=True, label="pull-off force",
-    required="measured force", response="pull-off force", devices="places", bound="At most", scale=1e-9,
+    required="measured force", response="pull-off force", devices="places", bound="At most", fraction="P(more)",
+    scale=1e-9,
 )  # fmt: skip
 #: What is sought of devices to build, by its unit in datasets.
 SOUGHT = {sought.unit: sought for sought in (LENGTH, FORCE)}

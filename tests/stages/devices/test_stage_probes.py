@@ -16,7 +16,7 @@ from stiction.contact.vanderwaals import attraction
 from stiction.errors import NotConverged
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
-from stiction.report.answer import screen, tables, words
+from stiction.report.answer import figures, screen, tables, words
 from stiction.stages.answer.answer import answer_of
 from stiction.stages.contact import full_contact, probes_in_full_contact
 from stiction.stages.contact.pairs import Settings, surface_pair
@@ -106,6 +106,13 @@ def test_page_text_table_and_python_say_whether_the_measured_force_fits(results,
     row = tables.devices({name: found})
     assert row.cells["verdict"].tolist() == [sign]
     assert row.frame["verdict"].tolist() == [str(found.verdict)]
+    assert np.isnan(row.frame["stuck_value"]).all()
+    np.testing.assert_allclose(
+        row.frame[[f"pull_off_50_percent_nN{end}" for end in ("", "_low", "_high")]].to_numpy()[0],
+        found.pull_off.quantiles[1] * 1e9,
+        rtol=1e-9,
+    )
+    assert [axes.get_ylabel() for axes in figures.risk({name: found}).axes] == ["P(more) [–]"]
     sliders = json.loads(re.search(r'id="explorer-data">(.*?)</script>', html(results, name), re.DOTALL)[1])["views"]
     shown = [
         *text,

@@ -80,6 +80,9 @@ def risk(answers: Mapping[str, Answer]) -> Figure:
         _stuck(panel, answer)
     for line in lines:
         line[0, 0].set_ylabel(_STUCK)
+    for panel, answer in zip(columns[:, 0], answers.values(), strict=True):
+        if answer.pull_offs:
+            panel.set_ylabel(f"{answer.sought.fraction} [–]")
     letter_lines(lines, [f"{name}, {answer.kind}" for name, answer in answers.items()])
     return figure
 

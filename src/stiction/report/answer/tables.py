@@ -97,7 +97,7 @@ def _row(answer):
     scale, unit = answer.sought.scale, answer.sought.shown
     known = np.nan if words.is_forbidden(answer) else 1.0
     to_build = np.nan if answer.forbidden else answer.build / scale
-    last, stuck = answer.stated_steps[-1], answer.stuck
+    last, stuck = answer.stated_steps[-1], None if answer.pull_offs else answer.stuck
     band = (stuck.value, stuck.low, stuck.high) if stuck else (np.nan,) * 3
     return {
         "device": answer.device,

@@ -24,8 +24,6 @@ from stiction.stages.devices.stoppers import bounded_share
 _ALONE = "the device itself"
 #: Fractions of places that hold more than a force.
 _FRACTIONS = (0.05, 0.25, 0.5)
-#: Fraction of measurements that give more, in short.
-_MORE = "P(more)"
 #: Part of a size beyond the smallest and largest computed ones that a control reaches.
 _ROOM = 0.05
 
@@ -213,11 +211,11 @@ def view_of_places(stopper: xr.Dataset, answer: Answer) -> View:
     most = np.quantile(forces, 1 - np.array(_FRACTIONS), axis=1).T / sought.scale
     start = answer.size if np.isfinite(answer.size) else answer.pull_off.quantiles[1, 0]
     known = (sizes[0] / sought.scale,), start / sought.scale
-    size = size_axis(sought.name, sought.label, sought.shown, *known, _MORE)
+    size = size_axis(sought.name, sought.label, sought.shown, *known, sought.fraction)
     size = replace(size, setting="measured_nN" if np.isfinite(answer.size) else "")
     share = share_axis(_FRACTIONS, _FRACTIONS[-1], "", "fraction p of places that hold more")
     shown = {"scores": scores, "first": np.array([[air.first] for air in airs]) / sought.scale}
-    words = {"what": sought.label, "bound": "force that places exceed", "share": _MORE}
+    words = {"what": sought.label, "bound": "force that places exceed", "share": sought.fraction}
     words |= {"stick": "Measurements that give more", "safe": "Force that places exceed, by simulation alone,"}
     grid = Grid((axis,), share, size, most, sizes / sought.scale, stopper.sizes["sample"], True, **shown)
     return View("places", grid, words)
