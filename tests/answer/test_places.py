@@ -120,6 +120,11 @@ def test_the_verdict_follows_from_the_band(band, verdict):
     assert replace(judged, forbidden=(INPUTS, "spacer")).verdict is Verdict.NONE
 
 
+def test_places_without_a_measured_force_are_stated_for_uncertain_inputs_as_well():
+    found = answer(ASKED, {0.5: Places(forces(100))}, slopes(3.0), DRAWS)
+    assert replace(found, forbidden=(INPUTS,)).verdict is found.verdict is Verdict.PLACES
+
+
 @pytest.mark.parametrize("force", [np.nan, 1.5])
 def test_an_answer_is_that_of_its_dataset(force):
     found = measured(force, 0.1, Places(forces(50)), slopes(0.1))

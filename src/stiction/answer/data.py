@@ -170,7 +170,8 @@ class Answer:
         if set(self.forbidden) - {INPUTS}:
             return Verdict.NONE
         if self.pull_offs:
-            return Verdict.UNDECIDED if self.forbidden else self.pull_off.verdict
+            is_open = self.forbidden and self.pull_off.verdict is not Verdict.PLACES
+            return Verdict.UNDECIDED if is_open else self.pull_off.verdict
         if self.stuck is not None and not self.is_enough and self.stuck.low > self.share:
             return Verdict.BAD
         if self.forbidden or not np.isfinite(self.build):
