@@ -23,7 +23,9 @@ studies: {plasticity: {distance_nm: {b: 4}}, pressing: {distance_nm: {b: 4}}}
 test_beams:
   A: {pair: b, length_um: 1500, thickness_um: 2.5, gap_um: 2, width_um: 30,
       crack_lengths: [{humidity: 0.67, mean_um: 700, std_um: 20, beams: 9}]}
+  D: {probe: P, pull_offs: [{humidity: 0.67, forces_nN: [3000], error_nN: 300}]}
 devices:
+  P: {kind: probe, pair: b, humidities: [0.67], radius_um: 10}
   C: {kind: cantilever, pair: b, humidities: [0.67], thickness_um: 2.5, gap_um: 2, width_um: 30, test_beams: [A],
       uncertainty: {thickness_um: 0.1}, requirement: {share: 0.01, length_um: 300},
       roughness: {surface: B2, rms_nm: [3, 5]}, process: etch}
@@ -71,6 +73,7 @@ def test_a_key_that_names_a_part_of_the_configuration_refuses_other_text(path):
     *keys, last = (int(key) if key.isdigit() else key for key in path.split("."))
     section = config
     for key in keys:
-        section = section[next(reversed(section)) if key == "NAME" else key]
+        own = [name for name in section if last in section[name]] if key == "NAME" else []
+        section = section[(own or [*section])[-1] if key == "NAME" else key]
     section[last] = HOSTILE
     assert repr(HOSTILE)[:40] in "\n".join(problems(config))

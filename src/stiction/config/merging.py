@@ -20,7 +20,7 @@ _NAMED = {
     "surfaces": {"material": "materials"},
     "process": {"surface": "surfaces", "together_with": "process"},
     "pairs": {"beam": "surfaces", "substrate": "surfaces"},
-    "test_beams": {"pair": "pairs"},
+    "test_beams": {"pair": "pairs", "probe": "devices"},
     "devices": {
         "pair": "pairs",
         "test_beams": "test_beams",
@@ -129,12 +129,15 @@ def _changed_entries(before, after):
 
 
 def _in_place(config, copied, ends):
-    """Configuration with copies in place of pairs in the run and of devices."""
+    """Configuration with copies in place of pairs in the run, of devices and of pull-off forces of these."""
     copies = ([pair + end for end in ends] if pair in copied["pairs"] else [pair] for pair in config["run"]["pairs"])
     config = merged(config, {"run": {"pairs": list(chain.from_iterable(copies))}})
     if copied["devices"]:
         devices = {name: device for name, device in config["devices"].items() if name not in copied["devices"]}
         config = config | {"devices": devices}
+    if pulled := [name for name in copied["test_beams"] if "probe" in config["test_beams"][name]]:
+        arrays = {name: array for name, array in config["test_beams"].items() if name not in pulled}
+        config = config | {"test_beams": arrays}  # their probes are devices in whose place are copies
     return config
 
 
@@ -168,7 +171,7 @@ def _places(config):
 def _users_of(config, *entries):
     """Names by section of some entries and of all their users."""
     copied = {kind: list(dict.fromkeys(name for section, name in entries if section == kind)) for kind in _NAMED}
-    for kind in _NAMED:
+    for kind in (*_NAMED, *_NAMED):  # twice: test beams name probes, and devices test beams
         for other, entry in config.get(kind, {}).items():
             if other not in copied[kind] and _with_suffixes(entry, kind, copied, "x") != entry:
                 copied[kind].append(other)

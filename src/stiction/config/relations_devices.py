@@ -4,6 +4,7 @@ Lengths are in µm, as in the configuration.
 """
 
 import math
+from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
@@ -34,7 +35,7 @@ from stiction.config.relations import (
     without_density,
 )
 from stiction.config.surfaces import process as process_surfaces
-from stiction.config.test_beams import DATA, shared_uncertainty
+from stiction.config.test_beams import DATA, pair_of, shared_uncertainty
 from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
 from stiction.contact.air import Air, humid, is_humid
 from stiction.contact.materials import COATING_ATTRACTION, COHERENCE, OF_CONTACT, OF_REPLICAS, PLAY
@@ -341,8 +342,8 @@ def uncertain_replicas_are_stated(config):
 
 def _pairs_of_arrays(config, device):
     """Pairs of the test beams of a device, where they are known."""
-    arrays = (config["test_beams"].get(name, {}) for name in config["devices"][device].get("test_beams", ()))
-    return dict.fromkeys(array["pair"] for array in arrays if "pair" in array)
+    used = config["devices"][device].get("test_beams", ())
+    return dict.fromkeys(pair_of(config, name) for name in used if name in config["test_beams"])
 
 
 @relation
@@ -560,11 +561,10 @@ def arrays_of_devices_are_defined(config):
 @relation
 def arrays_have_the_materials_of_their_devices(config):
     """Require test beams of the materials of their device."""
-    arrays = config["test_beams"]
     for name, used in config.entries("devices", "test_beams"):
         wanted = _names_of_materials(config, config["devices"][name]["pair"])
         if other := next(
-            (array for array in used if _names_of_materials(config, arrays[array]["pair"]) != wanted), None
+            (array for array in used if _names_of_materials(config, pair_of(config, array)) != wanted), None
         ):
             message = f"must have the materials of the device: those of {other} differ"
             yield f"devices.{name}.test_beams", message, *_keys_of_scans(config, name)
@@ -582,7 +582,7 @@ def devices_with_common_test_beams_share_their_uncertainties(config):
     for name, used in config.entries("devices", "test_beams"):
         for other, section in devices.items():
             common = [array for array in used if array in section.get("test_beams", ())]
-            if common and not _agree(section, devices[name]):
+            if common and not agree(section, devices[name]):
                 message = (
                     f"must not share {common[0]} with {other}, which states other uncertainties: apart from those of "
                     "their dimensions, both must be the same"
@@ -591,13 +591,12 @@ def devices_with_common_test_beams_share_their_uncertainties(config):
                 break
 
 
-def _agree(*devices):
-    """Whether devices have the same uncertainties of shared inputs. Only devices with tips have edges."""
-    shared = [dict(shared_uncertainty(device)) for device in devices]
-    if not all(kind_of(device).has_tip for device in devices):
-        for stated in shared:
-            stated.pop(EDGE_RADIUS.key, None)
-    first, second = shared
+def agree(*devices: Mapping) -> bool:
+    """Whether devices have the same uncertainties of shared inputs. Some have no edge of a tip, or dry air alone."""
+    left_out = set() if all(kind_of(device).has_tip for device in devices) else {EDGE_RADIUS.key}
+    left_out |= set() if all(humid(device["humidities"]) for device in devices) else {"humidity"}
+    shared = [shared_uncertainty(device).items() for device in devices]
+    first, second = ({key: value for key, value in stated if key not in left_out} for stated in shared)
     return first == second
 
 

@@ -22,6 +22,8 @@ from stiction.contact.air import DRY, humid
 
 #: Keys of an array that list what was measured.
 DATA = ("crack_lengths", "stuck")
+#: Key of pull-off forces of a device, which key ``probe`` names. They come in place of an array.
+PULL_OFFS = "pull_offs"
 #: Keys of an array that are those of a cantilever.
 _SIZES = ("pair", "thickness_um", "gap_um", "width_um", "strip_um")
 #: Columns of a file, and a file to start from.
@@ -52,6 +54,18 @@ def users(config: Mapping, array: str) -> dict[str, dict]:
 def humidities(array: Mapping, *kinds: str) -> list[float]:
     """Humidities of the data of an array, increasing. ``kinds`` selects data, by default all."""
     return sorted({datum["humidity"] for kind in kinds or DATA for datum in array.get(kind, ())})
+
+
+def pair_of(config: Mapping, array: str) -> str:
+    """Pair of an array, or of the probe of its pull-off forces."""
+    section = config["test_beams"][array]
+    return (config["devices"][section["probe"]] if PULL_OFFS in section else section)["pair"]
+
+
+def pulled(config: Mapping, device: str) -> dict[str, dict]:
+    """Sections with pull-off forces among the test beams of a device, by name."""
+    named = {name: config["test_beams"][name] for name in config["devices"][device].get("test_beams", ())}
+    return {name: section for name, section in named.items() if PULL_OFFS in section}
 
 
 def first_datum(array: Mapping, humidity: float) -> tuple[str, int]:

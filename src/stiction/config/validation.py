@@ -12,6 +12,7 @@ from typing import Any, ClassVar, NamedTuple
 
 from stiction.config import materials, meetings, relations, relations_devices, scans, test_beams
 from stiction.config.cases import in_numbers, in_words
+from stiction.config.evidence import pull_offs
 from stiction.config.keys import Keys, Relations
 from stiction.config.merging import expanded, merged
 from stiction.config.messages import ConfigError, Problem, schema_problems
@@ -27,9 +28,23 @@ _NAMES_OF_DEVICES = relations_devices.relation_of_names
 _OF_DEVICES = Relations([*meetings.relation, *relations_devices.relation])
 #: Relations between names and keys that are given or not, and those between values, where the first hold.
 NAMES = Relations(
-    [*relations.relation_of_names, *_NAMES_OF_DEVICES, *process_relations.relation, *airs.relation_of_names]
+    [
+        *relations.relation_of_names,
+        *_NAMES_OF_DEVICES,
+        *pull_offs.relation_of_names,
+        *process_relations.relation,
+        *airs.relation_of_names,
+    ]
 )
-RELATIONS = Relations([*relations.relation, *airs.relation, *_OF_DEVICES, *relations_devices.relation_of_tips])
+RELATIONS = Relations(
+    [
+        *relations.relation,
+        *airs.relation,
+        *_OF_DEVICES,
+        *relations_devices.relation_of_tips,
+        *pull_offs.relation,
+    ]
+)
 #: Sections that a configuration need not have.
 _OPTIONAL = {"materials": {}, "devices": {}, "test_beams": {}, "process": {}}
 

@@ -533,12 +533,17 @@ class DevicePlan:
         None with test beams.
 
         ASSUME: test beams correct the quantities of surfaces, about which whole surfaces say too little: devices with
-        test beams, and these, have slopes of assumed quantities, too.
+        test beams, these, and their probes have slopes of assumed quantities, too.
         """
-        if self.sections[device].get("test_beams"):
+        if self.sections[device].get("test_beams") or device in self._pulled:
             return {}
         found = {name: self.members_of(name) for name in self._surfaces(device)}
         return {name: others for name, others in found.items() if others}
+
+    @cached_property
+    def _pulled(self):
+        """Probes with pull-off forces among the test beams."""
+        return {array["probe"] for array in self.config.get("test_beams", {}).values() if "probe" in array}
 
     def members_of(self, surface: str) -> dict[str, dict[str, float]]:
         """Members in place of a surface, none if all of it is known."""

@@ -139,7 +139,7 @@ def _areas_under_shapes(config, step):
 def used_surfaces(config: Mapping[str, Any]) -> Iterator[str]:
     """Names of the surfaces of pairs in the run, of devices and of test beams, as often as they occur."""
     users = (*config.get("devices", {}).values(), *config.get("test_beams", {}).values())
-    for pair in (*config["run"]["pairs"], *(user["pair"] for user in users)):
+    for pair in (*config["run"]["pairs"], *(user["pair"] for user in users if "pair" in user)):
         yield from (config["pairs"][pair][side] for side in SIDES)
     yield from process.all_names(config)
 

@@ -174,7 +174,7 @@ def _test_beam_sections(name, update):
     ]
     said += [tables_test_beams.again(update), *tables_test_beams.stuck_sentences(update)]
     cells = tables_test_beams.test_beams({name: update}).cells.drop(columns="device")
-    return [Section("What the test beams say", said, cells, figures_test_beams.test_beams(update))]
+    return [Section("What the test beams say", [*filter(None, said)], cells, figures_test_beams.test_beams(update))]
 
 
 def _how_rough(name, roughness):

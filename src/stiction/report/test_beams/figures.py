@@ -51,7 +51,8 @@ def test_beams(update: xr.Dataset) -> Figure:
             for size, key in (("datum", "array"), ("count", "array_of_count"))
         }
         shared |= _lengths(panel, update.isel(chosen), _ROOM * (len(arrays) + 1))
-    axes[0, 0].set_ylabel("crack length [µm]")
+    if arrays:
+        axes[0, 0].set_ylabel("crack length [µm]")
     _inputs(axes[0, -1], moved)
     letter(axes, [*arrays, f"inputs; {others} others hardly move" if others else "inputs"])
     legend_outside(figure, (list(shared.values()), list(shared)), "lower", 3)

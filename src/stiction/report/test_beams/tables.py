@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import xarray as xr
 
+from stiction.answer.sought import PULL_OFF
 from stiction.contact.air import humid
 from stiction.devices import inference
 from stiction.devices.limits.limit import Limit, Side
@@ -59,9 +60,11 @@ def combinations(update: xr.Dataset) -> list[str]:
 
 
 def beams_to_add(update: xr.Dataset) -> str:
-    """Most useful further test beams, at the least known result of the device."""
+    """Most useful further test beams, at the least known result of the device; empty if no cracks are known."""
     if update.result_after.isnull().all():
         return f"Which further test beams would help is not known: {_FEW}."
+    if not update.sizes["further"]:
+        return ""
     worst = int(np.nanargmax(update.result_after.values))
     left = update.result_after_further.isel(result=worst)
     best = int(np.nanargmin(left.isel(beams=0).values))
@@ -77,15 +80,21 @@ def beams_to_add(update: xr.Dataset) -> str:
 def agreement(update: xr.Dataset) -> str:
     """Agreement of the data with the model."""
     left_out = f"Left out are {update.attrs['left_out']}: {_FEW}." if update.attrs["left_out"] else ""
-    if not update.sizes["datum"]:
+    forces = _forces_in(update)
+    if not (update.sizes["datum"] or forces):
         return left_out
     together, of_inputs = float(update.p_value), float(update.p_value_of_inputs)
     agree = "The test beams are as computed, within the stated errors. " * (min(together, of_inputs) >= UNLIKELY)
     return (
-        f"{agree}Differences from the computed lengths and counts as large as measured, or larger, have a probability "
-        f"of {together:.2g} if inputs and model err as stated, and of {of_inputs:.2g} if the inputs alone do."
-        + f" {left_out}".rstrip()
+        f"{agree}Differences from the computed {'lengths, counts and forces' if forces else 'lengths and counts'} as "
+        f"large as measured, or larger, have a probability of {together:.2g} if inputs and model err as stated, and of "
+        f"{of_inputs:.2g} if the inputs alone do." + f" {left_out}".rstrip()
     )
+
+
+def _forces_in(update):
+    """Number of means of pull-off forces."""
+    return update.sizes.get("force", 0)
 
 
 def notes(update: xr.Dataset) -> str:
@@ -99,6 +108,8 @@ def notes(update: xr.Dataset) -> str:
         return f"{none}: {_FEW}."
     if sought.more_is_better:
         return "Cracks do not say how much the model errs at stoppers."
+    if not update.sizes["datum"] and _forces_in(update):
+        return "The answer contains the error of the model as stated: pull-off forces say nothing about it."
     beyond = ", but not where the middle of a bridge holds" if MIDDLE in responses else ""
     said = f"The answer contains the error of the model as far as the test beams show it{beyond}."
     return said + _beyond_cracks(update)
@@ -170,7 +181,7 @@ def stuck_sentences(update: xr.Dataset) -> list[str]:
 
 def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     """Test beams and the lengths of their devices, by name of the device, before and after the measurement."""
-    parts = _data, _results, _safe_sizes, _input_rows
+    parts = _data, _force_rows, _results, _safe_sizes, _input_rows
     rows = [row for device, update in datasets.items() for part in parts for row in part(device, update)]
     sentences = [
         f"{device}: {sentence}"
@@ -183,6 +194,7 @@ def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
             *stuck_sentences(update),
             *words.texts(warnings(update)),
         ]
+        if sentence
     ]
     caption = (
         "Test beams: measured crack lengths with the standard errors of their means, counts of stuck beams, and "
@@ -213,6 +225,18 @@ def _data(device, update):
         yield (
             head | {"name": str(at.array_of_count.values), "measured": float(at.stuck), "measured_se": np.nan} | shares
         )
+
+
+def _force_rows(device, update):
+    """Pull-off forces. Errors of measured ones contain those of computed ones."""
+    for k in range(_forces_in(update)):
+        at = update.isel(force=k)
+        computed, measured = (float(at[f"{name}_force"]) / PULL_OFF.scale for name in ("computed", "measured"))
+        numbers = _length_numbers(computed, *(float(at[f"force_{key}"]) for key in ("before", "shift", "after")))
+        part = f"mean {PULL_OFF.label} [{PULL_OFF.shown}]"
+        head = {"device": device, "relative_humidity": float(at.humidity_of_force), "part": part}
+        own = {"measured": measured, "measured_se": measured * float(at.force_error)}
+        yield head | {"name": str(at.array_of_force.values)} | numbers | own
 
 
 def _results(device, update):
@@ -333,15 +357,18 @@ def _nonlinear(update):
 
 def _beyond_test_beams(update):
     """Conditions of the device beyond those of its test beams, if any of these say something."""
-    if not update.sizes["datum"]:
+    if not (update.sizes["datum"] or _forces_in(update)):
         return
-    measured = sorted(set(update.datum_humidity.values.tolist()))
+    of_forces = update.humidity_of_force.values.tolist() if _forces_in(update) else []
+    measured = sorted({*update.datum_humidity.values.tolist(), *of_forces})
     wet = humid(measured) or [np.inf]
     results = sorted(set(update.humidity_of_result.values.tolist()) - set(measured))
     beyond = [humidity for humidity in results if not wet[0] <= humidity <= wet[-1]]
     if beyond:
         numbers = {"measured": measured, "beyond": beyond}
         yield Limit("beyond_humidities_of_test_beams", Side.EITHER, False, numbers=numbers)
+    if not update.sizes["datum"]:
+        return
     yield from _beyond_in_adhesion(update)
     for size in OWN if "own_thickness" in update else ():
         device = float(update[f"own_{size}"][0])

@@ -544,6 +544,15 @@ def budgets_of_arrays(plan: Any, device: str) -> dict[tuple, str]:
     return budgets
 
 
+def budgets_of_pull_offs(plan: Any, device: str) -> dict[tuple, str]:
+    """Datasets of the budgets of the probes whose pull-off forces a device has, by test beams and humidity."""
+    return {
+        (name, datum["humidity"]): f"devices/budget/{case_id(section['probe'], datum['humidity'])}"
+        for name, section in test_beams.pulled(plan.config, device).items()
+        for datum in section[test_beams.PULL_OFFS]
+    }
+
+
 def _inputs_of_test_beams(contacts):
     """Inputs of a cantilever, or of its tips. Other choices of the model are left out."""
 

@@ -1,11 +1,12 @@
-"""Stage test_beams: evidence of crack lengths and counts about the inputs of a device, and its consequences.
+"""Stage test_beams: evidence of crack lengths, counts and pull-off forces about a device, and its consequences.
 
 Device and test beams have budgets of the same form (`stiction.stages.devices.budget`). Their dimensions are inputs of
 their own; all other inputs of the same name are one input.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from statistics import fmean, stdev
 from typing import NamedTuple
 
 import numpy as np
@@ -16,15 +17,22 @@ from scipy.special import ndtr, ndtri
 from stiction.beam.energy import CRACK_LENGTH_POWER, arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.config.cases import case_id
-from stiction.config.test_beams import humidities
+from stiction.config.test_beams import PULL_OFFS, humidities, pulled
 from stiction.contact.air import Air
 from stiction.contact.environment import Water
 from stiction.devices import arcs, inference, risk
 from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths
+from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage
 from stiction.stages.contact import curves
 from stiction.stages.contact.corrections import applied
-from stiction.stages.devices.budget import budgets_of, budgets_of_arrays, response_of, shared_laws
+from stiction.stages.devices.budget import (
+    budgets_of,
+    budgets_of_arrays,
+    budgets_of_pull_offs,
+    response_of,
+    shared_laws,
+)
 from stiction.stages.devices.contact_names import contact_of, corrections_of, tips_of
 from stiction.stages.devices.opening import (
     ARC,
@@ -80,6 +88,17 @@ class Stuck:
 
 
 @dataclass(frozen=True)
+class PullOffs:
+    """Measured pull-off forces of a probe, one mean for every humidity."""
+
+    humidity: tuple[float, ...]  #: [-]
+    mean: tuple[float, ...]  #: [N]
+    std: tuple[float, ...]  #: between the forces, zero of a single one [N]
+    number: tuple[int, ...]  #: of forces
+    error: tuple[float, ...]  #: standard uncertainty of the mean by the calibration [N]
+
+
+@dataclass(frozen=True)
 class Settings:
     """Settings of the update, without budgets and safe lengths."""
 
@@ -89,6 +108,7 @@ class Settings:
     crack_lengths: dict[str, CrackLengths]  #: by array
     stuck: dict[str, Stuck]  #: by array
     device: DesignedBeam | None = None  #: none of a stopper
+    pull_offs: dict[str, PullOffs] = field(default_factory=dict)  #: by the name of their test beams
 
 
 def is_reliable(update: xr.Dataset) -> bool:
@@ -155,28 +175,31 @@ def compute(
     tips: Mapping[tuple[str, str], xr.Dataset],
     settings: Settings,
     changes: Mapping[str, xr.Dataset] | None = None,
+    forces: Mapping[str, xr.Dataset] | None = None,
 ) -> xr.Dataset:
     """Inputs, lengths and safe lengths, or forces, of a device before and after its test beams were measured.
 
     Budgets are by device or array, humidity and, for tips, more. What is predicted are the datasets of stage
     safe_lengths of a beam by humidity, or that of stage stoppers. ``grounds`` and ``tips`` are the contacts on which
     the beams of an array with counts stick, by array and kind of air, and those of their tips. ``changes`` are those of
-    its contact by full elastic contact, if its beams are corrected: tips of the device have them as well.
+    its contact by full elastic contact, if its beams are corrected: tips of the device have them as well. ``forces``
+    are the datasets of stage stoppers of the probes with pull-off forces, by the name of their test beams.
 
     Data of test beams of which too few stick in the simulation say nothing, and are left out.
     """
-    every = [Result(*key[:2], budget, settings.arrays[key[0]]) for key, budget in test_beams.items()]
+    every = [Result(*key[:2], budget, settings.arrays.get(key[0])) for key, budget in test_beams.items()]
     of_arrays = [result for result in every if result.is_known]
     stuck = known_counts(_with_changes(settings.stuck, changes or {}), of_arrays)
-    beams, of_tips = (
-        [budget for budget in of_arrays if (budget.response == ARC) == is_tip] for is_tip in (False, True)
+    beams, of_tips, probes = (
+        [result for result in of_arrays if result.response == response] for response in (S_SHAPE, ARC, FORCE)
     )
     of_device = [Result(*key[:2], budget, settings.device) for key, budget in budgets.items()]
-    results = [*beams, *of_tips, *of_device]
+    results = [*beams, *of_tips, *probes, *of_device]
     inputs = common_inputs(results)
-    middle = float(np.mean([beam.reduced for beam in beams])) if beams else 0.0
-    prior, responses = with_discrepancy(inputs, results, middle, settings.discrepancy)
-    lengths = length_data(beams, responses, settings.crack_lengths)
+    prior, responses = with_discrepancy(inputs, results, middle_of(beams, of_device), settings.discrepancy)
+    of_probes = responses[len(beams) + len(of_tips) : len(of_arrays)]
+    pull_offs = [pull_off(probe, settings.pull_offs[probe.owner], forces[probe.owner]) for probe in probes]
+    lengths = with_pull_offs(length_data(beams, responses, settings.crack_lengths), of_probes, pull_offs)
     counts = count_data([*beams, *of_tips], responses, stuck, grounds, tips)
     posterior = inference.update(prior, lengths, counts, stream(settings.seed, "test beams", "counts"))
     device, own = responses[len(of_arrays) :], len(inputs.names)
@@ -190,10 +213,17 @@ def compute(
         without_lengthening(result_dataset(of_device, device, own, prior, posterior), *shown),
         further_dataset(beams, responses, of_device, device, posterior),
         agreement_dataset(prior, lengths, counts, own),
+        force_dataset(probes, of_probes, pull_offs, prior, posterior),
     ]
     left_out = "; ".join(result.condition for result in every if not result.is_known)
     merged = xr.merge(parts, combine_attrs="no_conflicts").assign_attrs(left_out=left_out)
     return with_forces(merged, predicted) if settings.device is None else with_lengths(merged, predicted)
+
+
+def middle_of(beams: Sequence[Result], of_device: Sequence[Result]) -> float:
+    """Middle of u of all test beams, or of the cracks of the device where no beams say anything [-]."""
+    cracks = [result.reduced for result in beams or of_device if result.response == S_SHAPE]
+    return float(np.mean(cracks)) if cracks else 0.0
 
 
 def common_inputs(results: Sequence[Result]) -> Knowledge:
@@ -214,7 +244,8 @@ def with_discrepancy(
     The slope of the model is about a ``middle`` of u [-], that of all test beams, counted or measured.
 
     ASSUME: test beams say nothing about how much the model errs at the middle of a bridge and at stoppers. These have
-    the uncertainty of their budget.
+    the uncertainty of their budget. Pull-off forces have it, too: they say nothing about how much the model of cracks
+    errs, and what full elastic contact leaves uncertain of them is in their errors.
     """
     responses = np.zeros((len(results), len(inputs.names)))
     for row, result in zip(responses, results, strict=True):
@@ -262,6 +293,52 @@ def length_data(beams: Sequence[Result], responses: np.ndarray, crack_lengths: M
             errors.append(std / mean / np.sqrt(number))
             rows.append(row)
     return Lengths(np.reshape(rows, (-1, responses.shape[1])), np.array(differences), np.array(errors))
+
+
+class PullOff(NamedTuple):
+    """Mean measured pull-off force of a probe at a humidity, beside the computed one."""
+
+    measured: float  #: [N]
+    computed: float  #: [N]
+    error: float  #: standard error of ln(measured / computed) by anything but inputs [-]
+
+
+def pull_off(result: Result, measured: PullOffs, stopper: xr.Dataset) -> PullOff:
+    r"""Pull-off force of a probe at one of m humidities, with the error of the logarithm of measured over computed.
+
+    From the relative scatter s of n forces and s₀ of the sampled places, the uncertainty σ by the calibration, and σ₀
+    by the simulation and its full elastic contact, this error has the variance
+
+    .. math::
+
+        R = \frac{s^2}{n} + m \left( \max(s_0^2 - s^2, 0) + \frac{\sigma^2}{F^2} \right)
+            + \frac{\sigma_0^2}{F_0^2} .
+
+    The dataset is that of stage stoppers.
+
+    ASSUME: forces of one probe that scatter less than those of places on many probes have its own surface in common,
+    and with it the rest of the variance, as a single force has. Here s is that part of the larger mean, because a probe
+    that holds little would otherwise seem to scatter much.
+    ASSUME: this and the calibration may be common to all humidities: m independent errors with m times the variance are
+    no smaller in any combination, by the inequality of Cauchy and Schwarz, which is the safe side.
+    """
+    at, computed = measured.humidity.index(result.humidity), stopper.sel(humidity=result.humidity)
+    mean, std, places = measured.mean[at], measured.std[at], computed.pull_off.values
+    expected, error = map(float, mean_with_error(places))
+    rest = max(places.var(ddof=1) / expected**2 - (std / max(mean, expected)) ** 2, 0.0)
+    common = len(measured.humidity) * (rest + (measured.error[at] / mean) ** 2)
+    simulation = (error / expected) ** 2 + float(computed.full_contact_error) ** 2
+    variance = (std / mean) ** 2 / measured.number[at] + common + simulation
+    return PullOff(mean, expected, float(np.sqrt(variance)))
+
+
+def with_pull_offs(lengths: Lengths, responses: np.ndarray, pull_offs: Sequence[PullOff]) -> Lengths:
+    """Data of crack lengths and of pull-off forces (n), with the responses of the latter (n, k)."""
+    return Lengths(
+        np.concatenate([lengths.responses, responses]),
+        np.append(lengths.differences, [np.log(one.measured / one.computed) for one in pull_offs]),
+        np.append(lengths.errors, [one.error for one in pull_offs]),
+    )
 
 
 def _place(result, crack_lengths):
@@ -386,6 +463,32 @@ def _measured_length(result, crack_lengths):
     return {"measured": data.mean[at], "error": error, "beam_length": data.length}
 
 
+def force_dataset(
+    probes: Sequence[Result],
+    responses: np.ndarray,
+    pull_offs: Sequence[PullOff],
+    prior: Knowledge,
+    posterior: Knowledge,
+) -> xr.Dataset:
+    """Measured and computed pull-off forces, and expected ones before and after; empty without any."""
+    if not probes:
+        return xr.Dataset()
+    measured, computed, errors = np.transpose(pull_offs)
+    numbers = {"error": errors} | _both(prior, posterior, responses)
+    return xr.Dataset(
+        {f"force_{name}": ("force", value, {"units": "1"}) for name, value in numbers.items()}
+        | {
+            "measured_force": ("force", measured, {"units": "N"}),
+            "computed_force": ("force", computed, {"units": "N"}),
+        },
+        coords={
+            "force": [probe.condition for probe in probes],
+            "array_of_force": ("force", [probe.owner for probe in probes]),
+            "humidity_of_force": ("force", [probe.humidity for probe in probes]),
+        },
+    )
+
+
 def count_dataset(counts: Counts, posterior: Knowledge, stuck: Mapping[str, Stuck]) -> xr.Dataset:
     """Counted beams and their P(stuck) before and after the measurement, for the expected inputs."""
     rows = [(name, *row) for name, data in stuck.items() for row in zip(data.humidity, data.length, strict=True)]
@@ -499,9 +602,10 @@ def further_dataset(
         ]
         for target in device
     ]
+    shape = len(of_device), len(further), len(FURTHER)
     return xr.Dataset(
         {
-            "result_after_further": (("result", "further", "beams"), left, {"units": "1"}),
+            "result_after_further": (("result", "further", "beams"), np.reshape(left, shape), {"units": "1"}),
             "further_length": ("further", [LONG * float(beam.budget.centre) for beam, *_ in further], {"units": "m"}),
         },
         coords={"further": [beam.condition for beam, *_ in further], "beams": list(FURTHER)},
@@ -602,7 +706,8 @@ def _shares(update, sizes, share):
 
 def _settings(plan, at):
     """Dimensions of a device and of its test beams, the measured data, and the discrepancy of the model."""
-    names = plan.config["devices"][at.device]["test_beams"]
+    with_forces = pulled(plan.config, at.device)
+    names = [name for name in plan.config["devices"][at.device]["test_beams"] if name not in with_forces]
     arrays = {name: plan.config["test_beams"][name] for name in names}
     data = {
         kind: {
@@ -620,7 +725,26 @@ def _settings(plan, at):
         data["stuck"][name]["water"] = plan.air_of_devices.water(contact)
     common = {"seed": plan.config["seed"], "discrepancy": plan.config["design"]["discrepancy"]}
     common["arrays"] = {name: section_of_beam(plan.with_test_beams, name) for name in names}
+    common |= {PULL_OFFS: {name: _of_forces(one) for name, one in with_forces.items()}} if with_forces else {}
     return data | own_section(plan, at.device) | common
+
+
+def _of_forces(section):
+    """Means of the measured pull-off forces of a probe."""
+    forces = [datum["forces_nN"] for datum in section[PULL_OFFS]]
+    return {
+        "humidity": [datum["humidity"] for datum in section[PULL_OFFS]],
+        "mean_nN": list(map(fmean, forces)),
+        "std_nN": [stdev(some) if len(some) > 1 else 0.0 for some in forces],
+        "number": list(map(len, forces)),
+        "error_nN": [datum["error_nN"] for datum in section[PULL_OFFS]],
+    }
+
+
+def _forces(plan, device):
+    """Forces of the probes with pull-off forces, none without any."""
+    forces = {name: f"devices/stoppers/{one['probe']}" for name, one in pulled(plan.config, device).items()}
+    return {"forces": forces} if forces else {}
 
 
 def _contacts(plan, device):
@@ -651,10 +775,11 @@ STAGES = (
         inputs=lambda plan, at: (
             {
                 "budgets": budgets_of(plan, at.device),
-                "test_beams": budgets_of_arrays(plan, at.device),
+                "test_beams": budgets_of_arrays(plan, at.device) | budgets_of_pull_offs(plan, at.device),
                 "predicted": next(iter(results_of(plan, at.device, "lengths", "stopper").values())),
             }
             | _contacts(plan, at.device)
+            | _forces(plan, at.device)
         ),
         settings=_settings,
         kind=Settings,

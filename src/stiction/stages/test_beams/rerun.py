@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.analysis.shifts import moved
-from stiction.config.cases import case_id
+from stiction.config.cases import Case
 from stiction.config.units import in_si
 from stiction.contact.materials import OF_PAIRS
 from stiction.errors import NotConverged
@@ -26,7 +26,14 @@ from stiction.stages.contact.contact import first
 from stiction.stages.contact.corrections import with_correction
 from stiction.stages.contact.pairs import Settings
 from stiction.stages.devices import budget as stage_budget
-from stiction.stages.devices.budget import AnyBudget, budget_settings, budgets_of, budgets_of_arrays, effect
+from stiction.stages.devices.budget import (
+    AnyBudget,
+    budget_settings,
+    budgets_of,
+    budgets_of_arrays,
+    budgets_of_pull_offs,
+    effect,
+)
 from stiction.stages.devices.contact_names import contact_of, corrections_of, patch_of
 from stiction.stages.devices.uncertain_inputs import changed
 from stiction.stages.surfaces.descriptions import description, drawn_as
@@ -115,8 +122,14 @@ def with_reruns(
 
 def _cases(plan, device):
     """Plan and case of all budgets of a device and its test beams, except tips, by their names and humidity."""
-    plans = (plan, budgets_of(plan, device)), (plan.with_test_beams, budgets_of_arrays(plan, device))
-    return {key: (of, case_id(*key), name) for of, budgets in plans for key, name in budgets.items() if len(key) == 2}
+    of_devices = budgets_of(plan, device) | budgets_of_pull_offs(plan, device)
+    plans = (plan, of_devices), (plan.with_test_beams, budgets_of_arrays(plan, device))
+    return {
+        key: (of, Case(name.rpartition("/")[2]), name)
+        for of, budgets in plans
+        for key, name in budgets.items()
+        if len(key) == 2
+    }
 
 
 def _inputs(plan, at):

@@ -1,0 +1,1 @@
+"""Measurements on devices that bear on their inputs."""
