@@ -118,13 +118,18 @@ def of_simulation() -> str:
 
 def materials() -> str:
     """Table of the materials by name in Markdown: every property with its source."""
-    head = "Materials by name, for `surfaces.NAME.material` and `materials.NAME.like`. Measure your own films.\n\n"
+    head = (
+        "Materials by name, for `surfaces.NAME.material` and `materials.NAME.like`. Measure your own films. The last "
+    )
+    head += (
+        "column says what was read again of a source: –, nothing, the value is as in a handbook or paper before.\n\n"
+    )
     rows = [
-        f"| {name} | `{key}` | {_in_short(entry['value'])} | {entry['source']} |"
+        f"| {name} | `{key}` | {_in_short(entry['value'])} | {entry['source']} | {entry.get('read', '–')} |"
         for name, properties in sourced_properties().items()
         for key, entry in properties.items()
     ]
-    return head + "\n".join(["| material | property | value | source |", "|---|---|---|---|", *rows])
+    return head + "\n".join(["| material | property | value | source | read again |", "|---|---|---|---|---|", *rows])
 
 
 def _in_short(value):

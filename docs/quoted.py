@@ -34,7 +34,6 @@ UNSAFE = {
     "gold": "caltech_gold",
     "silicon": "stanford_force",
     "plates": "plates_polysilicon",
-    "tips": "worcester_rms",
 }
 
 
@@ -42,7 +41,7 @@ def numbers(tables):
     """All numbers, from a dict of the name of each table to its frame."""
     texts = crack_lengths(tables["table_3"]) | deviations(tables["table_3"]) | energies(tables["table_3"])
     texts |= supplement(tables) | finer(tables["print_finer"])
-    texts |= statements(tables["table_3"], tables["variants"])
+    texts |= statements(tables["table_3"], tables["variants"]) | statements_of_studies(tables)
     texts |= intervals(tables["table_3"]) | printed(tables["print"], tables["print_studies"])
     texts |= surfaces(tables["table_1"]) | identification(tables["table_2"]) | fits(tables["fit_quality"])
     texts |= (
@@ -290,6 +289,29 @@ def statements(table_3, variants):
     return texts
 
 
+def statements_of_studies(tables):
+    """What our studies say about statements of the paper.
+
+    ``radius_B2_NG``: mean radius of the summits of B2 with its heights, ``…_G`` with Gaussian ones [µm];
+    ``slope_rms_dry``, ``…_wet``: slope of ln ē over the rms in the driest and wettest air, and so on; ``off_a``: mean
+    deviation from measured lengths [%], ``off_b_088`` that of one; ``without_vdw_least``, ``…_most``: how much less ē
+    is without van der Waals forces [%]; ``gamma_a_060``: Γ/2γ [%].
+    """
+    surfaces, slopes, variants = (tables[name] for name in ("table_1", "sensitivity", "variants"))
+    radii = surfaces[surfaces.surface == "B2"].set_index("column").mean_summit_radius_um
+    texts = {f"radius_B2_{model}": f"{radii[model]:.2f}" for model in ("NG", "G")}
+    for moment, rows in slopes[slopes.statistic == "mean"].groupby("moment"):
+        ends = rows.sort_values("relative_humidity").slope.values
+        texts |= {f"slope_{moment}_dry": f"{ends[0]:.2g}", f"slope_{moment}_wet": f"{ends[-1]:.2g}"}
+    known = tables["table_3"].query("model == 'NG' and experiment_um.notna()").set_index(["pair", "relative_humidity"])
+    off = 100 * np.abs(known.crack_length_um / known.experiment_um - 1)
+    texts |= {f"off_{pair}": f"{mean:.2g}" for pair, mean in off.groupby("pair").mean().items()}
+    without = -variants[variants.variant == "van_der_waals_none"].meso_energy_shift_percent
+    texts |= {"without_vdw_least": f"{without.min():.2g}", "without_vdw_most": f"{without.max():.2g}"}
+    shares = tables["supplement_shares"].set_index(["pair", "RH"])["Γ/2γ [%]"]
+    return texts | {"off_b_088": f"{off['b', 0.88]:.2g}", "gamma_a_060": f"{shares['a', 0.6]:.2g}"}
+
+
 def trends(models):
     """``growing_pairs``: pairs whose ē grows with every humidity; ``energies_at_080``: ē of all pairs [mJ/m²].
 
@@ -346,14 +368,15 @@ def supplement(tables):
     """Numbers of ``make supplement``.
 
     ``greenwood_a``: energy of model NG over that of Greenwood and Williamson's at the lowest humidity, ``…_wet_a`` at
-    the highest; ``index_a``: plasticity index; ``size_a``: cv √area of the smallest patch over that of the largest;
-    ``neighbours_B1``: correlation of neighbouring strips [%]; ``equal_b``: Γ/2γ at which both sources scatter Γ equally
-    [%]; ``least_gamma_a``, ``most_gamma_a``: Γ/2γ over the humidities [%].
+    the highest; ``theta_a``: adhesion parameter; ``index_a``: plasticity index; ``size_a``: cv √area of the smallest
+    patch over that of the largest; ``neighbours_B1``: correlation of neighbouring strips [%]; ``equal_b``: Γ/2γ at
+    which both sources scatter Γ equally [%]; ``least_gamma_a``, ``most_gamma_a``: Γ/2γ over the humidities [%].
     """
     texts = {}
     for pair, rows in tables["supplement_greenwood_williamson"].groupby("pair"):
         ratio = (rows["ē, NG [mJ/m²]"] / rows["ē, GW [mJ/m²]"]).values
         texts |= {f"greenwood_{pair}": _rounded(ratio[0]), f"greenwood_wet_{pair}": _rounded(ratio[-1])}
+        texts[f"theta_{pair}"] = f"{rows['θ'].iloc[0]:.0f}"
         texts[f"index_{pair}"] = f"{rows['plasticity index'].iloc[0]:.2f}"
     for pair, rows in tables["supplement_sizes"].groupby("pair"):
         scaled = rows["cv √area [µm]"].values

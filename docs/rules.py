@@ -43,7 +43,7 @@ ROOMS = {
     "beams": ("Beams beside the chain: mesh, resampling, variants (Apps. B and C).", ["stages.beams"]),
     "devices": (
         "Devices: safe lengths, stoppers, budgets, life, test beams.",
-        ["stages.devices", "stages.life", "stages.test_beams", "stages.answer"],
+        ["stages.devices", "stages.life", "stages.test_beams", "stages.answer", "stages.at_once"],
     ),
     "process": ("Devices against roughness and process.", ["stages.axes"]),
     "report": ("Tables, figures and pages, and the checks of a run.", ["report"]),

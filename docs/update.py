@@ -90,7 +90,7 @@ DRAWN_BEAMS = "drawn_beams"
 MEASURED_BEAMS = "measured_beams"
 #: Tables and pictures of ``make devices``; pictures by their width [pixels].
 DEVICE_TABLES = ("devices", "safe_lengths", "stoppers", "budget", "life")
-DEVICE_PICTURES = {"risk": 1400, "chart": 1200, "stoppers": 700, "budget_C1": 1000, "life": 1200}
+DEVICE_PICTURES = {"risk": 1400, "chart": 1200, "stoppers": 700, "budget_C1": 660, "life": 1200}
 #: Table, and pictures by their width [pixels], of ``make devices CONFIG=examples/roughness.yaml``.
 ROUGHNESS = "roughness"
 #: Table, sentences and pictures of ``make example-process``.
@@ -110,7 +110,7 @@ TEST_BEAMS_PICTURE = ("test_beams_onB", 1100)
 #: Tables of studies with a command of their own: command, and width of the picture of the same name [pixels] or 0.
 OWN_STUDIES = {
     "model_error": ("make model-error", 1100),
-    "asperities": ("make asperities", 1100),
+    "asperities": ("make asperities", 660),
     "model_error_parts": ("make asperities", 0),
     "pressing": ("make pressing", 700),
 }

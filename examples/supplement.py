@@ -13,10 +13,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 import stiction
-from stiction.analysis.greenwood import GreenwoodWilliamson
 from stiction.beam.energy import arrest_length
 from stiction.config.units import in_si
-from stiction.contact.asperity import reduced_modulus
 from stiction.contact.environment import Water
 from stiction.contact.materials import Solid
 from stiction.contact.meniscus import film, flooded_energy
@@ -25,11 +23,10 @@ from stiction.plan.plan import Plan
 from stiction.report.format import TO_MJ, TO_UM
 from stiction.report.style import DOUBLE, handles, legend_outside, letter, plain_log, save, styled
 from stiction.stages.beams.cantilevers import Cantilevers, cantilever, sections
+from stiction.stages.contact.adhesion_parameter import adhesion_parameters, summits
 from stiction.stages.contact.curves import energies
 from stiction.surface.spectrum import CutoffSelfAffine, autocovariance, correlation_length
 
-#: Surface with the summits that touch, by pair.
-ROUGHER = {"a": "B1", "b": "B2", "c": "Sub2"}
 #: Widths of strips of 1.5 µm [µm], and humidities at which energies of a pair scatter.
 WIDTHS, HUMIDITIES = (30, 10, 3, 1), {"a": 0.6, "b": 0.67, "c": 0.8}
 #: Surface pairs of every size.
@@ -62,22 +59,13 @@ def main(folder):
     save(drawn(parts), into / "supplement.png")
 
 
-def models(config):
-    """Model of Greenwood and Williamson of each pair, with the measured summits of its rougher surface."""
-    modulus = reduced_modulus(config["solid"]["young_modulus_GPa"] * 1e9, config["solid"]["poisson_ratio"])
-    for pair, rougher in ROUGHER.items():
-        sides = [config["surfaces"][config["pairs"][pair][side]] for side in ("beam", "substrate")]
-        summits = config["surfaces"][rougher]
-        numbers = summits["summit_density_per_um2"] * 1e12, summits["mean_summit_radius_um"] / TO_UM
-        yield pair, GreenwoodWilliamson(*numbers, 1e-9 * np.hypot(*(side["rms_nm"] for side in sides)), modulus)
-
-
 def greenwood_williamson(config, table):
     """Energies and crack lengths of the baseline beside those of models G and NG and the measured lengths."""
     plan, rows, hardness = Plan(config), [], Solid().hardness
-    for pair, model in models(config):
-        beam = cantilever(in_si(Cantilevers, sections(plan, pair)), pair)
-        for humidity in config["pairs"][pair]["humidities"]:
+    for pair in config["run"]["pairs"]:
+        model, beam = summits(plan, pair), cantilever(in_si(Cantilevers, sections(plan, pair)), pair)
+        humidities = config["pairs"][pair]["humidities"]
+        for humidity, parameter in adhesion_parameters(plan, plan.air, pair, humidities).items():
             energy = model.energy(film(humidity, config["water"]["temperature_K"]))
             of = table[(table.pair == pair) & np.isclose(table.relative_humidity, humidity)].set_index("model")
             rows.append(
@@ -90,6 +78,7 @@ def greenwood_williamson(config, table):
                     "l_s, GW [µm]": TO_UM * arrest_length(energy, beam),
                     "l_s, NG [µm]": of.crack_length_um["NG"],
                     "measured [µm]": of.experiment_um["NG"],
+                    "θ": parameter,
                     "plasticity index": model.plasticity_index(hardness),
                 }
             )

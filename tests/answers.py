@@ -105,7 +105,7 @@ def budget_dataset(factor=1.0, settings=BEAM):
 
 def stopper_dataset(peak=0.7):
     """400 patches that hold 0.05, 0.1, ..., 20 µN."""
-    settings = stoppers.Settings(1, Water(300.0), (3e-6, 3e-6), 18.99e-6, (0.44, 0.67), (0.4, 0.9))
+    settings = stoppers.Settings(1, Water(300.0), (3e-6, 3e-6), (0.44, 0.67), (0.4, 0.9), restoring_force=18.99e-6)
     forces, axis = 5e-8 * np.arange(1, 401), np.linspace(0.4, 0.9, 11)
     peaks = peak + 0.04 * np.where(np.arange(400) % 2, 1, -1)
     along = (1 - (axis[:, None] - peaks) ** 2) * 5e-6

@@ -1,7 +1,7 @@
 """The paper's configuration with single changes, and the problems reported for the result."""
 
 import copy
-from functools import cache
+from functools import cache, reduce
 from pathlib import Path
 from typing import NamedTuple
 from unittest.mock import patch
@@ -13,7 +13,7 @@ from stiction.config.merging import merged
 from stiction.config.messages import ConfigError
 from stiction.config.relations import schema
 from stiction.config.surfaces.grid import completed
-from stiction.config.validation import checked
+from stiction.config.validation import checked, normalised
 from stiction.surface import maxent
 
 ROOT = Path(__file__).parents[1]
@@ -35,6 +35,13 @@ def problems(config):
     except ConfigError as error:
         return error.problems
     return ()
+
+
+def configured(*overlays):
+    """Normal form of the paper's configuration under overlays in YAML, which have no problems."""
+    config = reduce(merged, map(yaml.safe_load, overlays), PAPER)
+    assert problems(config) == ()
+    return normalised(config)
 
 
 class Leaf(NamedTuple):

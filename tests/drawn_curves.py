@@ -95,7 +95,7 @@ def rough(is_beam=False, unknown=(), others=()):
 def biased():
     """Dataset of stage stoppers_at_voltage, some of whose patches no spring frees, not even without voltage."""
     forces = 28e-6 * np.exp(0.2 * np.random.default_rng(4).normal(-2, 1, size=(2, 400)))
-    settings = stoppers.Settings(1, Water(300.0), (3e-6, 3e-6), REQUIRED[False], (0.8, 0.6), (0.5, 0.9))
+    settings = stoppers.Settings(1, Water(300.0), (3e-6, 3e-6), (0.8, 0.6), (0.5, 0.9), restoring_force=REQUIRED[False])
     found = stoppers.layout(settings, forces, np.array([0.5, 0.7, 0.9]), np.tile(forces[:1], (3, 1)))
     potentials = 10 * np.sqrt(np.maximum(1 - forces / 28e-6, 0))
     return found.assign(freeing_potential=(("humidity", "sample"), potentials))

@@ -12,6 +12,14 @@ HOSTILE_FILE = "a|b<I onload=alert(1)>$x$&lt;[a](b)'.gwy"
 _SCRIPTS = {"script", "iframe", "object", "embed", "base", "meta"}
 
 
+def places(node, path=()):
+    """Paths to all nodes of a tree of dicts and lists."""
+    yield path
+    items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
+    for key, value in items:
+        yield from places(value, (*path, key))
+
+
 class Reading(HTMLParser):
     """Text of a page, by element, of its pictures, and everything on it that runs code."""
 

@@ -20,27 +20,27 @@ def spectrum(zeta, rms=3.4e-9, plateau=14380.0, floor=0.3, corner=12e6, cutoff=1
 
 
 class Meeting:
-    """Two Gaussian surfaces with a coherence, of which the upper one can be moved."""
+    """Two Gaussian surfaces with a coherence, of which the upper one can be moved; squares of some points."""
 
-    def __init__(self, coherence, rng):
-        first = 2 * np.pi * fft.fftfreq(POINTS, SPACING)
+    def __init__(self, coherence, rng, points=POINTS):
+        first = 2 * np.pi * fft.fftfreq(points, SPACING)
+        self.points = points
         self.zeta = first[:, None], first
         amplitude = np.sqrt(spectrum(np.hypot(*self.zeta))).astype(np.float32)
         lower, own = (
-            amplitude * fft.fft2(rng.standard_normal((POINTS, POINTS), np.float32)) / POINTS for _ in range(2)
+            amplitude * fft.fft2(rng.standard_normal((points, points), np.float32)) / points for _ in range(2)
         )
         self.lower, self.upper = lower, np.sqrt(1 - coherence**2) * own - coherence * lower
 
     def heights(self, offset):
-        """Sum of both surfaces at an offset (2,) [m], (POINTS, POINTS) [m]."""
+        """Sum of both surfaces at an offset (2,) [m], (points, points) [m]."""
         phases = np.exp(-1j * (offset[0] * self.zeta[0] + offset[1] * self.zeta[1])).astype(np.complex64)
-        return fft.ifft2((self.lower + phases * self.upper) * POINTS**2).real.astype(np.float32)
+        return fft.ifft2((self.lower + phases * self.upper) * self.points**2).real.astype(np.float32)
 
 
-def strips(heights):
-    """Strips of a square field (n, *STRIP)."""
-    along, across = STRIP
-    return [np.ascontiguousarray(heights[k : k + along, :across]) for k in range(0, POINTS - along + 1, along)]
+def strips(heights, along=STRIP[0], across=STRIP[1]):
+    """Strips of a square field (n, along, across)."""
+    return [np.ascontiguousarray(heights[k : k + along, :across]) for k in range(0, len(heights) - along + 1, along)]
 
 
 def crack_lengths(energies, strip, device, spread):

@@ -5,7 +5,7 @@ import functools
 import numpy as np
 import pytest
 import yaml
-from configurations import PAPER
+from configurations import PAPER, configured
 from configurations import problems as invalid
 
 import stiction
@@ -13,7 +13,6 @@ from stiction import accuracy
 from stiction.config.cases import case_id
 from stiction.config.merging import merged
 from stiction.config.units import in_si
-from stiction.config.validation import normalised
 from stiction.devices.numbers import MOST_BEAMS, Spread
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
@@ -26,13 +25,6 @@ S1 = "kind: stopper, pair: b, contact_um: [3, 3], restoring_force_uN: 1, humidit
 SMALL = f"chaos: {{order: 2}}\ndesign: {{accuracy: {{length: 0.03}}}}\ndevices: {{C1: {{{C1}}}, S1: {{{S1}}}}}"
 PLAIN = f"chaos: {{order: 2}}\ndevices: {{C1: {{{C1}}}, S1: {{{S1}}}}}"
 SPREADS = {case_id("C1", 0.88): [Spread(0.03, 0.6), Spread(0.06, 0.1)]}
-
-
-def configured(*overlays):
-    """Normal form of the paper's configuration under overlays in YAML, which have no other problems."""
-    config = functools.reduce(merged, map(yaml.safe_load, overlays), PAPER)
-    assert invalid(config) == ()
-    return normalised(config)
 
 
 @pytest.fixture

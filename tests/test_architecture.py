@@ -37,7 +37,18 @@ ORDER = [
         "stages.test_beams",
         "stages.answer",
     ),
-    *("pilot", "accuracy", "estimate", "report", "described_surface", "study", "device", "process", "command"),
+    *(
+        "pilot",
+        "accuracy",
+        "estimate",
+        "stages.at_once",
+        "report",
+        "described_surface",
+        "study",
+        "device",
+        "process",
+        "command",
+    ),
 ]
 
 

@@ -76,3 +76,15 @@ def test_surfaces_without_a_copy_are_not_asked():
 def test_preliminary_spectra_are_refused_beyond_doubt_only():
     line = refusal(0.99, psd="identified", published_psd=None, mean_summit_radius_um=0.56, summit_density_per_um2=29)
     assert line.endswith("(preliminary, given surfaces.S.psd = 'identified')")
+
+
+@pytest.mark.parametrize(("largest", "is_refused"), [(0.97, True), (0.6, False)])
+def test_the_largest_coherence_of_a_range_is_checked_as_a_stated_one(largest, is_refused):
+    over = {"requirement": {"share": 0.01}, "roughness": {"surface": "S", "coherence": [0, largest]}}
+    try:
+        prepared(merged(study(0.5), {"devices": {"D": over}}), with_samples=True)
+        said = ""
+    except ConfigError as error:
+        said = str(error)
+    assert said.startswith("devices.D.roughness.coherence[1] is 0.97, must be at most 0.") is is_refused
+    assert bool(said) is is_refused

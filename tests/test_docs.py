@@ -210,6 +210,20 @@ def test_numbers_of_checks_scans_and_timings_are_those_of_their_tables():
     assert quoted.timings(times) == {"time_paper": "4:10 min", "time_start": "0.02 s"}
 
 
+def test_numbers_of_statements_are_those_of_their_tables():
+    tables = {name: pd.read_csv(DOCS / "tables" / f"{name}.csv") for name in ("table_1", "table_3", "variants")}
+    tables |= {name: pd.read_csv(DOCS / "tables" / f"{name}.csv") for name in ("sensitivity", "supplement_shares")}
+    whole = quoted.statements_of_studies(tables)
+    of_b = tables["table_3"].query("model == 'NG' and pair == 'b'")
+    expected = 100 * np.abs(of_b.crack_length_um - of_b.experiment_um) / of_b.experiment_um
+    assert float(whole["off_b"]) == pytest.approx(expected.mean(), rel=0.02)
+    assert float(whole["off_b_088"]) == pytest.approx(expected.max(), rel=0.05)
+    moved = tables | {"table_3": tables["table_3"].assign(crack_length_um=tables["table_3"].experiment_um)}
+    assert float(quoted.statements_of_studies(moved)["off_b"]) == 0
+    slopes = [float(whole[f"slope_rms_{air}"]) for air in ("wet", "dry")]
+    assert slopes == pytest.approx([-1.01, -5.95], rel=0.02)
+
+
 def test_numbers_of_force_laws_are_those_of_the_table_of_their_script(tmp_path):
     heads = ["pair", "air", "reach", "ē [mJ/m²]", "touching summits alone [mJ/m²]"]
     heads += ["energy left of d_max, Eq. (12) over curves", "ln l_s, curves over Eq. (12) [%]"]

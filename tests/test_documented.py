@@ -37,6 +37,8 @@ OXIDE = {
     "surfaces": {"B2": {"material": "Oxide"}},
     "liquids": {"Hexane": {"surface_tension_mN_per_m": 18}},
 }
+#: Heights of a surface that another one can follow closely.
+GAUSSIAN = {"skewness": 0, "kurtosis": 3}
 #: Devices with a voltage, and a stopper on a spring.
 DIELECTRIC = {"voltage_V": 1, "dielectric": {"thickness_nm": 100, "permittivity": 3.9}}
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 20, "width_um": 30, "humidities": [0.67]}
@@ -112,7 +114,9 @@ def bases() -> dict[str, dict]:
     found = {Path(name).parent.name + Path(name).name: (ROOT / f"{name}.yaml").read_text() for name in EXAMPLES}
     found |= {f"block{number}": block for number, block in enumerate(BLOCKS)}
     own = {"paper": PAIR_B, "oxide": PAIR_B | OXIDE, "life": PAIR_B | LIFE, "processes": PAIR_B | PROCESSES}
-    own["replica"] = merged(PAIR_B, {"pairs": {"b": {"replica": {"coherence": 0.5}}}, "devices": {"C": BEAM}})
+    over = {"requirement": {"length_um": 200, "share": 0.01}, "roughness": {"surface": "B2", "rms_nm": [2, 8]}}
+    replica = {"pairs": {"b": {"replica": {"coherence": 0.5}}}, "devices": {"C": BEAM, "D": BEAM | over}}
+    own["replica"] = merged(PAIR_B | {"surfaces": {"B2": GAUSSIAN, "Sub1": GAUSSIAN}}, replica)
     films = {"humidities": [0.3, 0.75, 0.9], "thickness_nm": [0.8, 1.2, 1.8]}
     own["isotherm"] = merged(PAIR_B, {"water": {"isotherm": films}})
     return own | {name: yaml.safe_load(text) for name, text in found.items()}

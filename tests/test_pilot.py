@@ -12,8 +12,7 @@ from unittest.mock import patch
 import numpy as np
 import pytest
 import yaml
-from configurations import PAPER, ROOT
-from configurations import problems as invalid
+from configurations import PAPER, ROOT, configured
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from written_scans import etched, scans_of
@@ -41,13 +40,6 @@ REMEMBER = DiskCache("none")  # the tests ask for many of the same samples
 B = "run: {pairs: [b]}\n"
 BEAM = "kind: cantilever, pair: b, thickness_um: 2.6, gap_um: 20, width_um: 30, humidities: [0.67]"
 STOPPER = "kind: stopper, pair: b, restoring_force_uN: 20, humidities: [0.5]"
-
-
-def configured(*overlays):
-    """Normal form of the paper's configuration under overlays in YAML, which have no other problems."""
-    config = functools.reduce(merged, map(yaml.safe_load, overlays), PAPER)
-    assert invalid(config) == ()
-    return normalised(config)
 
 
 def refused(*overlays):

@@ -17,6 +17,7 @@ from stiction.config.relations import schema
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
 from stiction.stages.answer.answer import answer_of
+from stiction.stages.life.answers import answers_of
 
 SPRING = "torsion_nN_m_per_rad"
 #: Force for a stiffness of 1 nN m/rad [µN]: (1e-9 N m/rad) θ / (1e-6 m) = 1e-3 N = 1000 µN, for θ = 1 rad and r = 1 µm.
@@ -57,6 +58,12 @@ def test_a_mirror_needs_the_force_of_a_stopper_with_the_same_patch_and_force(tmp
     assert stiff.size == pytest.approx(10 * FORCE, rel=1e-12)
     assert mirror.build == stopper.build == stiff.build > 0
     assert (mirror.stuck, mirror.kind) == (stopper.stuck, "mirror")
+    asked = [{row.needs for row in answers_of(results[f"devices/life/{name}"])} for name in devices]
+    assert [[any(key in needs for needs in some) for key in ("electrode", "mass_ng")] for some in asked] == [
+        [False, False],
+        [True, True],
+        [False, False],
+    ]
     assert stiff.stuck.value < mirror.stuck.value
     results.write(results.graph.job("devices/Mirror.html"))
     page = (tmp_path / "devices" / "Mirror.html").read_text(encoding="utf-8")

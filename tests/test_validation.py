@@ -13,6 +13,7 @@ import pytest
 import yaml
 from numpy.testing import assert_allclose
 
+import stiction
 from stiction.streams import stream
 
 ROOT = Path(__file__).parents[1]
@@ -68,6 +69,8 @@ WRONG = {
         "is a level without along, or a law with it",
     ),
     "threshold": (lambda entry: entry["measured"][0].update(falls_to=0.5), "must have falls_to for a threshold"),
+    "no_probe": (lambda entry: entry["setup"].update(radius_um=1), "radius_um for a probe, and only for one"),
+    "no_radius": (lambda entry: entry["setup"].update(observable="probe"), "radius_um for a probe, and only for one"),
     "no_setup": (lambda entry: entry.pop("setup"), "write either setup or not_computed"),
 }
 
@@ -238,15 +241,38 @@ def test_two_experiments_are_predicted_and_compared(tmp_path):
     assert "†" in lines[3]
 
 
-def test_spheres_pull_as_derjaguin_says_and_tips_narrower_than_the_correlation_length_are_refused():
-    face = {"rms_nm": 3.0, "hurst": 0.8, "correlation_length_nm": 80, "cutoff_rad_per_um": 157, "like": "B2"}
-    flat = {"observable": "energy", "faces": [face, face], "air": 0.45, "area_um2": 1.5, "strips": 5}
-    sphere = flat | {"observable": "sphere", "radius_um": 10}
-    contacts = prediction.Contacts([flat, sphere], seed=1)
-    (energy, error), (force, of_force) = (prediction.value(state, contacts) for state in (flat, sphere))
-    assert_allclose([force, of_force], [2 * np.pi * 10e-6 * energy, error])
-    with pytest.raises(ValueError, match="Derjaguin's approximation fails"):
-        prediction.value(sphere | {"radius_um": 0.02}, contacts)
+FACE = {"rms_nm": 1.0, "hurst": 0.8, "correlation_length_nm": 20, "cutoff_rad_per_um": 300, "like": "B2"}
+TIP = {
+    "observable": "probe",
+    "radius_um": 0.02,
+    "faces": [FACE, FACE],
+    "air": 0.45,
+    "strips": 8,
+    "settings": {"sampling": {"spacing_nm": 0.5, "margin_um": 0.2}, "van_der_waals": "none"},
+}
+
+
+def test_probes_are_devices_of_the_kind_probe_and_flat_patches_are_not():
+    config = stiction.load(prediction.configuration(TIP, (0.45, 0.6), 1))
+    of_device = stiction.Device.of(config, prediction.PROBE).forces().pull_off
+    contacts = prediction.Contacts([TIP, TIP | {"air": 0.6}], seed=1)
+    for humidity in (0.45, 0.6):
+        assert_allclose(contacts.of(TIP | {"air": humidity}), of_device.sel(humidity=humidity))
+    flat = {"observable": "force", "faces": [FACE, FACE], "air": 0.45, "area_um2": 0.01, "strips": 8}
+    (force, error), (of_flat, _) = (prediction.value(state, prediction.Contacts([state], 1)) for state in (TIP, flat))
+    assert abs(of_flat / force - 1) > 4 * error  # control: the shape counts
+
+
+def test_a_smooth_tip_holds_4_pi_r_gamma_and_a_rough_sphere_far_less():
+    def relative(state):
+        """Force over that of a smooth sphere."""
+        return prediction.value(state, prediction.Contacts([state], 1))[0] / (4e-6 * np.pi * state["radius_um"] * 0.072)
+
+    assert_allclose(
+        relative(TIP | {"faces": [FACE | {"rms_nm": 0.02}] * 2}), 1, rtol=0.04
+    )  # by 200 pixels in the water
+    sphere = {"radius_um": 5, "faces": [FACE | {"rms_nm": 3.0}] * 2, "settings": {"van_der_waals": "none"}}
+    assert relative(TIP | sphere) < 0.5  # control
 
 
 def test_quantiles_of_a_crack_length_are_ends_of_the_intervals_of_table_3():

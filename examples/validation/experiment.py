@@ -138,8 +138,7 @@ def relations(stated: dict) -> Iterator[str]:
     """Problems that no single key has."""
     if not {"doi", "link"} & stated["source"].keys():
         yield "source must have a doi or a link"
-    if ("setup" in stated) == ("not_computed" in stated):
-        yield "write either setup or not_computed"
+    yield from _problems_of_setup(stated)
     assumed = stated.get("assumed", {})
     for name, entry in assumed.items():
         if ("range" in entry) == ("one_of" in entry):
@@ -152,6 +151,14 @@ def relations(stated: dict) -> Iterator[str]:
         yield f"assumed.{name} is used nowhere in setup: write ${name} there"
     for number, row in enumerate(rows):
         yield from (f"measured[{number}] {problem}" for problem in _problems_of(row, used - assumed.keys()))
+
+
+def _problems_of_setup(stated):
+    """Problems of what is computed."""
+    if ("setup" in stated) == ("not_computed" in stated):
+        yield "write either setup or not_computed"
+    if ("radius_um" in (setup := stated.get("setup", {}))) != (setup.get("observable") == "probe"):
+        yield "setup must have radius_um for a probe, and only for one"
 
 
 def _problems_of(row, left):

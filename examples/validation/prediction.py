@@ -17,8 +17,14 @@ from scipy.stats import qmc
 
 import stiction
 from stiction.analysis.prediction import Discrepancy
+from stiction.config.cases import case_id
+from stiction.config.kinds import KINDS
+from stiction.config.units import in_si
 from stiction.contact.meniscus import film
+from stiction.plan.graph import Results
 from stiction.progress import without_progress
+from stiction.stages.devices import stoppers
+from stiction.stages.devices.contact_names import contact_of
 from stiction.stages.devices.prediction import MEASURED, PAPER_LENGTHS, TOUCHING
 from stiction.streams import stream
 
@@ -31,7 +37,9 @@ STRIPS, LENGTH, TEMPERATURE = 24, 1.5, 300.0
 GAP = 100
 #: Decimals of the sides of a patch [µm], as of the grid of 10 nm.
 DECIMALS = 2
-NM, UM = 1e-9, 1e-6
+#: Names of the pair and of a probe on it, and keys of its shape.
+PAIR, PROBE, OF_PROBE = "mine", "Probe", KINDS["probe"].shape
+UM = 1e-6
 
 
 def main(path, result):
@@ -111,36 +119,10 @@ def value(state: dict, contacts: "Contacts") -> tuple[float, float]:
         return factor * film(state["air"], state.get("temperature_K", TEMPERATURE))[0], 0.0
     if observable == "crack":
         return factor * crack(state["pair"], state["air"], state["quantile"]), 0.0
-    energies, pressures = contacts.of(state)
-    of_strips = energies if observable in ("energy", "sphere") else pressures
-    devices = of_strips[: state.get("devices", len(of_strips))]
-    error = of_strips.std(ddof=1) / of_strips.mean() / np.sqrt(len(devices))
-    return factor * scale(state) * float(devices.mean()), float(error)
-
-
-def scale(state: dict) -> float:
-    """Factor from the energy or pressure of patches to the observable of a state [SI]."""
-    if state["observable"] == "force":
-        return state["area_um2"] * UM**2
-    return derjaguin(state) if state["observable"] == "sphere" else 1.0
-
-
-def derjaguin(state: dict) -> float:
-    """Force of a sphere over the energy of flats, 2πR [m].
-
-    Raises
-    ------
-    ValueError
-        If the zone in which the gap grows by one rms, of radius √(2 R rms), is narrower than the correlation length.
-    """
-    radius = state["radius_um"] * UM
-    zone = np.sqrt(2 * radius * NM * np.hypot(*(face["rms_nm"] for face in state["faces"])))
-    if zone < NM * max(face.get("correlation_length_nm", 0.0) for face in state["faces"]):
-        raise ValueError(
-            f"a sphere of {radius / UM:g} µm touches a zone of {zone / NM:.0f} nm, narrower than the correlation "
-            "length: Derjaguin's approximation fails, write not_computed"
-        )
-    return 2 * np.pi * radius
+    of_patches = contacts.of(state)
+    devices = of_patches[: state.get("devices", len(of_patches))]
+    error = of_patches.std(ddof=1) / of_patches.mean() / np.sqrt(len(devices))
+    return factor * float(devices.mean()), float(error)
 
 
 def crack(pair: str, humidity: float, quantile: float) -> float:
@@ -163,15 +145,15 @@ def paper_lengths() -> pd.DataFrame:
 
 @dataclass(frozen=True)
 class Contacts:
-    """Energies and pull-off pressures of all states of a draw. States that differ in their air share their surfaces."""
+    """Contacts of all states of a draw. States that differ in their air share their surfaces."""
 
     states: list
     seed: int
 
-    def of(self, state: dict) -> tuple[np.ndarray, np.ndarray]:
-        """Energies [J m⁻²] and pull-off pressures [Pa] of the patches of a state, (strips,) each."""
-        study = _study(surfaces(state), tuple(sorted(self._airs(state), key=str)), self.seed)
-        return study.energies(state["air"]), study.forces(state["air"]).pull_off.values
+    def of(self, state: dict) -> np.ndarray:
+        """Observable of the patches of a state (strips,) [SI]."""
+        results = _results(surfaces(state), tuple(sorted(self._airs(state), key=str)), self.seed)
+        return _OBSERVED[state["observable"]](results, state)
 
     def _airs(self, state):
         """Airs of all states on the same surfaces."""
@@ -179,36 +161,80 @@ class Contacts:
         return {other["air"] for other in self.states if surfaces(other) == same}
 
 
+def energies(results: Results, state: dict) -> np.ndarray:
+    """Adhesion energies of the patches of a state [J m⁻²]."""
+    return _study(results).energies(state["air"])
+
+
+def pressures(results: Results, state: dict) -> np.ndarray:
+    """Pull-off forces per area of the patches of a state [Pa]."""
+    return _study(results).forces(state["air"]).pull_off.values
+
+
+def forces(results: Results, state: dict) -> np.ndarray:
+    """Pull-off forces of the patches of a state [N]."""
+    return state["area_um2"] * UM**2 * pressures(results, state)
+
+
+def forces_of_probe(results: Results, state: dict) -> np.ndarray:
+    """Pull-off forces of the places of a device of the kind probe [N]."""
+    settings = in_si(stoppers.Settings, results.graph.job(f"devices/stoppers/{PROBE}").settings)
+    case = case_id(PROBE, state["air"])
+    return stoppers.forces(results[contact_of(results.graph.plan, case)], case.humidity, settings)
+
+
+_OBSERVED = {"energy": energies, "pressure": pressures, "force": forces, "probe": forces_of_probe}
+
+
 def surfaces(state: dict) -> str:
     """What determines the contact of a state apart from its air."""
-    keys = ("faces", "area_um2", "strips", "temperature_K", "settings")
+    keys = ("faces", "area_um2", *OF_PROBE, "strips", "temperature_K", "settings")
     return json.dumps({key: state[key] for key in keys if key in state}, sort_keys=True)
 
 
 @lru_cache(16)
-def _study(same: str, airs: tuple, seed: int) -> stiction.PairStudy:
-    """Pair of drawn surfaces in some airs."""
-    return stiction.PairStudy.of(stiction.load(configuration(json.loads(same), airs, seed)), "mine")
+def _results(same: str, airs: tuple, seed: int) -> Results:
+    """Results on drawn surfaces in some airs."""
+    return Results.of(stiction.load(configuration(json.loads(same), airs, seed)))
+
+
+def _study(results):
+    """Flat patches."""
+    return stiction.PairStudy(PAIR, "NG", results)
 
 
 def configuration(state: dict, airs: tuple, seed: int) -> dict:
     """Changes of the paper's configuration for the patches of one state."""
-    area = state.get("area_um2", LENGTH**2)
-    length = round(min(LENGTH, float(np.sqrt(area))), DECIMALS)
-    names = ("Upper", "Lower")
+    names, of_patches = ("Upper", "Lower"), under_probe if "radius_um" in state else in_strips
     return {
         "seed": seed,
-        "run": {"pairs": ["mine"], "studies": []},
         "surfaces": dict(zip(names, state["faces"], strict=True)),
         "pairs": {
-            "mine": dict(zip(("beam", "substrate"), names, strict=True)) | {"gap_um": GAP, "humidities": list(airs)}
+            PAIR: dict(zip(("beam", "substrate"), names, strict=True)) | {"gap_um": GAP, "humidities": list(airs)}
         },
-        "sampling": {"strip_length_um": length},
-        "beam": {"width_um": round(area / length, DECIMALS)},
         "water": {"temperature_K": state.get("temperature_K", TEMPERATURE)},
         "contact": {"samples": state.get("strips", STRIPS), "chunks": 1, "model": "summits"},
         "chaos": {"order": 1},
+        **of_patches(state, airs),
     } | state.get("settings", {})
+
+
+def in_strips(state: dict, _airs: tuple) -> dict:
+    """Sections of a flat patch."""
+    area = state.get("area_um2", LENGTH**2)
+    length = round(min(LENGTH, float(np.sqrt(area))), DECIMALS)
+    return {
+        "run": {"pairs": [PAIR], "studies": []},
+        "sampling": {"strip_length_um": length},
+        "beam": {"width_um": round(area / length, DECIMALS)},
+    }
+
+
+def under_probe(state: dict, airs: tuple) -> dict:
+    """Sections of a probe. No spring frees it, whose force is stated because one must be."""
+    shape = {key: state[key] for key in OF_PROBE if key in state}
+    probe = {"kind": "probe", "pair": PAIR, "humidities": list(airs), "restoring_force_uN": 1} | shape
+    return {"run": {"pairs": [], "studies": []}, "devices": {PROBE: probe}}
 
 
 if __name__ == "__main__":

@@ -133,11 +133,11 @@ def _fewest(config):
 
 def _by_ground(plan, cases):
     """Cases of every ground, without those that stoppers touch as well."""
-    found, of_stoppers = {}, {plan.devices.ground(name) for name in plan.devices.stoppers}
+    cases_of, of_stoppers = {}, {plan.devices.ground(name) for name in plan.devices.stoppers}
     for case in cases:
-        if (own := plan.devices.ground(case.device)) not in of_stoppers:
-            found.setdefault(own.name, []).append(case)
-    return found
+        if (ground := plan.devices.ground(case.device)) not in of_stoppers:
+            cases_of.setdefault(ground.name, []).append(case)
+    return cases_of
 
 
 # Pilot
@@ -146,11 +146,11 @@ def _by_ground(plan, cases):
 def _spreads(plan, code, remember):
     """Spread of the lengths of each shape, by case, of all with an error."""
     pilot = _Pilot.of(plan)
-    found = {
+    spreads = {
         case: remember([code, *pilot.determined_by(case)], lambda case=case: pilot.spreads(case))
         for case in plan.devices.cases
     }
-    return {case: [Spread(*one) for one in some] for case, some in found.items() if some}
+    return {case: [Spread(*one) for one in some] for case, some in spreads.items() if some}
 
 
 def _mean_errors(plan, code, remember):
@@ -158,17 +158,17 @@ def _mean_errors(plan, code, remember):
 
     It is computed once for all cantilevers on a ground, whose lengths are one power of the energies.
     """
-    pilot, found = _Pilot.of(plan), {}
+    pilot, errors = _Pilot.of(plan), {}
 
     def error(case):
         """Error of a case, remembered."""
         return remember([code, "mean", *pilot.mean_determined_by(case)], lambda: pilot.mean_error(case))
 
     for case in plan.devices.cases:
-        own = None if plan.devices.kind(case.device).has_tip else case.device
-        ground = patch_of(plan, case), case.humidity, own
-        found[case] = found[ground] if ground in found else found.setdefault(ground, error(case))
-    return {case: found[case] for case in plan.devices.cases}
+        device = None if plan.devices.kind(case.device).has_tip else case.device
+        ground = patch_of(plan, case), case.humidity, device
+        errors[case] = errors[ground] if ground in errors else errors.setdefault(ground, error(case))
+    return {case: errors[case] for case in plan.devices.cases}
 
 
 @dataclass(frozen=True)
@@ -197,8 +197,8 @@ class _Pilot:
         config = with_preliminary_estimates(plan.config, plan.preliminary)
         seed = int(stream(config["seed"], "accuracy").integers(2**53))
         order = min(config["chaos"]["order"], _ORDER)
-        own = {"chaos": {"order": order}, "design": {"beams": PILOT}, "contact": {"model": "summits"}}
-        few = Plan(merged(config, own | {"seed": seed}), plan.preliminary)
+        changes = {"chaos": {"order": order}, "design": {"beams": PILOT}, "contact": {"model": "summits"}}
+        few = Plan(merged(config, changes | {"seed": seed}), plan.preliminary)
         return cls(few, cache(lambda name: surface(few, name)))
 
     def determined_by(self, case: Case) -> list:
@@ -215,9 +215,9 @@ class _Pilot:
         try:
             with without_progress():
                 contact, *tips = (self._contact(*one) for one in self._places(case))
-                met = ground(contact, tips[0] if tips else None, case.humidity, settings)
-                beams = release_beams(settings.device, met, settings)
-            return spreads_of(beams, _middle(self.plan.config["design"]["shares"]), len(met.strips.sampled))
+                below = ground(contact, tips[0] if tips else None, case.humidity, settings)
+                beams = release_beams(settings.device, below, settings)
+            return spreads_of(beams, _middle(self.plan.config["design"]["shares"]), len(below.strips.sampled))
         except (ValueError, ArithmeticError):  # which the jobs of the case state
             return []
 

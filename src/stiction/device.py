@@ -13,17 +13,19 @@ from stiction.accuracy import decided
 from stiction.answer.data import Answer
 from stiction.config.cases import case_id, in_numbers
 from stiction.config.kinds import BEAM, KEYS, KINDS, STOPPER, Kind, Release, kind_of
-from stiction.config.reading import paper
+from stiction.config.mission.conditions import CONDITIONS
 from stiction.contact.air import Air
 from stiction.devices.limits.limit import Limit, restored
 from stiction.estimate.answer import Answer as Estimate
 from stiction.estimate.answer import answer as estimated
-from stiction.estimate.question import questions
+from stiction.estimate.complete import question_of
 from stiction.estimate.table import known
 from stiction.plan.devices import DevicePlan
 from stiction.plan.graph import Results
+from stiction.report.answer import screen as answer_screen
 from stiction.report.answer import words as answer_words
 from stiction.report.answer.judged import with_limits
+from stiction.report.format import conditions_in_words
 from stiction.report.limits import words
 from stiction.stages.answer.answer import answer_of
 from stiction.stages.devices import device_warnings
@@ -114,9 +116,9 @@ class Device:
 
     def plot(self) -> "Figure":
         """Figure of P(stuck) by simulation alone, at all humidities: over lengths of beams, or forces of stoppers."""
-        from stiction.report.devices.parts import OF_RELEASE
+        from stiction.report.devices.parts import OF_QUESTION
 
-        return OF_RELEASE[self.kind.release.name].figure(self.name, self._simulated)
+        return OF_QUESTION[self.kind.question(self._section)].figure(self.name, self._simulated)
 
     @property
     def kind(self) -> Kind:
@@ -134,7 +136,8 @@ class Device:
         }
         pair = " on ".join(self._plan.sides(section["pair"]))
         humidities = ", ".join(Air(humidity).name for humidity in section["humidities"])
-        return sizes | {"surfaces": f"{pair}, pair {section['pair']}", "relative humidity": humidities}
+        mission = {"conditions": conditions_in_words(section[CONDITIONS])} if CONDITIONS in section else {}
+        return sizes | {"surfaces": f"{pair}, pair {section['pair']}"} | mission | {"relative humidity": humidities}
 
     def __repr__(self):
         facts = ", ".join(f"{name} {value}" for name, value in self.facts.items())
@@ -146,7 +149,7 @@ class Device:
         if self.results.has(f"devices/answer/{self.name}"):
             answer = self.answer()
             known = (
-                {answer_words.sign_of(answer)[1]: answer_words.headline(answer)}
+                {answer_words.sign_of(answer)[1]: answer_screen.headline(answer)}
                 if not answer_words.is_forbidden(answer)
                 else {}
             )
@@ -172,9 +175,7 @@ class Device:
         NotLearnt
             If the estimate does not know the device.
         """
-        config = self._plan.config
-        own = {key: section for key, section in config.items() if section != paper().get(key)}
-        return estimated(questions(own, known()[0])[self.name], *known())
+        return estimated(question_of(self._plan.config, self.name, self._section), *known())
 
     def chart(self, humidity: float | str) -> xr.Dataset:
         """Safe lengths of the thicknesses and gaps of its chart. Dataset of `stiction.stages.devices.chart`."""

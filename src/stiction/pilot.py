@@ -148,14 +148,24 @@ def _tips_beyond_memory(plan):
 def _infeasible_copies(plan, surfaces, uses, guessed):
     """Yield coherences that the surfaces of a pair cannot have. ASSUME: preliminary ones err by as much as allowed."""
     for pair in dict.fromkeys(use.patch.pair for use in uses):
-        if stated := plan.replica(pair):
+        for path, stated in _stated_copies(plan, pair):
             given = [guessed[name] for name in dict.fromkeys(plan.sides(pair)) if name in guessed]
             grid = StripGrid.periodic(to_si(1, "um"), to_si(plan.config["sampling"]["spacing_nm"], "nm"))
             sides = (rough_surface(*surfaces(name), "NG", grid) for name in plan.sides(pair))
-            copy = Replica(*sides, in_si(Coherence, stated["replica"]))
+            copy = Replica(*sides, in_si(Coherence, stated))
             if refusal := copy.refusal(2 * ALLOWED if given else ALLOWED):
-                path = "pairs", pair, "replica", "coherence"
                 yield Problem(path, f"is {copy.stated.coherence:g}, {refusal}{_preliminary(given)}")
+
+
+def _stated_copies(plan, pair):
+    """Yield the replica of a pair, and those at the largest coherences of its devices, with paths of coherences."""
+    stated = plan.replica(pair).get("replica")
+    if stated:
+        yield ("pairs", pair, "replica", "coherence"), stated
+    for name, device in plan.devices.sections.items():
+        if device["pair"] == pair and "coherence" in device.get("roughness", {}):
+            largest = device["roughness"]["coherence"][1]
+            yield ("devices", name, "roughness", "coherence", 1), stated | {"coherence": largest}
 
 
 def _preliminary(given):

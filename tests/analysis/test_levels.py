@@ -1,5 +1,7 @@
 """Ratios by levels: populations with known ratios, coverage of the stated errors, and a plain choice that misses it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -68,6 +70,15 @@ def test_strips_in_proportion_hold_the_true_ratio_where_grids_are_no_control():
     assert np.mean([each.chain == (FINE, SUMMITS) and each.strips[FINE] >= levels.FEWEST for each in found]) > 0.9
     assert one >= 0.60
     assert two >= 0.92
+
+
+def test_errors_of_strips_in_proportion_have_those_of_a_small_pool(monkeypatch):
+    monkeypatch.setattr(levels, "POOL", 40)
+    rng = np.random.default_rng(12)
+    found = [in_proportion(reader(drawn("c", rng, 40)), 0.0, rng) for _ in range(200)]
+    assert coverage(found)[1] >= 0.88
+    of_drawn = np.sqrt(1 + found[0].strips[FINE] / 40)  # many of few strips: their own errors are small
+    assert coverage([replace(each, error=each.error / of_drawn) for each in found])[1] < 0.75
 
 
 def test_strips_in_proportion_have_no_error_where_full_contact_is_proportional_to_summits():

@@ -51,7 +51,7 @@ def test_one_more_condition_never_allows_a_longer_beam(seed):
 @pytest.mark.parametrize(("seed", "unit"), [(0, "m"), (1, "N")])
 def test_steps_multiply_to_the_size_to_build_and_fast_separation_stands_beside(seed, unit):
     airs, volts, liquid = drawn(seed)
-    fast = [replace(one, cause=Cause.FAST, shift=-1.0, error=0.02) for one in airs]
+    fast = [replace(one, cause=Cause.FAST, shift=-1.0, error=0.02, stated=False) for one in airs]
     conditions = [*airs, *volts, *liquid, *fast]
     found = asked(conditions, budgets(airs, error=0.02), unit=unit, touchdowns=100)
     sign = -1 if unit == "N" else 1
@@ -61,8 +61,9 @@ def test_steps_multiply_to_the_size_to_build_and_fast_separation_stands_beside(s
     assert min(factors) < 1
     assert [step.cause for step in found.steps if not step.stated] == [Cause.FAST]
     assert found.build == asked([*airs, *volts, *liquid], budgets(airs, error=0.02), unit=unit, touchdowns=100).build
-    stated = [replace(one, cause=Cause.TILT) for one in fast]
-    assert built([*airs, *stated], Exact()) < built(airs, Exact())
+    stated = [replace(one, stated=True) for one in fast]
+    with_fast, without = (asked(these, Exact(), unit=unit).build for these in ([*airs, *stated], [*airs, *fast]))
+    assert with_fast**sign < without**sign
 
 
 @pytest.mark.parametrize(("seed", "touchdowns"), [(0, 1), (1, 1), (2, 1000)])

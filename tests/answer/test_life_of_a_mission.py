@@ -54,6 +54,16 @@ def test_two_equal_conditions_with_half_the_touchdowns_are_one_with_all():
 
 
 @pytest.mark.parametrize("seed", range(3))
+def test_touchdowns_in_several_airs_count_in_the_worst_of_them(seed):
+    """Air whose film is bounded by two others has the touchdowns of the one that holds most."""
+    conditions = drawn(seed)
+    bounded = replace(world(conditions, []), stays=(Stay((0.0, 0.5, 0.8), TOUCHDOWNS),))
+    assert_allclose(bounded.size, size(conditions, [(0.8, 1)]), atol=1e-6)
+    assert bounded.size < size(conditions, [(0.5, 1)]) - 0.01  # control
+    assert_allclose(bounded.stuck(-0.3), world(conditions, [(0.8, 1)]).stuck(-0.3))
+
+
+@pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("errors", [False, True])
 def test_a_mission_is_between_all_touchdowns_in_the_worst_condition_and_the_own_ones_of_each(seed, errors):
     conditions, shares = drawn(seed), [(0.0, 0.6), (0.5, 0.3), (0.8, 0.1)]

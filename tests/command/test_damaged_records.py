@@ -7,6 +7,7 @@ import random
 from pathlib import Path
 
 import pytest
+from hostile import places
 from test_front_page import finished
 
 from stiction.command import launch, main
@@ -22,14 +23,6 @@ DEVICE = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "restoring_force
 SECRET = "the key of somebody"
 #: What a place in a record can hold instead of what it should.
 ODD = [None, 5, -1.5, True, "", "../../secret", "x" * 3000, "a\nb", [], {}, [[]], {"pair": "b"}, ["b"], "\x00"]
-
-
-def places(node, path=()):
-    """Paths to all nodes of a record."""
-    yield path
-    items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
-    for key, value in items:
-        yield from places(value, (*path, key))
 
 
 def with_odd(runs, draw):

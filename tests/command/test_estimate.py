@@ -135,6 +135,43 @@ def test_what_was_not_learnt_has_no_number_but_the_command_that_computes_it(tmp_
     assert line.endswith(f"stiction devices {tmp_path / 'mine.yaml'}")
 
 
+@pytest.mark.parametrize(
+    ("section", "key"),
+    [
+        ("materials: {Hard: {young_modulus_GPa: 300}}", ("rms_nm: 3", "rms_nm: 3, material: Hard")),
+        (
+            "process: {etch: {variable: t, surface: B2, settings: []}}",
+            ("humidities: [0.6]}\n", "humidities: [0.6], process: etch}\n"),
+        ),
+        (
+            "design: {beams: 300, samples_of_patches: {mine: 9}}\ncontact: {samples: 9}",
+            ("run:", "contact: {every: 2}\nrun:"),
+        ),
+    ],
+)
+def test_sections_that_no_key_of_the_device_names_change_no_length(tmp_path, capsys, section, key):
+    name = tmp_path / "mine.yaml"
+    name.write_text(FILE)
+    without = said(capsys, str(name))
+    name.write_text(f"{FILE}{section}\n")
+    assert said(capsys, str(name)) == without
+    name.write_text(f"{FILE}{section.partition(chr(10))[0]}\n".replace(*key))
+    assert said(capsys, str(name))[0] == 2, "the control: where one names them, or a number is no number of samples"
+
+
+@pytest.mark.parametrize(
+    "surface", ["rms_nm: 3", "rms_nm: 3, hurst: 1.3, corner_rad_per_um: 12, cutoff_rad_per_um: 125"]
+)
+def test_an_uncertain_number_of_a_surface_counts_as_exact(tmp_path, capsys, surface):
+    exact, name = FILE.replace("rms_nm: 3", surface), tmp_path / "mine.yaml"
+    found = []
+    for text in (exact, exact.replace(surface, f"{surface}, uncertainty: {{rms_nm: 0.3}}")):
+        name.write_text(text)
+        found.append(said(capsys, str(name)))
+    assert found[0] == found[1]
+    assert found[0][0] == 0
+
+
 def test_a_voltage_shortens_and_needs_its_dielectric(tmp_path, capsys):
     (tmp_path / "mine.yaml").write_text(
         FILE.replace("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, humidities: [0.6], voltage_V: 5, ")

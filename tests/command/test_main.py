@@ -282,6 +282,15 @@ def test_a_check_says_what_takes_most_of_the_time_of_a_device_on_measured_surfac
     assert costs.startswith("The budget of Measured draws the measured surfaces again")
 
 
+def test_a_check_names_the_probes_that_are_asked_for_their_force(tmp_path, capsys):
+    probe = {"kind": "probe", "pair": "b", "radius_um": 10, "humidities": [0.45]}
+    devices = {"Ball": probe, "Bump": probe | {"radius_um": 5, "restoring_force_uN": 1}}
+    path = tmp_path / "mine.yaml"
+    path.write_text(yaml.safe_dump({"run": {"pairs": [], "studies": []}, "devices": devices}))
+    assert main(["check", str(path), "--directory", str(tmp_path)]) == 0
+    assert "Asked for the pull-off force, not for what to build: Ball.\n" in capsys.readouterr().out
+
+
 def test_a_check_draws_the_first_samples_and_remembers_what_they_showed(tmp_path, capsys, monkeypatch):
     path = tmp_path / "mine.yaml"
     path.write_text("run: {pairs: [b]}\nbeam: {width_um: 0.06}\nattraction: {reach: touching}\n")

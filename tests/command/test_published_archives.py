@@ -12,6 +12,7 @@ from zipfile import ZIP_DEFLATED, ZipFile
 import numpy as np
 import pytest
 import yaml
+from hostile import places
 from server import OK, page, server
 
 from stiction.command import container, main, published
@@ -59,14 +60,6 @@ def archived(stored, text):
         for name, content in stored.items():
             archive.writestr(name, content)
     return packed.getvalue()
-
-
-def places(node, path=()):
-    """Paths to all nodes of nested metadata."""
-    yield path
-    items = node.items() if isinstance(node, dict) else enumerate(node) if isinstance(node, list) else ()
-    for key, value in items:
-        yield from places(value, (*path, key))
 
 
 def with_odd(draw):

@@ -4,7 +4,7 @@ from itertools import chain, combinations
 
 import pytest
 
-from stiction.config.kinds import BEAM, COMMON, KEYS, KINDS
+from stiction.config.kinds import BEAM, COMMON, KEYS, KINDS, OF_SPRINGS, PULL_OFF
 from stiction.config.relations import schema
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import BEAMS
@@ -38,6 +38,27 @@ def test_a_device_states_its_force_in_exactly_one_way():
             refusal = kind.refusal(["kind", "pair", "humidities", "contact_um", *keys])
             assert (refusal is None) == (set(keys) in ways), keys
             assert refusal is None or "either restoring_force_uN, or stiffness_N_per_m and gap_um" in refusal
+
+
+def test_a_probe_without_a_spring_is_asked_for_its_pull_off_force_and_has_no_keys_of_springs():
+    kind, own = KINDS["probe"], ["kind", "pair", "humidities", "radius_um"]
+    for keys, question in (
+        ([], PULL_OFF),
+        (["measured_nN", "measured_error_nN"], PULL_OFF),
+        (["restoring_force_uN"], "stopper"),
+        (["stiffness_N_per_m", "gap_um"], "stopper"),
+    ):
+        assert kind.refusal([*own, *keys]) is None
+        assert kind.question(dict.fromkeys([*own, *keys], 1)) == question
+        assert ("restoring_force_uN" in kind.stated(dict.fromkeys([*own, *keys], 1))) == (question == "stopper")
+        for key in OF_SPRINGS:
+            refusal = kind.refusal([*own, *keys, key])
+            assert (refusal is None) == (question == "stopper")
+            assert refusal is None or refusal.startswith(
+                f"must come without {key}, or with a spring: restoring_force_uN, or"
+            )
+    assert "must come with either restoring_force_uN, or" in kind.refusal([*own, "measured_nN"])
+    assert all(one.question({}) == one.release.name for one in KINDS.values() if not one.ways)
 
 
 @pytest.mark.parametrize("name", KINDS)

@@ -7,10 +7,11 @@ import pytest
 from configurations import problems
 from hypothesis import given
 from hypothesis import strategies as st
+from plans import job_settings
 
 from stiction.config.files import joined
 from stiction.config.merging import merged
-from stiction.config.mission.airs import COLDEST, HOTTEST, expanded
+from stiction.config.mission.airs import COLDEST, HOTTEST, OF_DEVICE, expanded
 from stiction.config.mission.conditions import temperatures
 from stiction.config.mission.stays import stays
 from stiction.config.relations import schema
@@ -171,10 +172,21 @@ def test_test_beams_are_at_the_temperature_of_the_water():
     assert "must have another humidity than 0.67, such as 0.6701" in line
 
 
-def test_limits_of_the_temperature_are_those_of_the_schema():
+@pytest.mark.parametrize("key", OF_DEVICE)
+def test_a_wrong_value_is_refused_where_it_was_written(key):
+    for value in (OF_DEVICE[key][0] - 1, OF_DEVICE[key][1] + 1, "much", True, *[2.5] * (key == "touchdowns")):
+        (line,) = problems(configuration(conditions=[MISSION[0] | {key: value}], **DIELECTRIC, offset_V=1))
+        assert line.startswith(f"devices.Lever.conditions[0].{key} is {value!r}, must be a")
+    for value in (OF_DEVICE[key][0], OF_DEVICE[key][1]):
+        lever(conditions=[MISSION[0] | {key: value}], **DIELECTRIC, offset_V=1)
+
+
+def test_limits_of_conditions_are_those_of_the_schema():
     allowed = schema()["properties"]["devices"]["additionalProperties"]["properties"]["conditions"]["items"]
     celsius = allowed["properties"]["temperature_C"]
     assert (celsius["minimum"], celsius["maximum"]) == (COLDEST, HOTTEST)
+    for key, ends in OF_DEVICE.items():
+        assert (allowed["properties"][key]["minimum"], allowed["properties"][key]["maximum"]) == ends
 
 
 def test_touchdowns_add_up_and_the_largest_voltage_counts():
@@ -183,6 +195,22 @@ def test_touchdowns_add_up_and_the_largest_voltage_counts():
     device, _ = lever(conditions=mission, touchdowns=100, voltage_V=1, offset_V=3, **DIELECTRIC)
     assert (device["touchdowns"], device["voltage_V"]) == (112, 6)  # 9 V with the offset, -8 V have 5 V
     assert all(not {"touchdowns", "voltage_V"} & {*condition} for condition in device["conditions"])
+
+
+def test_the_largest_shock_of_a_mission_is_that_of_the_device():
+    def shocked(*shocks, **keys):
+        """Section of the lever with shocks in its first conditions, without these."""
+        own = [{"shock_g": shock} if shock else {} for shock in (*shocks, None, None, None)]
+        device, config = lever(conditions=[one | more for one, more in zip(MISSION, own, strict=False)], **keys)
+        assert checked(config).config == config
+        return device
+
+    device = shocked(None, shock_g=3000)
+    assert shocked(None, 3000) == shocked(3000) == device
+    assert shocked(3000, shock_g=200) == shocked(200, 3000) == shocked(200, shock_g=3000) == device
+    assert shocked(200) != device  # control
+    assert "shock_g" not in shocked(None)
+    assert shocked(None) == {key: value for key, value in device.items() if key != "shock_g"}
 
 
 def stays_of(shares, more=(), **keys):
@@ -246,3 +274,10 @@ def test_pairs_and_charts_are_still_refused_where_a_film_is_no_liquid():
     chart = {"thicknesses_um": [2.6], "humidities": [0.2, 0.9]}
     (line,) = problems(configuration(humidities=[0.5], chart=chart))
     assert line.startswith("devices.Lever.chart.humidities is [0.2, 0.9], must be at least 0.2903")
+
+
+def test_an_answer_knows_the_temperature_of_all_water_of_its_mission():
+    _, config = lever(conditions=MISSION[:1], humidities=[0.0, 0.5])
+    assert job_settings(Plan(config), "devices/answer/Lever")["temperatures_K"] == {"0.5": 300, "0.8755": 285.15}
+    _, plain = lever(humidities=[0.0, 0.5])
+    assert "temperatures_K" not in job_settings(Plan(plain), "devices/answer/Lever")

@@ -36,6 +36,7 @@ def test_every_property_is_allowed_and_has_a_source(name):
     for key, entry in NAMED[name].items():
         assert Draft202012Validator(ENTRIES[key]).is_valid(entry["value"])
         assert len(entry["source"]) > 8
+        assert entry.get("read", "table").split()[0] in ("abstract", "table", "quoted")
     solid = in_si(Solid, {key: value for key, value in values(name).items() if key != "density_kg_per_m3"})
     assert solid.hardness < solid.young_modulus / 5  # bonds break at strains of 0.1
 

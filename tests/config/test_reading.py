@@ -11,6 +11,7 @@ from configurations import ROOT
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from stiction.config import reading
 from stiction.config.files import load
 from stiction.config.messages import ConfigError
 from stiction.config.reading import problems, read
@@ -127,6 +128,16 @@ def test_any_text_is_read_as_sections_or_rejected_in_one_line(tmp_path, text):
         return
     assert refused.startswith(str(path))
     assert len(refused.splitlines()) == 1
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be"])
+def test_a_text_of_ascii_in_utf_16_is_named_so_with_and_without_a_mark(tmp_path, encoding):
+    path = tmp_path / "range.csv"
+    path.write_bytes("name,length_um\nL1,100\n".encode(encoding))
+    with pytest.raises(ValueError, match="it is text in UTF-16, must be UTF-8: save it as UTF-8"):
+        reading.text(path)
+    path.write_bytes(b"name,length_um\nL1,100\n")  # the control
+    assert reading.text(path).startswith("name")
 
 
 ENCODINGS = ("latin-1", "utf-16", "utf-16-le", "utf-16-be", "utf-32", "cp1252")

@@ -212,12 +212,12 @@ WRONG = [
     (
         {"requirement": LONG, "roughness": {"surface": "B2"}},
         "devices.C1.roughness",
-        "must have one or two of rms_nm, skewness, corner_rad_per_um, and has none",
+        "must have one or two of rms_nm, skewness, corner_rad_per_um, coherence, play_nm, and has none",
     ),
     (
         with_roughness(skewness=[-1, 0], corner_rad_per_um=[12, 24]),
         "devices.C1.roughness",
-        "must have one or two of rms_nm, skewness, corner_rad_per_um, and has rms_nm, skewness, corner_rad_per_um",
+        "play_nm, and has rms_nm, skewness, corner_rad_per_um",
     ),
     (with_roughness(skewness=[0, -1]), "devices.C1.roughness.skewness", "must be in increasing order"),
     (with_roughness(skewness=[-3, 0]), "devices.C1.roughness.skewness", "must have densities at both ends: at -3"),

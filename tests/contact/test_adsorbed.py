@@ -128,6 +128,17 @@ def test_an_isotherm_of_van_der_waals_films_adds_three_times_their_thickness():
         assert isotherm.height(humidity) > 2.5 * own  # control: twice the thickness there is too little
 
 
+def test_films_that_go_on_beyond_the_wettest_air_are_higher_by_their_water_there():
+    at = 1 - np.geomspace(0.95, 1e-6, 4000)
+    thickness = (HAMAKER_CONSTANT / (6 * np.pi * -laplace_pressure(at, 300.0))) ** (1 / 3)
+    whole, ended = Isotherm(tuple(at), tuple(thickness)), at <= 0.9
+    measured = Isotherm(tuple(at[ended]), tuple(thickness[ended]))
+    wettest = at[ended][-1]
+    for humidity in (0.44, 0.67, 0.85):
+        missing = whole.height(humidity) - measured.height(humidity)
+        assert_allclose(missing, thickness[ended][-1] * np.log(wettest) / np.log(humidity), rtol=0.02)
+
+
 def test_water_has_the_height_of_its_isotherm_and_that_of_other_films():
     isotherm = Isotherm((0.3, 0.75, 0.9), (0.8 * NM, 1.2 * NM, 1.8 * NM))
     grown = replace(WATER, isotherm=isotherm)

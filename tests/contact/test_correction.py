@@ -54,6 +54,21 @@ def test_nothing_is_extrapolated(humidity):
 # Scatter
 
 
+def test_beyond_the_airs_of_devices_ratios_err_to_the_safe_side():
+    """Energies above those on summits stay and forces grow in wetter air, both rise from below; drier air is as dry."""
+
+    def ratios(wettest, humidity):
+        changes = Change(np.array([0.9, wettest]))
+        return ratios_at(Correction(np.array([0.44, 0.67]), changes, changes, nearest=True), humidity)
+
+    for humidity in (0.8, 0.95):
+        energy, pull_off = ratios(1.139, humidity)
+        assert energy == 1.139
+        assert pull_off > 1.2
+        np.testing.assert_allclose(ratios(0.8, humidity), 0.8 ** ((1 - humidity) / (1 - 0.67)))
+    np.testing.assert_allclose(ratios(0.8, 0.3), 0.9)
+
+
 @pytest.mark.parametrize("power", [1.0, 1.4, 2.0])
 def test_a_change_gives_samples_the_mean_and_the_scatter_of_full_contact(power):
     summits = np.random.default_rng(1).lognormal(-8, 0.5, 4000)

@@ -152,7 +152,7 @@ def in_full_contact(modulus):
     found = pair(Probe(0.5e-6), side=0.42e-6, asperity=HertzAsperity(modulus))
     rows = []
     for number in range(2):
-        met = found.met(heights := place(found, number))
+        met = found.under_flat(heights := place(found, number))
         space = HalfSpace(met.shape, SPACING, modulus, periodic=False)
         distance, force = curve(found, heights, 0.7)
         area = met.size * SPACING**2
@@ -189,7 +189,7 @@ def test_a_smooth_sphere_in_humid_air_holds_4_pi_r_gamma(humidity):
 def test_a_smooth_punch_holds_its_flat_and_a_ring_of_its_rim():
     radius, flat = 2e-6, 0.5e-6
     found, heights = smooth(Probe(radius, flat), HertzAsperity(100 * E))
-    met = found.met(heights + 1e-12 * np.random.default_rng(1).uniform(size=heights.shape).astype(np.float32))
+    met = found.under_flat(heights + 1e-12 * np.random.default_rng(1).uniform(size=heights.shape).astype(np.float32))
     height, tension = film(0.8, 300.0)
     wet = np.sum(met > met.max() - height) * SPACING**2
     assert_allclose(wet, np.pi * (flat + np.sqrt(2 * radius * height)) ** 2, rtol=0.01)
@@ -259,4 +259,4 @@ def test_the_patch_ends_where_the_probe_has_risen_to_its_reach():
     rise = probe.rise((201, 201), probe.side / 200)
     assert_allclose(rise[0, 100], RISE, rtol=1e-6)
     assert rise[100, 100] == rise[100, 110] == 0
-    assert pair(probe).met(np.zeros((50, 50), np.float32)).max() == pytest.approx(pair(probe).depth)
+    assert pair(probe).under_flat(np.zeros((50, 50), np.float32)).max() == pytest.approx(pair(probe).depth)

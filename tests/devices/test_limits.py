@@ -44,6 +44,7 @@ CASES = [
     (limits.thin_film, (1 * NM,), "1 nm high, thinner than 4 molecules, 1.12 nm", (1.13 * NM,)),
     (limits.thin_film, (1 * NM,), "dry air and for the next humidity above do not bound it", (0.0,)),
     (limits.thin_film, (0.5 * NM,), "0.5 nm high, thinner than 3 molecules.*worst of three airs", (1.13 * NM,)),
+    (limits.beyond_isotherm, (0.9, 0.95), "RH 0.95 is wetter than.*RH 0.9.*unsafe side", (0.9, 0.9)),
     (
         limits.condensing,
         ([{"temperature_C": -20, "dew_point_C": 10}, {"temperature_C": 10, "dew_point_C": 10}],),
@@ -83,6 +84,7 @@ CASES = [
     (limits.lengths_of_sizes, (0.004,), "err by 0.4% at sizes between these", (0.0,)),
     (limits.repeated_strips, (0.44, 1.5 * UM, False), "of 1.5 µm.* 0.44.* the safe side.$", (0, 1.5 * UM, False)),
     (limits.repeated_strips, (0.44, 1.5 * UM, True), "this is the unsafe side", (0, 1.5 * UM, True)),
+    (limits.strips_move_alone, (35 * NM,), "a play of 35 nm.*the unsafe side: state a device", (0.0,)),
     (limits.missed_accuracy, (0.03, 0.04, 0.02), "5 %, more than the 2 %.*more contact.samples", (0.01, 0.01, 0.02)),
     (limits.missed_accuracy, (0.03, float("nan"), 0.02), "is 3 %.*more design.beams", (0.01, float("nan"), 0.02)),
     (limits.stretched_bridge, (2 * UM, 2 * UM), "gap is equal to the thickness of", (0.9 * UM, 2 * UM)),
@@ -128,6 +130,7 @@ def test_every_limit_is_tested():
         (lambda x: limits.stretched_bridge(x, 1.0), 0.5),
         (lambda x: limits.thin_film(4 * WATER_MOLECULE / x), 1.0),
         (lambda x: limits.wide_meniscus(x, (0.3, 0.6)), 0.1 / 5),
+        (lambda x: limits.beyond_isotherm(0.9, x), 0.9),
     ],
 )
 def test_a_warning_appears_at_its_limit(limit, at):

@@ -164,11 +164,29 @@ def test_a_value_at_many_points_far_from_all_others_is_asked_about(tmp_path):
     z = 478 + HEIGHTS / 1e-9
     z[3, 4:7] = 0
     np.save(tmp_path / "scan.npy", z)
-    with pytest.raises(ScanError, match="files: scan.npy has 0 at 3 points, which may be a mark of no data: write nan"):
+    with pytest.raises(ScanError, match="files: scan.npy has 0 at 3 points, which may be a mark of no data or the"):
         read(tmp_path / "scan.npy", GIVEN)
     z[3, 5:7] = 478  # a single outlier is a height
     np.save(tmp_path / "scan.npy", z)
     assert read(tmp_path / "scan.npy", GIVEN).scan.undefined_share == 0
+
+
+@pytest.mark.parametrize("number", [1, 3])
+@pytest.mark.parametrize("mark", [1e10, -1e6, 3e37, -1e-30])
+def test_a_value_of_another_order_is_asked_about_before_a_unit_is_suspected(tmp_path, number, mark):
+    z = HEIGHTS / 1e-9
+    far = mark if abs(mark) > 1 else 1e5 * np.ptp(z)
+    z[3, 4 : 4 + number] = far
+    np.save(tmp_path / "scan.npy", z)
+    if abs(far) > 1e20:
+        assert read(tmp_path / "scan.npy", GIVEN).scan.undefined_share > 0  # no unit can mean it
+        return
+    where = "1 point" if number == 1 else f"{number} points"
+    with pytest.raises(ScanError, match=f"at {where}, which may be a mark of no data or the end of a detector"):
+        read(tmp_path / "scan.npy", GIVEN)
+    z[3, 4 : 4 + number] = 0
+    z[3, 4] = 500 * np.ptp(z)  # a particle alone, the control
+    require_no_mark(z)
 
 
 def test_no_line_of_a_drawn_surface_is_an_axis_however_it_is_tilted():

@@ -43,3 +43,16 @@ def test_whatever_fills_a_template_is_text(template):
 def test_a_value_that_a_template_lacks_is_an_error():
     with pytest.raises(UndefinedError, match="'caption' is undefined"):
         html.rendered("table.html", title="Table 3", cells=pd.DataFrame({"pair": ["b"]}))
+
+
+def test_the_script_of_a_page_has_the_statements_of_its_source_without_comments_and_indentation():
+    source = (html.TEMPLATES / "explorer.js").read_text(encoding="utf-8")
+    shown = FILLED["page.html"]().rpartition("<script>")[2].partition("</script>")[0]
+    statements = [line.strip() for line in source.splitlines()]
+    kept = [line for line in statements if line and not line.startswith(("//", "/**"))]
+    assert [line for line in shown.splitlines() if line] == kept
+    assert len(shown) < 0.9 * len(source)
+    assert not [line for line in kept if line.count("`") % 2], (
+        "no text goes over several lines, where spaces would count"
+    )
+    assert not [line for line in kept if line.startswith("*") or ("/**" in line and "*/" not in line)]

@@ -9,7 +9,16 @@ from stiction.stages.contact import full_contact
 from stiction.stages.contact.asperities import READINGS, layout
 
 HUMIDITIES = [0.5, 0.7, 0.9]
-PUBLISHED = pd.DataFrame({"pair": "a", "relative_humidity": HUMIDITIES, "ng": [700.0, 480.0, 350.0], "ng_std": 5.0})
+PUBLISHED = pd.DataFrame(
+    {
+        "pair": "a",
+        "relative_humidity": HUMIDITIES,
+        "experiment": [690.0, 470.0, 360.0],
+        "experiment_std": 20.0,
+        "ng": [700.0, 480.0, 350.0],
+        "ng_std": 5.0,
+    }
+)
 
 
 def study(strips=6, shapes=3):
@@ -99,12 +108,23 @@ def test_the_figure_has_a_row_for_each_reading_at_the_lowest_humidity_and_equal_
     (panel,) = figure.axes
     readings = [f"{reading}, {spacing} nm" for reading in ("summit", "island", "fitted") for spacing in (10, 5)]
     rows = [label.get_text() for label in panel.get_yticklabels()]
-    assert sorted(rows) == sorted([*readings, "shape, 10 nm", "full elastic contact"])
+    assert sorted(rows) == sorted([*readings, "shape, 10 nm", "full contact"])
     at = rows.index("island, 10 nm")
     dots = [line.get_xdata()[0] for line in panel.lines if line.get_marker() == "o" and line.get_ydata()[0] == at]
     np.testing.assert_allclose(dots, [100 * (factor**-0.25 - 1) for factor in (0.8, 0.8 * 0.7)])
     (full,) = (line for line in panel.lines if line.get_marker() == "o" and line.get_color() == "black")
     np.testing.assert_allclose(list(full.get_xdata()), 100 * (0.6**-0.25 - 1))
-    stated = [line.get_xdata()[0] for line in panel.lines if line.get_label() == "published"]
-    np.testing.assert_allclose(stated, [100 * (700 / 600 - 1)] if len(published) else [])
+    for label, length in (("published", 700), ("measured ± standard deviation", 690)):
+        stated = [line.get_xdata()[0] for line in panel.lines if line.get_label() == label]
+        np.testing.assert_allclose(stated, [100 * (length / 600 - 1)] if len(published) else [])
     assert style.png(figure) == style.png(asperities.figure(*DATA, published))
+
+
+def test_text_of_the_figure_of_three_pairs_can_be_read_on_a_phone():
+    frame, full = asperities.table(*DATA, PUBLISHED).frame, {pair: (1.0, 0.1) for pair in "abc"}
+    frames = [frame.assign(pair=pair) for pair in "abc"]
+    figure = asperities.changes_drawn(pd.concat(frames), full, PUBLISHED)
+    sizes = [text.get_fontsize() for panel in figure.axes for text in (*panel.texts, *panel.get_xticklabels())]
+    assert min(sizes) / 72 * 390 / figure.get_figwidth() > 11  # pixels if the figure is 390 pixels wide
+    numbers = [text for text in figure.axes[0].texts if text.get_text()]
+    assert {text.xy[0] for text in numbers} == {1}, "numbers are in a column"

@@ -73,6 +73,16 @@ def test_offsets_of_a_sample_depend_neither_on_its_surfaces_nor_on_the_coherence
     np.testing.assert_array_equal(Replica(GAUSSIAN, GAUSSIAN, stated[0])._play(rng), offsets[0])
 
 
+def test_strips_are_off_their_register_by_offset_and_play_together():
+    """The mean square is s² + 2σ²."""
+    offset = Coherence(0.9, offset=40e-9)
+    assert Replica(GAUSSIAN, GAUSSIAN, offset).displacement(streams(0)[0]) == 40e-9
+    with_play = Replica(GAUSSIAN, GAUSSIAN, dataclasses.replace(offset, play=PLAY))
+    squares = 1e18 * np.array([[with_play.displacement(streams(k)[0]) ** 2] for k in range(400)])
+    assert errors_off(squares, 40**2 + 2 * 15**2) < ALLOWED
+    assert errors_off(squares, 2 * 15**2) > ALLOWED  # of play alone
+
+
 @pytest.mark.parametrize("play", [-1e-9, np.inf])
 def test_impossible_plays_are_refused(play):
     with pytest.raises(ValueError, match="lengths of 0 or more"):

@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from browser import Browser
 from planner import Planner
 
 ROOT = Path(__file__).parents[2]
@@ -124,6 +125,13 @@ def planner(tmp_path_factory):
     planner = Planner(ROOT, tmp_path_factory.mktemp("printed"))
     yield planner
     planner.close()
+
+
+@pytest.fixture(scope="module")
+def browser():
+    """Headless browser."""
+    with Browser() as browser:
+        yield browser
 
 
 @pytest.fixture

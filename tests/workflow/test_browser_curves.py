@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
-from browser import Browser, missing, says_fraction
+from browser import missing, says_fraction
 from drawn_curves import BEAM, OXIDE, STOPPER, biased, etched, mapped, rough
 
 import stiction
@@ -61,12 +61,6 @@ def page(views, tmp_path_factory):
     path = tmp_path_factory.mktemp("page") / "D.html"
     path.write_text(Page("D: stopper", {}, ["It is safe."], explorer=content).html, encoding="utf-8")
     return path
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with Browser() as browser:
-        yield browser
 
 
 @pytest.fixture(scope="module")

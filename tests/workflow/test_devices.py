@@ -39,7 +39,7 @@ SMALL = {
 
 
 #: Tables of the run.
-TABLES = {"devices", "safe_lengths", "chart", "stoppers", "budget", "life"}
+TABLES = {"devices", "safe_lengths", "chart", "stoppers", "budget", "life", "estimate"}
 
 
 def in_a_browser(test):
@@ -74,6 +74,18 @@ def test_every_device_has_a_page_and_every_table_and_figure_is_there(run):
     assert {path.stem for path in (results / "tables").glob("*.html")} == TABLES
     figures = {"risk", "chart", "stoppers", "life", *(f"budget_{device}" for device in ("C1", "R1", "S1"))}
     assert {path.stem for path in (results / "figures").glob("*.png")} == figures
+
+
+def test_a_cantilever_in_humid_air_has_the_estimate_beside_its_run_or_why_not(run):
+    pages = {
+        name: (run / "results" / "devices" / f"{name}.html").read_text(encoding="utf-8") for name in ("C1", "R1", "S1")
+    }
+    assert [name for name, page in pages.items() if "The estimate at once beside the run" in page] == ["C1"]
+    with (run / "results" / "tables" / "estimate.csv").open(encoding="utf-8", newline="") as file:
+        (row,) = csv.DictReader(file)
+    assert row["refused"] == "contact.distance_step_nm was not learnt"
+    assert row["refused"] in pages["C1"]
+    assert float(row["run_um"]) > 0
 
 
 def test_all_files_follow_the_conventions(run):
@@ -198,12 +210,6 @@ return [Math.min(1, ...alone.map(one => width(one) / whole)),
   Math.max(...texts.flatMap(one => [...one.children]).map(one => box(one).width / 15))];
 """
 LEVELS = "return [...document.querySelectorAll('h1, h2, h3, h4')].map(head => Number(head.tagName[1]))"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with Browser() as browser:
-        yield browser
 
 
 def page_of(run, device):

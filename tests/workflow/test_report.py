@@ -4,7 +4,7 @@ import json
 import re
 
 import pytest
-from browser import Browser, missing
+from browser import missing
 from conftest import ROOT, copied, snakemake
 
 from stiction.command.front_page import FRONT, front_page
@@ -22,12 +22,6 @@ return whole.reduce((sum, picture) => sum + picture.naturalWidth, 0);
 KINDS = "return [Object.fromEntries(Object.entries(results).map(([path, of]) => [path, of.mime_type])), categories]"
 #: Number of rows of the table in a frame.
 ROWS = "return document.querySelectorAll('table tr').length"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    with Browser() as browser:
-        yield browser
 
 
 #: Whether an open table is wider than its frame, and the lines of its tallest cell, apart from heads.

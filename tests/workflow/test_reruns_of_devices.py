@@ -50,7 +50,8 @@ READ_BY = {
     "device_warnings": "table_safe_lengths figure_risk figure_life table_chart figure_chart table_stoppers figure_stoppers"
     " device_limits device_page table_devices",
     "cracks": "safe_lengths",
-    "safe_lengths": "answer table_safe_lengths device_warnings device_page life",
+    "safe_lengths": "answer table_safe_lengths device_warnings device_page life device_estimate",
+    "device_estimate": "table_estimate device_page",
     "touchdowns": "answer life",
     "separation": "answer life",
     "fast_strips": "answer life",
@@ -81,7 +82,8 @@ NO_BEAM = {"device_limits"}
 OF_STOPPERS = {"stoppers", "separation", "table_stoppers", "figure_stoppers"}
 SHOWN = {"table_safe_lengths"}
 OF_CHARTS = {"chart", "table_chart", "figure_chart"}
-OF_BEAMS = {"ground", "cracks", "safe_lengths", "fast_strips", "fast_tips"} | SHOWN | OF_CHARTS
+OF_ESTIMATE = {"device_estimate", "table_estimate"}
+OF_BEAMS = {"ground", "cracks", "safe_lengths", "fast_strips", "fast_tips"} | SHOWN | OF_CHARTS | OF_ESTIMATE
 #: Rules that read the changes of a pair by full contact. All of its humidities and tips are one file.
 FULL = "ground safe_lengths chart stoppers budget separation fast_strips fast_tips device_warnings process_point"
 BODY = "surfaces: {B2: {material: Other}}\nmaterials: {Other: "
@@ -100,7 +102,7 @@ MATRIX = [
      "stoppers_at_voltage", NO_BEAM, "R1|C1|contact|devices/stoppers/"),
     ("tilt of a stopper", "devices: {S1: {tilt_deg: [0, 0.1]}}", "tilted_contact", NO_BEAM, "R1|C1|devices/contact/b|devices/stoppers/"),
     ("dimples of a bridge", "devices: {R1: {length_um: 200, dimples: {number: 2, at_um: [100], height_um: 1, contact_um: [3, 3]}}}",
-     "dimples safe_lengths", OF_STOPPERS | OF_CHARTS, "C1|S1|contact|cracks"),
+     "dimples safe_lengths", OF_STOPPERS | OF_CHARTS | OF_ESTIMATE, "C1|S1|contact|cracks"),
     ("size of a scan", "devices: {C1: {uncertainty: {scan_um: 20}}}", "budget tip_budget", (), "R1|S1|contact|chart"),
     ("an input becomes uncertain", "devices: {S1: {uncertainty: {scan_um: 10}}}", "device_slope_contact budget", NO_BEAM,
      "C1|R1|slopes/contact|stoppers"),
@@ -156,7 +158,7 @@ MATRIX = [
      f" tip_solid_contact tip_choice_contact {FULL}", (), "b_NG"),
     ("strips of a beam", "devices: {C1: {strip_um: 1.2}}",
      "device_contact device_slope_contact solid_contact device_choice_summits chart tip_budget", OF_STOPPERS, "S1|R1|b_NG|tips"),
-    ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "cracks safe_lengths", OF_STOPPERS | OF_CHARTS, "contact|C1|S1|chart"),
+    ("stress in a bridge", "devices: {R1: {residual_stress_MPa: 60}}", "cracks safe_lengths", OF_STOPPERS | OF_CHARTS | OF_ESTIMATE, "contact|C1|S1|chart"),
     ("Hamaker constant of a body", BODY + "{hamaker_constant_zJ: {water: 20, dry: 200}}}",
      "device_contact tip_contact device_slope_contact solid_contact device_choice_contact plasticity"
      " tip_slope_contact tip_solid_contact tip_choice_contact process_point", (), "heights|spectrum|summits"),
@@ -166,7 +168,8 @@ MATRIX = [
      "process_law process_point", (), "C1|R1|S1|contact|stoppers|heights"),
     ("requirement of a device over a process", "devices: {E1: {restoring_force_uN: 30}}", "stoppers process_point",
      {"table_safe_lengths", "table_chart", "figure_chart"}, "C1|R1|S1|contact|laws"),
-    ("hardness of a body", BODY + "{hardness_GPa: 9}}", "plasticity", (), "contact|cracks|stoppers/|budget"),
+    # The estimate refuses other materials than polysilicon.
+    ("hardness of a body", BODY + "{hardness_GPa: 9}}", "plasticity device_estimate", (), "contact|cracks|stoppers/|budget"),
 ]  # fmt: skip
 # One row of each kind is fast; these are slow tests.
 FURTHER = {
@@ -250,3 +253,8 @@ def test_a_second_process_of_a_device_runs_its_map_and_no_other_device(tree):
     }
     assert not [name for name in rerun if re.search("C1|R1|S1|laws/etch|law_etch|contact|devices/stoppers", name)]
     assert {f"results/process/points/E1_{number}.nc" for number in range(35)} <= rerun.keys()
+
+
+def test_a_table_that_was_learnt_again_reruns_estimates_and_their_readers_alone(tree):
+    tree.append("src/stiction/estimate/table.json", "\n")
+    assert RULES & set(tree.rerun().values()) == behind({"device_estimate"})

@@ -116,3 +116,7 @@ define("test_beams_rerun")
 #     stoppers_at_voltage, touchdowns, separation, stoppers, tilted_stoppers ->
 #     results/devices/answer/{device}.nc
 define("answer")
+
+# Estimate at once of {device} beside its run.
+#   safe_lengths -> results/devices/estimate/{device}.nc
+define("device_estimate")

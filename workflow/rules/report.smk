@@ -13,6 +13,10 @@ define("figure_risk")
 #   answer, device_warnings -> results/tables/devices.{csv,md,html}
 define("table_devices")
 
+# Estimate: estimates at once beside the run.
+#   device_estimate -> results/tables/estimate.{csv,md,html}
+define("table_estimate")
+
 # Roughness {device}: how rough the surfaces of {device} must be.
 #   roughness -> results/figures/roughness_{device}.{pdf,png,txt}
 define("figure_roughness")
@@ -155,9 +159,9 @@ define("table_life")
 define("figure_life")
 
 # Page of device {device}.
-#   answer, life, budget, tip_budget, device_warnings, device_model_error, test_beams_rerun, safe_lengths,
-#     roughness, stoppers, stoppers_at_voltage, tilted_stoppers, process_curve, process_settings, process_law,
-#     chart, process_map, process_pairs -> results/devices/{device}.{html,txt}
+#   answer, life, budget, tip_budget, device_warnings, device_model_error, test_beams_rerun, device_estimate,
+#     safe_lengths, roughness, stoppers, stoppers_at_voltage, tilted_stoppers, process_curve,
+#     process_settings, process_law, chart, process_map, process_pairs -> results/devices/{device}.{html,txt}
 define("device_page")
 
 # Simulated limits of beams.

@@ -17,6 +17,9 @@ import numpy as np
 
 from stiction.contact.asperity import hertz_force
 
+#: Adhesion parameters below which wafers bond, and below which they adhere; C. Gui, M. Elwenspoek, N. Tas and J. G. E.
+#: Gardeniers, J. Appl. Phys. 85, 7448 (1999), read in its abstract.
+BOND, ADHERE = 1, 12
 #: Heights and distances are followed to this many rms; points of both.
 _REACH, _HEIGHTS, _DISTANCES = 8.0, 1500, 1500
 
@@ -49,3 +52,14 @@ class GreenwoodWilliamson:
     def plasticity_index(self, hardness: float) -> float:
         """Plasticity index E'/H √(rms/R) [-]. Contact is elastic below 0.6 and mostly plastic above 1."""
         return self.modulus / hardness * np.sqrt(self.rms / self.radius)
+
+    def adhesion_parameter(self, work: float) -> float:
+        r"""Adhesion parameter θ of summits with the work of adhesion w [J m⁻²], [-].
+
+        .. math:: \theta = \frac{E'}{w} \sqrt{\frac{\sigma^3}{R}}
+
+        It alone decides how much of the pull-off force of level summits remains (K. N. G. Fuller and D. Tabor, Proc. R.
+        Soc. Lond. A 345, 327, 1975), and wafers with less than `BOND` bond. Theirs have short attraction: menisci reach
+        higher summits, and hold more than it says. ASSUME: σ of the summits is the rms of both surfaces.
+        """
+        return self.modulus / work * np.sqrt(self.rms**3 / self.radius)

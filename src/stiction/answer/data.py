@@ -8,7 +8,8 @@ from enum import StrEnum
 
 import numpy as np
 
-from stiction.answer.sought import SOUGHT, Sought
+from stiction.answer.sought import PULL_OFF, SOUGHT, Sought
+from stiction.devices.probes import UNLIKELY
 from stiction.devices.risk import CONFIDENCE
 
 #: Kind of the limit that inputs are too uncertain. It leaves no size to build, but a device may stick for certain.
@@ -16,13 +17,17 @@ INPUTS = "inputs"
 
 
 class Verdict(StrEnum):
-    """Judgement of a stated size, or of none."""
+    """Judgement of a stated size, or of none, or of a measured pull-off force."""
 
     BUILD = "build"  #: no size is stated: a size to build is known
     SAFE = "safe"  #: the stated size is within the size to build
     OPEN = "open"  #: neither shown to be safe nor to stick too often
     BAD = "bad"  #: even the lower end of the band sticks more often than allowed
     NONE = "none"  #: a limit forbids a number, or nothing bounds it
+    FITS = "fits"  #: a measured force is not among the rare ones
+    MISFIT = "misfit"  #: it is, also with the error of the simulation
+    UNDECIDED = "undecided"  #: the error of the simulation, or that of the inputs, leaves it open
+    PLACES = "places"  #: no force is measured: their distribution is known
 
 
 class Cause(StrEnum):
@@ -77,7 +82,29 @@ class InAir:
     #: Expected fraction stuck, and ends of its band, at `Answer.sizes` (3, n) [-].
     curve: np.ndarray = field(default_factory=lambda: np.empty((3, 0)), compare=False)
     first: float = field(default=np.nan, compare=False)  #: size from which a lower end is known [m, N]
-    temperature: float = np.nan  #: of the water in a condition of the device, NaN elsewhere [K]
+    temperature: float = np.nan  #: of the water of a mission, NaN in dry air and without a mission [K]
+
+
+@dataclass(frozen=True)
+class PullOff:
+    """Pull-off force of the places under a probe in one of the stated airs, and a measured one among them."""
+
+    humidity: float  #: [-]
+    #: Forces that 5, 50 and 95 % of the places hold at most, with the ends of their bands (3, 3) [N].
+    quantiles: np.ndarray = field(compare=False)
+    error: float = np.nan  #: standard error of the measured force, NaN without one [N]
+    less: Probability | None = None  #: that a measurement gives the measured force or less, none without one
+    more: Probability | None = None  #: that it gives this force or more
+    two_sided: Probability | None = None  #: twice the smaller of both, with the error of the simulation alone
+
+    @property
+    def verdict(self) -> Verdict:
+        """Judgement by the band of the two-sided probability."""
+        if self.two_sided is None:
+            return Verdict.PLACES
+        if self.two_sided.low >= UNLIKELY:
+            return Verdict.FITS
+        return Verdict.MISFIT if self.two_sided.high < UNLIKELY else Verdict.UNDECIDED
 
 
 @dataclass(frozen=True)
@@ -90,7 +117,7 @@ class Stay:
 
 @dataclass(frozen=True)
 class Answer:
-    """Everything that a page, a table or a picture shows about the main question of a device."""
+    """Size to build of a device and what leads to it: the source of pages, tables and pictures."""
 
     device: str
     kind: str
@@ -114,15 +141,23 @@ class Answer:
     sizes: np.ndarray = field(default_factory=lambda: np.empty(0), compare=False)  #: of the curves (n,) [m, N]
     #: As those of airs, in the worst of them (3, n) [-].
     curve: np.ndarray = field(default_factory=lambda: np.empty((3, 0)), compare=False)
+    #: Pull-off forces by air, of a device that is asked for them. Its size is the measured force, none is to build, and
+    #: what sticks are places that hold more.
+    pull_offs: tuple[PullOff, ...] = ()
 
     @property
     def sought(self) -> Sought:
         """Number that sizes are of."""
-        return SOUGHT[self.unit]
+        return PULL_OFF if self.pull_offs else SOUGHT[self.unit]
 
     def in_words(self, size: float) -> str:
         """Size with its unit."""
         return self.sought.in_words(size)
+
+    @property
+    def pull_off(self) -> PullOff:
+        """Pull-off forces in the air where places hold most, of a device that is asked for them."""
+        return next(one for one in self.pull_offs if one.humidity == self.stated_steps[-1].humidity)
 
     @property
     def is_enough(self) -> bool:
@@ -134,6 +169,8 @@ class Answer:
         """Judgement by fields alone."""
         if set(self.forbidden) - {INPUTS}:
             return Verdict.NONE
+        if self.pull_offs:
+            return Verdict.UNDECIDED if self.forbidden else self.pull_off.verdict
         if self.stuck is not None and not self.is_enough and self.stuck.low > self.share:
             return Verdict.BAD
         if self.forbidden or not np.isfinite(self.build):

@@ -95,9 +95,9 @@ def _steps(question, start, causes):
 def _step(question, cause, before, after):
     """Step from one world to the next."""
     change = 0.0 if before.size == after.size else question.sign * (after.size - before.size)
-    one = after.decides
+    one, is_stated = after.decides, all(one.stated for one in after.conditions if one.cause is cause)
     where = one.humidity, one.shape, one.source
-    return Step(cause, question.size_of(after.size), float(np.exp(change)), *where, cause is not Cause.FAST)
+    return Step(cause, question.size_of(after.size), float(np.exp(change)), *where, is_stated)
 
 
 def _present(question, world):

@@ -1,7 +1,6 @@
 """Numbers sought for devices: the largest length, or the smallest restoring force, of which few enough stick."""
 
 from dataclasses import dataclass
-from typing import ClassVar
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,7 +17,7 @@ class Sought:
     response: str  #: number with the allowed fraction stuck, in words
     devices: str  #: devices with such a number
     bound: str  #: how a number that is safe bounds all safe ones
-    scale: ClassVar[float] = 1e-6  #: unit for readers in that of datasets
+    scale: float = 1e-6  #: unit for readers in that of datasets
 
     @property
     def sign(self) -> float:
@@ -50,5 +49,9 @@ FORCE = Sought(
     name="force", unit="N", shown="µN", digits=".3g", more_is_better=True, label="restoring force",
     required="restoring force", response="force needed", devices="stoppers", bound="At least",
 )  # fmt: skip
-#: All of them by their unit in datasets.
+PULL_OFF = Sought(
+    name="pull_off", unit="N", shown="nN", digits=".4g", more_is_better=True, label="pull-off force",
+    required="measured force", response="pull-off force", devices="places", bound="At most", scale=1e-9,
+)  # fmt: skip
+#: What is sought of devices to build, by its unit in datasets.
 SOUGHT = {sought.unit: sought for sought in (LENGTH, FORCE)}

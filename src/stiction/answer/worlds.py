@@ -105,6 +105,7 @@ class Condition:
     bound: float = np.nan  #: threshold of all devices, where none is sampled
     shift: float = 0.0  #: of all thresholds
     error: float = 0.0  #: standard error of ``shift`` by the simulation, or of ``bound`` by its inputs
+    stated: bool = True  #: whether the user stated its cause
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,10 @@ def _length(dataset, name):
 def _share(dataset, name):
     """Share of a stopper that sticks."""
     humidity, *stuck = max(shares_stuck(dataset), key=lambda row: row[1:])
+    if np.isnan(float(dataset.restoring_force)):
+        half = dataset.pull_off.median("sample").max("humidity")
+        force = f"{from_si(float(half), 'nN'):.3g} nN"
+        return f"First number: by simulation alone, half of the places under {name} hold more than {force}."
     force = from_si(float(dataset.restoring_force), "uN")
     return (
         f"First answer: of {name} with {force:.3g} µN, {fraction_with_band(*stuck, ' %')} stick {Air(humidity).where} "

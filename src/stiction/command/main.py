@@ -14,6 +14,7 @@ from stiction.command.last_lines import PRINTED, Status, fault, last_lines, stat
 from stiction.command.output_streams import say
 from stiction.command.run_state import RUN
 from stiction.config import reading
+from stiction.config.kinds import PULL_OFF, kind_of
 from stiction.config.messages import ConfigError
 from stiction.models import SIDES
 from stiction.run import stale_results
@@ -21,6 +22,8 @@ from stiction.run.atomic import save_text
 from stiction.run.provenance import RecordError, understood
 
 _PURPOSE = "From the statistics of two rough surfaces to the probability that MEMS devices stick, and what to build."
+#: Questions about devices that are not what to build, in words.
+_ASKED = {PULL_OFF: "Asked for the pull-off force, not for what to build:"}
 _STATUS = """
 exit status: 0 done, 1 a job or stiction itself failed, 2 refused (wrong input, or another run uses
 the folder), 3 checks of the results failed, 130 stopped by Ctrl-C or SIGTERM. Results are in results/,
@@ -185,6 +188,9 @@ def _check(arguments):
     say(f"{' '.join(arguments.files)} can run: {' and '.join(parts) or 'nothing'}.")
     if ready.numbers:
         say(str(ready.numbers))
+    for question, words in _ASKED.items():
+        if asked := [name for name, device in devices.items() if kind_of(device).question(device) == question]:
+            say(f"{words} {', '.join(asked)}.")
     say(f"It takes {cost}, less for results that are already there.")
     for line in estimate.in_short(arguments.files):
         say(line)

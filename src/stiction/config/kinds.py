@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import NamedTuple
 
-from stiction.config.units import NN_PER_UN, from_si, in_si
+from stiction.config.units import from_si, in_si
 from stiction.contact.probes.shape import Probe
 
 #: Keys that every device may have.
@@ -27,7 +27,12 @@ COMMON = (
     "touchdowns",
     "conditions",
 )
-COMMON += ("voltage_V", "offset_V", "dielectric")
+COMMON += ("voltage_V", "offset_V", "dielectric", "shock_g")
+#: Keys of a life under a spring, and of what changes it.
+OF_SPRINGS = ("requirement", "roughness", "process", "second_process", "test_beams", "touchdowns", "conditions")
+OF_SPRINGS += ("voltage_V", "offset_V", "dielectric", "mass_ng", "electrode", "shock_g")
+#: Question about a device without a spring, a name of tables as that of a `Release`.
+PULL_OFF = "pull_off"
 #: Keys that depend on the kind, what they are called and their unit.
 KEYS = {
     "thickness_um": ("thickness", "µm"),
@@ -49,18 +54,22 @@ KEYS = {
 
 
 class Roughness(NamedTuple):
-    """Varied quantity of a surface, the axis of a computation."""
+    """Varied quantity of a surface, or of one that follows another, the axis of a computation."""
 
     words: str  #: what it is called
     unit: str  #: with a space before it; empty without a unit
-    logarithmic: bool  #: whether its values are spaced by equal factors
+    scale: str  #: of `stiction.devices.roughness.SCALES`, in which its values are evenly spaced
+    smooths: int = 0  #: sign of a change that makes the sum of both surfaces smoother, zero where neither does
+    of_replica: bool = False  #: whether it is one of key ``replica`` of the pair
 
 
 #: Quantities of section ``roughness`` by their keys.
 ROUGHNESSES = {
-    "rms_nm": Roughness("rms", " nm", True),
-    "skewness": Roughness("skewness", "", False),
-    "corner_rad_per_um": Roughness("corner of the spectrum", " rad/µm", True),
+    "rms_nm": Roughness("rms", " nm", "log", -1),
+    "skewness": Roughness("skewness", "", "linear"),
+    "corner_rad_per_um": Roughness("corner of the spectrum", " rad/µm", "log"),
+    "coherence": Roughness("coherence", "", "rest", 1, of_replica=True),
+    "play_nm": Roughness("play", " nm", "linear", -1, of_replica=True),
 }
 
 
@@ -94,10 +103,10 @@ STOPPER = Release(
 
 
 class Way(NamedTuple):
-    """Way to state the restoring force of a device."""
+    """Way to state the restoring force of a device, or that none pulls it and its pull-off force is asked for."""
 
     keys: tuple[str, ...]  #: first the number that grows with the force
-    per: Callable[[Mapping], float]  #: force for one unit of this number [µN]
+    per: Callable[[Mapping], float] | None = None  #: force for one unit of this number [µN], none without a spring
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,8 +143,26 @@ class Kind:
         ways = [way.keys for way in self.ways]
         if ways and set(keys) & set(chain(*ways)) not in map(set, ways):
             either = "either " if len(ways) > 1 else ""
-            return f"must come with {either}{', or '.join(map(' and '.join, ways))}"
-        return None
+            return f"must come with {either}{', or '.join(' and '.join(way) for way in ways if way)}"
+        return self._without_spring(keys)
+
+    def _without_spring(self, keys):
+        """Refusal of keys of a spring where none is stated."""
+        if not self.ways or self.way(keys).per or not (strange := [key for key in keys if key in OF_SPRINGS]):
+            return None
+        springs = ", or ".join(" and ".join(way.keys) for way in self.ways if way.per)
+        return f"must come without {', '.join(sorted(strange))}, or with a spring: {springs}"
+
+    @property
+    def unasked(self) -> list[str]:
+        """Optional keys of the life of devices that are of other kinds alone.
+
+        Examples
+        --------
+        >>> KINDS["probe"].unasked, KINDS["bridge"].unasked
+        ([], ['electrode', 'mass_ng'])
+        """
+        return sorted({"mass_ng", "electrode", "voltage_V"} - set(self.allowed_keys))
 
     @property
     def has_short_strips(self) -> bool:
@@ -173,21 +200,30 @@ class Kind:
         side = round(from_si(in_si(Probe, self.shape_of(device)).side, "um"), 6)
         return side, side
 
-    def way(self, device: Mapping) -> Way:
-        """Way in which the section of a device states its restoring force."""
-        return next(way for way in self.ways if way.keys[0] in device)
+    def way(self, device: Collection[str]) -> Way:
+        """Way in which the section of a device, or its keys, states its restoring force."""
+        return next(way for way in self.ways if set(way.keys) <= set(device))
+
+    def question(self, device: Mapping) -> str:
+        """Question about a device, a name of tables: how it releases, or its pull-off force where no spring pulls it.
+
+        Examples
+        --------
+        >>> KINDS["probe"].question({"radius_um": 5}), KINDS["probe"].question({"restoring_force_uN": 1})
+        ('pull_off', 'stopper')
+        """
+        return PULL_OFF if self.ways and self.way(device).per is None else self.release.name
 
     def stated(self, device: Mapping) -> dict:
-        """Section of a device, with the restoring force [µN] that follows from it.
+        """Section of a device, with the restoring force [µN] that follows from it, if it has a spring.
 
         Examples
         --------
         >>> KINDS["stopper"].stated({"stiffness_N_per_m": 2, "gap_um": 1.5})["restoring_force_uN"]
         3.0
         """
-        if not self.ways:
+        if not self.ways or not (way := self.way(device)).per:
             return dict(device)
-        way = self.way(device)
         return device | {"restoring_force_uN": device[way.keys[0]] * way.per(device)}
 
 
@@ -228,7 +264,7 @@ KINDS = {
         words="probe",
         drawing="probe.svg",
         keys=("radius_um",),
-        ways=(*_PULLED, Way(("measured_nN", "measured_error_nN"), lambda _: 1 / NN_PER_UN)),
+        ways=(*_PULLED, Way(("measured_nN", "measured_error_nN")), Way(())),
         optional=("mass_ng", "electrode", "flat_um", "contact_um"),
         release=STOPPER,
         shape=("radius_um", "flat_um"),

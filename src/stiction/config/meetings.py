@@ -152,12 +152,12 @@ def shown_humidity(config: Keys) -> float:
     The nearest humidity of the pair of the figures takes the place of one in which the contact of a pair is refused.
     """
     pairs, usual = config["run.pairs"], config[_SHOWN]
-    met = list(pair_meetings(config))
-    if is_stated(config.config, *_SHOWN.split(".")) or not any(_refusal(meeting, usual) for meeting in met):
+    of_pairs = list(pair_meetings(config))
+    if is_stated(config.config, *_SHOWN.split(".")) or not any(_refusal(meeting, usual) for meeting in of_pairs):
         return usual
     shown = config["figures.pair"] if config["figures.pair"] in pairs else pairs[0]
     stated = sorted(config[f"pairs.{shown}.humidities"], key=lambda humidity: abs(humidity - usual))
-    return next((air for air in stated if not any(_refusal(meeting, air) for meeting in met)), stated[0])
+    return next((air for air in stated if not any(_refusal(meeting, air) for meeting in of_pairs)), stated[0])
 
 
 def _refusal(meeting, humidity):
@@ -215,7 +215,7 @@ def _humidity_of_dew_point(value, path, temperature):
 
 @relation
 def gaps_are_far_above_the_film(config):
-    """Along most of a crack, a beam is far from the water film and the peaks of the substrate.
+    """Require a gap far above the water film and the peaks of the substrate along most of a crack.
 
     A gap is refused once, in the air that needs the largest.
     """
@@ -308,7 +308,7 @@ def attraction_reaches_across_dry_gaps(config):
 
 @relation
 def corrections_are_not_extrapolated(config):
-    """Devices are corrected to full elastic contact within the humidities of their pair and of its figures."""
+    """Require devices in full elastic contact within the humidities of their pair and of its figures."""
     if config["contact"].get("model") != "full":
         return
     for name, _ in config.entries("devices", "pair"):

@@ -78,7 +78,7 @@ def text(path: str | Path) -> str:
     """Text of a file in UTF-8."""
     require_regular(path)
     data = Path(path).read_bytes()
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")) or b"\0" in data[:2]:  # without a mark, but an ASCII letter
         raise ValueError("it is text in UTF-16, must be UTF-8: save it as UTF-8")
     try:
         return data.decode("utf-8")

@@ -205,7 +205,7 @@ def spectra_suit_their_surfaces(config):
 
 @relation_of_names
 def only_scans_leave_a_choice(config):
-    """Other surfaces have the heights of their moments and a spectrum with a cut-off."""
+    """Refuse a choice of heights, or of the spectrum beyond the cut-off, without scans."""
     for choice in ("beyond", "heights"):
         for name, _ in config.entries("surfaces", choice):
             if "scans" not in config.names(f"surfaces.{name}"):
@@ -322,7 +322,7 @@ def other_grids_carry_an_identified_spectrum(config):
 
 @relation
 def lengths_exceed_the_correlation(config):
-    """Opposite edges of a strip, or of a patch to identify, are uncorrelated.
+    """Require uncorrelated opposite edges of strips, and of patches to identify.
 
     Strips themselves may be shorter: under devices they then repeat laws, see `stiction.devices.strips`. ASSUME: under
     the beams of pairs, their force laws are independent nevertheless. Laws of strips of 0.25 and 0.5 µm on pair b, for
@@ -422,7 +422,7 @@ def patches_are_whole_on_the_grid(config):
 @relation
 @only_if(spectra_are_identified)
 def summits_are_sought_on_the_grid(config):
-    """Table I is sampled at every n-th height of the grid."""
+    """Require a spacing of Table I at every n-th height of the grid."""
     spacing = config["sampling.spacing_nm"]
     if not is_multiple(config["character.spacing_nm"], spacing):
         message = f"must be a multiple of the grid spacing of {spacing} nm"
@@ -521,7 +521,7 @@ def coatings_attract_less_than_their_solids(config):
 
 @relation
 def solids_attract_across_gaps(config):
-    """Without van der Waals forces of the summits there are none across gaps."""
+    """Refuse attraction across gaps without van der Waals forces of the summits."""
     if (config["attraction.reach"], config["van_der_waals"]) == ("all", "none"):
         yield "attraction.reach", "must be touching if van_der_waals is none", "van_der_waals"
 

@@ -74,7 +74,7 @@ def an_accuracy_decides_a_number(config):
 
 @relation
 def strips_and_patches_are_whole_on_the_grid(config):
-    """Sides of strips, and of the area of a stopper, are multiples of the distance between contact points."""
+    """Require sides of strips and stoppers to be multiples of the distance between contact points."""
     sides = ("strip_um", "width_um", "contact_um")
     of_devices = [f"devices.{name}.{key}" for key in sides for name, _ in config.entries("devices", key)]
     for key, stated in config.given(*["beam.width_um"] * pairs_run(config), _STRIP, *of_devices):
@@ -284,7 +284,7 @@ def dimensions_stay_positive(config):
 
 @relation
 def uncertain_moduli_stay_positive(config):
-    """Young's modulus is positive one standard uncertainty below its value, too."""
+    """Require a positive Young's modulus one standard uncertainty below its value."""
     key = "uncertainty.young_modulus_GPa"
     for name, deviation in config.entries("devices", key):
         value = _material(config, name)["young_modulus_GPa"]
@@ -295,7 +295,7 @@ def uncertain_moduli_stay_positive(config):
 
 @relation
 def uncertain_poisson_ratios_stay_within_their_limits(config):
-    """Poisson's ratio is possible one standard uncertainty, and one step of its slope, around its value, too."""
+    """Require possible Poisson's ratios one standard uncertainty, and one step of the slope, around the value."""
     key = "uncertainty.poisson_ratio"
     for name, deviation in config.entries("devices", key):
         value = _material(config, name)["poisson_ratio"]
@@ -392,7 +392,7 @@ def uncertain_edges_are_those_of_round_tips(config):
 
 @relation
 def uncertain_humidities_stay_within_their_limits(config):
-    """Humidities are above 0 and below 1 one standard uncertainty around their values, too."""
+    """Require humidities above 0 and below 1 one standard uncertainty around their values."""
     for name, deviation, humidities in config.entries("devices", "uncertainty.humidity", "humidities"):
         message, given = None, f"devices.{name}.humidities"
         if deviation and not humid(humidities):
@@ -405,7 +405,7 @@ def uncertain_humidities_stay_within_their_limits(config):
 
 @relation
 def water_stays_liquid(config):
-    """Water is liquid one standard uncertainty around its temperature, too."""
+    """Require liquid water one standard uncertainty around its temperature."""
     for name, deviation in config.entries("devices", "uncertainty.temperature_K"):
         if refusal := _freezes_or_boils(deviation, config[TEMPERATURE]):
             yield f"devices.{name}.uncertainty.temperature_K", refusal, TEMPERATURE
@@ -492,6 +492,16 @@ def varied_surfaces_are_in_the_pair(config):
 
 
 @relation_of_names
+def varied_replicas_are_stated(config):
+    """Require a pair with a replica for a range of its coherence or play."""
+    for key in (key for key, quantity in ROUGHNESSES.items() if quantity.of_replica):
+        for name, _, pair in config.entries("devices", f"roughness.{key}", "pair"):
+            if "replica" not in config["pairs"].get(pair, {}):
+                message = f"must be left out, because pair {pair} has no replica; state replica: {{coherence: 0}}"
+                yield f"devices.{name}.roughness.{key}", message, f"devices.{name}.pair"
+
+
+@relation_of_names
 def varied_skewnesses_are_those_of_moments(config):
     """Require heights by their moments for a range of the skewness."""
     for name, surface, _ in config.entries("devices", "roughness.surface", "roughness.skewness"):
@@ -548,7 +558,7 @@ def arrays_of_devices_are_defined(config):
 
 @relation
 def arrays_have_the_materials_of_their_devices(config):
-    """Properties of the solids of test beams are those of the device."""
+    """Require test beams of the materials of their device."""
     arrays = config["test_beams"]
     for name, used in config.entries("devices", "test_beams"):
         wanted = _names_of_materials(config, config["devices"][name]["pair"])
@@ -581,7 +591,7 @@ def devices_with_common_test_beams_share_their_uncertainties(config):
 
 
 def _agree(*devices):
-    """Whether devices have the same uncertainties of what is not their own: edges are those of devices with tips."""
+    """Whether devices have the same uncertainties of shared inputs. Only devices with tips have edges."""
     shared = [dict(shared_uncertainty(device)) for device in devices]
     if not all(kind_of(device).has_tip for device in devices):
         for stated in shared:
@@ -615,7 +625,7 @@ def crack_lengths_have_one_mean_at_a_humidity(config):
 
 @relation
 def cracks_end_on_the_beams(config):
-    """Mean crack lengths are shorter than the beams, and scatter by less than themselves, but measurably."""
+    """Require mean crack lengths below the length of the beams, and a measurable scatter below the mean."""
     for array, key, datum, length in _data(config, "crack_lengths", "length_um"):
         if datum["mean_um"] >= length:
             yield f"{key}.mean_um", "must be below the length of the beams", f"{array}.length_um"

@@ -50,7 +50,7 @@ def users(config: Mapping, array: str) -> dict[str, dict]:
 
 
 def humidities(array: Mapping, *kinds: str) -> list[float]:
-    """Humidities of the data of an array, increasing. Those of some kinds of data, by default of all."""
+    """Humidities of the data of an array, increasing. ``kinds`` selects data, by default all."""
     return sorted({datum["humidity"] for kind in kinds or DATA for datum in array.get(kind, ())})
 
 

@@ -45,7 +45,8 @@ class Isotherm:
     r"""Film adsorbed on each of two equal solids, of a thickness t measured at some humidities.
 
     ASSUME: t is linear in the humidity between these, 0 in dry air, and beyond the wettest as there, where films grow
-    without limit: heights in wetter air are too small.
+    without limit: heights in wetter air are too small, which warns. In drier air the heights miss less. If films of van
+    der Waals forces go on from the wettest air, t at p, it is t p over the tension there.
     """
 
     humidities: tuple[float, ...]  #: increasing [-]

@@ -112,8 +112,8 @@ class EquivalentSurface:
             self.substrate.add_to(heights, substrate_rng)
         return np.ascontiguousarray(heights[:: self.every, :: self.every])
 
-    def met(self, heights: np.ndarray) -> np.ndarray:
-        """Heights that a flat meets in place of one equivalent surface z (n1, n2) [m]: these."""
+    def under_flat(self, heights: np.ndarray) -> np.ndarray:
+        """Heights that touch a flat where z (n1, n2) touches its counterpart [m]: here z itself."""
         return heights
 
     def asperities(self, heights: np.ndarray) -> Summits:

@@ -190,9 +190,9 @@ def _drawn_margins(margins, laws, drawn, runs, common):
     """
     sizes, shape = np.cumsum([len(law.coefficients) for law in laws])[:-1], margins.margin.shape
     parts = []
-    for number, (law, of) in enumerate(zip(laws, np.split(margins.slopes, sizes, axis=-1), strict=True)):
+    for number, (law, slopes) in enumerate(zip(laws, np.split(margins.slopes, sizes, axis=-1), strict=True)):
         basis = law.basis(margins.settings(number).ravel()).reshape(*shape, -1)
-        parts.append((of[..., None] * basis[..., None, :]).reshape(*shape, -1))
+        parts.append((slopes[..., None] * basis[..., None, :]).reshape(*shape, -1))
     by_coefficients = np.concatenate(parts, axis=-1)
     of_mean, of_run = np.empty((2, DRAWS, *shape))
     for row in np.ndindex(shape[:-1]):
@@ -218,7 +218,9 @@ def _wanted(axes, margins, best):
 def _advice(laws, errors, parts, wanted):
     """Settings of each process to measure next, as by `_next`: of all surfaces of one process, or of one each."""
     groups = [slice(number, number + 1) for number in range(len(laws))] if wanted.shape[1] > 1 else [slice(None)]
-    advice = [_next(laws[of], errors[of], parts[of], own) for of, own in zip(groups, wanted.T, strict=True)]
+    advice = [
+        _next(laws[group], errors[group], parts[group], column) for group, column in zip(groups, wanted.T, strict=True)
+    ]
     return map(np.array, zip(*advice, strict=True))
 
 

@@ -5,6 +5,7 @@ Lengths and forces are known at a few roughnesses. The margin is :math:`\ln (l /
 that is monotone where they are. It may cross zero several times: a stopper may hold most at a roughness inside a range.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,31 @@ from scipy.interpolate import Akima1DInterpolator, PchipInterpolator
 LARGEST = np.log(1e3)
 #: Positive margin that is next to none.
 _LEAST = 1e-12
+
+
+@dataclass(frozen=True)
+class Scale:
+    """Coordinate of a quantity in which margins are smooth."""
+
+    place: Callable  #: coordinate of a value
+    value: Callable  #: value at a coordinate
+    slope: Callable  #: derivative of the value, by the value
+    spaced: Callable  #: values from one to another, evenly spaced in the coordinate
+
+
+def _spaced_by_rests(low, high, number):
+    """Shares whose rests of one fall by equal factors."""
+    return 1 - np.geomspace(1 - low, 1 - high, number)
+
+
+#: Scales by name. The variance of surfaces that follow each other falls like the rest of their coherence.
+SCALES = {
+    "linear": Scale(lambda value: value, lambda place: place, np.ones_like, np.linspace),
+    "log": Scale(np.log, np.exp, lambda value: value, np.geomspace),
+    "rest": Scale(
+        lambda value: -np.log1p(-value), lambda place: -np.expm1(-place), lambda value: 1 - value, _spaced_by_rests
+    ),
+}
 
 
 @dataclass(frozen=True)

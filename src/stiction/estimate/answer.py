@@ -7,12 +7,13 @@ length has on m typical surfaces the mean :math:`\bar v` and the scatter s, and 
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from stiction.contact.air import is_humid
 from stiction.estimate.length import Lengths, NotLearnt, fraction_of, lengths, normal_score
-from stiction.estimate.question import Question
+from stiction.estimate.question import IN_DRY_AIR, Question
 from stiction.estimate.state import State, film, stiffness_of
 from stiction.estimate.statistics import Heights
 from stiction.estimate.table import Process
@@ -67,6 +68,20 @@ def answer(question: Question | NotLearnt, table: Mapping[str, Any], tips: Proce
     decides = min(found, key=lambda air: found[air].length(normal_score(of_once[CHOSEN])))
     stuck = None if question.length is None else _stuck(question, list(found.values()), table)
     return Answer(question, rows, stuck, decides)
+
+
+def in_one_air(question: Question, air: float, fractions: Sequence[float], *learnt: Any) -> list[Row]:
+    """Lengths of a cantilever for some fractions, at one touchdown in one air. Learnt as of `answer`.
+
+    Raises
+    ------
+    NotLearnt
+        If the estimate does not know it.
+    """
+    if not is_humid(air):
+        raise NotLearnt(IN_DRY_AIR)
+    table, found = learnt[0], _in_air(question, air, *learnt)
+    return [found.row(p, normal_score(p), table) for p in fractions]
 
 
 @dataclass(frozen=True)

@@ -16,7 +16,7 @@ Library = Mapping[str, Mapping[str, Any]]
 
 #: Keys of a surface, of a pair and of a device that the estimate knows.
 OF_SURFACES = ("rms_nm", "like", "hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis")
-OF_SURFACES += ("unknown", "psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
+OF_SURFACES += ("unknown", "uncertainty", "psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
 OF_PAIRS = ("beam", "substrate", "gap_um", "humidities", "attraction", "coarser_mesh")
 OF_DEVICES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "humidities", "touchdowns")
 OF_DEVICES += OF_VOLTAGES
@@ -24,8 +24,16 @@ OF_DEVICES += OF_VOLTAGES
 LEFT_OUT = ("uncertainty", "requirement", "chart", "roughness")
 #: Sections of a file that change no length of a cantilever.
 OF_FILES = ("run", "surfaces", "pairs", "devices", "figures", "studies", "beam", "chaos", "character", "seed")
-#: Keys of section ``design`` that change no length of a cantilever but by its numbers of samples.
-OF_DESIGN = ("beams", "shares", "chart_points", "budget_beams", "budget_samples", "worst_humidities")
+#: Sections that change a cantilever only where its device, pair or surface names an entry, with a key that is refused.
+OF_NAMES = ("materials", "process", "test_beams", "liquids", "scans")
+#: Keys of sections that change no length of a cantilever but by its numbers of samples.
+OF_SAMPLES = {
+    "design": ("accuracy", "beams", "shares", "chart_points", "budget_beams", "budget_samples", "samples_of_patches")
+    + ("worst_humidities",),
+    "contact": ("samples", "chunks"),
+}
+#: Why the estimate refuses air without water.
+IN_DRY_AIR = "dry air was not learnt"
 #: Numbers that a surface may leave open.
 _OPEN = ("skewness", "kurtosis", "hurst", "corner_rad_per_um", "cutoff_rad_per_um")
 #: These by the words of key ``unknown``. An unknown rms is not among them.
@@ -115,8 +123,8 @@ def questions(content: Mapping[str, Any], table: Mapping[str, Any]) -> dict[str,
 
 def _question(name, device, content, table):
     """Question of one device."""
-    others = [f"design.{key}" for key in content.get("design", {}) if key not in OF_DESIGN]
-    if others := [*others, *(key for key in content if key not in (*OF_FILES, "design"))]:
+    others = [f"{part}.{key}" for part, keys in OF_SAMPLES.items() for key in content.get(part, {}) if key not in keys]
+    if others := [*others, *(key for key in content if key not in (*OF_FILES, *OF_NAMES, *OF_SAMPLES))]:
         raise NotLearnt(f"{others[0]} was not learnt")
     kind = KINDS.get(device["kind"])
     if kind is None or not kind.has_tip:
@@ -128,7 +136,7 @@ def _question(name, device, content, table):
     if others := [key for key in pair if key not in OF_PAIRS]:
         raise NotLearnt(f"{others[0]} of a pair was not learnt")
     if not all(is_possible(air) and is_humid(air) for air in device["humidities"]):
-        raise NotLearnt("dry air was not learnt")
+        raise NotLearnt(IN_DRY_AIR)
     surfaces = library | content.get("surfaces", {})
     sides = [surface(surfaces[pair[side]], library) for side in ("beam", "substrate")]
     return of_numbers(name, device, sides, left_out=left_out)

@@ -10,6 +10,8 @@ _IMPOSSIBLE = 1e20
 _ROUNDING = 1e-7
 #: ASSUME: from how many equal values, more than of any other one, a mark among the heights is doubtful.
 _OFTEN = 3
+#: ASSUME: no surface has one point that stands out by so many times the range of all others.
+_ALONE = 1000
 
 
 def without_marks(heights: np.ndarray) -> tuple[np.ndarray, str]:
@@ -54,7 +56,9 @@ def without_marks(heights: np.ndarray) -> tuple[np.ndarray, str]:
 
 
 def require_no_mark(heights: np.ndarray) -> None:
-    """Refuse a map with an extreme value that stands at several points, farther from all others than these lie apart.
+    """Refuse a map with an extreme value farther from all others than these lie apart.
+
+    It stands at several points, or alone so far away that no surface has it.
 
     Raises
     ------
@@ -63,11 +67,12 @@ def require_no_mark(heights: np.ndarray) -> None:
     """
     values, counts = np.unique(heights[np.isfinite(heights)], return_counts=True)
     for value, count, rest in ((values[0], counts[0], values[1:]), (values[-1], counts[-1], values[:-1])):
-        if len(rest) > 2 and count > 1 and np.abs(rest - value).min() > np.ptp(rest):
+        if len(rest) > 2 and np.abs(rest - value).min() > np.ptp(rest) * (1 if count > 1 else _ALONE):
             raise ValueError(_doubt(value, count))
 
 
 def _doubt(value, count):
     """Question about a value in words."""
-    reason = f"has {value:.6g} at {count} points, which may be a mark of no data"
-    return f"{reason}: write nan where no height is defined"
+    where = f"{count} points" if count > 1 else "1 point"
+    reason = f"has {value:.6g} at {where}, which may be a mark of no data or the end of a detector"
+    return f"{reason}: write nan where no height is known"

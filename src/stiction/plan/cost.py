@@ -28,7 +28,7 @@ USUAL_MINUTES = 10
 _TIMES = ((86_400, "days"), (3600, "h"), (60, "min"), (1, "s"))
 #: Sections of the settings of a job that draws surface pairs.
 _DRAWN = {"sampling", "contact", "beam"}
-#: Those of a job that computes full elastic contact.
+#: Keys of the settings of a job in full elastic contact.
 _FULL = {"strips", "humidities"}
 
 

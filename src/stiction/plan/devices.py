@@ -140,6 +140,15 @@ class DevicePlan:
         """Devices with one release."""
         return [name for name in self.sections if self.kind(name).release is release]
 
+    def question(self, device: str) -> str:
+        """Question about a device, a name of tables."""
+        return self.kind(device).question(self.sections[device])
+
+    @cached_property
+    def with_life(self) -> list[str]:
+        """Devices that stick and are freed: without a spring, they are asked for their pull-off force alone."""
+        return [name for name in self.sections if self.question(name) == self.kind(name).release.name]
+
     @cached_property
     def with_tips(self) -> list[str]:
         """Devices with a free end able to stick."""

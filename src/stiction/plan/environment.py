@@ -75,7 +75,7 @@ class Environment:
         return self.wet(pair, self.config["pairs"][pair]["humidities"])
 
     def wet(self, pair: str, humidities: Iterable[float]) -> list[float]:
-        """Those of some humidities at which water condenses between the surfaces of a pair."""
+        """Humidities, among some, at which water condenses between the surfaces of a pair."""
         return humid(humidities) if self.is_wetted(pair) else []
 
     def is_dry(self, pair: str, humidity: float) -> bool:
@@ -83,7 +83,7 @@ class Environment:
         return not self.wet(pair, [humidity])
 
     def corrected(self, pair: str, humidities: Iterable[float], config: dict | None = None) -> list[float]:
-        """Those of some humidities at which predictions are corrected to full elastic contact.
+        """Humidities, among some, at which predictions are corrected to full elastic contact.
 
         ASSUME: by default those in dry air, where the sum over summits is on the unsafe side by up to a factor of 3.5.
         Devices are corrected in humid air as well, see `by_levels`.
@@ -93,7 +93,7 @@ class Environment:
         return [rh for rh in humidities if model == "full" or model is None and self.is_dry(pair, rh)]
 
     def by_levels(self, pair: str, humidities: Iterable[float]) -> list[float]:
-        """Those of some humidities at which devices are corrected if the error of a change allows.
+        """Humidities, among some, at which devices are corrected if the error of a change allows.
 
         ASSUME: by default in humid air, where the sum over summits errs by up to 10 % of a length and 80 % of a force,
         and tips of rough pairs hold up to four times less.

@@ -12,6 +12,7 @@ from typing import Any
 from stiction.config.cases import IN_HUMID_AIR, Case, PairInAir, case_id
 from stiction.config.materials import Materials
 from stiction.config.merging import values
+from stiction.config.mission.adsorption import unmeasured
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured, preliminary_estimates, quantities
 from stiction.config.surfaces.knowledge import knowledge, uncertain
@@ -179,6 +180,17 @@ class Plan:
             for pair, names in named.items()
         }
         return {pair: of_pair for pair, of_pair in by_pair.items() if of_pair}
+
+    def limits_of_pairs(self) -> dict[str, list[dict[str, Any]]]:
+        """Stored limits of the pairs in the run by pair, without empty ones: of `assumptions`, and of films."""
+        assumed, pairs = self.assumptions(*self.pairs), self.config["pairs"]
+        films = {pair: self.unmeasured_films(self.air.wet(pair, pairs[pair]["humidities"])) for pair in self.pairs}
+        found = {pair: assumed.get(pair, []) + films[pair] for pair in self.pairs}
+        return {pair: of_pair for pair, of_pair in found.items() if of_pair}
+
+    def unmeasured_films(self, wet: Iterable[float]) -> list[dict[str, Any]]:
+        """Stored limit by films at humidities at which water condenses, see `stiction.config.mission.adsorption`."""
+        return [limit.stored() for limit in unmeasured(self.config["water"], wet)]
 
     @cached_property
     def with_summits(self) -> list[str]:

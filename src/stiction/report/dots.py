@@ -3,9 +3,11 @@
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+import pandas as pd
 from matplotlib.axes import Axes
 
-from stiction.report.style import OUTLINED
+from stiction.report.style import OUTLINED, PUBLISHED
 
 #: Height of a row of dots, of each further line of its label, and of everything else in a panel [in].
 ROW, LINE, AROUND = 0.24, 0.13, 0.75
@@ -29,12 +31,19 @@ class Mark:
     filled: bool = True
 
 
-def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]]) -> None:
-    """Draw the marks of each row by its label, from top to bottom. What a panel already shows stays within its axis."""
+def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, in_column: bool = False) -> None:
+    """Draw the marks of each row by its label, from top to bottom. What a panel already shows stays within its axis.
+
+    Numbers are beside their marks, or ``in_column`` at the right end of the panel.
+    """
     for place, marks in enumerate(rows.values()):
         panel.axhline(place, color="0.9", linewidth=0.6, zorder=0)
         for mark in marks:
             _draw(panel, place, mark)
+            if in_column:
+                panel.annotate(mark.text, (1, place), (-2, 0), panel.get_yaxis_transform(), ha="right", **_NUMBER)
+            else:
+                panel.annotate(mark.text, (mark.high + mark.error, place), (6, 0), **_NUMBER)
     panel.set_yticks(range(len(rows)), list(rows))
     panel.tick_params(axis="y", length=0)
     panel.set_ylim(len(rows) - 0.4, -0.6)
@@ -69,7 +78,7 @@ def signed(number: float) -> str:
 
 
 def _draw(panel, place, mark):
-    """One mark with its text on its right."""
+    """One mark without its text."""
     style = {"color": mark.color, "label": mark.label or "_"}
     if mark.low < mark.high:
         panel.plot([mark.low, mark.high], [place] * 2, linewidth=_THICK, solid_capstyle="butt", **style)
@@ -77,4 +86,19 @@ def _draw(panel, place, mark):
     else:
         face = mark.color if mark.filled else "white"
         panel.errorbar([mark.high], [place], xerr=[mark.error], fmt="o", markersize=4, markerfacecolor=face, **style)
-    panel.annotate(mark.text, (mark.high + mark.error, place), (6, 0), **_NUMBER)
+
+
+def references(panel: Axes, length: float, base: str, known: pd.DataFrame) -> None:
+    """Lines of changes [%] of a crack length [µm], of some name: none, and those to the published and measured ones.
+
+    The rows of Table III of a case are known, or none.
+    """
+    panel.axvline(0, color="black", linewidth=0.8, label=base)
+    for row in known.itertuples():
+        if np.isfinite(row.ng):
+            panel.axvline(100 * (row.ng / length - 1), color=PUBLISHED, label="published")
+        if np.isfinite(row.experiment):
+            measured, spread = 100 * (row.experiment / length - 1), 100 * np.nan_to_num(row.experiment_std) / length
+            style = {"color": "0.4", "alpha": 0.2, "linewidth": 0, "zorder": 0}
+            panel.axvspan(measured - spread, measured + spread, **style)
+            panel.axvline(measured, color="0.4", linestyle="--", label="measured ± standard deviation")

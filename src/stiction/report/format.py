@@ -1,9 +1,11 @@
 """Units of tables and axes, and numbers as text: with a standard error, as a deviation, or alone."""
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
+from stiction.config.mission.conditions import humidity_of
 from stiction.contact.air import DRY_AIR, Air, has_dry, humid
 
 #: Units in SI, for tables: the stored number is a quantity divided by its unit; a product may differ in the last bit.
@@ -51,6 +53,27 @@ def humidity_text(value: float) -> str:
     ('0.67', 'dry', '–')
     """
     return DRY_AIR.name if Air(value).is_dry else number(value, "g")
+
+
+def conditions_in_words(conditions: Iterable[Mapping[str, Any]]) -> str:
+    """Conditions of a device, each with its air and its share of the touchdowns.
+
+    Examples
+    --------
+    >>> conditions_in_words([{"temperature_C": 12, "dew_point_C": 10, "share": 0.1}])
+    '12 °C at a dew point of 10 °C: RH 0.8755, 10 % of the touchdowns'
+    >>> conditions_in_words([{"temperature_C": 60, "humidity": 0.3}, {"temperature_C": 85, "humidity": 0}])
+    '60 °C: RH 0.3; 85 °C: dry'
+    >>> conditions_in_words([{"temperature_C": -20, "dew_point_C": 10}])
+    '-20 °C at a dew point of 10 °C: water condenses'
+    """
+    said = []
+    for one in conditions:
+        dew, air = one.get("dew_point_C"), humidity_of(one)
+        at = f"{one['temperature_C']:g} °C" + (f" at a dew point of {dew:g} °C" if dew is not None else "")
+        air = "water condenses" if air is None else Air(air).choose(f"RH {air:g}", DRY_AIR.name)
+        said.append(f"{at}: {air}" + (f", {100 * one['share']:.3g} % of the touchdowns" if "share" in one else ""))
+    return "; ".join(said)
 
 
 def listed(names: Sequence[str]) -> str:
@@ -137,19 +160,31 @@ def fraction_with_band(share: float, low: float, high: float, unit: str = "") ->
 
 
 def fraction_between(low: float, high: float, unit: str = "") -> str:
-    """Fraction of devices between two ends in percent. Ends of none and of all are left out.
+    """Fraction of devices between two ends in percent, without ends of none and of all. No other is rounded to these.
 
     Examples
     --------
     >>> fraction_between(0.0101, 0.0149), fraction_between(0.0, 0.00037, " %"), fraction_between(0.0, 1.0, " %")
     ('1.01 to 1.49', 'at most 0.037 %', '0 to 100 %')
+    >>> fraction_between(0.0, 0.9999995, " %"), fraction_between(0.9999, 0.99998)
+    ('at most 99.99995 %', '99.99 to 99.998')
     """
-    least, most = f"{100 - float(f'{100 * (1 - low):.2g}'):g}", f"{100 * high:.3g}"
+    least, most = _of_the_rest(low), _percent(high)
     if low <= 0 and high < 1:
         return f"at most {most}{unit}"
     if 0 < low < 1 <= high:
         return f"at least {least}{unit}"
-    return f"{100 * low:.3g} to {most}{unit}"
+    return f"{_percent(low)} to {most}{unit}"
+
+
+def _percent(fraction):
+    """Fraction in percent with three digits, near all of them with two of the rest."""
+    return _of_the_rest(fraction) if 0.999 < fraction < 1 else f"{100 * fraction:.3g}"
+
+
+def _of_the_rest(fraction):
+    """Fraction in percent with two digits of what it leaves."""
+    return f"{100 - float(f'{100 * (1 - fraction):.2g}'):.12g}"
 
 
 def with_band(stuck: float, low: float, high: float) -> str:

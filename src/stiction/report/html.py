@@ -5,6 +5,7 @@ A stage that writes HTML has the `files` of its template among its inputs: a cha
 
 import base64
 import hashlib
+import re
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -16,8 +17,20 @@ from stiction.plan.stage import File
 TEMPLATES = Path(__file__).with_name("templates")
 #: Most characters of a cell that is never broken.
 _LONG = 24
+#: Comments on lines of their own, and indentation.
+_FOR_READERS = re.compile(r"^ *(?://.*|/\*\*.*\*/)\n|^ +", re.MULTILINE)
+
+
+class _Loader(FileSystemLoader):
+    """Templates, and scripts without what is for readers of the source alone."""
+
+    def get_source(self, environment, template):
+        source, *rest = super().get_source(environment, template)
+        return (_FOR_READERS.sub("", source) if template.endswith(".js") else source), *rest
+
+
 _ENVIRONMENT = Environment(
-    loader=FileSystemLoader(TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    loader=_Loader(TEMPLATES), autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
 )
 
 

@@ -111,8 +111,8 @@ def _read(library, path, source):
         identifier = channel.channel_id
     if source.fast_axis == "y":
         heights, size = heights.T, size[::-1]
-    scan = _scan(heights, size, name, source)
-    _require_heights(scan, UNITS[unit])
+    scan = _scan(heights, size, name, source, UNITS[unit])
+    _require_no_mark(scan.heights, name, UNITS[unit])
     found = resized + found + _oddities(scan, times)
     return ScanFile(scan, identifier, unit, notes + tuple(f"{name}: {note}" for note in found))
 
@@ -137,12 +137,12 @@ def _stored_heights(channel, unit, kind, name):
     return heights, tuple(note for note in (axes, marks, _undefined(values, kind)) if note)
 
 
-def _require_heights(scan, unit):
-    """Refuse a scan with values that may be marks of no data, in terms of their unit [m]."""
+def _require_no_mark(heights, name, unit):
+    """Refuse heights with values that may be marks of no data, in terms of their unit [m]."""
     try:
-        require_no_mark(scan.heights / unit)
+        require_no_mark(heights / unit)
     except ValueError as doubt:
-        raise ScanError(scan.name, "files", str(doubt)) from None
+        raise ScanError(name, "files", str(doubt)) from None
 
 
 def _undefined(heights, kind):
@@ -153,11 +153,12 @@ def _undefined(heights, kind):
     return f"{points} {what} in the file count as undefined" if number else ""
 
 
-def _scan(heights, size, name, source):
-    """Make a scan. Blame the file for errors in values not set in the configuration."""
+def _scan(heights, size, name, source, unit):
+    """Make a scan. Blame marks of no data before the unit [m], and the file for values not set in the configuration."""
     try:
         return Scan(heights, size, name)
     except ScanError as refusal:
+        _require_no_mark(heights, name, unit)
         stated = {"size_um": source.size, "height_unit": source.height_unit}
         raise ScanError(name, "files" if stated.get(refusal.key) is None else refusal.key, refusal.reason) from None
 

@@ -190,10 +190,10 @@ def _showing(parts, nyquist):
     return [part for of_end in shown for part in of_end]
 
 
-def _shorter(known):
+def _shorter(rings):
     """Wave numbers before the end of the rings for the ends of fits, the largest first [rad m⁻¹]."""
-    steps = int(np.log(len(known.wavenumber) / FEWEST_RINGS) / np.log(_STEP))
-    return known.wavenumber[np.geomspace(len(known.wavenumber), FEWEST_RINGS, steps + 1).astype(int)[1:] - 1]
+    steps = int(np.log(len(rings.wavenumber) / FEWEST_RINGS) / np.log(_STEP))
+    return rings.wavenumber[np.geomspace(len(rings.wavenumber), FEWEST_RINGS, steps + 1).astype(int)[1:] - 1]
 
 
 def _deviance(known, part):
@@ -216,11 +216,11 @@ def _up_to_the_end(rings, within, fitted, high):
 
 def _end(rings, within, fitted):
     """First wave number with all rings beyond below half of the fit, or the Nyquist one without any [rad m⁻¹]."""
-    known = rings.between(within.low, within.nyquist)
-    last = np.flatnonzero(known.density >= _ENDED * fitted.density(known.wavenumber))[-1]
-    if len(known.wavenumber) - 1 - last < _RINGS_BEYOND:
+    inside = rings.between(within.low, within.nyquist)
+    last = np.flatnonzero(inside.density >= _ENDED * fitted.density(inside.wavenumber))[-1]
+    if len(inside.wavenumber) - 1 - last < _RINGS_BEYOND:
         return within.nyquist
-    return float(known.wavenumber[last : last + 2].mean())
+    return float(inside.wavenumber[last : last + 2].mean())
 
 
 def fit(rings: Rings, within: Reach) -> WhittleFit:
@@ -233,8 +233,8 @@ def fit(rings: Rings, within: Reach) -> WhittleFit:
     ValueError
         If fewer than 8 rings are within the reach.
     """
-    known = rings.between(within.low, within.high)
-    wavenumber, density, weight = known.wavenumber, known.density, known.weight
+    inside = rings.between(within.low, within.high)
+    wavenumber, density, weight = inside.wavenumber, inside.density, inside.weight
     if len(wavenumber) < FEWEST_RINGS:
         raise ValueError(f"{FEWEST_RINGS} rings are needed within the reach of the scan, there are {len(wavenumber)}")
 
@@ -244,7 +244,7 @@ def fit(rings: Rings, within: Reach) -> WhittleFit:
         plateau = np.average(density / relative, weights=weight)
         return np.log(plateau) + np.average(np.log(relative), weights=weight)  # P / s is 1 on average at its optimum
 
-    start = _start(known)
+    start = _start(inside)
     first, last = np.log(wavenumber[[0, -1]])
     bounds = [(first - _LONGER, last), _BOUNDS]
     corner, slope = minimize(
@@ -252,7 +252,7 @@ def fit(rings: Rings, within: Reach) -> WhittleFit:
     ).x
     relative = shape(wavenumber, corner, slope)
     plateau = np.average(density / relative, weights=weight)
-    chi2, freedom = float(np.sum(known.modes * (density / (plateau * relative) - 1) ** 2)), len(wavenumber) - 3
+    chi2, freedom = float(np.sum(inside.modes * (density / (plateau * relative) - 1) ** 2)), len(wavenumber) - 3
     scale = max(chi2 / freedom, 1.0)
     bend = _corner_of_rings(objective, (corner, slope), bounds[0], weight.sum() / (scale * NON_GAUSSIAN**2))
     hidden = [_second_moment(value, *ends) for value, ends in ((corner, bounds[0]), (slope, _SLOPES[[-1, 0]]))]
@@ -260,13 +260,13 @@ def fit(rings: Rings, within: Reach) -> WhittleFit:
     return WhittleFit(float(plateau), float(np.exp(corner)), float(slope), covariance, chi2, freedom)
 
 
-def _start(known):
+def _start(rings):
     """Logarithm of the corner and slope of the best of a grid of both, by the objective of `fit`."""
-    logarithm, share = np.log(known.wavenumber), known.weight / known.weight.sum()
+    logarithm, share = np.log(rings.wavenumber), rings.weight / rings.weight.sum()
     decades = (logarithm[-1] - logarithm[0]) / np.log(10)
     corners = np.linspace(*logarithm[[0, -1]], int(_CORNERS * decades) + 3)[:-1]
     decay = np.maximum(logarithm - corners[:, None], 0.0)
-    columns = [np.log(np.exp(-slope * decay) @ (share * known.density)) + slope * decay @ share for slope in _SLOPES]
+    columns = [np.log(np.exp(-slope * decay) @ (share * rings.density)) + slope * decay @ share for slope in _SLOPES]
     corner, slope = np.unravel_index(np.argmin(np.transpose(columns)), (len(corners), len(_SLOPES)))
     return corners[corner], _SLOPES[slope]
 

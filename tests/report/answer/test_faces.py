@@ -164,7 +164,8 @@ def test_no_text_decides(case, monkeypatch):
     before = tables.devices({answer.device: answer}).frame
     tone = words.sign_of(answer)[0], words.is_forbidden(answer)
     monkeypatch.setattr(words, "CAUSES", dict.fromkeys(Cause, ("x", "x")))
-    monkeypatch.setattr(words, "_SIGNS", {key: (sign[0], "x", "x") for key, sign in words._SIGNS.items()})  # noqa: SLF001
+    signs = {sought: {key: (tone, "x") for key, (tone, _) in of.items()} for sought, of in words._SIGNS.items()}  # noqa: SLF001
+    monkeypatch.setattr(words, "_SIGNS", signs)
     monkeypatch.setattr(words, "NO_NUMBER", "x")
     monkeypatch.setattr(words, "_REASONS", dict.fromkeys(words._REASONS, "x"))  # noqa: SLF001
     after = tables.devices({answer.device: answer}).frame

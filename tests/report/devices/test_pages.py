@@ -16,6 +16,7 @@ from answers import (
     STOPPER,
     STOPPERS,
     TIPS,
+    beam_answer,
     beam_page,
     budget_dataset,
     least,
@@ -29,8 +30,11 @@ from hostile import HOSTILE, Reading
 from matplotlib.figure import Figure
 from noted import noted
 
+import stiction
 from stiction.contact.environment import Water
 from stiction.devices.risk import VERIFIED
+from stiction.plan.graph import Graph
+from stiction.plan.plan import Plan
 from stiction.report.devices import pages, sentences
 from stiction.report.devices import tables as tables_devices
 from stiction.report.page import Page, Section, Summary
@@ -153,6 +157,24 @@ def test_surfaces_are_described_by_their_numbers_or_their_scans():
         "rms 2 nm, density of summits 40 per µm²"
     )
     assert surface_in_words({"scans": {"files": ["a.gwy", "b.gwy"]}}, {}) == "described by 2 scans"
+
+
+def test_the_adhesion_parameter_of_a_pair_is_a_fact_where_its_summits_are_stated():
+    bump = {"kind": "stopper", "pair": "b", "contact_um": [1, 1], "restoring_force_uN": 1, "humidities": ["dry", 0.6]}
+
+    def facts(config):
+        section = Graph(Plan(stiction.load(config))).job("devices/S1.html").settings
+        return pages._facts_of(section)
+
+    stated = facts({"devices": {"S1": bump}})["adhesion parameter θ"]
+    assert stated == "81.1 to 113 (wafers bond below 1, and do not adhere above 12)"
+    mine = {"rms_nm": 5, "hurst": 0.8, "correlation_length_nm": 100, "cutoff_rad_per_um": 138, "like": "B2"}
+    unknown = {
+        "surfaces": {"Mine": mine},
+        "pairs": {"mine": {"beam": "Mine", "substrate": "Sub1", "gap_um": 2, "humidities": [0.6]}},
+    }
+    others = facts(unknown | {"devices": {"S1": bump | {"pair": "mine"}}})
+    assert "adhesion parameter θ" not in others
 
 
 def test_the_saturated_air_of_the_headline_is_explained_without_a_chart():
@@ -278,3 +300,19 @@ def test_the_page_does_not_say_again_what_its_first_screen_says():
     assert screen == f"{page.summary.sign}: {page.summary.answer}"
     assert said[len(page.summary.basis) + len(page.summary.points) :] == page.answer
     assert page.summary.answer not in page.more
+
+
+def test_the_facts_of_a_mission_name_all_its_conditions_and_its_table_has_no_dash():
+    conditions = [{"temperature_C": 12, "dew_point_C": 10}, {"temperature_C": 85, "humidity": 0.0}]
+    mission = CANTILEVER | {"humidities": [0.0, 0.67], "conditions": conditions}
+    lengths = {0.0: of_length(300e-6), 0.67: of_length(300e-6)}
+    plain = beam_answer(mission, lengths)
+    airs = [replace(one, temperature=293.15 if one.humidity else np.nan) for one in plain.airs]
+    found = replace(plain, airs=tuple(airs))
+    page = beam_page(mission, lengths, answer=found)
+    assert page.facts["conditions"] == "12 °C at a dew point of 10 °C: RH 0.8755; 85 °C: dry"
+    assert [str(cell) for cell in page.summary.cells["°C"]] == ["any", "20"]
+    assert not page.summary.has_missing
+    without = beam_page(CANTILEVER, {0.67: of_length(300e-6)})
+    assert "conditions" not in without.facts
+    assert "°C" not in without.summary.cells

@@ -261,7 +261,7 @@ def test_gaussian_surfaces_and_errors_of_fits_are_not_corrected():
 
 
 def test_a_stopper_is_corrected_by_the_ratio_of_the_forces():
-    wanted = stoppers.Settings(1, WATER, (6e-6, 1.5e-6), 2e-5, (0.67,), (0.5, 0.8))
+    wanted = stoppers.Settings(1, WATER, (6e-6, 1.5e-6), (0.67,), (0.5, 0.8), restoring_force=2e-5)
     error = pair_model_error.compute(study(), pair_model_error.Settings(HUMIDITIES, HUMIDITIES))
     full = corrections.with_correction(wanted, {"model_error": error})
     base, found = (stoppers.compute(small.contact_of_pair(), one) for one in (wanted, full))

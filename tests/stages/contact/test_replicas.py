@@ -91,6 +91,8 @@ def test_a_device_says_how_its_underside_follows_and_otherwise_what_a_copy_would
     assert "conformal films" in without
     assert "conformal films" not in with_replica
     assert "in register it sticks most" in with_replica
+    assert "for cantilevers along their length alone" in with_replica
+    assert "along their length" not in without
 
 
 def test_the_closer_the_copy_the_larger_the_energy():

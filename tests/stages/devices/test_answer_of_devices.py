@@ -18,7 +18,7 @@ from stiction.contact.voltage import Capacitor, Dielectric
 from stiction.life.freeing import probability_for
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
-from stiction.report.answer import words
+from stiction.report.answer import tables, words
 from stiction.stages.answer import answer, conditions
 from stiction.stages.contact import curves
 from stiction.stages.devices import safe_lengths, stoppers
@@ -285,7 +285,7 @@ TILTS = (0.0, 0.001, 0.01)
 def data_of_stopper(patches=4000, touchdowns=1, voltage=0.0, tilted=False, force=18.99e-6, scale=5e-6):
     """Datasets of a stopper with lognormal forces, and the settings of its answer."""
     rng = np.random.default_rng(5)
-    own = stoppers.Settings(1, WATER, (3e-6, 3e-6), force, tuple(AIRS), (0.4, 0.9))
+    own = stoppers.Settings(1, WATER, (3e-6, 3e-6), tuple(AIRS), (0.4, 0.9), restoring_force=force)
     axis = np.linspace(0.4, 0.9, 11)
     forces = np.outer(list(AIRS.values()), scale * np.exp(0.3 * rng.standard_normal(patches)))
     along = np.outer(1 - (axis - 0.6) ** 2, forces[0])
@@ -330,6 +330,30 @@ def test_a_stopper_has_at_least_the_forces_that_stage_life_says_of_stated_condit
     assert [step.cause for step in found.steps if not step.stated] == [Cause.FAST]
     assert found.verdict is (Verdict.SAFE if found.build < 18.99e-6 else found.verdict)
     assert_equal(astuple(answer.answer_of(answer.layout(found))), astuple(found))
+
+
+def test_a_stated_shock_puts_fast_separation_inside_and_moves_it_between_no_numbers():
+    """The size to build then is that after the step that stands beside without it."""
+    data, settings = data_of_stopper()
+    slow, shaken = (answer.compute(data, replace(settings, shock=shock)) for shock in (0.0, 3e4))
+    (beside,) = [step for step in slow.steps if step.cause is Cause.FAST]
+    assert slow.build < beside.size == shaken.build
+    assert all(step.stated for step in shaken.steps)
+    assert (Cause.FAST in slow.included, Cause.FAST in shaken.included) == (False, True)
+    assert [step.size for step in slow.steps] == [step.size for step in shaken.steps]
+    named = [list(tables.steps(one)["step"]) for one in (slow, shaken)]
+    assert [[row for row in of if "shock" in row] for of in named] == [
+        ["fast separation, as in a shock (not stated)"],
+        ["fast separation, as in a shock"],
+    ]
+
+
+def test_a_shock_that_nothing_bounds_is_stated_but_not_inside():
+    data, settings = data_of_beam(R1, {0.67: 1.0})
+    data["fast_strips"] = {0.67: xr.Dataset({"factor": 0.0, "factor_error": np.nan})}
+    shaken, slow = (answer.compute(data, replace(settings, shock=shock)) for shock in (3e4, 0.0))
+    assert ("shock" in shaken.left_out, "shock" in slow.left_out) == (True, False)
+    assert "shock" not in answer.compute({**data, "fast_strips": {}}, replace(settings, shock=3e4)).left_out  # dry
 
 
 @pytest.mark.parametrize("patches", [100, 250])

@@ -102,7 +102,7 @@ def test_lengths_at_a_voltage_are_those_of_beams_released_on_stronger_laws(devic
 
 
 def test_a_stopper_at_a_voltage_has_the_patches_of_one_without():
-    own = stoppers.Settings(1, WATER, (1.5e-6, 6e-6), 18e-6, (0.67,), (0.85, 0.9))
+    own = stoppers.Settings(1, WATER, (1.5e-6, 6e-6), (0.67,), (0.85, 0.9), restoring_force=18e-6)
     found = [
         stoppers.compute(small.contact_of_pair(), replace(own, water=water)).pull_off
         for water in (WATER, at(0.0), at(2.0), at(5.0))

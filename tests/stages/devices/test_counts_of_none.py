@@ -49,6 +49,16 @@ def test_ends_without_a_bound_stay_ends():
     assert fraction_between(0.2, 0.4) == "20 to 40"
 
 
+@given(st.floats(-9, -2), st.floats(0.01, 1))
+def test_no_end_short_of_all_is_printed_as_all(power, part):
+    high = 1 - 10**power
+    low = high * part
+    for text in (fraction_between(0.0, high), fraction_between(low, high), fraction_between(high, 1.0)):
+        said = [float(value) for value in re.findall(r"\d[\d.e-]*", text)]
+        assert max(said) < 100
+        assert said[-1] == pytest.approx(100 * high, abs=0.05)
+
+
 @pytest.mark.parametrize("truth", [0.1 / 400, 1 / 400, 2.9 / 400])
 def test_touchdowns_of_a_stopper_of_which_none_stuck_are_bounded_by_what_its_patches_can_hide(truth):
     forces = stopper_dataset()

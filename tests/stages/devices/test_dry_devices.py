@@ -193,7 +193,7 @@ def grounds():
     return in_air("b"), in_air("b_dry")
 
 
-SETTINGS = stoppers.Settings(1, ACROSS, SIDES, 1e-6, (0.0, 0.67), (0.6, 0.9))
+SETTINGS = stoppers.Settings(1, ACROSS, SIDES, (0.0, 0.67), (0.6, 0.9), restoring_force=1e-6)
 
 
 def test_a_stopper_holds_least_in_dry_air_and_its_worst_air_is_the_worst_of_all(grounds):

@@ -85,7 +85,7 @@ OXIDE = {"dielectric": {"thickness_nm": 100, "permittivity": 4.0}, "voltage_V": 
 def test_a_stopper_at_a_voltage_has_the_fractions_of_its_stage_at_any_other_one():
     contact = small.contact_of_pair()
     pull = np.quantile(curves.pull_offs(contact, 0.88, at(2.0)), 0.7)
-    own = stoppers.Settings(1, at(2.0), (1.5e-6, 6e-6), 9e-12 * pull, (0.88, 0.67), (0.85, 0.9))
+    own = stoppers.Settings(1, at(2.0), (1.5e-6, 6e-6), (0.88, 0.67), (0.85, 0.9), restoring_force=9e-12 * pull)
     biased = stoppers.compute_at_voltage(contact, own)
     view = voltage_views.stopper_view("S1", SECTION | STATED | OXIDE | {"voltage_V": 2}, biased)
     patches, shares = biased.sizes["sample"], []

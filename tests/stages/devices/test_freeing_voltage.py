@@ -64,7 +64,7 @@ def test_flats_are_freed_at_the_closed_form_and_hold_at_lower_voltages_than_roug
 
 
 def test_a_stage_at_a_voltage_has_a_potential_for_each_patch_and_humidity():
-    own = stoppers.Settings(1, at(2.0), (1.5e-6, 6e-6), 18e-6, (0.67, 0.88), (0.85, 0.9))
+    own = stoppers.Settings(1, at(2.0), (1.5e-6, 6e-6), (0.67, 0.88), (0.85, 0.9), restoring_force=18e-6)
     found, contact = stoppers.compute_at_voltage(small.contact_of_pair(), own), small.contact_of_pair()
     for humidity in own.humidities:
         expected = curves.freeing_potentials(contact, humidity, own.water, 18e-6 / AREA)

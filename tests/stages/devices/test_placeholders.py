@@ -31,6 +31,7 @@ LIMITS = [
     rules.smooth_pair(1e-9, [0.9]),
     rules.unknown_full_contact([0.5]),
     rules.thin_film(0.5e-9),
+    rules.beyond_isotherm(0.9, 0.95),
     rules.condensing([{"temperature_C": 5, "dew_point_C": 10}]),
     rules.supercooled([{"temperature_C": -5, "humidity": 0.5}]),
     rules.large_rotation(20e-6, 100e-6),

@@ -344,6 +344,23 @@ def test_a_bridge_states_the_energy_of_the_voltage_alone():
     assert found["voltage_energy"].high > 0
 
 
+def test_sentences_compare_a_stated_shock_with_those_that_bring_a_device_down(lengths):
+    limit = answers(OF, lengths)["shock"]
+    words = {0.9 * limit.low: "does not bring it down", 1.1 * limit.low: "can bring it", 1.1 * limit.high: "brings it"}
+    for shock, said in words.items():
+        of = replace(OF, shock=shock)
+        dataset = layout(beam_answers(lengths, {}, of), of, length_of(lengths, of))
+        (own,) = [one for one in report.sentences(dataset) if "own shock" in one]
+        assert said in own
+    plain = layout(beam_answers(lengths, {}, OF), OF, length_of(lengths, OF))
+    assert "shock" not in plain
+    assert not any("own shock" in one for one in report.sentences(plain))
+    unknown = replace(STOPPER, mass=0.0, shock=3e4)
+    assert not any(
+        "own shock" in one for one in report.sentences(layout(stopper_answers(stopper_dataset(), unknown), unknown))
+    )
+
+
 def test_a_voltage_holds_a_stopper_with_the_pressure_of_flats_on_its_area():
     found = answers(replace(STOPPER, voltage=5.0, dielectric=Dielectric(100e-9, 4.0)))
     assert_allclose(found["at_voltage"].high, Capacitor(Dielectric(25e-9, 1.0), 5.0).largest_pressure * 9e-12)
@@ -357,6 +374,9 @@ def test_sentences_warn_of_breakdown_and_of_a_voltage_that_pulls_in(lengths, vol
     assert any("break down" in sentence for sentence in said) == breaks
     assert any("pulls it in" in sentence for sentence in said) == pulls
     assert any(f"While {report.significant(voltage)} V are on" in sentence for sentence in said)
+    assert any("can stay after grounding" in sentence for sentence in said)
+    without = report.sentences(layout(beam_answers(lengths, {}, OF), OF, length_of(lengths, OF)))
+    assert not any("grounding" in sentence for sentence in without), "control"
 
 
 # Configuration, files, report

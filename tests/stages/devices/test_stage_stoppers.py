@@ -19,7 +19,7 @@ from stiction.stages.devices import stoppers
 
 WATER = Water(300.0)
 AREA = 1.5e-6 * 6e-6
-SETTINGS = stoppers.Settings(1, WATER, (1.5e-6, 6e-6), 18e-6, (0.67, 0.88), (0.85, 0.9))
+SETTINGS = stoppers.Settings(1, WATER, (1.5e-6, 6e-6), (0.67, 0.88), (0.85, 0.9), restoring_force=18e-6)
 
 
 @pytest.fixture(scope="module")

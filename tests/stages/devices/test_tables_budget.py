@@ -165,18 +165,32 @@ def test_bars_of_a_budget_are_shares_of_the_variance_below_the_total_the_largest
     assert_allclose([bars[0].get_x(), bars[0].get_x() + bars[0].get_width()], [-4.2, 0], atol=1e-12)
     ((low, high),) = (segment[:, 0] for segment in chosen.containers[1][2][0].get_segments())
     assert_allclose([low, high], [-4.5, -3.9])  # the error is drawn at the end away from zero
-    assert "mean length at which beams stick" in measured.get_title(loc="left")
+    assert "mean length at which beams stick" in measured.get_title(loc="left").replace("\n", " ")
 
 
 def test_beam_and_tip_have_panels_of_their_own():
     figure = figures_budget.budget(BEAMS | {("C1", rh, "tip"): budget_dataset(0.5, TIPS) for rh in (0.44, 0.67)})
-    titles = [panel.get_title(loc="left") for panel in figure.axes]
+    titles = [panel.get_title(loc="left").replace("\n", " ") for panel in figure.axes]
     assert titles[::2] == [
         "(a) mean length at which beams stick (S-shape)",
         "(c) length that 1 in 1000 tips hold (arc)",
     ]
     (legend,) = figure.legends
     assert [text.get_text() for text in legend.get_texts()] == ["RH 0.44", "RH 0.67"]
+
+
+def test_text_of_a_budget_can_be_read_on_a_phone_and_no_bar_ends_at_the_axis_without_its_number():
+    """A share of scatter beyond the axis is written out; one on the axis is not."""
+    figure = figures_budget.budget(BEAMS)
+    measured = figure.axes[0]
+    smallest = min(text.get_fontsize() for text in measured.get_yticklabels())
+    assert smallest / 72 * 390 / figure.get_figwidth() > 11  # pixels if the figure is 390 pixels wide
+    assert not measured.texts
+    wide = {key: one.assign(scatter=10 * one.scatter) for key, one in BEAMS.items()}
+    measured = figures_budget.budget(wide).axes[0]
+    shares = [bar.get_width() for bar in measured.patches[-2:]]
+    assert min(shares) > measured.get_xlim()[1]
+    assert [text.get_text() for text in measured.texts] == ["{:.0f}, {:.0f} %".format(*shares)]
 
 
 def test_six_humidities_fit_a_screen_with_bars_that_darken_and_do_not_meet():

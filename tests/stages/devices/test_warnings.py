@@ -97,6 +97,15 @@ def about_pairs(cases, plasticity, plan=PLAN):
     return in_words(pair_warnings.main_line_warnings(cases, plasticity, settings["materials"], nominal))
 
 
+@pytest.mark.parametrize(("replica", "is_said"), [(None, False), ({}, False), ({"play_nm": 20}, True)])
+def test_pairs_with_play_say_that_their_strips_move_alone(replica, is_said):
+    stated = {} if replica is None else {"pairs": {"b": {"replica": {"coherence": 0.5} | replica}}}
+    plan = Plan(load(stated | {"run": {"pairs": ["b"]}}))
+    assert ("replicas" in job_settings(plan, "warnings.md")["pairs"]) is (replica is not None)
+    (said,) = about_pairs({}, {}, plan).values()
+    assert any("a play of 20 nm" in sentence for sentence in said) is is_said
+
+
 NOT_MEASURED = {"estimates": {}, "spectra": {}}
 #: Two flags of a measured surface, as the datasets of its estimate and spectrum hold them.
 MEASURED = {

@@ -40,7 +40,7 @@ class ProbedPair(SurfacePair):
         above = super().distances.above + int(np.ceil(self.depth / self.step))
         return DistanceGrid(self.step, int(np.ceil(RISE / self.step)), above)
 
-    def met(self, heights: np.ndarray) -> np.ndarray:
+    def under_flat(self, heights: np.ndarray) -> np.ndarray:
         """Heights z - u above `depth` of a surface z (n1, n2) [m], float32."""
         lowered = self.depth - self.probe.rise(heights.shape, self.spacing)
         return (heights + lowered).astype(np.float32)
@@ -52,7 +52,7 @@ class ProbedPair(SurfacePair):
 
         Both refer to the whole patch: away from the axis nothing touches, so that sides without summits miss none.
         """
-        met = self.met(heights)
-        tops, curvatures, _ = find_summits(met, self.spacing)
-        summits = Summits(tops, curvatures, met.size * self.spacing**2)
-        return solid_pressure(self.asperity, summits, self.distances), self.bearing_area(met)
+        raised = self.under_flat(heights)
+        tops, curvatures, _ = find_summits(raised, self.spacing)
+        summits = Summits(tops, curvatures, raised.size * self.spacing**2)
+        return solid_pressure(self.asperity, summits, self.distances), self.bearing_area(raised)

@@ -96,6 +96,11 @@ def repeated_strips(repetition: float, strip: float, learns: bool) -> Limit | No
     return Limit(kind, side, False, numbers={"repetition": repetition, "strip": strip})
 
 
+def strips_move_alone(play: float) -> Limit | None:
+    """Strips of the beams of a pair that each draw an offset, with a play [m], where a beam moves as one body."""
+    return Limit("strips_move_alone", Side.UNSAFE, False, numbers={"play": play}) if play else None
+
+
 def missed_accuracy(of_beams: float, of_surfaces: float, asked: float) -> Limit | None:
     """Relative errors of a length, by beams and by sampled surfaces, NaN without one, beyond the asked accuracy."""
     parts = {"design.beams": of_beams, "contact.samples": of_surfaces}
@@ -201,6 +206,13 @@ def thin_film(film: float) -> Limit | None:
     if film < LIQUID * WATER_MOLECULE:
         return Limit("solid_film", Side.SAFE, False, numbers={"film": film})
     return Limit("thin_film", Side.EITHER, False, numbers={"film": film})
+
+
+def beyond_isotherm(measured: float, wettest: float) -> Limit | None:
+    """Wettest air in which an isotherm was measured, and that of some results. Films do not grow beyond it [-]."""
+    if wettest <= measured:
+        return None
+    return Limit("beyond_isotherm", Side.UNSAFE, False, numbers={"measured": measured, "wettest": wettest})
 
 
 def condensing(conditions: Sequence[Mapping[str, float]]) -> Limit | None:

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from stiction.answer.data import Answer, Cause
 from stiction.contact.air import Air
+from stiction.devices.probes import UNLIKELY
 from stiction.devices.risk import one_in
 from stiction.plan.names import by_name
 from stiction.report.answer import tables, words
@@ -97,13 +98,15 @@ def _stuck(panel: Axes, answer):
             colour = humidity_colour(air.humidity)
             panel.plot(sizes, air.curve[0], color=colour, alpha=0.45, linewidth=0.8, label=Air(air.humidity).words)
     colour, decides = humidity_colour(answer.together.humidity), Air(answer.together.humidity).words
-    said = f"all airs, {decides} decides" if len(answer.airs) > 1 else decides
+    said = f"all airs, {decides} decides" if len(answer.airs) > 1 and np.isfinite(answer.share) else decides
     panel.plot(sizes, expected, color=colour, linewidth=1.6, label=said)
     panel.fill_between(sizes, *band, color=colour, alpha=0.2, linewidth=0, label="95 % band")
-    panel.axhline(answer.share, color="0.4", linestyle=":", linewidth=0.8)
-    panel.annotate(one_in(answer.share), (0.99, answer.share), ha="right", **_LABEL)
+    if np.isfinite(answer.share):
+        panel.axhline(answer.share, color="0.4", linestyle=":", linewidth=0.8)
+        panel.annotate(one_in(answer.share), (0.99, answer.share), ha="right", **_LABEL)
     _size_to_build(panel, answer, scale)
-    panel.set(yscale="log", xlim=(sizes.min(), sizes.max()), ylim=(_LOWEST * answer.share, 1.3))
+    lowest = _LOWEST * np.nan_to_num(answer.share, nan=UNLIKELY)
+    panel.set(yscale="log", xlim=(sizes.min(), sizes.max()), ylim=(lowest, 1.3))
     panel.legend(loc="lower left" if answer.sought.more_is_better else "lower right", frameon=True, edgecolor="none")
 
 

@@ -6,12 +6,12 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from stiction.answer.data import Answer, Cause
+from stiction.answer.data import Answer, Cause, Probability
 from stiction.contact.air import Air
 from stiction.plan.names import by_name
-from stiction.report.answer import words
+from stiction.report.answer import places, words
 from stiction.report.answer.judged import judged
-from stiction.report.format import number
+from stiction.report.format import MISSING, number
 from stiction.report.table import Table, table_stage
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.end_states import END_STATES
@@ -33,13 +33,63 @@ def devices(answers: Mapping[str, Answer]) -> Table:
         "stated": (_size, "size", "unit"),
         "to build": (_size, "to_build", "unit"),
         "P(stuck) at the stated size": (str, "stuck"),
-        "1 in": (lambda share: f"{1 / share:g}", "share"),
+        "1 in": (lambda share: number(1 / share, "g"), "share"),
         "largest step": (str, "largest_step"),
         "measure": (str, "measure"),
         "then": (_size, "if_measured", "unit"),
         "no number": (str, "forbidden"),
     }
-    return Table.of([_without_noise(_row(answer)) for answer in answers.values()], _CAPTION, columns)
+    rows, caption = [_row(answer) for answer in answers.values()], _CAPTION
+    if any(answer.pull_offs for answer in answers.values()):
+        rows = [row | _of_places(answer) for row, answer in zip(rows, answers.values(), strict=True)]
+        columns, caption = columns | _COLUMNS_OF_PLACES, f"{caption} {_PLACES}"
+    return Table.of([_without_noise(row) for row in rows], caption, columns)
+
+
+#: What columns about probes show.
+_PLACES = (
+    "Without a spring, a probe is asked for its pull-off force: what half of the places hold at most, in the air where "
+    "they hold most, and the probability that a measurement gives no more than the measured force, or no less, with "
+    "bands of 95 % that contain the errors of simulation and inputs. Two-sided: twice the smaller of both, with a band "
+    "of the simulation alone. Below 5 % with its band, the measured force does not fit."
+)
+#: Numbers of probes: ends of bands, quantiles of the forces, and ranks of a measured one.
+_ENDS, _QUANTILES, _RANKS = (
+    ("", "_low", "_high"),
+    ("pull_off_5", "pull_off_50", "pull_off_95"),
+    ("less", "more", "two_sided"),
+)
+
+
+def _of_places(answer):
+    """Numbers of a probe without a spring in the air where places hold most, NaN of other devices."""
+    found = np.full((len(_QUANTILES) + len(_RANKS), len(_ENDS)), np.nan)
+    if answer.pull_offs and not words.is_forbidden(answer):
+        one = answer.pull_off
+        ranks = [
+            (rank.value, rank.low, rank.high) if rank else [np.nan] * len(_ENDS)
+            for rank in (one.less, one.more, one.two_sided)
+        ]
+        found = np.concatenate([one.quantiles / answer.sought.scale, ranks])
+    names = (*(f"{name}_percent_nN" for name in _QUANTILES), *_RANKS)
+    return {
+        f"{name}{end}": float(value)
+        for name, row in zip(names, found, strict=True)
+        for end, value in zip(_ENDS, row, strict=True)
+    }
+
+
+def _probability(*numbers):
+    """Probability with its band, – without one."""
+    return places.in_words(Probability(*numbers)) if np.isfinite(numbers).all() else MISSING
+
+
+_COLUMNS_OF_PLACES = {
+    "median pull-off [nN]": (places.with_band, *(f"pull_off_50_percent_nN{end}" for end in _ENDS)),
+    "P(measured or less)": (_probability, *(f"less{end}" for end in _ENDS)),
+    "P(measured or more)": (_probability, *(f"more{end}" for end in _ENDS)),
+    "two-sided": (_probability, *(f"two_sided{end}" for end in _ENDS)),
+}
 
 
 def _row(answer):
@@ -61,13 +111,13 @@ def _row(answer):
         "share": answer.share,
         **dict(zip(("stuck_value", "stuck_low", "stuck_high"), known * np.array(band), strict=True)),
         "none_seen": bool(stuck and stuck.none_seen),
-        "stuck": words.stuck_in_words(stuck) if stuck and not words.is_forbidden(answer) else "–",
+        "stuck": words.stuck_in_words(stuck) if stuck and not words.is_forbidden(answer) else MISSING,
         **{f"after_{cause}": np.nan for cause in Cause},
         **{f"after_{step.cause}": known * step.size / scale for step in answer.steps},
         "relative_humidity": last.humidity,
         "held_by": END_STATES[last.shape].by if last.shape in END_STATES else last.shape,
         "by_tip": answer.is_by_tip,
-        "largest_step": str(answer.largest_step.cause),
+        "largest_step": str(answer.largest_step.cause) if answer.known_steps else MISSING,
         "measure": answer.measure,
         "if_measured": known * answer.if_measured / scale,
         "included": " ".join(answer.included),
@@ -90,7 +140,7 @@ def steps(answer: Answer) -> pd.DataFrame:
     """Steps from the estimate to the size to build, for reading."""
     return pd.DataFrame(
         {
-            "step": words.CAUSES[step.cause][0],
+            "step": words.CAUSES[step.cause][0] + " (not stated)" * (not step.stated),
             f"{answer.sought.name} after it": answer.in_words(step.size),
             "change [%]": number(100 * (step.factor - 1), "+.1f") if k else "",
             "air": Air(step.humidity).words,

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from stiction.answer.data import INPUTS, Answer, Cause, Probability, Verdict
+from stiction.answer.sought import FORCE, LENGTH, PULL_OFF
 from stiction.contact.air import Air
 from stiction.contact.meniscus import ZERO_CELSIUS
 from stiction.devices.risk import one_in
@@ -16,7 +17,7 @@ from stiction.stages.devices.end_states import END_STATES
 CAUSES: Mapping[Cause, tuple[str, str]] = {
     Cause.ESTIMATE: ("estimate", "the estimate"),
     Cause.SIMULATION: ("error of the simulation", "the simulation"),
-    Cause.FAST: ("fast separation, as in a shock (not stated)", "fast separation"),
+    Cause.FAST: ("fast separation, as in a shock", "fast separation"),
     Cause.TOUCHDOWNS: ("all touchdowns", "all touchdowns"),
     Cause.TILT: ("worst of its tilts", "its tilts"),
     Cause.VOLTAGE: ("voltage", "its voltage"),
@@ -29,16 +30,31 @@ _LEFT_OUT = {
     "dimples": "its dimples (see its life below)",
     "inputs": "the uncertainty of the inputs where too few devices stick to show it",
     "requirement": "the smaller fraction that it requires (see the curve of the axis below)",
+    "shock": "the fast separation in its shock, which nothing bounds",
     "voltage": "its voltage, at which the dielectric breaks down",
 }
 #: Relative change of a size that is not worth a word.
 _SAME = 0.01
-#: Signs of verdicts with the tone of their box, for lengths and for forces.
+#: Signs of verdicts with the tone of their box, by the number that is sought.
 _SIGNS = {
-    Verdict.BUILD: ("good", "Length to build", "Force to build"),
-    Verdict.SAFE: ("good", "Safe", "Suffices"),
-    Verdict.OPEN: ("open", "Not shown to be safe", "Not shown to suffice"),
-    Verdict.BAD: ("bad", "Too long", "Too weak"),
+    LENGTH.name: {
+        Verdict.BUILD: ("good", "Length to build"),
+        Verdict.SAFE: ("good", "Safe"),
+        Verdict.OPEN: ("open", "Not shown to be safe"),
+        Verdict.BAD: ("bad", "Too long"),
+    },
+    FORCE.name: {
+        Verdict.BUILD: ("good", "Force to build"),
+        Verdict.SAFE: ("good", "Suffices"),
+        Verdict.OPEN: ("open", "Not shown to suffice"),
+        Verdict.BAD: ("bad", "Too weak"),
+    },
+    PULL_OFF.name: {
+        Verdict.PLACES: ("good", "Pull-off force"),
+        Verdict.FITS: ("good", "Fits"),
+        Verdict.UNDECIDED: ("open", "Not decided"),
+        Verdict.MISFIT: ("bad", "Does not fit"),
+    },
 }
 #: Reasons in the data why no number is stated, in words.
 NO_NUMBER = "Do not rely on a number"
@@ -46,6 +62,8 @@ _REASONS = {
     INPUTS: "The inputs are too uncertain for a number. Were all exact, it would be {exact}. First measure {measure}.",
 }
 
+#: Fraction that is too small for a number.
+LEAST = 1e-5
 #: Fraction beyond which two digits would round to all.
 _NEARLY_ALL = 0.99
 
@@ -58,7 +76,7 @@ def percent(fraction: float, end: str = "") -> str:
     >>> percent(0.1812), percent(0.000242), percent(3e-9), percent(3e-9, "low"), percent(0.99992), percent(0.9962)
     ('18 %', '0.024 %', 'less than 0.001 %', '0 %', 'more than 99.9 %', '99.62 %')
     """
-    if fraction < 1e-5:
+    if fraction < LEAST:
         return "0 %" if end else "less than 0.001 %"
     if fraction > 1 - 1e-3:
         return "100 %" if end else "more than 99.9 %"
@@ -92,8 +110,7 @@ def sign_of(answer: Answer) -> tuple[str, str]:
     """Tone and sign of the verdict."""
     if answer.verdict is Verdict.NONE:
         return ("bad", NO_NUMBER) if is_forbidden(answer) else ("open", "Not known")
-    tone, *signs = _SIGNS[answer.verdict]
-    return tone, signs[answer.sought.more_is_better]
+    return _SIGNS[answer.sought.name][answer.verdict]
 
 
 def headline(answer: Answer) -> str:
@@ -192,17 +209,17 @@ def of_airs(answer: Answer) -> list[dict[str, str]]:
 
 
 def _air(answer, humidity):
-    """Air that decides, with its temperature if it is a condition of the device."""
+    """Air that decides, with its temperature if the device has a mission."""
     air = Air(humidity)
     at = next((one.temperature for one in answer.airs if one.humidity == humidity), np.nan)
     return air.choose(air.words, "Dry air") + (f" at {at - ZERO_CELSIUS:.3g} °C" if np.isfinite(at) else "")
 
 
 def _celsius(answer, air):
-    """Cell with the temperature of an air, none for a device without conditions."""
+    """Cell with the temperature of an air, any if it has no water; none for a device without conditions."""
     if not np.isfinite([one.temperature for one in answer.airs]).any():
         return {}
-    return {"°C": number(air.temperature - ZERO_CELSIUS, ".3g")}
+    return {"°C": Air(air.humidity).choose(number(air.temperature - ZERO_CELSIUS, ".3g"), "any")}
 
 
 def _size(answer, size):

@@ -31,7 +31,7 @@ class Axis:
     words: str
     unit: str  #: with a space before it; empty without a unit
     values: np.ndarray  #: at which something is known, increasing [SI, or the unit of a variable]
-    logarithmic: bool = False
+    scale: str = "linear"  #: of `stiction.devices.roughness.SCALES`
 
     @property
     def is_quantity(self) -> bool:
@@ -78,7 +78,7 @@ def _axis(found, name, dimension):
         return Axis(name, dimension, process.words_of(name), f" {process.unit_of(name)}", values)
     quantity = ROUGHNESSES[name]
     words_of_it = f"{quantity.words} of {found.attrs['surface']}"
-    return Axis(name, dimension, words_of_it, quantity.unit, values, quantity.logarithmic)
+    return Axis(name, dimension, words_of_it, quantity.unit, values, quantity.scale)
 
 
 def subjects(curve: xr.Dataset) -> list[tuple[float, str]]:

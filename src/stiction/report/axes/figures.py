@@ -145,7 +145,7 @@ def _plain(side):
 def _show(side, scale, data, axis):
     """Scale and label of an axis. A skewness has its kurtosis in brackets at every computed value."""
     side.set_label_text(axis.label)
-    if axis.logarithmic:
+    if axis.scale == "log":
         scale("log")
         _plain(side)
     if axis.name == "skewness":

@@ -7,7 +7,7 @@ from stiction.devices.risk import VERIFIED, one_in, samples_for
 from stiction.report.axes.axis import Axis, axes_of, notes, subjects
 from stiction.report.format import UM, airs, fraction_with_band
 from stiction.stages.axes.requirement import sought_of
-from stiction.stages.axes.roughness import KURTOSIS, curves_of
+from stiction.stages.axes.roughness import KURTOSIS, OF_COPIES, curves_of
 from stiction.stages.devices.end_states import END_STATES
 
 #: Standard errors beyond which two forces count as different.
@@ -16,6 +16,8 @@ DIFFERENT = 3
 
 def form(*datasets: xr.Dataset) -> str:
     """Constants while the quantities of some curves and maps are varied, and their changes."""
+    if all(axis.name in OF_COPIES for dataset in datasets for axis in axes_of(dataset)):
+        return "Varied is how one surface follows the other. Both surfaces stay as they are given."
     varied = (
         "Two quantities of one surface are varied."
         if any("other" in dataset.dims for dataset in datasets)

@@ -279,7 +279,7 @@ STAGES = (
         settings=lambda plan, at: {
             "of_paper": plan.paper.pairs,
             "surfaces": {pair: plan.scans.sides(pair) for pair in plan.pairs},
-            "assumed": plan.assumptions(*plan.pairs),
+            "assumed": plan.limits_of_pairs(),
             "water": {pair: plan.air.water(pair) for pair in plan.pairs},
         },
         compute=_table_3,

@@ -1,5 +1,6 @@
 """Figures of stoppers and of the uncertainty of devices."""
 
+import textwrap
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -12,10 +13,9 @@ from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import stuck_share
 from stiction.plan.names import by_name
 from stiction.report.budget.tables import SCATTER, TOTAL, choice_label, response_text
-from stiction.report.format import TO_UN
+from stiction.report.format import TO_UN, number
 from stiction.report.limits import words
 from stiction.report.style import (
-    DOUBLE,
     OUTLINED,
     SINGLE,
     at_most_double,
@@ -41,7 +41,10 @@ _COLOUR = "#0072B2"
 #: Heights of a row of a budget, of everything else in its panel, and of the legend [in]; share of a row with bars.
 _ROW, _AROUND, _LEGEND, _FILLED = 0.22, 0.62, 0.3, 0.8
 #: Right end of the axis of shares of the variance [%]. The scatter between devices may be beyond it.
-_WIDEST = 125
+_WIDEST = 110
+_SHARES = "share of the variance [%]"
+#: Width of a budget [in], and most characters of a line of its titles: 7 points of 390 pixels are 11 pixels.
+_WIDTH, _TITLE = 3.3, 38
 
 
 # Stoppers
@@ -80,6 +83,13 @@ def _stuck_over_force(panel, dataset):
         panel.fill_between(at, low, high, color=colour, alpha=0.2, linewidth=0)
     panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
     panel.set(yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
+    if np.isfinite(restoring):
+        _name_restoring_force(panel, restoring)
+    legend_below(panel, handles(panel)[0])
+
+
+def _name_restoring_force(panel, restoring):
+    """Name the line of the restoring force."""
     is_left = restoring < np.mean(panel.get_xlim())
     panel.annotate(
         "restoring force",
@@ -91,7 +101,6 @@ def _stuck_over_force(panel, dataset):
         ha="left" if is_left else "right",
         path_effects=OUTLINED,
     )
-    legend_below(panel, handles(panel)[0])
 
 
 def _force_over_humidity(panel, dataset):
@@ -126,34 +135,44 @@ def _force_over_humidity(panel, dataset):
 
 @styled
 def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
-    """Share of each measurement in the variance of a device, below their total. Beside it, choices of the model.
+    """Share of each measurement in the variance of a device, below their total. Below it, choices of the model.
 
-    The budgets are by device, humidity and, for those of tips, ``tip``.
+    The budgets are by device, humidity and, for those of tips, ``tip``. All panels are below each other, as wide as a
+    column of a journal, so that their text can be read on a phone.
     """
     parts = {}
     for (_, humidity, *_), dataset in budgets.items():
         parts.setdefault(response_text(dataset), {})[humidity] = dataset
     colours = humidity_colours(humidity for _, humidity, *_ in budgets)
-    bars = [(_measurements(cases), _choices(cases)) for cases in parts.values()]
-    heights = [_ROW * max(map(len, of_row)) + _AROUND for of_row in bars]
-    size = DOUBLE, sum(heights) + _LEGEND
-    count = 2 if any(choices for _, choices in bars) else 1
-    figure, axes = panels(len(bars), count, size, height_ratios=heights, width_ratios=(3, 2)[:count])
-    titles = {}
-    for line, of_row, (text, cases) in zip(axes, bars, parts.items(), strict=True):
-        for panel, rows, title in zip(line, of_row[:count], (text, "choices of the model")[:count], strict=True):
-            if rows:
-                titles[panel] = title
-                _rows_of_bars(panel, rows, [colours[humidity] for humidity in cases])
-            else:
-                panel.remove()
-        line[0].set(xlabel="share of the variance [%]", xlim=(0, _WIDEST))
-        if count > 1:
-            line[1].set_xlabel("change [%]")
-    letter(list(titles), list(titles.values()))
+    contents = [content for text, cases in parts.items() for content in _contents(text, cases)]
+    heights = [_ROW * len(rows) + _AROUND for *_, rows in contents]
+    figure, axes = panels(len(contents), 1, (_WIDTH, sum(heights) + _LEGEND), height_ratios=heights)
+    for panel, (_, label, cases, rows) in zip(axes.flat, contents, strict=True):
+        _rows_of_bars(panel, rows, [colours[humidity] for humidity in cases])
+        panel.set_xlabel(label)
+        if label == _SHARES:
+            _end(panel, rows)
+    letter(axes, [textwrap.fill(title, _TITLE) for title, *_ in contents])
     marks = [Patch(color=colour, label=Air(humidity).words) for humidity, colour in colours.items()]
     legend_outside(figure, (marks, [mark.get_label() for mark in marks]), "lower", 8)
     return figure
+
+
+def _contents(text, cases):
+    """Title, label of the axis, budgets by humidity and rows of the panels of a response."""
+    yield text, _SHARES, cases, _measurements(cases)
+    if choices := _choices(cases):
+        yield "choices of the model", "change [%]", cases, choices
+
+
+def _end(panel, rows):
+    """End the axis of shares of a panel, and write out the shares of rows that go on."""
+    for place, bars in enumerate(rows.values()):
+        shares = [high for _, high, _ in bars]
+        if any(share > _WIDEST for share in shares):
+            text = ", ".join(number(share, ".0f") for share in shares)
+            panel.text(_WIDEST - 2, place, f"{text} %", ha="right", va="center", fontsize=7, path_effects=OUTLINED)
+    panel.set_xlim(0, _WIDEST)
 
 
 def _measurements(cases):
@@ -168,7 +187,7 @@ def _measurements(cases):
     largest = sorted(groups, key=lambda name: -max(high for _, high, _ in rows[name]))
     scatters = [float(dataset.scatter) for dataset in cases.values()]
     above, below = ({_in_words(*row): _bars_of(row[1], totals)} for row in ((TOTAL, totals), (SCATTER, scatters)))
-    return above | {name: rows[name] for name in largest} | below
+    return above | {name.removeprefix("the "): rows[name] for name in largest} | below
 
 
 def _bars_of(uncertainties, totals):

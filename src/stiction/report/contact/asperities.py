@@ -6,18 +6,18 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from stiction.analysis.model_error import length_factors, rms_deviation
 from stiction.contact.air import Air
 from stiction.plan.names import by_case, by_name
 from stiction.report import dots, published
+from stiction.report.budget.tables import choice_label
 from stiction.report.format import TO_NM, UM, number, percent, signed, with_error
+from stiction.report.published import rows as rows_of
 from stiction.report.published import value
 from stiction.report.style import (
-    PUBLISHED,
-    SINGLE,
     STUDIES,
-    at_most_double,
     columns_of_panels,
     figure_stage,
     handles,
@@ -162,60 +162,81 @@ def _energies_of_models(study, of_full):
 
 #: Error that is due to rounding [%].
 _ROUNDING = 1e-10
-#: Height of a legend below the panels [in].
-_LEGEND = 0.3
+#: Height of the legend below the panels, width of the labels of rows, and of a panel [in].
+_LEGEND, _LABELS, _PANEL = 1.0, 0.75, 0.85
 #: Colours by the attraction of the solids, the first one filled.
 _COLOURS = ("#0072B2", "#C98500")
 
 
-@styled
 def figure(*data) -> Figure:
-    """Change of the crack length by each reading at the lowest humidity, a panel for each pair. Data as of ``_rows``.
+    """Changes by each reading, as `changes_drawn`, of the data of ``_rows``."""
+    _, full, _, published = data
+    changes = {}
+    for pair, study in full.items():
+        humidities, *energies = full_contact.energies(study)
+        (factor, *_), (error, *_) = length_factors(*energies, humidities, humidities)
+        changes[pair] = 100 * (factor - 1), 100 * error
+    return changes_drawn(pd.DataFrame(_rows(*data)), changes, published)
 
-    Below them full elastic contact; a line for the published length.
+
+@styled
+def changes_drawn(frame: pd.DataFrame, full: Mapping[str, tuple[float, float]], published: pd.DataFrame) -> Figure:
+    """Change of the crack length by each reading at the lowest humidity, a panel for each pair.
+
+    Below them full elastic contact, lines for published and measured lengths. The panels are as narrow as a column of a
+    journal, so that their text can be read on a phone.
+
+    Parameters
+    ----------
+    frame : DataFrame
+        Of the table.
+    full : dict
+        Change by full elastic contact at the lowest humidity, and its standard error [%], by pair.
+    published : DataFrame
+        Rows of Table III.
     """
-    frame, full = pd.DataFrame(_rows(*data)), data[1]
     lowest = frame[frame.relative_humidity == frame.groupby("pair").relative_humidity.transform("min")]
     pairs, most = frame.pair.unique(), len(frame[["reading", "spacing_nm"]].drop_duplicates())
     height = dots.AROUND + _LEGEND + dots.ROW * (1 + most)
-    figure, columns, lines = columns_of_panels(len(pairs), 1, at_most_double(1.3 * SINGLE), height, sharey=True)
+    figure, columns, lines = columns_of_panels(len(pairs), 1, _width, height, sharey=True)
     titles = []
     for (panel,), pair in zip(columns, pairs, strict=True):
         of_pair = lowest[lowest.pair == pair]
-        panel.axvline(0, color="black", linewidth=0.8, label="summits, 10 nm")
-        needed = _needed(of_pair.iloc[0])
-        if np.isfinite(needed):
-            panel.axvline(needed, color=PUBLISHED, label="published")
-        dots.draw(panel, _readings(of_pair) | {"full elastic contact": [_full(full[pair])]})
-        panel.set_xlabel("change of $l_s$ [%]")
-        titles.append(f"pair {pair}, {Air(of_pair.relative_humidity.iloc[0]).words}")
+        base = of_pair.iloc[0]
+        known = rows_of(published, pair=pair, relative_humidity=base.relative_humidity)
+        length = base.crack_length_um / (1 + base.change_percent / 100)
+        dots.references(panel, length, _label(base), known)
+        change, error = full[pair]
+        whole = dots.Mark(change, change, "black", dots.signed(change), error, "full elastic contact")
+        dots.draw(panel, _readings(of_pair) | {"full contact": [whole]}, in_column=True)
+        panel.xaxis.set_major_locator(MaxNLocator(3))
+        panel.set_xlabel("change of\n$l_s$ [%]")
+        titles.append(f"pair {pair}\n{Air(base.relative_humidity).words}")
     letter_lines(lines, titles)
-    legend_outside(figure, handles(*columns.flat), "lower", 4)
+    legend_outside(figure, handles(*columns.flat), "lower", 2)
     return figure
 
 
+def _width(columns):
+    """Width of a figure of some pairs [in]: for three, 7 points of 390 pixels are 11 pixels."""
+    return _LABELS + _PANEL * columns
+
+
+def _label(row):
+    """Reading and grid of a row."""
+    return f"{row.reading}, {row.spacing_nm:g} nm"
+
+
 def _readings(rows):
-    """Marks of the readings of a pair by their label: with attraction of the solids, and without."""
+    """Marks of the readings of a pair by their label: with attraction of the solids and its number, and without."""
     media, found = rows.vdw.unique().tolist(), {}
     for row in rows.itertuples():
         k, change = media.index(row.vdw), row.change_percent
-        shown = {"error": row.change_se_percent, "label": f"van der Waals: {row.vdw}", "filled": k == 0}
+        label = choice_label(f"van_der_waals_{row.vdw}")
+        shown = {"error": row.change_se_percent, "label": label, "filled": k == 0}
         mark = dots.Mark(change, change, _COLOURS[k], dots.signed(change) * (k == 0), **shown)
-        found.setdefault(f"{row.reading}, {row.spacing_nm:g} nm", []).append(mark)
+        found.setdefault(_label(row), []).append(mark)
     return found
-
-
-def _full(study):
-    """Change by full elastic contact at its lowest humidity."""
-    humidities, *energies = full_contact.energies(study)
-    (factor, *_), (error, *_) = length_factors(*energies, humidities, humidities)
-    change = 100 * (factor - 1)
-    return dots.Mark(change, change, "black", dots.signed(change), 100 * error)
-
-
-def _needed(row):
-    """Change that gives the published length [%]."""
-    return 100 * (row.published_um / row.crack_length_um * (1 + row.change_percent / 100) - 1)
 
 
 def _stage(kind, shows, draw, **declared):

@@ -216,7 +216,7 @@ def _quantity(found, number, given, name):
     text = f"from {shown[0]:g} to {shown[-1]:g}" if between else f"at {', '.join(f'{value:.4g}' for value in shown)}"
     reason = f"it is computed {text}{along.unit}{'' if between else ' alone'}; devices.{name}.roughness changes this"
     start = min(shown, key=lambda value: abs(value - along.in_unit(given)))
-    scale = "log" if along.logarithmic and between else "linear"
+    scale = along.scale if between else "linear"
     # A study with another skewness needs its kurtosis, and one with another corner the rest of the spectrum.
     setting = f"surfaces.{found.attrs['surface']}.rms_nm" if along.name == "rms_nm" else ""
     return Axis(along.name, along.words, along.unit.strip(), scale, shown, start, between, reason, setting)

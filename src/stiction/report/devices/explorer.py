@@ -22,6 +22,10 @@ from stiction.stages.devices.stoppers import bounded_share
 
 #: Title of a view of a device in its own airs.
 _ALONE = "the device itself"
+#: Fractions of places that hold more than a force.
+_FRACTIONS = (0.05, 0.25, 0.5)
+#: Fraction of measurements that give more, in short.
+_MORE = "P(more)"
 #: Part of a size beyond the smallest and largest computed ones that a control reaches.
 _ROOM = 0.05
 
@@ -200,6 +204,25 @@ def _to_build(states, section, stopper, answer):
     return replace(view, grid=replace(grid, size=size, safe=build, levels=sizes, **shown), words=words)
 
 
+def view_of_places(stopper: xr.Dataset, answer: Answer) -> View:
+    """View of the forces of places in the stated airs, from a dataset of stage stoppers and an answer."""
+    airs, sought = sorted(answer.airs, key=lambda air: air.humidity), answer.sought
+    axis = humidity_axis([air.humidity for air in airs], answer.together.humidity, "humidities of the device", False)
+    scores, sizes = levels.of_places(answer, airs)
+    forces = [stopper.pull_off.sel(humidity=air.humidity).values for air in airs]
+    most = np.quantile(forces, 1 - np.array(_FRACTIONS), axis=1).T / sought.scale
+    start = answer.size if np.isfinite(answer.size) else answer.pull_off.quantiles[1, 0]
+    known = (sizes[0] / sought.scale,), start / sought.scale
+    size = size_axis(sought.name, sought.label, sought.shown, *known, _MORE)
+    size = replace(size, setting="measured_nN" if np.isfinite(answer.size) else "")
+    share = share_axis(_FRACTIONS, _FRACTIONS[-1], "", "fraction p of places that hold more")
+    shown = {"scores": scores, "first": np.array([[air.first] for air in airs]) / sought.scale}
+    words = {"what": sought.label, "bound": "force that places exceed", "share": _MORE}
+    words |= {"stick": "Measurements that give more", "safe": "Force that places exceed, by simulation alone,"}
+    grid = Grid((axis,), share, size, most, sizes / sought.scale, stopper.sizes["sample"], True, **shown)
+    return View("places", grid, words)
+
+
 def _along(stopper):
     """Safe forces along the fine axis of a stopper with its own humidities on it, and quantiles of the forces."""
     own, fine = stopper.humidity.values, stopper.axis.values
@@ -263,21 +286,21 @@ def _size_axis(key, label, values, section, stated):
     return Axis(key, label, "µm", "log", values, start, several, f"it is {text}; {stated} changes this", key)
 
 
-def share_axis(values: Sequence[float], start: float, setting: str) -> Axis:
+def share_axis(values: Sequence[float], start: float, setting: str, label: str = "fraction p that may stick") -> Axis:
     """Axis of the fractions that may stick. Only beams have a key of them."""
     values = tuple(map(float, values))
     several = f"from {values[0]:g} to {values[-1]:g}" if len(values) > 1 else f"= {values[0]:g} alone"
     reason = f"limits are computed for p {several}"
     reason += f"; design.{setting} changes this" if setting else ""
-    return Axis(
-        "share", "fraction p that may stick", "", "score", values, float(start), len(values) > 1, reason, setting
-    )
+    return Axis("share", label, "", "score", values, float(start), len(values) > 1, reason, setting)
 
 
-def size_axis(key: str, label: str, unit: str, computed: Sequence[np.ndarray], start: float) -> Axis:
+def size_axis(
+    key: str, label: str, unit: str, computed: Sequence[np.ndarray], start: float, fraction: str = "P(stuck)"
+) -> Axis:
     """Axis of lengths or forces, around all computed ones and the first of a page."""
     numbers = np.concatenate([np.ravel(part) for part in computed])
     numbers = np.append(numbers[np.isfinite(numbers)], start)
     low, high = (float(f"{value:.3g}") for value in (numbers.min() * (1 - _ROOM), numbers.max() * (1 + _ROOM)))
-    reason = f"P(stuck) is known between {low:g} and {high:g} {unit}"
+    reason = f"{fraction} is known between {low:g} and {high:g} {unit}"
     return Axis(key, label, unit, "linear", (low, high), float(f"{start:.4g}"), True, reason, key)

@@ -13,6 +13,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.special import ndtr, ndtri
 
 from stiction.devices.chart import error_between
+from stiction.devices.roughness import SCALES
 from stiction.report.devices.levels import SHOWN
 
 #: Significant digits of the numbers in a page, and an error too small to show, which has a logarithm.
@@ -22,7 +23,7 @@ _SAME = 2e-6
 #: Fractions of layers where they have no levels: nothing is known, or no more than that a fraction is from 0 to 1.
 _UNKNOWN = np.nan, 0.0, 1.0
 #: Coordinate of a value along an axis, by its scale.
-_PLACES = {"linear": lambda value: value, "log": np.log, "score": ndtri}
+_PLACES = {name: scale.place for name, scale in SCALES.items()} | {"score": ndtri}
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Axis:
     key: str  #: in states and addresses
     label: str
     unit: str
-    scale: str  #: ``linear``, ``log``, or ``score``, the normal score of a probability
+    scale: str  #: of `stiction.devices.roughness.SCALES`, or ``score``, the normal score of a probability
     values: tuple[float, ...]  #: increasing
     start: float  #: first value of a page
     between: bool  #: whether values between the computed ones have an answer

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from stiction.answer.data import Answer
+from stiction.answer.data import Answer, InAir
 from stiction.devices.risk import SCORES
 
 #: Normal scores of shown fractions, from 3e-7 on, and that of a band of 95 %.
@@ -66,9 +66,7 @@ def of_answer(answer: Answer, humidities: Sequence[float], states: Simulated, ow
     """
     at = {air.humidity: air for air in answer.airs if air.humidity in own} | {answer.together.humidity: answer.together}
     airs = [at[humidity] for humidity in sorted(own.keys() & at.keys())]
-    # Scores at the stated size are among the levels, so that it has exactly what the answer says.
-    own_scores = ndtri(np.ravel([(air.stuck.value, air.stuck.low, air.stuck.high) for air in airs if air.stuck]))
-    scores = np.unique(np.append(SHOWN, own_scores[np.abs(own_scores) < SHOWN[-1]]))
+    scores = _scores(airs)
     stated = [air.humidity for air in airs]
     weights = [np.interp(humidities, stated, row) for row in np.eye(len(airs))]
     ratios = [_ratio(states, own[humidity], scores) for humidity in stated]
@@ -79,6 +77,18 @@ def of_answer(answer: Answer, humidities: Sequence[float], states: Simulated, ow
     beside = [np.log(one.build / own[one.humidity].limit) for one in airs]
     factor = _joined(weights, beside, [0 * ratio for ratio in lowest])
     return Levels(scores, np.array(sizes), first, factor)
+
+
+def of_places(answer: Answer, airs: Sequence[InAir]) -> tuple[np.ndarray, np.ndarray]:
+    """Scores (n,), and levels of the layers in some airs by an answer alone (3, m, n)."""
+    scores = _scores(airs)
+    return scores, np.array([_inverted(answer, air, scores) for air in airs]).swapaxes(0, 1)
+
+
+def _scores(airs):
+    """Scores of levels: those at the stated size are among them, so that it has exactly what the answer says (n,)."""
+    own = ndtri(np.ravel([(air.stuck.value, air.stuck.low, air.stuck.high) for air in airs if air.stuck]))
+    return np.unique(np.append(SHOWN, own[np.abs(own) < SHOWN[-1]]))
 
 
 def _inverted(answer, air, scores):

@@ -12,6 +12,7 @@ import xarray as xr
 from stiction.answer.data import Answer
 from stiction.config.kinds import KEYS, ROUGHNESSES, kind_of
 from stiction.config.merging import differing
+from stiction.config.mission.conditions import CONDITIONS
 from stiction.config.reading import paper
 from stiction.config.scans import is_measured
 from stiction.contact.air import DRY, Air
@@ -21,6 +22,7 @@ from stiction.report import drawings, html
 from stiction.report.answer import figures as figures_answer
 from stiction.report.answer import judged, screen
 from stiction.report.answer import tables as tables_answer
+from stiction.report.at_once import tables as tables_at_once
 from stiction.report.axes import figures as figures_axes
 from stiction.report.axes import roughness as sentences_roughness
 from stiction.report.axes import section as process_section
@@ -28,17 +30,19 @@ from stiction.report.axes import tables as tables_axes
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import curve_views, explorer, life
-from stiction.report.devices.parts import GLOSSARY, OF_RELEASE, terms
-from stiction.report.format import MISSING, humidity_text
+from stiction.report.devices.parts import GLOSSARY, OF_QUESTION, terms
+from stiction.report.format import MISSING, conditions_in_words, humidity_text
 from stiction.report.limits.words import not_modelled, texts
 from stiction.report.model_error import sentences as model_errors
 from stiction.report.page import TEMPLATE, Page, Section
 from stiction.report.style import STYLE, on_a_page
-from stiction.report.surfaces.words import replica_in_words, surface_in_words
+from stiction.report.surfaces.words import adhesion_in_words, replica_in_words, surface_in_words
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.run import provenance
 from stiction.run.atomic import save_text
+from stiction.stages.axes.roughness import OF_COPIES
+from stiction.stages.contact.adhesion_parameter import adhesion_parameters
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budgets_of
 from stiction.stages.devices.opening import section_of_beam
@@ -46,7 +50,7 @@ from stiction.stages.devices.results import is_biased
 
 #: What a map over two quantities shows.
 _OF_MAPS = (
-    "Blue: the requirement is met, by the factor of which the decimal logarithm is shown. Solid line: the estimate "
+    "Blue: the requirement is met. Colours show log10 of the margin. Solid line: the estimate "
     "meets it; dashed: the simulated limit does. Dots: computed points; cross: the surface as it is given.",
 )
 #: Why a table of a budget has cells without a number.
@@ -67,7 +71,7 @@ def device_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], 
     ``warnings`` are those of `stiction.stages.devices.device_warnings.read`. A ``stopper`` has one dataset. Charts,
     budgets, ``test_beams``, ``errors`` of the model and ``roughness`` may be missing.
     """
-    sections, said, listed, words = _of_release(section).parts(name, section, data, answer)
+    sections, said, listed, words = _of_question(section).parts(name, section, data, answer)
     budgets, errors, test_beams, roughness = (data.get(key) for key in ("budgets", "errors", "test_beams", "roughness"))
     of_model, told = model_errors.sentences(name, errors), []
     limits = judged.limits_of(name, data["warnings"])
@@ -107,6 +111,8 @@ def _words_of_budgets(budgets):
 def _facts_of(section):
     """Dimensions and conditions of a device, by name."""
     facts = {"surfaces": f"pair {section['pair']}"} | section.get("surfaces", {})
+    if "adhesion_parameters" in section:
+        facts["adhesion parameter θ"] = adhesion_in_words(section["adhesion_parameters"])
     stated = kind_of(section).stated(section)
     for key in (key for key in KEYS if key in stated):
         (name, unit), value = KEYS[key], stated[key]
@@ -114,14 +120,16 @@ def _facts_of(section):
         facts[name] = f"{' x '.join(f'{value:g}' for value in values)} {unit}"
     if "tip_edge" in section:
         facts["edge of the tip"] = section["tip_edge"]
+    if CONDITIONS in section:
+        facts["conditions"] = conditions_in_words(section[CONDITIONS])
     name = "relative humidities" if len(section["humidities"]) > 1 else "relative humidity"
     facts[name] = ", ".join(map(humidity_text, section["humidities"]))
     return facts | _requirement(section)
 
 
-def _of_release(section):
-    """Parts of pages of the release of a device."""
-    return OF_RELEASE[kind_of(section).release.name]
+def _of_question(section):
+    """Parts of pages by the question about a device."""
+    return OF_QUESTION[kind_of(section).question(section)]
 
 
 def _requirement(section):
@@ -176,7 +184,8 @@ def _how_rough(name, roughness):
     cells = tables_axes.of_roughness({name: roughness}).cells.drop(columns="device")
     of_map = "other" in roughness.dims
     said = [*sentences_roughness.answers(roughness), sentences_roughness.form(roughness)]
-    sections = [Section("How rough must it be?", said, cells, figures_axes.roughness(roughness))]
+    asked = "How closely may it follow?" if roughness.key in OF_COPIES else "How rough must it be?"
+    sections = [Section(asked, said, cells, figures_axes.roughness(roughness))]
     if of_map:
         sections.append(Section("Over two quantities", _OF_MAPS, None, figures_axes.roughness_map(roughness)))
     return sections
@@ -197,14 +206,15 @@ def _inputs(plan, at):
     """Inputs of the page of a device."""
     devices, section = plan.devices, plan.config["devices"][at.device]
     budgets = budgets_of(plan, at.device) if at.device in devices.with_budget else {}
-    own = {"answer": f"devices/answer/{at.device}", "life": f"devices/life/{at.device}"}
+    own = {"answer": f"devices/answer/{at.device}"}
+    own |= {"life": f"devices/life/{at.device}"} if at.device in devices.with_life else {}
     own |= {"budgets": {key[1:]: name for key, name in budgets.items()}}
     own |= {"warnings": device_warnings.files_of(at.device)[at.device]} | model_errors.error_inputs(plan, at.device)
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
     own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
-    own |= process_section.inputs(plan, at.device)
+    own |= process_section.inputs(plan, at.device) | tables_at_once.inputs(plan, at.device)
     own |= {"style": File(STYLE), "templates": [File(GLOSSARY), *html.files(TEMPLATE), *drawings.FILES]}
-    return own | _of_release(section).inputs(plan, at.device)
+    return own | _of_question(section).inputs(plan, at.device)
 
 
 def _settings(plan, at):
@@ -222,7 +232,8 @@ def _settings(plan, at):
     left_out = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
     assumed = plan.devices.assumed_inputs(at.device)
     measured = [name for name in names.values() if is_measured(plan.config["surfaces"][name])]
-    known = {"assumed": assumed, "measured": measured}
+    parameters = adhesion_parameters(plan, plan.air_of_devices, section["pair"], section["humidities"])
+    known = {"assumed": assumed, "measured": measured, "adhesion_parameters": list(parameters.values())}
     if plan.devices.kind(at.device).has_tip:
         known["tip_edge"] = plan.devices.edge_in_words
     if plan.devices.kind(at.device).has_tip and is_biased(plan, at.device):
@@ -235,9 +246,11 @@ def _page(data, at, settings):
     """Page of a device."""
     data = dict(data) | {"warnings": device_warnings.read({at.device: data["warnings"]})}
     answer = judged.judged(data["answer"], data["warnings"])
-    page, views = device_page(at.device, settings, data, answer), _of_release(settings).views
+    page, views = device_page(at.device, settings, data, answer), _of_question(settings).views
     views = [*views(at.device, settings, data, answer), *curve_views.views(at.device, settings, data)]
-    page = process_section.with_process(with_life(page, at.device, data["life"], answer), at.device, data)
+    page = with_life(page, at.device, data["life"], answer) if "life" in data else page
+    page = process_section.with_process(page, at.device, data)
+    page = tables_at_once.with_estimate(page, data)
     return replace(
         page,
         not_modelled=not_modelled(**settings["not_modelled"]),

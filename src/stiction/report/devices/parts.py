@@ -9,8 +9,9 @@ import yaml
 from matplotlib.figure import Figure
 
 from stiction.answer.data import Answer
-from stiction.config.kinds import kind_of
+from stiction.config.kinds import PULL_OFF, kind_of
 from stiction.plan.names import by_case
+from stiction.report.answer import figures as figures_answer
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.devices import explorer, sentences, voltage_views
@@ -31,6 +32,11 @@ _MISSING_LENGTHS = (
 _SIMULATED = (
     "Simulated limits: one touchdown, no voltage, and all inputs exact. The answer above has everything inside."
 )
+#: What a picture of places shows.
+_PLACES = (
+    "Fraction of measurements that give more than a force, of a place drawn at random, with the error of the measured "
+    "force inside if one is stated; its band of 95 % contains the errors of simulation and inputs."
+)
 #: Terms that pages explain.
 GLOSSARY = Path(__file__).with_name("terms.yaml")
 
@@ -48,8 +54,8 @@ def _read(part):
     return part if isinstance(part, str) else " ".join(part)
 
 
-class OfRelease(NamedTuple):
-    """Parts of the pages of devices of one release, by functions of a device."""
+class OfQuestion(NamedTuple):
+    """Parts of the pages of devices that are asked one question, by functions of a device."""
 
     inputs: Callable[[Any, str], dict[str, Any]]  #: of the plan and its name
     #: First sections, sentences, warnings and terms, of its name, section, data and answer.
@@ -122,8 +128,7 @@ def _parts_of_stopper(name, section, data, _answer):
     picture = figures_budget.stoppers({name: stopper}, {})
     sections = [Section("By simulation alone", (_SIMULATED,), table, picture)]
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
-    measured = sentences.measured_sentences(section, stopper, data.get("budgets", {}).values())
-    said = [*measured, *sentences.safe_force_sentences(stopper), *worst]
+    said = [*sentences.safe_force_sentences(stopper), *worst]
     words = terms()["stoppers"] | (terms()["probes"] if kind_of(section).shape else {})
     words |= terms()["worst_humidity"] if worst else {}
     return sections, said, texts(data["warnings"].patches[name]), words
@@ -139,18 +144,34 @@ def _views_of_stopper(name, section, data, answer):
     return views
 
 
-#: By the name of the release.
-OF_RELEASE = {
-    "beam": OfRelease(
+# Probes without a spring
+
+
+def _parts_of_places(name, _section, data, answer):
+    """Parts of the page of a probe that is asked for its pull-off force."""
+    picture = figures_answer.risk({name: answer})
+    sections = [Section("Forces of the places", (_PLACES,), None, picture)]
+    return sections, [], texts(data["warnings"].patches[name]), dict(terms()["probes"])
+
+
+#: By the question about a device.
+OF_QUESTION = {
+    "beam": OfQuestion(
         _inputs_of_beam,
         _parts_of_beam,
         _views_of_beam,
         lambda name, datasets: figures_devices.simulated(_cases(name, datasets), {}),
     ),
-    "stopper": OfRelease(
+    "stopper": OfQuestion(
         lambda plan, device: results_of(plan, device),
         _parts_of_stopper,
         _views_of_stopper,
+        lambda name, datasets: figures_budget.stoppers({name: datasets["forces"]}, {}),
+    ),
+    PULL_OFF: OfQuestion(
+        lambda plan, device: results_of(plan, device, "stopper"),
+        _parts_of_places,
+        lambda name, section, data, answer: [explorer.view_of_places(data["stopper"], answer)],
         lambda name, datasets: figures_budget.stoppers({name: datasets["forces"]}, {}),
     ),
 }

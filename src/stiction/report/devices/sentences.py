@@ -1,7 +1,7 @@
 """Sentences on the pages of devices: the length to build, the sufficient force, and devices stuck in each air."""
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,13 +10,11 @@ import xarray as xr
 from stiction.answer.data import Answer, Cause
 from stiction.config.units import to_si
 from stiction.contact.air import is_humid
-from stiction.devices import probes
 from stiction.devices.limits import rules
 from stiction.devices.limits.limit import Limit
-from stiction.devices.risk import Basis, one_in, samples_for, upper_bound
-from stiction.report.format import NN, UM, UN, airs, fraction_with_band, with_error
+from stiction.devices.risk import Basis, one_in, samples_for
+from stiction.report.format import UM, UN, airs, fraction_with_band, with_error
 from stiction.rounding import in_percent
-from stiction.stages.devices.budget import budget_of
 from stiction.stages.devices.opening import BEAMS, S_SHAPE
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import ends, in_any_air, is_at_an_end
@@ -102,29 +100,6 @@ def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
         for force, more in zip(stated, in_any_air(stopper)[1], strict=True)
         if np.isfinite(force)
     ]
-
-
-def measured_sentences(section: Mapping[str, Any], stopper: xr.Dataset, budgets: Iterable[xr.Dataset]) -> list[str]:
-    """Whether the measured pull-off force of a probe fits its surfaces, nothing where none is stated."""
-    if "measured_nN" not in section:
-        return []
-    force, error = (to_si(section[key], "nN") for key in ("measured_nN", "measured_error_nN"))
-    forces, inputs = stopper.pull_off.values[0], max((budget_of(one).total for one in budgets), default=0.0)
-    above = probes.share_above(forces, math.hypot(inputs, float(stopper.full_contact_error[0])), force, error)
-    mean, low, high = (f"{float(f'{one / NN:.3g}'):g}" for one in (forces.mean(), *np.quantile(forces, [0.05, 0.95])))
-    known = f"an error of {in_percent(inputs)} by the inputs is inside" if inputs else "all inputs count as exact"
-    return [
-        f"The measured {with_error(force / NN, error / NN)} nN {'fit' if probes.fits(above) else 'do not fit'} these "
-        f"surfaces: a place holds {_beyond(above, forces.size)}. By simulation, places hold "
-        f"{mean} nN on average, nine of ten between {low} and {high} nN; {known}."
-    ]
-
-
-def _beyond(above, places):
-    """Rarer side of a force in words, of which a fraction of places is above: a bound where it has none of them."""
-    fewest, rare = float(upper_bound(0, places)), min(above, 1 - above)
-    known = f"at most {in_percent(fewest)}" if rare < fewest else in_percent(rare)
-    return f"{'more' if above <= rare else 'less'} with a probability of {known}"
 
 
 def worst_sentence(stopper: xr.Dataset) -> str:

@@ -71,6 +71,12 @@ def _of_pairs(data, settings):
     return found, settings["not_modelled"]
 
 
+def _replicas(plan):
+    """Settings of the replicas of pairs, none without one."""
+    stated = {pair: found["replica"] for pair in plan.pairs if (found := plan.replica(pair))}
+    return {"replicas": stated} if stated else {}
+
+
 STAGES = (
     Stage(
         name="model_limits",
@@ -87,12 +93,13 @@ STAGES = (
                 "sampling": select(StripLength, plan.config["sampling"]),
                 "water": {pair: plan.air.water(pair) for pair in plan.pairs},
             }
-            | sections(plan, *plan.pairs),
+            | sections(plan, *plan.pairs)
+            | _replicas(plan),
             "materials": {pair: plan.materials.in_words(pair) for pair in plan.pairs},
             "plasticity_runs": "plasticity" in plan.studies,
             "not_modelled": plan.air.not_modelled((case.pair, case.humidity) for case in plan.cases),
             "surfaces": {pair: plan.scans.sides(pair) for pair in plan.pairs},
-            "assumed": plan.assumptions(*plan.pairs),
+            "assumed": plan.limits_of_pairs(),
         },
         compute=_of_pairs,
         save=save,

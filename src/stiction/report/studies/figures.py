@@ -22,7 +22,6 @@ from stiction.report.studies.tables import variant_label
 from stiction.report.style import (
     DOUBLE,
     OUTLINED,
-    PUBLISHED,
     SINGLE,
     STUDIES,
     at_most_double,
@@ -336,7 +335,8 @@ def variants(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.DataF
     for (panel,), pair in zip(columns, pairs, strict=True):
         humidity, base = next(cases_of(datasets[pair, "base"]))
         cases = {name: next(cases_of(datasets[pair, name]))[1] for name in names if name != "base"}
-        _references(panel, rows(published, pair=pair, relative_humidity=humidity), base)
+        length = TO_UM * comparison.mean_crack_length(base)[0]
+        dots.references(panel, length, "base", rows(published, pair=pair, relative_humidity=humidity))
         dots.draw(panel, {variant_label(name): [_shift(case, base)] for name, case in cases.items()})
         panel.set_xlabel("change of $l_s$ [%]")
         titles.append(f"pair {pair}, {Air(humidity).words}")
@@ -349,20 +349,6 @@ def _shift(case, base):
     """Change of the crack length by a variant, relative to the base [%]."""
     shift, error = 100 * np.divide(comparison.shift(case, base), comparison.mean_crack_length(base)[0])
     return dots.Mark(shift, shift, "#0072B2", dots.signed(shift), error)
-
-
-def _references(panel, known, base):
-    """Published and measured length over that of the base."""
-    length = TO_UM * comparison.mean_crack_length(base)[0]
-    panel.axvline(0, color="black", linewidth=0.8, label="base")
-    for row in known.itertuples():
-        if np.isfinite(row.ng):
-            panel.axvline(100 * (row.ng / length - 1), color=PUBLISHED, label="published")
-        if np.isfinite(row.experiment):
-            measured, spread = 100 * (row.experiment / length - 1), 100 * np.nan_to_num(row.experiment_std) / length
-            style = {"color": "0.4", "alpha": 0.2, "linewidth": 0, "zorder": 0}
-            panel.axvspan(measured - spread, measured + spread, **style)
-            panel.axvline(measured, color="0.4", linestyle="--", label="measured ± standard deviation")
 
 
 def _sensitivities(data, settings):

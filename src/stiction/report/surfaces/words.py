@@ -1,6 +1,8 @@
 """Surfaces of a configuration in words."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
+
+from stiction.analysis.greenwood import ADHERE, BOND
 
 #: Keys of a surface, what they are called and their unit.
 _OF_SURFACES = {
@@ -44,6 +46,18 @@ def replica_in_words(replica: Mapping) -> str:
     beside = [f"{replica['offset_nm']:g} nm beside its register"] if replica.get("offset_nm") else []
     play = [f"with a play of {replica['play_nm']:g} nm in its plane"] if replica.get("play_nm") else []
     return ", ".join([f"follows the substrate with a coherence of {replica['coherence']:g}", *above, *beside, *play])
+
+
+def adhesion_in_words(parameters: Collection[float]) -> str:
+    """Adhesion parameters of a pair in all its airs [-], beside those of wafers.
+
+    Examples
+    --------
+    >>> adhesion_in_words([81.2, 112.8])
+    '81.2 to 113 (wafers bond below 1, and do not adhere above 12)'
+    """
+    ends = dict.fromkeys(f"{end:.3g}" for end in (min(parameters), max(parameters)))
+    return f"{' to '.join(ends)} (wafers bond below {BOND}, and do not adhere above {ADHERE})"
 
 
 def _numbers_in_words(section, words):

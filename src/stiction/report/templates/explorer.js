@@ -42,8 +42,8 @@ function opened(number) {
     return (low + high) / 2;
   }
 
-  const PLACES = {linear: value => value, log: Math.log, score};
-  const VALUES = {linear: place => place, log: Math.exp, score: probability};
+  const PLACES = {linear: value => value, log: Math.log, rest: value => -Math.log1p(-value), score};
+  const VALUES = {linear: place => place, log: Math.exp, rest: place => -Math.expm1(-place), score: probability};
 
   /** Slope of a monotone cubic at its k-th place. */
   function slope(k, widths, secants) {
@@ -350,11 +350,11 @@ function opened(number) {
   }
 
   function stuckChart(parent) {
-    const {size} = grid, unit = size.unit, place = make(parent, "div");
+    const {size} = grid, unit = size.unit, share = data.words.share ?? "P(stuck)", place = make(parent, "div");
     return () => {
       const levels = levelsOf(state), bound = safeSize(state), ends = rangeOf(levels.layers[0][0], bound);
       place.replaceChildren();
-      const chart = axesOf(place, `P(stuck) against ${size.label}`, ends, [LEAST, 0], [`${size.label} [${unit}]`, "P(stuck)"], DECADES);
+      const chart = axesOf(place, `${share} against ${size.label}`, ends, [LEAST, 0], [`${size.label} [${unit}]`, share], DECADES);
       const height = share => chart.y(Math.max(Math.log10(share), LEAST));
       const known = levels.layers[0][0], within = v => v >= known[0] && v <= known[known.length - 1];
       const points = spread(...ends).map(value => [value, sign * Math.log(value)]).filter(([, v]) => within(v))

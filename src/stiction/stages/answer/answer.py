@@ -7,20 +7,20 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from stiction.answer import ladder, sought
-from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, Stay, Step
+from stiction.answer import ladder, places, sought
+from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, PullOff, Stay, Step
 from stiction.answer.ladder import Question
 from stiction.answer.unknowns import Draws, OfBudgets
 from stiction.answer.worlds import DRAWS
-from stiction.config.mission.conditions import CONDITIONS, temperatures
+from stiction.config.mission.conditions import CONDITIONS
 from stiction.config.mission.stays import stays
 from stiction.config.units import in_si
-from stiction.contact.air import Air
+from stiction.contact.air import Air, humid
 from stiction.devices.budget import LARGEST
 from stiction.plan.stage import Stage, select
 from stiction.stages.answer import conditions
 from stiction.stages.devices.budget import budgets_of
-from stiction.stages.devices.opening import DesignedBeam, own_section
+from stiction.stages.devices.opening import FORCE, DesignedBeam, own_section
 from stiction.stages.devices.results import results_of
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import bounded_share
@@ -37,21 +37,49 @@ class Settings:
     kind: str
     length: float = np.nan  #: of a beam, NaN if none is stated [m]
     touchdowns: int = 1
+    shock: float = 0.0  #: peak [m s⁻²]
     liquids: tuple[str, ...] = ()  #: that are stated
     left_out: tuple[str, ...] = ()  #: conditions that are stated but not inside
     required: float = 1.0  #: fraction of a requirement, 1 without one [-]
     beam: DesignedBeam | None = None  #: none for a stopper
     budgets: tuple[float, ...] = ()  #: humidities of the budgets [-]
-    temperatures: dict[str, float] = field(default_factory=dict)  #: of its conditions, by humidity in words [K]
+    temperatures: dict[str, float] = field(default_factory=dict)  #: of the water of a mission, by humidity in words [K]
     stays: dict[str, Stay] = field(default_factory=dict)  #: touchdowns of its conditions, by number
+    question: str = ""  #: about what has no spring
+    measured: float = np.nan  #: pull-off force [N]
+    measured_error: float = np.nan  #: its standard error [N]
 
 
 def compute(data: Mapping[str, Any], settings: Settings) -> Answer:
     """Answer about a device."""
+    return _of_pull_off(data, settings) if settings.question else _of_size(data, settings)
+
+
+def _of_pull_off(data, settings):
+    """Answer about a probe without a spring."""
+    stopper, unknowns = data["stopper"], conditions.of_budgets(data["budgets"], settings.budgets)
+    forces, errors = stopper.pull_off, stopper.full_contact_error
+    found = {
+        float(rh): places.Places(forces.sel(humidity=rh).values, float(errors.sel(humidity=rh)))
+        for rh in stopper.humidity.values
+    }
+    numbers = settings.measured, settings.measured_error
+    left_out = (
+        ("inputs",) if isinstance(unknowns, OfBudgets) and any(unknowns.of((rh, FORCE)) is None for rh in found) else ()
+    )
+    asked = places.Asked(
+        settings.name, settings.kind, FORCE, "stoppers", *numbers, left_out, _forbidden(data, unknowns)
+    )
+    return places.answer(asked, found, unknowns, Draws(DRAWS, settings.seed))
+
+
+def _of_size(data, settings):
+    """Answer about a beam, or about what a spring pulls off."""
     found, question = _of_beam(data, settings) if settings.beam else _of_stopper(data)
+    found = [replace(one, stated=settings.shock > 0) if one.cause is Cause.FAST else one for one in found]
     before = conditions.of_budgets(data["budgets"], settings.budgets)
     unknowns = conditions.of_test_beams(data.get("test_beams")) or before
-    left_out = (*settings.left_out, *_left_out(data, found, unknowns))
+    left_out = (*settings.left_out, *_left_out(data, found, unknowns, settings.shock))
     if settings.required < question["share"]:
         left_out = (*left_out, "requirement")
     stated = {"touchdowns": settings.touchdowns, "stays": tuple(settings.stays.values()), "left_out": left_out}
@@ -96,15 +124,16 @@ def _of_stopper(data):
     return found, {"share": share or float(stopper.share.max()), "unit": sought.FORCE.unit, "size": size}
 
 
-def _left_out(data, found, unknowns):
+def _left_out(data, found, unknowns, shock):
     """Stated conditions and inputs that no dataset bounds.
 
-    That is a voltage on a bridge at which its dielectric breaks down, and inputs of end states in which too few devices
-    stick to show what they change.
+    That is a voltage on a bridge at which its dielectric breaks down, a shock where no summits stop some strips, and
+    inputs of end states in which too few devices stick to show what they change.
     """
-    is_biased = any(one.cause is Cause.VOLTAGE for one in found)
+    inside = {one.cause for one in found}
     at = {(one.humidity, one.shape) for one in found} & set(getattr(unknowns, "budgets", ()))
-    left_out = ["voltage"] if float(data["life"].potential) > 0 and not is_biased else []
+    left_out = ["voltage"] if float(data["life"].potential) > 0 and Cause.VOLTAGE not in inside else []
+    left_out += ["shock"] if shock and data.get("fast_strips") and Cause.FAST not in inside else []
     return left_out + (["inputs"] if any(unknowns.of(one) is None for one in at) else [])
 
 
@@ -157,9 +186,39 @@ def layout(answer: Answer) -> xr.Dataset:
         inside = [[int(one.humidity in stay.humidities) for one in answer.airs] for stay in answer.stays]
         variables |= {"stay_air": (("stay", "air"), inside, none)}
         variables |= {"stay_touchdowns": ("stay", [stay.touchdowns for stay in answer.stays], none)}
+    variables |= _of_places(answer.pull_offs)
     coords = {"step": [str(step.cause) for step in answer.steps], "air": [one.humidity for one in answer.airs]}
     coords["end"] = ["value", "low", "high"]
     return xr.Dataset(variables, coords, {name: getattr(answer, name) for name in _TEXTS})
+
+
+#: Probabilities of a measured force.
+_RANKS = ("less", "more", "two_sided")
+
+
+def _of_places(pull_offs):
+    """Variables of pull-off forces by air, none for a device that is not asked for them."""
+    if not pull_offs:
+        return {}
+    newton, none = {"units": "N"}, {"units": "1"}
+    ranks = [[_numbers(getattr(one, name)) for one in pull_offs] for name in _RANKS]
+    found = {name: (("air", "end"), rank, none) for name, rank in zip(_RANKS, ranks, strict=True)}
+    found["place_pull_off"] = (("air", "share_below", "end"), [one.quantiles for one in pull_offs], newton)
+    found["measured_error"] = ("air", [one.error for one in pull_offs], newton)
+    return found | {"share_below": ("share_below", list(places.SHARES), none)}
+
+
+def _numbers(probability):
+    """Value and ends of the band of a probability, NaN where there is none."""
+    return [np.nan] * 3 if probability is None else [probability.value, probability.low, probability.high]
+
+
+def _pull_offs(dataset):
+    """Yield the pull-off forces of a dataset, if it has some."""
+    for row in (dataset.isel(air=k) for k in range(dataset.sizes["air"]) if "place_pull_off" in dataset):
+        ranks = [row[name].values for name in _RANKS]
+        known = [None if np.isnan(rank).any() else Probability(*map(float, rank)) for rank in ranks]
+        yield PullOff(float(row.air), row.place_pull_off.values, float(row.measured_error), *known)
 
 
 def answer_of(dataset: xr.Dataset) -> Answer:
@@ -197,6 +256,7 @@ def answer_of(dataset: xr.Dataset) -> Answer:
         extrapolated=bool(dataset.extrapolated),
         sizes=dataset["curve_size"].values,
         curve=dataset["curve"].values,
+        pull_offs=tuple(_pull_offs(dataset)),
     )
 
 
@@ -219,8 +279,10 @@ def _probability(dataset, start):
 def _inputs(plan, at):
     """All datasets of a device that bear on its size."""
     section, device = plan.config["devices"][at.device], at.device
-    own = {"budgets": list(_budgets(plan, device).values()), "life": f"devices/life/{device}"}
-    own |= separation_inputs(plan, device)
+    own = {"budgets": list(_budgets(plan, device).values())}
+    if device not in plan.devices.with_life:
+        return own | results_of(plan, device, "stopper")
+    own |= {"life": f"devices/life/{device}"} | separation_inputs(plan, device)
     own |= {"test_beams": f"devices/test_beams/{device}"} if "test_beams" in section else {}
     return own | results_of(plan, device, "tilted", "biased", "stopper", "after", "lengths")
 
@@ -238,10 +300,11 @@ def _settings(plan, at):
     own = {"seed": plan.config["seed"], "name": name, "liquids": sorted(liquids)}
     own |= {"left_out": ["dimples"] if "dimples" in section else []}
     own |= {"budgets": [humidity for humidity, *_ in _budgets(plan, name)]}
-    at = {Air(air).name: at for air, at in temperatures(plan.config, section["pair"]).items()}
+    at = {Air(air).name: plan.air_of_devices.temperature(section["pair"], air) for air in humid(section["humidities"])}
     own |= {"temperatures_K": at} if CONDITIONS in section else {}
     own |= {"stays": found} if (found := stays(section, plan.air_of_devices.wetting(section["pair"]))) else {}
     own |= {"required": section["requirement"]["share"]} if "requirement" in section else {}
+    own |= {} if name in plan.devices.with_life else {"question": plan.devices.question(name)}
     return select(Settings, section | own | beam)
 
 

@@ -53,8 +53,8 @@ class Settings:
 
 def compute(estimates: Sequence[xr.Dataset], settings: Settings) -> xr.Dataset:
     """Law through the settings, with sentences on contradictions. There are no estimates of numbers."""
-    surfaces = [_measured_quantities(one) for one in estimates] or [
-        (np.array(one["values"]), np.array(one["covariance"])) for one in settings.stated
+    surfaces = [_measured_quantities(surface) for surface in estimates] or [
+        (np.array(surface["values"]), np.array(surface["covariance"])) for surface in settings.stated
     ]
     kept = [QUANTITIES.index(name) for name in settings.quantities]
     values, covariances = map(np.array, zip(*surfaces, strict=True))
@@ -107,23 +107,23 @@ def layout(law: Law, measured: np.ndarray, errors: np.ndarray, settings: Setting
 
 def sentences(law: Law, settings: Settings) -> list[str]:
     """Sentences on settings in contradiction to the law of the others, and on an unchecked law."""
-    unit, said = process.unit_of(settings.variable), []
+    unit, listed = process.unit_of(settings.variable), []
     if len(law.settings) == 2:
-        said.append("Two settings give straight lines, which nothing checks: measure a third one.")
+        listed.append("Two settings give straight lines, which nothing checks: measure a third one.")
     for setting, quantity in contradictions(law):
         words, far = settings.quantities[quantity], abs(law.surprise[setting, quantity])
-        place = f"{law.settings[setting]:g} {unit}"
+        at = f"{law.settings[setting]:g} {unit}"
         if is_unique(law, quantity):
-            said.append(
-                f"At {place} the {words} of {settings.surface} is {far:.2g} standard errors from the law of the other "
+            listed.append(
+                f"At {at} the {words} of {settings.surface} is {far:.2g} standard errors from the law of the other "
                 "settings: check this setting and its scans."
             )
         else:
-            said.append(
+            listed.append(
                 f"The {words} of {settings.surface} bends more than so few settings can show, by {far:.2g} standard "
                 "errors; its band allows for that. One more setting would tell a bend from a wrong setting."
             )
-    return said
+    return listed
 
 
 def law_of(dataset: xr.Dataset) -> Law:
@@ -153,10 +153,10 @@ def plain(values: np.ndarray, covariances: np.ndarray, names: Sequence[str]) -> 
     places = [QUANTITIES.index(name) for name in names]
     full = np.zeros((len(values), len(QUANTITIES)))
     full[:, places] = values
-    found = unscaled(full)
-    slopes = jacobian(found)[:, places][:, :, places]
+    quantities = unscaled(full)
+    slopes = jacobian(quantities)[:, places][:, :, places]
     variances = np.einsum("nqr,nrs,nqs->nq", slopes, covariances, slopes)
-    return found[:, places], np.sqrt(variances)
+    return quantities[:, places], np.sqrt(variances)
 
 
 def on_law(given: Description, dataset: xr.Dataset, value: float) -> Description:
@@ -167,8 +167,10 @@ def on_law(given: Description, dataset: xr.Dataset, value: float) -> Description
     nearest one.
     """
     cutoff = given.spectrum.cutoff
-    own = np.array([np.log(given.rms), given.skewness, given.kurtosis, np.log(given.spectrum.corner), slope_of(given)])
-    changed, names = scaled(own), list(map(str, dataset["quantity"].values))
+    quantities = np.array(
+        [np.log(given.rms), given.skewness, given.kurtosis, np.log(given.spectrum.corner), slope_of(given)]
+    )
+    changed, names = scaled(quantities), list(map(str, dataset["quantity"].values))
     changed[[QUANTITIES.index(name) for name in names]] = law_of(dataset).at(value)[0]
     ln_rms, skewness, kurtosis, ln_corner, slope = unscaled(changed)
     surface = replace(given, form=None)
@@ -217,10 +219,10 @@ def _numbers(entry, quantities):
     values = [np.log(to_si(entry["rms_nm"], "nm")), entry["skewness"], entry["kurtosis"], *spectrum]
     known, covariance = knowledge(entry, paper()["surfaces"]), np.diag(np.square(list(STEPS.values())[:5]))
     places = [QUANTITIES.index(name) for name in quantities]
-    own = [known.quantities.index(name) for name in quantities]
-    covariance[np.ix_(places, places)] = known.covariance[np.ix_(own, own)]
-    rounded = [[_rounded(one) for one in row] for row in covariance]
-    return {"values": [_exactly(one) for one in values], "covariance": rounded}
+    places_of_known = [known.quantities.index(name) for name in quantities]
+    covariance[np.ix_(places, places)] = known.covariance[np.ix_(places_of_known, places_of_known)]
+    rounded = [[_rounded(number) for number in row] for row in covariance]
+    return {"values": [_exactly(number) for number in values], "covariance": rounded}
 
 
 def _exactly(value):

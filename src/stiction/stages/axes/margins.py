@@ -39,25 +39,25 @@ def compute(
     The error of the model is that of full elastic contact, if it is known.
     """
     over = [dimension for dimension in _DIMENSIONS if dimension in points[0]]
-    found = joined([point.drop_vars("slopes", errors="ignore") for point in points], *over)
-    found = _with_margins(found, (*over, "humidity", "shape"), model_error)
-    found = found.assign(slopes=_slopes(points, found, over)).assign_coords(_labels(laws, settings))
-    known = [law_of(one) for one in laws]
-    errors = {"law_error": xr.full_like(found.margin, np.nan), "run_error": xr.full_like(found.margin, np.nan)}
-    for at, one in known_margins(found):
-        places = at | dict(zip(over, one.axes, strict=True))
-        errors["law_error"].loc[places] = law_error(one, known)
-        errors["run_error"].loc[places] = run_error(one, known)
+    curve = joined([point.drop_vars("slopes", errors="ignore") for point in points], *over)
+    curve = _with_margins(curve, (*over, "humidity", "shape"), model_error)
+    curve = curve.assign(slopes=_slopes(points, curve, over)).assign_coords(_labels(laws, settings))
+    processes = [law_of(law) for law in laws]
+    errors = {"law_error": xr.full_like(curve.margin, np.nan), "run_error": xr.full_like(curve.margin, np.nan)}
+    for at, margins in known_margins(curve):
+        places = at | dict(zip(over, margins.axes, strict=True))
+        errors["law_error"].loc[places] = law_error(margins, processes)
+        errors["run_error"].loc[places] = run_error(margins, processes)
     variables = dict(zip(("variable", "second_variable"), settings.variables, strict=False))
-    return found.assign(errors).assign_attrs(variables | {"surface": " and ".join(settings.surfaces)})
+    return curve.assign(errors).assign_attrs(variables | {"surface": " and ".join(settings.surfaces)})
 
 
-def _with_margins(found, dims, model_error):
+def _with_margins(points, dims, model_error):
     """Points with their margins and the errors of simulation and model."""
-    margin, safe = (requirement.margins_of(found, name) for name in ("estimate", "safe"))
+    margin, safe = (requirement.margins_of(points, name) for name in ("estimate", "safe"))
     # The bound of a safe value is one-sided: the errors of simulation alone leave it as it is.
-    parts = {"simulation": (margin - safe) / ndtri(CONFIDENCE), "model": _model_error(found, model_error)}
-    return found.assign({"margin": (dims, margin)} | {f"{name}_error": (dims, part) for name, part in parts.items()})
+    parts = {"simulation": (margin - safe) / ndtri(CONFIDENCE), "model": _model_error(points, model_error)}
+    return points.assign({"margin": (dims, margin)} | {f"{name}_error": (dims, part) for name, part in parts.items()})
 
 
 def _labels(laws: Sequence[xr.Dataset], settings: Settings) -> dict[str, Any]:
@@ -67,50 +67,52 @@ def _labels(laws: Sequence[xr.Dataset], settings: Settings) -> dict[str, Any]:
     return {"law_process": ("law_quantity", names), "law_quantity": quantities}
 
 
-def _slopes(points, found, over):
+def _slopes(points, curve, over):
     """Slopes at all points, linear between those at which they are known. Unknown if they are so everywhere."""
-    known = [point for point in points if "slopes" in point]
-    axes = [np.unique([float(point[dimension]) for point in known]) for dimension in over]
-    slopes = np.reshape([point.slopes.values for point in known], (*map(len, axes), *known[0].slopes.shape))
+    sloped = [point for point in points if "slopes" in point]
+    axes = [np.unique([float(point[dimension]) for point in sloped]) for dimension in over]
+    slopes = np.reshape([point.slopes.values for point in sloped], (*map(len, axes), *sloped[0].slopes.shape))
     for number, (places, dimension) in enumerate(zip(axes, over, strict=True)):
-        slopes = np.apply_along_axis(_between, number, slopes, places, found[dimension].values)
+        slopes = np.apply_along_axis(_between, number, slopes, places, curve[dimension].values)
     dims = (*over, "humidity", "shape", "law_quantity")
     return dims, slopes, {"long_name": "of the margin by scaled quantities"}
 
 
 def _between(values, places, others):
     """Values (n,) at places (n,), linearly between the known ones at others (m,)."""
-    known = np.isfinite(values)
-    return np.interp(others, places[known], values[known]) if known.any() else np.full(len(others), np.nan)
+    is_known = np.isfinite(values)
+    return np.interp(others, places[is_known], values[is_known]) if is_known.any() else np.full(len(others), np.nan)
 
 
-def _model_error(found, model_error):
+def _model_error(points, model_error):
     """Standard error of the margins due to the model: full elastic contact changes them, or errs itself if applied."""
-    shape = found.estimate.shape
+    shape = points.estimate.shape
     if model_error is None:
         return np.zeros(shape)
-    own = model_error.sel(humidity=found.humidity, shape=found["shape"]).transpose("humidity", "shape", ...)
-    relative = own.factor_error / own.factor
-    change = np.log(own.factor).where(~own.applied, 0.0)
+    of_points = model_error.sel(humidity=points.humidity, shape=points["shape"]).transpose("humidity", "shape", ...)
+    relative = of_points.factor_error / of_points.factor
+    change = np.log(of_points.factor).where(~of_points.applied, 0.0)
     return np.broadcast_to(np.nan_to_num(np.hypot(change, relative).values), shape)
 
 
-def known_margins(found: xr.Dataset) -> Iterator[tuple[dict[str, Any], Margins]]:
+def known_margins(curve: xr.Dataset) -> Iterator[tuple[dict[str, Any], Margins]]:
     """Yield coordinates of humidity and end state with the margins at all pairs, or at two settings or more.
 
     ASSUME: an unknown margin between known ones is on a smooth curve through them. Those at the ends are left out.
     """
-    over = [dimension for dimension in _DIMENSIONS if dimension in found.dims]
-    for humidity in found.humidity.values:
-        for shape in found["shape"].values:
+    over = [dimension for dimension in _DIMENSIONS if dimension in curve.dims]
+    for humidity in curve.humidity.values:
+        for shape in curve["shape"].values:
             at = {"humidity": float(humidity), "shape": str(shape)}
-            one = found.sel(at)
-            known = np.isfinite(one.margin.values + one.simulation_error.values + one.slopes.values.sum(axis=-1))
-            one = one.isel(value=known) if known.ndim == 1 else one
-            if known.all() or one.sizes["value"] > 1 == known.ndim:
-                error = np.hypot(one.simulation_error.values, one.model_error.values)
-                axes = tuple(one[dimension].values for dimension in over)
-                yield at, Margins(axes, one.margin.values, one.slopes.values, error)
+            of_shape = curve.sel(at)
+            is_known = np.isfinite(
+                of_shape.margin.values + of_shape.simulation_error.values + of_shape.slopes.values.sum(axis=-1)
+            )
+            of_shape = of_shape.isel(value=is_known) if is_known.ndim == 1 else of_shape
+            if is_known.all() or of_shape.sizes["value"] > 1 == is_known.ndim:
+                error = np.hypot(of_shape.simulation_error.values, of_shape.model_error.values)
+                axes = tuple(of_shape[dimension].values for dimension in over)
+                yield at, Margins(axes, of_shape.margin.values, of_shape.slopes.values, error)
 
 
 def inputs(plan: Any, at: Any) -> dict[str, Any]:

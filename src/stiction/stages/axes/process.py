@@ -55,14 +55,14 @@ def compute(surfaces: Surfaces, laws: Sequence[xr.Dataset], settings: Settings) 
 
 def _slopes(surfaces, made, law, device):
     """Slopes of the margins by the scaled quantities of one law, (n_rh, shapes, q)."""
-    own, names = made[str(law.surface)], list(map(str, law["quantity"].values))
-    pairs_of, differences = zip(*(bracketed(own, name) for name in names), strict=True)
+    surface, names = made[str(law.surface)], list(map(str, law["quantity"].values))
+    pairs_of, differences = zip(*(bracketed(surface, name) for name in names), strict=True)
     sides = [made | {str(law.surface): side} for both_sides in pairs_of for side in both_sides]
-    found = np.array([margins_of(point) for point in device.on(surfaces, sides)])
-    found[np.abs(found) >= LARGEST] = np.nan
-    by_plain = (found[1::2] - found[::2]) / np.reshape(differences, (-1, 1, 1))
+    margins = np.array([margins_of(point) for point in device.on(surfaces, sides)])
+    margins[np.abs(margins) >= LARGEST] = np.nan
+    by_plain = (margins[1::2] - margins[::2]) / np.reshape(differences, (-1, 1, 1))
     places = [QUANTITIES.index(name) for name in names]
-    at = [np.log(own.rms), own.skewness, own.kurtosis, np.log(own.spectrum.corner), slope_of(own)]
+    at = [np.log(surface.rms), surface.skewness, surface.kurtosis, np.log(surface.spectrum.corner), slope_of(surface)]
     return np.einsum("jhs,jk->hsk", by_plain, jacobian(np.array(at))[np.ix_(places, places)])
 
 
@@ -71,9 +71,9 @@ def _slopes(surfaces, made, law, device):
 
 def values_of(plan: Any, device: str) -> list[float]:
     """Computed values of the variable, within the settings of all processes of a device."""
-    known = plan.config["process"]
+    processes = plan.config["process"]
     named = process.processes_of(plan.config, device)
-    settings = [sorted(setting["value"] for setting in known[name]["settings"]) for name in named]
+    settings = [sorted(setting["value"] for setting in processes[name]["settings"]) for name in named]
     low, high = max(one[0] for one in settings), min(one[-1] for one in settings)
     inside = {value for one in settings for value in one if low <= value <= high}
     return grid(sorted(inside | {low, high})).tolist()

@@ -30,80 +30,100 @@ def compute(curves: Mapping[str, xr.Dataset], laws: Mapping[str, xr.Dataset], va
     """
     groups = {name: [curve] for name, curve in curves.items()}
     groups |= {ALL: list(curves.values())} if len(curves) > 1 else {}
-    found = {name: layout(_recommended(of, laws, stream(seed, "process", variable))) for name, of in groups.items()}
-    who = xr.DataArray(list(found), dims="who", name="who")
-    shares = [float(curves[name].share) if name in curves else np.nan for name in found]
-    joined = xr.concat(_padded_to_one_size(found.values()), who)
+    settings = {
+        name: layout(_recommended(group, laws, stream(seed, "process", variable))) for name, group in groups.items()
+    }
+    who = xr.DataArray(list(settings), dims="who", name="who")
+    shares = [float(curves[name].share) if name in curves else np.nan for name in settings]
+    joined = xr.concat(_padded_to_one_size(settings.values()), who)
     return joined.assign(share=("who", shares)).assign_attrs(variable=variable)
 
 
-def of_pairs(found: xr.Dataset, laws: Iterable[xr.Dataset], device: str, seed: int) -> xr.Dataset:
+def of_pairs(curves: xr.Dataset, laws: Iterable[xr.Dataset], device: str, seed: int) -> xr.Dataset:
     """Sufficient pairs of settings for a device, and the best one. They are unknown with their margin."""
-    laws = dict(zip(dict.fromkeys(map(str, found.law_process.values)), laws, strict=True))
-    pairs = _recommended([found], laws, stream(seed, "process", "pairs", device))
+    laws = dict(zip(dict.fromkeys(map(str, curves.law_process.values)), laws, strict=True))
+    pairs = _recommended([curves], laws, stream(seed, "process", "pairs", device))
     _, second = laws.values()
-    measured = {"second_settings": ("setting", second.setting.values), "share": found.share}
-    variables = {name: found.attrs[name] for name in ("variable", "second_variable")}
+    measured = {"second_settings": ("setting", second.setting.values), "share": curves.share}
+    variables = {name: curves.attrs[name] for name in ("variable", "second_variable")}
     return layout(pairs).assign(measured).assign_attrs(variables)
 
 
-def _recommended(found, laws, rng):
+def _recommended(curves, laws, rng):
     """Recommended settings for some devices together."""
-    known = {name: law_of(one) for name, one in laws.items()}
-    parts = [replace(one, slopes=_by_laws(of, one.slopes, known)) for of in found for _, one in known_margins(of)]
-    if len(parts) < sum(of.sizes["humidity"] * of.sizes["shape"] for of in found):
-        first, *others = known.values()
-        if "second" in found[0].dims:
+    laws_by_name = {name: law_of(dataset) for name, dataset in laws.items()}
+    parts = [
+        replace(margins, slopes=_by_laws(curve, margins.slopes, laws_by_name))
+        for curve in curves
+        for _, margins in known_margins(curve)
+    ]
+    if len(parts) < sum(curve.sizes["humidity"] * curve.sizes["shape"] for curve in curves):
+        first, *others = laws_by_name.values()
+        if "second" in curves[0].dims:
             return unknown(others[0].settings, np.linspace(*first.ends, PAIRS))
         return unknown(np.linspace(*first.ends, SETTINGS))
     errors = [law.errors.values.mean(axis=0) for law in laws.values()]
-    return recommended(parts, list(known.values()), errors, rng)
+    return recommended(parts, list(laws_by_name.values()), errors, rng)
 
 
-def _by_laws(found: xr.Dataset, slopes: np.ndarray, laws: Mapping[str, Law]) -> np.ndarray:
+def _by_laws(curve: xr.Dataset, slopes: np.ndarray, laws: Mapping[str, Law]) -> np.ndarray:
     """Slopes by the quantities of all laws, zero by those of others than the device's."""
-    of = found.law_process.values
+    process_of_slope = curve.law_process.values
     parts = [
-        slopes[..., of == name] if (of == name).any() else np.zeros((*slopes.shape[:-1], len(law.coefficients)))
+        slopes[..., process_of_slope == name]
+        if (process_of_slope == name).any()
+        else np.zeros((*slopes.shape[:-1], len(law.coefficients)))
         for name, law in laws.items()
     ]
     return np.concatenate(parts, axis=-1)
 
 
-def _padded_to_one_size(found):
+def _padded_to_one_size(datasets):
     """Datasets with as many ranges and crossings each: those missing are NaN."""
-    sizes = {name: range(max(one.sizes[name] for one in found)) for name in ("range", "mean_range", "crossings")}
-    return [one.assign_coords({name: range(one.sizes[name]) for name in sizes}).reindex(sizes) for one in found]
+    sizes = {
+        name: range(max(dataset.sizes[name] for dataset in datasets)) for name in ("range", "mean_range", "crossings")
+    }
+    return [
+        dataset.assign_coords({name: range(dataset.sizes[name]) for name in sizes}).reindex(sizes)
+        for dataset in datasets
+    ]
 
 
-def layout(found: Recommendation) -> xr.Dataset:
+def layout(advice: Recommendation) -> xr.Dataset:
     """Dataset of one recommendation: of pairs, or of settings with the ranges that suffice."""
-    are_pairs = len(found.axes) > 1
+    are_pairs = len(advice.axes) > 1
     over, each = (("second", "value"), ("process",)) if are_pairs else (("place",), ())
-    numbers = (found.best, found.error, found.interval, found.next, found.again, found.after)
+    numbers = (
+        advice.best,
+        advice.error,
+        advice.interval,
+        advice.next,
+        advice.again,
+        advice.after,
+    )
     common = {
-        "margin": (over, found.margin, {"long_name": "smallest margin"}),
-        "safe": (over, found.safe, {"long_name": "margin of the next run with 95 % confidence"}),
-        "safe_mean": (over, found.safe_mean, {"long_name": "margin of the mean process with 95 % confidence"}),
+        "margin": (over, advice.margin, {"long_name": "smallest margin"}),
+        "safe": (over, advice.safe, {"long_name": "margin of the next run with 95 % confidence"}),
+        "safe_mean": (over, advice.safe_mean, {"long_name": "margin of the mean process with 95 % confidence"}),
     } | {
         name: ((*each, "end") if name == "best_interval" else each, values if are_pairs else values[0])
         for name, values in zip(_NUMBERS, numbers, strict=True)
     }
-    coords = {"end": ["low", "high"]} | (dict(zip(over, found.axes, strict=True)) if are_pairs else {})
-    return xr.Dataset(common | ({} if are_pairs else _along_one(found)), coords)
+    coords = {"end": ["low", "high"]} | (dict(zip(over, advice.axes, strict=True)) if are_pairs else {})
+    return xr.Dataset(common | ({} if are_pairs else _along_one(advice)), coords)
 
 
-def _along_one(found):
+def _along_one(advice):
     """Variables of the settings of one process."""
-    places = np.reshape([(one.place, one.error) for one in found.crossings], (-1, 2))
+    places = np.reshape([(crossing.place, crossing.error) for crossing in advice.crossings], (-1, 2))
     return {
-        "value": ("place", *found.axes, {"long_name": "of the variable"}),
-        "band": (("end", "place"), found.band, {"long_name": "95 % band of the margin of the mean process"}),
+        "value": ("place", *advice.axes, {"long_name": "of the variable"}),
+        "band": (("end", "place"), advice.band, {"long_name": "95 % band of the margin of the mean process"}),
         "crossing": ("crossings", places[:, 0]),
         "crossing_error": ("crossings", places[:, 1]),
-        "next_subject": ((), found.subject),
-        "next_before": ((), found.before[0]),
-    } | _ranges(found.sufficient, found.sufficient_mean)
+        "next_subject": ((), advice.subject),
+        "next_before": ((), advice.before[0]),
+    } | _ranges(advice.sufficient, advice.sufficient_mean)
 
 
 def _ranges(of_run, of_mean):
@@ -136,26 +156,26 @@ def _settings_of_process(pairs, number, own, other, variable):
 
 def devices_over(plan: Any, variable: str) -> list[str]:
     """Devices over the processes with a variable."""
-    known = plan.config.get("process", {})
+    processes = plan.config.get("process", {})
     return [
         name
         for name in plan.devices.over_process
-        if any(known[one]["variable"] == variable for one in process.processes_of(plan.config, name))
+        if any(processes[each]["variable"] == variable for each in process.processes_of(plan.config, name))
     ]
 
 
 def variables(plan: Any) -> list[str]:
     """Variables of the processes of devices."""
-    known = plan.config.get("process", {})
+    processes = plan.config.get("process", {})
     return list(
-        dict.fromkeys(section["variable"] for section in known.values() if devices_over(plan, section["variable"]))
+        dict.fromkeys(section["variable"] for section in processes.values() if devices_over(plan, section["variable"]))
     )
 
 
 def _inputs(plan, at):
     """Curves of the devices over a variable, and the laws of their processes."""
     devices = devices_over(plan, at.variable)
-    named = dict.fromkeys(one for name in devices for one in process.processes_of(plan.config, name))
+    named = dict.fromkeys(each for name in devices for each in process.processes_of(plan.config, name))
     return {"curves": by_name("process/curves", devices), "laws": by_name("process/laws", named)}
 
 

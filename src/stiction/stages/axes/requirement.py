@@ -27,9 +27,9 @@ from stiction.stages.devices.opening import FORCE, DesignedBeam, own_section
 SMOOTHER = Limit("smoother_than_full_contact", Side.UNSAFE, False)
 
 
-def sought_of(found: xr.Dataset) -> Sought:
+def sought_of(points: xr.Dataset) -> Sought:
     """Number that the requirement of a dataset is about."""
-    return SOUGHT[found.required.attrs["units"]]
+    return SOUGHT[points.required.attrs["units"]]
 
 
 class Response(NamedTuple):
@@ -82,21 +82,25 @@ class OfBeam:
 
     def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> Found:
         """Safe lengths at a humidity by shape, and the limit of strips that are too long."""
-        met = sticking.ground(contact, tips, humidity, self)
-        beams = sticking.release_beams(self.device, met, self)
+        ground = sticking.ground(contact, tips, humidity, self)
+        beams = sticking.release_beams(self.device, ground, self)
         known = sticking.lengths_without_samples(self.device, self.water, humidity, self.edge_radius, beams.reach)
         safe = sticking.by_shape(beams, self, known)
         limit = long_strips(
-            self.device.strip, self.device.opening.longest_strip(self.device, met.laws), self.device.opening.arms == 2
+            self.device.strip,
+            self.device.opening.longest_strip(self.device, ground.laws),
+            self.device.opening.arms == 2,
         )
-        found = [self._response(held, *safe[shape], known[shape]) for shape, held in beams.lengths.items()]
-        return found, triggered(limit)
+        responses = [self._response(held, *safe[shape], known[shape]) for shape, held in beams.lengths.items()]
+        return responses, triggered(limit)
 
     def _response(self, lengths, safe, known):
         """Response from stuck lengths (n,) [m], their safe length and other known lengths."""
         shares = risk.stuck_share(np.array([self.length]), lengths, known.reach)
         error = np.sqrt(np.nansum(np.square([safe.error, safe.surfaces_error])))
-        return Response(safe.length, safe.estimate, float(error), known.flat, tuple(float(part[0]) for part in shares))
+        return Response(
+            safe.length, safe.estimate, float(error), known.flat, tuple(float(fraction[0]) for fraction in shares)
+        )
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -150,8 +154,8 @@ def compute(
         responses.append(found)
         flagged.append(as_text(limits))
         refused.append(reason)
-    said = {"flagged": ("humidity", flagged), "refused": ("humidity", refused)}
-    return layout(responses, next(iter(contact.values())).sizes["strip"], settings).assign(said)
+    texts = {"flagged": ("humidity", flagged), "refused": ("humidity", refused)}
+    return layout(responses, next(iter(contact.values())).sizes["strip"], settings).assign(texts)
 
 
 def layout(responses: Sequence[Sequence[Response]], samples: int, settings: OfBeam | OfStopper) -> xr.Dataset:
@@ -176,15 +180,15 @@ def layout(responses: Sequence[Sequence[Response]], samples: int, settings: OfBe
     )
 
 
-def margins_of(found: xr.Dataset, name: str = "estimate") -> np.ndarray:
+def margins_of(points: xr.Dataset, name: str = "estimate") -> np.ndarray:
     """Margins of a variable of devices to their requirement, of its shape [-]."""
-    return margins(found[name].values, float(found.required), not sought_of(found).more_is_better)
+    return margins(points[name].values, float(points.required), not sought_of(points).more_is_better)
 
 
-def relative_errors(found: xr.Dataset) -> np.ndarray:
+def relative_errors(points: xr.Dataset) -> np.ndarray:
     """Standard errors of the margins of estimates due to the simulation: none where no device sticks [-]."""
-    known = np.isfinite(found.estimate.values) & (found.estimate.values > 0)
-    return np.divide(found.error.values, found.estimate.values, out=np.zeros(known.shape), where=known)
+    is_known = np.isfinite(points.estimate.values) & (points.estimate.values > 0)
+    return np.divide(points.error.values, points.estimate.values, out=np.zeros(is_known.shape), where=is_known)
 
 
 def flagged(points: xr.Dataset, smoother: xr.DataArray | bool) -> xr.Dataset:

@@ -1,7 +1,8 @@
 """Stages of roughness: a device along one quantity of a surface or two, and the roughnesses that suffice.
 
 At the last point of a curve the surfaces are as they are given, with the results of the device itself. Form of the
-heights and shape of the spectrum stay.
+heights and shape of the spectrum stay. The quantity may also be the coherence of a surface that follows the other one,
+or its play.
 """
 
 from collections.abc import Sequence
@@ -16,13 +17,15 @@ from stiction.analysis.shifts import value_of, with_value
 from stiction.config.kinds import ROUGHNESSES
 from stiction.config.merging import merged
 from stiction.config.units import without_unit
-from stiction.devices.roughness import crossings, sufficient
+from stiction.devices.roughness import SCALES, crossings, sufficient
 from stiction.plan.stage import Running, Stage
 from stiction.rounding import is_equal
 from stiction.stages.axes import points
 from stiction.stages.axes.points import Device, Surfaces, joined
 from stiction.stages.axes.requirement import flagged, margins_of, relative_errors
+from stiction.stages.contact.pairs import require_feasible
 from stiction.stages.surfaces.rough_surfaces import both
+from stiction.surface.replica import Coherence
 
 #: Points of a curve, the last of which has the surface as it is given.
 POINTS = 8
@@ -30,6 +33,8 @@ POINTS = 8
 CURVES = 5
 #: Kurtosis of a point, which curves and maps over the skewness have.
 KURTOSIS = "kurtosis"
+#: Keys of quantities of a surface that follows the other one.
+OF_COPIES = {key for key, quantity in ROUGHNESSES.items() if quantity.of_replica}
 #: Dimensions of what is found on a curve.
 _TABLES = ("crossing", "range")
 
@@ -54,6 +59,7 @@ class Settings:
     surface: str  #: the one that is changed; on both sides of the pair if both have it
     varied: tuple[str, ...]  #: quantities along a curve and, for a map, from curve to curve
     values: Quantities
+    replica: Coherence | None = None  #: of the pair as it is given, if its quantities are varied
 
 
 def compute(surfaces: Surfaces, settings: Settings) -> xr.Dataset:
@@ -62,14 +68,22 @@ def compute(surfaces: Surfaces, settings: Settings) -> xr.Dataset:
     So is the kurtosis, which may change with the skewness, see `stiction.analysis.shifts.with_value`.
     """
     given = changed = settings.device.described(surfaces)[settings.surface]
+    replica = settings.device.patch.replica
+    if settings.replica:
+        require_feasible(surfaces, "NG", settings.device.patch)
     for quantity, value in vars(settings.values).items():
         changed = changed if value is None else with_value(changed, quantity, value)
     (point,) = settings.device.on(surfaces, [{} if changed is given else {settings.surface: changed}])
     along, *others = settings.varied
-    values = {"roughness": value_of(changed, along), KURTOSIS: changed.kurtosis}
+    values = {"roughness": _value(along, changed, replica), KURTOSIS: changed.kurtosis}
     for other in others:
-        values |= {"other": value_of(changed, other), "other_given": value_of(given, other)}
+        values |= {"other": _value(other, changed, replica), "other_given": _value(other, given, settings.replica)}
     return point.assign({name: float(value) for name, value in values.items()})
+
+
+def _value(quantity, surface, replica):
+    """Value of a quantity of a surface, or of its replica."""
+    return getattr(replica, quantity) if quantity in map(without_unit, OF_COPIES) else value_of(surface, quantity)
 
 
 def axes_of(plan: Any, device: str) -> dict[str, list[float | None]]:
@@ -85,19 +99,22 @@ def axes_of(plan: Any, device: str) -> dict[str, list[float | None]]:
 
 def spaced(key: str, low: float, high: float, number: int) -> list[float]:
     """Values of a quantity between the ends of its range, evenly spaced or by equal factors."""
-    between = np.geomspace if ROUGHNESSES[key].logarithmic else np.linspace
-    return between(low, high, number).round(9).tolist()
+    return SCALES[ROUGHNESSES[key].scale].spaced(low, high, number).round(9).tolist()
 
 
 def _settings(plan, at):
     """Settings of a point of a device, with its values of the varied quantities."""
-    axes, surface = axes_of(plan, at.device), plan.config["devices"][at.device]["roughness"]["surface"]
+    axes, section = axes_of(plan, at.device), plan.config["devices"][at.device]
+    surface, pair = section["roughness"]["surface"], section["pair"]
     values = zip(axes, points.values_at(at.number, list(axes.values())), strict=True)
     values = {key: value for key, value in values if value is not None}
     own = {key: value for key, value in values.items() if key in plan.config["surfaces"][surface]}
+    copy = {key: values.pop(key) for key in OF_COPIES if key in values}
+    given = plan.replica(pair) if OF_COPIES & axes.keys() else {}
+    plan = replace(plan, config=merged(plan.config, {"pairs": {pair: {"replica": copy}}})) if copy else plan
     rough = replace(plan, config=merged(plan.config, {"surfaces": {surface: own}})) if own else plan
     settings = {"device": points.settings_of(plan, at.device, rough), "surface": surface}
-    return settings | {"varied": list(map(without_unit, axes)), "values": values}
+    return settings | {"varied": list(map(without_unit, axes)), "values": values} | given
 
 
 # Curves and maps
@@ -123,9 +140,12 @@ def curve_or_map(points: Sequence[xr.Dataset], surface: str, key: str, other: st
     if other:
         over, attrs = ["other", *over], attrs | {"other_key": other}
         rows, given = _rows_apart(rows), given | {"other_given": points[-1].other_given}
-    found = joined([point for row in rows for point in _apart(row)], *over).sortby(over)
-    found = found.assign(given).assign_attrs(attrs)
-    return _with_tables(flagged(found, (found.roughness < found.given) & (key == "rms_nm")))
+    curves = joined([point for row in rows for point in _apart(row)], *over).sortby(over)
+    curves = curves.assign(given).assign_attrs(attrs)
+    smoother = ROUGHNESSES[key].smooths * (curves.roughness - curves.given) > 0
+    if other:
+        smoother = smoother | (ROUGHNESSES[other].smooths * (curves.other - curves.other_given) > 0)
+    return _with_tables(flagged(curves, smoother))
 
 
 def _apart(row):
@@ -143,22 +163,21 @@ def _rows_apart(rows):
     return [[point.drop_vars("other_given") for point in row] for row in (rows[0], *apart)]
 
 
-def _with_tables(found):
+def _with_tables(curves):
     """Curve or map with its crossings of the requirement and its sufficient ranges, one after the other."""
-    logarithmic = ROUGHNESSES[found.attrs["key"]].logarithmic
-    axis = np.log(found.roughness.values) if logarithmic else found.roughness.values
-    dimensions, crossed, ranges = [name for name in ("other", "humidity", "shape") if name in found.dims], [], []
-    for at in product(*(found[name].values for name in dimensions)):
-        curve = found.sel(dict(zip(dimensions, at, strict=True)))
+    scale = SCALES[ROUGHNESSES[curves.attrs["key"]].scale]
+    axis = scale.place(curves.roughness.values)
+    dimensions, crossed, ranges = [name for name in ("other", "humidity", "shape") if name in curves.dims], [], []
+    for at in product(*(curves[name].values for name in dimensions)):
+        curve = curves.sel(dict(zip(dimensions, at, strict=True)))
         met = crossings(axis, margins_of(curve), relative_errors(curve))
         crossed += [(*at, crossing.place, crossing.error) for crossing in met]
         ranges += [(*at, *ends) for ends in sufficient(axis, margins_of(curve, "safe"))]
     columns = _columns("crossing", crossed, [*dimensions, "place", "error"])
     columns |= _columns("range", ranges, [*dimensions, "low", "high"])
-    if logarithmic:
-        columns |= {name: np.exp(columns[name]) for name in ("crossing_place", "range_low", "range_high")}
-        columns["crossing_error"] = columns["crossing_place"] * columns["crossing_error"]
-    return found.assign({name: (name.partition("_")[0], column) for name, column in columns.items()})
+    columns |= {name: scale.value(columns[name]) for name in ("crossing_place", "range_low", "range_high")}
+    columns["crossing_error"] = scale.slope(columns["crossing_place"]) * columns["crossing_error"]
+    return curves.assign({name: (name.partition("_")[0], column) for name, column in columns.items()})
 
 
 def _columns(table, rows, names):
@@ -167,12 +186,12 @@ def _columns(table, rows, names):
     return {f"{table}_{name}": np.array(column, str if name == "shape" else float) for name, column in columns}
 
 
-def curves_of(found: xr.Dataset) -> list[xr.Dataset]:
+def curves_of(curves: xr.Dataset) -> list[xr.Dataset]:
     """Curve of a device, or all curves of its map, each with its value of the second quantity as ``other``."""
-    if "other" not in found.dims:
-        return [found]
-    own = [{name: np.flatnonzero(found[f"{name}_other"] == value) for name in _TABLES} for value in found.other]
-    return [found.sel(other=value).isel(rows) for value, rows in zip(found.other.values, own, strict=True)]
+    if "other" not in curves.dims:
+        return [curves]
+    rows_of = [{name: np.flatnonzero(curves[f"{name}_other"] == value) for name in _TABLES} for value in curves.other]
+    return [curves.sel(other=value).isel(rows) for value, rows in zip(curves.other.values, rows_of, strict=True)]
 
 
 def _what(plan, at):

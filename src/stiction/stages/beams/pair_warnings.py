@@ -1,7 +1,7 @@
 """Results of pairs beyond the limits of the model, by the rules of `stiction.devices.limits.rules`."""
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +15,7 @@ from stiction.devices.limits.limit import Limit, restored
 from stiction.stages.beams.cantilevers import Cantilevers, StripLength, cantilever
 from stiction.stages.beams.releases import ends_as, stuck_lengths
 from stiction.stages.surfaces import surface_flags
+from stiction.surface.replica import Coherence
 
 
 class Subject(NamedTuple):
@@ -43,6 +44,7 @@ class OfPairs(Cantilevers):
 
     sampling: StripLength
     water: dict[str, Water]  #: by pair
+    replicas: dict[str, Coherence] = field(default_factory=dict)  #: of pairs whose beams follow their substrate
 
 
 def beam_warnings(beams: xr.Dataset, nominal: Beam, strip: float) -> list[Limit]:
@@ -92,6 +94,7 @@ def main_line_warnings(
         Subject(f"pair {pair}"): rules.triggered(
             _without_water(pair, beams, settings.water[pair]),
             *contact_warnings(plastic_contact(plasticity, pair), materials[pair], is_listed=plasticity_is_listed),
+            rules.strips_move_alone(settings.replicas[pair].play if pair in settings.replicas else 0.0),
         )
         for pair in settings.pairs
     }

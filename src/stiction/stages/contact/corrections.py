@@ -70,7 +70,7 @@ def correction_inputs(
 
 
 def corrections_of_laws(plan: Any, pair: str, humidities: Iterable[float], model: str) -> dict[str, str]:
-    """Those of the laws of a pair. Gaussian heights have none: full contact is not computed for them."""
+    """Correction of the laws of a pair. Full contact is not computed for Gaussian heights."""
     return correction_inputs(plan, pair, humidities) if model == "NG" else {}
 
 
@@ -81,7 +81,7 @@ def errors_of_pairs(plan: Any) -> dict[str, str]:
 
 
 def applied(error: xr.Dataset) -> Correction:
-    """Those changes of a pair by which predictions are corrected.
+    """Changes by full contact that predictions of a pair have.
 
     ASSUME: beyond the humidities of all devices of a pair, where budgets shift one of them, its own change holds.
     """

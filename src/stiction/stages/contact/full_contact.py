@@ -125,7 +125,7 @@ def strips(
     streams = streams_of_sides(settings.seed, pair)
     space, airs = _airs(surfaces, pair, settings, settings.strips)
     for k in progress(range(settings.strips), "strips"):
-        yield space, drawn.met(drawn.draw(*streams(k))), [of_strip(k) for of_strip in airs]
+        yield space, drawn.under_flat(drawn.draw(*streams(k))), [of_strip(k) for of_strip in airs]
 
 
 def _airs(surfaces, pair, settings, number):

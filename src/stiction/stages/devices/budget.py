@@ -81,17 +81,10 @@ Respond = Callable[[Sequence[State]], Responses]
 
 
 @dataclass(frozen=True, kw_only=True)
-class BeamBudget(Settings):
-    """Budget of the mean length of adhesion of beams: as S-shapes, or of bridges at their middle."""
+class _OfBeams(Settings):
+    """Budget of a length of beams."""
 
     device: DesignedBeam
-    beams: int  #: number of beams for every slope
-    share: ClassVar[float] = 0.0
-
-    @property
-    def response(self) -> str:
-        """Quantity changed by the inputs."""
-        return self.device.opening.shapes[0]
 
     @property
     def sizes(self) -> tuple[str, ...]:
@@ -101,6 +94,19 @@ class BeamBudget(Settings):
     def state(self, contact: xr.Dataset) -> State:
         """State with the stated inputs."""
         return State(contact, self.humidity, self.water, self.device, alike=self.alike)
+
+
+@dataclass(frozen=True, kw_only=True)
+class BeamBudget(_OfBeams):
+    """Budget of the mean length of adhesion of beams: as S-shapes, or of bridges at their middle."""
+
+    beams: int  #: number of beams for every slope
+    share: ClassVar[float] = 0.0
+
+    @property
+    def response(self) -> str:
+        """Quantity changed by the inputs."""
+        return self.device.opening.shapes[0]
 
     def responder(self, *states: State, longer: int = 1) -> Respond:
         """How the devices respond: cracks of beams that are long enough at some states, or longer by a factor."""
@@ -113,14 +119,11 @@ class BeamBudget(Settings):
 
 
 @dataclass(frozen=True, kw_only=True)
-class TipBudget(Settings):
-    """Budget of the length with a fraction of the tips of all cantilevers stuck. Methods as of `BeamBudget`."""
+class TipBudget(_OfBeams):
+    """Budget of the length with a fraction of the tips of all cantilevers stuck."""
 
-    device: DesignedBeam
     share: float  #: p [-]
     response: ClassVar[str] = ARC
-
-    sizes, state = BeamBudget.sizes, BeamBudget.state
 
     def responder(self, *_states: State, **_longer: int) -> Respond:
         """Response of the devices: arcs of all tips."""

@@ -80,18 +80,18 @@ def compute(
 
     ``all_sizes`` are charts at the humidities of `stiction.devices.chart.of_sizes`, if this one is between them.
     """
-    met = sticking.with_tips(ground_from(ground, settings), tips, settings.humidity, settings.water)
-    chart = between(all_sizes, met, settings) if all_sizes else None
+    below = sticking.with_tips(ground_from(ground, settings), tips, settings.humidity, settings.water)
+    chart = between(all_sizes, below, settings) if all_sizes else None
     chart = chart or filled(
-        settings.thicknesses, settings.gaps, lambda *size: _lengths_of(_release(size, met, settings), settings)
+        settings.thicknesses, settings.gaps, lambda *size: _lengths_of(_release(size, below, settings), settings)
     )
-    longest = [settings.device.opening.longest_strip(device, met.laws) for device in _beams_of_chart(settings)]
+    longest = [settings.device.opening.longest_strip(device, below.laws) for device in _beams_of_chart(settings)]
     return layout(chart, float(ground.rms), longest, settings).assign(ground[["resampled", "repetition"]])
 
 
-def _release(size, met, settings):
+def _release(size, below, settings):
     """Released beams of one size, a thickness and a gap [m]."""
-    return sticking.release_beams(_resized(settings, *size), met, settings)
+    return sticking.release_beams(_resized(settings, *size), below, settings)
 
 
 def _lengths_of(beams, settings):
@@ -131,7 +131,7 @@ def filled(
     return Filled(np.array(lengths), np.full(len(sizes), True), 0.0)
 
 
-def between(charts: Sequence[xr.Dataset], met: sticking.Ground, settings: Settings) -> Filled | None:
+def between(charts: Sequence[xr.Dataset], below: sticking.Ground, settings: Settings) -> Filled | None:
     """Lengths of beams of all sizes at a humidity between those of three charts. None if their ratios vary too much.
 
     Beams of the size in the middle are released. Those of another size have the same order, and lengths whose median
@@ -145,13 +145,13 @@ def between(charts: Sequence[xr.Dataset], met: sticking.Ground, settings: Settin
     error = float(np.expm1(errors.max())) + max(float(chart.power_law_error) for chart in charts)
     if not error <= ALLOWED:
         return None
-    own = _release(sizes[middle], met, settings)
+    own = _release(sizes[middle], below, settings)
     alone = next(iter(own.lengths.values()))
     spread = spread_of(risk.quantiles(alone, own.reach), risk.SCORES)
     if not spread[0] - spread[1] > np.abs(np.diff(ratios)).max():  # too few stick, or all at the same length
         return None
     rescale = [partial(rescaled, spread=spread, ratios=of_size) for of_size in ratios]
-    others = [_resized_beams(own, *one, met) for one in zip(sizes, rescale, strict=True)]
+    others = [_resized_beams(own, *one, below) for one in zip(sizes, rescale, strict=True)]
     lengths = [_lengths_of(own if k == middle else beams, settings) for k, beams in enumerate(others)]
     return Filled(np.array(lengths), np.arange(len(sizes)) == middle, error)
 
@@ -168,12 +168,12 @@ def _quantiles_of_beams(chart):
     return quantiles.reshape(-1, quantiles.shape[-1])
 
 
-def _resized_beams(own, size, rescale, met):
+def _resized_beams(own, size, rescale, below):
     """Released beams of another size [m], from those of one and the function that changes their lengths."""
     device = replace(own.device, thickness=float(size[0]), gap=float(size[1]))
-    hold = 0.0 if met.tips is None else risk.HOLD * foundation_length(device.beam, met.laws)
+    hold = 0.0 if below.tips is None else risk.HOLD * foundation_length(device.beam, below.laws)
     alone = next(iter(own.lengths.values()))
-    return sticking.released(device, met, rescale(alone) - hold, float(rescale(own.reach)))
+    return sticking.released(device, below, rescale(alone) - hold, float(rescale(own.reach)))
 
 
 def corners_and_tests(thicknesses: int, gaps: int) -> tuple[np.ndarray, np.ndarray]:

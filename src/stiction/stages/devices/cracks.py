@@ -50,40 +50,40 @@ class OfSizes:
 
 def compute(ground: xr.Dataset, settings: Settings, of_sizes: xr.Dataset | None = None) -> xr.Dataset:
     """Release long beams on the force laws of a ground, or take their lengths from those of a few sizes."""
-    device, met = settings.device, ground_from(ground, settings)
+    device, below = settings.device, ground_from(ground, settings)
     laws = (
         None if of_sizes is None else PowerLaws(of_sizes.powers.values, float(of_sizes.error), float(of_sizes.excess))
     )
     by_laws = laws is not None and laws.holds
     if by_laws:  # which know all lengths
-        beams = released(device, met, laws.lengths(device.thickness, device.gap), np.inf)
+        beams = released(device, below, laws.lengths(device.thickness, device.gap), np.inf)
     else:
-        beams = release_beams(device, met, settings)
-    dataset = layout(beams, ground_of(device, met.laws)[0], met.laws, float(ground.rms))
-    dataset = dataset.assign(_in_register(met, settings))
+        beams = release_beams(device, below, settings)
+    dataset = layout(beams, ground_of(device, below.laws)[0], below.laws, float(ground.rms))
+    dataset = dataset.assign(_in_register(below, settings))
     return dataset.assign(
-        longest_strip=((), device.opening.longest_strip(device, met.laws), {"units": "m"}),
+        longest_strip=((), device.opening.longest_strip(device, below.laws), {"units": "m"}),
         size_error=((), laws.error if by_laws else 0.0, {"units": "1", "long_name": "error of power laws of the size"}),
         **ground[["share_flat", "resampled", "repetition"]],
     )
 
 
-def _in_register(met, settings):
+def _in_register(below, settings):
     """Variable with the lengths of the same beams in register [m], none without play."""
-    device, laws = settings.device, met.strips
+    device, laws = settings.device, below.strips
     if laws.displacements is None:
         return {}
     draw = in_register(laws.sampled, laws.displacements)
-    arrested = arrests(device, ground_of(device, met.laws), draw, settings.beams, addresses(settings))
+    arrested = arrests(device, ground_of(device, below.laws), draw, settings.beams, addresses(settings))
     return {"register_length": ("device", arrested, {"units": "m"})}
 
 
 def compute_sizes(ground: xr.Dataset, settings: OfSizes) -> xr.Dataset:
     """Power laws of the lengths of beams on a ground, and their error. They are NaN if a length is not known."""
-    met = ground_from(ground, settings)
+    below = ground_from(ground, settings)
     axes = settings.thicknesses, settings.gaps
     devices = [replace(settings.device, thickness=thickness, gap=gap) for thickness, gap in product(*axes)]
-    laws = fitted(*axes, [release_beams(device, met, settings).arrested for device in devices])
+    laws = fitted(*axes, [release_beams(device, below, settings).arrested for device in devices])
     powers = xr.Dataset({"powers": (("of", "device"), laws.powers)})
     return powers.assign({name: ((), getattr(laws, name), {"units": "1"}) for name in ("error", "excess")})
 

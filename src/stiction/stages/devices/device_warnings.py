@@ -277,9 +277,17 @@ def _settings(plan, at):
     own |= ({"learns": True} if "test_beams" in section else {}) | _on_summits(plan, at.device)
     own |= section | {"water": plan.air_of_devices.water(section["pair"])} | own_section(plan, at.device)
     own |= {"worst_humidities": sought(plan.config["design"], section)}
-    assumptions = plan.assumptions(section["pair"]).get(section["pair"])
+    assumed = plan.assumptions(section["pair"]).get(section["pair"], []) + _unmeasured(plan, at.device)
     release = plan.devices.kind(at.device).release.name
-    return ({"assumed": assumptions} if assumptions else {}) | {release: select(_OF_RELEASE[release], own)}
+    return ({"assumed": assumed} if assumed else {}) | {release: select(_OF_RELEASE[release], own)}
+
+
+def _unmeasured(plan, device):
+    """Stored limit of a device in wetter air than that of the isotherm, also along its chart or search."""
+    section = plan.config["devices"][device]
+    searched = sought(plan.config["design"], section) if plan.devices.kind(device).release.in_any_air else []
+    airs = [*section["humidities"], *section.get("chart", {}).get("humidities", []), *searched]
+    return plan.unmeasured_films(plan.air_of_devices.wet(section["pair"], airs))
 
 
 def _on_summits(plan, device):

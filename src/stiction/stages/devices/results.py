@@ -25,7 +25,7 @@ def is_biased(plan: Any, device: str) -> bool:
 def results_of(plan: Any, device: str, *names: str) -> dict[str, Any]:
     """Files with some results of a device as inputs of a stage, by default all: those of a beam by humidity.
 
-    Beyond the breakdown of the dielectric, no voltage is there that could hold.
+    Above the breakdown of the dielectric, no voltage can hold a device.
     """
     files = _FILES[plan.devices.kind(device).release.name](plan, device)
     return {name: files[name] for name in names or files if name in files}

@@ -123,9 +123,9 @@ def ground_of_laws(laws: Laws, settings: BeamSettings) -> Ground:
     return Ground(laws, laws.draw(opening.LAWS, opening.addresses(settings)("mesh")), None)
 
 
-def with_tips(met: Ground, tips: xr.Dataset | None, humidity: float, water: Water) -> Ground:
+def with_tips(ground: Ground, tips: xr.Dataset | None, humidity: float, water: Water) -> Ground:
     """Ground with the contact of tips at a relative humidity, ``None`` for a bridge."""
-    return met if tips is None else replace(met, tips=curves.tip_forces(tips, humidity, water))
+    return ground if tips is None else replace(ground, tips=curves.tip_forces(tips, humidity, water))
 
 
 def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settings: Any) -> Ground:
@@ -137,25 +137,29 @@ def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settin
     return with_tips(ground_of_laws(laws, settings), tips, humidity, settings.water)
 
 
-def release_beams(device: DesignedBeam, met: Ground, settings: BeamSettings) -> Released:
+def release_beams(device: DesignedBeam, ground: Ground, settings: BeamSettings) -> Released:
     """Released beams of a device, or of one of another thickness and gap, on its ground."""
-    part, address, draw = opening.ground_of(device, met.laws), opening.addresses(settings), met.strips.in_row(device)
+    part, address, draw = (
+        opening.ground_of(device, ground.laws),
+        opening.addresses(settings),
+        ground.strips.in_row(device),
+    )
     arrested = opening.arrests(device, part, draw, settings.beams, address)
-    return released(device, met, arrested, opening.reach(device, part, draw, arrested, address))
+    return released(device, ground, arrested, opening.reach(device, part, draw, arrested, address))
 
 
-def released(device: DesignedBeam, met: Ground, arrested: np.ndarray, reach: float) -> Released:
+def released(device: DesignedBeam, ground: Ground, arrested: np.ndarray, reach: float) -> Released:
     """Released beams of a device from their arrested lengths (n,) and the longest simulated one [m]."""
-    sampled, (part, _) = met.strips.sampled, opening.ground_of(device, met.laws)
+    sampled, (part, _) = ground.strips.sampled, opening.ground_of(device, ground.laws)
     on_mean = partial(device.opening.length_on_mean, beam=device.beam)
     surfaces = sampled_surfaces(sampled, device.opening.contribution, on_mean, device.opening.uniform(part, sampled))
     return Released(
         device,
         arrested,
         reach,
-        foundation_length(device.beam, met.laws),
-        surfaces.with_errors(*_errors_of_change(met.strips.change, sampled, device)),
-        None if met.tips is None else arcs.longest_free(*met.tips, device.beam),
+        foundation_length(device.beam, ground.laws),
+        surfaces.with_errors(*_errors_of_change(ground.strips.change, sampled, device)),
+        None if ground.tips is None else arcs.longest_free(*ground.tips, device.beam),
     )
 
 

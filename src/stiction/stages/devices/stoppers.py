@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -49,7 +49,7 @@ class Settings:
     seed: int
     water: Water
     contact: tuple[float, float]  #: sides of the patch [m]
-    restoring_force: float  #: [N]
+    restoring_force: float = field(default=np.nan, kw_only=True)  #: of its spring, NaN without one [N]
     humidities: tuple[float, ...]  #: of the device [-]
     worst_humidities: tuple[float, float]  #: ends of the fine axis along which the worst humidity is sought [-]
 
@@ -162,7 +162,7 @@ def _statistics(settings, pull_off):
 
 @dataclass(frozen=True)
 class Dimples:
-    """Everything that the forces of rows of dimples depend on apart from the contact of one."""
+    """Settings of the forces of rows of dimples, without the contact of one."""
 
     water: Water
     humidity: float  #: [-]
@@ -299,6 +299,8 @@ def stuck_with_band(pull_off: np.ndarray, force: float, change: Change) -> list[
 
     The ends are those at forces that are smaller and larger by as much as their common relative error allows.
     """
+    if np.isnan(force):
+        return [np.nan] * 3
     factor = np.exp(_error_at(force, pull_off, change) * ndtri((1 + CONFIDENCE) / 2))
     estimate, low, high = (
         stuck_patches(pull_off, np.array([force]) * each)[k] for k, each in enumerate((1.0, factor, 1 / factor))

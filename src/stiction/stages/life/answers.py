@@ -69,11 +69,13 @@ def layout(answers: Sequence[Answer], of: Stated, length: float = np.nan) -> xr.
     """Dataset of the answers about a device; ``length`` is that at which a beam is asked for voltage and shock [m]."""
     columns = dict(zip(Answer._fields, zip(*answers, strict=True), strict=True))
     numbers = {"low": "at least", "high": "at most", "error": "standard uncertainty"}
+    shock = {"shock": ((), of.shock, {"units": "m s-2"})} if of.shock else {}
     return xr.Dataset(
         {name: ("answer", list(columns[name])) for name in _TEXTS[1:]}
         | {name: ("answer", list(columns[name]), {"long_name": text}) for name, text in numbers.items()}
         | {"length": ((), length, {"units": "m"}), "touchdowns": ((), of.touchdowns, {"units": "1"})}
-        | {"potential": ((), of.potential, {"units": "V"})},
+        | {"potential": ((), of.potential, {"units": "V"})}
+        | shock,
         coords={"answer": list(columns["name"])},
     )
 

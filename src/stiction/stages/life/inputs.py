@@ -42,6 +42,7 @@ class Stated:
     voltage: float = 0.0  #: [V]
     offset: float = 0.0  #: by charge and contact potential [V]
     dielectric: Dielectric | None = None
+    shock: float = 0.0  #: peak [m s⁻²]
 
     @property
     def capacitor(self) -> Capacitor | None:
@@ -114,4 +115,5 @@ class OfStopper(Stated):
     stiffness: float = 0.0  #: of its spring [N m⁻¹]
     gap: float = 0.0  #: way to the contact [m]
     mass: float = 0.0  #: that moves [kg]
+    unasked: tuple[str, ...] = ()  #: keys that say nothing about it
     electrode: Electrode | None = None

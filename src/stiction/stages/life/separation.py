@@ -33,7 +33,7 @@ from stiction.stages.devices.opening import DesignedBeam
 
 @dataclass(frozen=True)
 class OfStopper:
-    """Everything that a fast separation of a stopper depends on apart from its contacts."""
+    """Settings of the fast separation of a stopper, without its contacts."""
 
     water: Water
     contact: tuple[float, float]  #: sides of the patch [m]
@@ -41,7 +41,7 @@ class OfStopper:
 
 @dataclass(frozen=True)
 class InAir:
-    """Everything that one of strips or of tips depends on apart from their contact."""
+    """Settings of the fast separation of strips or tips, without their contact."""
 
     water: Water
     humidity: float  #: [-]

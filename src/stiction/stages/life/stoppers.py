@@ -53,7 +53,7 @@ def stopper_answers(
 
 
 def stopper_unknown(answers: Sequence[Answer], of: OfStopper, share: float) -> list[Answer]:
-    """Rows for everything that a stopper does not say, with the keys that say it.
+    """Rows for everything that a stopper does not say, with the keys that say it, first the one of it alone.
 
     ``share`` is the largest fraction of stuck stoppers that its forces are asked for.
     """
@@ -66,7 +66,7 @@ def stopper_unknown(answers: Sequence[Answer], of: OfStopper, share: float) -> l
         (Name.RESTORING, FREE, "restoring force that frees nearly all", "N", samples),
         (Name.FREED, FREE, "shock that frees nearly all", "m s-2", samples if of.mass else "mass_ng"),
     )
-    return shared.missing(answers, rows)
+    return shared.missing(answers, [row for row in rows if not row[-1].startswith(of.unasked)])
 
 
 def stopper_moved(of: OfStopper) -> list[Answer]:

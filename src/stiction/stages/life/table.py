@@ -36,6 +36,7 @@ def _settings(plan, at):
     usual = {name: {"surface_tension_mN_per_m": from_si(tension, "mN_per_m")} for name, tension in LIQUIDS.items()}
     own |= {"liquids": usual | plan.config.get("liquids", {})} | own_section(plan, at.device)
     own |= {"density_kg_per_m3": plan.materials.density(own["pair"])}
+    own |= {"unasked": keys} if (keys := plan.devices.kind(at.device).unasked) else {}
     return {release.name: select(_OF_RELEASE[release.name][0], own)}
 
 

@@ -1,0 +1,1 @@
+"""Estimates at once beside the lengths of a run, as data."""

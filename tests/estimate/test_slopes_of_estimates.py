@@ -1,0 +1,60 @@
+"""Slopes of the estimate beside those that the run of a cantilever computed for its tips."""
+
+import csv
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from stiction.config.reading import read
+from stiction.estimate.answer import in_one_air
+from stiction.estimate.question import questions
+from stiction.estimate.table import content, known
+
+ROOT = Path(__file__).parents[2]
+AIRS = (0.44, 0.67, 0.92)
+#: Half of the step of a difference.
+STEP = 0.01
+
+
+def computed(air, held_by="tip"):
+    """Slopes of the logarithm of the length of C1 with their standard errors, by input."""
+    with (ROOT / "docs" / "tables" / "budget.csv").open(encoding="utf-8", newline="") as file:
+        rows = [row for row in csv.DictReader(file) if (row["device"], row["part"]) == ("C1", "input")]
+    of = [row for row in rows if row["held_by"] == held_by and float(row["relative_humidity"]) == air]
+    return {row["name"]: (float(row["slope"]), float(row["slope_se"])) for row in of}
+
+
+def estimated(air):
+    """Slopes of the estimate, relative ones but for that by humidity."""
+    asked = replace(questions(read(ROOT / "examples" / "devices.yaml"), content())["C1"], touchdowns=1)
+
+    def logarithm(moved, change):
+        """Logarithm of the length with one input changed."""
+        factor, (table, *processes) = math.exp(change), known()
+        stiff = table | {"modulus": factor * table["modulus"]} if moved == "Young's modulus" else table
+        sizes = {moved: factor * getattr(asked, moved)} if moved in ("thickness", "gap") else {}
+        wet = air + (change if moved == "humidity" else 0.0)
+        return math.log(in_one_air(replace(asked, **sizes), wet, [1e-3], stiff, *processes)[0].length)
+
+    inputs = ("thickness", "gap", "Young's modulus", "humidity")
+    return {name: (logarithm(name, STEP) - logarithm(name, -STEP)) / (2 * STEP) for name in inputs}
+
+
+@pytest.mark.parametrize("air", AIRS)
+def test_thickness_and_gap_act_by_one_stiffness_in_the_estimate_and_in_tips_of_the_run(air):
+    own, run, beam = estimated(air), computed(air), computed(air, "beam")
+    assert own["gap"] == pytest.approx(1 - 2 / 3 * own["thickness"], abs=1e-3)
+    (thick, thick_se), (gap, gap_se) = run["thickness"], run["gap"]
+    assert abs(gap - (1 - 2 / 3 * thick)) < 4 * math.hypot(gap_se, 2 / 3 * thick_se)
+    assert own["thickness"] == pytest.approx(thick, abs=0.1)
+    assert own["thickness"] != pytest.approx(beam["thickness"][0], abs=0.1), "the control: cracks follow another power"
+
+
+def test_the_estimate_replaces_no_budget_as_the_docs_say():
+    own, run = estimated(0.92), computed(0.92)
+    ratios = {name: own[name] / run[name][0] for name in ("humidity", "Young's modulus")}
+    assert 1.25 < ratios["humidity"] < 1.4
+    assert 1 / 1.4 < ratios["Young's modulus"] < 1 / 1.25
+    assert abs(own["Young's modulus"] - run["Young's modulus"][0]) > 4 * run["Young's modulus"][1]
