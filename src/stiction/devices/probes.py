@@ -42,7 +42,7 @@ def counted(share: float | np.ndarray, places: int, scores: float | np.ndarray) 
 
     Examples
     --------
-    >>> counted(0.0, 600, np.array([-1.96, 1.96])).round(4), counted(0.5, 100, 0.0).round(12)
+    >>> counted(0.0, 600, np.array([-1.96, 1.96])).round(4), float(counted(0.5, 100, 0.0))
     (array([0.    , 0.0042]), 0.5)
     """
     found = betaincinv(places * share + 0.5, places * (1 - share) + 0.5, ndtr(scores))

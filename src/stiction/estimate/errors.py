@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 from scipy.optimize import minimize_scalar
-from scipy.stats import beta
+from scipy.special import betaincinv
 
 from stiction.estimate.answer import difficulty
 from stiction.estimate.design import Point
@@ -106,5 +106,5 @@ def coverage(inside: int, number: int, confidence: float = 0.95) -> tuple[float,
     [0.555, 0.997]
     """
     tail, out = (1 - confidence) / 2, number - inside
-    low = float(beta.ppf(tail, inside, out + 1)) if inside else 0.0
-    return low, float(beta.ppf(1 - tail, inside + 1, out)) if out else 1.0
+    low = float(betaincinv(inside, out + 1, tail)) if inside else 0.0
+    return low, float(betaincinv(inside + 1, out, 1 - tail)) if out else 1.0

@@ -6,6 +6,8 @@ humidities, are in `stiction.config.cases`.
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import cached_property
+from itertools import chain
 from typing import Any
 
 from stiction.config.cases import TOO_LITTLE, PairInAir
@@ -134,12 +136,33 @@ class Environment:
 
     def temperature(self, pair: str, humidity: float) -> float:
         """Temperature of the water of a pair at a humidity: that of a condition of its devices where they stick [K]."""
-        own = temperatures(self.config, PairInAir(pair).pair) if self.of_devices else {}
+        own = self._temperatures.get(PairInAir(pair).pair, {}) if self.of_devices else {}
         return own.get(humidity, self.config["water"]["temperature_K"])
+
+    @cached_property
+    def _on_pairs(self):
+        """Devices by pair and name."""
+        found = {}
+        for name, device in self.config.get("devices", {}).items():
+            found.setdefault(device["pair"], {})[name] = device
+        return found
+
+    @cached_property
+    def _temperatures(self):
+        """Temperatures of the water in conditions of devices, by pair and humidity [K]."""
+        return {pair: temperatures({"devices": devices}, pair) for pair, devices in self._on_pairs.items()}
+
+    @cached_property
+    def _airs(self):
+        """Humidities of devices in humid air, by pair."""
+        return {
+            pair: set(humid(chain.from_iterable(device["humidities"] for device in devices.values())))
+            for pair, devices in self._on_pairs.items()
+        }
 
     def _warmer(self, contact):
         """How much warmer the water of a pair is in conditions of its devices."""
-        own = temperatures(self.config, PairInAir(contact).pair) if self.of_devices else {}
+        own = self._temperatures.get(PairInAir(contact).pair, {}) if self.of_devices else {}
         differences = {Air(air).name: round(at - self.config["water"]["temperature_K"], 6) for air, at in own.items()}
         warmer = {air: differences[air] for air in sorted(differences) if differences[air]}
         return {"warmer_K": warmer} if warmer else {}
@@ -149,9 +172,7 @@ class Environment:
         pair, wetting = PairInAir(contact).pair, tuple(to_si(angle, "deg") for angle in angles)
         if not (self.of_devices and is_wetted(wetting)):
             return {}
-        on_pair = [device for device in self.config.get("devices", {}).values() if device["pair"] == pair]
-        airs = humid([air for device in on_pair for air in device["humidities"]])
-        thin = [air for air in airs if air < least_humidity(self.temperature(pair, air), wetting)]
+        thin = [air for air in self._airs.get(pair, ()) if air < least_humidity(self.temperature(pair, air), wetting)]
         return {"bounded": True} if thin else {}
 
     def across_gaps(self, contact: str) -> dict[str, Any]:

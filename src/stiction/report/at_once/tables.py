@@ -13,7 +13,7 @@ from stiction.plan.names import by_name
 from stiction.report.format import MISSING, UM, airs, with_error
 from stiction.report.page import Page, Section
 from stiction.report.table import DEVICE, HUMIDITY, Table, table_stage, with_list
-from stiction.stages.at_once.beside import CONFIDENCE, estimated
+from stiction.stages.at_once.beside import CONFIDENCE, estimated, is_estimated
 
 _CAPTION = (
     "Lengths at which a fraction sticks, by beam or tip: of the run with its standard error, and of stiction "
@@ -112,7 +112,7 @@ def section(dataset: xr.Dataset) -> Section:
 
 def inputs(plan: Any, device: str) -> dict[str, str]:
     """Dataset of a device of a kind that the estimate knows, as input of its page."""
-    return {"estimate": f"devices/estimate/{device}"} if device in estimated(plan) else {}
+    return {"estimate": f"devices/estimate/{device}"} if is_estimated(plan, device) else {}
 
 
 def with_estimate(page: Page, data: Mapping[str, Any]) -> Page:

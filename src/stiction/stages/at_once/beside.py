@@ -117,8 +117,12 @@ def _inputs_of(asked):
 
 def estimated(plan: Any) -> list[str]:
     """Devices of a kind that the estimate knows: with a tip, in humid air."""
-    sections = plan.devices.sections
-    return [name for name in plan.devices.with_tips if humid(sections[name]["humidities"])]
+    return [name for name in plan.devices.sections if is_estimated(plan, name)]
+
+
+def is_estimated(plan: Any, device: str) -> bool:
+    """Whether a device is of a kind that the estimate knows."""
+    return plan.devices.kind(device).has_tip and bool(humid(plan.devices.sections[device]["humidities"]))
 
 
 def _settings(plan, at):
