@@ -221,7 +221,8 @@ def with_discrepancy(
     (n, k + 2 + m) array
     """
     rests = [one for one in dict.fromkeys(conditions) if one is not None]
-    has_rest = np.array([[one == other for other in rests] for one in conditions], float).reshape(-1, len(rests))
+    has_rest = np.array([[one == other for other in rests] for one in conditions], float)
+    has_rest = has_rest.reshape(len(conditions), len(rests))
     errs = np.array([one is not None for one in conditions], float)
     variances = np.array([stated.factor, stated.slope, *[stated.rest] * len(rests)]) ** 2
     mean = np.concatenate([prior.mean, np.zeros(len(variances))])

@@ -208,3 +208,20 @@ def test_pages_state_the_forces_beside_the_computed_ones():
     assert "pull-off forces say nothing about it" in tables_test_beams.notes(found)
     assert {one.kind for one in tables_test_beams.warnings(found)} == {"beyond_humidities_of_test_beams"}
     assert figures_test_beams.test_beams(found).axes
+
+
+def test_a_stopper_takes_forces_of_a_probe_without_any_beam_and_no_further_ones_are_named():
+    budgets, stopper = of_probe()
+    coords = {"humidity": [0.67], "share": [0.01], "part": ["safe", "estimate", "error"]}
+    safe = xr.DataArray(np.full((3, 1, 1), 37e-6), coords=coords, dims=("part", "humidity", "share"))
+    places = (("humidity", "sample"), [30e-6 * np.linspace(0.8, 1.2, 50)])
+    predicted = xr.Dataset({"safe_force": safe, "pull_off": places, "restoring_force": 33e-6})
+    own = {("S1", 0.67): budget(30e-6, [POWER[0.67], 2.0], FORCE, "N")}
+    data = measured({0.45: 1.5 * forces_of(100)})
+    settings = Settings(0, Discrepancy(0.1, 0.3, 0.05), {}, {}, {}, None, {"Day": data})
+    found = with_reruns(inference.compute(own, budgets, predicted, {}, {}, settings, forces={"Day": stopper}))
+    assert float(found.result_shift[0]) > 0
+    assert float(found.updated_safe.isel(share=0).squeeze()) > 37e-6
+    assert_allclose(found.result_before, found.result_of_inputs, rtol=1e-12)
+    assert tables_test_beams.beams_to_add(found) == ""
+    assert "S1: \n" not in tables_test_beams.test_beams({"S1": found}).caption + "\n"
