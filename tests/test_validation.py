@@ -20,6 +20,7 @@ ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "examples" / "validation"))
 import comparison  # noqa: E402
 import experiment  # noqa: E402
+import figure  # noqa: E402
 import prediction  # noqa: E402
 
 sys.path.remove(str(ROOT / "examples" / "validation"))
@@ -286,3 +287,19 @@ def test_quantiles_of_a_crack_length_are_ends_of_the_intervals_of_table_3():
 def test_assumed_inputs_are_evenly_spread(film):
     humidities = sorted(each["humidity"] for each in prediction.assumed(film, 64))
     assert_allclose(humidities, 0.4 + 0.1 * (np.arange(64) + 0.5) / 64, atol=0.1 / 32)
+
+
+def test_the_figure_counts_what_the_table_counts_and_its_rows_fall_from_above_the_prediction_to_below():
+    frame = pd.read_csv(ROOT / "docs" / "tables" / "validation.csv", comment="#")
+    panels = figure.drawn(frame).axes
+    titles = [panel.get_title(loc="left").split("\n")[1] for panel in panels]
+    known = frame[frame.predicted.notna()]
+    found = [[int(number) for number in re.findall(r"\d+", title)] for title in titles]
+    measured, bounds = known[known.value.notna()], known[known.value.isna()]
+    assert [sum(one[k] for one in found) for k in (0, 1)] == [measured.inside.sum(), len(measured)]
+    assert [sum(one[k] for one in found if len(one) > 2) for k in (2, 3)] == [bounds.inside.sum(), len(bounds)]
+    for panel in panels:
+        marks = [line.get_xdata()[0] for line in panel.lines if len(line.get_xdata()) == 1]
+        names = [name.get_text() for name in panel.get_yticklabels()]
+        assert len(marks) == len(names) == len(set(names))
+        assert marks == sorted(marks, reverse=True)

@@ -9,12 +9,13 @@ from pathlib import Path
 
 import pandas as pd
 
+from stiction.contact.air import Air
 from stiction.report.format import number, with_error
-from stiction.report.style import SINGLE, humidity_axis, panels, save, styled
+from stiction.report.style import INTERVAL, SINGLE, handles, legend_outside, panels, save, styled
 from stiction.report.table import Table
 
 #: Predictions by the columns of the table: words, colour and shift in the figure.
-PREDICTIONS = {"before": ("without test beams", "0.6", -0.004), "after": ("with test beams", "#0072B2", 0.004)}
+PREDICTIONS = {"before": ("without test beams", "0.6", -0.14), "after": ("with test beams", "#0072B2", 0.14)}
 
 
 def main(folder):
@@ -60,17 +61,20 @@ def written(lengths):
 
 @styled
 def drawn(lengths):
-    """Predicted and true crack lengths over the humidity."""
-    figure, ((panel,),) = panels(1, 1, (SINGLE, 2.6))
-    panel.plot(lengths.humidity, lengths.true_um, color="black", marker="s", linestyle="", label="truth")
-    for name, (words, colour, shift) in PREDICTIONS.items():
-        deviation = 1.96 * lengths[f"{name}_std_um"]
-        panel.errorbar(
-            lengths.humidity + shift, lengths[f"{name}_um"], deviation, fmt="o", color=colour, label=f"{words}, 95 %"
-        )
-    panel.set(xlabel="relative humidity [–]", ylabel="crack length $l_s$ [µm]")
-    panel.legend()
-    humidity_axis(panel)
+    """Predicted and true crack lengths, a row for each humidity, which ends with half the widths of the intervals."""
+    figure, ((panel,),) = panels(1, 1, (SINGLE, 0.9 + 0.5 * len(lengths)))
+    for place, row in enumerate(lengths.itertuples()):
+        widths = [INTERVAL * getattr(row, f"{name}_std_um") for name in PREDICTIONS]
+        for (name, (words, colour, shift)), width in zip(PREDICTIONS.items(), widths, strict=True):
+            style = {"fmt": "o", "color": colour, "label": "_" if place else f"{words}, 95 %"}
+            panel.errorbar(getattr(row, f"{name}_um"), place + shift, xerr=width, **style)
+        panel.plot([row.true_um] * 2, [place - 0.3, place + 0.3], color="black", label="_" if place else "truth")
+        text = f"± {' → ± '.join(f'{width:.0f}' for width in widths)} µm"
+        panel.text(0.99, place - 0.36, text, transform=panel.get_yaxis_transform(), ha="right", va="center", fontsize=7)
+    panel.set(xlabel="crack length $l_s$ [µm]", ylim=(len(lengths) - 0.5, -0.6))
+    panel.set_yticks(range(len(lengths)), [Air(humidity).words for humidity in lengths.humidity])
+    panel.tick_params(axis="y", length=0)
+    legend_outside(figure, handles(panel), "lower", 3)
     return figure
 
 

@@ -140,12 +140,16 @@ def test_equal_data_give_equal_files(tmp_path):
 
 def heights(panel):
     """Ordinates of the curves of a panel that have a marker."""
-    return [line.get_ydata() for line in panel.get_lines() if line.get_marker() not in ("None", "_", "|")]
+    return [line.get_ydata() for line in panel.get_lines() if line.get_marker() not in ("None", "_", "|", "1", "2")]
 
 
 def test_figure_13_shows_slopes_and_published_values():
     panel = figures_studies.sensitivities({("b", "rms"): sensitivity(-6.0)}, {("b", "rms", 0.5): -6.5}).axes[0]
     assert [list(np.atleast_1d(y)) for y in heights(panel)] == [[-6.0, -6.0], [-6.5]]
+    sides = {line.get_marker(): list(line.get_ydata()) for line in panel.get_lines() if line.get_marker() in ("1", "2")}
+    np.testing.assert_allclose([sides["1"], sides["2"]], -6 * np.array([[1.5, 1.2], [0.7, 0.9]]))
+    names = [text.get_text() for text in panel.figure.legends[0].get_texts()]
+    assert names == [f"one-sided slopes of the mean: moment {side}" for side in ("lower", "higher")]
 
 
 def bars(panel):

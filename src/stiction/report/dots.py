@@ -31,22 +31,25 @@ class Mark:
     filled: bool = True
 
 
-def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, in_column: bool = False) -> None:
+def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, column: str | None = None) -> None:
     """Draw the marks of each row by its label, from top to bottom. What a panel already shows stays within its axis.
 
-    Numbers are beside their marks, or ``in_column`` at the right end of the panel.
+    Numbers are beside their marks, or in a ``column`` below its name at the right end of the panel.
     """
+    in_column = {"xycoords": panel.get_yaxis_transform(), "xytext": (-2, 0), "ha": "right", **_NUMBER}
     for place, marks in enumerate(rows.values()):
         panel.axhline(place, color="0.9", linewidth=0.6, zorder=0)
         for mark in marks:
             _draw(panel, place, mark)
-            if in_column:
-                panel.annotate(mark.text, (1, place), (-2, 0), panel.get_yaxis_transform(), ha="right", **_NUMBER)
+            if column is not None:
+                panel.annotate(mark.text, (1, place), **in_column)
             else:
                 panel.annotate(mark.text, (mark.high + mark.error, place), (6, 0), **_NUMBER)
     panel.set_yticks(range(len(rows)), list(rows))
     panel.tick_params(axis="y", length=0)
-    panel.set_ylim(len(rows) - 0.4, -0.6)
+    panel.set_ylim(len(rows) - 0.4, -0.6 - bool(column))
+    if column:
+        panel.annotate(column, (1, -1), **in_column)
     _set_ends(panel, max((len(mark.text) for marks in rows.values() for mark in marks), default=0))
 
 

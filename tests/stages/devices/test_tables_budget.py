@@ -148,18 +148,22 @@ def drawn(panel):
     return [text.get_text() for text in panel.get_yticklabels()], panel.patches
 
 
-def test_bars_of_a_budget_are_shares_of_the_variance_below_the_total_the_largest_first():
+def test_bars_of_a_budget_are_shares_of_the_variance_and_total_and_scatter_are_above_them():
     figure = figures_budget.budget(BEAMS)
     measured, chosen = figure.axes
     names, bars = drawn(measured)
     heights, thickness = 6e-4, 0.64e-4  # variances at the first humidity
-    totals = "± " + ", ".join(f"{100 * scale * np.sqrt(heights + thickness):.2g}" for scale in (2, 1)) + " %"
-    assert names == [f"total\n{totals}", "heights of B2", "thickness", "scatter between devices\n± 1.4, 1.4 %"]
-    shares = [[100] * 2, [100 * heights / (heights + thickness)] * 2, [100 * thickness / (heights + thickness)] * 2]
-    assert_allclose(np.reshape([bar.get_width() for bar in bars[:6]], (3, 2)), shares, rtol=1e-9)
+    assert names == ["heights of B2", "thickness"]
+    shares = [[100 * heights / (heights + thickness)] * 2, [100 * thickness / (heights + thickness)] * 2]
+    assert_allclose(np.reshape([bar.get_width() for bar in bars], (2, 2)), shares, rtol=1e-9)
     assert {bar.get_x() for bar in bars} == {0}
     middles = [bar.get_y() + bar.get_height() / 2 for bar in bars]
-    assert_allclose(np.reshape(middles, (4, 2)).mean(axis=1), range(4), atol=1e-12)
+    assert_allclose(np.reshape(middles, (2, 2)).mean(axis=1), range(2), atol=1e-12)
+    totals = ", ".join(f"{100 * scale * np.sqrt(heights + thickness):.2g}" for scale in (2, 1))
+    assert measured.get_title(loc="left").split("\n")[-2:] == [
+        f"total ± {totals}\u00a0%",
+        "devices scatter ± 1.4, 1.4\u00a0%",
+    ]
     names, bars = drawn(chosen)
     assert names == ["van der Waals in dry gaps"]
     assert_allclose([bars[0].get_x(), bars[0].get_x() + bars[0].get_width()], [-4.2, 0], atol=1e-12)
@@ -170,7 +174,7 @@ def test_bars_of_a_budget_are_shares_of_the_variance_below_the_total_the_largest
 
 def test_beam_and_tip_have_panels_of_their_own():
     figure = figures_budget.budget(BEAMS | {("C1", rh, "tip"): budget_dataset(0.5, TIPS) for rh in (0.44, 0.67)})
-    titles = [panel.get_title(loc="left").replace("\n", " ") for panel in figure.axes]
+    titles = [panel.get_title(loc="left").partition("\ntotal")[0].replace("\n", " ") for panel in figure.axes]
     assert titles[::2] == [
         "(a) mean length at which beams stick (S-shape)",
         "(c) length that 1 in 1000 tips hold (arc)",
@@ -179,18 +183,34 @@ def test_beam_and_tip_have_panels_of_their_own():
     assert [text.get_text() for text in legend.get_texts()] == ["RH 0.44", "RH 0.67"]
 
 
-def test_text_of_a_budget_can_be_read_on_a_phone_and_no_bar_ends_at_the_axis_without_its_number():
-    """A share of scatter beyond the axis is written out; one on the axis is not."""
+def test_text_of_a_budget_can_be_read_on_a_phone():
     figure = figures_budget.budget(BEAMS)
-    measured = figure.axes[0]
-    smallest = min(text.get_fontsize() for text in measured.get_yticklabels())
+    smallest = min(text.get_fontsize() for text in figure.axes[0].get_yticklabels())
     assert smallest / 72 * 390 / figure.get_figwidth() > 11  # pixels if the figure is 390 pixels wide
-    assert not measured.texts
-    wide = {key: one.assign(scatter=10 * one.scatter) for key, one in BEAMS.items()}
+
+
+def test_errors_of_shares_end_at_none_and_at_all_of_the_variance_and_no_bar_is_cut():
+    wide = {key: one.assign(slope_error=50 + one.slope_error) for key, one in BEAMS.items()}
     measured = figures_budget.budget(wide).axes[0]
-    shares = [bar.get_width() for bar in measured.patches[-2:]]
-    assert min(shares) > measured.get_xlim()[1]
-    assert [text.get_text() for text in measured.texts] == ["{:.0f}, {:.0f} %".format(*shares)]
+    ends = [line for held in measured.containers if hasattr(held, "has_xerr") for line in held[2][0].get_segments()]
+    assert_allclose([line[:, 0] for line in ends], [[0, 100]] * 4, atol=1e-9)
+    assert measured.get_xlim() == (0, 100)
+    covariance = BEAMS["C1", 0.67].covariance.copy()
+    deviations = np.sqrt(np.diag(covariance))
+    covariance[...] = covariance - 0.3 * np.outer(deviations, deviations) * (1 - np.eye(3))
+    measured = figures_budget.budget({("C1", 0.67): BEAMS["C1", 0.67].assign(covariance=covariance)}).axes[0]
+    longest = max(bar.get_width() for bar in measured.patches)
+    assert 100 < longest <= measured.get_xlim()[1]
+
+
+@pytest.mark.parametrize(("factors", "names"), [([0.1, 0.1], ["thickness", "others"]), ([1, 0.1], None)])
+def test_measurements_that_are_small_in_all_airs_share_a_row_and_a_single_one_keeps_its_own(factors, names):
+    one = BEAMS["C1", 0.67].assign(group=("input", ["the gap", "the humidity", "the thickness"]))
+    covariance = one.covariance * np.eye(3)
+    one = one.assign(covariance=covariance, slope=one.slope * [*factors, 5])
+    rows, bars = drawn(figures_budget.budget({("C1", 0.67): one}).axes[0])
+    assert rows == (names or ["thickness", "gap", "humidity"])
+    assert_allclose(sum(bar.get_width() for bar in bars), 100)
 
 
 def test_six_humidities_fit_a_screen_with_bars_that_darken_and_do_not_meet():

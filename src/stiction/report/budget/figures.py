@@ -12,7 +12,7 @@ from stiction.contact.air import Air, is_humid
 from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import stuck_share
 from stiction.plan.names import by_name
-from stiction.report.budget.tables import SCATTER, TOTAL, choice_label, response_text
+from stiction.report.budget.tables import choice_label, response_text
 from stiction.report.format import TO_UN, number
 from stiction.report.limits import words
 from stiction.report.style import (
@@ -39,12 +39,14 @@ from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, slo
 
 _COLOUR = "#0072B2"
 #: Heights of a row of a budget, of everything else in its panel, and of the legend [in]; share of a row with bars.
-_ROW, _AROUND, _LEGEND, _FILLED = 0.22, 0.62, 0.3, 0.8
-#: Right end of the axis of shares of the variance [%]. The scatter between devices may be beyond it.
-_WIDEST = 110
-_SHARES = "share of the variance [%]"
+_ROW, _AROUND, _LEGEND, _FILLED = 0.17, 0.62, 0.3, 0.8
+#: All of the variance, and the share [%] below which measurements are in one row.
+_ALL, _SMALL = 100, 2
+_SHARES, _OTHERS = "share of the variance [%]", "others"
 #: Width of a budget [in], and most characters of a line of its titles: 7 points of 390 pixels are 11 pixels.
 _WIDTH, _TITLE = 3.3, 38
+#: Height of each further line of a title [in].
+_LINE = 0.15
 
 
 # Stoppers
@@ -135,7 +137,7 @@ def _force_over_humidity(panel, dataset):
 
 @styled
 def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
-    """Share of each measurement in the variance of a device, below their total. Below it, choices of the model.
+    """Share of each measurement in the variance of a device, below its total in words. Below it, choices of the model.
 
     The budgets are by device, humidity and, for those of tips, ``tip``. All panels are below each other, as wide as a
     column of a journal, so that their text can be read on a phone.
@@ -145,14 +147,12 @@ def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
         parts.setdefault(response_text(dataset), {})[humidity] = dataset
     colours = humidity_colours(humidity for _, humidity, *_ in budgets)
     contents = [content for text, cases in parts.items() for content in _contents(text, cases)]
-    heights = [_ROW * len(rows) + _AROUND for *_, rows in contents]
+    heights = [_ROW * len(rows) + _AROUND + _LINE * title.count("\n") for title, *_, rows in contents]
     figure, axes = panels(len(contents), 1, (_WIDTH, sum(heights) + _LEGEND), height_ratios=heights)
     for panel, (_, label, cases, rows) in zip(axes.flat, contents, strict=True):
-        _rows_of_bars(panel, rows, [colours[humidity] for humidity in cases])
+        _rows_of_bars(panel, rows, [colours[humidity] for humidity in cases], of_all=label == _SHARES)
         panel.set_xlabel(label)
-        if label == _SHARES:
-            _end(panel, rows)
-    letter(axes, [textwrap.fill(title, _TITLE) for title, *_ in contents])
+    letter(axes, [title for title, *_ in contents])
     marks = [Patch(color=colour, label=Air(humidity).words) for humidity, colour in colours.items()]
     legend_outside(figure, (marks, [mark.get_label() for mark in marks]), "lower", 8)
     return figure
@@ -160,47 +160,41 @@ def budget(budgets: Mapping[tuple, xr.Dataset]) -> Figure:
 
 def _contents(text, cases):
     """Title, label of the axis, budgets by humidity and rows of the panels of a response."""
-    yield text, _SHARES, cases, _measurements(cases)
+    yield (
+        "\n".join(textwrap.fill(line, _TITLE) for line in (text, *_in_words(cases))),
+        _SHARES,
+        cases,
+        _measurements(cases),
+    )
     if choices := _choices(cases):
         yield "choices of the model", "change [%]", cases, choices
 
 
-def _end(panel, rows):
-    """End the axis of shares of a panel, and write out the shares of rows that go on."""
-    for place, bars in enumerate(rows.values()):
-        shares = [high for _, high, _ in bars]
-        if any(share > _WIDEST for share in shares):
-            text = ", ".join(number(share, ".0f") for share in shares)
-            panel.text(_WIDEST - 2, place, f"{text} %", ha="right", va="center", fontsize=7, path_effects=OUTLINED)
-    panel.set_xlim(0, _WIDEST)
+def _in_words(cases):
+    """Sentences on total and scatter: standard uncertainties at all humidities."""
+    budgets = [budget_of(dataset) for dataset in cases.values()]
+    totals = [budget.effect(budget.names) for budget in budgets]
+    for name, found in (("total", totals), ("devices scatter", [float(one.scatter) for one in cases.values()])):
+        yield f"{name} ± {', '.join(number(100 * one, '#.2g').rstrip('.') for one in found)}\u00a0%"
 
 
 def _measurements(cases):
-    """Rows of the total, of all measurements, the largest first, and of the scatter: name to bars [%] by humidity."""
-    budgets = [(budget_of(dataset), slope_errors_of(dataset)) for dataset in cases.values()]
+    """Rows of all measurements, the largest first, and of small ones together: name to bars [%] by humidity."""
     groups = {name: inputs for dataset in cases.values() for name, inputs in groups_of(dataset).items()}
-    totals = [budget.effect(budget.names) for budget, _ in budgets]
-    rows = {
-        name: [_share(*budget, inputs, total) for budget, total in zip(budgets, totals, strict=True)]
-        for name, inputs in groups.items()
-    }
-    largest = sorted(groups, key=lambda name: -max(high for _, high, _ in rows[name]))
-    scatters = [float(dataset.scatter) for dataset in cases.values()]
-    above, below = ({_in_words(*row): _bars_of(row[1], totals)} for row in ((TOTAL, totals), (SCATTER, scatters)))
-    return above | {name.removeprefix("the "): rows[name] for name in largest} | below
+    rows = {name: _shares(cases, inputs) for name, inputs in groups.items()}
+    highest = {name: max(high for _, high, _ in bars) for name, bars in rows.items()}
+    small = [name for name, high in highest.items() if high < _SMALL]
+    together = small if len(small) > 1 else []
+    largest = sorted(set(groups) - set(together), key=lambda name: (-highest[name], list(groups).index(name)))
+    found = {name.removeprefix("the "): rows[name] for name in largest}
+    others = [entry for name in together for entry in groups[name]]
+    return found | ({_OTHERS: _shares(cases, others)} if together else {})
 
 
-def _bars_of(uncertainties, totals):
-    """Bars of some uncertainties as shares of the variance [%]."""
-    return [
-        (0.0, 100 * (one / total) ** 2 if total > 0 else 0.0, 0.0)
-        for one, total in zip(uncertainties, totals, strict=True)
-    ]
-
-
-def _in_words(name, uncertainties):
-    """Name of a row with its standard uncertainties at all humidities."""
-    return f"{name}\n± {', '.join(f'{100 * one:.2g}' for one in uncertainties)} %"
+def _shares(cases, inputs):
+    """Bars of some inputs by humidity."""
+    budgets = [(budget_of(dataset), slope_errors_of(dataset)) for dataset in cases.values()]
+    return [_share(budget, errors, inputs, budget.effect(budget.names)) for budget, errors in budgets]
 
 
 def _share(budget, slope_errors, inputs, total):
@@ -228,28 +222,31 @@ def _from_zero(dataset, choice):
     return (*sorted((0.0, 100 * float(of_choice.effect))), 100 * float(of_choice.effect_error))
 
 
-def _rows_of_bars(panel, rows: Mapping[str, Sequence[tuple]], colours: Sequence[np.ndarray]):
+def _rows_of_bars(panel, rows: Mapping[str, Sequence[tuple]], colours: Sequence[np.ndarray], *, of_all: bool = False):
     """Draw rows of bars (low, high, error) from top to bottom. The bars of a row are those of the humidities.
 
-    Bars that are not known are left out.
+    Bars that are not known are left out. Those ``of_all`` are shares, whose errors end where nothing and all are.
     """
-    widest = 0.0
+    ends = []
     for place, bars in enumerate(rows.values()):
         height = _FILLED / len(bars)
         for k, ((low, high, error), shade) in enumerate(zip(bars, colours, strict=True)):
             if not np.isfinite(high - low):
                 continue
             error = error if np.isfinite(error) else 0.0
-            widest = max(widest, -low + error, high + error)
+            end = high if high > -low else low
+            reach = [min(error, high), max(0.0, min(error, _ALL - high))] if of_all else [error, error]
+            ends += [abs(low), abs(high), abs(end) + reach[1]]
             at = place + (k - (len(bars) - 1) / 2) * height
             panel.barh(at, high - low, height, left=low, color=shade, linewidth=0)
             if error > 0:
-                panel.errorbar(high if high > -low else low, at, xerr=error, color="black", linewidth=0.6, capsize=1)
-    ends = 1.1 * (widest or 1.0)
+                panel.errorbar(end, at, xerr=np.c_[reach], color="black", linewidth=0.6, capsize=1)
+    widest = max(ends, default=0.0) or 1.0
     panel.axvline(0, color="black", linewidth=0.6)
     panel.set_yticks(range(len(rows)), list(rows))
     panel.tick_params(axis="y", length=0)
-    panel.set(ylim=(len(rows) - 0.4, -0.6), xlim=(-ends, ends))
+    xlim = (0, max(_ALL, widest)) if of_all else (-1.1 * widest, 1.1 * widest)
+    panel.set(ylim=(len(rows) - 0.4, -0.6), xlim=xlim)
 
 
 STAGES = (

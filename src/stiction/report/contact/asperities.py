@@ -197,7 +197,7 @@ def changes_drawn(frame: pd.DataFrame, full: Mapping[str, tuple[float, float]], 
     """
     lowest = frame[frame.relative_humidity == frame.groupby("pair").relative_humidity.transform("min")]
     pairs, most = frame.pair.unique(), len(frame[["reading", "spacing_nm"]].drop_duplicates())
-    height = dots.AROUND + _LEGEND + dots.ROW * (1 + most)
+    height = dots.AROUND + _LEGEND + dots.ROW * (2 + most)
     figure, columns, lines = columns_of_panels(len(pairs), 1, _width, height, sharey=True)
     titles = []
     for (panel,), pair in zip(columns, pairs, strict=True):
@@ -205,13 +205,17 @@ def changes_drawn(frame: pd.DataFrame, full: Mapping[str, tuple[float, float]], 
         base = of_pair.iloc[0]
         known = rows_of(published, pair=pair, relative_humidity=base.relative_humidity)
         length = base.crack_length_um / (1 + base.change_percent / 100)
-        dots.references(panel, length, _label(base), known)
+        dots.references(panel, length, f"base: {_label(base)}", known)
         change, error = full[pair]
         whole = dots.Mark(change, change, "black", dots.signed(change), error, "full elastic contact")
-        dots.draw(panel, _readings(of_pair) | {"full contact": [whole]}, in_column=True)
+        attraction = choice_label(f"van_der_waals_{base.vdw}").removeprefix("van der Waals ")
+        dots.draw(panel, _readings(of_pair) | {"full contact": [whole]}, column=attraction)
         panel.xaxis.set_major_locator(MaxNLocator(3))
         panel.set_xlabel("change of\n$l_s$ [%]")
         titles.append(f"pair {pair}\n{Air(base.relative_humidity).words}")
+    low, high = np.transpose([panel.get_xlim() for panel in columns.flat])
+    for panel in columns.flat:
+        panel.set_xlim(low.min(), high.max())
     letter_lines(lines, titles)
     legend_outside(figure, handles(*columns.flat), "lower", 2)
     return figure

@@ -7,7 +7,8 @@ import pandas as pd
 import xarray as xr
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.patches import Patch
+from matplotlib.lines import Line2D
+from matplotlib.transforms import offset_copy
 
 from stiction.analysis import convergence
 from stiction.analysis import variants as comparison
@@ -60,8 +61,12 @@ _LEGEND = 0.3
 
 #: What the sensitivities are of.
 _STATISTICS = ("mean", "standard deviation")
-#: Entry of the legend for the bands.
-_BAND = {"color": "0.8", "label": "between the slopes to less and to more of the moment"}
+#: Ticks at the slopes to less and to more of the moment, and their distance from their humidity [in].
+_ASIDE = 0.08
+_SIDES = {
+    "one-sided slopes of the mean: moment lower": {"marker": "1", "linestyle": "", "markersize": 6},
+    "one-sided slopes of the mean: moment higher": {"marker": "2", "linestyle": "", "markersize": 6},
+}
 
 
 @styled
@@ -78,7 +83,8 @@ def sensitivities(
         of_pair = {moment: dataset for (name, moment), dataset in datasets.items() if name == pair}
         _slopes_of_pair(axes, of_pair, {tuple(at): slope for (name, *at), slope in published.items() if name == pair})
     names = [f", pair {pair}" for pair in pairs] if len(pairs) > 1 else [""]
-    legend_outside(figure, ([Patch(**_BAND)], [_BAND["label"]]), "lower", 1)
+    marks = [Line2D([], [], color="0.3", **style) for style in _SIDES.values()]
+    legend_outside(figure, (marks, list(_SIDES)), "lower", 2)
     letter(lines, [rf"{statistic} of $\bar e${name}" for name in names for statistic in _STATISTICS])
     return figure
 
@@ -93,7 +99,11 @@ def _slopes_of_pair(axes, datasets, published):
         panel.axhline(0, **_ZERO)
         panel.set(xlabel="relative humidity [–]", ylabel="normalised sensitivity [–]")
     for k, dataset in enumerate(datasets.values()):
-        axes[0].fill_between(dataset.humidity, *dataset.difference.values, color=f"C{k}", alpha=0.15, linewidth=0)
+        for side, style, slopes in zip((-1, 1), _SIDES.values(), dataset.difference.values, strict=True):
+            place = offset_copy(axes[0].transData, axes[0].figure, side * _ASIDE, 0)
+            axes[0].plot(dataset.humidity, slopes, color=f"C{k}", transform=place, **style)
+            axes[0].update_datalim(np.c_[dataset.humidity, slopes])
+    axes[0].autoscale_view()
     for (moment, humidity), slope in published.items():
         k = list(datasets).index(moment)
         axes[0].plot(humidity, slope, marker(k), color=f"C{k}", markerfacecolor="none")
