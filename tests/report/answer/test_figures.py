@@ -95,13 +95,29 @@ def test_a_forbidden_number_is_not_drawn():
     assert [text.get_text() for text in panel.texts] == ["Do not rely on a number"]
 
 
+def beside(panel):
+    """Labels of the rows of a ladder."""
+    return [" ".join(text.get_text().split()) for text in panel.get_yticklabels()]
+
+
+@pytest.mark.parametrize(
+    ("size", "said"), [(20e-6, ["← yours: 20 µm"]), (900e-6, ["yours: 900 µm →"]), (250e-6, []), (np.nan, [])]
+)
+def test_a_stated_size_beyond_the_steps_is_named_at_the_edge(size, said):
+    panel = ladder(answered(size=size)).axes[0]
+    assert [text.get_text() for text in panel.texts] == said
+    dotted = [line.get_xdata()[0] for line in panel.lines if line.get_linestyle() == ":"]
+    assert dotted == pytest.approx([1e6 * size] if size == 250e-6 else [])
+
+
 def test_the_ladder_has_a_row_for_each_step_and_the_curve_beside_it():
     steps, stuck = ladder(answered()).axes
-    assert [text.get_text().partition(":")[0] for text in steps.texts] == [
-        "estimate",
-        "error of the simulation",
-        "uncertainty of the inputs",
+    assert beside(steps) == [
+        "estimate 160 µm",
+        "error of the simulation 155 µm (-10.0 %)",
+        "uncertainty of the inputs 140 µm (-10.0 %)",
     ]
+    assert not steps.texts, "nothing lies on bars and lines"
     assert "all airs, RH 0.92 decides" in lines_of(stuck)
 
 
@@ -110,6 +126,6 @@ def test_the_ladder_has_the_known_steps_alone(known):
     whole = answered()
     steps = tuple(replace(step, size=step.size if k < known else np.nan) for k, step in enumerate(whole.steps))
     panel = ladder(replace(whole, steps=steps, build=np.nan if known < 3 else whole.build)).axes[0]
-    assert len(panel.texts) == known
-    assert not any("nan" in text.get_text() for text in panel.texts)
+    assert len(beside(panel)) == known
+    assert not any("nan" in text for text in beside(panel))
     assert len(tables.steps(replace(whole, steps=steps))) == known

@@ -1,5 +1,6 @@
 """Pictures of answers: the steps from the estimate to the size to build, and P(stuck) around it."""
 
+import textwrap
 from collections.abc import Mapping
 
 import numpy as np
@@ -35,7 +36,9 @@ _INSIDE, _BESIDE = "#0072B2", "0.6"
 _ROW, _AROUND, _PANEL = 0.42, 1.3, 3.4
 #: Label of the axis of P(stuck), and its lower end over the allowed fraction.
 _STUCK, _LOWEST = "P(stuck) [–]", 1 / 30
-#: Place of the label of a step.
+#: Widest label of a step [characters].
+_WIDE = 26
+#: Place of the label of a fraction.
 _LABEL = {"xycoords": ("axes fraction", "data"), "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
 
 
@@ -51,24 +54,40 @@ def ladder(answer: Answer) -> Figure:
 
 
 def _steps(panel: Axes, answer):
-    """Steps from the estimate to the size to build, one row each, with its size and change."""
+    """Steps from the estimate to the size to build, one row each, with its size and change beside the panel."""
     (scale, label), steps = _axis(answer), answer.known_steps
-    before = steps[0].size
+    before, rows = steps[0].size, range(len(steps))
     for row, step in enumerate(steps):
         colour, ends = _INSIDE if step.stated else _BESIDE, np.array([before, step.size]) / scale
         panel.plot(ends, [row, row], color=colour, linewidth=5, solid_capstyle="butt")
         panel.plot(ends[1], row, "|", color=colour, markersize=11)
-        change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""
-        said = f"{words.CAUSES[step.cause][0]}: {answer.in_words(step.size)}{change}"
-        panel.annotate(said, (0.02, row - 0.2), **_LABEL)
         before = step.size if step.stated else before
-    ends = [step.size for step in steps]
     if np.isfinite(answer.build):
         panel.axvline(answer.build / scale, color=BUILD, linewidth=1.2, zorder=0)
-    if 0.5 * min(ends) < answer.size < 2 * max(ends):
-        panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, zorder=0)
-    panel.set(xlabel=label, yticks=[], ylim=(len(steps) - 0.6, -0.75))
     panel.margins(x=0.1)
+    panel.set(xlabel=label, ylim=(len(steps) - 0.5, -0.8))
+    panel.set_yticks(rows, [_said(answer, row) for row in rows], fontsize=7, linespacing=1)
+    panel.tick_params(axis="y", length=0)
+    _stated(panel, answer, scale)
+
+
+def _said(answer, row):
+    """Cause of a row of the ladder with its size and change."""
+    step = answer.known_steps[row]
+    change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""
+    return f"{textwrap.fill(words.CAUSES[step.cause][0], _WIDE)}\n{answer.in_words(step.size)}{change}"
+
+
+def _stated(panel, answer, scale):
+    """Stated size of a device: a line among its steps, or its name at the edge of the panel that it is beyond."""
+    sizes = [step.size for step in answer.known_steps]
+    if 0.5 * min(sizes) < answer.size < 2 * max(sizes):
+        panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, zorder=0)
+    elif np.isfinite(answer.size):
+        said, below = f"yours: {answer.in_words(answer.size)}", answer.size < min(sizes)
+        text, at = (f"← {said}", 0.01) if below else (f"{said} →", 0.99)
+        place = {"xycoords": "axes fraction", "ha": "left" if below else "right", "va": "top", "fontsize": 7}
+        panel.annotate(text, (at, 0.98), **place)
 
 
 def _axis(answer):
