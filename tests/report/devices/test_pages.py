@@ -68,7 +68,10 @@ def test_long_descriptions_of_surfaces_are_wrapped_and_numbers_of_tables_are_not
 
 def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
     assert f"<td>at most {100 * VERIFIED:g} %</td>" in stopper
-    assert "holds most at a relative humidity of 0.70; drier and wetter air, from 0.4 to 0.9" in stopper
+    assert (
+        "mean force is largest at a relative humidity of 0.70: larger than in drier and wetter air, from 0.4 to 0.9"
+        in stopper
+    )
     assert "In the worst air of this range, at most 0.918 % stick at one touchdown." in stopper
     found = STOPPERS["S1"].sel(share=1e-2)
     stated, any_air = (
@@ -86,7 +89,8 @@ def test_the_page_of_a_stopper_says_how_many_stick_and_in_which_air(stopper):
 
 def test_a_worst_humidity_at_the_end_is_stated_as_one():
     assert sentences.worst_sentence(stopper_dataset(peak=1.0)) == (
-        "Between relative humidities of 0.4 and 0.9, the stopper holds most at 0.9. "
+        "Between relative humidities of 0.4 and 0.9, its mean force is largest at 0.9. "
+        "The few places that hold most can hold more in other air. "
         "In the worst air of this range, at most 0.918 % stick at one touchdown."
     )
 
@@ -121,7 +125,7 @@ def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_sec
 
 def test_a_bound_of_all_stoppers_is_no_statement():
     all_stuck = stopper_dataset().assign(stuck_along=xr.ones_like(STOPPERS["S1"].stuck_along))
-    assert sentences.worst_sentence(all_stuck).endswith("from 0.4 to 0.9, are less critical.")
+    assert sentences.worst_sentence(all_stuck).endswith("can hold more in other air.")
 
 
 def test_advice_warnings_and_what_is_not_modelled_are_shown(stopper):

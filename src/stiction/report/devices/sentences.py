@@ -102,6 +102,10 @@ def safe_force_sentences(stopper: xr.Dataset) -> list[str]:
     ]
 
 
+#: Reservation of the worst air by the mean.
+_RARE = "The few places that hold most can hold more in other air."
+
+
 def worst_sentence(stopper: xr.Dataset) -> str:
     """Worst humidity of a stopper in words."""
     worst = float(stopper.worst_humidity)
@@ -113,12 +117,13 @@ def worst_sentence(stopper: xr.Dataset) -> str:
     )
     if is_at_an_end(stopper):
         low, high = ends(stopper)
-        return f"Between relative humidities of {low:g} and {high:g}, the stopper holds most at {worst:g}.{stuck}"
+        between = f"Between relative humidities of {low:g} and {high:g}"
+        return f"{between}, its mean force is largest at {worst:g}. {_RARE}{stuck}"
     if not is_humid(worst):
-        return f"The stopper holds most in dry air; humid air{_range(stopper)} is less critical.{stuck}"
+        return f"Its mean force is largest in dry air: larger than in humid air{_range(stopper)}. {_RARE}{stuck}"
     return (
-        f"The stopper holds most at a relative humidity of {worst:.2f}; drier and wetter air,{_range(stopper)}, "
-        f"are less critical.{stuck}"
+        f"Its mean force is largest at a relative humidity of {worst:.2f}: larger than in drier and wetter air,"
+        f"{_range(stopper)}. {_RARE}{stuck}"
     )
 
 
