@@ -19,6 +19,8 @@ TEMPLATES = Path(__file__).with_name("templates")
 _LONG = 24
 #: Comments on lines of their own, and indentation.
 _FOR_READERS = re.compile(r"^ *(?://.*|/\*\*.*\*/)\n|^ +", re.MULTILINE)
+#: Space between the thousands of a number.
+_THOUSANDS = re.compile(r"(?<=\d) (?=\d{3}\b)")
 
 
 class _Loader(FileSystemLoader):
@@ -39,7 +41,12 @@ def _texts(cells):
     return [bool((column.astype(str).str.len() > _LONG).any()) for _, column in cells.items()]
 
 
-_ENVIRONMENT.filters["texts"] = _texts
+def _unbroken(text):
+    """Text, or a number, in which no line ends between the thousands of a number."""
+    return _THOUSANDS.sub("\N{NO-BREAK SPACE}", str(text))
+
+
+_ENVIRONMENT.filters |= {"texts": _texts, "unbroken": _unbroken}
 _ENVIRONMENT.policies["json.dumps_kwargs"] = {"sort_keys": True, "separators": (",", ":")}
 
 

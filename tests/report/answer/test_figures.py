@@ -33,18 +33,18 @@ def lines_of(panel):
     return {line.get_label(): line for line in panel.lines if len(line.get_xdata()) > 2}
 
 
-def test_what_decides_is_in_full_colour_and_the_other_airs_are_pale():
+def test_what_decides_is_in_full_colour_and_the_other_airs_are_dashed():
     answer = answered()
     (panel,) = risk({"C1": answer}).axes
     found = lines_of(panel)
-    decides, pale = found["all airs, RH 0.92 decides"], found["RH 0.44"]
+    decides, other = found["all airs, RH 0.92 decides"], found["RH 0.44"]
     np.testing.assert_allclose(decides.get_xydata(), np.transpose([1e6 * SIZES, answer.curve[0]]))
-    np.testing.assert_allclose(pale.get_ydata(), answer.airs[0].curve[0])
+    np.testing.assert_allclose(other.get_ydata(), answer.airs[0].curve[0])
     assert len(found) == 2, "the air that decides is the curve of all"
-    for line, humidity in ((decides, 0.92), (pale, 0.44)):
+    for line, humidity in ((decides, 0.92), (other, 0.44)):
         assert to_rgb(line.get_color()) == humidity_colour(humidity)[:3]
-    assert pale.get_alpha() < 0.5
-    assert decides.get_alpha() is None
+    assert (other.get_linestyle(), decides.get_linestyle()) == ("--", "-")
+    assert other.get_linewidth() < decides.get_linewidth()
     assert panel.get_yscale() == "log"
     assert panel.get_title(loc="left") == "C1, cantilever"
 
@@ -59,19 +59,65 @@ def test_a_band_leads_from_the_simulated_limit_to_the_size_to_build_which_is_sta
     assert sorted(upright) == pytest.approx([140, 250]), "to build, and stated"
 
 
+def test_the_band_ends_where_the_simulation_no_longer_resolves_it():
+    expected, low, high = curve(199e-6)
+    floored = np.array([expected, low, np.maximum(high, 1e-3)])
+    last = SIZES[np.argmax(high > 1e-3) - 1]  # next to the first size with a resolved end
+    for drawn, first in ((replace(answered(), curve=floored), last), (answered(), SIZES[0])):
+        (panel,) = risk({"C1": drawn}).axes
+        (band,) = panel.collections
+        assert band.get_paths()[0].vertices[:, 0].min() == pytest.approx(1e6 * first)
+
+
+def test_legends_are_below_all_panels_and_name_what_is_drawn_once():
+    figure = risk({"C1": answered(), "C2": answered(build=np.nan, size=np.nan)})
+    (common,) = figure.legends
+    assert [text.get_text() for text in common.get_texts()] == [
+        "95 % band, where the simulation resolves it",
+        "from the simulated limit to the size to build",
+        "stated size",
+    ]
+    for panel in figure.axes:
+        airs = [text.get_text() for text in panel.get_legend().get_texts()]
+        assert airs == ["RH 0.44", "all airs, RH 0.92 decides"]
+
+
+def test_the_axis_of_a_force_begins_at_zero_and_fractions_are_in_words():
+    force, length = risk({"S1": answered(unit="N"), "C1": answered()}).axes
+    assert (force.get_xlim()[0], length.get_xlim()[0]) == pytest.approx((0, 1e6 * SIZES[0]))
+    form = length.yaxis.get_major_formatter()
+    assert (form(1), form(0.1), form(1e-3)) == ("all", "1 in 10", "1 in 1000")
+
+
 def test_a_forbidden_number_is_not_drawn():
     (panel,) = risk({"C1": answered(forbidden=("gap",))}).axes
     assert not panel.lines
     assert [text.get_text() for text in panel.texts] == ["Do not rely on a number"]
 
 
+def beside(panel):
+    """Labels of the rows of a ladder."""
+    return [" ".join(text.get_text().split()) for text in panel.get_yticklabels()]
+
+
+@pytest.mark.parametrize(
+    ("size", "said"), [(20e-6, ["← yours: 20 µm"]), (900e-6, ["yours: 900 µm →"]), (250e-6, []), (np.nan, [])]
+)
+def test_a_stated_size_beyond_the_steps_is_named_at_the_edge(size, said):
+    panel = ladder(answered(size=size)).axes[0]
+    assert [text.get_text() for text in panel.texts] == said
+    dotted = [line.get_xdata()[0] for line in panel.lines if line.get_linestyle() == ":"]
+    assert dotted == pytest.approx([1e6 * size] if size == 250e-6 else [])
+
+
 def test_the_ladder_has_a_row_for_each_step_and_the_curve_beside_it():
     steps, stuck = ladder(answered()).axes
-    assert [text.get_text().partition(":")[0] for text in steps.texts] == [
-        "estimate",
-        "error of the simulation",
-        "uncertainty of the inputs",
+    assert beside(steps) == [
+        "estimate 160 µm",
+        "error of the simulation 155 µm (-10.0 %)",
+        "uncertainty of the inputs 140 µm (-10.0 %)",
     ]
+    assert not steps.texts, "nothing lies on bars and lines"
     assert "all airs, RH 0.92 decides" in lines_of(stuck)
 
 
@@ -80,6 +126,6 @@ def test_the_ladder_has_the_known_steps_alone(known):
     whole = answered()
     steps = tuple(replace(step, size=step.size if k < known else np.nan) for k, step in enumerate(whole.steps))
     panel = ladder(replace(whole, steps=steps, build=np.nan if known < 3 else whole.build)).axes[0]
-    assert len(panel.texts) == known
-    assert not any("nan" in text.get_text() for text in panel.texts)
+    assert len(beside(panel)) == known
+    assert not any("nan" in text for text in beside(panel))
     assert len(tables.steps(replace(whole, steps=steps))) == known

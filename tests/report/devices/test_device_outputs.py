@@ -186,16 +186,20 @@ NINE = {("C1", round(rh, 2)): charted(round(rh, 2), 2 - rh**2) for rh in np.lins
 
 
 def test_a_chart_at_enough_humidities_has_a_cubic_between_its_dots_with_its_error():
-    panel = figures_devices.chart(NINE, {}).axes[0]
+    figure = figures_devices.chart(NINE, {})
+    panel = figure.axes[0]
     axis, lengths = np.array([rh for _, rh in NINE]), 100 * np.array([2 - rh**2 for _, rh in NINE])
     stated = f"± {100 * error_between(axis, lengths):.2g} %"
     dots = [line for line in panel.lines if line.get_marker() == "."]
     assert [len(line.get_xdata()) for line in dots[:2]] == [9, 9]
     assert sum(len(line.get_xdata()) == 200 for line in panel.lines) == 4  # lengths and bounds of two thicknesses
-    assert any(stated in text.get_text() for text in panel.get_legend().get_texts())
+    assert "error between the dots" in named(figure)
+    band = panel.collections[0].get_paths()[0].vertices
+    ends = band[np.abs(band[:, 0] - 0.4) < 1e-9, 1]
+    assert np.ptp(ends) / (ends.min() + ends.max()) == pytest.approx(error_between(axis, lengths))
     assert stated.removeprefix("± ") in tables_devices.chart(NINE, {case: [] for case in CURVES}).caption
     few = figures_devices.chart(CHARTS, STEEP)
-    assert not any("cubic" in text.get_text() for text in few.axes[0].get_legend().get_texts())
+    assert "error between the dots" not in named(few)
     assert "cubic" not in tables_devices.chart(CHARTS, STEEP).caption
     assert covering(few) == covering(figures_devices.chart(NINE, {})) == []
 
@@ -243,7 +247,7 @@ def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found
     warned = {(*case, shape): [noted(f"{case} is too wet.")] for case in cases for shape in (S_SHAPE, EITHER)}
     figure = figures_devices.simulated(cases, warned)
     assert figure._supxlabel.get_text() == "(1) to (120): beyond a limit of the model"
-    assert named(figure.axes[0])[1] == "RH 0.5 (2)"
+    assert figure.axes[0].get_legend().get_texts()[1].get_text() == "RH 0.5 (2)"
     assert "(2) surface B2: ('C0', 0.5) is too wet." in tables_devices.safe_lengths(cases, warned).caption
     assert figure.get_figheight() <= 24
     assert covering(figure) == []
@@ -257,9 +261,15 @@ def test_a_legend_within_a_panel_is_found(found):
     assert covering(figure) == ["first"]
 
 
-def named(panel):
-    """Entries of the legend of a panel."""
-    return [text.get_text() for text in panel.get_legend().get_texts()]
+def named(figure):
+    """Entries of the legend below a figure."""
+    (legend,) = figure.legends
+    return [text.get_text() for text in legend.get_texts()]
+
+
+def beside(panel):
+    """Names of the curves of a panel, from below."""
+    return [text.get_text() for text in sorted(panel.texts, key=lambda text: text.xy[1])]
 
 
 def test_the_chart_shows_the_limit_of_saturated_air_of_its_shape():
@@ -274,17 +284,40 @@ def test_the_chart_marks_what_a_power_law_gave_and_how_far_it_errs():
     for (gap, shape), panel in charts()[1].items():
         marked = [line for line in panel.lines if line.get_marker() == "o" and len(line.get_xdata())]
         assert len(marked) == (gap == 20)
-        assert ("by a power law, ± 0.4 %" in named(panel)) == (gap == 20)
+        assert ("by a power law, ± 0.4 %" in panel.get_legend_handles_labels()[1]) == (gap == 20)
         if marked:
             length = {S_SHAPE: 105, EITHER: 107}[shape]
             np.testing.assert_allclose(marked[0].get_ydata(), np.array([2, 1, 0.5]) * length)
 
 
+def test_a_chart_explains_its_lines_once_below_all_panels():
+    figure, panels = charts()
+    assert named(figure) == [
+        "1 in 1000 stick by beam",
+        "flat surfaces, beam",
+        "1 in 1000 stick by beam or tip",
+        "flat surfaces, beam or tip",
+        "by a power law, ± 0.4 %",
+    ]
+    assert all(panel.get_legend() is None for panel in panels.values())
+
+
+def test_names_of_close_curves_are_apart_and_a_curve_without_a_length_has_none():
+    close = {case: one.copy() for case, one in NINE.items()}
+    for one in close.values():
+        one["safe_length"] = one.safe_length.isel(thickness=0, drop=True) * xr.DataArray([1, 1.001], dims="thickness")
+    low, high = (text.xy[1] for text in figures_devices.chart(close, {}).axes[0].texts)
+    assert high - low == pytest.approx(0.05)
+    for one in close.values():
+        one["safe_length"] = one.safe_length * xr.DataArray([1, np.nan], dims="thickness")
+    assert beside(figures_devices.chart(close, {}).axes[0]) == ["2 µm thick"]
+
+
 def test_the_chart_has_numbers_of_warnings_beside_the_thickness():
     figure, panels = charts()
-    assert named(panels[20, S_SHAPE])[:2] == ["thickness 2 µm (1)", "thickness 3 µm"]
-    assert named(panels[20, EITHER])[:2] == ["thickness 2 µm (1) (2)", "thickness 3 µm"]
-    assert named(panels[10, EITHER])[:2] == ["thickness 2 µm", "thickness 3 µm"]
+    assert beside(panels[20, S_SHAPE]) == ["2 µm thick (1)", "3 µm thick"]
+    assert beside(panels[20, EITHER]) == ["2 µm thick (1) (2)", "3 µm thick"]
+    assert beside(panels[10, EITHER]) == ["2 µm thick", "3 µm thick"]
     assert figure._supxlabel.get_text() == "(1) to (2): beyond a limit of the model"
 
 

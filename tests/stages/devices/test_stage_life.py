@@ -20,6 +20,7 @@ from stiction.devices.stoppers import safe_force
 from stiction.life import drying, freeing, holding, touch
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
+from stiction.report import html
 from stiction.report.devices import life as report
 from stiction.report.devices.pages import Page, Section, with_life
 from stiction.report.style import save
@@ -502,5 +503,8 @@ def test_a_page_says_the_life_and_shows_all_answers(found):
     assert shown.answer[0].startswith("The length to build, 50 µm, ")
     assert "50 µm" not in with_life(page, "C1", found["C1"], replace(built, forbidden=("x",))).answer[0]
     assert [section.title for section in shown.sections] == ["First", "From the first contact to the last", "Last"]
+    assert list(shown.sections[1].cells)[6:] == ["form", "source"]
+    style = (html.TEMPLATES / "style.css").read_text(encoding="utf-8")
+    assert f'[aria-label$="{shown.sections[1].title}"] :is(td, th):nth-child(n + 7)' in style, "left out on phones"
     assert len(shown.sections[1].cells) == found["C1"].sizes["answer"]
     assert "does not touch below" in shown.html

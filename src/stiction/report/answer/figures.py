@@ -1,5 +1,6 @@
 """Pictures of answers: the steps from the estimate to the size to build, and P(stuck) around it."""
 
+import textwrap
 from collections.abc import Mapping
 
 import numpy as np
@@ -19,7 +20,10 @@ from stiction.report.style import (
     at_most_double,
     columns_of_panels,
     figure_stage,
+    handles,
     humidity_colour,
+    legend_below,
+    legend_outside,
     letter_lines,
     panels,
     styled,
@@ -29,10 +33,12 @@ from stiction.stages.devices import device_warnings
 #: Colours of steps that are inside the answer, and of those beside it [Okabe and Ito].
 _INSIDE, _BESIDE = "#0072B2", "0.6"
 #: Height of a row of steps, of the rest, and of a panel of P(stuck) [in].
-_ROW, _AROUND, _PANEL = 0.42, 0.6, 2.7
+_ROW, _AROUND, _PANEL = 0.42, 1.3, 3.4
 #: Label of the axis of P(stuck), and its lower end over the allowed fraction.
 _STUCK, _LOWEST = "P(stuck) [–]", 1 / 30
-#: Place of the label of a step.
+#: Widest label of a step [characters].
+_WIDE = 26
+#: Place of the label of a fraction.
 _LABEL = {"xycoords": ("axes fraction", "data"), "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
 
 
@@ -43,28 +49,45 @@ def ladder(answer: Answer) -> Figure:
     _steps(grid[0, 0], answer)
     _stuck(grid[0, 1], answer)
     grid[0, 1].set_ylabel(_STUCK)
+    _explain(figure, [grid[0, 1]])
     return figure
 
 
 def _steps(panel: Axes, answer):
-    """Steps from the estimate to the size to build, one row each, with its size and change."""
+    """Steps from the estimate to the size to build, one row each, with its size and change beside the panel."""
     (scale, label), steps = _axis(answer), answer.known_steps
-    before = steps[0].size
+    before, rows = steps[0].size, range(len(steps))
     for row, step in enumerate(steps):
         colour, ends = _INSIDE if step.stated else _BESIDE, np.array([before, step.size]) / scale
         panel.plot(ends, [row, row], color=colour, linewidth=5, solid_capstyle="butt")
         panel.plot(ends[1], row, "|", color=colour, markersize=11)
-        change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""
-        said = f"{words.CAUSES[step.cause][0]}: {answer.in_words(step.size)}{change}"
-        panel.annotate(said, (0.02, row - 0.2), **_LABEL)
         before = step.size if step.stated else before
-    ends = [step.size for step in steps]
     if np.isfinite(answer.build):
         panel.axvline(answer.build / scale, color=BUILD, linewidth=1.2, zorder=0)
-    if 0.5 * min(ends) < answer.size < 2 * max(ends):
-        panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, zorder=0)
-    panel.set(xlabel=label, yticks=[], ylim=(len(steps) - 0.6, -0.75))
     panel.margins(x=0.1)
+    panel.set(xlabel=label, ylim=(len(steps) - 0.5, -0.8))
+    panel.set_yticks(rows, [_said(answer, row) for row in rows], fontsize=7, linespacing=1)
+    panel.tick_params(axis="y", length=0)
+    _stated(panel, answer, scale)
+
+
+def _said(answer, row):
+    """Cause of a row of the ladder with its size and change."""
+    step = answer.known_steps[row]
+    change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""
+    return f"{textwrap.fill(words.CAUSES[step.cause][0], _WIDE)}\n{answer.in_words(step.size)}{change}"
+
+
+def _stated(panel, answer, scale):
+    """Stated size of a device: a line among its steps, or its name at the edge of the panel that it is beyond."""
+    sizes = [step.size for step in answer.known_steps]
+    if 0.5 * min(sizes) < answer.size < 2 * max(sizes):
+        panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, zorder=0)
+    elif np.isfinite(answer.size):
+        said, below = f"yours: {answer.in_words(answer.size)}", answer.size < min(sizes)
+        text, at = (f"← {said}", 0.01) if below else (f"{said} →", 0.99)
+        place = {"xycoords": "axes fraction", "ha": "left" if below else "right", "va": "top", "fontsize": 7}
+        panel.annotate(text, (at, 0.98), **place)
 
 
 def _axis(answer):
@@ -84,11 +107,12 @@ def risk(answers: Mapping[str, Answer]) -> Figure:
         if answer.pull_offs:
             panel.set_ylabel(f"{answer.sought.fraction} [–]")
     letter_lines(lines, [f"{name}, {answer.kind}" for name, answer in answers.items()])
+    _explain(figure, columns[:, 0])
     return figure
 
 
 def _stuck(panel: Axes, answer):
-    """Expected P(stuck) in all stated airs with its band, pale in each of the others, and the size to build."""
+    """Expected P(stuck) in all stated airs with its band, dashed in each of the others, and the size to build."""
     scale, label = _axis(answer)
     panel.set_xlabel(label)
     if words.is_forbidden(answer) or not answer.sizes.size:
@@ -99,25 +123,43 @@ def _stuck(panel: Axes, answer):
     for air in answer.airs:
         if air.humidity != answer.together.humidity:
             colour = humidity_colour(air.humidity)
-            panel.plot(sizes, air.curve[0], color=colour, alpha=0.45, linewidth=0.8, label=Air(air.humidity).words)
+            panel.plot(sizes, air.curve[0], "--", color=colour, alpha=0.8, linewidth=1, label=Air(air.humidity).words)
     colour, decides = humidity_colour(answer.together.humidity), Air(answer.together.humidity).words
     said = f"all airs, {decides} decides" if len(answer.airs) > 1 and np.isfinite(answer.share) else decides
     panel.plot(sizes, expected, color=colour, linewidth=1.6, label=said)
-    panel.fill_between(sizes, *band, color=colour, alpha=0.2, linewidth=0, label="95 % band")
+    legend_below(panel, panel.get_legend_handles_labels()[0])
+    style = {"color": colour, "alpha": 0.2, "linewidth": 0, "label": "95 % band, where the simulation resolves it"}
+    panel.fill_between(sizes, *band, where=_resolved(band[1]), **style)
     if np.isfinite(answer.share):
         panel.axhline(answer.share, color="0.4", linestyle=":", linewidth=0.8)
-        panel.annotate(one_in(answer.share), (0.99, answer.share), ha="right", **_LABEL)
+        panel.annotate("allowed", (0.99, answer.share), ha="right", **_LABEL)
     _size_to_build(panel, answer, scale)
     lowest = _LOWEST * np.nan_to_num(answer.share, nan=UNLIKELY)
-    panel.set(yscale="log", xlim=(sizes.min(), sizes.max()), ylim=(lowest, 1.3))
-    panel.legend(loc="lower left" if answer.sought.more_is_better else "lower right", frameon=True, edgecolor="none")
+    left = 0 if answer.sought.more_is_better else sizes.min()
+    panel.set(yscale="log", xlim=(left, sizes.max()), ylim=(lowest, 1.3))
+    panel.yaxis.set_major_formatter(lambda share, _: "all" if share == 1 else one_in(share))
+
+
+def _resolved(upper):
+    """Where the upper end of a band is above the least that the simulation resolves, and next to it (n,)."""
+    above = upper > upper.min()
+    return np.convolve(above, np.ones(3), "same") > 0
+
+
+def _explain(figure, panels):
+    """Legend below a figure of what its panels have in common, without the airs in their own legends."""
+    own = {text.get_text() for panel in panels if (one := panel.get_legend()) for text in one.get_texts()}
+    common = [(handle, label) for handle, label in zip(*handles(*panels), strict=True) if label not in own]
+    if common:
+        legend_outside(figure, tuple(zip(*common, strict=True)), "lower", 3)
 
 
 def _size_to_build(panel, answer, scale):
     """Vertical band from the simulated limit to the size to build, with its number, and the stated size."""
     if np.isfinite(answer.build):
         (limit,) = (step.size for step in answer.steps if step.cause is Cause.SIMULATION)
-        panel.axvspan(limit / scale, answer.build / scale, color=BUILD, alpha=0.15, linewidth=0)
+        said = "from the simulated limit to the size to build"
+        panel.axvspan(limit / scale, answer.build / scale, color=BUILD, alpha=0.15, linewidth=0, label=said)
         panel.axvline(answer.build / scale, color=BUILD, linewidth=1.5)
         side, end = (3, "left") if answer.sought.more_is_better else (-3, "right")  # clear of the curve
         place = {"xytext": (side, -3), "textcoords": "offset points", "ha": end, "va": "top", "rotation": 90}

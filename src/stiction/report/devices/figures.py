@@ -7,12 +7,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from stiction.contact.air import Air, is_humid
 from stiction.devices.chart import FEWEST_HUMIDITIES, between, error_between
 from stiction.devices.limits.limit import Limit
+from stiction.devices.risk import one_in
 from stiction.report.format import TO_UM, fraction_with_band
 from stiction.report.limits.words import numbered, with_numbers
 from stiction.report.style import (
@@ -33,7 +35,7 @@ from stiction.report.style import (
 )
 from stiction.rounding import in_percent
 from stiction.stages.devices import device_warnings
-from stiction.stages.devices.chart import axes, charts, largest_error_between
+from stiction.stages.devices.chart import axes, charts
 from stiction.stages.devices.end_states import END_STATES
 
 #: Marker of each basis of a safe length.
@@ -44,6 +46,8 @@ _PANEL, _ENTRY = 3.3, 0.12
 _POINTS = 200
 #: Space above the longest curve of a chart, in units of the range of its lengths.
 _ROOM = 0.05
+#: Least distance of the names of two curves of a chart, in heights of their panel.
+_APART = 0.05
 
 
 def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[Limit]]) -> None:
@@ -158,35 +162,35 @@ def chart(
     subjects = [
         (name, *at) for name, whole in wholes.items() for at in product(whole.gap.values, whole["shape"].values)
     ]
-    most = max(whole.sizes["thickness"] for whole in wholes.values()) + 3
-    figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
+    figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
         whole = wholes[name].sel(gap=gap, shape=shape)
-        marks = [
-            _marks_of_warnings(numbers.get((name, thickness, gap, shape), ())) for thickness in whole.thickness.values
-        ]
-        legend_below(panel, _thicknesses(panel, whole, shape, marks, placed[name]))
+        _thicknesses(panel, whole, shape, placed[name])
         low, high = panel.dataLim.intervaly
-        panel.set(xlabel="relative humidity [–]", ylim=(0.95 * low, high + _ROOM * (high - low)))
+        label = on_own_axes("simulated limit [µm]", columns.T)
+        panel.set(xlabel="relative humidity [–]", ylabel=label, ylim=(0.95 * low, high + _ROOM * (high - low)))
         humidity_axis(panel, placed[name])
-    for line in lines:
-        line[0, 0].set_ylabel(on_own_axes("simulated limit [µm]", line))
+        marks = [_marks_of_warnings(numbers.get((name, one, gap, shape), ())) for one in whole.thickness.values]
+        _name_thicknesses(panel, whole, marks)
     letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].by}" for name, gap, shape in subjects])
+    shown = sorted(zip(*handles(*columns[:, 0]), strict=True), key=lambda entry: isinstance(entry[0], PolyCollection))
+    legend_outside(figure, tuple(zip(*shown, strict=True)), "lower", 4)
     refer_to_warnings(figure, warnings)
     return figure
 
 
-def _thicknesses(panel, whole, shape, marks, placed):
+def _middle(whole):
+    """Middle one of the shares of a chart."""
+    return float(whole.share.values[len(whole.share) // 2])
+
+
+def _thicknesses(panel, whole, shape, placed):
     """Curves of all thicknesses of one device, gap and shape, their bounds, and marks of power laws.
 
     Points are at the places of their humidities; no line leads to dry air.
-
-    Returns the entries of the legend of the panel.
     """
-    share, named = whole.share.values[len(whole.share) // 2], []
-    state = END_STATES[shape]
-    line, dotted = state.lines
-    for thickness, shade, mark in zip(whole.thickness.values, shades(len(marks)), marks, strict=True):
+    share, (line, dotted) = _middle(whole), END_STATES[shape].lines
+    for thickness, shade in zip(whole.thickness.values, shades(whole.sizes["thickness"]), strict=True):
         for part, styles in _parts(whole.sel(thickness=thickness, share=share), (line, dotted)):
             at = [placed[humidity] for humidity in part.relative_humidity.values]
             by_law, lengths = part.by_elements.values == 0, TO_UM * part.safe_length
@@ -194,20 +198,33 @@ def _thicknesses(panel, whole, shape, marks, placed):
             panel.plot(fine, curve, styles[0], color=shade)
             if np.isfinite(error := error_between(np.array(at), lengths.values)):
                 ends = (1 - error) * curve, (1 + error) * curve
-                panel.fill_between(fine, *ends, color=shade, alpha=0.2, linewidth=0)
+                panel.fill_between(fine, *ends, color=shade, alpha=0.2, linewidth=0, label="error between the dots")
             panel.plot(np.array(at)[by_law], lengths[by_law], "o", color=shade, fillstyle="none")
             panel.plot(np.array(at)[~by_law], lengths[~by_law], ".", color=shade)
             panel.plot(*_curve(at, TO_UM * part.flooded_length.values), styles[1], color=shade, linewidth=0.8)
-        label = f"thickness {TO_UM * thickness:g} µm{mark}"
-        named.append(Line2D([], [], color=shade, marker="s", linestyle="", label=label))
-    error = largest_error_between(whole.sel(share=share))
-    band = f", cubic, ± {in_percent(error)}" if np.isfinite(error) else ""
-    named.append(Line2D([], [], color="0.3", marker=".", linestyle=line, label=f"p = {share:g}{band}"))
-    named.append(Line2D([], [], color="0.3", linestyle=dotted, linewidth=0.8, label="flat surfaces"))
+    _explain_chart(panel, whole.sel(share=share), shape)
+
+
+def _explain_chart(panel, whole, shape):
+    """Add what lines and markers of one share are to the legend of a panel."""
+    (line, dotted), by = END_STATES[shape].lines, END_STATES[shape].by
+    panel.plot([], [], line, color="0.3", marker=".", label=f"{one_in(float(whole.share))} stick by {by}")
+    panel.plot([], [], dotted, color="0.3", linewidth=0.8, label=f"flat surfaces, {by}")
     if not whole.by_elements.all():
         label = f"by a power law, ± {in_percent(float(whole.power_law_error.max()))}"
-        named.append(Line2D([], [], color="0.3", marker="o", fillstyle="none", linestyle="", label=label))
-    return named
+        panel.plot([], [], "o", color="0.3", fillstyle="none", label=label)
+
+
+def _name_thicknesses(panel, whole, marks):
+    """Name every known curve of a chart to the right of its panel, at its last point but clear of the names below."""
+    (low, high), below = panel.get_ylim(), -np.inf
+    curves = (TO_UM * whole.safe_length.sel(share=_middle(whole))).transpose("thickness", "relative_humidity")
+    known = [curve[np.isfinite(curve)] for curve in curves.values]
+    named = zip(known, whole.thickness.values, shades(len(marks)), marks, strict=True)
+    for curve, thickness, shade, mark in sorted((one for one in named if len(one[0])), key=lambda one: one[0][-1]):
+        below = max((curve[-1] - low) / (high - low), below + _APART)
+        place = {"xycoords": "axes fraction", "color": shade, "fontsize": 7, "va": "center"}
+        panel.annotate(f"{TO_UM * thickness:g} µm thick{mark}", (1.02, below), **place)
 
 
 def _curve(at, lengths):
