@@ -62,7 +62,7 @@ class Asked:
 
     @property
     def sides(self) -> list[Side]:
-        """Both surfaces, in the order of `SIDES`."""
+        """Both surfaces, in the order of `stiction.models.SIDES`."""
         return [getattr(self, side) for side in SIDES]
 
     def question(self, air: float) -> Question:
