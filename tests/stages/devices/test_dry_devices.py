@@ -216,7 +216,7 @@ def test_dry_air_is_the_worst_of_a_stopper_that_holds_most_in_it(grounds):
     assert not stoppers.is_at_an_end(found)
     assert tables_budget.worst_humidity(0.0, 0.0, False) == "dry"
     assert sentences.worst_sentence(found).startswith(
-        "The stopper holds most in dry air; humid air from 0.6 to 0.9 is less"
+        "Its mean force is largest in dry air: larger than in humid air from 0.6 to 0.9."
     )
 
 
