@@ -65,7 +65,7 @@ SNIPPETS = sorted(
 EXAMPLES = ("examples/scans/mine", "examples/devices", "examples/roughness", "examples/drawn_beams/mine")
 EXAMPLES += ("examples/test_beams", "examples/sealed", "examples/life", "examples/process/mine", "workflow/smoke")
 EXAMPLES += ("examples/range/mine", "examples/switch", "examples/scans/lines", "examples/mission", "examples/probe")
-EXAMPLES += ("examples/pull_offs",)
+EXAMPLES += ("examples/pull_offs", "examples/coated")
 
 
 def module(path):
