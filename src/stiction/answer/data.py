@@ -62,7 +62,7 @@ class Probability:
     """Expected fraction of stuck devices, and a band of the fraction that contains all that is unknown.
 
     Where no simulated device sticks, the upper end is a bound with 95 % confidence. It is the allowed fraction at the
-    size to build.
+    size to build, and a few draws of which many devices stick can raise the expected fraction above it.
     """
 
     value: float

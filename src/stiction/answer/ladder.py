@@ -118,13 +118,16 @@ def _stuck(question, world):
 def probability(world: World, v: float) -> Probability:
     """P(stuck) at v.
 
-    A few draws of which all devices stick can raise the expectation above the band, which then ends there.
+    A few draws of which all devices stick can raise the expectation above the band, which then ends there, or above the
+    bound of a fraction of which no device is seen. The bound is the statement of the size to build and stays.
     """
-    fractions, none_seen = world.stuck(v), v < world.first
-    value, (low, high) = float(fractions.mean()), band(fractions)
-    if none_seen:
-        low, high = 0.0, float(np.quantile(fractions, CONFIDENCE, method="lower"))
-    return Probability(value, min(low, value), max(high, value, world.least_bound(v)), none_seen)
+    fractions, least = world.stuck(v), world.least_bound(v)
+    value = float(fractions.mean())
+    if v < world.first:
+        bound = float(np.quantile(fractions, CONFIDENCE, method="lower"))
+        return Probability(value, 0.0, max(bound, least), none_seen=True)
+    low, high = band(fractions)
+    return Probability(value, min(low, value), max(high, value, least))
 
 
 def _sizes(question, world):

@@ -109,6 +109,19 @@ def test_the_controls_begin_with_the_words_of_the_answer(length, touchdowns):
     assert answer.stuck.none_seen == (length < 280e-6)
 
 
+@pytest.mark.parametrize("touchdowns", [1, 300])
+@pytest.mark.parametrize("name", ["cantilever", "one air", "bridge"])
+def test_at_the_size_to_build_the_controls_say_the_allowed_fraction(name, touchdowns):
+    section, lengths, _ = BEAMS[name]
+    answer = answered.of_beam(lengths, touchdowns=touchdowns)
+    grid = explorer.views_of_beam("C1", section, lengths, {}, answer)[0].grid
+    at, longer = (grid.stuck(grid.start | {"length_um": factor * 1e6 * answer.build}) for factor in (1, 1.02))
+    assert at.beyond == -1
+    assert at.high == pytest.approx(answer.share, rel=1e-6)
+    assert says(at).startswith(f"at most {words.percent(answer.share)}")
+    assert longer.high > 1.01 * answer.share  # control
+
+
 def test_at_other_sizes_the_levels_keep_their_ratio_to_the_simulated_ones():
     lengths = {0.67: safe()}
     answer = answered.of_beam(lengths, touchdowns=100)

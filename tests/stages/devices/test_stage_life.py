@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from answers import stopper_dataset
@@ -23,6 +24,7 @@ from stiction.plan.plan import Plan
 from stiction.report import html
 from stiction.report.devices import life as report
 from stiction.report.devices.pages import Page, Section, with_life
+from stiction.report.page import Summary
 from stiction.report.style import save
 from stiction.run import storage
 from stiction.stages.life.answers import QUESTIONS, answers_of, layout
@@ -488,6 +490,8 @@ def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
         expected = [k for k, end in enumerate(ends) if (end < build if is_length else end > build)]
         assert red == expected
         assert bool(red) == (factor > 1)
+        said = " ".join(report.judged_without(dataset, build))
+        assert [k for k, one in enumerate(shown) if one.what.partition(":")[0] in said] == red, "said as it is drawn"
 
 
 def _colours(panel, row):
@@ -502,6 +506,11 @@ def test_a_page_says_the_life_and_shows_all_answers(found):
     assert shown.answer == [*report.sentences(found["C1"], 5e-5), "Build it so.", "Because."]
     assert shown.answer[0].startswith("The length to build, 50 µm, ")
     assert "50 µm" not in with_life(page, "C1", found["C1"], replace(built, forbidden=("x",))).answer[0]
+    first = replace(page, summary=Summary("good", "Length to build", "50 µm.", ["Inside: all."], {}, pd.DataFrame()))
+    for build, is_named in ((5e-5, False), (1e-3, True)):
+        summary = with_life(first, "C1", found["C1"], replace(built, build=build)).summary
+        assert summary.basis[1:] == report.judged_without(found["C1"], build)
+        assert any("collapse while water dries, " in sentence for sentence in summary.basis) == is_named
     assert [section.title for section in shown.sections] == ["First", "From the first contact to the last", "Last"]
     assert list(shown.sections[1].cells)[6:] == ["form", "source"]
     style = (html.TEMPLATES / "style.css").read_text(encoding="utf-8")

@@ -260,14 +260,18 @@ def _page(data, at, settings):
 
 
 def with_life(page: Page, name: str, answers: xr.Dataset, answer: Answer) -> Page:
-    """Page with the life of its device: in words, and after the first section as table and figure."""
+    """Page with the life of its device: in words, and after the first section as table and figure.
+
+    The first screen names what does not allow the size to build.
+    """
     first, *others = page.sections
     cells = life.table({name: answers}).cells.drop(columns="device")
     build = np.nan if answer.forbidden else answer.build
     picture = life.figure({name: answers}, {name: build})
     section = Section("From the first contact to the last", (life.CAPTION,), cells, picture)
     said, sections = life.sentences(answers, build, bool(answer.stays)), [first, section, *others]
-    return replace(page, answer=[*said, *page.answer], more=[*said, *page.more], sections=sections)
+    summary = page.summary and replace(page.summary, basis=[*page.summary.basis, *life.judged_without(answers, build)])
+    return replace(page, answer=[*said, *page.answer], more=[*said, *page.more], sections=sections, summary=summary)
 
 
 def _save(page, paths):
