@@ -72,7 +72,11 @@ def test_crossings_have_their_values_and_humidities_without_one_are_named():
     assert {"RH 0.6: 4.00 ± 0.33 nm", "RH 0.8: 4.00 ± 0.40 nm", "restoring force 28 µN"} == set(texts(figure))
     weak = figures.roughness(found.assign(required=found.required / 10).isel(crossing=[]))
     assert set(texts(weak)) == {"RH 0.6, RH 0.8: not in this range", "restoring force 2.8 µN"}
-    assert covering(figure) == covering(weak) == []
+    strong = figures.roughness(found.assign(required=found.required * 10).isel(crossing=[]))
+    assert set(texts(strong)) == {"RH 0.6, RH 0.8: in all of this range", "restoring force 280 µN"}
+    assert covering(figure) == covering(weak) == covering(strong) == []
+    absent = next(text for text in weak.axes[0].texts if "not in" in text.get_text())
+    assert absent.get_ha() == "right", "where the curves are nearest to the required force"
 
 
 @pytest.mark.parametrize("is_beam", [False, True])

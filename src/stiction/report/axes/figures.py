@@ -150,11 +150,15 @@ def _crossings(curve, shape):
         air, crossed = Air(humidity).words, crossings_of(curve, humidity, shape)
         places = list(zip(crossed.crossing_place.values, crossed.crossing_error.values, strict=True))
         labels += [Label(f"{air}: {axis.at(*place)}", colour, axis.in_unit(place[0])) for place in places]
-        if not places:
-            elsewhere[air] = colour
-    if elsewhere:
-        text = textwrap.fill(f"{', '.join(elsewhere)}: not in this range", _LONGEST)
-        labels.append(Label(text, next(iter(elsewhere.values())) if len(elsewhere) == 1 else "black"))
+        margin = margins_of(curve.sel(humidity=humidity, shape=shape))
+        if not places and np.isfinite(margin).any():
+            nearest = int(np.nanargmin(np.abs(margin)))
+            elsewhere.setdefault((nearest, margin[nearest] > 0), {})[air] = colour
+    for (nearest, is_met), colours in elsewhere.items():
+        where = "in all of this range" if is_met else "not in this range"
+        text = textwrap.fill(f"{', '.join(colours)}: {where}", _LONGEST)
+        colour = next(iter(colours.values())) if len(colours) == 1 else "black"
+        labels.append(Label(text, colour, axis.in_unit(curve.roughness.values[nearest])))
     return labels
 
 
@@ -212,7 +216,8 @@ def _show(side, scale, data, axis):
     if axis.name == "skewness":
         along = data[KURTOSIS].isel({other: 0 for other in data[KURTOSIS].dims if other != axis.dimension})
         pairs = zip(axis.values, along.values, strict=True)
-        side.set_ticks(axis.values, [f"{at:.3g}\n({kurtosis:.3g})" for at, kurtosis in pairs])
+        between = "\n" if side.axis_name == "x" else " "
+        side.set_ticks(axis.values, [f"{at:.3g}{between}({kurtosis:.3g})" for at, kurtosis in pairs])
         side.set_label_text(f"{axis.label} (kurtosis)")
 
 
@@ -226,7 +231,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
     The panels are by humidity and end state.
     """
     humidities, shapes = data.humidity.values, list(map(str, data["shape"].values))
-    size = min(DOUBLE, 1.3 * SINGLE * len(shapes)), 2.8 * len(humidities)
+    size = min(DOUBLE, _WIDE * len(shapes)), _HIGH * len(humidities)
     figure, axes = panels(len(humidities), len(shapes), size)
     along, across = axes_of(data)
     for row, humidity in zip(axes, humidities, strict=True):

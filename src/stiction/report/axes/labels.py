@@ -36,7 +36,8 @@ class Room:
 
     def meets(self, other: "Room") -> bool:
         """Whether words in both would cover each other."""
-        return self.above == other.above and self.low < other.high and other.low < self.high
+        apart = max(self.low - other.high, other.low - self.high)
+        return self.above == other.above and apart < _APART
 
     def free(self, curves: list[np.ndarray], level: float) -> float:
         """Mean distance from the line to the nearest curve (n, 2), or to the end of the panel, as far as it counts."""

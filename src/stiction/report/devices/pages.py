@@ -221,14 +221,14 @@ def _settings(plan, at):
     """Section of a device, and its surfaces in words."""
     section = plan.config["devices"][at.device]
     pair = plan.config["pairs"][section["pair"]]
-    names = {f"surface of the {part}": pair[part] for part in ("beam", "substrate")}
+    names = {"surface of the device": pair["beam"], "surface of the substrate": pair["substrate"]}
     materials = list(map(plan.materials.stated, names.values()))
     surfaces = {
         part: f"{name}: {surface_in_words(plan.config['surfaces'][name], material)}"
         for (part, name), material in zip(names.items(), materials, strict=True)
     }
     if "replica" in pair:
-        surfaces["surface of the beam"] += f", {replica_in_words(pair['replica'])}"
+        surfaces["surface of the device"] += f", {replica_in_words(pair['replica'])}"
     left_out = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
     assumed = plan.devices.assumed_inputs(at.device)
     measured = [name for name in names.values() if is_measured(plan.config["surfaces"][name])]
