@@ -8,8 +8,7 @@ import sys
 from pathlib import Path
 
 BASE = Path(workflow.current_basedir)
-# Jobs use the code that belongs to this file, because its fingerprint decides what reruns: next to it in a checkout, and
-# around it in an installed package.
+# Jobs use the code of this checkout or installed package, because its fingerprint decides which of them rerun.
 SOURCE = str(BASE / "src" if (BASE / "src").is_dir() else BASE.parents[1])
 sys.path.insert(0, SOURCE)
 PATHS = [SOURCE, *filter(None, dict(os.environ).get("PYTHONPATH", "").split(os.pathsep))]
@@ -39,7 +38,7 @@ if is_main:
     remember_code.save()
 
 
-FRONT = Path(".snakemake/front.rst")  # front page of the report, if the command stiction report has written one
+FRONT = Path(".snakemake/front.rst")  # front page of the report, written by the command stiction report
 if FRONT.exists():
 
     report: str(FRONT.absolute())
@@ -117,15 +116,15 @@ rule scans:
         "Sheets and statistics of scans, without the pairs of their surfaces."
 
 
-HELD = []  # open file that holds the lock on the folder of this run
+LOCKS = []  # open file with the lock on the folder of this run
 
 
 onstart:
-    # As Ctrl-C. Snakemake's own handler acquires a lock and would deadlock if this thread already holds it.
+    # Stop as Ctrl-C does. Snakemake's handler acquires a lock, and deadlocks if this thread already holds it.
     interrupt = signal.getsignal(signal.SIGINT)
     signal.signal(signal.SIGTERM, interrupt if callable(interrupt) else signal.default_int_handler)
     try:
-        HELD.append(run_lock.reserve(".snakemake/running"))
+        LOCKS.append(run_lock.reserve(".snakemake/running"))
         refuse_what_samples_show()
         refuse_to_touch()
         provenance.record("results/provenance.json", BASE, config)
@@ -136,8 +135,8 @@ onstart:
     except (RuntimeError, ValueError) as error:
         raise WorkflowError(str(error))
     snakemake_patches.limit_timers(workflow)
-    # Kernels are compiled and cached before jobs run in parallel, because two jobs could corrupt a shared cache entry.
-    # The server of the jobs that run on this machine does it.
+    # Compile and cache kernels before jobs run in parallel, because two jobs could corrupt a shared entry of the cache.
+    # The server that forks jobs does this itself.
     if not snakemake_patches.fork_jobs():
         shell("{sys.executable:q} -m stiction.run.warmup")
 
@@ -152,7 +151,7 @@ rule all:
         map(planner.wanted, WHOLE),
     localrule: True
     message:
-        "Tables, figures, checks, and what the configuration asks of devices."
+        "Tables, figures, checks and pages of devices."
 
 
 snakemake_patches.list_messages(workflow)

@@ -297,8 +297,8 @@ def surface_checks(
         yield heights_are_as_measured(surface, density)
     for (surface, model), character in characters.items():
         used = heights[surface] if model == "NG" else {"skewness": 0.0, "kurtosis": 3.0}
-        given = targets.get(surface, {"rms_nm": TO_NM * float(heights[surface].rms)})
-        wanted = given | {name: float(used[name]) for name in ("skewness", "kurtosis")}
+        moments = targets.get(surface, {"rms_nm": TO_NM * float(heights[surface].rms)})
+        wanted = moments | {name: float(used[name]) for name in ("skewness", "kurtosis")}
         yield from moments_meet_targets(f"{surface} {model}", character, wanted, defects[surface])
 
 

@@ -142,12 +142,12 @@ def remember_signatures() -> None:
         return
     if list(inspect.signature(inspected).parameters) != ["func"]:
         return
-    known = cache(inspected)
+    cached = cache(inspected)
 
     def get_function_params(func):
         """Names of the parameters of a function, from memory if it has a hash."""
         try:
-            return known(func)
+            return cached(func)
         except TypeError:  # it has no hash
             return inspected(func)
 

@@ -71,17 +71,19 @@ class Maps:
         frame = scans[0].frame
         levelled = tuple(level(scan.heights, settings.levelling) for scan in scans)
         complete = tuple(map(partial(_whole, settings), scans, levelled))
-        part = _part(complete[0], frame)
-        noisy = spectra.periodogram(complete, part.size)
+        frame_of_part = _part(complete[0], frame)
+        noisy = spectra.periodogram(complete, frame_of_part.size)
         tip = np.inf if settings.tip_radius is None else tip_reach(complete, frame.pixel[0], settings.tip_radius)
-        within = reach(part.size, frame.pixel, settings.shortest, tip)
+        within = reach(frame_of_part.size, frame.pixel, settings.shortest, tip)
         floor, kept = white_floor(spectra.rings(noisy), within), Floor()
         if not can_be_noise(moments(np.mean([powers(z) for z in levelled], axis=0)), floor.variance(frame.pixel)[0]):
             floor, kept = kept, floor
         within, clean = above(spectra.rings(noisy), within, floor), spectra.without_floor(noisy, floor.density)
         names = tuple(scan.name for scan in scans)
         spectrum_of = spectra.rings(clean)
-        return cls(names, tuple(alike), frame, levelled, complete, part, clean, spectrum_of, within, floor, kept)
+        return cls(
+            names, tuple(alike), frame, levelled, complete, frame_of_part, clean, spectrum_of, within, floor, kept
+        )
 
     @property
     def size(self) -> str:
@@ -223,10 +225,10 @@ class Inspection:
             return [(0.0, 0.0, 1.0, 1.0, 1.0)]
         shares = np.repeat(np.divide(self.weights, list(map(len, fits))), list(map(len, fits)))
         variances = np.diag(self.fit.covariance)[1:] / shares[:, None]
-        alone = (one for of_size in fits for one in of_size)
+        fits_of_scans = (scan_fit for of_size in fits for scan_fit in of_size)
         return [
-            (np.log(one.corner), one.slope, *of_one, share)
-            for one, of_one, share in zip(alone, variances, shares, strict=True)
+            (np.log(scan_fit.corner), scan_fit.slope, *of_one, share)
+            for scan_fit, of_one, share in zip(fits_of_scans, variances, shares, strict=True)
         ]
 
     @property
@@ -278,10 +280,13 @@ class Inspection:
             low = max(_first_wave(maps, self.sizes) for maps in (first, second))
             high = min(self.reach.high, *(maps.reach.high for maps in (first, second)))
             rings = [maps.rings.between(low, high) for maps in (first, second)]
-            if all(len(part.wavenumber) for part in rings):
+            if all(len(of_size.wavenumber) for of_size in rings):
                 fitted = self.fit.density
-                means = [np.average(part.density / fitted(part.wavenumber), weights=part.weight) for part in rings]
-                error = NON_GAUSSIAN * np.sqrt(sum(1 / part.weight.sum() for part in rings))
+                means = [
+                    np.average(of_size.density / fitted(of_size.wavenumber), weights=of_size.weight)
+                    for of_size in rings
+                ]
+                error = NON_GAUSSIAN * np.sqrt(sum(1 / of_size.weight.sum() for of_size in rings))
                 yield first, second, means[1] / means[0], error * means[1] / means[0]
 
 
@@ -313,13 +318,13 @@ def _whole(settings, scan, levelled):
     """
     if scan.undefined_share <= settings.undefined_share:
         return filled(levelled, scan.frame.pixel)
-    part = level(scan.heights[whole_part(scan.heights)], settings.levelling) if scan.defined.any() else levelled[:0]
-    if min(part.shape) < FEWEST_POINTS:
+    heights = level(scan.heights[whole_part(scan.heights)], settings.levelling) if scan.defined.any() else levelled[:0]
+    if min(heights.shape) < FEWEST_POINTS:
         share = f"{100 * scan.undefined_share:.3g} % of its points undefined"
         share += f" ({scan.stopped})" if scan.stopped else ""
         reason = f"has {share}, and no part without holes that has {FEWEST_POINTS} points along each side"
         raise ScanError(scan.name, "files", reason)
-    return filled(part, scan.frame.pixel)
+    return filled(heights, scan.frame.pixel)
 
 
 def _in_words(frame):
@@ -354,10 +359,10 @@ def _extent(frame):
     return min(frame.size), math.prod(frame.shape)
 
 
-def _alike(one, other, undefined_share):
+def _alike(first, second, undefined_share):
     """Whether two scans have the same number of points and, nearly, the same size, and neither has many holes."""
-    same = one.frame.shape == other.frame.shape and np.allclose(one.size, other.size, rtol=_SAME_SIZE, atol=0)
-    return same and max(one.undefined_share, other.undefined_share) <= undefined_share
+    same = first.frame.shape == second.frame.shape and np.allclose(first.size, second.size, rtol=_SAME_SIZE, atol=0)
+    return same and max(first.undefined_share, second.undefined_share) <= undefined_share
 
 
 def _fitted(sizes):

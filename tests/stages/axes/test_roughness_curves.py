@@ -14,7 +14,7 @@ import stiction
 from stiction.contact.correction import Change, Correction
 from stiction.contact.environment import Water
 from stiction.devices import stoppers
-from stiction.devices.risk import Known
+from stiction.devices.risk import LengthBounds
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.report.axes import figures as figures_roughness
@@ -250,7 +250,7 @@ def test_a_beam_that_sticks_at_no_length_is_an_answer():
     device = SimpleNamespace(opening=SimpleNamespace(shapes=(S_SHAPE,)))
     common = {"seed": 1, "chaos": None, "water": WATER, "humidities": (0.6,), "device": device, "beams": 100}
     beam = requirement.OfBeam(**common, share=SHARE, length=1e-4, edge_radius=0.0)
-    known, lengths = Known(2e-4, 5e-5, 5e-5), np.full(100, np.inf)
+    known, lengths = LengthBounds(2e-4, 5e-5, 5e-5), np.full(100, np.inf)
     never = beam._response(lengths, *sticking.safe_lengths(lengths, beam, known), known)
     points = [
         requirement.layout([[never]], 100, beam).assign(

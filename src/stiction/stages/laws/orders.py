@@ -45,10 +45,10 @@ def compute(forces: xr.Dataset, chaos: xr.Dataset, settings: Settings) -> xr.Dat
     orders, densities, distances = range(1, fitted.order + 1), [], []
     for order in progress(orders, "orders"):
         xi = stream(settings.seed, "orders", settings.case).random((settings.draws, fitted.dimension))
-        drawn = truncated(fitted, order)(xi)
-        densities.append([histogram(column)[0] for column in drawn.T])
-        to_kernels = [convergence.distance_to(column, target) for column, target in zip(drawn.T, targets, strict=True)]
-        distances.append((to_kernels, list(map(convergence.distance_between, drawn.T, eta.T))))
+        draws = truncated(fitted, order)(xi)
+        densities.append([histogram(column)[0] for column in draws.T])
+        to_kernels = [convergence.distance_to(column, target) for column, target in zip(draws.T, targets, strict=True)]
+        distances.append((to_kernels, list(map(convergence.distance_between, draws.T, eta.T))))
     distances = np.swapaxes(distances, 0, 1)
     sizes = len(eta), settings.draws
     converged = [convergence.converged_order(orders, column, *sizes) for column in distances[0].T]

@@ -79,9 +79,9 @@ def compute(
     as those of the choices, keys of `stiction.models.ALTERNATIVES_OF_SCANS` with the contact under the other value.
     """
 
-    def by_surface(part):
+    def by_surface(function):
         """Values of one function for every surface."""
-        return np.array([part(dataset, errors[name]) for name, dataset in slopes.items()])
+        return np.array([function(dataset, errors[name]) for name, dataset in slopes.items()])
 
     uncertainty = Uncertainty(*map(by_surface, (_parts, _sampling, _form)))
     changes = {name: _changes(contact, base, settings) for name, contact in choices.items()}
@@ -118,7 +118,7 @@ def _form(slopes, errors):
 def _changes(contact, base, settings):
     """Relative change of ē by a choice and its standard error, (n_rh, 2) [-]."""
     same = first(base, contact.sizes["strip"])
-    pairs = ([energies(of, h, settings.water) for of in (contact, same)] for h in settings.humidities)
+    pairs = ([energies(dataset, h, settings.water) for dataset in (contact, same)] for h in settings.humidities)
     return [relative_shift(*pair) for pair in pairs]
 
 

@@ -35,9 +35,9 @@ def compute(settings: Settings) -> xr.Dataset:
         As `stiction.surface.feasible.nearest_feasible`.
     """
     feasible = nearest_feasible(settings.skewness, settings.kurtosis)
-    used = replace(settings, skewness=feasible.skewness, kurtosis=feasible.kurtosis)
+    feasible_settings = replace(settings, skewness=feasible.skewness, kurtosis=feasible.kurtosis)
     measured = Moments(settings.skewness, settings.kurtosis, feasible.distance) if feasible.distance else None
-    dataset = layout(maxent.solve(feasible.skewness, feasible.kurtosis), used, measured)
+    dataset = layout(maxent.solve(feasible.skewness, feasible.kurtosis), feasible_settings, measured)
     if measured:
         warnings.warn(substitution(dataset), stacklevel=2)
     return dataset
