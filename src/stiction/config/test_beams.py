@@ -14,6 +14,7 @@ from statistics import fmean, median, stdev
 from typing import Any, NamedTuple
 
 from stiction.config.kinds import KEYS
+from stiction.config.merging import section_at
 from stiction.config.messages import ConfigError, one_line
 from stiction.config.reading import text
 from stiction.config.tables import csv_rows
@@ -155,9 +156,8 @@ def with_files(config: dict[str, Any], named: Mapping[str, Any], folder: str | P
 
 def _arrays(config) -> Iterator[tuple[str, dict]]:
     """Yield arrays with a file."""
-    arrays = config.get("test_beams")
-    for name, entry in arrays.items() if isinstance(arrays, dict) else ():
-        if isinstance(entry, dict) and isinstance(entry.get("file"), str):
+    for name, entry in section_at(config, "test_beams").items():
+        if isinstance(section_at(entry).get("file"), str):
             yield name, entry
 
 
@@ -197,9 +197,7 @@ def in_files(sentence: str, config: Any) -> str:
 
 def _origins(config):
     """Origins by the name of the array."""
-    arrays = config.get("test_beams") if isinstance(config, dict) else None
-    entries = arrays.items() if isinstance(arrays, dict) else ()
-    files = {name: entry.get("file") for name, entry in entries if isinstance(entry, dict)}
+    files = {name: section_at(entry).get("file") for name, entry in section_at(config, "test_beams").items()}
     return {name: origin for name, origin in files.items() if isinstance(origin, Origin)}
 
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from stiction.config.merging import merged
+from stiction.config.merging import merged, section_at
 from stiction.config.messages import ConfigError, dotted, one_line
 from stiction.config.reading import text
 from stiction.config.tables.csv_rows import WrongFileError, rows
@@ -70,11 +70,10 @@ def with_rows(config: dict[str, Any]) -> dict[str, Any]:
 
 def without_file(config: Any) -> tuple[Any, Rows]:
     """Configuration, valid or not, without the `Rows` of its file, and these. Without a file they are empty."""
-    devices = config.get("devices") if isinstance(config, dict) else None
-    of_file = devices.get("file") if isinstance(devices, dict) else None
-    if not isinstance(of_file, Rows):
+    devices = dict(section_at(config, "devices"))
+    if not isinstance(of_file := devices.pop("file", None), Rows):
         return config, Rows("", {}, [], {})
-    return config | {"devices": {name: device for name, device in devices.items() if name != "file"}}, of_file
+    return config | {"devices": devices}, of_file
 
 
 def in_rows(sentences: Iterable[str], of_file: Rows) -> list[str]:
@@ -119,7 +118,7 @@ def _is_among(key, stated):
 
 def _dotted(section, above=""):
     """Yield the dotted keys of the values of a section, which may be none."""
-    for key, value in section.items() if isinstance(section, dict) else ():
+    for key, value in section_at(section).items():
         if isinstance(value, dict):
             yield from _dotted(value, f"{above}{key}.")
         else:
@@ -143,8 +142,7 @@ def _shown(file):
 
 def _file(config):
     """File of devices, ``None`` if a configuration names none."""
-    devices = config.get("devices") if isinstance(config, dict) else None
-    file = devices.get("file") if isinstance(devices, dict) else None
+    file = section_at(config, "devices").get("file")
     return file if isinstance(file, str) else None
 
 
