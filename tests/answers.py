@@ -21,10 +21,10 @@ from stiction.stages.devices import budget, safe_lengths, sticking, stoppers
 from stiction.stages.devices.budget import Responses
 from stiction.stages.devices.device_warnings import OfDevices
 from stiction.stages.devices.opening import EITHER, S_SHAPE, DesignedBeam
-from stiction.stages.devices.uncertain_inputs import Input, State, Uncertainty
+from stiction.stages.devices.uncertain_inputs import Input, InputState, Uncertainty
 from stiction.stages.life.answers import layout
 from stiction.stages.life.beams import beam_answers
-from stiction.stages.life.inputs import Errors, OfBeam, OfStopper
+from stiction.stages.life.inputs import BeamErrors, BeamInUse, StopperInUse
 from stiction.stages.life.stoppers import stopper_answers
 
 CANTILEVER = {
@@ -81,7 +81,7 @@ def least(dataset, share=1e-3):
 
 # Budgets
 
-STATE = State(None, 0.5, Water(300.0))
+STATE = InputState(None, 0.5, Water(300.0))
 NAMES = {"rms of B2": "heights of B2", "skewness of B2": "heights of B2", "thickness": "thickness"}
 COVARIANCE = np.array([[4e-4, -1e-4, 0], [-1e-4, 4e-4, 0], [0, 0, 1e-4]])
 C1 = designed()
@@ -129,7 +129,7 @@ def silent(lengths: Mapping[float, xr.Dataset], name="C1", said=()) -> OfDevices
 def beam_data(lengths, budgets=None, *, of=None, after=None, **more):
     """Datasets of a beam: safe lengths by humidity, budgets by the keys of pages, and more of stage answer."""
     kind = "bridge" if "middle" in next(iter(lengths.values()))["shape"].values else "cantilever"
-    of = of or OfBeam(device=designed(kind), density=2330.0, liquids={}, uncertainty=Errors())
+    of = of or BeamInUse(device=designed(kind), density=2330.0, liquids={}, uncertainty=BeamErrors())
     life = layout(beam_answers(lengths, after or {}, of, more.get("biased")), of)
     return {"lengths": lengths, "budgets": list((budgets or {}).values()), "life": life, "biased": {}} | more
 
@@ -153,7 +153,7 @@ def beam_answer(section, lengths, budgets=None, limits: Sequence[Limit] = (), **
 def stopper_answer(stopper, budgets=None, limits: Sequence[Limit] = (), *, of=None, **more) -> Answer:
     """Answer about a stopper, from its forces."""
     force = float(stopper.restoring_force)
-    of = of or OfStopper(restoring_force=force, contact=(3e-6, 3e-6))
+    of = of or StopperInUse(restoring_force=force, contact=(3e-6, 3e-6))
     life = layout(stopper_answers(stopper, of), of)
     data = {"stopper": stopper, "budgets": list((budgets or {}).values()), "life": life} | more
     humidities = tuple(humidity for humidity, *_ in budgets or {})

@@ -4,9 +4,9 @@ import numpy as np
 
 from stiction.answer import ladder
 from stiction.answer.data import Cause
-from stiction.answer.ladder import Question
+from stiction.answer.ladder import MainQuestion
 from stiction.answer.unknowns import Draws, Exact, OfBudgets, Slopes
-from stiction.answer.worlds import Condition, Sampled, Stated
+from stiction.answer.worlds import Condition, Sampled, StatedSize
 from stiction.devices import risk
 from stiction.life.freeing import probability_for
 from stiction.streams import stream
@@ -17,8 +17,8 @@ ARC, ALONG = "S-shape or arc", "S-shape"
 
 def stated(values, share, **known):
     """Statement about thresholds (n,) as stage safe_lengths makes it."""
-    safe = risk.safe_length(np.exp(values), share, stream(0, "safe length"), risk.Known(**known))
-    return Stated(share, np.log(max(safe.estimate, safe.length)), np.log(safe.length))
+    safe = risk.safe_length(np.exp(values), share, stream(0, "safe length"), risk.KnownLengths(**known))
+    return StatedSize(share, np.log(max(safe.estimate, safe.length)), np.log(safe.length))
 
 
 def sampled(values, touchdowns=1, **known):
@@ -55,5 +55,5 @@ def asked(conditions, unknowns=None, number=2000, before=None, **question):
     """Answer about a drawn device."""
     question = {"share": SHARE, "unit": "m"} | question
     return ladder.answer(
-        Question("D", "cantilever", **question), conditions, unknowns or Exact(), Draws(number, 0), before
+        MainQuestion("D", "cantilever", **question), conditions, unknowns or Exact(), Draws(number, 0), before
     )

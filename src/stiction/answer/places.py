@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
-from stiction.answer.data import Answer, Cause, InAir, Probability, PullOff, Step, band
+from stiction.answer.data import Answer, AnswerInAir, Cause, Probability, PullOff, Step, band
 from stiction.answer.sought import PULL_OFF
 from stiction.answer.unknowns import Draws, Unknowns, normal
 from stiction.devices import probes
@@ -29,7 +29,7 @@ class Places:
 
 
 @dataclass(frozen=True)
-class Asked:
+class ProbeQuestion:
     """Question about a probe."""
 
     device: str
@@ -42,14 +42,14 @@ class Asked:
     forbidden: tuple[str, ...] = ()  #: kinds of the limits that forbid a number
 
 
-def answer(asked: Asked, places: Mapping[float, Places], unknowns: Unknowns, draws: Draws) -> Answer:
+def answer(asked: ProbeQuestion, places: Mapping[float, Places], unknowns: Unknowns, draws: Draws) -> Answer:
     """Answer from places by humidity. The air of its steps is the one that holds most."""
     sizes = _sizes(asked, places)
     found = [
         (pull_off(asked, *air, unknowns, draws), _curve(asked, *air, unknowns, draws, sizes)) for air in places.items()
     ]
     airs = tuple(
-        InAir(one.humidity, np.nan, np.nan, one.more, curve, float(places[one.humidity].forces.max()))
+        AnswerInAir(one.humidity, np.nan, np.nan, one.more, curve, float(places[one.humidity].forces.max()))
         for one, curve in found
     )
     most = max(range(len(airs)), key=lambda k: found[k][0].quantiles[1, 0])
@@ -80,7 +80,7 @@ def _shifts(asked, humidity, places, unknowns, draws):
     return of_inputs + places.error * normal(draws, "surfaces")
 
 
-def pull_off(asked: Asked, humidity: float, places: Places, unknowns: Unknowns, draws: Draws) -> PullOff:
+def pull_off(asked: ProbeQuestion, humidity: float, places: Places, unknowns: Unknowns, draws: Draws) -> PullOff:
     """Forces of the places in one air, and the measured one among them."""
     forces, shifts = places.forces, _shifts(asked, humidity, places, unknowns, draws)
     rows = []

@@ -40,7 +40,7 @@ _SCORES = np.linspace(-4.0, 4.0, 33)
 
 
 @dataclass(frozen=True)
-class Stated:
+class StatedSize:
     """Size for a fraction as a dataset states it, as v."""
 
     share: float  #: p [-]
@@ -53,7 +53,7 @@ class Sampled:
     """Thresholds of simulated devices."""
 
     values: np.ndarray  #: increasing, infinite where a device does not stick (n,)
-    stated: tuple[Stated, ...]  #: for the fraction after one touchdown, and after all of them
+    stated: tuple[StatedSize, ...]  #: for the fraction after one touchdown, and after all of them
     reach: float = np.inf  #: end of the simulation
     floor: float = -np.inf  #: below which no surfaces hold a device
     flat: float = -np.inf  #: threshold on flat surfaces, the bound without a line and a statement
@@ -72,7 +72,7 @@ class Sampled:
         """Largest threshold that is known."""
         return float(min(self.reach, np.max(self.values, where=np.isfinite(self.values), initial=-np.inf)))
 
-    def stated_for(self, share: float) -> Stated | None:
+    def stated_for(self, share: float) -> StatedSize | None:
         """Statement for a fraction, none if there is none."""
         return next((one for one in self.stated if np.isclose(one.share, share, rtol=1e-9, atol=0)), None)
 
@@ -88,7 +88,7 @@ class Sampled:
             """Finite end after the change."""
             return float(move(np.array(v))) if np.isfinite(v) else v
 
-        stated = tuple(Stated(one.share, end(one.estimate), end(one.bound)) for one in self.stated)
+        stated = tuple(StatedSize(one.share, end(one.estimate), end(one.bound)) for one in self.stated)
         ends = {name: end(getattr(self, name)) for name in ("reach", "floor", "flat")}
         return replace(self, values=move(self.values), stated=stated, **ends)
 

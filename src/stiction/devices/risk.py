@@ -48,7 +48,7 @@ class SafeLength:
 
 
 @dataclass(frozen=True)
-class Known:
+class KnownLengths:
     """Lengths of devices known without samples, and the end of the samples [m]."""
 
     reach: float = (
@@ -59,7 +59,7 @@ class Known:
 
 
 #: Devices of which all lengths are from samples.
-NOTHING = Known()
+NOTHING = KnownLengths()
 
 
 # Sticking lengths
@@ -182,7 +182,9 @@ def sampled_bound(values: np.ndarray, share: float) -> tuple[float, float, float
     return float(_sampled_length(ordered, share)), float(estimate), float(error)
 
 
-def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator, known: Known = NOTHING) -> SafeLength:
+def safe_length(
+    sticking: np.ndarray, share: float, rng: np.random.Generator, known: KnownLengths = NOTHING
+) -> SafeLength:
     """Safe length for one share p of stuck devices, at most 5 %, from their sticking lengths (n,) [m].
 
     It is sampled if there are enough devices (`samples_for`), and at most as long as they were simulated. Otherwise it
@@ -230,7 +232,7 @@ def _fitted(sticking, share, rng, known):
     return SafeLength(share, bound, estimate, float(estimate * fitted.slope * errors.std()), basis)
 
 
-def on_sampled_surfaces(safe: SafeLength, of_length: float, of_estimate: float, known: Known) -> SafeLength:
+def on_sampled_surfaces(safe: SafeLength, of_length: float, of_estimate: float, known: KnownLengths) -> SafeLength:
     """Safe length with the standard errors of itself and of its estimate due to the number of sampled surfaces [m].
 
     The distance of the bound from the estimate, given the surfaces, and 1.64 errors are margins of independent errors

@@ -49,7 +49,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class State:
+class HeldBeam:
     """How a beam bends while some rows of dimples hold it, per deflection at these rows."""
 
     rows: tuple[int, ...]  #: that touch, numbered along the beam
@@ -66,7 +66,7 @@ class State:
         return float(self.bent.max())
 
 
-def states(beam: Beam, clamps: int, at: Sequence[float]) -> list[State]:
+def states(beam: Beam, clamps: int, at: Sequence[float]) -> list[HeldBeam]:
     """States of rest of a beam on rows of dimples at increasing distances from a clamp [m], below its length.
 
     Examples
@@ -89,21 +89,21 @@ def states(beam: Beam, clamps: int, at: Sequence[float]) -> list[State]:
                 free = [at[row] for row in range(len(at)) if row not in rows]
                 influence = np.array([held.influence(place, along) for place in free]).reshape(-1, len(along))
                 others = held.bent(u, np.array(free))
-                found.append(State(rows, pull, held.bent(u, along), *held.sags(along), others, influence))
+                found.append(HeldBeam(rows, pull, held.bent(u, along), *held.sags(along), others, influence))
     return found
 
 
-def least_pull(found: Sequence[State]) -> float:
+def least_pull(found: Sequence[HeldBeam]) -> float:
     """Largest pull on a row in the state in which it is least, per deflection [N m⁻¹]."""
     return min(float(state.pull.max()) for state in found)
 
 
-def holds(found: Sequence[State], way: float, held: np.ndarray) -> np.ndarray:
+def holds(found: Sequence[HeldBeam], way: float, held: np.ndarray) -> np.ndarray:
     """Whether rows that hold forces (beams, rows) [N] keep beams down, deflected by a way [m], (beams,) bool."""
     return np.any([np.all(held[:, state.rows] > way * state.pull, axis=1) for state in found], axis=0)
 
 
-def least_load(found: Sequence[State], way: float, gap: float, power: int) -> float:
+def least_load(found: Sequence[HeldBeam], way: float, gap: float, power: int) -> float:
     """Largest load per length, times the ``power`` of the gap, that brings no place down to the substrate [SI].
 
     The rows are deflected by a way [m]. Zero if the beam touches beside them without a load.

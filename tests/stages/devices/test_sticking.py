@@ -16,7 +16,7 @@ from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.devices import risk
 from stiction.devices.arcs import arc_length, flat_force, flat_length
 from stiction.devices.bridges import least_length
-from stiction.devices.risk import Known
+from stiction.devices.risk import KnownLengths
 from stiction.stages.devices import ground, opening, sticking
 from stiction.stages.devices.opening import EITHER, MIDDLE, S_SHAPE
 from stiction.streams import stream
@@ -102,7 +102,7 @@ def test_no_safe_length_of_a_bridge_is_below_its_bound_and_a_tip_has_none():
     bound = sticking.lengths_without_samples(*flats(wanted(R1)), np.inf)[MIDDLE].safe
     scattered = bound * np.exp(0.3 + 0.1 * np.random.default_rng(3).standard_normal(200))
     asked = replace(wanted(), shares=(1e-2, 1e-4))
-    free, held = (sticking.safe_lengths(scattered, asked, Known(safe=least)) for least in (0.0, bound))
+    free, held = (sticking.safe_lengths(scattered, asked, KnownLengths(safe=least)) for least in (0.0, bound))
     assert free[1].length < bound
     assert [one.length for one in held] == [max(one.length, bound) for one in free]
     assert [one.estimate for one in held] == [one.estimate for one in free]

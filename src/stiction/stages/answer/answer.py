@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from stiction.answer import ladder, places, sought
-from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, PullOff, Stay, Step
-from stiction.answer.ladder import Question
+from stiction.answer.data import INPUTS, Answer, AnswerInAir, Cause, Probability, PullOff, Stay, Step
+from stiction.answer.ladder import MainQuestion
 from stiction.answer.unknowns import Draws, OfBudgets
 from stiction.answer.worlds import DRAWS
 from stiction.config.mission.conditions import CONDITIONS
@@ -67,7 +67,7 @@ def _of_pull_off(data, settings):
     left_out = (
         ("inputs",) if isinstance(unknowns, OfBudgets) and any(unknowns.of((rh, FORCE)) is None for rh in found) else ()
     )
-    asked = places.Asked(
+    asked = places.ProbeQuestion(
         settings.name, settings.kind, FORCE, "stoppers", *numbers, left_out, _forbidden(data, unknowns)
     )
     return places.answer(asked, found, unknowns, Draws(DRAWS, settings.seed))
@@ -83,7 +83,7 @@ def _of_size(data, settings):
     if settings.required < question["share"]:
         left_out = (*left_out, "requirement")
     stated = {"touchdowns": settings.touchdowns, "stays": tuple(settings.stays.values()), "left_out": left_out}
-    asked = Question(settings.name, settings.kind, forbidden=_forbidden(data, unknowns), **stated, **question)
+    asked = MainQuestion(settings.name, settings.kind, forbidden=_forbidden(data, unknowns), **stated, **question)
     draws = Draws(DRAWS, settings.seed)
     answer = ladder.answer(asked, found, unknowns, draws, None if unknowns is before else before)
     at = [settings.temperatures.get(Air(one.humidity).name, np.nan) for one in answer.airs]
@@ -233,7 +233,7 @@ def answer_of(dataset: xr.Dataset) -> Answer:
         for row in (dataset.isel(step=k) for k in range(dataset.sizes["step"]))
     ]
     airs = [
-        InAir(
+        AnswerInAir(
             float(row.air),
             *(float(row[f"air_{name}"]) for name in ("build", "without_tip")),
             _probability(row, "air_stuck_"),

@@ -9,7 +9,7 @@ import xarray as xr
 
 from stiction.answer.data import Cause
 from stiction.answer.unknowns import Exact, Members, OfBudgets, OfTestBeams, Slopes, Unknowns
-from stiction.answer.worlds import Condition, Sampled, Stated
+from stiction.answer.worlds import Condition, Sampled, StatedSize
 from stiction.devices.risk import sampled_bound
 from stiction.life import holding
 from stiction.stages.devices.budget import members_of, response_of
@@ -51,7 +51,7 @@ _STATED = ("share", "estimate", "safe_length")
 def _stated_length(share, estimate, bound):
     """Safe length as v."""
     estimate, bound = _log(estimate), _log(bound)
-    return Stated(share, float(max(estimate, bound)), float(bound))
+    return StatedSize(share, float(max(estimate, bound)), float(bound))
 
 
 def _log(sizes):
@@ -132,7 +132,7 @@ def _stated_force(values, share, safe):
         bound, estimate, _ = sampled_bound(values, share)
     else:
         bound, estimate = -_log(safe.sel(share=share, part=["safe", "estimate"]).values)
-    return (Stated(share, max(float(estimate), float(bound)), float(bound)),)
+    return (StatedSize(share, max(float(estimate), float(bound)), float(bound)),)
 
 
 def at_voltage_on_flat_patches(stopper: Iterable[Condition], life: xr.Dataset) -> Iterator[Condition]:

@@ -10,7 +10,7 @@ from stiction.config.cases import case_id
 from stiction.contact.air import humid
 from stiction.contact.environment import Water
 from stiction.devices import arcs, risk
-from stiction.devices.risk import Known, SafeLength, in_order
+from stiction.devices.risk import KnownLengths, SafeLength, in_order
 from stiction.estimates import mean_with_error
 from stiction.life.freeing import probability_for
 from stiction.plan.stage import Running, Stage, select, subsection
@@ -128,7 +128,7 @@ def at_length(beams: Released, length: float) -> dict[str, tuple]:
 def layout(
     sticking: Mapping[str, np.ndarray],
     safe: Mapping[str, Sequence[SafeLength]],
-    without_samples: Mapping[str, Known],
+    without_samples: Mapping[str, KnownLengths],
     settings: Settings,
 ) -> xr.Dataset:
     """Dataset of P(stuck) and of the safe lengths, by shape.

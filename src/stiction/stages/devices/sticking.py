@@ -12,10 +12,10 @@ from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws
 from stiction.contact import forcelaw
-from stiction.contact.correction import NONE, Change
+from stiction.contact.correction import NONE, ElasticChange
 from stiction.contact.environment import Water, flooded_parts
 from stiction.devices import arcs, bridges, risk, strips
-from stiction.devices.risk import NOTHING, Basis, Known, SafeLength
+from stiction.devices.risk import NOTHING, Basis, KnownLengths, SafeLength
 from stiction.devices.sampling import Move, SampledSurfaces, sampled_surfaces
 from stiction.stages.contact import curves
 from stiction.stages.contact.error_notes import on_patch
@@ -57,7 +57,7 @@ class Laws:
     is_narrow: bool  #: whether strips are drawn from the samples: the model lacks their mean, scatter or displacements
     repetition: float  #: probability that a strip repeats the law of its neighbour [-]
     #: Change of the energies by full elastic contact, in these laws, of which the errors matter.
-    change: Change = NONE
+    change: ElasticChange = NONE
     displacements: np.ndarray | None = None  #: of the samples from their register (m,) [m], if beams have play
 
     @property
@@ -206,17 +206,17 @@ def sticking_lengths(
 
 def lengths_without_samples(
     device: DesignedBeam, water: Water, humidity: float, edge_radius: float, reach: float
-) -> dict[str, Known]:
+) -> dict[str, KnownLengths]:
     """Known lengths of a device without samples, by shape, with the reach of the simulation [m].
 
     No surfaces hold a bridge up to the length of `flooded_lengths`, but a single tip may hold a shorter beam.
     """
     lengths = flooded_lengths(device, water, humidity, edge_radius)
     safe = 0.0 if device.opening.has_tip else lengths[0]
-    return {shape: Known(reach, flat, safe) for shape, flat in zip(device.opening.shapes, lengths, strict=True)}
+    return {shape: KnownLengths(reach, flat, safe) for shape, flat in zip(device.opening.shapes, lengths, strict=True)}
 
 
-def by_shape(beams: Released, settings: Settings, known: Mapping[str, Known]) -> dict[str, list[SafeLength]]:
+def by_shape(beams: Released, settings: Settings, known: Mapping[str, KnownLengths]) -> dict[str, list[SafeLength]]:
     """Safe length for every share, by shape. The error of the sampled surfaces is part of the bound."""
 
     def found(move):
@@ -268,6 +268,6 @@ def _given_surfaces(sticking, settings, known):
     }
 
 
-def safe_lengths(sticking: np.ndarray, settings: Settings, known: Known = NOTHING) -> list[SafeLength]:
+def safe_lengths(sticking: np.ndarray, settings: Settings, known: KnownLengths = NOTHING) -> list[SafeLength]:
     """Safe length for every share, from sticking lengths (n,) [m]."""
     return [risk.safe_length(sticking, share, stream(settings.seed, "safe length"), known) for share in settings.shares]

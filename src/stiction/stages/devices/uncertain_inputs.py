@@ -17,7 +17,7 @@ from scipy.linalg import block_diag
 
 from stiction.config.units import without_unit
 from stiction.contact.environment import Water
-from stiction.contact.materials import OF_CONTACT, OF_PAIRS, OF_REPLICAS, Step
+from stiction.contact.materials import OF_CONTACT, OF_PAIRS, OF_REPLICAS, InputStep
 from stiction.contact.tilt import EDGE_RADIUS
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.scans import moments
@@ -30,11 +30,11 @@ from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.translation import Translation
 
 #: Step of dimensions.
-_OF_DIMENSIONS = Step(0.05)
+_OF_DIMENSIONS = InputStep(0.05)
 
 
 @dataclass(frozen=True)
-class State:
+class InputState:
     """State of devices at one value of each input."""
 
     contact: xr.Dataset
@@ -44,7 +44,7 @@ class State:
     area: float = 0.0  #: of a stopper [m²]
     alike: tuple[str, ...] = SIDES  #: bodies of the material of the beam or stopper
 
-    def attracting(self, factor: float) -> "State":
+    def attracting(self, factor: float) -> "InputState":
         """State with a factor of the Hamaker constants of these bodies across gaps. Its contact stays."""
         gaps = self.water.gaps
         return replace(self, water=replace(self.water, gaps=gaps and gaps.scaled(factor, self.alike)))
@@ -56,15 +56,15 @@ class Input:
 
     name: str  #: for reading
     group: str  #: measurement that would determine this input, shown in tables
-    states: tuple[State, State]  #: with less and with more of the input
+    states: tuple[InputState, InputState]  #: with less and with more of the input
     step: float  #: difference of the input between both
     #: State between both, if they are as far around it as the uncertainty of the input and its curvature counts.
-    middle: State | None = None
+    middle: InputState | None = None
     limits: tuple[float, float] = (-np.inf, np.inf)  #: beyond which errors count as there
 
 
 @dataclass(frozen=True)
-class Known:
+class SurfaceErrors:
     """Errors of the quantities of a surface."""
 
     quantities: tuple[str, ...]  #: keys of `stiction.analysis.shifts.STEPS`
@@ -91,13 +91,13 @@ class Varied:
 
     field: str  #: of `Uncertainty`; inputs with the same one err together
     name: str  #: for reading
-    value: Callable[[State], float]
-    changed: Callable[[State, float], State]
-    step: Step | None = None  #: in either direction; by default its standard uncertainty
+    value: Callable[[InputState], float]
+    changed: Callable[[InputState, float], InputState]
+    step: InputStep | None = None  #: in either direction; by default its standard uncertainty
     least: float = -np.inf  #: below which it cannot be
     group: str = ""  #: as of `Input`, by default from its name
 
-    def around(self, state: State, deviation: float) -> tuple[Input, float]:
+    def around(self, state: InputState, deviation: float) -> tuple[Input, float]:
         """Input around its value in a state, and its standard uncertainty, relative if the step is."""
         value = self.value(state)
         ends = self.step.ends(value) if self.step else around(value, deviation, self.least)
@@ -106,7 +106,7 @@ class Varied:
         relative = self.step.error(value, deviation) if self.step else deviation
         return Input(self.name, self.group or f"the {self.name}", states, step), relative
 
-    def moved(self, state: State, by: float) -> State:
+    def moved(self, state: InputState, by: float) -> InputState:
         """State after an error of the input, in its logarithm if its step is relative."""
         value = self.value(state)
         return self.changed(state, self.step.moved(value, by) if self.step else max(value + by, self.least))
@@ -183,11 +183,13 @@ class Settings:
     coherence: float = 0.0  #: of both surfaces, if it is uncertain [-]
     play: float | None = None  #: of the beam above a surface that it follows, if it is uncertain [m]
     hamaker_constant: float | None = None  #: of two bodies like the beam or stopper [J], if it is uncertain
-    alike: tuple[str, ...] = SIDES  #: as of `State`
+    alike: tuple[str, ...] = SIDES  #: as of `InputState`
     waters: dict[str, Water] = field(
         default_factory=dict
     )  #: by choices of the model that change attraction across gaps
-    known: dict[str, Known] = field(default_factory=dict)  #: what is stated about surfaces without scans, by name
+    known: dict[str, SurfaceErrors] = field(
+        default_factory=dict
+    )  #: what is stated about surfaces without scans, by name
     assumed: dict[str, Assumed] = field(default_factory=dict)  #: what is assumed of surfaces with members, by name
 
     def water_under(self, choice: str) -> Water:
@@ -196,10 +198,10 @@ class Settings:
 
 
 def uncertain(
-    state: State,
+    state: InputState,
     shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
     properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
-    known: Mapping[str, Known],
+    known: Mapping[str, SurfaceErrors],
     settings: Settings,
 ) -> tuple[list[Input], np.ndarray]:
     """Uncertain inputs and the covariance of their errors. Without condensation, the air has none.
@@ -219,7 +221,7 @@ def uncertain(
     return inputs, block_diag(np.empty((0, 0)), *(block.covariance for block in blocks))
 
 
-def changed(state: State, errors: Mapping[str, float]) -> State:
+def changed(state: InputState, errors: Mapping[str, float]) -> InputState:
     """State after errors of dimensions, air, modulus of the beam and attraction across gaps, by input.
 
     Its contact stays.
@@ -255,7 +257,10 @@ def _parts_of_surface(name, settings):
 
 
 def surface_block(
-    state: State, surface: str, shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]], known: Known
+    state: InputState,
+    surface: str,
+    shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
+    known: SurfaceErrors,
 ) -> Block:
     """Quantities of a surface, of its heights and of its spectrum."""
     inputs = []
@@ -270,7 +275,7 @@ def surface_block(
     return Block(inputs, known.covariance)
 
 
-def number_blocks(state: State, varied: Sequence[Varied], stated: Uncertainty) -> Iterator[Block]:
+def number_blocks(state: InputState, varied: Sequence[Varied], stated: Uncertainty) -> Iterator[Block]:
     """Yield blocks of the uncertain ones among some inputs."""
     for key, together in groupby(varied, lambda number: number.field):
         if deviation := getattr(stated, key):
@@ -279,7 +284,7 @@ def number_blocks(state: State, varied: Sequence[Varied], stated: Uncertainty) -
 
 
 def property_blocks(
-    state: State, properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings
+    state: InputState, properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings
 ) -> Iterator[Block]:
     """Uncertain properties of pairs and of edges. The slopes of those with a relative step are in their logarithms.
 
@@ -320,7 +325,7 @@ def around(value: float, deviation: float, least: float = -np.inf) -> tuple[floa
 
 def covariances(
     surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset]], estimates: Mapping[str, xr.Dataset], settings: Settings
-) -> dict[str, Known]:
+) -> dict[str, SurfaceErrors]:
     """Errors of the quantities of every uncertain surface."""
     return {
         name: scan_errors(estimates[name], described[0])
@@ -330,14 +335,14 @@ def covariances(
     }
 
 
-def number_errors(name: str, described: tuple[xr.Dataset, xr.Dataset], settings: Settings) -> Known:
+def number_errors(name: str, described: tuple[xr.Dataset, xr.Dataset], settings: Settings) -> SurfaceErrors:
     """Errors of a surface by numbers: as given, and from the scan behind its moments."""
     stated = [settings.known[name]] if name in settings.known else []
     side = settings.uncertainty.scan
     return together([*stated, *([errors_of_one_scan(*described, side)] if side else [])])
 
 
-def together(causes: Sequence[Known]) -> Known:
+def together(causes: Sequence[SurfaceErrors]) -> SurfaceErrors:
     """Quantities with several independent causes of their errors."""
     used = {quantity for cause in causes for quantity in cause.quantities}
     quantities = tuple(name for name in MOMENT_QUANTITIES + SPECTRUM_QUANTITIES if name in used)
@@ -345,22 +350,22 @@ def together(causes: Sequence[Known]) -> Known:
     for cause in causes:
         places = [quantities.index(name) for name in cause.quantities]
         covariance[np.ix_(places, places)] += cause.covariance
-    return Known(quantities, covariance)
+    return SurfaceErrors(quantities, covariance)
 
 
-def scan_errors(estimate: xr.Dataset, heights_of: xr.Dataset) -> Known:
+def scan_errors(estimate: xr.Dataset, heights_of: xr.Dataset) -> SurfaceErrors:
     """Covariance of the quantities of a surface described by scans.
 
     ASSUME: the errors of heights and spectrum are independent.
     """
     measured = isinstance(heights.density(heights_of, "NG"), MeasuredDensity)
     errors = errors_of(estimate, MODE_QUANTITIES if measured else MOMENT_QUANTITIES)
-    return Known(errors.names + SPECTRUM_QUANTITIES, block_diag(errors.heights, errors.spectrum))
+    return SurfaceErrors(errors.names + SPECTRUM_QUANTITIES, block_diag(errors.heights, errors.spectrum))
 
 
-def errors_of_one_scan(heights_of: xr.Dataset, spectrum_of: xr.Dataset, side: float) -> Known:
+def errors_of_one_scan(heights_of: xr.Dataset, spectrum_of: xr.Dataset, side: float) -> SurfaceErrors:
     """Covariance of rms, skewness and kurtosis of a surface, measured on one square scan of this side [m]."""
     translation = Translation(heights.density(heights_of, "NG"))
     underlying = spectrum.underlying(spectrum_of, "NG")
     reach = np.pi / float(spectrum_of.wavenumber[1] - spectrum_of.wavenumber[0])  # half of the period of its field
-    return Known(MOMENT_QUANTITIES, moments.covariance(translation, underlying, (side, side), reach))
+    return SurfaceErrors(MOMENT_QUANTITIES, moments.covariance(translation, underlying, (side, side), reach))

@@ -16,9 +16,9 @@ from stiction.devices.risk import one_in
 from stiction.life import drying, freeing, holding, touch
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.life import answers as shared
-from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, Answer, Name, in_order, layout
+from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, LifeRow, Name, in_order, layout
 from stiction.stages.life.dimples import dimple_answers
-from stiction.stages.life.inputs import Liquid, OfBeam
+from stiction.stages.life.inputs import BeamInUse, Liquid
 from stiction.stages.life.separation import of_beam
 
 #: Forms of the rows of a beam with play.
@@ -36,7 +36,7 @@ _BEAM = (
 )
 
 
-def dataset(data: Mapping[str, Any], of: OfBeam) -> xr.Dataset:
+def dataset(data: Mapping[str, Any], of: BeamInUse) -> xr.Dataset:
     """Dataset of the answers about a beam, from its safe lengths."""
     strips, tips = (data.get(name, {}) for name in ("fast_strips", "fast_tips"))
     fast = of_beam(strips, tips, of.device) if strips else None
@@ -48,10 +48,10 @@ def dataset(data: Mapping[str, Any], of: OfBeam) -> xr.Dataset:
 def beam_answers(
     lengths: Mapping[float, xr.Dataset],
     after: Mapping[float, xr.Dataset],
-    of: OfBeam,
+    of: BeamInUse,
     biased: Mapping[float, xr.Dataset] | None = None,
     separation: xr.Dataset | None = None,
-) -> list[Answer]:
+) -> list[LifeRow]:
     """Answers about a beam from its safe lengths by humidity: for one touchdown, after all, and at its voltage.
 
     The dataset of its fast separation is needed where water condenses.
@@ -60,7 +60,7 @@ def beam_answers(
     safe = {humidity: least_safe(dataset, share) for humidity, dataset in lengths.items()}
     length = length_of(lengths, of)
     answers = [
-        Answer(
+        LifeRow(
             f"{Name.SAFE}{humidity:g}",
             STICK,
             f"simulated limit {Air(humidity).where}: at most {one_in(share)} sticks after one touchdown",
@@ -78,7 +78,7 @@ def beam_answers(
     return in_order(answers + shared.missing(answers, _BEAM))
 
 
-def length_of(lengths: Mapping[float, xr.Dataset], of: OfBeam) -> float:
+def length_of(lengths: Mapping[float, xr.Dataset], of: BeamInUse) -> float:
     """Length of a beam for voltage and shock [m]: the given one, or its least safe length."""
     return of.length or min(least_safe(dataset, chosen_share(dataset))[0] for dataset in lengths.values())
 
@@ -96,7 +96,7 @@ def length_and_error(state: xr.Dataset) -> tuple[float, float]:
     return float(state.safe_length), float(np.sqrt(np.nansum(np.square(errors)))) or np.nan
 
 
-def beam_touched(of: OfBeam, length: float) -> list[Answer]:
+def beam_touched(of: BeamInUse, length: float) -> list[LifeRow]:
     """Voltage and shock for contact of a beam of a length [m]."""
     return [_pulled_in(of, length), _shaken(of, length)]
 
@@ -113,7 +113,7 @@ def _pulled_in(of, length):
     form = {1: "V² = 0.2801 E t³ h³ / (ε₀ L⁴)", 2: "V² = λ E t³ h³ / (6 ε₀ L⁴), λ = 70.095 without tension"}[clamps]
     form += f"; at least: switched on at once, with fringes; at most: raised slowly, without fringes{_RIGID[clamps]}"
     what = f"voltage that pulls the {_ENDS[clamps]} in"
-    return Answer(Name.VOLTAGE, TOUCH, what, low, high, error, "V", form, "stiction.life.touch")
+    return LifeRow(Name.VOLTAGE, TOUCH, what, low, high, error, "V", form, "stiction.life.touch")
 
 
 def _shaken(of, length):
@@ -125,10 +125,10 @@ def _shaken(of, length):
     form = {1: "a = 2 E t² h / (3 ρ L⁴)", 2: "a = 32 E t² h / (ρ L⁴) without tension"}[clamps]
     form += f", ρ = {of.density:g} kg/m³; {shared.pulses(sine, rectangle)}; at most: a slow shock{_RIGID[clamps]}"
     what = f"peak of a shock that brings the {_ENDS[clamps]} down"
-    return Answer(Name.SHOCK, TOUCH, what, slow / sine, high, error / sine, "m s-2", form, "stiction.life.touch")
+    return LifeRow(Name.SHOCK, TOUCH, what, slow / sine, high, error / sine, "m s-2", form, "stiction.life.touch")
 
 
-def lengths_after_drying(of: OfBeam, name: str, liquid: Liquid) -> list[Answer]:
+def lengths_after_drying(of: BeamInUse, name: str, liquid: Liquid) -> list[LifeRow]:
     """Lengths of beams standing while a liquid dries, and releasing afterwards."""
     clamps, adhesion, wetting = of.clamps, liquid.adhesion, (liquid.surface_tension, liquid.contact_angle)
     each, error = of.number(lambda beam: drying.longest_standing_each(beam, clamps, *wetting), 1.0)
@@ -144,14 +144,14 @@ def lengths_after_drying(of: OfBeam, name: str, liquid: Liquid) -> list[Answer]:
     standing += "; liquid everywhere, pinned at the edges (at least)"
     source = f"stiction.life.drying, γ cos θ = {from_si(adhesion, 'mN_per_m'):.3g} mN/m"
     return [
-        Answer(
+        LifeRow(
             f"{Name.COLLAPSE}_{name}",
             TOUCH,
             f"longest beam that does not collapse while {name} dries",
             *(each, connected, error),
             *("m", standing, source),
         ),
-        Answer(
+        LifeRow(
             f"{Name.RELEASED}_{name}",
             STICK,
             f"longest beam that comes free after {name} dried",
@@ -161,7 +161,7 @@ def lengths_after_drying(of: OfBeam, name: str, liquid: Liquid) -> list[Answer]:
     ]
 
 
-def beam_held(of: OfBeam, length: float) -> list[Answer]:
+def beam_held(of: BeamInUse, length: float) -> list[LifeRow]:
     """Adhesion of a stuck beam of a length [m], and its pulling force."""
     clamps = of.clamps
     along, error = of.number(lambda beam: float(apparent_adhesion_energy(length / clamps, beam)), length)
@@ -173,13 +173,13 @@ def beam_held(of: OfBeam, length: float) -> list[Answer]:
     }[clamps]
     most, most_force = (along, force) if clamps == 1 else (np.nan, np.nan)
     answers = [
-        Answer(
+        LifeRow(
             Name.HELD,
             HOLD,
             "adhesion energy that holds it along the beam" if clamps == 1 else "adhesion energy that holds both cracks",
             *(along, most, error, "J m-2", forms[0], "stiction.beam.energy"),
         ),
-        Answer(
+        LifeRow(
             Name.PULL,
             FREE,
             f"force with which it pulls at its {'tip' if clamps == 1 else 'middle'}",
@@ -189,13 +189,13 @@ def beam_held(of: OfBeam, length: float) -> list[Answer]:
     if clamps == 1:
         tip, form = along / 4, "Γ = 3 E t³ h² / (8 L⁴)"
         what = "adhesion energy that holds its tip, on uniform surfaces"
-        answers.append(Answer("tip", HOLD, what, tip, tip, error / 4, "J m-2", form, "stiction.devices.arcs"))
+        answers.append(LifeRow("tip", HOLD, what, tip, tip, error / 4, "J m-2", form, "stiction.devices.arcs"))
     return answers
 
 
 def beam_after_touchdowns(
-    of: OfBeam, share: float, once: tuple[float, float, str], after: Mapping[float, xr.Dataset]
-) -> list[Answer]:
+    of: BeamInUse, share: float, once: tuple[float, float, str], after: Mapping[float, xr.Dataset]
+) -> list[LifeRow]:
     """Safe length and P(stuck) after all touchdowns, from the safe length of one, and its standard error [m].
 
     Both bounds have errors of the simulation. More touchdowns never allow a longer beam.
@@ -204,7 +204,7 @@ def beam_after_touchdowns(
     stuck = freeing.stuck_after(share, of.touchdowns)
     numbers = f"{of.touchdowns} touchdowns"
     return [
-        Answer(
+        LifeRow(
             Name.AFTER,
             FREE,
             f"simulated limit for {numbers}: at most {one_in(share)} sticks after all of them",
@@ -212,7 +212,7 @@ def beam_after_touchdowns(
             "P of one = 1 - (1 - p)^(1/n) (at least); the same summits each time (at most)",
             "stage touchdowns",
         ),
-        Answer(
+        LifeRow(
             "stuck_after",
             FREE,
             f"probability of sticking after {numbers} at the limit of one",
@@ -221,7 +221,7 @@ def beam_after_touchdowns(
     ]
 
 
-def beam_at_registers(of: OfBeam, length: float, lengths: Mapping[float, xr.Dataset]) -> list[Answer]:
+def beam_at_registers(of: BeamInUse, length: float, lengths: Mapping[float, xr.Dataset]) -> list[LifeRow]:
     """P(stuck) along a beam of a length [m] with play: in register, at a random offset, and after all touchdowns.
 
     The worst of all airs counts. ASSUME: each touchdown has an offset of its own, and is then another meeting. Of ten
@@ -236,12 +236,12 @@ def beam_at_registers(of: OfBeam, length: float, lengths: Mapping[float, xr.Data
     errors = [float(np.sqrt(p * (1 - p) / with_play[0].sizes["device"])) for p in (register, once)]
     what = "probability of sticking along the beam"
     return [
-        Answer("register", FREE, f"{what} in register", register, register, errors[0], "1", _NEAREST, "stage cracks"),
-        Answer("offsets", FREE, f"{what} after {many}", once, stuck, errors[1], "1", _OFFSETS, "stage cracks"),
+        LifeRow("register", FREE, f"{what} in register", register, register, errors[0], "1", _NEAREST, "stage cracks"),
+        LifeRow("offsets", FREE, f"{what} after {many}", once, stuck, errors[1], "1", _OFFSETS, "stage cracks"),
     ]
 
 
-def separated_fast(lengths: Mapping[float, xr.Dataset], separation: xr.Dataset) -> list[Answer]:
+def separated_fast(lengths: Mapping[float, xr.Dataset], separation: xr.Dataset) -> list[LifeRow]:
     """Safe length of a beam that separates faster than water evaporates, by humidity and end state, in the worst one.
 
     It is at most that of slow separation.
@@ -262,12 +262,12 @@ def separated_fast(lengths: Mapping[float, xr.Dataset], separation: xr.Dataset) 
     form = f"L x {factor:.3g} {air}, by (e / e_V)^(1/4) of strips or lengths of tips (at least); slow (at most)"
     what = "simulated limit if it separates faster than water evaporates"
     numbers = (shorter, min(slow), error) if 0 < shorter < np.inf else (np.nan, min(slow), np.nan)
-    return [Answer(Name.FAST, FREE, what, *numbers, "m", form, "stage separation")]
+    return [LifeRow(Name.FAST, FREE, what, *numbers, "m", form, "stage separation")]
 
 
 def beam_at_voltage(
-    of: OfBeam, safe: tuple[float, float, str], biased: Mapping[float, xr.Dataset] | None
-) -> list[Answer]:
+    of: BeamInUse, safe: tuple[float, float, str], biased: Mapping[float, xr.Dataset] | None
+) -> list[LifeRow]:
     """Effect of a voltage, and the length safe with it, from the safe length without it and its error [m].
 
     On flats in contact, and on rough surfaces from the safe lengths at the voltage by humidity, if there are any.
@@ -282,14 +282,14 @@ def beam_at_voltage(
     low, error = max(gained, default=(np.nan, np.nan))
     what = f"adhesion energy that {of.potential:g} V add"
     numbers = min(low, added), added, error
-    added_energy = Answer(Name.VOLTAGE_ENERGY, HOLD, what, *numbers, "J m-2", form, shared.HELD_BY)
+    added_energy = LifeRow(Name.VOLTAGE_ENERGY, HOLD, what, *numbers, "J m-2", form, shared.HELD_BY)
     answers = [added_energy, shared.field_in_dielectric(of)]
     numbers = _shorter(of, added, safe, [least_safe(dataset, chosen_share(dataset)) for dataset in at_voltage])
     if np.isnan(numbers).all():
         return answers
     what = f"simulated limit while {of.potential:g} V are on"
     form = "(L / L_V)³ = 1 + 8 Γ_V L_V L³ / (3 E t³ h²), flats (at least); gaps of rough surfaces, L (at most)"
-    return [*answers, Answer(Name.AT_VOLTAGE, HOLD, what, *numbers, "m", form, shared.HELD_BY)]
+    return [*answers, LifeRow(Name.AT_VOLTAGE, HOLD, what, *numbers, "m", form, shared.HELD_BY)]
 
 
 def _shorter(of, added, safe, rough):

@@ -12,13 +12,13 @@ from stiction.estimates import mean_with_error
 from stiction.life.dimples import holds, least_load, least_pull, states
 from stiction.life.drying import pull_of_liquid
 from stiction.life.fringes import edge_width
-from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, Answer, Name
-from stiction.stages.life.inputs import OfBeam
+from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, LifeRow, Name
+from stiction.stages.life.inputs import BeamInUse
 
 _SOURCE = "stiction.life.dimples"
 
 
-def dimple_answers(of: OfBeam, dimples: Mapping[float, xr.Dataset]) -> list[Answer]:
+def dimple_answers(of: BeamInUse, dimples: Mapping[float, xr.Dataset]) -> list[LifeRow]:
     """Answers about a beam on its dimples, from the forces of rows of them by humidity; none without any."""
     if not dimples:
         return []
@@ -33,7 +33,7 @@ def dimple_answers(of: OfBeam, dimples: Mapping[float, xr.Dataset]) -> list[Answ
     for humidity, held in forces.items():
         stuck = holds(on_rows, way, held).astype(float)
         sticking.append(
-            Answer(
+            LifeRow(
                 f"{Name.ON_DIMPLES}_{humidity:g}",
                 STICK,
                 f"probability of sticking on its {rows} {Air(humidity).where}",
@@ -44,12 +44,12 @@ def dimple_answers(of: OfBeam, dimples: Mapping[float, xr.Dataset]) -> list[Answ
     return [
         *_bent(of),
         *_brought_down(of),
-        Answer(Name.DIMPLES, HOLD, what, mean, mean, error, "N", form, "stage dimples"),
+        LifeRow(Name.DIMPLES, HOLD, what, mean, mean, error, "N", form, "stage dimples"),
         *sticking,
     ]
 
 
-def rows_of(of: OfBeam) -> str:
+def rows_of(of: BeamInUse) -> str:
     """Rows of dimples of a beam in words."""
     return "row of dimples" if len(of.dimples.at) == 1 else f"{len(of.dimples.at)} rows of dimples"
 
@@ -76,11 +76,11 @@ def _brought_down(of):
     volts, error = of.number(voltage, of.length)
     what = "slowly raised voltage below which it does not touch beside its dimples"
     with_edges = f"{form}; with fringes"
-    answers = [Answer(Name.VOLTAGE_BESIDE, TOUCH, what, volts, np.nan, error, "V", with_edges, _SOURCE)]
+    answers = [LifeRow(Name.VOLTAGE_BESIDE, TOUCH, what, volts, np.nan, error, "V", with_edges, _SOURCE)]
     most, error = of.number(tension, of.length)
     what = "surface tension up to which no liquid brings it down beside its dimples"
     with_edges = f"{form}; pinned at the edges"
-    return [*answers, Answer(Name.TENSION_BESIDE, TOUCH, what, most, np.nan, error, "N m-1", with_edges, _SOURCE)]
+    return [*answers, LifeRow(Name.TENSION_BESIDE, TOUCH, what, most, np.nan, error, "N m-1", with_edges, _SOURCE)]
 
 
 def _with_end(of, beam, per_length, end):
@@ -109,9 +109,9 @@ def _bent(of):
     what, form = "part of the gap that is left beside its dimples", "bent by the forces on its rows alone"
     if len(at) > 1:
         form += "; on the rows that leave least (at least) and most (at most)"
-    beside = Answer(Name.BESIDE, TOUCH, what, rest, left(of.beam(of.length), min), rest_error, "1", form, _SOURCE)
+    beside = LifeRow(Name.BESIDE, TOUCH, what, rest, left(of.beam(of.length), min), rest_error, "1", form, _SOURCE)
     what, form = f"force with which it pulls at its {rows_of(of)}", "k (h - h_d)"
     if len(at) > 1:
         form += "; largest on a row, at rest on those rows where this is least"
     most = force if of.clamps == 1 else np.nan  # rigid clamps stretch a bridge
-    return [beside, Answer(Name.PULLED, FREE, what, force, most, error, "N", form, _SOURCE)]
+    return [beside, LifeRow(Name.PULLED, FREE, what, force, most, error, "N", form, _SOURCE)]

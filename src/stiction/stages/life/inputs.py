@@ -25,7 +25,7 @@ class Liquid:
 
 
 @dataclass(frozen=True)
-class Errors:
+class BeamErrors:
     """Standard uncertainties of the inputs of a beam."""
 
     thickness: float = 0.0  #: [m]
@@ -35,7 +35,7 @@ class Errors:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stated:
+class StatedKeys:
     """Keys of any device beside its dimensions."""
 
     touchdowns: int = 1
@@ -65,13 +65,13 @@ class Dimples:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OfBeam(Stated):
+class BeamInUse(StatedKeys):
     """Beam and its surroundings beside its ground."""
 
     device: DesignedBeam
     density: float  #: ρ [kg m⁻³]
     liquids: dict[str, Liquid]
-    uncertainty: Errors
+    uncertainty: BeamErrors
     length: float = 0.0  #: as stated [m]; otherwise the least safe length counts
     dimples: Dimples | None = None
 
@@ -107,7 +107,7 @@ class Electrode:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OfStopper(Stated):
+class StopperInUse(StatedKeys):
     """Stopper and its surroundings beside its ground, zero if not given."""
 
     restoring_force: float  #: [N]

@@ -32,7 +32,7 @@ from stiction.stages.devices.opening import DesignedBeam
 
 
 @dataclass(frozen=True)
-class OfStopper:
+class FastStopper:
     """Settings of the fast separation of a stopper, without its contacts."""
 
     water: Water
@@ -40,14 +40,14 @@ class OfStopper:
 
 
 @dataclass(frozen=True)
-class InAir:
+class FastInAir:
     """Settings of the fast separation of strips or tips, without their contact."""
 
     water: Water
     humidity: float  #: [-]
 
 
-def of_stopper(contacts: Mapping[float, xr.Dataset], settings: OfStopper) -> xr.Dataset:
+def of_stopper(contacts: Mapping[float, xr.Dataset], settings: FastStopper) -> xr.Dataset:
     """Pull-off forces of all patches of a stopper, from its contacts by humidity."""
     area, water = settings.contact[0] * settings.contact[1], settings.water
     largest = [
@@ -58,7 +58,7 @@ def of_stopper(contacts: Mapping[float, xr.Dataset], settings: OfStopper) -> xr.
     return xr.Dataset({"pull_off": forces}, coords={"humidity": list(contacts)})
 
 
-def of_strips(contact: xr.Dataset, settings: InAir) -> xr.Dataset:
+def of_strips(contact: xr.Dataset, settings: FastInAir) -> xr.Dataset:
     """Factor of the length of a crack by the mean energies of strips, and its standard error."""
     fast, slow = (of(contact, settings.humidity, settings.water) for of in (curves.fast_energies, curves.energies))
     found = _ratio(np.maximum(fast, slow), slow, lambda means: (means[..., 1] / means[..., 0]) ** 0.25)
@@ -66,7 +66,7 @@ def of_strips(contact: xr.Dataset, settings: InAir) -> xr.Dataset:
     return xr.Dataset(dict(zip(("factor", "factor_error"), (((), one, none) for one in found), strict=True)))
 
 
-def of_tips(contact: xr.Dataset, settings: InAir) -> xr.Dataset:
+def of_tips(contact: xr.Dataset, settings: FastInAir) -> xr.Dataset:
     """Largest attractions P/w of tips over their slopes, in slow and in fast separation."""
     slopes, slow = curves.tip_forces(contact, settings.humidity, settings.water)
     fast = curves.fast_tip_forces(contact, settings.humidity, settings.water)
@@ -152,7 +152,7 @@ def _contacts_of_stopper(plan, at):
 def _settings_of_stopper(plan, at):
     """Water around a stopper, and its patch."""
     section = plan.config["devices"][at.device]
-    return select(OfStopper, section | {"water": plan.air_of_devices.water(section["pair"])})
+    return select(FastStopper, section | {"water": plan.air_of_devices.water(section["pair"])})
 
 
 def _in_air(plan, at):
@@ -178,7 +178,7 @@ STAGES = (
         "devices/separation/{device}",
         inputs=_contacts_of_stopper,
         settings=_settings_of_stopper,
-        kind=OfStopper,
+        kind=FastStopper,
         complete=with_correction,
         compute=of_stopper,
         message="Fast separation of stopper {device}.",
@@ -188,7 +188,7 @@ STAGES = (
         "devices/fast_strips/{case}_{length}x{width}",
         inputs=_contact_of_strips,
         settings=_in_air,
-        kind=InAir,
+        kind=FastInAir,
         complete=with_correction,
         compute=of_strips,
         message="Fast separation of {case}, strips of {length} x {width} nm.",
@@ -198,7 +198,7 @@ STAGES = (
         "devices/fast_tips/{case}_{length}x{width}",
         inputs=_contact_of_tips,
         settings=_in_air,
-        kind=InAir,
+        kind=FastInAir,
         complete=with_correction,
         compute=of_tips,
         message="Fast separation of tips of {case}, {length} x {width} nm.",

@@ -13,11 +13,11 @@ from stiction.devices.stoppers import safe_force
 from stiction.estimates import mean_with_error
 from stiction.life import freeing, touch
 from stiction.stages.life import answers as shared
-from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, Answer, Name, in_order, layout
-from stiction.stages.life.inputs import OfStopper
+from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, LifeRow, Name, in_order, layout
+from stiction.stages.life.inputs import StopperInUse
 
 
-def dataset(data: Mapping[str, Any], of: OfStopper) -> xr.Dataset:
+def dataset(data: Mapping[str, Any], of: StopperInUse) -> xr.Dataset:
     """Dataset of the answers about a stopper, from its forces."""
     more = (data.get(name) for name in ("biased", "tilted", "separation"))
     return layout(stopper_answers(data["stopper"], of, *more), of)
@@ -25,17 +25,17 @@ def dataset(data: Mapping[str, Any], of: OfStopper) -> xr.Dataset:
 
 def stopper_answers(
     stopper: xr.Dataset,
-    of: OfStopper,
+    of: StopperInUse,
     biased: xr.Dataset | None = None,
     tilted: xr.Dataset | None = None,
     separation: xr.Dataset | None = None,
-) -> list[Answer]:
+) -> list[LifeRow]:
     """Answers about a stopper from the datasets of its pull-off forces: as it is, at its voltage, tilted, and fast."""
     worst = int(stopper.mean_along.argmax("axis"))
     mean, error = (float(stopper[name][worst]) for name in ("mean_along", "mean_along_error"))
     where = Air(round(float(stopper.worst_humidity), 2)).where
     answers = [
-        Answer(
+        LifeRow(
             f"stuck_{float(humidity):g}",
             STICK,
             f"probability of sticking {Air(float(humidity)).where}",
@@ -45,14 +45,14 @@ def stopper_answers(
         for humidity in stopper.humidity.values
     ]
     what = f"mean pull-off force {where}{', the worst air' * (stopper.sizes['axis'] > 1)}"
-    answers.append(Answer("force", HOLD, what, mean, mean, error, "N", "largest attraction x area", "stage stoppers"))
+    answers.append(LifeRow("force", HOLD, what, mean, mean, error, "N", "largest attraction x area", "stage stoppers"))
     answers += stopper_moved(of) + stopper_freed(stopper, of, separation) + stopper_after_touchdowns(stopper, of)
     answers += [] if tilted is None else tilted_answers(tilted)
     answers += stopper_at_voltage(stopper, of, biased) if of.capacitor else []
     return in_order(answers + stopper_unknown(answers, of, float(stopper.share.max())))
 
 
-def stopper_unknown(answers: Sequence[Answer], of: OfStopper, share: float) -> list[Answer]:
+def stopper_unknown(answers: Sequence[LifeRow], of: StopperInUse, share: float) -> list[LifeRow]:
     """Rows for everything that a stopper does not say, with the keys that say it, first the one of it alone.
 
     ``share`` is the largest fraction of stuck stoppers that its forces are asked for.
@@ -69,7 +69,7 @@ def stopper_unknown(answers: Sequence[Answer], of: OfStopper, share: float) -> l
     return shared.missing(answers, [row for row in rows if not row[-1].startswith(of.unasked)])
 
 
-def stopper_moved(of: OfStopper) -> list[Answer]:
+def stopper_moved(of: StopperInUse) -> list[LifeRow]:
     """Shock and voltage for contact of a stopper, as far as mass and electrode are given."""
     answers = []
     if of.mass:
@@ -77,14 +77,14 @@ def stopper_moved(of: OfStopper) -> list[Answer]:
         form = f"a = F / m; {shared.pulses(touch.HALF_SINE, touch.RECTANGLE)}; at most: a slow shock"
         numbers = slow / touch.HALF_SINE, slow, np.nan
         what = "peak of a shock that brings it into contact"
-        answers.append(Answer(Name.SHOCK, TOUCH, what, *numbers, "m s-2", form, "stiction.life.touch"))
+        answers.append(LifeRow(Name.SHOCK, TOUCH, what, *numbers, "m s-2", form, "stiction.life.touch"))
     if of.electrode:
         electrode = of.stiffness, of.gap, of.electrode.area, of.electrode.gap
         numbers = touch.stopper_voltage_at_once(*electrode), touch.stopper_voltage(*electrode), np.nan
         form = "V² = k u g (g - u) / (ε₀ A), at g / 2 or its way, less by fringes of a square (at least: at once); "
         form += "V² = 2 k u (g - u)² / (ε₀ A), at g / 3 or its way (at most: slowly)"
         what = "voltage on its electrode that brings it into contact"
-        answers.append(Answer(Name.VOLTAGE, TOUCH, what, *numbers, "V", form, "stiction.life.touch"))
+        answers.append(LifeRow(Name.VOLTAGE, TOUCH, what, *numbers, "V", form, "stiction.life.touch"))
     return answers
 
 
@@ -100,7 +100,7 @@ def _worst_force(stopper, share):
     return float(at.sel(part="safe")), float(at.sel(part="error")), float(at.humidity)
 
 
-def stopper_freed(stopper: xr.Dataset, of: OfStopper, separation: xr.Dataset | None) -> list[Answer]:
+def stopper_freed(stopper: xr.Dataset, of: StopperInUse, separation: xr.Dataset | None) -> list[LifeRow]:
     """Restoring force, stiffness and shock that free all but a small fraction of the stoppers, slowly and fast."""
     if (share := _fewest_bounded(stopper)) is None:
         return []
@@ -110,20 +110,22 @@ def stopper_freed(stopper: xr.Dataset, of: OfStopper, separation: xr.Dataset | N
     but = f"all but {one_in(share)}, {Air(humidity).where}"
     source, bound = "stages stoppers and separation", "faster than water evaporates, in any of its air (at most)"
     form = f"quantile of the pull-off force, 95 %; {bound}"
-    answers = [Answer(Name.RESTORING, FREE, f"restoring force that frees {but}", force, most, error, "N", form, source)]
+    answers = [
+        LifeRow(Name.RESTORING, FREE, f"restoring force that frees {but}", force, most, error, "N", form, source)
+    ]
     if of.gap:
         what, form = f"stiffness of the spring that frees {but}", f"k = F / gap; {bound}"
         numbers = (number / of.gap for number in (force, most, error))
-        answers.append(Answer("stiffness", FREE, what, *numbers, "N m-1", form, source))
+        answers.append(LifeRow("stiffness", FREE, what, *numbers, "N m-1", form, source))
     if of.mass:
         shocks = (freeing.freeing_acceleration(hold, of.restoring_force, of.mass) for hold in (force, most))
         what, form = f"shock that frees {but}", f"a = (F_hold - F) / m; {bound}"
         numbers = *shocks, error / of.mass
-        answers.append(Answer(Name.FREED, FREE, what, *numbers, "m s-2", form, "stiction.life.freeing"))
+        answers.append(LifeRow(Name.FREED, FREE, what, *numbers, "m s-2", form, "stiction.life.freeing"))
     return answers
 
 
-def stopper_after_touchdowns(stopper: xr.Dataset, of: OfStopper) -> list[Answer]:
+def stopper_after_touchdowns(stopper: xr.Dataset, of: StopperInUse) -> list[LifeRow]:
     """P(stuck) after all touchdowns in the worst given air, and the force for a small fraction stuck.
 
     The bounds are those of the 95 % band of P: what none of the patches do bounds it from above alone.
@@ -134,18 +136,18 @@ def stopper_after_touchdowns(stopper: xr.Dataset, of: OfStopper) -> list[Answer]
     form = "P (at least) and 1 - (1 - P)^n (at most), of the 95 % band of P"
     numbers, after = f"{of.touchdowns} touchdowns", freeing.stuck_after(most, of.touchdowns)
     what = f"probability of sticking after {numbers}"
-    answers = [Answer("stuck_after", FREE, what, once, after, np.nan, "1", form, "stiction.life.freeing")]
+    answers = [LifeRow("stuck_after", FREE, what, once, after, np.nan, "1", form, "stiction.life.freeing")]
     share = float(stopper.share.max())
     rare = freeing.probability_for(share, of.touchdowns)
     if stopper.sizes["sample"] >= samples_for(rare):
         few, many = (max(safe_force(row, p)[::2] for row in stopper.pull_off.values) for p in (share, rare))
         what = f"restoring force that frees all but {one_in(share)} after {numbers}"
         form = "the same summits each time (at least); P of one = 1 - (1 - p)^(1/n) (at most)"
-        answers.append(Answer(Name.AFTER, FREE, what, few[0], many[0], few[1], "N", form, "stage stoppers"))
+        answers.append(LifeRow(Name.AFTER, FREE, what, few[0], many[0], few[1], "N", form, "stage stoppers"))
     return answers
 
 
-def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
+def tilted_answers(tilted: xr.Dataset) -> list[LifeRow]:
     """Fraction of stoppers stuck at their tilts, the force on them, and the tilt at the transition to a wedge.
 
     At most counts every patch at the tilt at which it holds most, as if it landed at all of them.
@@ -154,7 +156,7 @@ def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
     by = f"tilted by {' to '.join(dict.fromkeys((tilts[0], tilts[-1])))}°"
     each = f"least of {len(tilts)} tilts, and each patch at its worst; " if len(tilts) > 1 else ""
     answers = [
-        Answer(
+        LifeRow(
             f"stuck_tilted_{float(humidity):g}",
             STICK,
             f"probability of sticking {by}, {Air(float(humidity)).where}",
@@ -169,11 +171,11 @@ def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
     numbers = float(most["mean"][low]), float(most.largest_mean), float(most.mean_error[low])
     form = f"{each}random patches; w e / s on smooth surfaces beyond the tilt of a wedge"
     answers.append(
-        Answer(Name.TILTED, HOLD, f"mean pull-off force {by}, {air}", *numbers, "N", form, "stage tilted_stoppers")
+        LifeRow(Name.TILTED, HOLD, f"mean pull-off force {by}, {air}", *numbers, "N", form, "stage tilted_stoppers")
     )
     what, form = "tilt beyond which a longer first side hardly holds more", "e / (f_max a), parallel patches"
     numbers = float(tilted.wedge.min()), float(tilted.wedge.max()), np.nan
-    answers.append(Answer(Name.WEDGE, HOLD, what, *numbers, "rad", form, "stage tilted_stoppers"))
+    answers.append(LifeRow(Name.WEDGE, HOLD, what, *numbers, "rad", form, "stage tilted_stoppers"))
     return answers + _freed_tilted(tilted, by, f"{each}quantile of the force, 95 %")
 
 
@@ -185,10 +187,10 @@ def _freed_tilted(tilted, by, form):
     low = int(force.sel(part="safe").argmin("tilt"))
     numbers = float(force.sel(part="safe")[low]), float(most.sel(part="safe")), float(force.sel(part="error")[low])
     what = f"restoring force that frees all but {one_in(share)}, {by}"
-    return [Answer("restoring_force_tilted", FREE, what, *numbers, "N", form, "stage tilted_stoppers")]
+    return [LifeRow("restoring_force_tilted", FREE, what, *numbers, "N", form, "stage tilted_stoppers")]
 
 
-def stopper_at_voltage(stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | None) -> list[Answer]:
+def stopper_at_voltage(stopper: xr.Dataset, of: StopperInUse, biased: xr.Dataset | None) -> list[LifeRow]:
     """Force of a voltage in addition to that on a stopper, and the fraction stuck while it is on."""
     flat = of.capacitor.largest_pressure * of.contact[0] * of.contact[1]
     low, error, sticking = np.nan, np.nan, []
@@ -200,7 +202,7 @@ def stopper_at_voltage(stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | 
         what = f"probability of sticking while {of.potential:g} V are on, {Air(float(worst.humidity)).where}"
         numbers = *map(float, worst.sel(bound=["low", "high"])), np.nan
         sticking = [
-            Answer(
+            LifeRow(
                 "stuck_at_voltage",
                 HOLD,
                 what,
@@ -211,7 +213,7 @@ def stopper_at_voltage(stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | 
             )
         ]
     what, form = f"force that {of.potential:g} V add", "mean of rough patches (at least); ε₀ V² A / (2 D²) (at most)"
-    added = Answer(Name.AT_VOLTAGE, HOLD, what, min(low, flat), flat, error, "N", form, shared.HELD_BY)
+    added = LifeRow(Name.AT_VOLTAGE, HOLD, what, min(low, flat), flat, error, "N", form, shared.HELD_BY)
     return [added, *sticking, shared.field_in_dielectric(of), *_freeing_voltage(stopper, of, biased)]
 
 
@@ -230,4 +232,4 @@ def _freeing_voltage(stopper, of, biased):
     numbers = *(max(potential - abs(of.offset), 0.0) for potential in (low, high)), spread
     what = f"voltage below which its spring frees all but {one_in(share)}"
     form = "V² = (F - F_hold) 2 D² / (ε₀ A), flats (at least); V² = min (p - f) / g of rough patches (at most)"
-    return [Answer(Name.FREEING, FREE, what, *numbers, "V", form, shared.HELD_BY)]
+    return [LifeRow(Name.FREEING, FREE, what, *numbers, "V", form, shared.HELD_BY)]

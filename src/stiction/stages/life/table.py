@@ -15,7 +15,7 @@ from stiction.plan.stage import Stage, select
 from stiction.stages.devices.opening import own_section
 from stiction.stages.devices.results import results_of
 from stiction.stages.life import beams, stoppers
-from stiction.stages.life.inputs import OfBeam, OfStopper
+from stiction.stages.life.inputs import BeamInUse, StopperInUse
 from stiction.stages.life.separation import separation_inputs
 
 
@@ -27,7 +27,7 @@ def compute(data: Mapping[str, Any], settings: dict[str, Any]) -> xr.Dataset:
 
 
 #: Settings, and what makes the dataset, by the name of the release.
-_OF_RELEASE = {"beam": (OfBeam, beams.dataset), "stopper": (OfStopper, stoppers.dataset)}
+_OF_RELEASE = {"beam": (BeamInUse, beams.dataset), "stopper": (StopperInUse, stoppers.dataset)}
 
 
 def _settings(plan, at):
