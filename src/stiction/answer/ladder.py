@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stiction.answer.data import Answer, Cause, InAir, Probability, Stay, Step, band
+from stiction.answer.data import Answer, AnswerInAir, Cause, Probability, Stay, Step, band
 from stiction.answer.sought import SOUGHT
 from stiction.answer.unknowns import Draws, OfBudgets, OfTestBeams, Unknowns
 from stiction.answer.worlds import Condition, World
@@ -17,7 +17,7 @@ _POINTS, _BELOW, _MOST = 41, 0.25, 0.99
 
 
 @dataclass(frozen=True)
-class Question:
+class MainQuestion:
     """Main question about a device."""
 
     device: str
@@ -46,7 +46,7 @@ class Question:
 
 
 def answer(
-    question: Question,
+    question: MainQuestion,
     conditions: Sequence[Condition],
     unknowns: Unknowns,
     draws: Draws,
@@ -157,7 +157,7 @@ def _in_air(question, world, humidity, sizes):
         )
         without_tip = question.size_of(along.size)
     first, curve = question.size_of(alone.first), _curve(question, alone, sizes)
-    return InAir(humidity, question.size_of(alone.size), without_tip, _stuck(question, alone), curve, first)
+    return AnswerInAir(humidity, question.size_of(alone.size), without_tip, _stuck(question, alone), curve, first)
 
 
 def _curve(question, world, sizes):

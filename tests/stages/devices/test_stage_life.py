@@ -29,11 +29,11 @@ from stiction.report.style import save
 from stiction.run import storage
 from stiction.stages.life.answers import QUESTIONS, answers_of, layout
 from stiction.stages.life.beams import beam_answers, length_of
-from stiction.stages.life.inputs import BeamKeys, Electrode, Errors, Liquid, StopperKeys
+from stiction.stages.life.inputs import BeamErrors, BeamKeys, Electrode, Liquid, StopperKeys
 from stiction.stages.life.stoppers import stopper_answers
 
 LIQUIDS = {"water": Liquid(0.072), "mine": Liquid(0.03, np.pi / 3)}
-OF = BeamKeys(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=Errors())
+OF = BeamKeys(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=BeamErrors())
 AREA = (3e-6, 3e-6)
 UNSTATED = {"restoring_force": 18.99e-6, "contact": AREA}
 STOPPER = StopperKeys(
@@ -105,7 +105,7 @@ def test_a_beam_held_by_the_energy_that_is_stated_pulls_with_the_stated_force(le
 
 def test_errors_are_those_of_the_powers_of_the_closed_forms(lengths):
     relative = {"thickness": 0.01, "gap": 0.02, "young_modulus": 0.03}
-    errors = Errors(**{name: share * getattr(C1, name) for name, share in relative.items()})
+    errors = BeamErrors(**{name: share * getattr(C1, name) for name, share in relative.items()})
     found = answers(replace(OF, uncertainty=errors, length=300e-6), lengths)
     powers = {"shock": (2, 1, 1), "released_water": (0.75, 0.5, 0.25), "tip": (3, 2, 1)}
     for name, exponents in powers.items():
@@ -119,7 +119,7 @@ def test_errors_are_those_of_the_powers_of_the_closed_forms(lengths):
 
 
 def test_residual_stress_of_a_bridge_has_an_error_and_rigid_clamps_an_upper_bound():
-    of = replace(OF, device=R1, liquids={"water": LIQUIDS["water"]}, uncertainty=Errors(residual_stress=5e6))
+    of = replace(OF, device=R1, liquids={"water": LIQUIDS["water"]}, uncertainty=BeamErrors(residual_stress=5e6))
     found = answers(of, {0.67: safe_without_tips()})
     for name in ("voltage", "shock"):
         assert found[name].low < found[name].high
@@ -391,7 +391,7 @@ def test_settings_come_from_the_device_its_material_and_the_liquids():
     devices = {"devices": {"C1": one, "S1": SPRING, "C2": SECTION | {"pair": "a"}}}
     plan = Plan(load(gold | devices | {"liquids": MINE}))
     of = in_si(BeamKeys, job_settings(plan, "devices/life/C1")["beam"])
-    assert (of.density, of.touchdowns, of.uncertainty) == (19300, 9, Errors(gap=1e-6))
+    assert (of.density, of.touchdowns, of.uncertainty) == (19300, 9, BeamErrors(gap=1e-6))
     assert_allclose(of.length, 300e-6)
     assert_allclose([one.adhesion for one in of.liquids.values()], [0.072, 0.0217, 0.015], rtol=1e-12)
     stopper = in_si(StopperKeys, job_settings(plan, "devices/life/S1")["stopper"])
