@@ -46,7 +46,7 @@ if FRONT.exists():
 
 rule tables:
     input:
-        planner.wanted("tables"),
+        planner.files_of("tables"),
     localrule: True
     message:
         "All tables."
@@ -54,7 +54,7 @@ rule tables:
 
 rule figures:
     input:
-        planner.wanted("figures"),
+        planner.files_of("figures"),
     localrule: True
     message:
         "All figures."
@@ -62,7 +62,7 @@ rule figures:
 
 rule study_figures:
     input:
-        planner.wanted("study_figures"),
+        planner.files_of("study_figures"),
     localrule: True
     message:
         "Figures and tables of the studies."
@@ -70,7 +70,7 @@ rule study_figures:
 
 rule model_error:
     input:
-        planner.wanted("model_error"),
+        planner.files_of("model_error"),
     localrule: True
     message:
         "Error of the model of the contact: Table III under full elastic contact."
@@ -78,7 +78,7 @@ rule model_error:
 
 rule asperities:
     input:
-        planner.wanted("asperities"),
+        planner.files_of("asperities"),
     localrule: True
     message:
         "Table III under several readings of an asperity."
@@ -86,7 +86,7 @@ rule asperities:
 
 rule pressing:
     input:
-        planner.wanted("pressing"),
+        planner.files_of("pressing"),
     localrule: True
     message:
         "Adhesion after surfaces were pressed together."
@@ -94,7 +94,7 @@ rule pressing:
 
 rule devices:
     input:
-        planner.wanted("devices"),
+        planner.files_of("devices"),
     localrule: True
     message:
         "Tables, figures and pages of the devices."
@@ -102,7 +102,7 @@ rule devices:
 
 rule measured:
     input:
-        planner.wanted("measured"),
+        planner.files_of("measured"),
     localrule: True
     message:
         "Sheets and tables of the measured surfaces."
@@ -110,7 +110,7 @@ rule measured:
 
 rule scans:
     input:
-        planner.wanted("scans"),
+        planner.files_of("scans"),
     localrule: True
     message:
         "Sheets and statistics of scans, without the pairs of their surfaces."
@@ -148,7 +148,7 @@ onsuccess:
 rule all:
     default_target: True
     input:
-        map(planner.wanted, WHOLE),
+        map(planner.files_of, WHOLE),
     localrule: True
     message:
         "Tables, figures, checks and pages of devices."

@@ -142,7 +142,7 @@ def outcome(draw: Drawn) -> str:
         for stage, _ in stages().values():
             if "devices" not in stage.targets:
                 continue
-            for wildcards in stage.wanted(plan):
+            for wildcards in stage.jobs_of_targets(plan):
                 try:
                     results.write(Job(stage, At(**wildcards), plan))
                 except Exception:

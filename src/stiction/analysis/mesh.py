@@ -59,14 +59,14 @@ def finer_mesh(beam: Beam, law: np.ndarray, points: int) -> tuple[Beam, int]:
 class Resolution:
     """Arrest on uniform ground on the mesh in use and on a finer one."""
 
-    used: Arrest
+    coarse: Arrest
     fine: Arrest
     law: np.ndarray  #: force law of the ground [SI]
 
     @property
     def error(self) -> float:
         """Relative error of the crack length on the mesh in use [-]."""
-        return self.used.crack_length / self.fine.crack_length - 1
+        return self.coarse.crack_length / self.fine.crack_length - 1
 
     @property
     def excess(self) -> float:

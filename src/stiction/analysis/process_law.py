@@ -125,7 +125,7 @@ class Law:
         basis = self.basis(values)
         return np.einsum("nc,qcrd,nd->nqr", basis, self.covariance, basis)
 
-    def drawn(self, number: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    def draw(self, number: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
         """Errors of some laws as likely as this one, and the next run of each beyond it.
 
         Returns the errors of the coefficients (number, q, c), and the deviations of one run (number, q).

@@ -71,7 +71,7 @@ class Budget:
         """Budget of the same inputs, taken as independent. Surfaces of one kind are one input."""
         correlated = np.eye(len(self.names), dtype=bool)
         for kind in self.kinds:
-            correlated[np.ix_(*[self._places(kind)] * 2)] = True
+            correlated[np.ix_(*[self._positions(kind)] * 2)] = True
         return replace(self, covariance=np.where(correlated, self.covariance, 0.0))
 
     def unsafe_total(self, bends: np.ndarray) -> float:
@@ -88,7 +88,7 @@ class Budget:
 
     def effect(self, group: Sequence[str]) -> float:
         """Relative standard uncertainty of the length due to some inputs together, the others being exact [-]."""
-        positions = self._places(group)
+        positions = self._positions(group)
         return float(
             np.sqrt(
                 np.maximum(
@@ -99,7 +99,7 @@ class Budget:
 
     def error_of_effect(self, group: Sequence[str], slope_errors: np.ndarray) -> float:
         """Standard error of `effect` due to those of the slopes of all inputs (k,) [-]."""
-        positions, effect = self._places(group), self.effect(group)
+        positions, effect = self._positions(group), self.effect(group)
         if effect == 0:
             return 0.0
         gradient = self.covariance[np.ix_(positions, positions)] @ self.slopes[positions] / effect
@@ -111,13 +111,13 @@ class Budget:
         What is correlated with these inputs is then better known, too: the variance falls by that of the regression
         on them.
         """
-        positions = self._places(group)
+        positions = self._positions(group)
         shared = self.covariance[positions] @ self.slopes
         explained = shared @ np.linalg.pinv(self.covariance[np.ix_(positions, positions)], hermitian=True) @ shared
         unexplained = self.total**2 - explained
         return 0.0 if unexplained < _ROUNDING * self.total**2 else float(np.sqrt(unexplained))
 
-    def _places(self, group):
+    def _positions(self, group):
         """Positions of inputs."""
         return [self.names.index(name) for name in group]
 

@@ -84,7 +84,7 @@ class KnownInputs:
         """Standard deviation of every input (k,)."""
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
-    def of(self, response: np.ndarray) -> tuple[float | np.ndarray, float | np.ndarray]:
+    def response_moments(self, response: np.ndarray) -> tuple[float | np.ndarray, float | np.ndarray]:
         """Mean and standard deviation of the linear response of some results to the inputs, (..., k) -> (...)."""
         variance = np.einsum("...i,ij,...j->...", response, self.covariance, response)
         return response @ self.mean, np.sqrt(np.maximum(variance, 0.0))
@@ -92,7 +92,7 @@ class KnownInputs:
     def quantiles(self, responses: np.ndarray, scores: np.ndarray = SCORES) -> np.ndarray:
         """Quantiles of the linear responses of some results (n, k) at normal scores (s,), (n, s)."""
         if self.draws is None:
-            mean, deviation = self.of(responses)
+            mean, deviation = self.response_moments(responses)
             return mean[:, None] + deviation[:, None] * scores
         rows = [self.draws.quantiles(response, scores) for response in responses]
         return np.reshape(rows, (len(responses), len(scores)))
@@ -394,4 +394,4 @@ def further_beams(knowledge: KnownInputs, target: np.ndarray, response: np.ndarr
     [-].
     """
     data = CrackData(response[None], np.zeros(1), np.array([error]))
-    return float(given_lengths(knowledge, data).of(target)[1])
+    return float(given_lengths(knowledge, data).response_moments(target)[1])

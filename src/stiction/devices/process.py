@@ -178,7 +178,7 @@ def _compared(devices, laws):
 
 def _drawn(laws, rng):
     """Errors of the coefficients of drawn laws (draws, all) of each law, and deviations of the next runs (draws, q)."""
-    draws = [law.drawn(DRAWS, rng) for law in laws]
+    draws = [law.draw(DRAWS, rng) for law in laws]
     return [errors.reshape(DRAWS, -1) for errors, _ in draws], np.concatenate([runs for _, runs in draws], axis=1)
 
 

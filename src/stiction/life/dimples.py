@@ -57,7 +57,7 @@ class HeldBeam:
     bent: np.ndarray  #: deflections along the beam over that at the rows (n,) [-]
     sag: np.ndarray  #: deflections by a uniform load on parts that bring the place down (n,) [m² N⁻¹]
     lift: np.ndarray  #: the same upwards, by one on the other parts (n,) [m² N⁻¹]
-    others: np.ndarray  #: deflections at all other rows over that at the rows that touch (k,) [-]
+    other_rows: np.ndarray  #: deflections at all other rows over that at the rows that touch (k,) [-]
     influence: np.ndarray  #: deflections there by a unit load per length on each place along the beam (k, n) [m² N⁻¹]
 
     @property
@@ -82,7 +82,7 @@ def states(beam: Beam, clamps: int, at: Sequence[float]) -> list[HeldBeam]:
     along = np.concatenate([np.linspace(*span, _POINTS) for span in zip(supports, supports[1:], strict=False)])
     for number in range(1, len(at) + 1):
         for rows in combinations(range(len(at)), number):
-            held = _Held(beam, clamps, tuple(at[row] for row in rows))
+            held = _HeldBeam(beam, clamps, tuple(at[row] for row in rows))
             u = held.turned(1.0)
             if all(held.bent(u, np.array(at)) <= 1 + _ROUNDING):
                 pull = (held.stiffness @ u)[2 : 2 * number + 2 : 2]
@@ -127,13 +127,13 @@ def _brings_down(state, way, gap, loads, gaps, power):
             pressure, unloaded = load / least**power, gap - way * state.bent
             most, few = unloaded + pressure * state.lift, np.maximum(unloaded - pressure * state.sag, least)
             down = load * (state.influence / np.where(state.influence > 0, most, few) ** power).sum(axis=1)
-            if np.any(way * state.others + down > way):
+            if np.any(way * state.other_rows + down > way):
                 return True
     return False
 
 
 @dataclass(frozen=True)
-class _Held:
+class _HeldBeam:
     """Beam as exact elements between clamps and the rows that hold it. Unknowns are [u, u'] of every node."""
 
     beam: Beam
@@ -191,7 +191,7 @@ class _Held:
         It is that of these points by a force at the place (Maxwell and Betti), times the length between them.
         """
         at = tuple(sorted((*self.at, distance)))
-        further = _Held(self.beam, self.clamps, at)
+        further = _HeldBeam(self.beam, self.clamps, at)
         u = further.turned(np.array([float(row == distance) for row in at]))
         force = (further.stiffness @ u)[2 * at.index(distance) + 2]
         steps = np.diff(along, append=along[-1]) / 2 + np.diff(along, prepend=along[0]) / 2

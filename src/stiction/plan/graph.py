@@ -116,7 +116,7 @@ class Graph:
         jobs, waiting = {}, []
         for stage, _ in stages().values():
             if set(targets) & set(stage.targets) and stage.patterns(self.plan):
-                waiting += [Job(stage, At(**at), self.plan) for at in stage.wanted(self.plan)]
+                waiting += [Job(stage, At(**at), self.plan) for at in stage.jobs_of_targets(self.plan)]
         while waiting:
             job = waiting.pop()
             if (key := (job.stage.name, *sorted(vars(job.at).items()))) not in jobs:

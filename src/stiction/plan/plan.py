@@ -173,7 +173,7 @@ class Plan:
         """Stored limits by assumed properties of the surfaces of some pairs, by pair, without empty ones."""
         library, entries = paper()["surfaces"], self.config["surfaces"]
         end = self.devices.nyquist
-        by_surface = {name: limits(name, entries[name], library, end) for name in self.scans.others}
+        by_surface = {name: limits(name, entries[name], library, end) for name in self.scans.described_by_numbers}
         surfaces_of_pairs = {pair: dict.fromkeys(self.sides(pair)) for pair in pairs}
         by_pair = {
             pair: [limit.stored() for name in names for limit in by_surface.get(name, ())]

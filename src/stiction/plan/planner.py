@@ -103,7 +103,9 @@ class Planner:
             "stage": stage.stage,
             "files": {key: path_of(stage, name) for key, name in stage.patterns(self.plan).items()},
             "wanted": [
-                path_of(stage, name.format(**at)) for at in stage.wanted(self.plan) for name in stage.files.values()
+                path_of(stage, name.format(**at))
+                for at in stage.jobs_of_targets(self.plan)
+                for name in stage.files.values()
             ],
             "log": f"{RESULTS}logs/{stage.log}.log",
             "constraints": {
@@ -113,7 +115,7 @@ class Planner:
             "shown": vars(stage.shown) if stage.shown else None,
         }
 
-    def wanted(self, target: str) -> list[str]:
+    def files_of(self, target: str) -> list[str]:
         """Files wanted by a target of the workflow."""
         return [file for rule in self.rules if target in rule["targets"] for file in rule["wanted"]]
 
@@ -229,10 +231,10 @@ class Planner:
     def _job_of(self, path):
         """Rule and job of a file, both ``None`` without such a job in the configuration."""
         if path not in self._jobs:
-            self._jobs[path] = self._found(path)
+            self._jobs[path] = self._matched(path)
         return self._jobs[path]
 
-    def _found(self, path):
+    def _matched(self, path):
         """Rule and job of a file, see `_job_of`."""
         for rule, matches in self._expressions:
             if match := matches.fullmatch(path):

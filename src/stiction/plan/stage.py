@@ -216,7 +216,7 @@ class Stage:
             else self.files["dataset"].removesuffix("_{each}")
         )
 
-    def wanted(self, plan: Any) -> list[dict]:
+    def jobs_of_targets(self, plan: Any) -> list[dict]:
         """Wildcards of the jobs for the files of the targets."""
         return self.jobs(plan) if self.targets and (not self.study or self.study in plan.studies) else []
 
@@ -311,7 +311,7 @@ def select(kind: type, section: Mapping[str, Any], **values: Any) -> dict[str, A
         if key in values:
             selected[key] = values[key]
         elif key is not None:
-            selected[key] = _part(kinds[field.name], section[key])
+            selected[key] = _reduced(kinds[field.name], section[key])
         elif field.default is MISSING and field.default_factory is MISSING:
             raise KeyError(f"no key for {kind.__qualname__}.{field.name}")
     return selected
@@ -320,7 +320,7 @@ def select(kind: type, section: Mapping[str, Any], **values: Any) -> dict[str, A
 _kinds_of = cache(get_type_hints)  # a plan asks for those of a few classes thousands of times
 
 
-def _part(kind, value):
+def _reduced(kind, value):
     """Value of one key, reduced to the fields of its dataclass if it has one."""
     if not isinstance(value, dict):
         return value

@@ -267,8 +267,8 @@ def crack_is_resolved(
     if not np.isfinite(crack.error):
         return
     message = (
-        f"crack on uniform ground is {TO_UM * crack.used.crack_length:.4g} µm, {100 * crack.error:+.2f} % off that on "
-        f"a finer mesh (allowed ± {100 * accuracy:g} %)"
+        f"crack on uniform ground is {TO_UM * crack.coarse.crack_length:.4g} µm, {100 * crack.error:+.2f} % off that "
+        f"on a finer mesh (allowed ± {100 * accuracy:g} %)"
     )
     yield Check(RESOLVED, case, bool(abs(crack.error) <= accuracy), message)
     gamma, error = mean_with_error(TO_MJ * stuck)

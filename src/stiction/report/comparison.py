@@ -141,13 +141,13 @@ def _stages(source):
     }
     shows = f"{source.words.partition(' [')[0]} for values of one key"
 
-    def made(show):
+    def showing(show):
         """Function of a stage to show its table."""
         return lambda data, settings: show(pd.read_csv(data["table"]), source, settings["keys"], settings["ends"])
 
     return (
-        table_stage(name, shows, compute=made(comparison_table), **declared),
-        figure_stage(name, shows, "Comparison", caption="compared", compute=made(comparison_figure), **declared),
+        table_stage(name, shows, compute=showing(comparison_table), **declared),
+        figure_stage(name, shows, "Comparison", caption="compared", compute=showing(comparison_figure), **declared),
     )
 
 

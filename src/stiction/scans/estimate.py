@@ -33,7 +33,7 @@ _PER_SCAN = 8
 _CORRELATED = 2
 
 
-def seen(inspection: Inspection, model: SurfaceModel, maps: Maps) -> SurfaceModel:
+def model_in(inspection: Inspection, model: SurfaceModel, maps: Maps) -> SurfaceModel:
     """Model of a surface in scans of another size."""
     return (
         model if maps is inspection.largest else replace(model, spectrum=inspection.spectrum_in(maps), frame=maps.frame)
@@ -164,7 +164,9 @@ def estimate(
 def _covariances(inspection, model, model_scans):
     """Covariance of the moments of every size, (3, 3) each."""
     return [
-        seen(inspection, model, maps).covariance / maps.number + scans_of_size.bias_covariance + maps.noise_covariance
+        model_in(inspection, model, maps).covariance / maps.number
+        + scans_of_size.bias_covariance
+        + maps.noise_covariance
         for maps, scans_of_size in zip(inspection.counted, model_scans, strict=False)
     ]
 
@@ -192,7 +194,7 @@ def _places(inspection, model, of_sizes, wider):
     rows = []
     for maps, weight, unbiased in zip(inspection.counted, inspection.weights, of_sizes, strict=True):
         values = moments(maps.powers) + unbiased - maps.noisy_moments
-        variances = np.diag(seen(inspection, model, maps).covariance) * wider
+        variances = np.diag(model_in(inspection, model, maps).covariance) * wider
         rows += [(*scan, *variances, weight / len(values)) for scan in values]
     of_moments, of_spectra = np.array(rows), np.array(inspection.spectra_of_scans)
     columns = [(of_moments, 3, k) for k in range(3)] + [(of_spectra, 2, k) for k in range(2)]
@@ -222,7 +224,7 @@ def _drawn_scans(inspection, model, rng, fewest):
     first = np.cumsum([0, *counts])
     return [
         draw_model_scans(
-            seen(inspection, model, maps), inspection.settings.levelling, (rng(k + start) for k in range(count))
+            model_in(inspection, model, maps), inspection.settings.levelling, (rng(k + start) for k in range(count))
         )
         for maps, count, start in zip(inspection.sizes, counts, first, strict=False)
     ]
@@ -263,14 +265,14 @@ def _model(inspection, values, heights, largest=LARGEST_DISTANCE_OF_SCANS):
 def _covariance(inspection, model):
     """Covariance of the moments of all scans by the finite scans, (3, 3)."""
     return inspection.propagated(
-        [seen(inspection, model, maps).covariance / maps.number for maps in inspection.counted]
+        [model_in(inspection, model, maps).covariance / maps.number for maps in inspection.counted]
     )
 
 
 def _homogeneity(inspection, model):
     """`stiction.scans.moments.homogeneity` of the scans of every size, together."""
     parts = [
-        (maps, homogeneity(moments(maps.powers), seen(inspection, model, maps).covariance))
+        (maps, homogeneity(moments(maps.powers), model_in(inspection, model, maps).covariance))
         for maps in inspection.counted
     ]
     several = [(len(maps.names) - 1, chi2) for maps, (chi2, _) in parts if len(maps.names) > 1]

@@ -57,12 +57,12 @@ class Maps:
     frame: Frame
     levelled: tuple[np.ndarray, ...]  #: heights, NaN where undefined, (n1, n2) each [m]
     complete: tuple[np.ndarray, ...]  #: the same, or their largest whole part, with undefined points filled [m]
-    part: Frame  #: of these
+    complete_frame: Frame  #: of these
     periodogram: Periodogram
     rings: Rings  #: without the floor of the noise
     reach: Reach
     floor: Floor  #: of white noise
-    kept: Floor  #: floor that stays in heights and spectrum, because no heights are left without it
+    floor_left: Floor  #: floor that stays in heights and spectrum, because no heights are left without it
 
     @classmethod
     def of(cls, alike: Mapping[int, Scan], settings: Settings) -> "Maps":
@@ -70,8 +70,8 @@ class Maps:
         scans = list(alike.values())
         frame = scans[0].frame
         levelled = tuple(level(scan.heights, settings.levelling) for scan in scans)
-        complete = tuple(map(partial(_whole, settings), scans, levelled))
-        frame_of_part = _part(complete[0], frame)
+        complete = tuple(map(partial(_without_holes, settings), scans, levelled))
+        frame_of_part = _frame_of(complete[0], frame)
         noisy = spectra.periodogram(complete, frame_of_part.size)
         tip = np.inf if settings.tip_radius is None else tip_reach(complete, frame.pixel[0], settings.tip_radius)
         within = reach(frame_of_part.size, frame.pixel, settings.shortest, tip)
@@ -93,7 +93,7 @@ class Maps:
     @property
     def part_in_words(self) -> str:
         """Size of the part used for the spectrum."""
-        return _in_words(self.part)
+        return _in_words(self.complete_frame)
 
     @property
     def area(self) -> float:
@@ -140,12 +140,12 @@ class Maps:
     def fits(self, within: Reach) -> list[WhittleFit]:
         """Fits to the spectrum of every scan alone, within a reach as far as it is that of these scans."""
         within = replace(within, low=max(within.low, self.reach.low), high=min(within.high, self.reach.high))
-        alone = (spectra.periodogram([z], self.part.size) for z in self.complete)
+        alone = (spectra.periodogram([z], self.complete_frame.size) for z in self.complete)
         return [fit(spectra.rings(spectra.without_floor(each, self.floor.density)), within) for each in alone]
 
     def wavelengths(self, fit: WhittleFit) -> float:
         """Wavelengths of the corner along the shorter side [-]."""
-        return fit.corner * min(self.part.size) / (2 * np.pi)
+        return fit.corner * min(self.complete_frame.size) / (2 * np.pi)
 
 
 @dataclass(frozen=True)
@@ -300,7 +300,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
     """
     names = ", ".join(scan.name for scan in scans)
     groups = [Maps.of(alike, settings) for alike in by_size(scans, settings.undefined_share)]
-    sizes = tuple(sorted(groups, key=lambda maps: _extent(maps.part), reverse=True))
+    sizes = tuple(sorted(groups, key=lambda maps: _extent(maps.complete_frame), reverse=True))
     try:
         fitted, rings, within = _fitted(sizes)
     except ValueError as reason:
@@ -308,7 +308,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
     return Inspection(sizes, settings, rings, within, fitted)
 
 
-def _whole(settings, scan, levelled):
+def _without_holes(settings, scan, levelled):
     """Levelled heights without holes. Of a scan with many undefined points only its largest whole part, levelled anew.
 
     Raises
@@ -332,7 +332,7 @@ def _in_words(frame):
     return " x ".join(f"{1e6 * side:.4g}" for side in frame.size) + " µm"
 
 
-def _part(heights, frame):
+def _frame_of(heights, frame):
     """Frame of a part of a map."""
     if heights.shape == frame.shape:
         return frame
@@ -382,7 +382,7 @@ def _fitted(sizes):
 
 def _first_wave(maps, sizes):
     """Wave number from which scans count for a spectrum of several sizes [rad m⁻¹]."""
-    return maps.reach.low if maps is sizes[0] else 2 * np.pi * _FEWEST_WAVES / min(maps.part.size)
+    return maps.reach.low if maps is sizes[0] else 2 * np.pi * _FEWEST_WAVES / min(maps.complete_frame.size)
 
 
 def _last_wave(maps, finest):

@@ -152,10 +152,10 @@ def fit_to_the_end(rings: Rings, within: Reach) -> tuple[WhittleFit, Reach]:
     fitted, high = fit(rings, within), within.high
     if fitted.contradicted:
         inside = rings.between(within.low, within.high)
-        parts = [_Part(fitted, high, _end(rings, within, fitted))]
+        parts = [_ShorterFit(fitted, high, _end(rings, within, fitted))]
         for shorter in _shorter(inside):
             shorter_fit = fit(rings, replace(within, high=shorter))
-            parts.append(_Part(shorter_fit, shorter, _end(rings, within, shorter_fit)))
+            parts.append(_ShorterFit(shorter_fit, shorter, _end(rings, within, shorter_fit)))
         showing = _showing(parts, within.nyquist)
         likely = (candidate for candidate in showing if candidate.fitted.likely)
         ended = [candidate for candidate in parts if candidate.fitted.likely and candidate.near(candidate.end)]
@@ -166,7 +166,7 @@ def fit_to_the_end(rings: Rings, within: Reach) -> tuple[WhittleFit, Reach]:
 
 
 @dataclass(frozen=True)
-class _Part:
+class _ShorterFit:
     """Fit to a part of the reach, and its end."""
 
     fitted: WhittleFit

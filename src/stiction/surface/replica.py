@@ -123,8 +123,8 @@ class Replica:
 
         Components ζ₁ and ζ₂ are (2, n) [rad m⁻¹].
         """
-        (own, amplitude, _), (other, amplitude_of_other, _) = self.beam.modes, self.substrate.modes
-        places, of_own, of_other = np.intersect1d(own, other, assume_unique=True, return_indices=True)
+        (beam_waves, amplitude, _), (other, amplitude_of_other, _) = self.beam.modes, self.substrate.modes
+        places, of_own, of_other = np.intersect1d(beam_waves, other, assume_unique=True, return_indices=True)
         n1, _ = self.beam.grid.field_shape
         step1, step2 = self.beam.grid.wavenumber_steps
         zeta1, zeta2 = step1 * ((places + n1 // 2) % n1 - n1 // 2), step2 * (places // n1)

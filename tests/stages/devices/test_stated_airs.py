@@ -22,7 +22,7 @@ _SAID = re.compile(rf"(?:RH|humidit(?:y|ies) of) (0\.\d+)|(?:humidit(?:y|ies)|ai
 
 def dataset(airs, design):
     """Forces of 400 patches that hold most at RH 0.85, in some airs under section design."""
-    ends = stoppers.sought(design, {"humidities": list(airs)})
+    ends = stoppers.search_ends(design, {"humidities": list(airs)})
     settings = stoppers.Settings(1, Water(300.0), (3e-6, 3e-6), airs, tuple(ends), restoring_force=40e-6)
     axis, scatter = stoppers.axis_of(settings), np.linspace(0.9, 1.1, 400)
     forces = [np.outer(1 - (np.array(at) - 0.85) ** 2, scatter) * 20e-6 for at in (airs, axis)]

@@ -66,12 +66,12 @@ def _steps(panel: Axes, answer):
         panel.axvline(answer.build / scale, color=BUILD, linewidth=1.2, zorder=0)
     panel.margins(x=0.1)
     panel.set(xlabel=label, ylim=(len(steps) - 0.5, -0.8))
-    panel.set_yticks(rows, [_said(answer, row) for row in rows], fontsize=7, linespacing=1)
+    panel.set_yticks(rows, [_label_of_row(answer, row) for row in rows], fontsize=7, linespacing=1)
     panel.tick_params(axis="y", length=0)
     _stated(panel, answer, scale)
 
 
-def _said(answer, row):
+def _label_of_row(answer, row):
     """Cause of a row of the ladder with its size and change."""
     step = answer.known_steps[row]
     change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""

@@ -39,7 +39,7 @@ class _Required:
     def share(self) -> GridAxis:
         """Allowed fraction."""
         reason = f"it is the required one; devices.{self.name}.requirement changes this"
-        return _one("share", "fraction p that may stick", "", "score", float(self.dataset.share), reason)
+        return _single_value("share", "fraction p that may stick", "", "score", float(self.dataset.share), reason)
 
     @property
     def size(self) -> GridAxis:
@@ -48,7 +48,7 @@ class _Required:
         kind = kind_of(self.section)
         stated = kind.way(self.section).keys[0] if kind.ways else "requirement.length_um"
         reason = f"it is that of the device; devices.{self.name}.{stated} changes this"
-        return _one(
+        return _single_value(
             sought.name,
             sought.required,
             sought.shown,
@@ -77,7 +77,7 @@ class _Required:
         }
 
 
-def _one(key, label, unit, scale, value, reason):
+def _single_value(key, label, unit, scale, value, reason):
     """Axis of one value."""
     return GridAxis(key, label, unit, scale, (value,), value, False, reason)
 

@@ -92,7 +92,9 @@ def beam_view(
         _size_axis("thickness_um", "thickness", joined.thickness.values / UM, section, f"{chart}.thicknesses_um"),
         _size_axis("gap_um", "gap", joined.gap.values / UM, section, f"{chart}.gaps_um"),
     )
-    layers = levels.of_answer(answer, joined.humidity.values, _simulated(joined, answer), _own(joined, itself, answer))
+    layers = levels.of_answer(
+        answer, joined.humidity.values, _simulated(joined, answer), _of_device_itself(joined, itself, answer)
+    )
     build, sizes = layers.factor * joined.safe_length.values / UM, layers.sizes / UM
     start = section.get("length_um", _rounded_down(answer.build / UM, float(np.nanmin(joined.safe_length)) / UM))
     size = size_axis("length_um", "length", "µm", (build, sizes[0]), start)
@@ -117,7 +119,7 @@ def _simulated(dataset, answer):
     return Simulated(dataset["quantile"].values, dataset.safe_length.sel(share=answer.share).values)
 
 
-def _own(joined, itself, answer):
+def _of_device_itself(joined, itself, answer):
     """Simulation of the device itself in its airs, from the states if they have it. Dry air is beside humid ones."""
     simulated = {}
     for humidity in itself.humidity.values:

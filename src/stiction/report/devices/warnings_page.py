@@ -52,7 +52,7 @@ STAGES = (
             settings["not_modelled"],
         ),
         save=pages.save,
-        message="Where the results of devices are beyond the model.",
+        message="Limits of the model that devices exceed.",
         jobs=lambda plan: [{}] if plan.devices.sections else [],
         targets=("devices",),
     ),

@@ -103,7 +103,7 @@ STAGES = (
         },
         compute=_of_pairs,
         save=save,
-        message="Where the results of pairs are beyond the model.",
+        message="Limits of the model that pairs exceed.",
         targets=("all",),
     ),
 )

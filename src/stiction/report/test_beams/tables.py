@@ -16,7 +16,7 @@ from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import ARC, MIDDLE, S_SHAPE, SOUGHT_BY
-from stiction.stages.test_beams.inference import OWN, UNLIKELY, is_reliable, shape_of
+from stiction.stages.test_beams.inference import BEAM_SIZES, UNLIKELY, is_reliable, shape_of
 
 #: Number of standard deviations beyond which an input counts as wrong; ratio of dimensions beyond which a prediction
 #: counts as extrapolated. ASSUME: a factor of two.
@@ -372,7 +372,7 @@ def _beyond_test_beams(update):
     if not update.sizes["datum"]:
         return
     yield from _beyond_in_adhesion(update)
-    for size in OWN if "own_thickness" in update else ():
+    for size in BEAM_SIZES if "own_thickness" in update else ():
         device = float(update[f"own_{size}"][0])
         nearest = min(update[size].values.tolist(), key=lambda value: abs(np.log(device / value)))
         if abs(np.log(device / nearest)) > np.log(SIZES):

@@ -31,7 +31,7 @@ from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE, SOUGHT_BY, DesignedBeam, own_section
 from stiction.stages.devices.results import results_of
 from stiction.stages.devices.safe_lengths import chosen_share
-from stiction.stages.devices.stoppers import sought
+from stiction.stages.devices.stoppers import search_ends
 from stiction.stages.surfaces import surface_flags
 
 #: Limits by end state.
@@ -276,7 +276,7 @@ def _settings(plan, at):
     values = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
     values |= ({"learns": True} if "test_beams" in section else {}) | _on_summits(plan, at.device)
     values |= section | {"water": plan.air_of_devices.water(section["pair"])} | own_section(plan, at.device)
-    values |= {"worst_humidities": sought(plan.config["design"], section)}
+    values |= {"worst_humidities": search_ends(plan.config["design"], section)}
     assumed = plan.assumptions(section["pair"]).get(section["pair"], []) + _unmeasured(plan, at.device)
     release = plan.devices.kind(at.device).release.name
     return ({"assumed": assumed} if assumed else {}) | {release: select(_OF_RELEASE[release], values)}
@@ -285,7 +285,7 @@ def _settings(plan, at):
 def _unmeasured(plan, device):
     """Stored limit of a device in wetter air than that of the isotherm, also along its chart or search."""
     section = plan.config["devices"][device]
-    searched = sought(plan.config["design"], section) if plan.devices.kind(device).release.in_any_air else []
+    searched = search_ends(plan.config["design"], section) if plan.devices.kind(device).release.in_any_air else []
     airs = [*section["humidities"], *section.get("chart", {}).get("humidities", []), *searched]
     return plan.unmeasured_films(plan.air_of_devices.wet(section["pair"], airs))
 
@@ -380,6 +380,6 @@ STAGES = (
         settings=_settings,
         compute=_device_warnings,
         save=_save,
-        message="Where the results of device {device} are beyond the model.",
+        message="Limits of the model that device {device} exceeds.",
     ),
 )

@@ -73,6 +73,6 @@ STAGES = (
         ),
         settings=_settings,
         compute=_changes,
-        message="What attraction across gaps would change of device {device}.",
+        message="Effect of attraction across gaps on device {device}.",
     ),
 )

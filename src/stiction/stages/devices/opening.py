@@ -49,7 +49,7 @@ SOUGHT_BY = dict.fromkeys([S_SHAPE, EITHER, MIDDLE, ARC], sought.LENGTH) | {FORC
 #: adhesion is strongest, so that they are shorter than this prediction.
 LONG = 1.3
 #: Strips of one part of a beam, which can be divided into elements of 5, 4, 3, 2 and 1 strips.
-PART = 60
+STRIPS_OF_PART = 60
 #: Strips per element where the force laws allow it, as in the paper.
 PER_ELEMENT = 5
 #: Number of force laws from which length and elements of the beams are chosen.
@@ -78,7 +78,7 @@ class DesignedBeam:
     @property
     def beam(self) -> Beam:
         """One part of the beam in one element, under the tension of a bridge."""
-        beam = Beam(PART * self.strip, self.width, self.thickness, self.young_modulus, self.gap, elements=1)
+        beam = Beam(STRIPS_OF_PART * self.strip, self.width, self.thickness, self.young_modulus, self.gap, elements=1)
         return half_of_bridge(beam, self.residual_stress)
 
 
@@ -103,7 +103,7 @@ def _long_beam(device, laws):
     """Long beam with the elements of the paper."""
     beam = device.beam
     number = int(np.ceil(LONG * arrest_length(forcelaw.energy(laws).mean(), beam) / beam.length))
-    points = number * PART
+    points = number * STRIPS_OF_PART
     return replace(beam, length=number * beam.length, elements=points // PER_ELEMENT), points
 
 

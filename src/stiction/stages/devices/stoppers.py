@@ -199,13 +199,15 @@ def fine_axis(low: float, high: float) -> np.ndarray:
     return np.linspace(low, high, max(3, round((high - low) / STEP) + 1) if high > low else 1)
 
 
-def sought(design: Mapping[str, Any], stopper: Mapping[str, Any]) -> list[float]:
+def search_ends(design: Mapping[str, Any], stopper: Mapping[str, Any]) -> list[float]:
     """Ends of the humidities in which the worst one is sought: the stated ones, or those of the stopper [-].
 
     Examples
     --------
-    >>> sought({}, {"humidities": [0.0, 0.44, 0.9]}), sought({"worst_humidities": [0.4, 0.98]}, {"humidities": [0.5]})
-    ([0.44, 0.9], [0.4, 0.98])
+    >>> search_ends({}, {"humidities": [0.0, 0.44, 0.9]})
+    [0.44, 0.9]
+    >>> search_ends({"worst_humidities": [0.4, 0.98]}, {"humidities": [0.5]})
+    [0.4, 0.98]
     """
     humid_airs = humid(stopper["humidities"])
     return design.get("worst_humidities") or [min(humid_airs, default=0.0), max(humid_airs, default=0.0)]
@@ -385,7 +387,7 @@ def _settings(plan, at):
     section, air = plan.config["devices"][at.device], plan.air_of_devices
     pair = air.contact(section["pair"], max(section["humidities"]))
     values = {"seed": plan.config["seed"], "water": air.water(pair)}
-    values |= {"worst_humidities": sought(plan.config["design"], section)}
+    values |= {"worst_humidities": search_ends(plan.config["design"], section)}
     return select(Settings, plan.devices.stated(at.device) | values)
 
 

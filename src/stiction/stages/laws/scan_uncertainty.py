@@ -91,7 +91,7 @@ def compute(
 def _budgets(slopes, errors):
     """Budget of ln ē and the standard errors of its slopes, one after the other for every humidity."""
     names = (*errors.names, *SPECTRUM_QUANTITIES)
-    of_slopes = zip(study_slopes.of(slopes, names), study_slopes.errors_of(slopes, names), strict=True)
+    of_slopes = zip(study_slopes.by_quantity(slopes, names), study_slopes.errors_of(slopes, names), strict=True)
     count = len(errors.names)
     for values, uncertain in of_slopes:
         heights = Budget(errors.names, values[:count], errors.heights)
@@ -112,7 +112,7 @@ def _sampling(slopes, errors):
 def _form(slopes, errors):
     """Relative error of ē by the measured form of one surface, (n_rh,) [-]."""
     modes = MODE_QUANTITIES[1:]
-    return [Budget(modes, values, errors.modes).total for values in study_slopes.of(slopes, modes)]
+    return [Budget(modes, values, errors.modes).total for values in study_slopes.by_quantity(slopes, modes)]
 
 
 def _changes(contact, base, settings):

@@ -95,7 +95,7 @@ def _bent(keys):
     """Gap that is left beside the dimples of a beam while they touch, and the force with which it pulls at them."""
     at, height = keys.dimples.at, keys.dimples.height
 
-    def left(beam, most):
+    def remaining_gap(beam, most):
         """Part of the gap left at the deepest point beside the rows, for the state in which it is ``most`` [-]."""
         deepest = most(state.deepest for state in states(beam, keys.clamps, at))
         return max(1 - deepest * (beam.gap - height) / beam.gap, 0.0)
@@ -104,13 +104,21 @@ def _bent(keys):
         """Force of the beam at a row, bent to the dimples' height [N]."""
         return least_pull(states(beam, keys.clamps, at)) * (beam.gap - height)
 
-    remaining, remaining_error = keys.number(lambda beam: left(beam, max), keys.length)
+    remaining, remaining_error = keys.number(lambda beam: remaining_gap(beam, max), keys.length)
     force, error = keys.number(pull, keys.length)
     subject, form = "part of the gap that is left beside its dimples", "bent by the forces on its rows alone"
     if len(at) > 1:
         form += "; on the rows that leave least (at least) and most (at most)"
     beside = LifeRow(
-        Name.BESIDE, TOUCH, subject, remaining, left(keys.beam(keys.length), min), remaining_error, "1", form, _SOURCE
+        Name.BESIDE,
+        TOUCH,
+        subject,
+        remaining,
+        remaining_gap(keys.beam(keys.length), min),
+        remaining_error,
+        "1",
+        form,
+        _SOURCE,
     )
     subject, form = f"force with which it pulls at its {rows_of(keys)}", "k (h - h_d)"
     if len(at) > 1:

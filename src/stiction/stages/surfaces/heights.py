@@ -127,7 +127,7 @@ STAGES = (
     Stage.writing(
         "heights",
         "heights/{surface}",
-        surfaces=lambda plan: plan.scans.others,
+        surfaces=lambda plan: plan.scans.described_by_numbers,
         settings=lambda plan, at: select(Settings, plan.config["surfaces"][at.surface]),
         kind=Settings,
         compute=compute,

@@ -49,7 +49,7 @@ from stiction.stages.devices.uncertain_inputs import OF_BEAMS
 from stiction.streams import stream
 
 #: Inputs that are those of one device or array alone: its dimensions.
-OWN = tuple(entry.name for entry in OF_BEAMS if entry.step)
+BEAM_SIZES = tuple(entry.name for entry in OF_BEAMS if entry.step)
 #: p value below which data count as not explained.
 UNLIKELY = 0.05
 #: Numbers of further test beams for which the gain is stated.
@@ -149,7 +149,9 @@ class Result(NamedTuple):
     @property
     def names(self) -> list[str]:
         """Names of its inputs among those of all results."""
-        return [f"{name} of {self.owner}" if name in OWN else name for name in map(str, self.budget.input.values)]
+        return [
+            f"{name} of {self.owner}" if name in BEAM_SIZES else name for name in map(str, self.budget.input.values)
+        ]
 
     @property
     def scatter(self) -> float:
@@ -157,9 +159,9 @@ class Result(NamedTuple):
         return float(self.budget.scatter)
 
     @property
-    def own(self) -> list[str]:
+    def own_inputs(self) -> list[str]:
         """Names of the inputs of this result alone, and of the rest of the model."""
-        return [*(f"{name} of {self.owner}" for name in OWN), inference.rest(self.condition)]
+        return [*(f"{name} of {self.owner}" for name in BEAM_SIZES), inference.rest(self.condition)]
 
     @property
     def condition(self) -> str:
@@ -288,7 +290,7 @@ def length_data(beams: Sequence[Result], responses: np.ndarray, crack_lengths: M
     """
     differences, errors, rows = [], [], []
     for beam, row in zip(beams, responses, strict=False):
-        if (at := _place(beam, crack_lengths)) is not None:
+        if (at := _number_of_humidity(beam, crack_lengths)) is not None:
             mean, std, number = (getattr(crack_lengths[beam.owner], key)[at] for key in ("mean", "std", "beams"))
             differences.append(np.log(mean / float(beam.budget.centre)))
             errors.append(std / mean / np.sqrt(number))
@@ -342,7 +344,7 @@ def with_pull_offs(lengths: CrackData, responses: np.ndarray, pull_offs: Sequenc
     )
 
 
-def _place(result, crack_lengths):
+def _number_of_humidity(result, crack_lengths):
     """Place of a result of test beams among the humidities with measured crack lengths of its array."""
     measured_at = crack_lengths[result.owner].humidity if result.owner in crack_lengths else ()
     return measured_at.index(result.humidity) if result.humidity in measured_at else None
@@ -444,7 +446,7 @@ def length_dataset(
     numbers = {"measured_error": [data["error"] for data in measured]} | _both(
         prior, posterior, responses[: len(beams)]
     )
-    lengths |= {size: [getattr(beam.beam, size) for beam in beams] for size in OWN}
+    lengths |= {size: [getattr(beam.beam, size) for beam in beams] for size in BEAM_SIZES}
     numbers |= {"reduced": [beam.reduced for beam in beams]}
     numbers |= {"rest": posterior.mean[[posterior.names.index(inference.rest(beam.condition)) for beam in beams]]}
     return xr.Dataset(
@@ -462,7 +464,7 @@ def length_dataset(
 
 def _measured_length(result, crack_lengths):
     """Measured mean length, its relative standard error and the length of the beams [m], or no numbers."""
-    at = _place(result, crack_lengths)
+    at = _number_of_humidity(result, crack_lengths)
     if at is None:
         return dict.fromkeys(("measured", "error", "beam_length"), np.nan)
     data = crack_lengths[result.owner]
@@ -533,8 +535,8 @@ def agreement_dataset(prior: KnownInputs, lengths: CrackData, counts: Counts, nu
 
 def _both(prior, posterior, responses):
     """Standard deviations before, shifts and standard deviations after the measurement, of ln l."""
-    shift, after = posterior.of(responses)
-    return {"before": prior.of(responses)[1], "shift": shift, "after": after}
+    shift, after = posterior.response_moments(responses)
+    return {"before": prior.response_moments(responses)[1], "shift": shift, "after": after}
 
 
 def _quantiles(dimension, posterior, responses):
@@ -553,12 +555,12 @@ def result_dataset(
 
     The first ``number`` responses are to inputs.
     """
-    numbers = {"of_inputs": first_inputs(prior, number).of(responses[:, :number])[1]} | _both(
+    numbers = {"of_inputs": first_inputs(prior, number).response_moments(responses[:, :number])[1]} | _both(
         prior, posterior, responses
     )
     numbers |= {"reduced": [result.reduced for result in of_device]}
     centre = [float(result.budget.centre) for result in of_device], {"units": of_device[0].budget.centre.attrs["units"]}
-    sizes = {size: [getattr(result.beam, size) for result in of_device] for size in OWN if of_device[0].beam}
+    sizes = {size: [getattr(result.beam, size) for result in of_device] for size in BEAM_SIZES if of_device[0].beam}
     return xr.Dataset(
         {"centre": ("result", *centre)}
         | {f"own_{size}": ("result", values, {"units": "m"}) for size, values in sizes.items()}
@@ -602,7 +604,7 @@ def further_dataset(
     further = [(beam, row, 0.0) for beam, row in zip(beams, responses, strict=False)]
     for beam, row in zip(of_device, device, strict=True):
         if beam.response == S_SHAPE:
-            own_inputs = np.isin(posterior.names, beam.own)
+            own_inputs = np.isin(posterior.names, beam.own_inputs)
             further.append(
                 (beam, np.where(own_inputs, 0, row), float(np.linalg.norm((row * posterior.deviations)[own_inputs])))
             )

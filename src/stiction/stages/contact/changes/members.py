@@ -24,7 +24,7 @@ _TIPS = 3
 
 
 @dataclass(frozen=True)
-class Whole:
+class AssumedQuantities:
     """Assumed quantities of a member."""
 
     rms: float | None = None  #: [m]
@@ -35,7 +35,7 @@ class Whole:
     cutoff: float | None = None  #: [rad m⁻¹]
 
     @property
-    def stated(self) -> dict[str, float]:
+    def values(self) -> dict[str, float]:
         """Quantities with a value, by name."""
         return {name: value for name, value in vars(self).items() if value is not None}
 
@@ -44,7 +44,7 @@ class Whole:
 class Settings(pairs.Settings):
     """Settings of the contact, and the member."""
 
-    whole: Whole = Whole()
+    whole: AssumedQuantities = AssumedQuantities()
 
 
 def compute(
@@ -55,7 +55,7 @@ def compute(
     The two surfaces and the pair are as in stage contact.
     """
     original = description(*surfaces[settings.surfaces.index(surface)])
-    member = drawn_as(like(original, settings.whole.stated), settings.sampling.spacing)
+    member = drawn_as(like(original, settings.whole.values), settings.sampling.spacing)
     sides = [member if name == surface else same for name, same in zip(settings.surfaces, surfaces, strict=True)]
     return stage_contact.compute(sides, pair, "NG", settings)
 
@@ -91,7 +91,7 @@ def _settings(plan, at, patch_kind):
 
 #: A whole typical surface in place of one surface.
 MEMBER = PatchChange(
-    words="with {member} in place of what is assumed of {surface}",
+    words="with {member} in place of the partly assumed {surface}",
     end="_{surface}_like_{member}",
     settings=_settings,
     kind=Settings,
