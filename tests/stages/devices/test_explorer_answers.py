@@ -23,7 +23,7 @@ from stiction.stages.devices.chart import largest_error_between
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.life.answers import Name
 from stiction.stages.life.beams import beam_at_voltage, least_safe
-from stiction.stages.life.inputs import Errors, OfBeam
+from stiction.stages.life.inputs import BeamErrors, BeamKeys
 
 BRIDGE = CANTILEVER | {"kind": "bridge", "residual_stress_MPa": 10}
 SPRING = {key: value for key, value in STOPPER.items() if key != "restoring_force_uN"}
@@ -217,7 +217,9 @@ def test_a_cantilever_at_a_voltage_has_the_closed_form_of_flats_and_its_bound_of
         )
     with pytest.raises(ValueError, match="beyond 99.5 V the dielectric breaks down"):
         grid.safe_size(grid.start | {"voltage_V": 100.0})
-    of = OfBeam(device=C1, density=2330.0, liquids={}, uncertainty=Errors(), voltage=5.0, offset=-0.5, dielectric=oxide)
+    of = BeamKeys(
+        device=C1, density=2330.0, liquids={}, uncertainty=BeamErrors(), voltage=5.0, offset=-0.5, dielectric=oxide
+    )
     answers = {one.name: one for one in beam_at_voltage(of, min(map(least_of, lengths.values())), None)}
     assert grid.safe_size(grid.start) == pytest.approx(1e6 * answers[Name.AT_VOLTAGE].low, rel=1e-3)
 

@@ -29,14 +29,14 @@ from stiction.report.style import save
 from stiction.run import storage
 from stiction.stages.life.answers import QUESTIONS, answers_of, layout
 from stiction.stages.life.beams import beam_answers, length_of
-from stiction.stages.life.inputs import Electrode, Errors, Liquid, OfBeam, OfStopper
+from stiction.stages.life.inputs import BeamErrors, BeamKeys, Electrode, Liquid, StopperKeys
 from stiction.stages.life.stoppers import stopper_answers
 
 LIQUIDS = {"water": Liquid(0.072), "mine": Liquid(0.03, np.pi / 3)}
-OF = OfBeam(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=Errors())
+OF = BeamKeys(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=BeamErrors())
 AREA = (3e-6, 3e-6)
 UNSTATED = {"restoring_force": 18.99e-6, "contact": AREA}
-STOPPER = OfStopper(
+STOPPER = StopperKeys(
     restoring_force=18.99e-6,
     contact=AREA,
     stiffness=10.0,
@@ -105,7 +105,7 @@ def test_a_beam_held_by_the_energy_that_is_stated_pulls_with_the_stated_force(le
 
 def test_errors_are_those_of_the_powers_of_the_closed_forms(lengths):
     relative = {"thickness": 0.01, "gap": 0.02, "young_modulus": 0.03}
-    errors = Errors(**{name: share * getattr(C1, name) for name, share in relative.items()})
+    errors = BeamErrors(**{name: share * getattr(C1, name) for name, share in relative.items()})
     found = answers(replace(OF, uncertainty=errors, length=300e-6), lengths)
     powers = {"shock": (2, 1, 1), "released_water": (0.75, 0.5, 0.25), "tip": (3, 2, 1)}
     for name, exponents in powers.items():
@@ -119,7 +119,7 @@ def test_errors_are_those_of_the_powers_of_the_closed_forms(lengths):
 
 
 def test_residual_stress_of_a_bridge_has_an_error_and_rigid_clamps_an_upper_bound():
-    of = replace(OF, device=R1, liquids={"water": LIQUIDS["water"]}, uncertainty=Errors(residual_stress=5e6))
+    of = replace(OF, device=R1, liquids={"water": LIQUIDS["water"]}, uncertainty=BeamErrors(residual_stress=5e6))
     found = answers(of, {0.67: safe_without_tips()})
     for name in ("voltage", "shock"):
         assert found[name].low < found[name].high
@@ -271,7 +271,7 @@ def test_the_force_for_many_touchdowns_is_that_of_a_smaller_fraction_if_there_ar
 
 
 def test_what_is_not_stated_has_no_number():
-    found = answers(OfStopper(**UNSTATED))
+    found = answers(StopperKeys(**UNSTATED))
     assert not {"stiffness", "stuck_after", "after"} & set(found)
     assert np.isnan([(found[name].low, found[name].high) for name in ("shock", "voltage", "freeing")]).all()
 
@@ -390,15 +390,15 @@ def test_settings_come_from_the_device_its_material_and_the_liquids():
     one = SECTION | {"length_um": 300, "touchdowns": 9, "uncertainty": {"gap_um": 1}}
     devices = {"devices": {"C1": one, "S1": SPRING, "C2": SECTION | {"pair": "a"}}}
     plan = Plan(load(gold | devices | {"liquids": MINE}))
-    of = in_si(OfBeam, job_settings(plan, "devices/life/C1")["beam"])
-    assert (of.density, of.touchdowns, of.uncertainty) == (19300, 9, Errors(gap=1e-6))
+    of = in_si(BeamKeys, job_settings(plan, "devices/life/C1")["beam"])
+    assert (of.density, of.touchdowns, of.uncertainty) == (19300, 9, BeamErrors(gap=1e-6))
     assert_allclose(of.length, 300e-6)
     assert_allclose([one.adhesion for one in of.liquids.values()], [0.072, 0.0217, 0.015], rtol=1e-12)
-    stopper = in_si(OfStopper, job_settings(plan, "devices/life/S1")["stopper"])
+    stopper = in_si(StopperKeys, job_settings(plan, "devices/life/S1")["stopper"])
     assert_allclose([stopper.restoring_force, stopper.mass, stopper.electrode.area], [18.99e-6, 50e-12, 1e-8])
     shares = job_settings(plan, "devices/touchdowns/C1_rh067")["shares"]
     assert_allclose(shares, [freeing.probability_for(1e-3, 9)])
-    assert in_si(OfBeam, job_settings(plan, "devices/life/C2")["beam"]).density == 2330
+    assert in_si(BeamKeys, job_settings(plan, "devices/life/C2")["beam"]).density == 2330
     assert list(Graph(plan).job("devices/life/C1").inputs["after"]) == [0.67]
     assert not Graph(plan).job("devices/life/C2").inputs["after"]
 

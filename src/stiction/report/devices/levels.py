@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from stiction.answer.data import Answer, InAir
+from stiction.answer.data import Answer, AnswerInAir
 from stiction.devices.risk import SCORES
 
 #: Normal scores of shown fractions, from 3e-7 on, and that of a band of 95 %.
@@ -79,7 +79,7 @@ def of_answer(answer: Answer, humidities: Sequence[float], states: Simulated, ow
     return Levels(scores, np.array(sizes), first, factor)
 
 
-def of_places(answer: Answer, airs: Sequence[InAir]) -> tuple[np.ndarray, np.ndarray]:
+def of_places(answer: Answer, airs: Sequence[AnswerInAir]) -> tuple[np.ndarray, np.ndarray]:
     """Scores (n,), and levels of the layers in some airs by an answer alone (3, m, n)."""
     scores = _scores(answer, airs)
     return scores, np.array([_inverted(answer, air, scores) for air in airs]).swapaxes(0, 1)

@@ -28,7 +28,7 @@ from stiction.report.style import (
 )
 from stiction.report.table import Table, table_stage
 from stiction.stages.devices import device_warnings
-from stiction.stages.life.answers import QUESTIONS, TOUCH, Answer, Name, answers_of
+from stiction.stages.life.answers import QUESTIONS, TOUCH, LifeRow, Name, answers_of
 
 #: Units of the answers by those in SI: factor and text.
 _UNITS = {
@@ -306,12 +306,12 @@ def _often(answers, touchdowns, has_shares):
     return [f"{number} if each meets other summits, and {same} if all meet the same ones."]
 
 
-def _low(answer: Answer) -> str:
+def _low(answer: LifeRow) -> str:
     """Lower bound of an answer in its unit."""
     return significant(_UNITS[answer.unit][0] * answer.low)
 
 
-def _high(answer: Answer) -> str:
+def _high(answer: LifeRow) -> str:
     """Upper bound of an answer in its unit."""
     return significant(_UNITS[answer.unit][0] * answer.high)
 
