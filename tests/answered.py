@@ -16,7 +16,7 @@ def of_beam(lengths, length=np.nan, touchdowns=1, kind="cantilever") -> Answer:
     """Answer about a beam from its safe lengths by humidity, perhaps with a length [m]."""
     circumstances = list(conditions.of_lengths(lengths, Cause.ESTIMATE, "safe_lengths"))
     share = chosen_share(next(iter(lengths.values())))
-    asked = ladder.Question("C1", kind, share, "m", length, touchdowns)
+    asked = ladder.MainQuestion("C1", kind, share, "m", length, touchdowns)
     return ladder.answer(asked, circumstances, OfBudgets({}), DRAWS)
 
 
@@ -26,5 +26,5 @@ def of_stopper(stopper, touchdowns=1) -> Answer:
     errors = stopper.full_contact_error
     circumstances = list(conditions.of_forces(stopper.pull_off, share, stopper.safe_force, errors, Cause.ESTIMATE))
     share = share or float(stopper.share.max())
-    asked = ladder.Question("S1", "stopper", share, "N", float(stopper.restoring_force), touchdowns)
+    asked = ladder.MainQuestion("S1", "stopper", share, "N", float(stopper.restoring_force), touchdowns)
     return ladder.answer(asked, circumstances, OfBudgets({}), DRAWS)

@@ -21,10 +21,10 @@ from stiction.stages.devices import budget, safe_lengths, sticking, stoppers
 from stiction.stages.devices.budget import Responses
 from stiction.stages.devices.device_warnings import OfDevices
 from stiction.stages.devices.opening import EITHER, S_SHAPE, DesignedBeam
-from stiction.stages.devices.uncertain_inputs import Input, State, Uncertainty
+from stiction.stages.devices.uncertain_inputs import Input, InputState, Uncertainty
 from stiction.stages.life.answers import layout
 from stiction.stages.life.beams import beam_answers
-from stiction.stages.life.inputs import BeamKeys, Errors, StopperKeys
+from stiction.stages.life.inputs import BeamErrors, BeamKeys, StopperKeys
 from stiction.stages.life.stoppers import stopper_answers
 
 CANTILEVER = {
@@ -83,7 +83,7 @@ def least(dataset, share=1e-3):
 
 # Budgets
 
-STATE = State(None, 0.5, Water(300.0))
+STATE = InputState(None, 0.5, Water(300.0))
 NAMES = {"rms of B2": "heights of B2", "skewness of B2": "heights of B2", "thickness": "thickness"}
 COVARIANCE = np.array([[4e-4, -1e-4, 0], [-1e-4, 4e-4, 0], [0, 0, 1e-4]])
 C1 = designed()
@@ -131,7 +131,7 @@ def silent(lengths: Mapping[float, xr.Dataset], name="C1", limits=()) -> OfDevic
 def beam_data(lengths, budgets=None, *, keys=None, after=None, **more):
     """Datasets of a beam: safe lengths by humidity, budgets by the keys of pages, and more of stage answer."""
     kind = "bridge" if "middle" in next(iter(lengths.values()))["shape"].values else "cantilever"
-    keys = keys or BeamKeys(device=designed(kind), density=2330.0, liquids={}, uncertainty=Errors())
+    keys = keys or BeamKeys(device=designed(kind), density=2330.0, liquids={}, uncertainty=BeamErrors())
     life = layout(beam_answers(lengths, after or {}, keys, more.get("biased")), keys)
     return {"lengths": lengths, "budgets": list((budgets or {}).values()), "life": life, "biased": {}} | more
 

@@ -62,7 +62,7 @@ def any_variable(monkeypatch):
     """Datasets of made-up stages, whose variables have no row in the table."""
     from stiction.run import variables
 
-    monkeypatch.setattr(variables, "_row", lambda stage, name: variables.Row("1", "", "", name or stage))
+    monkeypatch.setattr(variables, "_row", lambda stage, name: variables.VariableAttributes("1", "", "", name or stage))
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import numpy as np
 
 from stiction.answer import ladder
 from stiction.answer.data import Cause
-from stiction.answer.ladder import Question
+from stiction.answer.ladder import MainQuestion
 from stiction.answer.unknowns import Draws, Exact, OfBudgets, Slopes
 from stiction.answer.worlds import Condition, Sampled, StatedSize
 from stiction.devices import risk
@@ -61,5 +61,5 @@ def asked(conditions, unknowns=None, number=2000, before=None, **question):
     """Answer about a drawn device."""
     question = {"share": SHARE, "unit": "m"} | question
     return ladder.answer(
-        Question("D", "cantilever", **question), conditions, unknowns or Exact(), Draws(number, 0), before
+        MainQuestion("D", "cantilever", **question), conditions, unknowns or Exact(), Draws(number, 0), before
     )

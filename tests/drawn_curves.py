@@ -28,7 +28,7 @@ def law_of(settings=SETTINGS, variable=VARIABLE, surface="B2"):
 def _point(margin, refused, is_beam, **coords):
     """Point of a curve with these margins at two humidities."""
     common = {"seed": 1, "water": Water(300.0), "humidities": (0.8, 0.6), "share": SHARE}
-    settings = requirement.OfStopper(**common, contact=(3e-6, 3e-6), restoring_force=REQUIRED[False])
+    settings = requirement.RequiredStopper(**common, contact=(3e-6, 3e-6), restoring_force=REQUIRED[False])
     rows = []
     for logarithm in margin:
         size, risky = (

@@ -16,7 +16,7 @@ from stiction.config.kinds import BEAM, KEYS, KINDS, STOPPER, Kind, Release, kin
 from stiction.config.mission.conditions import CONDITIONS
 from stiction.contact.air import Air
 from stiction.devices.limits.limit import Limit, restored
-from stiction.estimate.answer import Answer as Estimate
+from stiction.estimate.answer import Estimate as Estimate
 from stiction.estimate.answer import answer as estimated
 from stiction.estimate.complete import question_of
 from stiction.estimate.table import known

@@ -62,7 +62,7 @@ _PRELIMINARY = 1.25
 
 
 @dataclass(frozen=True)
-class Use:
+class PatchUse:
     """Use of a patch at some humidities, and its keys."""
 
     patch: Patch
@@ -187,7 +187,7 @@ def _pairs(plan):
         beam = cantilever(in_si(Cantilevers, sections(plan, pair)), pair)
         coarser = config["pairs"][pair].get("coarser_mesh", 1)
         use = partial(
-            Use,
+            PatchUse,
             patch(pair, config["sampling"]["strip_length_um"], config["beam"]["width_um"]),
             SURFACE_MODELS,
             pair=("run", "pairs", number),
@@ -206,7 +206,7 @@ def _devices(plan, section):
     devices = plan.devices
     for name in devices.sections:
         path_of_device, ground = (section, name), devices.ground(name)
-        use = partial(Use, ground, ("NG",), pair=(*path_of_device, "pair"))
+        use = partial(PatchUse, ground, ("NG",), pair=(*path_of_device, "pair"))
         air = (
             *path_of_device,
             "humidities" if section == "devices" else next(key for key in DATA if key in plan.config[section][name]),
@@ -270,7 +270,7 @@ def _coarse_elements(plan, use):
 # What the samples show
 
 
-def _refusals(use: Use, samples: Callable, preliminary: bool) -> Iterator[tuple[tuple, str]]:
+def _refusals(use: PatchUse, samples: Callable, preliminary: bool) -> Iterator[tuple[tuple, str]]:
     """Yield keys and messages of the problems of a use."""
     law = use.longest_strip is not None
     try:

@@ -12,6 +12,7 @@ from stiction.answer.data import Answer, Cause, Probability, Verdict
 from stiction.answer.unknowns import Draws, Exact, OfBudgets, OfTestBeams
 from stiction.answer.worlds import Condition, Sampled, World
 from stiction.life.freeing import probability_for, stuck_after
+from stiction.report.answer.words import stuck_in_words
 
 CAUSES = frozenset(Cause) - {Cause.FAST}
 
@@ -200,12 +201,15 @@ def test_a_size_as_long_as_the_one_to_build_is_within_the_allowed_fraction():
         assert SHARE / 3 < found.stuck.high <= SHARE
 
 
-def test_a_few_draws_of_which_all_stick_leave_the_expectation_inside_the_band():
+def test_the_expectation_by_a_few_draws_of_which_all_stick_is_inside_the_band_or_said_beside_the_bound():
     one = air(lognormal(np.random.default_rng(8)))
     heavy = OfTestBeams(np.array([-4.0, -2.4, -2.3, 4.0]), {(0.5, ARC): np.array([-9.0, -9.0, 0.0, 0.0])})
-    found = asked([one], heavy, size=0.5, number=20_000)
-    assert found.stuck.low <= found.stuck.value <= found.stuck.high
-    assert found.stuck.value > SHARE
+    found, longer = (asked([one], heavy, size=size, number=20_000).stuck for size in (0.5, 0.75))
+    assert found.none_seen
+    assert found.high < SHARE < found.value
+    assert stuck_in_words(found) == "at most 0.01 % (95 % confidence; 0.97 % on average)"
+    assert not longer.none_seen
+    assert longer.low <= longer.value <= longer.high
 
 
 # Verdict

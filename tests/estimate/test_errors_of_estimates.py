@@ -14,7 +14,7 @@ from stiction.estimate.design import FILMS
 from stiction.estimate.errors import coverage, rest_of, scores
 from stiction.estimate.length import most
 from stiction.estimate.table import content, known
-from stiction.estimate.training import FACTORS, SETS, Tips, base, changes_of, plan_of
+from stiction.estimate.training import FACTORS, SETS, TrainingTips, base, changes_of, plan_of
 from stiction.progress import without_progress
 from stiction.stages.contact.pair_model_error import POWER_ERROR
 
@@ -27,7 +27,7 @@ CHANGED = 0.1 * np.exp(0.1 * np.random.default_rng(3).normal(size=200))
 @pytest.fixture(scope="module")
 def tips():
     with without_progress():
-        return Tips.of(POINT, plan_of(POINT, base()), 3, 1)
+        return TrainingTips.of(POINT, plan_of(POINT, base()), 3, 1)
 
 
 @pytest.mark.parametrize("ratio", [0.5, 2.0])

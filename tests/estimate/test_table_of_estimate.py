@@ -7,7 +7,7 @@ import pytest
 
 from stiction.estimate import training
 from stiction.estimate.answer import CONFIDENCES
-from stiction.estimate.design import FILMS, Law, points, states
+from stiction.estimate.design import FILMS, SurfaceLaw, points, states
 from stiction.estimate.make import control_of_forces, control_of_slopes
 from stiction.estimate.page import page
 from stiction.estimate.state import COORDINATES
@@ -44,7 +44,7 @@ def test_the_table_has_what_the_estimate_reads():
         assert len(process(name).nodes[0]) == len(process(name).columns)
 
 
-@pytest.mark.parametrize("law", [Law.ANY, Law.TYPICAL])
+@pytest.mark.parametrize("law", [SurfaceLaw.ANY, SurfaceLaw.TYPICAL])
 def test_more_points_begin_with_fewer_and_other_seeds_are_other_surfaces(law):
     assert points(9, 1, law)[:4] == points(4, 1, law)
     assert not {str(point.sides) for point in points(9, 1, law)} & {str(point.sides) for point in points(9, 2, law)}

@@ -295,7 +295,7 @@ FLAGS = {
     "psd: tabulated":
         lambda: fit_with(chi2=400.0, freedom=100),
     "beyond 101 rad/µm the scans show less than half of the power law: either surface or microscope has no shorter "
-    "waves, or the spectrum becomes steeper; beyond: cut leaves these waves out":
+    "waves, or the spectrum becomes steeper; with key beyond: cut these waves are left out":
         lambda: with_inspection(reach=dataclasses.replace(of_b2().inspection.reach, end=1.01e8)),
     "pixels of 20 nm do not resolve the power law of the spectrum, which falls by less than half up to 78.5 rad/µm: "
     "corner and slope are not measured; roughness beyond 125 rad/µm is left out, so that surfaces are too smooth and "

@@ -118,7 +118,7 @@ def scatter_ratios(
 def error_of_largest(
     full: np.ndarray, summits: np.ndarray, moved: tuple[np.ndarray, np.ndarray] | None = None
 ) -> np.ndarray:
-    r"""Relative standard error, by the strips, of the largest values after `stiction.contact.correction.Change`.
+    r"""Relative standard error, by the strips, of the largest values after `stiction.contact.correction.ElasticChange`.
 
     Values of the same strips by both models, (n, h) each, and ``moved`` by `beside_more` if the ratio of the means is
     that of moved ones; NaN if some are zero. ASSUME: those on summits are log-normal with a known standard deviation s

@@ -62,7 +62,7 @@ class Probability:
     """Expected fraction of stuck devices, and a band of the fraction that contains all that is unknown.
 
     Where no simulated device sticks, the upper end is a bound with 95 % confidence. It is the allowed fraction at the
-    size to build.
+    size to build, and a few draws of which many devices stick can raise the expected fraction above it.
     """
 
     value: float
@@ -72,7 +72,7 @@ class Probability:
 
 
 @dataclass(frozen=True)
-class InAir:
+class AnswerInAir:
     """Answer for one of the stated airs alone."""
 
     humidity: float  #: [-]
@@ -126,7 +126,7 @@ class Answer:
     build: float  #: size to build, NaN if none is known
     exact: float  #: the same if all inputs were exact
     steps: tuple[Step, ...]
-    airs: tuple[InAir, ...]
+    airs: tuple[AnswerInAir, ...]
     size: float = np.nan  #: stated, NaN without one
     stuck: Probability | None = None  #: at the stated size, in the worst stated air
     touchdowns: int = 1
@@ -200,10 +200,10 @@ class Answer:
         return max(self.stated_steps[1:], key=lambda step: abs(np.log(step.factor)))
 
     @property
-    def together(self) -> InAir:
+    def together(self) -> AnswerInAir:
         """Answer for all stated airs, under the humidity of the one that decides."""
         first = min((air.first for air in self.airs), key=lambda size: self.sought.sign * size, default=np.nan)
-        return InAir(self.stated_steps[-1].humidity, self.build, np.nan, self.stuck, self.curve, first)
+        return AnswerInAir(self.stated_steps[-1].humidity, self.build, np.nan, self.stuck, self.curve, first)
 
     @property
     def is_by_tip(self) -> bool:

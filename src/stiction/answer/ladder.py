@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stiction.answer.data import Answer, Cause, InAir, Probability, Stay, Step, band
+from stiction.answer.data import Answer, AnswerInAir, Cause, Probability, Stay, Step, band
 from stiction.answer.sought import SOUGHT
 from stiction.answer.unknowns import Draws, OfBudgets, OfTestBeams, Unknowns
 from stiction.answer.worlds import Condition, World
@@ -17,7 +17,7 @@ _POINTS, _BELOW, _MOST = 41, 0.25, 0.99
 
 
 @dataclass(frozen=True)
-class Question:
+class MainQuestion:
     """Main question about a device."""
 
     device: str
@@ -46,7 +46,7 @@ class Question:
 
 
 def answer(
-    question: Question,
+    question: MainQuestion,
     conditions: Sequence[Condition],
     unknowns: Unknowns,
     draws: Draws,
@@ -118,13 +118,16 @@ def _stuck(question, world):
 def probability(world: World, v: float) -> Probability:
     """P(stuck) at v.
 
-    A few draws of which all devices stick can raise the expectation above the band, which then ends there.
+    A few draws of which all devices stick can raise the expectation above the band, which then ends there, or above the
+    bound of a fraction of which no device is seen. The bound is the statement of the size to build and stays.
     """
-    fractions, none_seen = world.stuck(v), v < world.first
-    value, (low, high) = float(fractions.mean()), band(fractions)
-    if none_seen:
-        low, high = 0.0, float(np.quantile(fractions, CONFIDENCE, method="lower"))
-    return Probability(value, min(low, value), max(high, value, world.least_bound(v)), none_seen)
+    fractions, least = world.stuck(v), world.least_bound(v)
+    value = float(fractions.mean())
+    if v < world.first:
+        bound = float(np.quantile(fractions, CONFIDENCE, method="lower"))
+        return Probability(value, 0.0, max(bound, least), none_seen=True)
+    low, high = band(fractions)
+    return Probability(value, min(low, value), max(high, value, least))
 
 
 def _sizes(question, world):
@@ -154,7 +157,7 @@ def _in_air(question, world, humidity, sizes):
         )
         without_tip = question.size_of(along.size)
     first, curve = question.size_of(alone.first), _curve(question, alone, sizes)
-    return InAir(humidity, question.size_of(alone.size), without_tip, _stuck(question, alone), curve, first)
+    return AnswerInAir(humidity, question.size_of(alone.size), without_tip, _stuck(question, alone), curve, first)
 
 
 def _curve(question, world, sizes):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
-from stiction.answer.data import Answer, Cause, InAir, Probability, PullOff, Step, band
+from stiction.answer.data import Answer, AnswerInAir, Cause, Probability, PullOff, Step, band
 from stiction.answer.sought import PULL_OFF
 from stiction.answer.unknowns import Draws, Unknowns, normal
 from stiction.devices import probes
@@ -50,7 +50,7 @@ def answer(question: ProbeQuestion, places: Mapping[float, Places], unknowns: Un
         for air in places.items()
     ]
     airs = tuple(
-        InAir(
+        AnswerInAir(
             distribution.humidity,
             np.nan,
             np.nan,

@@ -5,7 +5,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 
-from stiction.command.run_state import Job, Run
+from stiction.command.run_state import Run, RunJob
 from stiction.plan import cost
 
 #: A reason of Snakemake, by its first words, and what it says.
@@ -47,7 +47,7 @@ def count_jobs(rules: Counter) -> str:
     return ", ".join(f"{rule} ({number})" if number > 1 else rule for rule, number in rules.items())
 
 
-def reasons(job: Job) -> Iterator[str]:
+def reasons(job: RunJob) -> Iterator[str]:
     """Yield the reasons of a job in words, apart from jobs before it."""
     other_reasons, params, values = job.reason.partition("Params have changed")
     if params:  # also explains results that are missing because they were temporary

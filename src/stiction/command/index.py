@@ -7,8 +7,10 @@ lists what the configuration of the last run wants and the folder holds, and is 
 import contextlib
 import csv
 import json
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +35,8 @@ from stiction.run.provenance import code_of, recorded_runs, start_of
 
 #: Name of the page.
 INDEX = "index.html"
+#: Most devices that are cards with drawings. More are rows of a table.
+_CARDS = 20
 #: Complete configuration of the last run, among the files of Snakemake.
 _PLANNED = "configuration.json"
 
@@ -179,19 +183,21 @@ def _by_category(figures: Iterable[Item]) -> dict[str, list[Item]]:
 
 
 def _devices(results: Present, config: Mapping, all_items: Sequence[Item]) -> Iterator[dict[str, Any]]:
-    """Devices with their first answer, their page and the number of warnings."""
-    pages = {item.shown for item in all_items}
-    found_limits = list(front_page.limits(results, config))
+    """Devices with their first answer, their page and the number of warnings, and a few with drawings."""
+    pages, sections = {item.shown for item in all_items}, config.get("devices", {})
+    named = ({device.name for device in subjects} for _, subjects in front_page.limits(results, config))
+    warned = Counter(chain.from_iterable(named))
     verdicts = {row["device"]: row for row in csv.DictReader(results.text("tables/devices.csv").splitlines())}
-    for name, section in config.get("devices", {}).items():
+    for name, section in sections.items():
+        is_at_tip = verdicts.get(name, {}).get("by_tip") == "True"
         page, (answer, *_) = f"devices/{name}.html", [*results.text(f"devices/{name}.txt").splitlines(), ""]
         yield {
             "name": name,
             "kind": kind_of(section).words,
-            "drawing": device_drawing(section, verdicts.get(name, {}).get("by_tip") == "True"),
+            "drawing": device_drawing(section, is_at_tip) if len(sections) <= _CARDS else "",
             "page": page if page in pages else "",
             "answer": answer,
-            "warnings": sum(name in {device.name for device in subjects} for _, subjects in found_limits),
+            "warnings": warned[name],
         }
 
 

@@ -48,7 +48,7 @@ def is_fault(kind: str, *expected: type[Exception]) -> bool:
 
 
 @dataclass(frozen=True)
-class Job:
+class RunJob:
     """One job of a run."""
 
     rule: str
@@ -97,10 +97,10 @@ class Run:
     """
 
     planned: Counter = field(default_factory=Counter)
-    jobs: dict[int, Job] = field(default_factory=dict)
+    jobs: dict[int, RunJob] = field(default_factory=dict)
     seconds: dict[str, list[float]] = field(default_factory=dict)
-    first: dict[str, Job] = field(default_factory=dict)
-    failures: dict[int, Job] = field(default_factory=dict)
+    first: dict[str, RunJob] = field(default_factory=dict)
+    failures: dict[int, RunJob] = field(default_factory=dict)
     refusal: str = ""
     fault: str = ""
     warnings: list[str] = field(default_factory=list)
@@ -156,7 +156,7 @@ class Run:
         message = " ".join(str(record.rule_msg or record.rule_name).split())
         resources = getattr(record, "resources", None) or {}
         seconds, megabytes = to_si(float(resources.get("cpu_ms", 0)), "ms"), float(resources.get("mem_mb", 0))
-        self.jobs[record.jobid] = Job(
+        self.jobs[record.jobid] = RunJob(
             record.rule_name, message, str(record.reason), logs, record.created, seconds, megabytes
         )
         self.failures.pop(record.jobid, None)
@@ -170,7 +170,7 @@ class Run:
 
     def _hear_failure(self, record):
         """Note the failure of a job. Its logs include the cluster's."""
-        job = self.jobs.get(record.jobid, Job(record.rule_name, record.rule_name, "", (), record.created))
+        job = self.jobs.get(record.jobid, RunJob(record.rule_name, record.rule_name, "", (), record.created))
         self.failures[record.jobid] = replace(job, logs=tuple(map(str, record.log)))
 
     def _hear_error(self, record):

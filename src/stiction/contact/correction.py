@@ -29,7 +29,7 @@ def interpolated(ratios: np.ndarray, humidities: np.ndarray, at: float | np.ndar
     return values if humid.all() else np.where(is_humid(at), values, ratios[~humid][0])
 
 
-class Change(NamedTuple):
+class ElasticChange(NamedTuple):
     r"""Change of a quantity of samples by full elastic contact, at one humidity or at several (h,).
 
     A value x on summits becomes :math:`c x^b`. c follows from the ratio of both means, and the power b is the ratio of
@@ -50,13 +50,13 @@ class Change(NamedTuple):
         scale = self.ratio * np.divide(mean, powered, out=np.ones_like(mean), where=powered > 0)
         return lambda values: scale * values**self.power
 
-    def at_most(self, confidence: float) -> "Change":
+    def at_most(self, confidence: float) -> "ElasticChange":
         """Change with the upper end of the ratio at a one-sided confidence."""
         return self._replace(ratio=self.ratio * np.exp(ndtri(confidence) * self.ratio_error))
 
 
 #: Without a correction.
-NONE = Change()
+NONE = ElasticChange()
 
 
 class TipChanges(NamedTuple):
@@ -68,15 +68,15 @@ class TipChanges(NamedTuple):
     slopes: np.ndarray  #: increasing (s,) [-]
     #: At the humidities of the correction: ratio and its error (h, s), and one power (h,). The error is that of what 1
     #: in 1000 tips exceeds.
-    change: Change
+    change: ElasticChange
 
-    def at(self, slope: float) -> Change:
+    def at(self, slope: float) -> ElasticChange:
         """Change at a slope, at each humidity (h,)."""
         position = np.interp(np.log(slope), np.log(self.slopes), np.arange(len(self.slopes)))
         below = min(int(position), len(self.slopes) - 2)
         weights, near = [below + 1 - position, position - below], np.s_[:, below : below + 2]
         ratio, error = np.exp(np.log(self.change.ratio[near]) @ weights), self.change.ratio_error[near] @ weights
-        return Change(ratio, self.change.power, error)
+        return ElasticChange(ratio, self.change.power, error)
 
 
 def _not_falling(ratio, reference, humidity):
@@ -93,15 +93,15 @@ class Correction:
     """
 
     humidities: np.ndarray  #: increasing (h,), 0 for dry air [-]
-    energy: Change  #: of the energies e (h,)
-    pull_off: Change  #: of the largest attractions f_max (h,)
+    energy: ElasticChange  #: of the energies e (h,)
+    pull_off: ElasticChange  #: of the largest attractions f_max (h,)
     tips: TipChanges | None = None  #: of the largest attractions of tips, if any are on the pair
     #: Whether changes hold beyond these, where shifts of a budget are, instead of an error. ASSUME: in drier air the
     #: change is that in the driest. In wetter air ratios of energies below 1 rise to 1 in saturated air, others stay,
     #: and those of forces are as `stiction.contact.full.smooth_pairs.in_wetter_air`.
     nearest: bool = False
 
-    def at(self, humidity: float) -> tuple[Change, Change]:
+    def at(self, humidity: float) -> tuple[ElasticChange, ElasticChange]:
         """Changes of e and of f_max at a humidity, 0 for dry air: none in humid air if dry air alone is corrected.
 
         Raises
@@ -111,7 +111,7 @@ class Correction:
         """
         return self._at(humidity, self.energy), self._at(humidity, self.pull_off, in_wetter_air)
 
-    def of_tips(self, humidity: float, slopes: np.ndarray) -> list[Change]:
+    def of_tips(self, humidity: float, slopes: np.ndarray) -> list[ElasticChange]:
         """Changes of the largest attraction of tips at slopes (n,) [-], none without tips. Otherwise as `at`."""
         if self.tips is None:
             return [NONE] * len(slopes)
@@ -143,4 +143,4 @@ class Correction:
         of_ratio, of_power = (float(np.interp(humidity, self.humidities, error)) for error in errors)
         if not power >= 1:
             power, of_power = 1.0, max(0.0, power + of_power - 1)
-        return Change(ratio, power, of_ratio, of_power)
+        return ElasticChange(ratio, power, of_ratio, of_power)

@@ -24,7 +24,7 @@ import numpy as np
 
 from stiction.contact import forcelaw, gaps, vanderwaals
 from stiction.contact.air import Air
-from stiction.contact.correction import NONE, Change, Correction
+from stiction.contact.correction import NONE, Correction, ElasticChange
 from stiction.contact.materials import Solid
 from stiction.contact.meniscus import BRIDGE, MOLECULES, Isotherm, film
 from stiction.contact.solids import attraction_between, interfaces
@@ -117,13 +117,13 @@ class Water:
         work = self.gaps.work(gap, height) if self.gaps else 0.0
         return work + self.capacitor.work(gap) if self.capacitor else work
 
-    def changes(self, humidity: float) -> tuple[Change, Change]:
+    def changes(self, humidity: float) -> tuple[ElasticChange, ElasticChange]:
         """Changes of e and f_max by full elastic contact at a humidity: those of dry air without condensation."""
         if self.correction is None:
             return NONE, NONE
         return self.correction.at(humidity if self.film(humidity)[0] else 0.0)
 
-    def changes_of_tips(self, humidity: float, slopes: np.ndarray) -> list[Change]:
+    def changes_of_tips(self, humidity: float, slopes: np.ndarray) -> list[ElasticChange]:
         """Changes of the largest attraction of tips at slopes (s,) [-] by full elastic contact, as `changes`."""
         if self.correction is None:
             return [NONE] * len(slopes)

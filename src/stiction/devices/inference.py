@@ -51,7 +51,7 @@ _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class Draws:
+class NormalMixture:
     """Equally probable normal distributions of the errors of inputs. Together they are their distribution."""
 
     centres: np.ndarray  #: (m, k)
@@ -71,13 +71,13 @@ class Draws:
 
 
 @dataclass(frozen=True)
-class Knowledge:
+class KnownInputs:
     """Distribution of the errors of inputs, normal unless there are draws."""
 
     names: tuple[str, ...]  #: of the inputs
     mean: np.ndarray  #: (k,), zero before a measurement, in the units of the inputs
     covariance: np.ndarray  #: (k, k)
-    draws: Draws | None = None
+    draws: NormalMixture | None = None
 
     @property
     def deviations(self) -> np.ndarray:
@@ -99,7 +99,7 @@ class Knowledge:
 
 
 @dataclass(frozen=True)
-class Lengths:
+class CrackData:
     """Mean crack lengths of test beams beside the computed ones."""
 
     responses: np.ndarray  #: d ln l / dx (n, k)
@@ -180,7 +180,7 @@ def _last_slope(inner):
 
 
 @dataclass(frozen=True)
-class Discrepancy:
+class DiscrepancyOfModel:
     """Standard deviations of the discrepancy of the model in ln l, before test beams are measured."""
 
     factor: float  #: of α [-]
@@ -194,12 +194,12 @@ def rest(condition: Hashable) -> str:
 
 
 def with_discrepancy(
-    prior: Knowledge,
+    prior: KnownInputs,
     responses: np.ndarray,
     reduced: np.ndarray,
     conditions: Sequence[Hashable | None],
-    discrepancy: Discrepancy,
-) -> tuple[Knowledge, np.ndarray]:
+    discrepancy: DiscrepancyOfModel,
+) -> tuple[KnownInputs, np.ndarray]:
     """Prior of the inputs and of the discrepancy, and the responses of all results to both.
 
     Parameters
@@ -227,20 +227,20 @@ def with_discrepancy(
     variances = np.array([discrepancy.factor, discrepancy.slope, *[discrepancy.rest] * len(rests)]) ** 2
     mean = np.concatenate([prior.mean, np.zeros(len(variances))])
     names = (*prior.names, FACTOR, SLOPE, *map(rest, rests))
-    widened = Knowledge(names, mean, block_diag(prior.covariance, np.diag(variances)))
+    widened = KnownInputs(names, mean, block_diag(prior.covariance, np.diag(variances)))
     return widened, np.column_stack([responses, errs, errs * reduced, has_rest])
 
 
 # Update
 
 
-def given_lengths(prior: Knowledge, data: Lengths) -> Knowledge:
+def given_lengths(prior: KnownInputs, data: CrackData) -> KnownInputs:
     """Knowledge after mean crack lengths were measured."""
     shared = prior.covariance @ data.responses.T
     gain = np.linalg.solve(_spread(prior, data), shared.T).T
     mean = prior.mean + gain @ (data.differences - data.responses @ prior.mean)
     covariance = prior.covariance - gain @ shared.T
-    return Knowledge(prior.names, mean, (covariance + covariance.T) / 2)
+    return KnownInputs(prior.names, mean, (covariance + covariance.T) / 2)
 
 
 def _spread(prior, data):
@@ -249,8 +249,8 @@ def _spread(prior, data):
 
 
 def update(
-    prior: Knowledge, lengths: Lengths, counts: Counts | None = None, rng: np.random.Generator | None = None
-) -> Knowledge:
+    prior: KnownInputs, lengths: CrackData, counts: Counts | None = None, rng: np.random.Generator | None = None
+) -> KnownInputs:
     """Knowledge after measured crack lengths and counts of stuck beams. For counts, errors are drawn.
 
     Raises
@@ -268,8 +268,8 @@ def update(
     mean, residual = weights @ errors, after_lengths.covariance - gain @ gain.T
     spread = (errors - mean).T @ ((errors - mean) * weights[:, None])
     resampled = np.searchsorted(np.cumsum(weights), (np.arange(_KEPT) + 0.5) / _KEPT)
-    draws = Draws(after_lengths.mean + errors[resampled] @ gain.T, residual)
-    return Knowledge(prior.names, after_lengths.mean + gain @ mean, residual + gain @ spread @ gain.T, draws)
+    draws = NormalMixture(after_lengths.mean + errors[resampled] @ gain.T, residual)
+    return KnownInputs(prior.names, after_lengths.mean + gain @ mean, residual + gain @ spread @ gain.T, draws)
 
 
 def _counted_directions(knowledge, counts):
@@ -316,7 +316,7 @@ class _Misfit:
 # What the data say
 
 
-def least_misfits(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> list[tuple[float, int]]:
+def least_misfits(prior: KnownInputs, lengths: CrackData, counts: Counts | None = None) -> list[tuple[float, int]]:
     r"""Least misfits of lengths, and of counts after these, each with its number of data.
 
     :math:`d^T S^{-1} d` is the least sum of the squares of all pulls, on the data and on the inputs. Of counts, their
@@ -331,7 +331,7 @@ def least_misfits(prior: Knowledge, lengths: Lengths, counts: Counts | None = No
     return misfits
 
 
-def p_value(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> float:
+def p_value(prior: KnownInputs, lengths: CrackData, counts: Counts | None = None) -> float:
     """Probability of differences at least as large as the measured ones, before these are used [-].
 
     Each of the `least_misfits` has a chi-squared distribution if inputs and discrepancy err as stated: data that no
@@ -353,7 +353,7 @@ class Combination:
     remaining: float  #: its standard deviation after the measurement, that before being 1 [-]
 
 
-def combinations(prior: Knowledge, posterior: Knowledge) -> list[Combination]:
+def combinations(prior: KnownInputs, posterior: KnownInputs) -> list[Combination]:
     """Independent combinations of the errors of all inputs, the best determined by the data first.
 
     Data determine as many of them as there are independent data. Inputs that are correlated with the same combination
@@ -387,11 +387,11 @@ def expected_share(margins: np.ndarray, weights: np.ndarray, quantiles: np.ndarr
     return float(weights @ ndtr(score(margins)))
 
 
-def further_beams(knowledge: Knowledge, target: np.ndarray, response: np.ndarray, error: float) -> float:
+def further_beams(knowledge: KnownInputs, target: np.ndarray, response: np.ndarray, error: float) -> float:
     """Standard deviation of a result after the mean length of further test beams is measured [-].
 
     The responses of the result, ``target``, and of the further test beams are (k,); the error is that of their ln l
     [-].
     """
-    data = Lengths(response[None], np.zeros(1), np.array([error]))
+    data = CrackData(response[None], np.zeros(1), np.array([error]))
     return float(given_lengths(knowledge, data).response_moments(target)[1])

@@ -14,9 +14,9 @@ from typing import Any
 from stiction.contact.air import is_humid
 from stiction.estimate.length import Lengths, NotLearnt, fraction_of, lengths, normal_score
 from stiction.estimate.question import IN_DRY_AIR, Question
-from stiction.estimate.state import State, film, stiffness_of
+from stiction.estimate.state import TipState, film, stiffness_of
 from stiction.estimate.statistics import Heights
-from stiction.estimate.table import Process
+from stiction.estimate.table import Surrogate
 from stiction.estimate.voltage import at_voltage, drive_of, without_voltage
 
 #: Fractions of stuck devices in the answer.
@@ -29,7 +29,7 @@ _STUDENT = {"90": 2.353363, "95": 3.182446}
 
 
 @dataclass(frozen=True)
-class Row:
+class LengthRow:
     """Length at which a fraction sticks."""
 
     fraction: float
@@ -38,21 +38,23 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Answer:
+class Estimate:
     """Estimate of one cantilever."""
 
     question: Question
-    rows: tuple[Row, ...]
+    rows: tuple[LengthRow, ...]
     stuck: tuple[float, float, float] | None  #: fraction at the stated length, and its ends of 95 %
     humidity: float  #: air that decides
 
     @property
-    def chosen(self) -> Row:
+    def chosen(self) -> LengthRow:
         """Row of the length to build."""
         return next(row for row in self.rows if row.fraction == CHOSEN)
 
 
-def answer(question: Question | NotLearnt, table: Mapping[str, Any], tips: Process, full: Process | None) -> Answer:
+def answer(
+    question: Question | NotLearnt, table: Mapping[str, Any], tips: Surrogate, full: Surrogate | None
+) -> Estimate:
     """Answer to a question.
 
     Raises
@@ -67,10 +69,10 @@ def answer(question: Question | NotLearnt, table: Mapping[str, Any], tips: Proce
     rows = tuple(_worst([one.row(p, normal_score(of_once[p]), table) for one in found.values()]) for p in FRACTIONS)
     decides = min(found, key=lambda air: found[air].length(normal_score(of_once[CHOSEN])))
     stuck = None if question.length is None else _stuck(question, list(found.values()), table)
-    return Answer(question, rows, stuck, decides)
+    return Estimate(question, rows, stuck, decides)
 
 
-def in_one_air(question: Question, air: float, fractions: Sequence[float], *learnt: Any) -> list[Row]:
+def in_one_air(question: Question, air: float, fractions: Sequence[float], *learnt: Any) -> list[LengthRow]:
     """Lengths of a cantilever for some fractions, at one touchdown in one air. Learnt as of `answer`.
 
     Raises
@@ -85,7 +87,7 @@ def in_one_air(question: Question, air: float, fractions: Sequence[float], *lear
 
 
 @dataclass(frozen=True)
-class InAir:
+class LengthsInAir:
     """Lengths of a cantilever in one air."""
 
     stated: Lengths
@@ -110,14 +112,14 @@ class InAir:
         """Length at the voltage from that without it [m]."""
         return at_voltage(length, self.drive) if self.drive else length
 
-    def row(self, fraction: float, score: float, table: Mapping[str, Any]) -> Row:
+    def row(self, fraction: float, score: float, table: Mapping[str, Any]) -> LengthRow:
         """Length and intervals at a normal score."""
         mean, scatter = self.centre(score)
         ends = {}
         for confidence in CONFIDENCES:
             half = math.hypot(_margin(table, confidence, score, self.stated.slope), _STUDENT[confidence] * scatter)
             ends[confidence] = self._driven(math.exp(mean - half)), self._driven(math.exp(mean + half))
-        return Row(fraction, self.length(score), ends)
+        return LengthRow(fraction, self.length(score), ends)
 
 
 def difficulty(slope: float, rest: float) -> float:
@@ -139,7 +141,7 @@ def _margin(table, confidence, score, slope):
 def _worst(rows):
     """Shortest length and ends of some rows of one fraction."""
     ends = {key: tuple(min(row.intervals[key][side] for row in rows) for side in (0, 1)) for key in CONFIDENCES}
-    return Row(rows[0].fraction, min(row.length for row in rows), ends)
+    return LengthRow(rows[0].fraction, min(row.length for row in rows), ends)
 
 
 def _stuck(question, airs, table):
@@ -173,7 +175,7 @@ def _in_air(question, air, table, tips, full):
     stated, *members = (_lengths(question, heights, air, table, tips, full) for heights in pairs)
     stiffness = stiffness_of(table["modulus"], question.thickness, question.gap)
     drive = drive_of(question.added, stiffness, question.gap)
-    return InAir(stated, tuple(members), question.averaged, drive)
+    return LengthsInAir(stated, tuple(members), question.averaged, drive)
 
 
 def _lengths(question: Question, heights: Heights, air: float, table, tips, full):
@@ -181,7 +183,7 @@ def _lengths(question: Question, heights: Heights, air: float, table, tips, full
     try:
         stiffness = stiffness_of(table["modulus"], question.thickness, question.gap)
         water = film(air, table["temperature"], 2.0, table["water"])
-        state = State(heights, water, stiffness, question.width, table["modulus"])
+        state = TipState(heights, water, stiffness, question.width, table["modulus"])
         return lengths(state, question.gap, tips, full)
     except (ArithmeticError, ValueError) as impossible:  # such as the logarithm of a negative number
         raise NotLearnt("one of its numbers is impossible") from impossible

@@ -13,7 +13,7 @@ from stiction.estimate.answer import difficulty
 from stiction.estimate.design import Point
 from stiction.estimate.length import NAMES, Lengths, NotLearnt, lengths
 from stiction.estimate.rows import of_tips, states_of, stored
-from stiction.estimate.table import Process
+from stiction.estimate.table import Surrogate
 from stiction.estimate.training import FACTORS
 
 #: Numbers between which the rest of `stiction.estimate.answer.difficulty` is found.
@@ -45,7 +45,7 @@ class Tested:
 
 
 #: Processes of tips on summits and in full contact that have not learnt a point.
-Processes = Callable[[Point], tuple[Process, Process]]
+Processes = Callable[[Point], tuple[Surrogate, Surrogate]]
 
 
 def tested(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:

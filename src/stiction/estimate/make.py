@@ -12,14 +12,14 @@ from stiction.config.reading import paper
 from stiction.config.units import to_si
 from stiction.constants import WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
 from stiction.estimate.answer import CHOSEN, CONFIDENCES
-from stiction.estimate.design import FILMS, Law
+from stiction.estimate.design import FILMS, SurfaceLaw
 from stiction.estimate.errors import conformal, rest_of, scores, tested
 from stiction.estimate.fit import Fitted, fitted, group, rounded
 from stiction.estimate.length import normal_score
 from stiction.estimate.rows import OF_FULL, rows_of_full, rows_of_tips
 from stiction.estimate.state import COORDINATES
-from stiction.estimate.table import FILE, Process
-from stiction.estimate.training import SETS, Tips, base, full_contact_of, plan_of
+from stiction.estimate.table import FILE, Surrogate
+from stiction.estimate.training import SETS, TrainingTips, base, full_contact_of, plan_of
 from stiction.models import SIDES
 from stiction.progress import without_progress
 from stiction.run.atomic import save_text
@@ -67,7 +67,7 @@ def _control_point():
 def control_of_slopes() -> list[float]:
     """Slopes of a few tips, by which a test sees that contacts are still those that were learnt."""
     point, plan, height = _control_point()
-    return Tips.of(point, plan, SETS["control"].tips, SETS["control"].seed).slopes(height, 1.0).ravel().tolist()
+    return TrainingTips.of(point, plan, SETS["control"].tips, SETS["control"].seed).slopes(height, 1.0).ravel().tolist()
 
 
 def control_of_forces() -> list[float]:
@@ -81,7 +81,7 @@ def rest(folder: Path, modulus: float, tips: Fitted, full: Fitted) -> float:
 
     def without(point):
         """Processes without a point."""
-        return tuple(Process(**each.without[group(point.number)]) for each in (tips, full))
+        return tuple(Surrogate(**each.without[group(point.number)]) for each in (tips, full))
 
     return round(rest_of(list(tested(folder, "learn", modulus, TESTED, without))), 4)
 
@@ -91,10 +91,10 @@ def margins(folder: Path, table: dict[str, Any]) -> dict[str, float]:
 
     The widest of those of each law, so that an interval holds for surfaces of either.
     """
-    processes = Process(**table["tips"]), Process(**table["full"])
+    processes = Surrogate(**table["tips"]), Surrogate(**table["full"])
     found = [
         scores(list(tested(folder, f"decide_{law}", table["modulus"], TESTED, lambda _: processes)), table["rest"])
-        for law in (Law.TYPICAL, Law.ANY)
+        for law in (SurfaceLaw.TYPICAL, SurfaceLaw.ANY)
     ]
     return {name: round(max(conformal(errors, int(name) / 100) for errors in found), 4) for name in CONFIDENCES}
 

@@ -12,9 +12,9 @@ from stiction.config.units import to_si
 from stiction.constants import WATER_SURFACE_ENERGY
 from stiction.devices.tail import fit_tail
 from stiction.estimate.design import Point
-from stiction.estimate.fit import Rows
+from stiction.estimate.fit import DesignRows
 from stiction.estimate.length import NAMES, SCORES
-from stiction.estimate.state import Film, State
+from stiction.estimate.state import Film, TipState
 from stiction.estimate.statistics import of_pair
 from stiction.estimate.training import FACTORS, SETS
 
@@ -33,12 +33,14 @@ def stored(folder: Path, start: str) -> Iterator[tuple[Point, dict[str, Any]]]:
                     yield replace(point, number=_SET * k + point.number), dict(numbers)
 
 
-def states_of(point: Point, airs: np.ndarray, modulus: float) -> list[list[State]]:
+def states_of(point: Point, airs: np.ndarray, modulus: float) -> list[list[TipState]]:
     """States of a point, by air and stiffness."""
     heights, width = of_pair(point.sides), to_si(point.width, "um")
     return [
         [
-            State(heights, Film(height, 2 * WATER_SURFACE_ENERGY * wetting), factor * point.stiffness, width, modulus)
+            TipState(
+                heights, Film(height, 2 * WATER_SURFACE_ENERGY * wetting), factor * point.stiffness, width, modulus
+            )
             for factor in FACTORS
         ]
         for height, wetting in airs
@@ -53,7 +55,7 @@ def of_tips(slopes: np.ndarray) -> dict[str, float]:
     return dict(zip(NAMES, (first, second, line.logarithm(ndtr(SCORES[2])), line.slope), strict=True))
 
 
-def rows_of_tips(folder: Path, name: str, modulus: float) -> Rows:
+def rows_of_tips(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of all tips of a set on summits."""
     coordinates, values, surface, noise = [], [], [], []
     for point, numbers in stored(folder, name):
@@ -64,14 +66,14 @@ def rows_of_tips(folder: Path, name: str, modulus: float) -> Rows:
                 surface.append(point.number)
                 noise.append(values[-1]["slope"] / len(of_beam) ** 0.5)
     columns = {key: np.array([row[key] for row in values]) for key in NAMES}
-    return Rows(np.array(coordinates), columns, np.array(surface), np.array(noise))
+    return DesignRows(np.array(coordinates), columns, np.array(surface), np.array(noise))
 
 
 #: Coordinates that the change by full contact depends on: ASSUME: no others. Few points have it.
 OF_FULL = (0, 1, 2, 6, 8)
 
 
-def rows_of_full(folder: Path, name: str, modulus: float) -> Rows:
+def rows_of_full(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of the logarithm of the change of tips by full contact, at three slopes of some points.
 
     Their noise is in proportion to the scatter on summits, of which there are more strips.
@@ -85,8 +87,10 @@ def rows_of_full(folder: Path, name: str, modulus: float) -> Rows:
         ratios = np.log(full.mean(axis=0) / summits.mean(axis=0))
         noise += (summits.std(axis=0) / summits.mean(axis=0)).tolist()
         for slope, ratio in zip(numbers["slope"], ratios, strict=True):
-            state = State(of_pair(point.sides), film, 13.5 * film.energy / slope**4, to_si(point.width, "um"), modulus)
+            state = TipState(
+                of_pair(point.sides), film, 13.5 * film.energy / slope**4, to_si(point.width, "um"), modulus
+            )
             coordinates.append(state.coordinates)
             values.append(ratio)
             surface.append(point.number)
-    return Rows(np.array(coordinates), {"ratio": np.array(values)}, np.array(surface), np.array(noise))
+    return DesignRows(np.array(coordinates), {"ratio": np.array(values)}, np.array(surface), np.array(noise))

@@ -47,7 +47,7 @@ def film(humidity: float, temperature: float, wetting: float, water: tuple[float
 
 
 @dataclass(frozen=True)
-class State:
+class TipState:
     """Surfaces, water and beam."""
 
     heights: Heights  #: of the sum of both surfaces

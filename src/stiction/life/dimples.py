@@ -49,7 +49,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class State:
+class HeldBeam:
     """How a beam bends while some rows of dimples hold it, per deflection at these rows."""
 
     rows: tuple[int, ...]  #: that touch, numbered along the beam
@@ -66,7 +66,7 @@ class State:
         return float(self.bent.max())
 
 
-def states(beam: Beam, clamps: int, at: Sequence[float]) -> list[State]:
+def states(beam: Beam, clamps: int, at: Sequence[float]) -> list[HeldBeam]:
     """States of rest of a beam on rows of dimples at increasing distances from a clamp [m], below its length.
 
     Examples
@@ -89,21 +89,21 @@ def states(beam: Beam, clamps: int, at: Sequence[float]) -> list[State]:
                 free = [at[row] for row in range(len(at)) if row not in rows]
                 influence = np.array([held.influence(distance, along) for distance in free]).reshape(-1, len(along))
                 others = held.bent(u, np.array(free))
-                states_of_rest.append(State(rows, pull, held.bent(u, along), *held.sags(along), others, influence))
+                states_of_rest.append(HeldBeam(rows, pull, held.bent(u, along), *held.sags(along), others, influence))
     return states_of_rest
 
 
-def least_pull(rest_states: Sequence[State]) -> float:
+def least_pull(rest_states: Sequence[HeldBeam]) -> float:
     """Largest pull on a row in the state in which it is least, per deflection [N m⁻¹]."""
     return min(float(state.pull.max()) for state in rest_states)
 
 
-def holds(rest_states: Sequence[State], way: float, forces: np.ndarray) -> np.ndarray:
+def holds(rest_states: Sequence[HeldBeam], way: float, forces: np.ndarray) -> np.ndarray:
     """Whether rows that hold forces (beams, rows) [N] keep beams down, deflected by a way [m], (beams,) bool."""
     return np.any([np.all(forces[:, state.rows] > way * state.pull, axis=1) for state in rest_states], axis=0)
 
 
-def least_load(rest_states: Sequence[State], way: float, gap: float, power: int) -> float:
+def least_load(rest_states: Sequence[HeldBeam], way: float, gap: float, power: int) -> float:
     """Largest load per length, times the ``power`` of the gap, that brings no place down to the substrate [SI].
 
     The rows are deflected by a way [m]. Zero if the beam touches beside them without a load.

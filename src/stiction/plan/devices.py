@@ -22,7 +22,7 @@ from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, st
 from stiction.config.surfaces.members import is_itself, like, members
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.air import DRY_AIR, has_dry, humid
-from stiction.contact.materials import OF_PAIRS, Step
+from stiction.contact.materials import OF_PAIRS, InputStep
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.contact.tilt import EDGE_RADIUS, Edge, length_of_edge
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
@@ -507,7 +507,7 @@ class DevicePlan:
         uncertainty = self.sections[device].get("uncertainty", {})
         return [name for name, entry in OF_PAIRS.items() if uncertainty.get(entry.key)]
 
-    def step(self, pair: str, name: str) -> Step:
+    def step(self, pair: str, name: str) -> InputStep:
         """Step of a property of the contact of a pair, a key of ``OF_PAIRS``. Devices and test beams on it share it."""
         users = (*self.sections.values(), *test_beams.as_cantilevers(self.config).values())
         uncertainties = [user.get("uncertainty", {}) for user in users if user["pair"] == PairInAir(pair).pair]

@@ -18,7 +18,7 @@ _STATED = "stated"
 _STANDARD_NAMES = {"RH": "relative_humidity"}
 
 
-class Row(NamedTuple):
+class VariableAttributes(NamedTuple):
     """Attributes of a variable, empty where it has none."""
 
     units: str  #: as UDUNITS spells it; empty for text and for mixed quantities
@@ -28,11 +28,11 @@ class Row(NamedTuple):
 
 
 @cache
-def rows() -> dict[tuple[str, str], Row]:
+def rows() -> dict[tuple[str, str], VariableAttributes]:
     """Rows of the table by stage and variable. The stage is empty in rows for all stages."""
     with Path(__file__).with_name("variables.csv").open(encoding="utf-8", newline="") as file:
         _, *lines = csv.reader(file)
-    return {(stage, name): Row(*row) for stages, name, *row in lines for stage in stages.split() or [""]}
+    return {(stage, name): VariableAttributes(*row) for stages, name, *row in lines for stage in stages.split() or [""]}
 
 
 def described(dataset: xr.Dataset, stage: str) -> xr.Dataset:

@@ -186,7 +186,8 @@ def _spectrum_ends(estimate):
         return ""
     return (
         f"beyond {1e-6 * within.end:.3g} rad/µm the scans show less than half of the power law: either surface or "
-        "microscope has no shorter waves, or the spectrum becomes steeper; beyond: cut leaves these waves out"
+        "microscope has no shorter waves, or the spectrum becomes steeper; with key beyond: cut these waves are left "
+        "out"
     )
 
 

@@ -32,12 +32,17 @@ from stiction.devices.limits import rules
 from stiction.report.answer import tables, words
 from stiction.report.devices import explorer
 from stiction.stages.answer.answer import layout
-from stiction.stages.life.inputs import BeamKeys, Errors, StopperKeys
+from stiction.stages.life.inputs import BeamErrors, BeamKeys, StopperKeys
 
 UNSAFE = rules.plastic_contact(0.5, 1e8)
 TIP = {(0.67, "tip"): BUDGETS["C1", 0.67, "tip"]}
 VOLTAGE = BeamKeys(
-    device=designed(), density=2330.0, liquids={}, uncertainty=Errors(), voltage=5.0, dielectric=Dielectric(1e-7, 4.0)
+    device=designed(),
+    density=2330.0,
+    liquids={},
+    uncertainty=BeamErrors(),
+    voltage=5.0,
+    dielectric=Dielectric(1e-7, 4.0),
 )
 #: Section, datasets, budgets and more of each kind of beam. The budget of "uncertain" leaves no number.
 BEAMS = {

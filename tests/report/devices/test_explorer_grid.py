@@ -11,7 +11,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.special import ndtr
 
 from stiction.devices.risk import SCORES
-from stiction.report.devices.grid import Axis, Grid, Stuck, monotone
+from stiction.report.devices.grid import Grid, GridAxis, StuckShares, monotone
 from stiction.report.devices.levels import counted
 from stiction.report.page import Page
 
@@ -19,7 +19,7 @@ RNG = np.random.default_rng(5)
 
 
 def axis(key, values, scale="log", between=True):
-    return Axis(key, key, "µm", scale, tuple(values), values[0], between, "it was not computed", f"{key}_um")
+    return GridAxis(key, key, "µm", scale, tuple(values), values[0], between, "it was not computed", f"{key}_um")
 
 
 #: Lognormal sticking lengths, whose median is a power of thickness, of thirty thousand devices.
@@ -93,7 +93,7 @@ def test_below_a_size_the_upper_end_of_a_fraction_alone_is_known():
     below = 0.99 * float(100 * 3**0.75 * np.exp(-3 * SLOPE))
     band = grid.stuck(STATE | {"length": below})
     bounded = replace(grid, first=first)
-    assert bounded.stuck(STATE | {"length": below}) == Stuck(band.share, 0.0, band.high, -1)
+    assert bounded.stuck(STATE | {"length": below}) == StuckShares(band.share, 0.0, band.high, -1)
     above = STATE | {"length": 1.02 * below / 0.99}
     assert bounded.stuck(above) == grid.stuck(above)
     assert grid.stuck(above).beyond == 0

@@ -11,7 +11,7 @@ import xarray as xr
 from legends import covering
 
 import stiction
-from stiction.contact.correction import Change, Correction
+from stiction.contact.correction import Correction, ElasticChange
 from stiction.contact.environment import Water
 from stiction.devices.process import unknown
 from stiction.plan.graph import Results
@@ -80,7 +80,7 @@ def test_a_setting_alone_is_todays_roughness_at_its_value_bit_for_bit():
 def test_settings_smoother_than_the_surfaces_of_full_contact_are_flagged_and_no_others():
     """Their forces are corrected by the changes of the given surface, which are too small for them."""
     results = Results.of(config(RMS, Bump=BUMP | {"process": "etch"}))
-    full = Correction(np.array([0.6]), Change(1.2), Change(1.3))
+    full = Correction(np.array([0.6]), ElasticChange(1.2), ElasticChange(1.3))
     given = float(results["heights/B2"].rms)
     for number, water in itertools.product((0, 6), (None, full)):
         job = results.graph.job(f"process/points/Bump_{number}")
@@ -231,7 +231,7 @@ def test_the_error_of_the_model_is_its_change_or_if_applied_the_error_of_that(et
 
 
 def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_without_any():
-    settings = requirement.OfStopper(
+    settings = requirement.RequiredStopper(
         seed=1, water=Water(300.0), humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
     )
     none = requirement.Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)

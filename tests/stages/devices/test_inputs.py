@@ -13,12 +13,12 @@ from stiction.analysis.shifts import STEPS
 from stiction.contact.environment import Water
 from stiction.stages.devices import uncertain_inputs as inputs
 from stiction.stages.devices.opening import DesignedBeam
-from stiction.stages.devices.uncertain_inputs import QuantityErrors, Settings, State, Uncertainty
+from stiction.stages.devices.uncertain_inputs import InputState, QuantityErrors, Settings, Uncertainty
 
 WATER = Water(300.0)
 C1 = DesignedBeam("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PAPER.young_modulus, 1.5e-6)
 R1 = DesignedBeam("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 1.5e-6, residual_stress=50e6)
-BASE = State(1.0, 0.67, WATER, C1, 9e-12)
+BASE = InputState(1.0, 0.67, WATER, C1, 9e-12)
 SETTINGS = Settings(1, WATER, 0.67, Uncertainty(), ("B2", "Sub1"), 164e9)
 
 

@@ -46,13 +46,13 @@ def test_every_patch_holds_at_least_as_much_as_slowly(contacts):
 def fast_strips(contacts, water):
     """Datasets of fast strips by humidity."""
     return {
-        humidity: separation.of_strips(one, separation.InAir(water, humidity)) for humidity, one in contacts.items()
+        humidity: separation.of_strips(one, separation.FastInAir(water, humidity)) for humidity, one in contacts.items()
     }
 
 
 def fast_tips(contact):
     """Dataset of fast tips at RH 0.67."""
-    return separation.of_tips(contact, separation.InAir(WATER, 0.67))
+    return separation.of_tips(contact, separation.FastInAir(WATER, 0.67))
 
 
 @pytest.mark.parametrize("water", [WATER, ACROSS])

@@ -67,7 +67,7 @@ def test_the_meniscus_is_wide_in_a_stated_air_alone(side, air):
     """At RH 0.98 the film is 51 nm high, and the warning forbids to rely on forces on 1 µm that nobody has there."""
     device = {"kind": "stopper", "pair": "b", "contact_um": [side, side], "restoring_force_uN": 20, "humidities": [air]}
     of = device_warnings.in_si(
-        device_warnings.OfStopper,
+        device_warnings.StopperOnPair,
         device_warnings._settings(Plan(load({"devices": {"D": device}, "run": {"pairs": []}})), Of("D"))["stopper"],
     )
     film = -2 * 0.072 * 1.8e-5 / (8.314 * 300 * np.log(air))

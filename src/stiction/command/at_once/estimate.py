@@ -8,7 +8,7 @@ from typing import Any
 
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
-from stiction.estimate.answer import CHOSEN, FRACTIONS, Answer, answer
+from stiction.estimate.answer import CHOSEN, FRACTIONS, Estimate, answer
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import of_numbers, questions, surface
 from stiction.estimate.table import content, known
@@ -114,7 +114,7 @@ def _of_options(arguments, library):
     return of_numbers("The cantilever", device, [side, surface(library[OPPOSITE], library)], averaged=averaged)
 
 
-def shown(found: Answer) -> Iterator[str]:
+def shown(found: Estimate) -> Iterator[str]:
     """Lines of an answer."""
     asked = found.question
     left_open = ", typical surfaces stand for what is not stated" * any(asked.members)

@@ -14,7 +14,7 @@ from stiction.devices.roughness import sufficient
 from stiction.report.axes.axis import axes_of
 from stiction.report.devices.curves import Curves, line
 from stiction.report.devices.explorer import View, humidity_axis
-from stiction.report.devices.grid import Axis
+from stiction.report.devices.grid import GridAxis
 from stiction.report.format import UM
 from stiction.stages.axes.margins import PARTS
 from stiction.stages.axes.recommended import settings_of_processes
@@ -36,13 +36,13 @@ class _Required:
         return sought_of(self.dataset).more_is_better
 
     @property
-    def share(self) -> Axis:
+    def share(self) -> GridAxis:
         """Allowed fraction."""
         reason = f"it is the required one; devices.{self.name}.requirement changes this"
         return _single_value("share", "fraction p that may stick", "", "score", float(self.dataset.share), reason)
 
     @property
-    def size(self) -> Axis:
+    def size(self) -> GridAxis:
         """Required length, or restoring force."""
         sought = sought_of(self.dataset)
         kind = kind_of(self.section)
@@ -58,7 +58,7 @@ class _Required:
         )
 
     @property
-    def humidity(self) -> Axis:
+    def humidity(self) -> GridAxis:
         """Humidities of the device. The smallest margin is that of the worst."""
         margin = self.dataset.estimate.copy(data=margins_of(self.dataset)).isel(shape=-1)
         of_each = margin.mean([dim for dim in margin.dims if dim != "humidity"]).fillna(np.inf)
@@ -79,7 +79,7 @@ class _Required:
 
 def _single_value(key, label, unit, scale, value, reason):
     """Axis of one value."""
-    return Axis(key, label, unit, scale, (value,), value, False, reason)
+    return GridAxis(key, label, unit, scale, (value,), value, False, reason)
 
 
 def _stuck_lines(curve, coordinates):
@@ -177,7 +177,7 @@ def _variable(dataset, number, start):
     start = values[len(values) // 2] if np.isnan(start) else start
     start = float(f"{start:.4g}") if between else min(values, key=lambda value: abs(value - start))
     start = min(max(start, values[0]), values[-1])
-    return Axis(along.name, along.words, unit, "linear", values, start, between, reason)
+    return GridAxis(along.name, along.words, unit, "linear", values, start, between, reason)
 
 
 def _note_on_copy(dataset):
@@ -230,4 +230,4 @@ def _quantity(dataset, number, start_value, name):
     scale = along.scale if between else "linear"
     # A study with another skewness needs its kurtosis, and one with another corner the rest of the spectrum.
     setting = f"surfaces.{dataset.attrs['surface']}.rms_nm" if along.name == "rms_nm" else ""
-    return Axis(along.name, along.words, along.unit.strip(), scale, shown, start, between, reason, setting)
+    return GridAxis(along.name, along.words, along.unit.strip(), scale, shown, start, between, reason, setting)

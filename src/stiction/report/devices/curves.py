@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from stiction.devices.roughness import LARGEST
-from stiction.report.devices.grid import Axis, hermite, nested_lists
+from stiction.report.devices.grid import GridAxis, hermite, nested_lists
 from stiction.report.devices.levels import Z95
 
 
@@ -25,9 +25,9 @@ class Curves:
     confidence).
     """
 
-    axes: tuple[Axis, ...]  #: the quantity, and choices with answers at the computed values alone
-    share: Axis  #: fraction p that may stick, one value
-    size: Axis  #: required length or force, one value
+    axes: tuple[GridAxis, ...]  #: the quantity, and choices with answers at the computed values alone
+    share: GridAxis  #: fraction p that may stick, one value
+    size: GridAxis  #: required length or force, one value
     lines: Mapping[str, np.ndarray]  #: (choices..., 2, n): values and slopes at the places of the quantity
     ranges: list  #: ranges of the quantity that suffice, in lists over the choices
     best: tuple[float, float, float] | None  #: best value and the ends of its 95 % interval

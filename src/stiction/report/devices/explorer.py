@@ -15,7 +15,7 @@ from stiction.contact.air import has_dry, is_humid
 from stiction.devices.risk import SCORES, quantiles
 from stiction.report.devices import levels
 from stiction.report.devices.curves import Curves
-from stiction.report.devices.grid import Axis, Grid
+from stiction.report.devices.grid import Grid, GridAxis
 from stiction.report.devices.levels import Simulated
 from stiction.report.format import UM, UN
 from stiction.stages.devices.stoppers import bounded_share
@@ -248,7 +248,7 @@ def tilted_view(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopp
     tilted, key = tilted.sortby("humidity"), f"devices.{name}"
     tilts = tuple(float(f"{from_si(float(tilt), 'deg'):.6g}") for tilt in tilted.tilt)
     reason = f"it is computed at {', '.join(f'{tilt:g}' for tilt in tilts)}° alone; {key}.tilt_deg changes this"
-    tilt = Axis("tilt_deg", "tilt", "°", "linear", tilts, tilts[0], False, reason, "tilt_deg")
+    tilt = GridAxis("tilt_deg", "tilt", "°", "linear", tilts, tilts[0], False, reason, "tilt_deg")
     stuck = tilted.stuck.sel(bound="estimate").max("tilt")
     worst = float(tilted.humidity[int(np.argmax(stuck.values))])
     humidity = humidity_axis(tilted.humidity.values, worst, f"{key}.humidities", False)
@@ -279,7 +279,7 @@ def _force_view(axes, safe, scored, section, stopper):
     return View("humidity", grid, words)
 
 
-def humidity_axis(values: Sequence[float], worst: float, key: str, between: bool) -> Axis:
+def humidity_axis(values: Sequence[float], worst: float, key: str, between: bool) -> GridAxis:
     """Axis of relative humidities."""
     values = tuple(map(float, values))
     several = between and len(values) > 1
@@ -287,7 +287,7 @@ def humidity_axis(values: Sequence[float], worst: float, key: str, between: bool
     text = f"computed from {values[0]:g} to {values[-1]:g}" if several else f"computed at {each} alone"
     start = min(max(worst, values[0]), values[-1]) if between else worst
     reason = f"it is {text}; {key} changes this"
-    return Axis("humidity", "relative humidity", "", "linear", values, start, bool(between), reason, "humidities")
+    return GridAxis("humidity", "relative humidity", "", "linear", values, start, bool(between), reason, "humidities")
 
 
 def _size_axis(key, label, values, section, key_of_values):
@@ -296,24 +296,26 @@ def _size_axis(key, label, values, section, key_of_values):
     several = len(values) > 1
     text = f"computed from {values[0]:g} to {values[-1]:g} µm" if several else f"computed for {values[0]:g} µm alone"
     start = min(max(float(section[key]), values[0]), values[-1])
-    return Axis(key, label, "µm", "log", values, start, several, f"it is {text}; {key_of_values} changes this", key)
+    return GridAxis(key, label, "µm", "log", values, start, several, f"it is {text}; {key_of_values} changes this", key)
 
 
-def share_axis(values: Sequence[float], start: float, setting: str, label: str = "fraction p that may stick") -> Axis:
+def share_axis(
+    values: Sequence[float], start: float, setting: str, label: str = "fraction p that may stick"
+) -> GridAxis:
     """Axis of the fractions that may stick. Only beams have a key of them."""
     values = tuple(map(float, values))
     several = f"from {values[0]:g} to {values[-1]:g}" if len(values) > 1 else f"= {values[0]:g} alone"
     reason = f"limits are computed for p {several}"
     reason += f"; design.{setting} changes this" if setting else ""
-    return Axis("share", label, "", "score", values, float(start), len(values) > 1, reason, setting)
+    return GridAxis("share", label, "", "score", values, float(start), len(values) > 1, reason, setting)
 
 
 def size_axis(
     key: str, label: str, unit: str, sizes: Sequence[np.ndarray], start: float, fraction: str = "P(stuck)"
-) -> Axis:
+) -> GridAxis:
     """Axis of lengths or forces, around all computed ones and the first of a page."""
     numbers = np.concatenate([np.ravel(values) for values in sizes])
     numbers = np.append(numbers[np.isfinite(numbers)], start)
     low, high = (float(f"{value:.3g}") for value in (numbers.min() * (1 - _ROOM), numbers.max() * (1 + _ROOM)))
     reason = f"{fraction} is known between {low:g} and {high:g} {unit}"
-    return Axis(key, label, unit, "linear", (low, high), float(f"{start:.4g}"), True, reason, key)
+    return GridAxis(key, label, unit, "linear", (low, high), float(f"{start:.4g}"), True, reason, key)

@@ -27,7 +27,7 @@ _COORDINATES = {name: scale.coordinate for name, scale in SCALES.items()} | {"sc
 
 
 @dataclass(frozen=True)
-class Axis:
+class GridAxis:
     """Computed values of one quantity."""
 
     key: str  #: in states and addresses
@@ -60,7 +60,7 @@ class Axis:
 
 
 @dataclass(frozen=True)
-class Stuck:
+class StuckShares:
     """Fraction of stuck devices."""
 
     share: float  #: [-]; NaN if it is not known
@@ -76,9 +76,9 @@ class Grid:
     The size is the length of a beam, or the force or stiffness of a stopper.
     """
 
-    axes: tuple[Axis, ...]  #: of the device and its air
-    share: Axis  #: fraction p that may stick
-    size: Axis  #: its ends bound the control only
+    axes: tuple[GridAxis, ...]  #: of the device and its air
+    share: GridAxis  #: fraction p that may stick
+    size: GridAxis  #: its ends bound the control only
     safe: np.ndarray  #: over the axes and the shares, 95 % bounds
     levels: np.ndarray  #: layers of `stiction.report.devices.levels`, over the axes and scores; NaN if unknown
     samples: int  #: simulated devices of each state
@@ -96,7 +96,7 @@ class Grid:
             )
         )
 
-    def stuck(self, state: Mapping[str, float]) -> Stuck:
+    def stuck(self, state: Mapping[str, float]) -> StuckShares:
         """P(stuck) at the state's size. Where no simulated device sticks, its upper end alone is known."""
         sign = -1 if self.falls else 1
         v = sign * np.log(state[self.size.key])
@@ -105,8 +105,8 @@ class Grid:
             for layer, unknown in zip(self.levels, _UNKNOWN, strict=True)
         )
         if self.first is None or v >= sign * self._at(self.first, state, self.axes)[0]:
-            return Stuck(share, low, high, beyond)
-        return Stuck(share, 0.0, high, -1)
+            return StuckShares(share, low, high, beyond)
+        return StuckShares(share, 0.0, high, -1)
 
     def _fraction(self, levels, v, unknown):
         """Fraction of a layer at v, and -1 or 1 below and above all known ones.

@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from stiction.answer import ladder, places, sought
-from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, PullOff, Stay, Step
-from stiction.answer.ladder import Question
+from stiction.answer.data import INPUTS, Answer, AnswerInAir, Cause, Probability, PullOff, Stay, Step
+from stiction.answer.ladder import MainQuestion
 from stiction.answer.unknowns import Draws, OfBudgets
 from stiction.answer.worlds import DRAWS
 from stiction.config.mission.conditions import CONDITIONS
@@ -88,7 +88,9 @@ def _of_size(data, settings):
     if settings.required < question["share"]:
         left_out = (*left_out, "requirement")
     mission = {"touchdowns": settings.touchdowns, "stays": tuple(settings.stays.values()), "left_out": left_out}
-    full_question = Question(settings.name, settings.kind, forbidden=_forbidden(data, unknowns), **mission, **question)
+    full_question = MainQuestion(
+        settings.name, settings.kind, forbidden=_forbidden(data, unknowns), **mission, **question
+    )
     draws = Draws(DRAWS, settings.seed)
     answer = ladder.answer(full_question, circumstances, unknowns, draws, None if unknowns is before else before)
     at = [settings.temperatures.get(Air(air.humidity).name, np.nan) for air in answer.airs]
@@ -238,7 +240,7 @@ def answer_of(dataset: xr.Dataset) -> Answer:
         for row in (dataset.isel(step=k) for k in range(dataset.sizes["step"]))
     ]
     airs = [
-        InAir(
+        AnswerInAir(
             float(row.air),
             *(float(row[f"air_{name}"]) for name in ("build", "without_tip")),
             _probability(row, "air_stuck_"),

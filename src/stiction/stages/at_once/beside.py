@@ -29,7 +29,7 @@ CONFIDENCE = CONFIDENCES[0]
 
 
 @dataclass(frozen=True)
-class Side:
+class AskedSurface:
     """One surface."""
 
     rms: float  #: [m]
@@ -51,17 +51,17 @@ class Side:
 
 
 @dataclass(frozen=True)
-class Asked:
+class AskedCantilever:
     """Cantilever on two surfaces, as the estimate knows it."""
 
-    beam: Side
-    substrate: Side
+    beam: AskedSurface
+    substrate: AskedSurface
     thickness: float  #: [m]
     gap: float  #: [m]
     width: float  #: [m]
 
     @property
-    def sides(self) -> list[Side]:
+    def sides(self) -> list[AskedSurface]:
         """Both surfaces, in the order of `stiction.models.SIDES`."""
         return [getattr(self, side) for side in SIDES]
 
@@ -75,7 +75,7 @@ class Asked:
 class Settings:
     """Numbers of a cantilever, or why the estimate refuses its configuration."""
 
-    asked: Asked | None = None
+    asked: AskedCantilever | None = None
     refused: str = ""
 
 
@@ -132,7 +132,7 @@ def _settings(plan, at):
     if isinstance(question, NotLearnt):
         return {"refused": str(question)}
     pair, surfaces = plan.config["pairs"][section["pair"]], plan.config["surfaces"]
-    return {"asked": select(Asked, section | {side: surfaces[pair[side]] for side in SIDES})}
+    return {"asked": select(AskedCantilever, section | {side: surfaces[pair[side]] for side in SIDES})}
 
 
 STAGES = (

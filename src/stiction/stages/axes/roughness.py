@@ -21,7 +21,7 @@ from stiction.devices.roughness import SCALES, crossings, sufficient
 from stiction.plan.stage import Running, Stage
 from stiction.rounding import is_equal
 from stiction.stages.axes import points
-from stiction.stages.axes.points import Device, Surfaces, joined
+from stiction.stages.axes.points import DeviceAtPoint, Surfaces, joined
 from stiction.stages.axes.requirement import flagged, margins_of, relative_errors
 from stiction.stages.contact.pairs import require_feasible
 from stiction.stages.surfaces.rough_surfaces import both
@@ -43,7 +43,7 @@ _TABLES = ("crossing", "range")
 
 
 @dataclass(frozen=True)
-class Quantities:
+class VariedQuantities:
     """Values of quantities of a surface, none as they are given."""
 
     rms: float | None = None  #: [m]
@@ -55,10 +55,10 @@ class Quantities:
 class Settings:
     """Settings of a point, without its surfaces."""
 
-    device: Device
+    device: DeviceAtPoint
     surface: str  #: the one that is changed; on both sides of the pair if both have it
     varied: tuple[str, ...]  #: quantities along a curve and, for a map, from curve to curve
-    values: Quantities
+    values: VariedQuantities
     replica: Coherence | None = None  #: of the pair as it is given, if its quantities are varied
 
 

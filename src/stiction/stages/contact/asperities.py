@@ -32,7 +32,7 @@ READINGS = (*map(str, Definition), "shape")
 class Settings:
     """Solids, water, humidities and numbers of strips."""
 
-    solids: variants.Solids
+    solids: variants.SolidsOfPair
     water: Water
     humidities: tuple[float, ...]  #: [-]
     strips: int  #: number of pairs of strips: the first samples of stage contact

@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 import xarray as xr
 
-from stiction.contact.correction import Change, Correction, TipChanges
+from stiction.contact.correction import Correction, ElasticChange, TipChanges
 
 S = TypeVar("S")
 #: Variables where no correction is applied, by the flag that says so.
@@ -28,7 +28,7 @@ def correction(error: xr.Dataset) -> Correction:
         """Change of a quantity, with relative errors."""
         ratio, power = (error[f"{quantity}_{name}"].values for name in ("ratio", "power"))
         errors = error[f"{quantity}_ratio_error"].values / ratio, error[f"{quantity}_power_error"].values
-        return Change(ratio, power, *errors)
+        return ElasticChange(ratio, power, *errors)
 
     return Correction(error.humidity.values, change("energy"), change("pull_off"), _of_tips(error))
 
@@ -40,7 +40,7 @@ def _of_tips(error):
     ratio, power, of_largest = (
         error[f"tip_{name}"].transpose("humidity", ...).values for name in ("ratio", "power", "error")
     )
-    return TipChanges(error.slope.values, Change(ratio, power, of_largest))
+    return TipChanges(error.slope.values, ElasticChange(ratio, power, of_largest))
 
 
 def in_all_air(folder: str, pair: str, water: Mapping[str, Any]) -> str:

@@ -104,7 +104,7 @@ def _are_enough(study):
     return True
 
 
-class InAir(NamedTuple):
+class StripInAir(NamedTuple):
     """Attraction of a strip at a humidity, and the curve of the sum over its summits."""
 
     adhesion: elements.Adhesion
@@ -119,7 +119,7 @@ class InAir(NamedTuple):
 
 def strips(
     surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings
-) -> Iterator[tuple[HalfSpace, np.ndarray, list[InAir]]]:
+) -> Iterator[tuple[HalfSpace, np.ndarray, list[StripInAir]]]:
     """Strips one after the other: elements, heights z (n1, n2) [m], and what acts on them at each humidity."""
     rough_pair = surface_pair(surfaces, "NG", settings)
     streams = streams_of_sides(settings.seed, pair)
@@ -179,15 +179,15 @@ def _on_summits(surfaces, pair, settings):
     )
 
 
-def _in_air(summits, humidity, water, attraction, space) -> Callable[[int], InAir]:
+def _in_air(summits, humidity, water, attraction, space) -> Callable[[int], StripInAir]:
     """What acts on each strip at a humidity, by its number. ``summits`` is the dataset of their contact."""
     adhesion = elements.Adhesion.of(water.film(humidity), attraction, space, water.gaps)
     curves = force_curves(summits, humidity, water)
     beyond = np.zeros(curves.samples) if curves.beyond is None else curves.beyond
-    return lambda k: InAir(adhesion, (curves.distance, curves.curve(k)), float(beyond[k]))
+    return lambda k: StripInAir(adhesion, (curves.distance, curves.curve(k)), float(beyond[k]))
 
 
-def separated(space: HalfSpace, heights: np.ndarray, case: InAir, end: float = 0.0) -> elements.Separation:
+def separated(space: HalfSpace, heights: np.ndarray, case: StripInAir, end: float = 0.0) -> elements.Separation:
     """Separate a strip of heights z (n1, n2) [m], at least up to a distance [m]: by descent where turns do not settle.
 
     On rough strips, turns are up to ten times as fast.

@@ -55,14 +55,14 @@ class Settings(full_contact.Settings):
     forces: bool = False  #: whether devices need forces as well
 
 
-class Quantities(NamedTuple):
+class StripQuantities(NamedTuple):
     """Energy e and largest attraction f_max of a strip, NaN if they are not found or not wanted."""
 
     energy: float  #: [J m⁻²]
     pull_off: float  #: [Pa]
 
 
-NOT_FOUND = Quantities(np.nan, np.nan)
+NOT_FOUND = StripQuantities(np.nan, np.nan)
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Strips:
     forces: bool = False  #: whether strips are separated
     resisting: list[int] = field(default_factory=list)  #: numbers of the first strips with summits that resist
     curves: list[tuple] = field(default_factory=list)  #: their distances [m] and forces [Pa] on summits
-    values: dict[tuple[int, int], Quantities] = field(default_factory=dict)  #: by level and place
+    values: dict[tuple[int, int], StripQuantities] = field(default_factory=dict)  #: by level and place
     last: dict[int, np.ndarray] = field(default_factory=dict)  #: heights of the last strip by its number [m]
 
     def heights(self, number: int) -> np.ndarray:
@@ -128,7 +128,7 @@ class Strips:
                 break
             number += 1
         energy = forcelaw.adhesion_energy(distance, force, 0.0 if beyond is None else float(beyond[0]))
-        self.values[SUMMITS, len(self.resisting)] = Quantities(energy, forcelaw.extremum(distance, force)[1])
+        self.values[SUMMITS, len(self.resisting)] = StripQuantities(energy, forcelaw.extremum(distance, force)[1])
         self.resisting.append(number)
         self.curves.append((distance, force))
 
@@ -147,7 +147,7 @@ class Strips:
                 self.values[every, index] = NOT_FOUND
                 continue
             largest = self._largest(on_grid, heights, curve, state) if self.forces else np.nan
-            self.values[every, index] = Quantities(on_grid.energy(state, heights), largest)
+            self.values[every, index] = StripQuantities(on_grid.energy(state, heights), largest)
             start = refined(state, 2, self.levels[FINE].space.shape) if every == 2 else None
 
     @staticmethod
@@ -191,7 +191,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], case: Case, setti
         strips = strips_of(surfaces, case.pair, settings)
         random = stream(settings.seed, "full_energy", case.pair)
         energy = levels.ratio_of_means(strips.energy, GRIDS, ALLOWED, random)
-        means = Quantities(*np.mean([strips.values[SUMMITS, k] for k in range(len(strips.resisting))], axis=0))
+        means = StripQuantities(*np.mean([strips.values[SUMMITS, k] for k in range(len(strips.resisting))], axis=0))
         if settings.forces:
             random = stream(settings.seed, "full_force", case.pair)
             pull_off = levels.ratio_of_means(strips.pull_off, GRIDS, OF_FORCES, random)
@@ -205,7 +205,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], case: Case, setti
 UNKNOWN = Ratio(np.nan, np.nan, np.nan, np.nan, (FINE, SUMMITS), {}, np.nan)
 
 
-def layout(ratio: Ratio, on_summits: Quantities, reason: str = "") -> xr.Dataset:
+def layout(ratio: Ratio, on_summits: StripQuantities, reason: str = "") -> xr.Dataset:
     """Dataset of the ratio of energies, the means on summits, and why it is not known."""
     units = {"energy": "J m-2", "pull_off": "Pa"}
     means = {f"summit_{name}": ((), getattr(on_summits, name), {"units": unit}) for name, unit in units.items()}

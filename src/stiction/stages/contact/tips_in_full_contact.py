@@ -26,7 +26,7 @@ from stiction.errors import NotConverged
 from stiction.plan.stage import At, Running, Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import contact, curves, full_contact
-from stiction.stages.contact.full_contact import InAir, Settings
+from stiction.stages.contact.full_contact import Settings, StripInAir
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
 from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
@@ -43,7 +43,7 @@ _TOUCHING = np.linspace(-1e-9, 3e-9, 5), np.array([1.0, 0.0, -1.0, -0.5, 0.0])
 
 
 @dataclass(frozen=True)
-class Tips:
+class TipsAtSlope:
     """Tips at one slope and one humidity."""
 
     pair: TiltedPair
@@ -82,7 +82,7 @@ class Tips:
         highest = float(tilted.max())
         if not (curve[1].min() < 0 and forcelaw.resists(curve[1])):
             curve = highest + _TOUCHING[0], _TOUCHING[1]
-        return full_contact.separated(self.space, tilted, InAir(self.adhesion, curve, 0.0), highest)
+        return full_contact.separated(self.space, tilted, StripInAir(self.adhesion, curve, 0.0), highest)
 
 
 def _at_slope(surfaces, settings, slope):
@@ -97,7 +97,7 @@ def _at_slope(surfaces, settings, slope):
         space = full_contact.elements_of(pair, materials)
         attraction = solids.attraction_between(*materials, medium)
         adhesion = elements.Adhesion.of(water.film(humidity), attraction, space, water.gaps)
-        tips.append(Tips(pair, space, adhesion, water, humidity))
+        tips.append(TipsAtSlope(pair, space, adhesion, water, humidity))
     return tips
 
 
@@ -121,10 +121,10 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
         ]
 
     for k in progress(range(most), "tips"):
-        rows.append(row(k, Tips.both_models))
+        rows.append(row(k, TipsAtSlope.both_models))
         if len(rows) in numbers and np.all(tip_ratios(*models(study := layout(rows, settings))).error <= ACCURACY):
             return study
-    more = [row(k, Tips.on_summits) for k in range(len(rows), settings.on_summits)]
+    more = [row(k, TipsAtSlope.on_summits) for k in range(len(rows), settings.on_summits)]
     return layout(rows, settings).assign(_of_more(rows, more))
 
 

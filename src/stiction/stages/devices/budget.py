@@ -51,9 +51,9 @@ from stiction.stages.devices.opening import (
 )
 from stiction.stages.devices.uncertain_inputs import (
     Input,
+    InputState,
     QuantityErrors,
     Settings,
-    State,
     countable,
     covariances,
     uncertain,
@@ -85,7 +85,7 @@ _OF_SLOPES = 0.25
 #: Factor of the lengths of beams where an input changes adhesion many times: cracks on weak ground scatter most.
 _LONGER = 2
 #: Devices at several states.
-Respond = Callable[[Sequence[State]], Responses]
+Respond = Callable[[Sequence[InputState]], Responses]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,9 +99,9 @@ class _OfBeams(Settings):
         """Sizes open to a measurement of the device itself."""
         return self.device.opening.sizes
 
-    def state(self, contact: xr.Dataset) -> State:
+    def state(self, contact: xr.Dataset) -> InputState:
         """State with the stated inputs."""
-        return State(contact, self.humidity, self.water, self.device, alike=self.alike)
+        return InputState(contact, self.humidity, self.water, self.device, alike=self.alike)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,7 +116,7 @@ class BeamBudget(_OfBeams):
         """Quantity changed by the inputs."""
         return self.device.opening.shapes[0]
 
-    def responder(self, *states: State, longer: int = 1) -> Respond:
+    def responder(self, *states: InputState, longer: int = 1) -> Respond:
         """How the devices respond: cracks of beams that are long enough at some states, or longer by a factor."""
         laws = [shared_laws([curves.vectors(state.contact, state.humidity, state.water)])[0] for state in states]
         beam, strips = around([ground_of(self.device, of_state) for of_state in laws])
@@ -133,7 +133,7 @@ class TipBudget(_OfBeams):
     share: float  #: p [-]
     response: ClassVar[str] = ARC
 
-    def responder(self, *_states: State, **_longer: int) -> Respond:
+    def responder(self, *_states: InputState, **_longer: int) -> Respond:
         """Response of the devices: arcs of all tips."""
         return partial(tip_responses, share=self.share)
 
@@ -147,11 +147,11 @@ class PatchBudget(Settings):
     response: ClassVar[str] = FORCE
     sizes: ClassVar[tuple[str, ...]] = ("area",)
 
-    def state(self, contact: xr.Dataset) -> State:
+    def state(self, contact: xr.Dataset) -> InputState:
         """State with the stated inputs."""
-        return State(contact, self.humidity, self.water, area=self.contact[0] * self.contact[1], alike=self.alike)
+        return InputState(contact, self.humidity, self.water, area=self.contact[0] * self.contact[1], alike=self.alike)
 
-    def responder(self, *_states: State, **_longer: int) -> Respond:
+    def responder(self, *_states: InputState, **_longer: int) -> Respond:
         """Response of the devices: pull-off forces of all patches."""
         return stopper_responses
 
@@ -216,7 +216,7 @@ def with_members(
     ).assign_coords(member=labels, member_of=("member", surfaces))
 
 
-def shift(state: State, member: xr.Dataset, settings: AnyBudget) -> tuple[float, float]:
+def shift(state: InputState, member: xr.Dataset, settings: AnyBudget) -> tuple[float, float]:
     """Change of the logarithm of the response on the contact of a member, with its standard error [-].
 
     Compared are the lengths that few tips hold: whole surfaces move the lowest quarter of the tips by 0.02 to 0.05 less
@@ -232,7 +232,7 @@ def shift(state: State, member: xr.Dataset, settings: AnyBudget) -> tuple[float,
     return effect_if_known(base, changed, respond)
 
 
-def stopper_responses(states: Sequence[State]) -> Responses:
+def stopper_responses(states: Sequence[InputState]) -> Responses:
     """Pull-off forces of all sampled patches at several states."""
     forces = [
         pull_off_force(curves.pull_offs(state.contact, state.humidity, state.water), state.area) for state in states
@@ -240,7 +240,7 @@ def stopper_responses(states: Sequence[State]) -> Responses:
     return Responses(np.array(forces), np.mean)
 
 
-def tip_responses(states: Sequence[State], share: float) -> Responses:
+def tip_responses(states: Sequence[InputState], share: float) -> Responses:
     """Longest releasing arcs of all sampled tips at several states. Their quantile at p stands for all.
 
     ASSUME: no crack stops on beams that are so short that only a share p of the tips hold them.
@@ -266,7 +266,7 @@ def _stuck_length(lengths, share, fraction=TAIL):
 
 
 def beam_responses(
-    states: Sequence[State], mesh: tuple[Beam, int], number: int, address: Callable, cache: dict | None = None
+    states: Sequence[InputState], mesh: tuple[Beam, int], number: int, address: Callable, cache: dict | None = None
 ) -> Responses:
     """Crack lengths, or lengths of held bridges, of the same beams at several states, on resampled force laws.
 
@@ -345,13 +345,13 @@ def _slope(responses, step):
     return value, np.hypot(error, log_slope(responses.length, *responses.shared, step)[1])
 
 
-def effect(base: State, changed: State, respond: Respond) -> tuple[float, float]:
+def effect(base: InputState, changed: InputState, respond: Respond) -> tuple[float, float]:
     """Relative change of the response by another choice of the model, with its standard error [-]."""
     responses = respond([base, changed])
     return choice_effect(*map(responses.centre_of_slopes, responses.values)), _slope(responses, 1.0)[1]
 
 
-def effect_if_known(base: State, changed: State, respond: Respond) -> tuple[float, float]:
+def effect_if_known(base: InputState, changed: InputState, respond: Respond) -> tuple[float, float]:
     """As `effect`, NaN where nothing can be computed under the choice.
 
     Without attraction across gaps, patches that do not resist the adhesion have no bound.

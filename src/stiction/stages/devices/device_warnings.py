@@ -102,7 +102,7 @@ class OfDevice:
 
 
 @dataclass(frozen=True)
-class OfStopper:
+class StopperOnPair:
     """Stopper and its pair."""
 
     pair: str
@@ -138,10 +138,10 @@ class OfStopper:
 
 
 #: By the name of the release.
-_OF_RELEASE = {"beam": OfDevice, "stopper": OfStopper}
+_OF_RELEASE = {"beam": OfDevice, "stopper": StopperOnPair}
 
 
-def of_settings(settings: Mapping[str, Any]) -> OfDevice | OfStopper:
+def of_settings(settings: Mapping[str, Any]) -> OfDevice | StopperOnPair:
     """Device and its pair from the settings of a job."""
     (subject,) = (in_si(kind, settings[release]) for release, kind in _OF_RELEASE.items() if release in settings)
     return subject

@@ -12,7 +12,7 @@ from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws
 from stiction.contact import forcelaw
-from stiction.contact.correction import NONE, Change
+from stiction.contact.correction import NONE, ElasticChange
 from stiction.contact.environment import Water, flooded_parts
 from stiction.devices import arcs, bridges, risk, strips
 from stiction.devices.risk import NO_BOUNDS, Basis, LengthBounds, SafeLength
@@ -57,7 +57,7 @@ class Laws:
     is_narrow: bool  #: whether strips are drawn from the samples: the model lacks their mean, scatter or displacements
     repetition: float  #: probability that a strip repeats the law of its neighbour [-]
     #: Change of the energies by full elastic contact, in these laws, of which the errors matter.
-    change: Change = NONE
+    change: ElasticChange = NONE
     displacements: np.ndarray | None = None  #: of the samples from their register (m,) [m], if beams have play
 
     @property

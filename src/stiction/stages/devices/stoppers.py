@@ -11,7 +11,7 @@ from scipy.special import ndtri
 
 from stiction.config.cases import case_id
 from stiction.contact.air import DRY_AIR, Air, has_dry, humid, is_humid
-from stiction.contact.correction import NONE, Change
+from stiction.contact.correction import NONE, ElasticChange
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import is_wetted
 from stiction.devices.risk import CONFIDENCE, SCORES, Basis, in_order, quantiles
@@ -163,7 +163,7 @@ def _statistics(settings, pull_off):
 
 
 @dataclass(frozen=True)
-class Dimples:
+class DimpleForces:
     """Settings of the forces of rows of dimples, without the contact of one."""
 
     water: Water
@@ -173,7 +173,7 @@ class Dimples:
     at: tuple[float, ...]  #: distances of the rows from a clamp [m], of which only the number counts here
 
 
-def compute_dimples(contact: xr.Dataset, settings: Dimples) -> xr.Dataset:
+def compute_dimples(contact: xr.Dataset, settings: DimpleForces) -> xr.Dataset:
     """Pull-off forces of the rows of dimples of beams, each row the sum of other patches."""
     with on_patch(*settings.contact):
         single = pull_offs(contact, settings.humidity, settings.water)
@@ -298,7 +298,7 @@ def _error_at(force, pull_off, change):
     return float(np.hypot(change.ratio_error, np.log(force / np.median(pull_off)) * change.power_error / change.power))
 
 
-def stuck_with_band(pull_off: np.ndarray, force: float, change: Change) -> list[float]:
+def stuck_with_band(pull_off: np.ndarray, force: float, change: ElasticChange) -> list[float]:
     """P(stuck) of patches (n,) at one restoring force [N] and the ends of its band, (3,) [-].
 
     The ends are those at forces that are smaller and larger by as much as their common relative error allows.
@@ -317,7 +317,7 @@ def numbers_of_fits(seed: int) -> np.random.Generator:
     return stream(seed, "safe force")
 
 
-def safe_forces_of(rows: np.ndarray, share: float, seed: int, changes: Sequence[Change]) -> list[SafeForce]:
+def safe_forces_of(rows: np.ndarray, share: float, seed: int, changes: Sequence[ElasticChange]) -> list[SafeForce]:
     """Safe force for a share from each row of forces (rows, n) [N], with the errors of their changes.
 
     Margins of independent errors add by their squares on a logarithmic scale. Errors as of
@@ -425,7 +425,7 @@ def _settings_of_dimples(plan, at):
     """Water, humidity and dimples of a beam."""
     water = plan.air_of_devices.water(plan.contact_of_device(at.case))
     dimples = plan.devices.sections[at.case.device]["dimples"]
-    return select(Dimples, dimples | {"water": water, "humidity": at.case.humidity})
+    return select(DimpleForces, dimples | {"water": water, "humidity": at.case.humidity})
 
 
 STAGES = (
@@ -437,7 +437,7 @@ STAGES = (
             {"contact": dimples_of(plan, at.case)} | corrections_of(plan, at.case.device, at.case.humidity)
         ),
         settings=_settings_of_dimples,
-        kind=Dimples,
+        kind=DimpleForces,
         complete=with_correction,
         compute=compute_dimples,
         message="Pull-off force of the dimples of {case}.",

@@ -17,7 +17,7 @@ from scipy.linalg import block_diag
 
 from stiction.config.units import without_unit
 from stiction.contact.environment import Water
-from stiction.contact.materials import OF_CONTACT, OF_PAIRS, OF_REPLICAS, Step
+from stiction.contact.materials import OF_CONTACT, OF_PAIRS, OF_REPLICAS, InputStep
 from stiction.contact.tilt import EDGE_RADIUS
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.scans import moments
@@ -30,11 +30,11 @@ from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.translation import Translation
 
 #: Step of dimensions.
-_OF_DIMENSIONS = Step(0.05)
+_OF_DIMENSIONS = InputStep(0.05)
 
 
 @dataclass(frozen=True)
-class State:
+class InputState:
     """State of devices at one value of each input."""
 
     contact: xr.Dataset
@@ -44,7 +44,7 @@ class State:
     area: float = 0.0  #: of a stopper [m²]
     alike: tuple[str, ...] = SIDES  #: bodies of the material of the beam or stopper
 
-    def attracting(self, factor: float) -> "State":
+    def attracting(self, factor: float) -> "InputState":
         """State with a factor of the Hamaker constants of these bodies across gaps. Its contact stays."""
         gaps = self.water.gaps
         return replace(self, water=replace(self.water, gaps=gaps and gaps.scaled(factor, self.alike)))
@@ -56,10 +56,10 @@ class Input:
 
     name: str  #: for reading
     group: str  #: measurement that would determine this input, shown in tables
-    states: tuple[State, State]  #: with less and with more of the input
+    states: tuple[InputState, InputState]  #: with less and with more of the input
     step: float  #: difference of the input between both
     #: State between both, if they are as far around it as the uncertainty of the input and its curvature counts.
-    middle: State | None = None
+    middle: InputState | None = None
     limits: tuple[float, float] = (-np.inf, np.inf)  #: beyond which errors count as there
 
 
@@ -91,13 +91,13 @@ class Varied:
 
     field: str  #: of `Uncertainty`; inputs with the same one err together
     name: str  #: for reading
-    value: Callable[[State], float]
-    changed: Callable[[State, float], State]
-    step: Step | None = None  #: in either direction; by default its standard uncertainty
+    value: Callable[[InputState], float]
+    changed: Callable[[InputState, float], InputState]
+    step: InputStep | None = None  #: in either direction; by default its standard uncertainty
     least: float = -np.inf  #: below which it cannot be
     group: str = ""  #: as of `Input`, by default from its name
 
-    def around(self, state: State, deviation: float) -> tuple[Input, float]:
+    def around(self, state: InputState, deviation: float) -> tuple[Input, float]:
         """Input around its value in a state, and its standard uncertainty, relative if the step is."""
         value = self.value(state)
         ends = self.step.ends(value) if self.step else around(value, deviation, self.least)
@@ -106,7 +106,7 @@ class Varied:
         relative = self.step.error(value, deviation) if self.step else deviation
         return Input(self.name, self.group or f"the {self.name}", states, step), relative
 
-    def moved(self, state: State, by: float) -> State:
+    def moved(self, state: InputState, by: float) -> InputState:
         """State after an error of the input, in its logarithm if its step is relative."""
         value = self.value(state)
         return self.changed(state, self.step.moved(value, by) if self.step else max(value + by, self.least))
@@ -183,7 +183,7 @@ class Settings:
     coherence: float = 0.0  #: of both surfaces, if it is uncertain [-]
     play: float | None = None  #: of the beam above a surface that it follows, if it is uncertain [m]
     hamaker_constant: float | None = None  #: of two bodies like the beam or stopper [J], if it is uncertain
-    alike: tuple[str, ...] = SIDES  #: as of `State`
+    alike: tuple[str, ...] = SIDES  #: as of `InputState`
     waters: dict[str, Water] = field(
         default_factory=dict
     )  #: by choices of the model that change attraction across gaps
@@ -198,7 +198,7 @@ class Settings:
 
 
 def uncertain(
-    state: State,
+    state: InputState,
     shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
     properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
     surface_errors: Mapping[str, QuantityErrors],
@@ -221,7 +221,7 @@ def uncertain(
     return inputs, block_diag(np.empty((0, 0)), *(block.covariance for block in blocks))
 
 
-def changed(state: State, errors: Mapping[str, float]) -> State:
+def changed(state: InputState, errors: Mapping[str, float]) -> InputState:
     """State after errors of dimensions, air, modulus of the beam and attraction across gaps, by input.
 
     Its contact stays.
@@ -257,7 +257,10 @@ def _parts_of_surface(name, settings):
 
 
 def surface_block(
-    state: State, surface: str, shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]], errors: QuantityErrors
+    state: InputState,
+    surface: str,
+    shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
+    errors: QuantityErrors,
 ) -> Block:
     """Quantities of a surface, of its heights and of its spectrum."""
     inputs = []
@@ -272,7 +275,7 @@ def surface_block(
     return Block(inputs, errors.covariance)
 
 
-def number_blocks(state: State, varied: Sequence[Varied], uncertainty: Uncertainty) -> Iterator[Block]:
+def number_blocks(state: InputState, varied: Sequence[Varied], uncertainty: Uncertainty) -> Iterator[Block]:
     """Yield blocks of the uncertain ones among some inputs."""
     for key, together in groupby(varied, lambda number: number.field):
         if deviation := getattr(uncertainty, key):
@@ -281,7 +284,7 @@ def number_blocks(state: State, varied: Sequence[Varied], uncertainty: Uncertain
 
 
 def property_blocks(
-    state: State, properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings
+    state: InputState, properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings
 ) -> Iterator[Block]:
     """Uncertain properties of pairs and of edges. The slopes of those with a relative step are in their logarithms.
 

@@ -34,7 +34,7 @@ _ROUNDING = 16 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
-class Errors:
+class ScanErrors:
     """Errors of the estimate of a surface from its scans."""
 
     names: tuple[str, ...]  #: quantities of the heights, ``rms`` first, see `stiction.analysis.shifts`
@@ -52,23 +52,23 @@ class Uncertainty(NamedTuple):
     form: np.ndarray  #: of the measured form, whatever the heights of the surface are, (n_surfaces, n_rh)
 
 
-def errors_of(estimate: xr.Dataset, quantities: Sequence[str]) -> Errors:
+def errors_of(estimate: xr.Dataset, quantities: Sequence[str]) -> ScanErrors:
     """Errors of a surface from its dataset of stage estimate. Its heights have the moments if these have slopes."""
     names = MOMENT_QUANTITIES if set(MOMENT_QUANTITIES) <= set(quantities) else MODE_QUANTITIES
     modes = estimate.mode_covariance.values
     heights = estimate.covariance.values if names == MOMENT_QUANTITIES else modes
     scans = len(stage_estimate.files(estimate))
-    return Errors(names, heights, modes[1:, 1:], estimate.fit_covariance.values[1:, 1:], scans)
+    return ScanErrors(names, heights, modes[1:, 1:], estimate.fit_covariance.values[1:, 1:], scans)
 
 
-def errors_by_surface(slopes: Mapping[str, xr.Dataset], estimates: Mapping[str, xr.Dataset]) -> dict[str, Errors]:
+def errors_by_surface(slopes: Mapping[str, xr.Dataset], estimates: Mapping[str, xr.Dataset]) -> dict[str, ScanErrors]:
     """Surface to the errors of its estimate in the quantities of its slopes. Datasets of these names by surface."""
     return {name: errors_of(estimate, study_slopes.quantities(slopes[name])) for name, estimate in estimates.items()}
 
 
 def compute(
     slopes: Mapping[str, xr.Dataset],
-    errors: Mapping[str, Errors],
+    errors: Mapping[str, ScanErrors],
     base: xr.Dataset,
     choices: Mapping[str, xr.Dataset],
     settings: Settings,

@@ -45,7 +45,7 @@ class Name(StrEnum):
 _TEXTS = ("name", "question", "what", "unit", "form", "source", "needs")
 
 
-class Answer(NamedTuple):
+class LifeRow(NamedTuple):
     """One answer to a question, with numbers in SI."""
 
     name: str
@@ -60,14 +60,14 @@ class Answer(NamedTuple):
     needs: str = ""  #: keys that give the number; empty if it is there
 
 
-def in_order(answers: Sequence[Answer]) -> list[Answer]:
+def in_order(answers: Sequence[LifeRow]) -> list[LifeRow]:
     """Answers in the order of the questions."""
     return sorted(answers, key=lambda answer: QUESTIONS.index(answer.question))
 
 
-def layout(answers: Sequence[Answer], keys: DeviceKeys, length: float = np.nan) -> xr.Dataset:
+def layout(answers: Sequence[LifeRow], keys: DeviceKeys, length: float = np.nan) -> xr.Dataset:
     """Dataset of the answers about a device; ``length`` is that at which a beam is asked for voltage and shock [m]."""
-    columns = dict(zip(Answer._fields, zip(*answers, strict=True), strict=True))
+    columns = dict(zip(LifeRow._fields, zip(*answers, strict=True), strict=True))
     numbers = {"low": "at least", "high": "at most", "error": "standard uncertainty"}
     shock = {"shock": ((), keys.shock, {"units": "m s-2"})} if keys.shock else {}
     return xr.Dataset(
@@ -80,12 +80,12 @@ def layout(answers: Sequence[Answer], keys: DeviceKeys, length: float = np.nan) 
     )
 
 
-def answers_of(dataset: xr.Dataset) -> list[Answer]:
+def answers_of(dataset: xr.Dataset) -> list[LifeRow]:
     """Answers about a device from its dataset."""
-    rows = zip(*(dataset["answer" if name == "name" else name].values for name in Answer._fields), strict=True)
+    rows = zip(*(dataset["answer" if name == "name" else name].values for name in LifeRow._fields), strict=True)
     return [
-        Answer(
-            *(str(value) if name in _TEXTS else float(value) for name, value in zip(Answer._fields, row, strict=True))
+        LifeRow(
+            *(str(value) if name in _TEXTS else float(value) for name, value in zip(LifeRow._fields, row, strict=True))
         )
         for row in rows
     ]
@@ -97,21 +97,21 @@ def answers_of(dataset: xr.Dataset) -> list[Answer]:
 BY_VOLTAGE, HELD_BY = "voltage_V and dielectric", "stage at_voltage, stiction.life.holding"
 
 
-def missing(answers: Sequence[Answer], rows: Iterable[tuple[str, str, str, str, str]]) -> list[Answer]:
+def missing(answers: Sequence[LifeRow], rows: Iterable[tuple[str, str, str, str, str]]) -> list[LifeRow]:
     """Answers without a number for those rows (name, question, what, unit, keys) that no answer has."""
     names = {answer.name for answer in answers}
     no_numbers = np.nan, np.nan, np.nan
     return [
-        Answer(name, question, subject, *no_numbers, unit, "–", "–", keys)
+        LifeRow(name, question, subject, *no_numbers, unit, "–", "–", keys)
         for name, question, subject, unit, keys in rows
         if name not in names
     ]
 
 
-def field_in_dielectric(keys: DeviceKeys) -> Answer:
+def field_in_dielectric(keys: DeviceKeys) -> LifeRow:
     """Field in the dielectric of a device whose surfaces touch."""
     subject, form = "field in the dielectric in contact", "V / t; thin oxides break down near 1 V/nm"
-    return Answer(
+    return LifeRow(
         Name.FIELD, HOLD, subject, np.nan, keys.capacitor.field, np.nan, "V m-1", form, "stiction.contact.voltage"
     )
 

@@ -16,7 +16,7 @@ from stiction.devices.risk import one_in
 from stiction.life import drying, freeing, holding, touch
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.life import answers as shared
-from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, Answer, Name, in_order, layout
+from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, LifeRow, Name, in_order, layout
 from stiction.stages.life.dimples import dimple_answers
 from stiction.stages.life.inputs import BeamKeys, Liquid
 from stiction.stages.life.separation import of_beam
@@ -51,7 +51,7 @@ def beam_answers(
     keys: BeamKeys,
     biased: Mapping[float, xr.Dataset] | None = None,
     separation: xr.Dataset | None = None,
-) -> list[Answer]:
+) -> list[LifeRow]:
     """Answers about a beam from its safe lengths by humidity: for one touchdown, after all, and at its voltage.
 
     The dataset of its fast separation is needed where water condenses.
@@ -60,7 +60,7 @@ def beam_answers(
     safe = {humidity: least_safe(dataset, share) for humidity, dataset in lengths.items()}
     length = length_of(lengths, keys)
     answers = [
-        Answer(
+        LifeRow(
             f"{Name.SAFE}{humidity:g}",
             STICK,
             f"simulated limit {Air(humidity).where}: at most {one_in(share)} sticks after one touchdown",
@@ -96,7 +96,7 @@ def length_and_error(state: xr.Dataset) -> tuple[float, float]:
     return float(state.safe_length), float(np.sqrt(np.nansum(np.square(errors)))) or np.nan
 
 
-def beam_touched(keys: BeamKeys, length: float) -> list[Answer]:
+def beam_touched(keys: BeamKeys, length: float) -> list[LifeRow]:
     """Voltage and shock for contact of a beam of a length [m]."""
     return [_pulled_in(keys, length), _shaken(keys, length)]
 
@@ -115,7 +115,7 @@ def _pulled_in(keys, length):
     form = {1: "V² = 0.2801 E t³ h³ / (ε₀ L⁴)", 2: "V² = λ E t³ h³ / (6 ε₀ L⁴), λ = 70.095 without tension"}[clamps]
     form += f"; at least: switched on at once, with fringes; at most: raised slowly, without fringes{_RIGID[clamps]}"
     subject = f"voltage that pulls the {_ENDS[clamps]} in"
-    return Answer(Name.VOLTAGE, TOUCH, subject, low, high, error, "V", form, "stiction.life.touch")
+    return LifeRow(Name.VOLTAGE, TOUCH, subject, low, high, error, "V", form, "stiction.life.touch")
 
 
 def _shaken(keys, length):
@@ -127,10 +127,10 @@ def _shaken(keys, length):
     form = {1: "a = 2 E t² h / (3 ρ L⁴)", 2: "a = 32 E t² h / (ρ L⁴) without tension"}[clamps]
     form += f", ρ = {keys.density:g} kg/m³; {shared.pulses(sine, rectangle)}; at most: a slow shock{_RIGID[clamps]}"
     subject = f"peak of a shock that brings the {_ENDS[clamps]} down"
-    return Answer(Name.SHOCK, TOUCH, subject, slow / sine, high, error / sine, "m s-2", form, "stiction.life.touch")
+    return LifeRow(Name.SHOCK, TOUCH, subject, slow / sine, high, error / sine, "m s-2", form, "stiction.life.touch")
 
 
-def lengths_after_drying(keys: BeamKeys, name: str, liquid: Liquid) -> list[Answer]:
+def lengths_after_drying(keys: BeamKeys, name: str, liquid: Liquid) -> list[LifeRow]:
     """Lengths of beams standing while a liquid dries, and releasing afterwards."""
     clamps, adhesion, wetting = keys.clamps, liquid.adhesion, (liquid.surface_tension, liquid.contact_angle)
     each, error = keys.number(lambda beam: drying.longest_standing_each(beam, clamps, *wetting), 1.0)
@@ -146,14 +146,14 @@ def lengths_after_drying(keys: BeamKeys, name: str, liquid: Liquid) -> list[Answ
     standing += "; liquid everywhere, pinned at the edges (at least)"
     source = f"stiction.life.drying, γ cos θ = {from_si(adhesion, 'mN_per_m'):.3g} mN/m"
     return [
-        Answer(
+        LifeRow(
             f"{Name.COLLAPSE}_{name}",
             TOUCH,
             f"longest beam that does not collapse while {name} dries",
             *(each, connected, error),
             *("m", standing, source),
         ),
-        Answer(
+        LifeRow(
             f"{Name.RELEASED}_{name}",
             STICK,
             f"longest beam that comes free after {name} dried",
@@ -163,7 +163,7 @@ def lengths_after_drying(keys: BeamKeys, name: str, liquid: Liquid) -> list[Answ
     ]
 
 
-def beam_held(keys: BeamKeys, length: float) -> list[Answer]:
+def beam_held(keys: BeamKeys, length: float) -> list[LifeRow]:
     """Adhesion of a stuck beam of a length [m], and its pulling force."""
     clamps = keys.clamps
     along, error = keys.number(lambda beam: float(apparent_adhesion_energy(length / clamps, beam)), length)
@@ -175,13 +175,13 @@ def beam_held(keys: BeamKeys, length: float) -> list[Answer]:
     }[clamps]
     most, most_force = (along, force) if clamps == 1 else (np.nan, np.nan)
     answers = [
-        Answer(
+        LifeRow(
             Name.HELD,
             HOLD,
             "adhesion energy that holds it along the beam" if clamps == 1 else "adhesion energy that holds both cracks",
             *(along, most, error, "J m-2", forms[0], "stiction.beam.energy"),
         ),
-        Answer(
+        LifeRow(
             Name.PULL,
             FREE,
             f"force with which it pulls at its {'tip' if clamps == 1 else 'middle'}",
@@ -191,13 +191,13 @@ def beam_held(keys: BeamKeys, length: float) -> list[Answer]:
     if clamps == 1:
         tip, form = along / 4, "Γ = 3 E t³ h² / (8 L⁴)"
         subject = "adhesion energy that holds its tip, on uniform surfaces"
-        answers.append(Answer("tip", HOLD, subject, tip, tip, error / 4, "J m-2", form, "stiction.devices.arcs"))
+        answers.append(LifeRow("tip", HOLD, subject, tip, tip, error / 4, "J m-2", form, "stiction.devices.arcs"))
     return answers
 
 
 def beam_after_touchdowns(
     keys: BeamKeys, share: float, once: tuple[float, float, str], after: Mapping[float, xr.Dataset]
-) -> list[Answer]:
+) -> list[LifeRow]:
     """Safe length and P(stuck) after all touchdowns, from the safe length of one, and its standard error [m].
 
     Both bounds have errors of the simulation. More touchdowns never allow a longer beam.
@@ -206,7 +206,7 @@ def beam_after_touchdowns(
     stuck = freeing.stuck_after(share, keys.touchdowns)
     numbers = f"{keys.touchdowns} touchdowns"
     return [
-        Answer(
+        LifeRow(
             Name.AFTER,
             FREE,
             f"simulated limit for {numbers}: at most {one_in(share)} sticks after all of them",
@@ -214,7 +214,7 @@ def beam_after_touchdowns(
             "P of one = 1 - (1 - p)^(1/n) (at least); the same summits each time (at most)",
             "stage touchdowns",
         ),
-        Answer(
+        LifeRow(
             "stuck_after",
             FREE,
             f"probability of sticking after {numbers} at the limit of one",
@@ -223,7 +223,7 @@ def beam_after_touchdowns(
     ]
 
 
-def beam_at_registers(keys: BeamKeys, length: float, lengths: Mapping[float, xr.Dataset]) -> list[Answer]:
+def beam_at_registers(keys: BeamKeys, length: float, lengths: Mapping[float, xr.Dataset]) -> list[LifeRow]:
     """P(stuck) along a beam of a length [m] with play: in register, at a random offset, and after all touchdowns.
 
     The worst of all airs counts. ASSUME: each touchdown has an offset of its own, and is then another meeting. Of ten
@@ -238,14 +238,14 @@ def beam_at_registers(keys: BeamKeys, length: float, lengths: Mapping[float, xr.
     errors = [float(np.sqrt(p * (1 - p) / with_play[0].sizes["device"])) for p in (register, once)]
     subject = "probability of sticking along the beam"
     return [
-        Answer(
+        LifeRow(
             "register", FREE, f"{subject} in register", register, register, errors[0], "1", _NEAREST, "stage cracks"
         ),
-        Answer("offsets", FREE, f"{subject} after {many}", once, stuck, errors[1], "1", _OFFSETS, "stage cracks"),
+        LifeRow("offsets", FREE, f"{subject} after {many}", once, stuck, errors[1], "1", _OFFSETS, "stage cracks"),
     ]
 
 
-def separated_fast(lengths: Mapping[float, xr.Dataset], separation: xr.Dataset) -> list[Answer]:
+def separated_fast(lengths: Mapping[float, xr.Dataset], separation: xr.Dataset) -> list[LifeRow]:
     """Safe length of a beam that separates faster than water evaporates, by humidity and end state, in the worst one.
 
     It is at most that of slow separation.
@@ -266,12 +266,12 @@ def separated_fast(lengths: Mapping[float, xr.Dataset], separation: xr.Dataset) 
     form = f"L x {factor:.3g} {air}, by (e / e_V)^(1/4) of strips or lengths of tips (at least); slow (at most)"
     subject = "simulated limit if it separates faster than water evaporates"
     numbers = (shorter, min(slow), error) if 0 < shorter < np.inf else (np.nan, min(slow), np.nan)
-    return [Answer(Name.FAST, FREE, subject, *numbers, "m", form, "stage separation")]
+    return [LifeRow(Name.FAST, FREE, subject, *numbers, "m", form, "stage separation")]
 
 
 def beam_at_voltage(
     keys: BeamKeys, safe: tuple[float, float, str], biased: Mapping[float, xr.Dataset] | None
-) -> list[Answer]:
+) -> list[LifeRow]:
     """Effect of a voltage, and the length safe with it, from the safe length without it and its error [m].
 
     On flats in contact, and on rough surfaces from the safe lengths at the voltage by humidity, if there are any.
@@ -286,14 +286,14 @@ def beam_at_voltage(
     low, error = max(gained, default=(np.nan, np.nan))
     subject = f"adhesion energy that {keys.potential:g} V add"
     numbers = min(low, added), added, error
-    added_energy = Answer(Name.VOLTAGE_ENERGY, HOLD, subject, *numbers, "J m-2", form, shared.HELD_BY)
+    added_energy = LifeRow(Name.VOLTAGE_ENERGY, HOLD, subject, *numbers, "J m-2", form, shared.HELD_BY)
     answers = [added_energy, shared.field_in_dielectric(keys)]
     numbers = _shorter(keys, added, safe, [least_safe(dataset, chosen_share(dataset)) for dataset in at_voltage])
     if np.isnan(numbers).all():
         return answers
     subject = f"simulated limit while {keys.potential:g} V are on"
     form = "(L / L_V)³ = 1 + 8 Γ_V L_V L³ / (3 E t³ h²), flats (at least); gaps of rough surfaces, L (at most)"
-    return [*answers, Answer(Name.AT_VOLTAGE, HOLD, subject, *numbers, "m", form, shared.HELD_BY)]
+    return [*answers, LifeRow(Name.AT_VOLTAGE, HOLD, subject, *numbers, "m", form, shared.HELD_BY)]
 
 
 def _shorter(keys, added, safe, rough):

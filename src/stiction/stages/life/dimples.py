@@ -12,13 +12,13 @@ from stiction.estimates import mean_with_error
 from stiction.life.dimples import holds, least_load, least_pull, states
 from stiction.life.drying import pull_of_liquid
 from stiction.life.fringes import edge_width
-from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, Answer, Name
+from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, LifeRow, Name
 from stiction.stages.life.inputs import BeamKeys
 
 _SOURCE = "stiction.life.dimples"
 
 
-def dimple_answers(keys: BeamKeys, dimples: Mapping[float, xr.Dataset]) -> list[Answer]:
+def dimple_answers(keys: BeamKeys, dimples: Mapping[float, xr.Dataset]) -> list[LifeRow]:
     """Answers about a beam on its dimples, from the forces of rows of them by humidity; none without any."""
     if not dimples:
         return []
@@ -33,7 +33,7 @@ def dimple_answers(keys: BeamKeys, dimples: Mapping[float, xr.Dataset]) -> list[
     for humidity, values in forces.items():
         stuck = holds(on_rows, way, values).astype(float)
         sticking.append(
-            Answer(
+            LifeRow(
                 f"{Name.ON_DIMPLES}_{humidity:g}",
                 STICK,
                 f"probability of sticking on its {rows} {Air(humidity).where}",
@@ -44,7 +44,7 @@ def dimple_answers(keys: BeamKeys, dimples: Mapping[float, xr.Dataset]) -> list[
     return [
         *_bent(keys),
         *_brought_down(keys),
-        Answer(Name.DIMPLES, HOLD, subject, mean, mean, error, "N", form, "stage dimples"),
+        LifeRow(Name.DIMPLES, HOLD, subject, mean, mean, error, "N", form, "stage dimples"),
         *sticking,
     ]
 
@@ -76,11 +76,11 @@ def _brought_down(keys):
     volts, error = keys.number(voltage, keys.length)
     subject = "slowly raised voltage below which it does not touch beside its dimples"
     with_edges = f"{form}; with fringes"
-    answers = [Answer(Name.VOLTAGE_BESIDE, TOUCH, subject, volts, np.nan, error, "V", with_edges, _SOURCE)]
+    answers = [LifeRow(Name.VOLTAGE_BESIDE, TOUCH, subject, volts, np.nan, error, "V", with_edges, _SOURCE)]
     most, error = keys.number(tension, keys.length)
     subject = "surface tension up to which no liquid brings it down beside its dimples"
     with_edges = f"{form}; pinned at the edges"
-    return [*answers, Answer(Name.TENSION_BESIDE, TOUCH, subject, most, np.nan, error, "N m-1", with_edges, _SOURCE)]
+    return [*answers, LifeRow(Name.TENSION_BESIDE, TOUCH, subject, most, np.nan, error, "N m-1", with_edges, _SOURCE)]
 
 
 def _with_end(keys, beam, per_length, end):
@@ -109,7 +109,7 @@ def _bent(keys):
     subject, form = "part of the gap that is left beside its dimples", "bent by the forces on its rows alone"
     if len(at) > 1:
         form += "; on the rows that leave least (at least) and most (at most)"
-    beside = Answer(
+    beside = LifeRow(
         Name.BESIDE,
         TOUCH,
         subject,
@@ -124,4 +124,4 @@ def _bent(keys):
     if len(at) > 1:
         form += "; largest on a row, at rest on those rows where this is least"
     most = force if keys.clamps == 1 else np.nan  # rigid clamps stretch a bridge
-    return [beside, Answer(Name.PULLED, FREE, subject, force, most, error, "N", form, _SOURCE)]
+    return [beside, LifeRow(Name.PULLED, FREE, subject, force, most, error, "N", form, _SOURCE)]

@@ -25,7 +25,7 @@ class Liquid:
 
 
 @dataclass(frozen=True)
-class Errors:
+class BeamErrors:
     """Standard uncertainties of the inputs of a beam."""
 
     thickness: float = 0.0  #: [m]
@@ -71,7 +71,7 @@ class BeamKeys(DeviceKeys):
     device: DesignedBeam
     density: float  #: ρ [kg m⁻³]
     liquids: dict[str, Liquid]
-    uncertainty: Errors
+    uncertainty: BeamErrors
     length: float = 0.0  #: as stated [m]; otherwise the least safe length counts
     dimples: Dimples | None = None
 

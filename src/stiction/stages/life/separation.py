@@ -40,7 +40,7 @@ class StopperSettings:
 
 
 @dataclass(frozen=True)
-class InAir:
+class FastInAir:
     """Settings of the fast separation of strips or tips, without their contact."""
 
     water: Water
@@ -58,7 +58,7 @@ def of_stopper(contacts: Mapping[float, xr.Dataset], settings: StopperSettings) 
     return xr.Dataset({"pull_off": forces}, coords={"humidity": list(contacts)})
 
 
-def of_strips(contact: xr.Dataset, settings: InAir) -> xr.Dataset:
+def of_strips(contact: xr.Dataset, settings: FastInAir) -> xr.Dataset:
     """Factor of the length of a crack by the mean energies of strips, and its standard error."""
     fast, slow = (
         statistic(contact, settings.humidity, settings.water) for statistic in (curves.fast_energies, curves.energies)
@@ -68,7 +68,7 @@ def of_strips(contact: xr.Dataset, settings: InAir) -> xr.Dataset:
     return xr.Dataset(dict(zip(("factor", "factor_error"), (((), factor, none) for factor in factors), strict=True)))
 
 
-def of_tips(contact: xr.Dataset, settings: InAir) -> xr.Dataset:
+def of_tips(contact: xr.Dataset, settings: FastInAir) -> xr.Dataset:
     """Largest attractions P/w of tips over their slopes, in slow and in fast separation."""
     slopes, slow = curves.tip_forces(contact, settings.humidity, settings.water)
     fast = curves.fast_tip_forces(contact, settings.humidity, settings.water)
@@ -190,7 +190,7 @@ STAGES = (
         "devices/fast_strips/{case}_{length}x{width}",
         inputs=_contact_of_strips,
         settings=_in_air,
-        kind=InAir,
+        kind=FastInAir,
         complete=with_correction,
         compute=of_strips,
         message="Fast separation of {case}, strips of {length} x {width} nm.",
@@ -200,7 +200,7 @@ STAGES = (
         "devices/fast_tips/{case}_{length}x{width}",
         inputs=_contact_of_tips,
         settings=_in_air,
-        kind=InAir,
+        kind=FastInAir,
         complete=with_correction,
         compute=of_tips,
         message="Fast separation of tips of {case}, {length} x {width} nm.",

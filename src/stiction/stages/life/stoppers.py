@@ -13,7 +13,7 @@ from stiction.devices.stoppers import safe_force
 from stiction.estimates import mean_with_error
 from stiction.life import freeing, touch
 from stiction.stages.life import answers as shared
-from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, Answer, Name, in_order, layout
+from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, LifeRow, Name, in_order, layout
 from stiction.stages.life.inputs import StopperKeys
 
 
@@ -29,13 +29,13 @@ def stopper_answers(
     biased: xr.Dataset | None = None,
     tilted: xr.Dataset | None = None,
     separation: xr.Dataset | None = None,
-) -> list[Answer]:
+) -> list[LifeRow]:
     """Answers about a stopper from the datasets of its pull-off forces: as it is, at its voltage, tilted, and fast."""
     worst = int(stopper.mean_along.argmax("axis"))
     mean, error = (float(stopper[name][worst]) for name in ("mean_along", "mean_along_error"))
     where = Air(round(float(stopper.worst_humidity), 2)).where
     answers = [
-        Answer(
+        LifeRow(
             f"stuck_{float(humidity):g}",
             STICK,
             f"probability of sticking {Air(float(humidity)).where}",
@@ -46,7 +46,7 @@ def stopper_answers(
     ]
     subject = f"mean pull-off force {where}{', the worst air' * (stopper.sizes['axis'] > 1)}"
     answers.append(
-        Answer("force", HOLD, subject, mean, mean, error, "N", "largest attraction x area", "stage stoppers")
+        LifeRow("force", HOLD, subject, mean, mean, error, "N", "largest attraction x area", "stage stoppers")
     )
     answers += stopper_moved(keys) + stopper_freed(stopper, keys, separation) + stopper_after_touchdowns(stopper, keys)
     answers += [] if tilted is None else tilted_answers(tilted)
@@ -54,7 +54,7 @@ def stopper_answers(
     return in_order(answers + stopper_unknown(answers, keys, float(stopper.share.max())))
 
 
-def stopper_unknown(answers: Sequence[Answer], keys: StopperKeys, share: float) -> list[Answer]:
+def stopper_unknown(answers: Sequence[LifeRow], keys: StopperKeys, share: float) -> list[LifeRow]:
     """Rows for everything that a stopper does not say, with the keys that say it, first the one of it alone.
 
     ``share`` is the largest fraction of stuck stoppers that its forces are asked for.
@@ -71,7 +71,7 @@ def stopper_unknown(answers: Sequence[Answer], keys: StopperKeys, share: float) 
     return shared.missing(answers, [row for row in rows if not row[-1].startswith(keys.unasked)])
 
 
-def stopper_moved(keys: StopperKeys) -> list[Answer]:
+def stopper_moved(keys: StopperKeys) -> list[LifeRow]:
     """Shock and voltage for contact of a stopper, as far as mass and electrode are given."""
     answers = []
     if keys.mass:
@@ -79,14 +79,14 @@ def stopper_moved(keys: StopperKeys) -> list[Answer]:
         form = f"a = F / m; {shared.pulses(touch.HALF_SINE, touch.RECTANGLE)}; at most: a slow shock"
         numbers = slow / touch.HALF_SINE, slow, np.nan
         subject = "peak of a shock that brings it into contact"
-        answers.append(Answer(Name.SHOCK, TOUCH, subject, *numbers, "m s-2", form, "stiction.life.touch"))
+        answers.append(LifeRow(Name.SHOCK, TOUCH, subject, *numbers, "m s-2", form, "stiction.life.touch"))
     if keys.electrode:
         electrode = keys.stiffness, keys.gap, keys.electrode.area, keys.electrode.gap
         numbers = touch.stopper_voltage_at_once(*electrode), touch.stopper_voltage(*electrode), np.nan
         form = "V² = k u g (g - u) / (ε₀ A), at g / 2 or its way, less by fringes of a square (at least: at once); "
         form += "V² = 2 k u (g - u)² / (ε₀ A), at g / 3 or its way (at most: slowly)"
         subject = "voltage on its electrode that brings it into contact"
-        answers.append(Answer(Name.VOLTAGE, TOUCH, subject, *numbers, "V", form, "stiction.life.touch"))
+        answers.append(LifeRow(Name.VOLTAGE, TOUCH, subject, *numbers, "V", form, "stiction.life.touch"))
     return answers
 
 
@@ -102,7 +102,7 @@ def _worst_force(stopper, share):
     return float(at.sel(part="safe")), float(at.sel(part="error")), float(at.humidity)
 
 
-def stopper_freed(stopper: xr.Dataset, keys: StopperKeys, separation: xr.Dataset | None) -> list[Answer]:
+def stopper_freed(stopper: xr.Dataset, keys: StopperKeys, separation: xr.Dataset | None) -> list[LifeRow]:
     """Restoring force, stiffness and shock that free all but a small fraction of the stoppers, slowly and fast."""
     if (share := _fewest_bounded(stopper)) is None:
         return []
@@ -112,20 +112,22 @@ def stopper_freed(stopper: xr.Dataset, keys: StopperKeys, separation: xr.Dataset
     but = f"all but {one_in(share)}, {Air(humidity).where}"
     source, bound = "stages stoppers and separation", "faster than water evaporates, in any of its air (at most)"
     form = f"quantile of the pull-off force, 95 %; {bound}"
-    answers = [Answer(Name.RESTORING, FREE, f"restoring force that frees {but}", force, most, error, "N", form, source)]
+    answers = [
+        LifeRow(Name.RESTORING, FREE, f"restoring force that frees {but}", force, most, error, "N", form, source)
+    ]
     if keys.gap:
         subject, form = f"stiffness of the spring that frees {but}", f"k = F / gap; {bound}"
         numbers = (number / keys.gap for number in (force, most, error))
-        answers.append(Answer("stiffness", FREE, subject, *numbers, "N m-1", form, source))
+        answers.append(LifeRow("stiffness", FREE, subject, *numbers, "N m-1", form, source))
     if keys.mass:
         shocks = (freeing.freeing_acceleration(hold, keys.restoring_force, keys.mass) for hold in (force, most))
         subject, form = f"shock that frees {but}", f"a = (F_hold - F) / m; {bound}"
         numbers = *shocks, error / keys.mass
-        answers.append(Answer(Name.FREED, FREE, subject, *numbers, "m s-2", form, "stiction.life.freeing"))
+        answers.append(LifeRow(Name.FREED, FREE, subject, *numbers, "m s-2", form, "stiction.life.freeing"))
     return answers
 
 
-def stopper_after_touchdowns(stopper: xr.Dataset, keys: StopperKeys) -> list[Answer]:
+def stopper_after_touchdowns(stopper: xr.Dataset, keys: StopperKeys) -> list[LifeRow]:
     """P(stuck) after all touchdowns in the worst given air, and the force for a small fraction stuck.
 
     The bounds are those of the 95 % band of P: what none of the patches do bounds it from above alone.
@@ -136,18 +138,18 @@ def stopper_after_touchdowns(stopper: xr.Dataset, keys: StopperKeys) -> list[Ans
     form = "P (at least) and 1 - (1 - P)^n (at most), of the 95 % band of P"
     numbers, after = f"{keys.touchdowns} touchdowns", freeing.stuck_after(most, keys.touchdowns)
     subject = f"probability of sticking after {numbers}"
-    answers = [Answer("stuck_after", FREE, subject, once, after, np.nan, "1", form, "stiction.life.freeing")]
+    answers = [LifeRow("stuck_after", FREE, subject, once, after, np.nan, "1", form, "stiction.life.freeing")]
     share = float(stopper.share.max())
     rare = freeing.probability_for(share, keys.touchdowns)
     if stopper.sizes["sample"] >= samples_for(rare):
         few, many = (max(safe_force(row, p)[::2] for row in stopper.pull_off.values) for p in (share, rare))
         subject = f"restoring force that frees all but {one_in(share)} after {numbers}"
         form = "the same summits each time (at least); P of one = 1 - (1 - p)^(1/n) (at most)"
-        answers.append(Answer(Name.AFTER, FREE, subject, few[0], many[0], few[1], "N", form, "stage stoppers"))
+        answers.append(LifeRow(Name.AFTER, FREE, subject, few[0], many[0], few[1], "N", form, "stage stoppers"))
     return answers
 
 
-def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
+def tilted_answers(tilted: xr.Dataset) -> list[LifeRow]:
     """Fraction of stoppers stuck at their tilts, the force on them, and the tilt at the transition to a wedge.
 
     At most counts every patch at the tilt at which it holds most, as if it landed at all of them.
@@ -156,7 +158,7 @@ def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
     by = f"tilted by {' to '.join(dict.fromkeys((tilts[0], tilts[-1])))}°"
     each = f"least of {len(tilts)} tilts, and each patch at its worst; " if len(tilts) > 1 else ""
     answers = [
-        Answer(
+        LifeRow(
             f"stuck_tilted_{float(humidity):g}",
             STICK,
             f"probability of sticking {by}, {Air(float(humidity)).where}",
@@ -171,11 +173,11 @@ def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
     numbers = float(most["mean"][low]), float(most.largest_mean), float(most.mean_error[low])
     form = f"{each}random patches; w e / s on smooth surfaces beyond the tilt of a wedge"
     answers.append(
-        Answer(Name.TILTED, HOLD, f"mean pull-off force {by}, {air}", *numbers, "N", form, "stage tilted_stoppers")
+        LifeRow(Name.TILTED, HOLD, f"mean pull-off force {by}, {air}", *numbers, "N", form, "stage tilted_stoppers")
     )
     subject, form = "tilt beyond which a longer first side hardly holds more", "e / (f_max a), parallel patches"
     numbers = float(tilted.wedge.min()), float(tilted.wedge.max()), np.nan
-    answers.append(Answer(Name.WEDGE, HOLD, subject, *numbers, "rad", form, "stage tilted_stoppers"))
+    answers.append(LifeRow(Name.WEDGE, HOLD, subject, *numbers, "rad", form, "stage tilted_stoppers"))
     return answers + _freed_tilted(tilted, by, f"{each}quantile of the force, 95 %")
 
 
@@ -187,10 +189,10 @@ def _freed_tilted(tilted, by, form):
     low = int(force.sel(part="safe").argmin("tilt"))
     numbers = float(force.sel(part="safe")[low]), float(most.sel(part="safe")), float(force.sel(part="error")[low])
     subject = f"restoring force that frees all but {one_in(share)}, {by}"
-    return [Answer("restoring_force_tilted", FREE, subject, *numbers, "N", form, "stage tilted_stoppers")]
+    return [LifeRow("restoring_force_tilted", FREE, subject, *numbers, "N", form, "stage tilted_stoppers")]
 
 
-def stopper_at_voltage(stopper: xr.Dataset, keys: StopperKeys, biased: xr.Dataset | None) -> list[Answer]:
+def stopper_at_voltage(stopper: xr.Dataset, keys: StopperKeys, biased: xr.Dataset | None) -> list[LifeRow]:
     """Force of a voltage in addition to that on a stopper, and the fraction stuck while it is on."""
     flat = keys.capacitor.largest_pressure * keys.contact[0] * keys.contact[1]
     low, error, sticking = np.nan, np.nan, []
@@ -202,7 +204,7 @@ def stopper_at_voltage(stopper: xr.Dataset, keys: StopperKeys, biased: xr.Datase
         subject = f"probability of sticking while {keys.potential:g} V are on, {Air(float(worst.humidity)).where}"
         numbers = *map(float, worst.sel(bound=["low", "high"])), np.nan
         sticking = [
-            Answer(
+            LifeRow(
                 "stuck_at_voltage",
                 HOLD,
                 subject,
@@ -214,7 +216,7 @@ def stopper_at_voltage(stopper: xr.Dataset, keys: StopperKeys, biased: xr.Datase
         ]
     subject = f"force that {keys.potential:g} V add"
     form = "mean of rough patches (at least); ε₀ V² A / (2 D²) (at most)"
-    added = Answer(Name.AT_VOLTAGE, HOLD, subject, min(low, flat), flat, error, "N", form, shared.HELD_BY)
+    added = LifeRow(Name.AT_VOLTAGE, HOLD, subject, min(low, flat), flat, error, "N", form, shared.HELD_BY)
     return [added, *sticking, shared.field_in_dielectric(keys), *_freeing_voltage(stopper, keys, biased)]
 
 
@@ -233,4 +235,4 @@ def _freeing_voltage(stopper, keys, biased):
     numbers = *(max(potential - abs(keys.offset), 0.0) for potential in (low, high)), spread
     subject = f"voltage below which its spring frees all but {one_in(share)}"
     form = "V² = (F - F_hold) 2 D² / (ε₀ A), flats (at least); V² = min (p - f) / g of rough patches (at most)"
-    return [Answer(Name.FREEING, FREE, subject, *numbers, "V", form, shared.HELD_BY)]
+    return [LifeRow(Name.FREEING, FREE, subject, *numbers, "V", form, shared.HELD_BY)]

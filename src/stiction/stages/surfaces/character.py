@@ -23,7 +23,7 @@ _KEPT = 20_000
 
 
 @dataclass(frozen=True)
-class Strips:
+class StripSample:
     """Sample for the surface statistics."""
 
     strips: int  #: number of strips
@@ -36,7 +36,7 @@ class Settings:
 
     seed: int
     sampling: Sampling
-    character: Strips
+    character: StripSample
     beam: Width
 
 

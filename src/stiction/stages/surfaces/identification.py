@@ -22,7 +22,7 @@ class Patches:
 
 
 @dataclass(frozen=True)
-class Summits:
+class SummitTargets:
     """Measured summit statistics."""
 
     mean_summit_radius: float  #: [m]
@@ -35,7 +35,7 @@ class Settings:
 
     seed: int
     identification: Patches
-    target: Summits
+    target: SummitTargets
     spacing: float  #: of the patches [m]
     target_spacing: float  #: at which the summits were measured [m]
 
@@ -87,7 +87,7 @@ STAGES = (
             plan.config,
             spacing_nm=plan.config["sampling"]["spacing_nm"],
             target_spacing_nm=plan.config["character"]["spacing_nm"],
-            target=select(Summits, plan.config["surfaces"][at.surface]),
+            target=select(SummitTargets, plan.config["surfaces"][at.surface]),
         ),
         kind=Settings,
         compute=compute,

@@ -21,7 +21,7 @@ from stiction.config.test_beams import PULL_OFFS, humidities, pulled
 from stiction.contact.air import Air
 from stiction.contact.environment import Water
 from stiction.devices import arcs, inference, risk
-from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths
+from stiction.devices.inference import Counts, CrackData, DiscrepancyOfModel, KnownInputs
 from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage
 from stiction.stages.contact import curves
@@ -77,7 +77,7 @@ class CrackLengths:
 
 
 @dataclass(frozen=True)
-class Stuck:
+class StuckCounts:
     """Numbers of stuck beams of an array, one for every humidity and length."""
 
     water: Water
@@ -103,10 +103,10 @@ class Settings:
     """Settings of the update, without budgets and safe lengths."""
 
     seed: int
-    discrepancy: Discrepancy
+    discrepancy: DiscrepancyOfModel
     arrays: dict[str, DesignedBeam]  #: test beams by the name of their array
     crack_lengths: dict[str, CrackLengths]  #: by array
-    stuck: dict[str, Stuck]  #: by array
+    stuck: dict[str, StuckCounts]  #: by array
     device: DesignedBeam | None = None  #: none of a stopper
     pull_offs: dict[str, PullOffs] = field(default_factory=dict)  #: by the name of their test beams
 
@@ -229,19 +229,19 @@ def middle_of(beams: Sequence[Result], of_device: Sequence[Result]) -> float:
     return float(np.mean(cracks)) if cracks else 0.0
 
 
-def common_inputs(results: Sequence[Result]) -> Knowledge:
+def common_inputs(results: Sequence[Result]) -> KnownInputs:
     """Inputs of all results and the covariance of their errors, as their budgets state it."""
     names = list(dict.fromkeys(name for result in results for name in result.names))
     covariance = np.zeros((len(names), len(names)))
     for result in results:
         at = [names.index(name) for name in result.names]
         covariance[np.ix_(at, at)] = result.budget.covariance.values
-    return Knowledge(tuple(names), np.zeros(len(names)), covariance)
+    return KnownInputs(tuple(names), np.zeros(len(names)), covariance)
 
 
 def with_discrepancy(
-    inputs: Knowledge, results: Sequence[Result], middle: float, discrepancy: Discrepancy
-) -> tuple[Knowledge, np.ndarray]:
+    inputs: KnownInputs, results: Sequence[Result], middle: float, discrepancy: DiscrepancyOfModel
+) -> tuple[KnownInputs, np.ndarray]:
     """Prior of inputs and model, and responses of all results, with the discrepancy of `stiction.devices.inference`.
 
     The slope of the model is about a ``middle`` of u [-], that of all test beams, counted or measured.
@@ -277,13 +277,13 @@ def with_errors_of_cracks(results: Sequence[Result], responses: np.ndarray, numb
     return shared
 
 
-def shown_at_tips(of_device: Sequence[Result], responses: np.ndarray, number: int, state: Knowledge) -> np.ndarray:
+def shown_at_tips(of_device: Sequence[Result], responses: np.ndarray, number: int, state: KnownInputs) -> np.ndarray:
     """Change of ln l of tips by the expected error of the model, zero of other results (n,) [-]."""
     is_tip = np.array([result.response == ARC for result in of_device])
     return np.where(is_tip, responses[:, number:] @ state.mean[number:], 0.0)
 
 
-def length_data(beams: Sequence[Result], responses: np.ndarray, crack_lengths: Mapping[str, CrackLengths]) -> Lengths:
+def length_data(beams: Sequence[Result], responses: np.ndarray, crack_lengths: Mapping[str, CrackLengths]) -> CrackData:
     """Measured mean crack lengths beside the computed ones.
 
     ASSUME: the crack lengths of single beams are independent; the error of a computed mean is negligible.
@@ -295,10 +295,10 @@ def length_data(beams: Sequence[Result], responses: np.ndarray, crack_lengths: M
             differences.append(np.log(mean / float(beam.budget.centre)))
             errors.append(std / mean / np.sqrt(number))
             rows.append(row)
-    return Lengths(np.reshape(rows, (-1, responses.shape[1])), np.array(differences), np.array(errors))
+    return CrackData(np.reshape(rows, (-1, responses.shape[1])), np.array(differences), np.array(errors))
 
 
-class PullOff(NamedTuple):
+class PullOffData(NamedTuple):
     """Mean measured pull-off force of a probe at a humidity, beside the computed one."""
 
     measured: float  #: [N]
@@ -306,7 +306,7 @@ class PullOff(NamedTuple):
     error: float  #: standard error of ln(measured / computed) by anything but inputs [-]
 
 
-def pull_off(result: Result, measured: PullOffs, stopper: xr.Dataset) -> PullOff:
+def pull_off(result: Result, measured: PullOffs, stopper: xr.Dataset) -> PullOffData:
     r"""Pull-off force of a probe at one of m humidities, with the error of the logarithm of measured over computed.
 
     From the relative scatter s of n forces and s₀ of the sampled places, the uncertainty σ by the calibration, and σ₀
@@ -332,12 +332,12 @@ def pull_off(result: Result, measured: PullOffs, stopper: xr.Dataset) -> PullOff
     common = len(measured.humidity) * (unexplained + (measured.error[at] / mean) ** 2)
     simulation = (error / expected) ** 2 + float(computed_forces.full_contact_error) ** 2
     variance = (std / mean) ** 2 / measured.number[at] + common + simulation
-    return PullOff(mean, expected, float(np.sqrt(variance)))
+    return PullOffData(mean, expected, float(np.sqrt(variance)))
 
 
-def with_pull_offs(lengths: Lengths, responses: np.ndarray, pull_offs: Sequence[PullOff]) -> Lengths:
+def with_pull_offs(lengths: CrackData, responses: np.ndarray, pull_offs: Sequence[PullOffData]) -> CrackData:
     """Data of crack lengths and of pull-off forces (n), with the responses of the latter (n, k)."""
-    return Lengths(
+    return CrackData(
         np.concatenate([lengths.responses, responses]),
         np.append(lengths.differences, [np.log(pull.measured / pull.computed) for pull in pull_offs]),
         np.append(lengths.errors, [pull.error for pull in pull_offs]),
@@ -350,7 +350,7 @@ def _number_of_humidity(result, crack_lengths):
     return measured_at.index(result.humidity) if result.humidity in measured_at else None
 
 
-def known_counts(stuck: Mapping[str, Stuck], results: Sequence[Result]) -> dict[str, Stuck]:
+def known_counts(stuck: Mapping[str, StuckCounts], results: Sequence[Result]) -> dict[str, StuckCounts]:
     """Counts at humidities with results for every shape."""
     results_with_shape = {(result.owner, result.humidity, result.response) for result in results}
     counts = {}
@@ -374,7 +374,7 @@ def _with_changes(stuck, changes):
 def count_data(
     results: Sequence[Result],
     responses: np.ndarray,
-    stuck: Mapping[str, Stuck],
+    stuck: Mapping[str, StuckCounts],
     grounds: Mapping[tuple[str, str], xr.Dataset],
     tips: Mapping[tuple[str, str], xr.Dataset],
 ) -> Counts:
@@ -417,7 +417,7 @@ def lengths_and_scores(
 # Datasets
 
 
-def input_dataset(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Dataset:
+def input_dataset(prior: KnownInputs, posterior: KnownInputs, count: int) -> xr.Dataset:
     """First inputs before and after the measurement, and their combinations with or without evidence."""
     before, after = (first_inputs(state, count) for state in (prior, posterior))
     combinations = inference.combinations(before, after)
@@ -434,7 +434,7 @@ def input_dataset(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Data
 
 
 def length_dataset(
-    beams: Sequence[Result], responses: np.ndarray, prior: Knowledge, posterior: Knowledge, settings: Settings
+    beams: Sequence[Result], responses: np.ndarray, prior: KnownInputs, posterior: KnownInputs, settings: Settings
 ) -> xr.Dataset:
     """Measured and computed crack lengths, and expected ones before and after the measurement.
 
@@ -475,9 +475,9 @@ def _measured_length(result, crack_lengths):
 def force_dataset(
     probes: Sequence[Result],
     responses: np.ndarray,
-    pull_offs: Sequence[PullOff],
-    prior: Knowledge,
-    posterior: Knowledge,
+    pull_offs: Sequence[PullOffData],
+    prior: KnownInputs,
+    posterior: KnownInputs,
 ) -> xr.Dataset:
     """Measured and computed pull-off forces, and expected ones before and after; empty without any."""
     if not probes:
@@ -498,7 +498,7 @@ def force_dataset(
     )
 
 
-def count_dataset(counts: Counts, posterior: Knowledge, stuck: Mapping[str, Stuck]) -> xr.Dataset:
+def count_dataset(counts: Counts, posterior: KnownInputs, stuck: Mapping[str, StuckCounts]) -> xr.Dataset:
     """Counted beams and their P(stuck) before and after the measurement, for the expected inputs."""
     rows = [(name, *row) for name, data in stuck.items() for row in zip(data.humidity, data.length, strict=True)]
     names, humidities, lengths = zip(*rows, strict=True) if rows else ((), (), ())
@@ -517,12 +517,12 @@ def count_dataset(counts: Counts, posterior: Knowledge, stuck: Mapping[str, Stuc
     )
 
 
-def first_inputs(knowledge: Knowledge, count: int) -> Knowledge:
+def first_inputs(knowledge: KnownInputs, count: int) -> KnownInputs:
     """Knowledge of the first inputs alone."""
-    return Knowledge(knowledge.names[:count], knowledge.mean[:count], knowledge.covariance[:count, :count])
+    return KnownInputs(knowledge.names[:count], knowledge.mean[:count], knowledge.covariance[:count, :count])
 
 
-def agreement_dataset(prior: Knowledge, lengths: Lengths, counts: Counts, number: int) -> xr.Dataset:
+def agreement_dataset(prior: KnownInputs, lengths: CrackData, counts: Counts, number: int) -> xr.Dataset:
     """Agreement of the data with inputs and model, and with the first ``number`` inputs alone."""
     inputs = first_inputs(prior, number)
     alone = [replace(data, responses=data.responses[..., :number]) for data in (lengths, counts)]
@@ -549,7 +549,7 @@ def _quantiles(dimension, posterior, responses):
 
 
 def result_dataset(
-    of_device: Sequence[Result], responses: np.ndarray, number: int, prior: Knowledge, posterior: Knowledge
+    of_device: Sequence[Result], responses: np.ndarray, number: int, prior: KnownInputs, posterior: KnownInputs
 ) -> xr.Dataset:
     """Results of a device before and after the measurement: mean crack lengths, lengths of few stuck tips, forces.
 
@@ -594,7 +594,7 @@ def further_dataset(
     responses: np.ndarray,
     of_device: Sequence[Result],
     device: np.ndarray,
-    posterior: Knowledge,
+    posterior: KnownInputs,
 ) -> xr.Dataset:
     """Standard deviations of the lengths of a device if further test beams were measured.
 

@@ -11,7 +11,7 @@ from stiction.config.merging import merged
 from stiction.config.units import NM_PER_UM
 from stiction.contact.tilt import EDGE_RADIUS, length_of_edge
 from stiction.models import SHIFTS
-from stiction.stages.contact.changes.patches import Change
+from stiction.stages.contact.changes.patches import PatchChange
 
 
 def _with_radius(plan: Any, at: Any, patch_kind: Any) -> dict[str, Any]:
@@ -27,4 +27,4 @@ def _with_radius(plan: Any, at: Any, patch_kind: Any) -> dict[str, Any]:
 
 
 #: The radius of a rounded edge.
-EDGE = Change(words="with {side} round edges", end="_{side}", settings=_with_radius)
+EDGE = PatchChange(words="with {side} round edges", end="_{side}", settings=_with_radius)

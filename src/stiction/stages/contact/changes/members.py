@@ -14,7 +14,7 @@ import xarray as xr
 from stiction.analysis.shifts import like
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
-from stiction.stages.contact.changes.patches import TIPS, Change, PatchKind
+from stiction.stages.contact.changes.patches import TIPS, PatchChange, PatchKind
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import both
 
@@ -90,7 +90,7 @@ def _settings(plan, at, patch_kind):
 
 
 #: A whole typical surface in place of one surface.
-MEMBER = Change(
+MEMBER = PatchChange(
     words="with {member} in place of the partly assumed {surface}",
     end="_{surface}_like_{member}",
     settings=_settings,

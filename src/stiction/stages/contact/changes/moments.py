@@ -14,7 +14,7 @@ from stiction.models import SHIFTS
 from stiction.plan.stage import Running
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
-from stiction.stages.contact.changes.patches import Change
+from stiction.stages.contact.changes.patches import PatchChange
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import both
 
@@ -55,7 +55,7 @@ def _with_moments(plan, at, patch_kind):
 
 
 #: Each moment of the surface of the beam. The longest job begins early, so that no core waits for it at the end.
-MOMENTS = Change(
+MOMENTS = PatchChange(
     words="with less and more of each moment (Fig. 13)",
     end="_{each}",
     each=lambda plan: [f"{moment}_{shift}" for moment in plan.shifted_moments for shift in SHIFTS],

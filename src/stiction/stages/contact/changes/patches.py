@@ -86,7 +86,7 @@ TILTED = PatchKind(GROUND.file, f"{GROUND.words} of tilted stoppers,", _size_of_
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Change:
+class PatchChange:
     """Change of the contact of a patch."""
 
     settings: Callable[[Any, Any, PatchKind], dict]  #: by the plan, the wildcards and the kind of patch

@@ -14,7 +14,7 @@ from stiction.analysis.shifts import STEPS, bracketed
 from stiction.models import MODE_QUANTITIES, SHIFTS
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
-from stiction.stages.contact.changes.patches import Change
+from stiction.stages.contact.changes.patches import PatchChange
 from stiction.stages.surfaces import measured_heights
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
@@ -88,7 +88,7 @@ def _settings(plan, at, patch_kind):
 
 
 #: A quantity of one surface.
-QUANTITY = Change(
+QUANTITY = PatchChange(
     words="with less and more {quantity} of {surface}",
     end="_{surface}_{quantity}_{each}",
     each=lambda plan: SHIFTS,

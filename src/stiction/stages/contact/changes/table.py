@@ -12,7 +12,7 @@ from stiction.stages.contact import contact
 from stiction.stages.contact.changes.edges import EDGE
 from stiction.stages.contact.changes.members import MEMBER
 from stiction.stages.contact.changes.moments import MOMENTS
-from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS, Change, PatchKind
+from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS, PatchChange, PatchKind
 from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.scan_options import SCAN_OPTION
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
@@ -21,7 +21,7 @@ from stiction.stages.contact.pairs import Settings
 from stiction.stages.surfaces.rough_surfaces import surface_inputs
 
 #: No change.
-AS_IT_IS = Change(
+AS_IT_IS = PatchChange(
     settings=lambda plan, at, patch_kind: patch_kind.settings(plan, at, patch_kind.samples(plan, at)),
     running=Running(minutes=10, priority=1),
 )
@@ -71,7 +71,7 @@ TABLE = {
 }
 
 
-def file_of(change: Change, patch_kind: PatchKind, **wildcards: str) -> str:
+def file_of(change: PatchChange, patch_kind: PatchKind, **wildcards: str) -> str:
     """Name of a contact."""
     return _pattern(change, patch_kind).format(**wildcards)
 

@@ -25,7 +25,7 @@ from stiction.contact.pair import (
 from stiction.plan.stage import Running
 from stiction.progress import progress
 from stiction.stages.contact import contact as stage_contact
-from stiction.stages.contact.changes.patches import Change
+from stiction.stages.contact.changes.patches import PatchChange
 from stiction.stages.contact.pairs import Contact, SolidBySide, asperity_of, equivalent_surface, streams_of_sides
 from stiction.stages.surfaces import heights as stage_heights
 from stiction.stages.surfaces import spectrum as stage_spectrum
@@ -35,7 +35,7 @@ from stiction.surface.spectrum import CutoffSelfAffine
 
 
 @dataclass(frozen=True)
-class Surface:
+class DrawnSurface:
     """Description of one surface, for drawing it."""
 
     rms: float  #: [m]
@@ -62,12 +62,12 @@ class Settings:
     contact: Contact
     beam: Width
     pairs: dict[str, Sides]
-    surfaces: dict[str, Surface]
+    surfaces: dict[str, DrawnSurface]
     replica: Coherence | None = None  #: of the two surfaces
 
 
 @dataclass(frozen=True)
-class Solids:
+class SolidsOfPair:
     """Solids of a pair. Everything else about the contact is determined by the summits."""
 
     solid: Solid
@@ -97,7 +97,7 @@ def equivalent_under(
     """
     for name, identification in identifications.items():
         stage_spectrum.refuse_misuse(
-            identification, stage_spectrum.Use(name, changed.sampling.strip_length, changed.sampling.margin)
+            identification, stage_spectrum.SpectrumUse(name, changed.sampling.strip_length, changed.sampling.margin)
         )
     surfaces = surfaces_of(base.pairs[pair], base.surfaces, base.sampling.spacing, identifications, measured)
     return equivalent_surface(surfaces, "NG", changed)
@@ -105,7 +105,7 @@ def equivalent_under(
 
 def surfaces_of(
     sides: Sides,
-    surfaces: Mapping[str, Surface],
+    surfaces: Mapping[str, DrawnSurface],
     spacing: float,
     identifications: Mapping[str, xr.Dataset],
     measured: Mapping[str, tuple[xr.Dataset, xr.Dataset]] | None = None,
@@ -210,7 +210,7 @@ def arguments(data: Mapping[str, Any], pair: str, settings: dict[str, Any]) -> t
 # Contact
 
 
-def contact_of(summits: xr.Dataset, settings: Solids) -> xr.Dataset:
+def contact_of(summits: xr.Dataset, settings: SolidsOfPair) -> xr.Dataset:
     """Contact of solids on the summits of a pair, as in stage contact."""
     model, grid = asperity_of(settings), distances(summits)
     pressures = [solid_pressure(model, sample, grid) for sample in samples_of(summits)]
@@ -220,7 +220,7 @@ def contact_of(summits: xr.Dataset, settings: Solids) -> xr.Dataset:
 
 def contact_of_islands(data: Mapping[str, Any], pair: str, settings: dict[str, Any]) -> xr.Dataset:
     """Contact of all samples with islands as asperities, from the inputs and plain settings of a job."""
-    surfaces, solids = arguments(data, pair, settings), in_si(Solids, settings["solids"])
+    surfaces, solids = arguments(data, pair, settings), in_si(SolidsOfPair, settings["solids"])
     _, _, _, changed, _ = surfaces
     islands = SurfacePair(**vars(equivalent_under(*surfaces)), asperity=asperity_of(solids))
     samples = range(changed.contact.samples)
@@ -238,7 +238,7 @@ def _summit_settings(plan, at, patch_kind):
 
 
 #: The summits under a variant of the model, which variants of the solids share.
-SUMMITS = Change(
+SUMMITS = PatchChange(
     subject="Summits",
     words="under variant {variant}",
     end="_{variant}",
@@ -257,17 +257,17 @@ def _on_summits(plan, at, name_of):
 
 
 #: A variant of the model: its solids on its summits.
-VARIANT = Change(
+VARIANT = PatchChange(
     words="under variant {variant}",
     end="_{variant}",
     inputs=_on_summits,
     settings=lambda plan, at, patch_kind: plan.variants.solids(at.pair, at.variant),
-    kind=Solids,
+    kind=SolidsOfPair,
     compute=contact_of,
     running=Running(),
 )
 #: A variant of the model whose asperities are islands.
-VARIANT_OF_ISLANDS = Change(
+VARIANT_OF_ISLANDS = PatchChange(
     subject="Contact of islands",
     words="under variant {variant}",
     end="_{variant}",
