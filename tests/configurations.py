@@ -1,6 +1,8 @@
 """The paper's configuration with single changes, and the problems reported for the result."""
 
 import copy
+import importlib.util
+import sys
 from functools import cache, reduce
 from pathlib import Path
 from typing import NamedTuple
@@ -96,3 +98,12 @@ def without(path):
 # One surface, pair or variant represents all.
 LEAVES = list({id(leaf.entry): leaf for leaf in reversed(leaves(PAPER, SCHEMA))}.values())[::-1]
 NUMBERS = [leaf for leaf in LEAVES if leaf.entry["type"] in ("number", "integer")]
+
+
+def module(path):
+    """Import a module that is not part of the package."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    loaded = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = loaded  # dataclasses look their module up
+    spec.loader.exec_module(loaded)
+    return loaded

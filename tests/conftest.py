@@ -7,8 +7,8 @@ import pickle
 import pytest
 from hypothesis import settings
 
-# Needs libraries of the extra peers.
-collect_ignore = ["benchmarks/peers.py"]
+# Need libraries of the extra peers.
+collect_ignore = ["benchmarks/peers.py", "benchmarks/peer_chain.py"]
 
 # Nearly everything that a collection of thousands of tests creates remains; looking for garbage takes a quarter of it.
 gc.disable()

@@ -75,16 +75,7 @@ def checked(stated: Any, kept: Path | None = None) -> Checked:
 
 def _checked(stated, kept):
     """Checked configuration without a file of devices. Raises the errors of `checked`."""
-    stated = airs.with_keys_of_airs(stated)
-    sections = _plain(airs.with_any_air(meetings.with_any_humidity(stated)))
-    _refuse(schema_problems(sections, schema()), stated, {})
-    _refuse(airs.relation_of_conditions.problems(Keys(_OPTIONAL | sections)), stated, {})
-    stated = airs.expanded(meetings.at_dew_points(stated))
-    stated, unreadable = profiles.with_numbers(stated, kept)
-    _refuse(unreadable, stated, {})
-    stated = process.with_surfaces(expanded(materials.with_named(stated)))
-    if (whole := _plain(stated)) != sections:  # with airs, copies and surfaces of settings
-        _refuse(schema_problems(whole, schema()), stated, whole)
+    stated, whole = _typed(stated, kept)
     library = paper()["surfaces"]
     _refuse(_broken(NAMES, _NAMES_OF_DEVICES, Keys(_OPTIONAL | whole)), stated, whole)
     _refuse(described.problems(whole, library), stated, whole)
@@ -97,6 +88,20 @@ def _checked(stated, kept):
     config, by_numbers = merged(config, shown), replace(by_numbers, config=merged(by_numbers.config, shown))
     _refuse(_broken(RELATIONS, _OF_DEVICES, by_numbers), stated, whole)
     return Checked(normalised(config), estimates)
+
+
+def _typed(stated, kept):
+    """Configuration with all its airs, surfaces and copies, as stated and in plain values, which the schema allows."""
+    stated = airs.with_keys_of_airs(stated)
+    sections = _plain(airs.with_any_air(meetings.with_any_humidity(stated)))
+    _refuse(schema_problems(sections, schema()), stated, {})
+    _refuse(airs.relation_of_conditions.problems(Keys(_OPTIONAL | sections)), stated, {})
+    stated, unreadable = profiles.with_numbers(airs.expanded(meetings.at_dew_points(stated)), kept)
+    _refuse(unreadable, stated, {})
+    stated = process.with_surfaces(expanded(materials.with_named(stated)))
+    if (whole := _plain(stated)) != sections:  # with airs, copies and surfaces of settings
+        _refuse(schema_problems(whole, schema()), stated, whole)
+    return stated, whole
 
 
 def _plain(stated):

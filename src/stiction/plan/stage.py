@@ -171,7 +171,8 @@ class Stage:
 
     ``inputs`` and ``settings`` are functions of the plan of a configuration (`stiction.plan.plan.Plan`) and of the
     wildcards of a job. ``compute`` takes what its parameters name: an input, structured as ``inputs`` structures its
-    names, a wildcard, or the ``settings``; and all inputs as ``data``, all wildcards as ``at``.
+    names, a wildcard, a setting that no ``kind`` converts, or all ``settings``; and all inputs as ``data``, all
+    wildcards as ``at``.
     """
 
     name: str  #: of the rule
@@ -232,7 +233,8 @@ class Stage:
     def result(self, data: Mapping[str, Any], at: At, settings: Any) -> Any:
         """Compute from the data of the inputs, the wildcards and the converted settings."""
         complete = self.complete(settings, data) if self.complete else settings
-        arguments = vars(at) | {"settings": complete, "data": data, "at": at} | data
+        single = settings if self.kind is None and settings else {}
+        arguments = single | vars(at) | {"settings": complete, "data": data, "at": at} | data
         return self.compute(
             **{name: arguments[name] for name in signature(self.compute).parameters if name in arguments}
         )

@@ -219,8 +219,8 @@ def test_the_error_of_the_model_is_its_change_or_if_applied_the_error_of_that(et
         {"shape": ["force"], "humidity": [0.6]},
     )
     at = [etched.results[f"process/points/Bump_{number}"] for number in range(7)]
-    settings = margins.Settings(("etch_time_s",), ("etch",), ("B2",))
-    with_model, without = (margins.compute(at, [etched.law], settings, error) for error in (model, None))
+    named = {"variables": ["etch_time_s"], "processes": ["etch"], "surfaces": ["B2"]}
+    with_model, without = (margins.compute(at, [etched.law], **named, model_error=error) for error in (model, None))
     np.testing.assert_allclose(with_model.model_error, expected)
     assert np.all(without.model_error == 0)
     wide, narrow = (
@@ -240,7 +240,7 @@ def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_wit
     slopes = {"slopes": (("humidity", "shape", "law_quantity"), np.full((1, 1, 1), np.nan))}
     known = Results.of(config(RMS, Bump=BUMP | {"process": "etch"}))["process/laws/etch"]
     at = [refused.assign(value=float(value)).assign(slopes) for value in (30, 60, 90)]
-    curve = margins.compute(at, [known], margins.Settings(("etch_time_s",), ("etch",), ("B2",)))
+    curve = margins.compute(at, [known], ["etch_time_s"], ["etch"], ["B2"])
     found = recommended.compute({"Bump": curve}, {"etch": known}, "etch_time_s", 1)
     assert sentences.answers(found, "Bump") == [
         "Settings of the etch time that suffice are not known: too few could be computed."

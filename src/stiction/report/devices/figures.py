@@ -62,20 +62,20 @@ def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[Limit]]) -> No
 def simulated(
     datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, str], list]
 ) -> Figure:
-    """P(stuck) of beams by simulation alone against their length, one panel for each device.
+    """P(stuck) of beams by simulation alone against their length, one panel for each device and end state.
 
-    It has bands of 95 % and simulated limits.
-
-    A humidity has the same colour in all panels.
+    It has bands of 95 % and simulated limits. A humidity has the same colour in all panels.
     The numbers of the warnings, which are by name, humidity and shape, mark the curves.
     """
     names = list(dict.fromkeys(name for name, _ in datasets))
     numbers = numbered(warnings)
     most = max(sum(device == name for device, _ in datasets) for name in names)
     colours = humidity_colours(humidity for _, humidity in datasets)
-    figure, columns, lines = columns_of_panels(len(names), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
-    for panel, name in zip(columns[:, 0], names, strict=True):
-        cases = {humidity: dataset for (device, humidity), dataset in datasets.items() if device == name}
+    held = {name: dataset["shape"].values.tolist() for (name, _), dataset in datasets.items()}
+    subjects = [(name, shape) for name in names for shape in held[name]]
+    figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
+    for panel, (name, shape) in zip(columns[:, 0], subjects, strict=True):
+        cases = {rh: dataset.sel(shape=shape) for (device, rh), dataset in datasets.items() if device == name}
         named = []
         for humidity, dataset in cases.items():
             _shares(panel, dataset, colours[humidity])
@@ -90,9 +90,9 @@ def simulated(
         )
     for line in lines:
         line[0, 0].set_ylabel("P(stuck), simulated [–]")
-    letter_lines(lines, names)
+    letter_lines(lines, [f"{name}, {END_STATES[shape].by}" for name, shape in subjects])
     _explain(columns[0, 0], datasets)
-    legend_outside(figure, handles(columns[0, 0]), "upper", 4 if len(names) > 1 else 3)
+    legend_outside(figure, handles(columns[0, 0]), "upper", 4 if len(subjects) > 1 else 3)
     refer_to_warnings(figure, warnings)
     return figure
 
@@ -101,10 +101,9 @@ def _at_length(dataset):
     """P(stuck) at the length that a device states, for the legend."""
     if "length_of_device" not in dataset:
         return ""
-    held = dataset.isel(shape=-1)
-    stuck, *band = map(float, held.stuck_at_length)
+    stuck, *band = map(float, dataset.stuck_at_length)
     text = f"{100 * stuck:.3g} %" if 0 < stuck < 1 else fraction_with_band(stuck, *band, " %")
-    return f": {text} at {TO_UM * float(held.length_of_device):g} µm"
+    return f": {text} at {TO_UM * float(dataset.length_of_device):g} µm"
 
 
 def _marks(numbers: Mapping[tuple, Iterable[int]], *subject) -> str:
@@ -117,17 +116,15 @@ def _marks_of_warnings(numbers):
     return "".join(f" ({k})" for k in sorted(numbers))
 
 
-def _shares(panel: Axes, dataset, colour):
-    """P(stuck) of a device at one humidity, its band and its safe lengths."""
-    length = TO_UM * dataset.length.values
-    for shape in dataset["shape"].values:
-        curve = dataset.sel(shape=shape)
-        drawn = curve.stuck.values > 0
-        panel.plot(length[drawn], curve.stuck.values[drawn], END_STATES[shape].lines[0], color=colour)
-        panel.fill_between(length[drawn], *curve.stuck_band.values[:, drawn], color=colour, alpha=0.2, linewidth=0)
-        for share in curve.share.values:
-            safe = curve.sel(share=share)
-            panel.plot(TO_UM * float(safe.safe_length), share, _BASES[str(safe.basis.values)], color=colour)
+def _shares(panel: Axes, curve, colour):
+    """P(stuck) of a device at one humidity in one end state, its band and its safe lengths."""
+    length, drawn = TO_UM * curve.length.values, curve.stuck.values > 0
+    line = END_STATES[str(curve["shape"].values)].lines[0]
+    panel.plot(length[drawn], curve.stuck.values[drawn], line, color=colour)
+    panel.fill_between(length[drawn], *curve.stuck_band.values[:, drawn], color=colour, alpha=0.2, linewidth=0)
+    for share in curve.share.values:
+        safe = curve.sel(share=share)
+        panel.plot(TO_UM * float(safe.safe_length), share, _BASES[str(safe.basis.values)], color=colour)
 
 
 def _explain(panel, datasets):
