@@ -61,18 +61,18 @@ def leaves(config, schema, path=(), required=True):
     """All keys of a configuration that hold a value."""
     if schema["type"] != "object":
         return [Leaf(path, schema, required)]
-    found = []
+    leaves_found = []
     for key, value in config.items():
         entry = schema.get("properties", {}).get(key) or schema["additionalProperties"]
-        found += leaves(value, entry, (*path, key), key in schema.get("required", ()))
-    return found
+        leaves_found += leaves(value, entry, (*path, key), key in schema.get("required", ()))
+    return leaves_found
 
 
 def entries(schema):
     """Every part of the schema that describes a section or a value."""
     inside = [*schema.get("properties", {}).values()]
     inside += [schema[key] for key in ("additionalProperties", "items") if isinstance(schema.get(key), dict)]
-    return [schema, *(entry for part in inside for entry in entries(part))]
+    return [schema, *(entry for branch in inside for entry in entries(branch))]
 
 
 def replaced(path, value):

@@ -66,7 +66,7 @@ def test_intervals_of_95_percent_hold_95_percent_of_the_true_lengths(held_by, be
     for k in range(TRUTHS):
         truth, counts = drawn(stream(k, "truth"), CENTRES[held_by], beams)
         found, lengths = update(PRIOR, NOTHING, counts, stream(k, "draws")), RESULTS @ truth
-        mean, deviation = found.of(RESULTS)
+        mean, deviation = found.response_moments(RESULTS)
         low, high = found.quantiles(RESULTS, np.array([-1.96, 1.96])).T
         by_deviation.append(np.abs(lengths - mean) < 1.96 * deviation)
         by_quantiles.append((low < lengths) & (lengths < high))

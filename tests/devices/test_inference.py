@@ -48,8 +48,8 @@ def test_an_input_measured_exactly_leaves_the_conditional_distribution():
     exact = update(PRIOR, CrackData(np.eye(5)[:1], np.array([0.03]), np.zeros(1)))
     assert_allclose(exact.mean, PRIOR.covariance[:, 0] * 0.03 / PRIOR.covariance[0, 0], rtol=1e-12)
     budget = Budget(NAMES, DEVICE[0], PRIOR.covariance)
-    assert_allclose(exact.of(DEVICE[0])[1], budget.remaining(["rms"]), rtol=1e-9)
-    assert abs(exact.of(DEVICE[0])[1] / budget.remaining(["modulus"]) - 1) > 0.1  # control
+    assert_allclose(exact.response_moments(DEVICE[0])[1], budget.remaining(["rms"]), rtol=1e-9)
+    assert abs(exact.response_moments(DEVICE[0])[1] / budget.remaining(["modulus"]) - 1) > 0.1  # control
 
 
 def test_equal_data_twice_are_data_of_twice_as_many_beams():
@@ -70,20 +70,20 @@ def test_more_beams_widen_no_interval(seed):
     root = rng.normal(size=(5, 5))
     known = KnownInputs(NAMES, np.zeros(5), root @ root.T)
     results = rng.normal(size=(20, 5))
-    widths = [known.of(results)[1]]
+    widths = [known.response_moments(results)[1]]
     for response in rng.normal(size=(6, 5)):
         known = update(known, CrackData(response[None], rng.normal(size=1), np.array([0.3])))
-        widths.append(known.of(results)[1])
+        widths.append(known.response_moments(results)[1])
     assert np.all(np.diff(widths, axis=0) <= 1e-12)
     assert widths[-1].max() < 0.9 * widths[0].max()
 
 
 def test_shared_inputs_tell_about_the_device_and_inputs_of_the_test_beams_alone_do_not():
     found = update(PRIOR, DATA)
-    assert found.of(DEVICE[0])[1] < 0.5 * PRIOR.of(DEVICE[0])[1]
+    assert found.response_moments(DEVICE[0])[1] < 0.5 * PRIOR.response_moments(DEVICE[0])[1]
     assert_allclose(found.deviations[-1], PRIOR.deviations[-1], rtol=1e-12)  # thickness of the device
     apart = CrackData(BEAMS * (np.array(NAMES) == "thickness of test beams"), DATA.differences, DATA.errors)
-    assert_allclose(update(PRIOR, apart).of(DEVICE[0]), PRIOR.of(DEVICE[0]), rtol=1e-12)
+    assert_allclose(update(PRIOR, apart).response_moments(DEVICE[0]), PRIOR.response_moments(DEVICE[0]), rtol=1e-12)
 
 
 # Known truth
@@ -101,7 +101,7 @@ def coverage(posterior, repeats=100):
     for k in range(repeats):
         rng = np.random.default_rng(k)
         truth = rng.multivariate_normal(np.zeros(5), PRIOR.covariance)
-        mean, deviation = posterior(drawn(rng, truth)).of(DEVICE)
+        mean, deviation = posterior(drawn(rng, truth)).response_moments(DEVICE)
         scores.append((DEVICE @ truth - mean) / deviation)
     return np.mean(np.abs(scores) < 1), np.mean(np.abs(scores) < 1.96)
 
@@ -189,7 +189,7 @@ def test_the_knowledge_after_counts_is_that_of_quadrature(counts, stuck):
     at, chances = on_grid(known, counts)
     mean = chances @ at
     deviations = np.sqrt(chances @ (at - mean) ** 2)
-    for number, exact, tolerance in zip(found.of(BEAMS[:2]), (mean, deviations), (1, 2), strict=True):
+    for number, exact, tolerance in zip(found.response_moments(BEAMS[:2]), (mean, deviations), (1, 2), strict=True):
         assert_allclose(number, exact, atol=4 * tolerance * deviations.max() / np.sqrt(WORTH))
     for length, quantiles in zip(at.T, found.quantiles(BEAMS[:2], np.array([-2, 0, 2])), strict=True):
         for quantile, share in zip(quantiles, ndtr([-2, 0, 2]), strict=True):
@@ -205,7 +205,7 @@ def test_intervals_hold_what_is_probable_where_all_or_no_beams_stick_and_those_o
     chances = softmax(-((at[:, 0] / 0.12) ** 2) / 2 - counts.deviance(at) / 2)
 
     def held(known):
-        mean, deviation = known.of(np.ones((1, 1)))
+        mean, deviation = known.response_moments(np.ones((1, 1)))
         return chances[np.abs(at[:, 0] - mean) < 1.96 * deviation].sum()
 
     found = after(prior, OF_LENGTH, counts)
@@ -375,9 +375,11 @@ def test_the_expected_gain_of_further_beams_is_that_of_the_update_with_them():
     found = update(PRIOR, DATA)
     expected = inference.further_beams(found, DEVICE[0], BEAMS[2], 0.01)
     later = update(found, CrackData(BEAMS[2:], np.array([0.3]), np.array([0.01])))
-    assert_allclose(expected, later.of(DEVICE[0])[1], rtol=1e-12)
-    assert expected < found.of(DEVICE[0])[1]
-    assert_allclose(inference.further_beams(found, DEVICE[0], np.zeros(5), 0.01), found.of(DEVICE[0])[1], rtol=1e-12)
+    assert_allclose(expected, later.response_moments(DEVICE[0])[1], rtol=1e-12)
+    assert expected < found.response_moments(DEVICE[0])[1]
+    assert_allclose(
+        inference.further_beams(found, DEVICE[0], np.zeros(5), 0.01), found.response_moments(DEVICE[0])[1], rtol=1e-12
+    )
 
 
 # The lengths that the paper measured, beside those of its model NG
@@ -407,7 +409,7 @@ def predicted(known, asked, stated=STATED, beams=1):
         nothing, np.zeros((len(reduced), 0)), reduced, list(range(len(reduced))), stated
     )
     data = CrackData(responses[:n], differences, errors / np.sqrt(beams))
-    mean, deviation = update(prior, data).of(responses[n:])
+    mean, deviation = update(prior, data).response_moments(responses[n:])
     return truth - mean, np.hypot(deviation, scatter / np.sqrt(beams)), inference.p_value(prior, data)
 
 

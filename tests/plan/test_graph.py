@@ -45,7 +45,7 @@ def wanted_files(plan):
     return [
         name.format(**at)
         for stage, _ in stages().values()
-        for at in stage.wanted(plan)
+        for at in stage.jobs_of_targets(plan)
         for name in stage.files.values()
     ]
 

@@ -77,7 +77,7 @@ def test_sensitivity_is_that_of_the_energies_at_both_values(shifted):
 def test_slopes_and_their_errors_are_those_of_the_chosen_quantities():
     values = np.arange(6.0).reshape(3, 2)
     dataset = slopes.layout(["rms", "skewness", "kurtosis"], (0.44, 0.88), values, 0.1 * values)
-    assert_allclose(slopes.of(dataset, ["kurtosis", "rms"]), [[4, 0], [5, 1]])
+    assert_allclose(slopes.by_quantity(dataset, ["kurtosis", "rms"]), [[4, 0], [5, 1]])
     assert_allclose(slopes.errors_of(dataset, ["kurtosis", "rms"]), [[0.4, 0], [0.5, 0.1]])
 
 
@@ -89,11 +89,11 @@ def test_slopes_are_those_of_the_energies_at_both_values_and_of_their_own_quanti
     for k, h in enumerate(wanted.humidities):
         low, high = (curves.energies(contact, h, WATER) for contact in (less, more))
         expected = np.log(high.mean() / low.mean()) / 0.1
-        assert_allclose(slopes.of(found, ["rms", "kurtosis"])[k], [expected, -expected], rtol=1e-9)
+        assert_allclose(slopes.by_quantity(found, ["rms", "kurtosis"])[k], [expected, -expected], rtol=1e-9)
         paired = np.std(np.log(high / low) / 0.1, ddof=1) / np.sqrt(len(low))
         assert 0.3 * paired < float(found.standard_error[0, k]) < 3 * paired
     # Rougher surfaces adhere less, the more so the drier the air.
-    of_rms = slopes.of(found, ["rms"])[:, 0]
+    of_rms = slopes.by_quantity(found, ["rms"])[:, 0]
     assert np.all(of_rms < 0)
     assert of_rms[0] < of_rms[-1]
 

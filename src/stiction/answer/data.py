@@ -62,7 +62,7 @@ class Probability:
     """Expected fraction of stuck devices, and a band of the fraction that contains all that is unknown.
 
     Where no simulated device sticks, the upper end is a bound with 95 % confidence. It is the allowed fraction at the
-    size to build.
+    size to build, and a few draws of which many devices stick can raise the expected fraction above it.
     """
 
     value: float
@@ -157,7 +157,7 @@ class Answer:
     @property
     def pull_off(self) -> PullOff:
         """Pull-off forces in the air where places hold most, of a device that is asked for them."""
-        return next(one for one in self.pull_offs if one.humidity == self.stated_steps[-1].humidity)
+        return next(force for force in self.pull_offs if force.humidity == self.stated_steps[-1].humidity)
 
     @property
     def is_enough(self) -> bool:
@@ -208,8 +208,8 @@ class Answer:
     @property
     def is_by_tip(self) -> bool:
         """Whether the tip holds devices in the air that decides: without it, they may be longer by over 1 %."""
-        decides = [one for one in self.airs if one.humidity == self.stated_steps[-1].humidity]
-        return any(one.without_tip > 1.01 * one.build for one in decides)
+        decides = [air for air in self.airs if air.humidity == self.stated_steps[-1].humidity]
+        return any(air.without_tip > 1.01 * air.build for air in decides)
 
     @property
     def included(self) -> tuple[Cause, ...]:

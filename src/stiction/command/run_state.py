@@ -42,9 +42,9 @@ def is_fault(kind: str, *expected: type[Exception]) -> bool:
     >>> is_fault("KeyError"), is_fault("OSError"), is_fault("ConfigError"), is_fault("ValueError", ValueError)
     (True, False, False, False)
     """
-    known = getattr(builtins, kind, None)
+    builtin = getattr(builtins, kind, None)
     expected = (OSError, MemoryError, *expected)
-    return isinstance(known, type) and issubclass(known, Exception) and not issubclass(known, expected)
+    return isinstance(builtin, type) and issubclass(builtin, Exception) and not issubclass(builtin, expected)
 
 
 @dataclass(frozen=True)
@@ -154,8 +154,8 @@ class Run:
         """Note the start of a job, perhaps its second."""
         logs = tuple(map(str, record.log))
         message = " ".join(str(record.rule_msg or record.rule_name).split())
-        asked = getattr(record, "resources", None) or {}
-        seconds, megabytes = to_si(float(asked.get("cpu_ms", 0)), "ms"), float(asked.get("mem_mb", 0))
+        resources = getattr(record, "resources", None) or {}
+        seconds, megabytes = to_si(float(resources.get("cpu_ms", 0)), "ms"), float(resources.get("mem_mb", 0))
         self.jobs[record.jobid] = RunJob(
             record.rule_name, message, str(record.reason), logs, record.created, seconds, megabytes
         )
@@ -177,11 +177,11 @@ class Run:
         """Note an error of the run itself. For a command started by a run, the command's own output says more."""
         kind = getattr(record, "exception", "")
         if kind != "CalledProcessError":
-            said = _ORIGIN.sub("", str(record.msg)).strip()
-            if of_plan := _OF_PLAN.match(said):
-                kind, said = of_plan.groups()
+            text = _ORIGIN.sub("", str(record.msg)).strip()
+            if of_plan := _OF_PLAN.match(text):
+                kind, text = of_plan.groups()
             self.fault = str(record.msg) if is_fault(kind) else ""
-            self.refusal = f"{kind}: {said}" if self.fault else said
+            self.refusal = f"{kind}: {text}" if self.fault else text
 
     def seconds_left(self, now: float) -> float | None:
         """Estimate of the time left [s], ``None`` while too little is known, or at the end.
@@ -193,8 +193,8 @@ class Run:
         finished = sum(map(sum, list(self.seconds.values())))
         if self.done < 3 or elapsed < 5 or not finished:
             return None
-        left = elapsed * self._time_left(finished / self.done) / finished - (now - self.ended)
-        return left if left >= 0 else None
+        remaining = elapsed * self._time_left(finished / self.done) / finished - (now - self.ended)
+        return remaining if remaining >= 0 else None
 
     def _time_left(self, mean):
         """Time of all unfinished jobs [s]. The mean is for rules without a finished job."""

@@ -104,8 +104,8 @@ def comparison_figure(
         frame = frame[frame.share == shares[len(shares) // 2]]
     parts = dict(list(frame.groupby(list(dict.fromkeys([source.subject, source.panels])), sort=False)))
     figure, axes = panels(1, len(parts), (min(DOUBLE, SINGLE * len(parts)), 3.0))
-    for panel, part in zip(axes[0], parts.values(), strict=True):
-        for k, (humidity, line) in enumerate(part.groupby("relative_humidity")):
+    for panel, table_of_panel in zip(axes[0], parts.values(), strict=True):
+        for k, (humidity, line) in enumerate(table_of_panel.groupby("relative_humidity")):
             at, error = line.sort_values("value"), source.numbers[1]
             style = {"color": f"C{k}", "linestyle": dashes(k), "marker": marker(k), "capsize": 2}
             panel.errorbar(at.value, at[source.numbers[0]], at[error], label=Air(humidity).words, **style)
@@ -126,7 +126,7 @@ def _stages(source):
         """One job if copies of a subject are compared."""
         devices = plan.devices.stoppers if source.table == "stoppers" else plan.devices.beams
         subjects = plan.pairs if source.subject == "pair" else devices
-        return [{}] if any(one.endswith(tuple(values(plan.config))) for one in subjects) else []
+        return [{}] if any(subject.endswith(tuple(values(plan.config))) for subject in subjects) else []
 
     def settings(plan, _at):
         """Compared keys and their values by suffix of the copies."""
@@ -141,13 +141,13 @@ def _stages(source):
     }
     shows = f"{source.words.partition(' [')[0]} for values of one key"
 
-    def made(show):
+    def showing(show):
         """Function of a stage to show its table."""
         return lambda data, settings: show(pd.read_csv(data["table"]), source, settings["keys"], settings["ends"])
 
     return (
-        table_stage(name, shows, compute=made(comparison_table), **declared),
-        figure_stage(name, shows, "Comparison", caption="compared", compute=made(comparison_figure), **declared),
+        table_stage(name, shows, compute=showing(comparison_table), **declared),
+        figure_stage(name, shows, "Comparison", caption="compared", compute=showing(comparison_figure), **declared),
     )
 
 

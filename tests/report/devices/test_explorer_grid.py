@@ -30,7 +30,7 @@ STATE = {"thickness": 3.0, "share": 4e-3, "length": 200.0}
 
 def lognormal(falls=False):
     medians = 100 * np.array(THICKNESS.values)[:, None] ** 0.75
-    safe = medians * np.exp(SLOPE * SHARE.places * (-1 if falls else 1))
+    safe = medians * np.exp(SLOPE * SHARE.coordinates * (-1 if falls else 1))
     size = axis("length", (10.0, 1000.0), "linear")
     known = medians * np.exp((-1 if falls else 1) * SLOPE * SCORES)
     return Grid((THICKNESS,), SHARE, size, safe, counted(known, DEVICES), DEVICES, falls)
@@ -49,7 +49,7 @@ def test_the_cubic_is_that_of_fritsch_and_butland(count):
 
 def test_a_power_law_is_answered_exactly_between_its_states():
     grid = lognormal()
-    assert grid.safe_size(STATE) == pytest.approx(100 * 3**0.75 * np.exp(SLOPE * SHARE.place(4e-3)), rel=1e-9)
+    assert grid.safe_size(STATE) == pytest.approx(100 * 3**0.75 * np.exp(SLOPE * SHARE.coordinate(4e-3)), rel=1e-9)
     assert grid.stuck(STATE).share == pytest.approx(ndtr(score_of(STATE)), rel=1e-9)
     assert grid.stuck(STATE | {"length": grid.safe_size(STATE)}).share == pytest.approx(4e-3, rel=1e-9)
 

@@ -86,10 +86,10 @@ def test_coherences_are_spaced_by_equal_factors_of_their_rest_and_plays_evenly()
 @pytest.mark.parametrize("name", SCALES)
 def test_scales_are_inverted_and_have_their_slope(name):
     scale, value = SCALES[name], np.array([0.2, 0.9])
-    at, step = scale.place(value), 1e-6
+    at, step = scale.coordinate(value), 1e-6
     np.testing.assert_allclose(scale.value(at), value, rtol=1e-12)
     np.testing.assert_allclose((scale.value(at + step) - scale.value(at - step)) / (2 * step), scale.slope(value))
-    np.testing.assert_allclose(np.diff(scale.place(scale.spaced(*value, 5)), 2), 0, atol=1e-12)
+    np.testing.assert_allclose(np.diff(scale.coordinate(scale.spaced(*value, 5)), 2), 0, atol=1e-12)
 
 
 def job_settings(number, **stated):

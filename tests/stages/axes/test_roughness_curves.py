@@ -14,7 +14,7 @@ import stiction
 from stiction.contact.correction import Correction, ElasticChange
 from stiction.contact.environment import Water
 from stiction.devices import stoppers
-from stiction.devices.risk import KnownLengths
+from stiction.devices.risk import LengthBounds
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.report.axes import figures as figures_roughness
@@ -250,7 +250,7 @@ def test_a_beam_that_sticks_at_no_length_is_an_answer():
     device = SimpleNamespace(opening=SimpleNamespace(shapes=(S_SHAPE,)))
     common = {"seed": 1, "chaos": None, "water": WATER, "humidities": (0.6,), "device": device, "beams": 100}
     beam = requirement.RequiredBeam(**common, share=SHARE, length=1e-4, edge_radius=0.0)
-    known, lengths = KnownLengths(2e-4, 5e-5, 5e-5), np.full(100, np.inf)
+    known, lengths = LengthBounds(2e-4, 5e-5, 5e-5), np.full(100, np.inf)
     never = beam._response(lengths, *sticking.safe_lengths(lengths, beam, known), known)
     points = [
         requirement.layout([[never]], 100, beam).assign(
@@ -405,10 +405,10 @@ def test_the_kurtosis_stands_beside_every_skewness_in_sentences_tables_and_figur
     )
     alone = [point(3e-9).assign(roughness=value, kurtosis=3 + value**2) for value in (-1.0, 0.5, 0.0)]
     over_one = joined(alone, "skewness")
-    for found, axis in ((over_both, "yaxis"), (over_one, "xaxis")):
+    for found, axis, between in ((over_both, "yaxis", " "), (over_one, "xaxis", "\n")):
         draw = figures_roughness.roughness_map if "other" in found.dims else figures_roughness.roughness
         labels = [text.get_text() for text in getattr(draw(found).axes[0], axis).get_ticklabels()]
-        assert labels == ["-1\n(4)", "0\n(3)", "0.5\n(3.25)"]
+        assert labels == [f"-1{between}(4)", f"0{between}(3)", f"0.5{between}(3.25)"]
         table = tables.of_roughness({"S1": found})
         assert set(table.cells["kurtosis"]) == {"4", "3", "3.25"}
         assert "kurtosis" in table.caption

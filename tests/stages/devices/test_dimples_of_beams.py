@@ -26,7 +26,7 @@ from stiction.stages.devices import stoppers
 from stiction.stages.life.answers import layout
 from stiction.stages.life.beams import beam_answers
 from stiction.stages.life.dimples import dimple_answers
-from stiction.stages.life.inputs import BeamErrors, BeamInUse, Dimples
+from stiction.stages.life.inputs import BeamErrors, BeamKeys, Dimples
 
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 3, "width_um": 30, "humidities": [0, 0.67]}
 ROW = {"number": 3, "at_um": [80], "height_um": 1, "contact_um": [2, 1]}
@@ -148,7 +148,7 @@ def test_a_beam_with_dimples_has_a_job_for_them_at_each_humidity():
     assert_allclose(settings.contact, (2e-6, 1e-6), rtol=1e-12)
     for case, pair in (("C1_rh067", "b"), ("C1_dry", "b_dry")):
         assert graph.job(f"devices/dimples/{case}").inputs["contact"] == f"devices/contact/{pair}_2000x1000"
-    of = in_si(BeamInUse, job_settings(plan, "devices/life/C1")["beam"])
+    of = in_si(BeamKeys, job_settings(plan, "devices/life/C1")["beam"])
     assert_allclose((of.dimples.number, *of.dimples.at, of.dimples.height), (3, 80e-6, 1e-6), rtol=1e-12)
 
 

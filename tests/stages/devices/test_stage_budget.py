@@ -109,7 +109,7 @@ def test_beams_at_several_states_meet_the_same_samples():
 def test_a_state_is_released_once_if_it_has_the_same_laws_beside_others(monkeypatch):
     released, stronger, weaker = [], replace(BASE, contact=1.2), replace(BASE, contact=0.8)
     monkeypatch.setattr(budget, "arrests", lambda *all_of: released.append(all_of) or arrests(*all_of))
-    remembering = partial(BEAMS, number=20, known={})
+    remembering = partial(BEAMS, number=20, cache={})
     found = [remembering([BASE, other]).values for other in (stronger, weaker, stronger)]
     assert len(released) == 3
     np.testing.assert_array_equal(found[0], found[2])

@@ -77,7 +77,7 @@ def beam_view(name: str, section: Mapping[str, Any], safe_lengths: Mapping[float
     volts = [float(f"{value:.9g}") for value in np.linspace(0, limit, _POINTS)]
     sizes = (section[key] * UM for key in ("width_um", "thickness_um"))
     beam = Beam(1.0, *sizes, to_si(section["young_modulus_GPa"], "GPa"), section["gap_um"] * UM, 1)
-    added = [holding.energy_of_voltage(Capacitor(oxide, one, offset), beam.gap) for one in volts]
+    added = [holding.energy_of_voltage(Capacitor(oxide, voltage, offset), beam.gap) for voltage in volts]
     safe, scored = (
         np.array([holding.tip_length_at_voltage(lengths.values, beam, energy) for energy in added]) / UM
         for lengths in (joined.safe_length, joined["quantile"])

@@ -166,12 +166,12 @@ def _rows_apart(rows):
 def _with_tables(curves):
     """Curve or map with its crossings of the requirement and its sufficient ranges, one after the other."""
     scale = SCALES[ROUGHNESSES[curves.attrs["key"]].scale]
-    axis = scale.place(curves.roughness.values)
+    axis = scale.coordinate(curves.roughness.values)
     dimensions, crossed, ranges = [name for name in ("other", "humidity", "shape") if name in curves.dims], [], []
     for at in product(*(curves[name].values for name in dimensions)):
         curve = curves.sel(dict(zip(dimensions, at, strict=True)))
         met = crossings(axis, margins_of(curve), relative_errors(curve))
-        crossed += [(*at, crossing.place, crossing.error) for crossing in met]
+        crossed += [(*at, crossing.coordinate, crossing.error) for crossing in met]
         ranges += [(*at, *ends) for ends in sufficient(axis, margins_of(curve, "safe"))]
     columns = _columns("crossing", crossed, [*dimensions, "place", "error"])
     columns |= _columns("range", ranges, [*dimensions, "low", "high"])

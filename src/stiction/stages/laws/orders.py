@@ -35,10 +35,10 @@ def compute(forces: xr.Dataset, chaos: xr.Dataset, seed: int, draws: int, case: 
     orders, densities, distances = range(1, fitted.order + 1), [], []
     for order in progress(orders, "orders"):
         xi = stream(seed, "orders", case).random((draws, fitted.dimension))
-        drawn = truncated(fitted, order)(xi)
-        densities.append([histogram(column)[0] for column in drawn.T])
-        to_kernels = [convergence.distance_to(column, target) for column, target in zip(drawn.T, targets, strict=True)]
-        distances.append((to_kernels, list(map(convergence.distance_between, drawn.T, eta.T))))
+        sample = truncated(fitted, order)(xi)
+        densities.append([histogram(column)[0] for column in sample.T])
+        to_kernels = [convergence.distance_to(column, target) for column, target in zip(sample.T, targets, strict=True)]
+        distances.append((to_kernels, list(map(convergence.distance_between, sample.T, eta.T))))
     distances = np.swapaxes(distances, 0, 1)
     sizes = len(eta), draws
     converged = [convergence.converged_order(orders, column, *sizes) for column in distances[0].T]

@@ -79,9 +79,9 @@ def compute(
     as those of the choices, keys of `stiction.models.ALTERNATIVES_OF_SCANS` with the contact under the other value.
     """
 
-    def by_surface(part):
+    def by_surface(function):
         """Values of one function for every surface."""
-        return np.array([part(dataset, errors[name]) for name, dataset in slopes.items()])
+        return np.array([function(dataset, errors[name]) for name, dataset in slopes.items()])
 
     uncertainty = Uncertainty(*map(by_surface, (_parts, _sampling, _form)))
     changes = {name: _changes(contact, base, settings) for name, contact in choices.items()}
@@ -91,7 +91,7 @@ def compute(
 def _budgets(slopes, errors):
     """Budget of ln ē and the standard errors of its slopes, one after the other for every humidity."""
     names = (*errors.names, *SPECTRUM_QUANTITIES)
-    of_slopes = zip(study_slopes.of(slopes, names), study_slopes.errors_of(slopes, names), strict=True)
+    of_slopes = zip(study_slopes.by_quantity(slopes, names), study_slopes.errors_of(slopes, names), strict=True)
     count = len(errors.names)
     for values, uncertain in of_slopes:
         heights = Budget(errors.names, values[:count], errors.heights)
@@ -112,13 +112,13 @@ def _sampling(slopes, errors):
 def _form(slopes, errors):
     """Relative error of ē by the measured form of one surface, (n_rh,) [-]."""
     modes = MODE_QUANTITIES[1:]
-    return [Budget(modes, values, errors.modes).total for values in study_slopes.of(slopes, modes)]
+    return [Budget(modes, values, errors.modes).total for values in study_slopes.by_quantity(slopes, modes)]
 
 
 def _changes(contact, base, settings):
     """Relative change of ē by a choice and its standard error, (n_rh, 2) [-]."""
     same = first(base, contact.sizes["strip"])
-    pairs = ([energies(of, h, settings.water) for of in (contact, same)] for h in settings.humidities)
+    pairs = ([energies(dataset, h, settings.water) for dataset in (contact, same)] for h in settings.humidities)
     return [relative_shift(*pair) for pair in pairs]
 
 

@@ -146,7 +146,7 @@ STAGES = (
     Stage.writing(
         "spectrum",
         "spectrum/{surface}",
-        surfaces=lambda plan: plan.scans.others,
+        surfaces=lambda plan: plan.scans.described_by_numbers,
         inputs=_inputs,
         settings=_settings,
         kind=Settings,

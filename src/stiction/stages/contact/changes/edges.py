@@ -14,9 +14,9 @@ from stiction.models import SHIFTS
 from stiction.stages.contact.changes.patches import PatchChange
 
 
-def _with_radius(plan: Any, at: Any, place: Any) -> dict[str, Any]:
+def _with_radius(plan: Any, at: Any, patch_kind: Any) -> dict[str, Any]:
     """Settings of a contact of tips with less or more of the radius of their edge."""
-    settings = place.settings(plan, at, place.fewer(plan, at))
+    settings = patch_kind.settings(plan, at, patch_kind.fewer(plan, at))
     tilt, sampling = settings["tilt"], settings["sampling"]
     ends, reach = EDGE_RADIUS.step.ends(tilt["radius_um"]), tilt["reach_nm"] / NM_PER_UM
     now, room = (length_of_edge(radius, reach, tilt["slopes"][-1]) for radius in (tilt["radius_um"], ends[1]))

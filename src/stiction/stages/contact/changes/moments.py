@@ -48,10 +48,10 @@ def moment(dataset: xr.Dataset) -> float:
     return float(dataset.moment)
 
 
-def _with_moments(plan, at, place):
+def _with_moments(plan, at, patch_kind):
     """Settings with the number of samples, the moments and their step of Fig. 13."""
     study = plan.config["studies"]["sensitivity"]
-    return place.settings(plan, at, study["samples"]) | {"moments": plan.shifted_moments, "step": study["step"]}
+    return patch_kind.settings(plan, at, study["samples"]) | {"moments": plan.shifted_moments, "step": study["step"]}
 
 
 #: Each moment of the surface of the beam. The longest job begins early, so that no core waits for it at the end.

@@ -68,8 +68,8 @@ def _otherwise(name, estimate, choice, settings):
     heights = measured_heights.compute(estimate, measured_heights.Settings(name, source.heights))
     sampling = settings.sampling
     use = SpectrumUse(name, sampling.strip_length, sampling.margin)
-    wanted = measured_spectrum.Settings(source.psd, source.beyond, sampling.spacing, use)
-    return heights, measured_spectrum.compute(estimate, heights, wanted)
+    spectrum = measured_spectrum.Settings(source.psd, source.beyond, sampling.spacing, use)
+    return heights, measured_spectrum.compute(estimate, heights, spectrum)
 
 
 def other(source: EstimateParts, choice: str) -> EstimateParts:
@@ -84,14 +84,14 @@ def other(source: EstimateParts, choice: str) -> EstimateParts:
     return replace(source, **{choice: second if getattr(source, choice) == first else first})
 
 
-def _with_sources(plan, at, place):
+def _with_sources(plan, at, patch_kind):
     """Settings with the sources of the measured surfaces."""
     entries = {name: plan.config["surfaces"][name] for name in plan.scans.sides(at.pair)}
     sources = {name: select(EstimateParts, entry) for name, entry in entries.items()}
-    return place.settings(plan, at, place.fewer(plan, at)) | {"sources": sources}
+    return patch_kind.settings(plan, at, patch_kind.fewer(plan, at)) | {"sources": sources}
 
 
-def _with_estimates(plan, at, _named):
+def _with_estimates(plan, at, _name_of):
     """Two surfaces, and the estimates of the measured ones."""
     return surface_inputs(plan, at.pair) | {
         "estimates": {name: f"estimate/{name}" for name in plan.scans.sides(at.pair)}

@@ -52,8 +52,8 @@ SOLID = PatchChange(
     words="with {side} {solid_property}",
     end="_{side}",
     compute=_changed,
-    settings=lambda plan, at, place: less_or_more(
-        place.settings(plan, at, place.fewer(plan, at)),
+    settings=lambda plan, at, patch_kind: less_or_more(
+        patch_kind.settings(plan, at, patch_kind.fewer(plan, at)),
         at.solid_property,
         at.side,
         plan.devices.step(at.pair, at.solid_property),
@@ -63,7 +63,7 @@ SOLID = PatchChange(
 VARIANT_OF_SOLIDS = PatchChange(
     words="under variant {variant}",
     end="_{variant}",
-    settings=lambda plan, at, place: (
-        place.settings(plan, at, place.fewer(plan, at)) | plan.variants.solids(at.pair, at.variant)
+    settings=lambda plan, at, patch_kind: (
+        patch_kind.settings(plan, at, patch_kind.fewer(plan, at)) | plan.variants.solids(at.pair, at.variant)
     ),
 )

@@ -114,9 +114,9 @@ def surfaces_of(
 
     ``surfaces`` describes those without scans by name; spacing of the grid [m]; the others as in `equivalent_under`.
     """
-    known = measured or {}
+    datasets = measured or {}
     return [
-        known[name] if name in known else _datasets(surfaces[name], spacing, identifications.get(name))
+        datasets[name] if name in datasets else _datasets(surfaces[name], spacing, identifications.get(name))
         for name in (sides.beam, sides.substrate)
     ]
 
@@ -143,9 +143,9 @@ def summits_under(
     streams = streams_of_sides(changed.seed, pair)
     summits, areas = [], []
     for k in progress(range(changed.contact.samples), "surface pairs"):
-        drawn = equivalent.draw(*streams(k))
-        summits.append(equivalent.summits(drawn))
-        areas.append(equivalent.bearing_area(drawn))
+        heights = equivalent.draw(*streams(k))
+        summits.append(equivalent.summits(heights))
+        areas.append(equivalent.bearing_area(heights))
     return layout(summits, areas, equivalent.distances)
 
 
@@ -153,14 +153,14 @@ def layout(summits: Sequence[Summits], bearing_areas: Sequence[np.ndarray], grid
     """Dataset of the summits of all samples above the mean plane, found in equal areas, and of their bearing areas."""
     above = [of_sample.tops > 0 for of_sample in summits]
     tops, curvatures = (
-        np.concatenate([values[kept] for values, kept in zip(column, above, strict=True)])
+        np.concatenate([values[above_mean] for values, above_mean in zip(column, above, strict=True)])
         for column in ([of_sample.tops for of_sample in summits], [of_sample.curvatures for of_sample in summits])
     )
     return xr.Dataset(
         {
             "top": ("summit", tops.astype(np.float32), {"units": "m"}),  # drawn in single precision
             "curvature": ("summit", curvatures, {"units": "m-1"}),
-            "count": ("strip", np.array([kept.sum() for kept in above]), {"units": "1"}),
+            "count": ("strip", np.array([above_mean.sum() for above_mean in above]), {"units": "1"}),
             "area": ((), summits[0].area, {"units": "m2", "long_name": "area in which a point can be a summit"}),
             "bearing_area": (("strip", "height"), np.array(bearing_areas, np.float32), {"units": "1"}),
             "step": ((), grid.step, {"units": "m"}),
@@ -201,8 +201,10 @@ def summits_of_job(data: Mapping[str, Any], pair: str, settings: dict[str, Any])
 def arguments(data: Mapping[str, Any], pair: str, settings: dict[str, Any]) -> tuple:
     """Arguments of `equivalent_under` from the inputs and plain settings of a job."""
     measured = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
-    wanted = (in_si(Settings, part) for part in (settings["base"], merged(settings["base"], settings["changes"])))
-    return data["identifications"], pair, *wanted, measured
+    both_settings = (
+        in_si(Settings, section) for section in (settings["base"], merged(settings["base"], settings["changes"]))
+    )
+    return data["identifications"], pair, *both_settings, measured
 
 
 # Contact
@@ -227,11 +229,11 @@ def contact_of_islands(data: Mapping[str, Any], pair: str, settings: dict[str, A
     return stage_contact.layout(*curves, islands.distances, samples)
 
 
-def _summit_settings(plan, at, place):
+def _summit_settings(plan, at, patch_kind):
     """Settings of the summits without the variant, and its changes. Patches of devices have the samples of budgets."""
-    settings, size = plan.variants.summits(at.pair, at.variant), place.size(plan, at)
+    settings, size = plan.variants.summits(at.pair, at.variant), patch_kind.size(plan, at)
     if size:
-        size |= {"contact": {"samples": place.fewer(plan, at)}}
+        size |= {"contact": {"samples": patch_kind.fewer(plan, at)}}
     return settings | {"base": merged(settings["base"], size)}
 
 
@@ -240,7 +242,7 @@ SUMMITS = PatchChange(
     subject="Summits",
     words="under variant {variant}",
     end="_{variant}",
-    inputs=lambda plan, at, named: inputs(plan, at),
+    inputs=lambda plan, at, name_of: inputs(plan, at),
     settings=_summit_settings,
     kind=None,
     compute=summits_of_job,
@@ -249,9 +251,9 @@ SUMMITS = PatchChange(
 )
 
 
-def _on_summits(plan, at, named):
+def _on_summits(plan, at, name_of):
     """Summits of the first variant with the same."""
-    return {"summits": named(SUMMITS, pair=at.pair.pair, variant=plan.variants.with_summits_of(at.pair, at.variant))}
+    return {"summits": name_of(SUMMITS, pair=at.pair.pair, variant=plan.variants.with_summits_of(at.pair, at.variant))}
 
 
 #: A variant of the model: its solids on its summits.
@@ -259,7 +261,7 @@ VARIANT = PatchChange(
     words="under variant {variant}",
     end="_{variant}",
     inputs=_on_summits,
-    settings=lambda plan, at, place: plan.variants.solids(at.pair, at.variant),
+    settings=lambda plan, at, patch_kind: plan.variants.solids(at.pair, at.variant),
     kind=SolidsOfPair,
     compute=contact_of,
     running=Running(),
@@ -269,9 +271,9 @@ VARIANT_OF_ISLANDS = PatchChange(
     subject="Contact of islands",
     words="under variant {variant}",
     end="_{variant}",
-    inputs=lambda plan, at, named: inputs(plan, at),
-    settings=lambda plan, at, place: (
-        _summit_settings(plan, at, place) | {"solids": plan.variants.solids(at.pair, at.variant)}
+    inputs=lambda plan, at, name_of: inputs(plan, at),
+    settings=lambda plan, at, patch_kind: (
+        _summit_settings(plan, at, patch_kind) | {"solids": plan.variants.solids(at.pair, at.variant)}
     ),
     kind=None,
     compute=contact_of_islands,
