@@ -5,6 +5,7 @@ import pickle
 import re
 from dataclasses import replace
 
+import drawn_curves
 import numpy as np
 import pytest
 import xarray as xr
@@ -15,11 +16,13 @@ from stiction.contact.correction import Correction, ElasticChange
 from stiction.contact.environment import Water
 from stiction.devices.process import unknown
 from stiction.plan.graph import Results
+from stiction.plan.plan import Plan
 from stiction.report.axes import process as sentences
 from stiction.report.axes import section, tables
 from stiction.report.devices import pages
 from stiction.report.style import png
 from stiction.stages.axes import law, margins, recommended, requirement
+from stiction.stages.axes.process import values_of
 from stiction.stages.surfaces.descriptions import description
 
 SAMPLES, SHARE = 200, 0.05
@@ -301,3 +304,26 @@ def test_both_surfaces_of_a_pair_change_together():
     assert together.surface == "B2 and Sub1"
     rougher = float(alone["process/points/Bump_6"].estimate[0, 0]), float(together.estimate[-1, 0, 0])
     assert rougher[1] < 0.9 * rougher[0]
+
+
+def test_values_are_within_the_settings_of_all_processes_of_a_device():
+    polish = RMS | {"surface": "Sub1", "together_with": "etch"}
+    polish["settings"] = [setting(value, rms_nm=2.0) for value in (20, 50, 100)]
+    both = stiction.load(
+        SECTIONS, {"process": {"etch": ETCH, "polish": polish}, "devices": {"Bump": BUMP | {"process": "etch"}}}
+    )
+    values = values_of(Plan(both), "Bump")
+    assert (values[0], values[-1]) == (30, 100)
+    assert {50, 60, 90} < {*values}
+
+
+def test_a_device_of_which_one_air_and_end_state_is_unknown_has_no_settings():
+    curve, _ = drawn_curves.etched(is_beam=True)
+    curve = xr.concat([curve, curve.assign_coords(shape=["other"])], "shape", data_vars="minimal", coords="minimal")
+    gap = curve.assign(margin=curve.margin.where((curve.humidity != 0.6) | (curve["shape"] != "other")))
+    known, none = (
+        recommended.compute({"D": one}, {"etch": drawn_curves.law_of()}, drawn_curves.VARIABLE, 1)
+        for one in (curve, gap)
+    )
+    assert np.isnan(none.safe).all()
+    assert not np.isnan(known.safe).all()
