@@ -58,9 +58,7 @@ def etched(is_beam=False, unknown=()):
         for value in map(float, grid(SETTINGS))
     ]
     etch_law = law_of()
-    curve = of_process.compute(
-        [point.assign(slopes) for point in points], [etch_law], of_process.Settings((VARIABLE,), ("etch",), ("B2",))
-    )
+    curve = of_process.compute([point.assign(slopes) for point in points], [etch_law], [VARIABLE], ["etch"], ["B2"])
     return curve, recommended.compute({"D": curve}, {"etch": etch_law}, VARIABLE, 1)
 
 
@@ -74,8 +72,7 @@ def mapped():
         for second in map(float, grid(seconds, 4))
         for value in map(float, grid(SETTINGS))
     ]
-    settings = of_process.Settings((VARIABLE, "bake_min"), ("etch", "bake"), ("B2", "Sub1"))
-    process_map = of_process.compute(points, laws, settings)
+    process_map = of_process.compute(points, laws, [VARIABLE, "bake_min"], ["etch", "bake"], ["B2", "Sub1"])
     return process_map, recommended.of_pairs(process_map, laws, "D", 1)
 
 
