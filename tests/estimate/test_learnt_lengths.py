@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.stats import binom, norm
 
 from stiction.estimate.errors import conformal
-from stiction.estimate.fit import DesignRows, fitted, group
+from stiction.estimate.fit import DesignRows, Kernel, coefficients, fitted, group
 from stiction.estimate.length import SCORES, Lengths, fraction_of, normal_score
 from stiction.estimate.table import Surrogate
 
@@ -38,6 +38,18 @@ def test_a_process_follows_a_smooth_function_and_its_trend_alone_does_not():
     trend = Surrogate(**content | {"weights": none})
     alone = [trend.at(row).of["f"] - value for row, value in zip(other.coordinates, other.values["f"], strict=True)]
     assert np.std(alone) > 5 * np.std(errors)
+
+
+def test_a_node_that_is_given_twice_shares_its_weight():
+    """The kernel between the nodes is singular then. Without what is added to it there would be no solution."""
+    rows = drawn(40, 1)
+    kernel, nodes = Kernel(np.zeros(3), np.ones(3), np.ones(3), 0.1), rows.coordinates[::6]
+    (trend, once), (same, twice) = (
+        coefficients(kernel, rows, np.vstack(some))["f"] for some in ((nodes,), (nodes, nodes[:5]))
+    )
+    np.testing.assert_allclose(same, trend, atol=1e-3)
+    np.testing.assert_allclose(twice[:5], twice[len(nodes) :], atol=1e-3 * np.abs(once).max())
+    np.testing.assert_allclose(twice[:5] + twice[len(nodes) :], once[:5], atol=1e-3 * np.abs(once).max())
 
 
 def test_noise_of_a_surface_is_not_followed():

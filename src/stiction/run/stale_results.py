@@ -42,7 +42,7 @@ def foreign(
 def _difference(path, settings, expected, remember):
     """Difference between a dataset and this run's, empty without any."""
     try:
-        label = labels.Label(*remember([_state(path), labels.Label._fields], lambda: labels.read(path)))
+        label = labels.DatasetLabel(*remember([_state(path), labels.DatasetLabel._fields], lambda: labels.read(path)))
     except (DataError, OSError):
         return "cannot be read"
     if label.name != path.stem:
