@@ -20,6 +20,8 @@ from stiction.config.validation import checked
 from stiction.constants import WATER_MOLECULE
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import BRIDGE, MOLECULES, humidity_at, least_humidity, meniscus_height
+from stiction.plan import devices
+from stiction.plan.devices import DevicePlan
 from stiction.plan.plan import Plan
 from stiction.plan.stage import select
 
@@ -51,6 +53,18 @@ def test_conditions_are_the_humidities_of_tables_at_their_temperatures():
     for humidity, kelvin in temperatures(config, "b").items():
         assert Plan(config).air_of_devices.temperature("b", humidity) == kelvin
         assert Plan(config).air.temperature("b", humidity) == 300  # pairs keep the temperature of the water
+
+
+def test_tips_are_at_the_temperatures_of_conditions_which_a_plan_reads_once(monkeypatch):
+    _, config = lever(conditions=MISSION)
+    config = config | {"devices": dict.fromkeys("ABC", config["devices"]["Lever"])}
+    read = []
+    monkeypatch.setattr(devices, "temperatures", lambda *asked: read.append(asked[1]) or temperatures(*asked))
+    plan = DevicePlan(config)
+    plan.all_tips("b")
+    assert read == ["b"]
+    assert plan._temperatures(config["devices"]["A"]) == temperatures(config, "b")
+    assert DevicePlan(plain := lever(humidities=[0.6])[1])._temperatures(plain["devices"]["Lever"]) == {0.6: 300}
 
 
 def test_a_dew_point_in_place_of_the_humidity_is_that_of_the_condition():

@@ -441,8 +441,14 @@ class DevicePlan:
     def _temperatures(self, section):
         """Temperatures of the water of a device by humidity, those of its chart and dry air among them [K]."""
         humidities = section["humidities"] + section.get("chart", {}).get("humidities", [])
-        by_humidity = temperatures(self.config, section["pair"])
+        by_humidity = self._in_conditions.get(section["pair"], {})
         return {air: by_humidity.get(air, self.config["water"]["temperature_K"]) for air in humidities}
+
+    @cached_property
+    def _in_conditions(self):
+        """Temperatures of the water in conditions of devices, by pair and humidity [K]."""
+        pairs = {device["pair"] for device in self.config.get("devices", {}).values()}
+        return {pair: temperatures(self.config, pair) for pair in pairs}
 
     def _rms_of_both(self, pair):
         """Standard deviation of the sum of the heights of both surfaces of a pair [nm]."""
