@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 
 from stiction.contact.correction import Change
 from stiction.estimate.answer import answer
@@ -42,11 +43,15 @@ def patch_on(sides, area=9e-12):
     return Patch(of_pair(sides), WATER, area, 164e9)
 
 
-def constant(value, name):
-    """Process of one quantity or of all forces, the same everywhere."""
-    names = [name] if name == "ratio" else ["at_0", "at_1", "at_2", "slope"]
-    trend = {key: [value - 0.2 * k if key != "slope" else 0.3] for k, key in enumerate(names)}
-    return Process([], [], [], [], [[]], trend, {key: [0.0] for key in names}, [], [], math.inf)
+def process_of(**quantities):
+    """Process of quantities that are the same everywhere."""
+    trend = {key: [value] for key, value in quantities.items()}
+    return Process([], [], [], [], [[]], trend, {key: [0.0] for key in quantities}, [], [], math.inf)
+
+
+def forces_at(first, step=0.2, slope=0.3):
+    """Process of forces that grow by a step between scores."""
+    return process_of(at_0=first, at_1=first - step, at_2=first - 2 * step, slope=slope)
 
 
 def test_flooded_flats_hold_with_the_tension_of_the_water():
@@ -64,9 +69,19 @@ def test_an_area_moves_its_own_coordinate_alone():
 @pytest.mark.parametrize("ratio", [0.5, 1.0, 1.3])
 def test_full_contact_changes_forces_by_its_ratio(ratio):
     patch = patch_on(POINT.sides)
-    lengths = reciprocals(patch, constant(1.5, "at"), constant(math.log(ratio), "ratio"))
+    lengths = reciprocals(patch, forces_at(1.5), process_of(ratio=math.log(ratio), power=0.9))
     assert 1 / lengths.at(0.0) == pytest.approx(ratio * patch.flooded_force * math.exp(-1.5))
     assert 1 / lengths.at(-3.0) == pytest.approx(ratio * patch.flooded_force * math.exp(-1.5 + 0.4 + 0.3))
+
+
+@pytest.mark.parametrize("power", [1.0, 1.3])
+def test_lognormal_forces_change_as_in_a_run(power):
+    patch, scatter = patch_on(POINT.sides), 0.25
+    forces = patch.flooded_force * np.exp(-1.5 + scatter * np.random.default_rng(1).normal(size=2_000_000))
+    changed = np.sort(Change(0.8, power).of(forces)(forces))
+    lengths = reciprocals(patch, forces_at(1.5, scatter, scatter), process_of(ratio=math.log(0.8), power=power))
+    for score in (0.0, -0.5, -1.0, -2.0, -3.0):
+        assert 1 / lengths.at(score) == pytest.approx(np.quantile(changed, norm.sf(score)), rel=0.01)
 
 
 @pytest.mark.parametrize("power", [0.8, 1.2])
@@ -77,7 +92,7 @@ def test_a_tested_force_is_that_of_its_patches_changed_as_a_run_does(monkeypatch
     numbers |= {"ratio": 0.7, "power": power}
     points = [(POINT, numbers), (POINT, numbers | {"ratio": np.nan}), (POINT, {"airs": numbers["airs"]})]
     monkeypatch.setattr(of_estimates, "stored", lambda *_: points)
-    processes = constant(0.5, "at"), constant(0.0, "ratio")
+    processes = forces_at(0.5), process_of(ratio=0.0, power=1.0)
     (one,) = of_estimates.tested_forces(Path(), "any", 164e9, -3.0902, lambda _: processes)
     changed = Change(0.7, max(power, 1.0)).of(pressures)(pressures)
     assert 1 / one.true == pytest.approx(6e-12 * np.quantile(changed, 0.999), rel=0.08)

@@ -104,8 +104,13 @@ function lengths(state, gap, table) {
 
 // force: its reciprocal stands for a length
 function reciprocals(patch, {forces, full, coordinates: names}) {
-  const place = ofPatch(patch), {ratio} = known(full, place, names);
-  return falling(known(forces, place, names), -Math.log(tensionOf(patch.film) * patch.area) - ratio);
+  const place = ofPatch(patch), {ratio, power} = known(full, place, names);
+  return changedBy(falling(known(forces, place, names), -Math.log(tensionOf(patch.film) * patch.area)), ratio, Math.max(1, power));
+}
+function changedBy({logarithms, slope}, ratio, power) {
+  const [median, , last] = logarithms, scatter = (median - last) / 2;
+  const shift = median - ratio - (1 - power ** 2) * scatter ** 2 / 2;
+  return {logarithms: logarithms.map((each) => shift + power * (each - median)), slope: power * slope};
 }
 function ofStopper({sides, force}, {modulus, stoppers}) {
   const [low, high] = stoppers.sides, [one, other] = sides;

@@ -1,7 +1,11 @@
 r"""Force that holds a fraction of stoppers, as the estimate knows it. Plain Python, SI units.
 
-Pull-off forces F have the scores of lengths 1/F: the larger the force, the fewer stick. Full contact changes their mean
-by a factor. ASSUME: it changes their scatter no more, as a run does where it finds a power below 1.
+Pull-off forces F have the scores of lengths 1/F: the larger the force, the fewer stick. Full contact changes them as in
+`stiction.contact.correction`: their mean by a ratio r, and their scatter s by a power b. With the median m on summits,
+
+.. math:: \ln F = \ln m + b \ln \frac F m + \ln r + \frac{(1 - b^2) s^2}{2} .
+
+ASSUME: forces are lognormal for the mean of the powers, with the scatter from the median to the last score.
 """
 
 import math
@@ -38,8 +42,15 @@ def reciprocals(patch: Patch, forces: Process, full: Process) -> Lengths:
     NotLearnt
         If the patch is beyond what was learnt.
     """
-    ratio, values = (known_at(process, patch.coordinates, OF_PATCHES) for process in (full, forces))
-    return falling(values, -math.log(patch.flooded_force) - ratio["ratio"])
+    change, values = (known_at(process, patch.coordinates, OF_PATCHES) for process in (full, forces))
+    return _changed(falling(values, -math.log(patch.flooded_force)), change["ratio"], max(1.0, change["power"]))
+
+
+def _changed(summits, ratio, power):
+    """Reciprocals by full contact, from the logarithm of its ratio and its power."""
+    median = summits.logarithms[0]
+    shift = median - ratio - (1 - power**2) * summits.fall**2 / 2
+    return Lengths(tuple(shift + power * (each - median) for each in summits.logarithms), power * summits.slope)
 
 
 @dataclass(frozen=True)

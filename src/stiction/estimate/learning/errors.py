@@ -9,13 +9,12 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.special import betaincinv
 
-from stiction.contact.correction import Change
 from stiction.devices.risk import CONFIDENCE
 from stiction.estimate.answer import difficulty
 from stiction.estimate.force import reciprocals
 from stiction.estimate.learning.design import Point
 from stiction.estimate.learning.patches import FOLDER
-from stiction.estimate.learning.rows import of_forces, of_tips, patches_of, states_of, stored
+from stiction.estimate.learning.rows import change_of, of_forces, of_tips, patches_of, states_of, stored
 from stiction.estimate.learning.training import FACTORS, changes_of
 from stiction.estimate.length import NAMES, Lengths, NotLearnt, lengths
 from stiction.estimate.table import Process
@@ -64,12 +63,12 @@ def tested(folder: Path, sets: str, modulus: float, score: float, processes: Pro
 
 
 def tested_forces(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
-    """Reciprocals of forces of some sets, as `tested`. The power of their scatter is at least 1, as in a run."""
+    """Reciprocals of forces of some sets, as `tested`."""
     for point, numbers in stored(folder / FOLDER, sets):
         if not np.isfinite(numbers.get("ratio", np.nan)):
             continue
         patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
-        changed = Change(float(numbers["ratio"]), max(float(numbers["power"]), 1.0)).of(pressures)(pressures)
+        changed = change_of(numbers).of(pressures)(pressures)
         true = _lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
         yield _beside(point, true, score, lambda of=patch, at=point: reciprocals(of, *processes(at)))
 

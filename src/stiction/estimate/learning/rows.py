@@ -10,6 +10,7 @@ from scipy.special import ndtr
 
 from stiction.config.units import to_si
 from stiction.constants import WATER_SURFACE_ENERGY
+from stiction.contact.correction import Change
 from stiction.devices.tail import fit_tail
 from stiction.estimate.learning.design import Point
 from stiction.estimate.learning.fit import Rows
@@ -123,8 +124,14 @@ OF_RATIO = (0, 1, 2, 4, 7)
 
 
 def rows_of_ratios(folder: Path, name: str, modulus: float) -> Rows:
-    """Rows of the logarithm of the change of the mean pull-off force by full contact."""
+    """Rows of the logarithm of the ratio, and of the power, of the change of pull-off forces by full contact."""
     found = [(p, n) for p, n in stored(folder / FOLDER, name) if np.isfinite(n.get("ratio", np.nan))]
     coordinates = np.array([patches_of(*one, modulus)[0].coordinates for one in found])
-    ratio, error = np.array([(float(numbers["ratio"]), float(numbers["ratio_error"])) for _, numbers in found]).T
-    return Rows(coordinates, {"ratio": np.log(ratio)}, np.array([point.number for point, _ in found]), error)
+    values = {name: np.array([float(numbers[name]) for _, numbers in found]) for name in ("ratio", "ratio_error")}
+    changes = {"ratio": np.log(values["ratio"]), "power": np.array([change_of(numbers).power for _, numbers in found])}
+    return Rows(coordinates, changes, np.array([point.number for point, _ in found]), values["ratio_error"])
+
+
+def change_of(numbers: Mapping[str, Any]) -> Change:
+    """Change of the forces of a point that a run applies: the power of their scatter is at least 1."""
+    return Change(float(numbers["ratio"]), max(float(numbers["power"]), 1.0))
