@@ -15,8 +15,10 @@ import subprocess
 import sys
 import tempfile
 import time
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import yaml
 
 import stiction
@@ -29,6 +31,8 @@ ONE, LENGTHS = (
     {"run": {"pairs": []}, "devices": {"C1": BEAM | {"humidities": [0.67]}}},
     "results/tables/safe_lengths.md",
 )
+#: Side of a scan of 512² points [µm].
+SIDE = 10.24
 #: Few samples and beams, for a first answer.
 FEW = {"contact": {"samples": 500}, "chaos": {"order": 6}, "design": {"beams": 300}}
 MORE = {"run": {"pairs": []}, "devices": {"C1": BEAM | {"humidities": [0.67, 0.8]}}}
@@ -43,6 +47,37 @@ def of_many(number):
     return {"run": {"pairs": []}, "devices": beams}
 
 
+def of_pairs(number):
+    """Study of cantilevers at one humidity, each on a pair of its own, of which only the rms is known."""
+    return _of_surfaces([{"like": "B2", "rms_nm": round(2.4 + 0.6 * k / number, 4)} for k in range(number)])
+
+
+def of_scans(number):
+    """Study of cantilevers at one humidity, each on a surface of which there is one scan."""
+    given = {"size_um": [SIDE, SIDE], "height_unit": "nm"}
+    return _of_surfaces([{"scans": {"files": [f"scan_{k}.npy"]} | given} for k in range(number)])
+
+
+def _of_surfaces(entries):
+    """Study of a cantilever on each surface of a configuration."""
+    surfaces = {f"M{k}": entry for k, entry in enumerate(entries)}
+    pair = {"substrate": "Sub1", "gap_um": 20, "humidities": [0.67]}
+    pairs = {f"p{k}": pair | {"beam": name} for k, name in enumerate(surfaces)}
+    beams = {f"D{k}": BEAM | {"pair": name, "length_um": 250, "humidities": [0.67]} for k, name in enumerate(pairs)}
+    return {"run": {"pairs": [*pairs], "studies": []}, "surfaces": surfaces, "pairs": pairs, "devices": beams}
+
+
+def write_scans(study, folder):
+    """Draw the scans that a study reads, on the surface B2 of the paper."""
+    surface = stiction.PairStudy.of(
+        stiction.load({"contact": {"samples": 5}, "chaos": {"order": 1}}), "b"
+    ).surfaces.beam
+    square = replace(surface, grid=stiction.StripGrid(SIDE * 1e-6, SIDE * 1e-6, surface.grid.spacing, 1e-6))
+    for number, entry in enumerate(study.get("surfaces", {}).values()):
+        for name in entry.get("scans", {}).get("files", ()):
+            np.save(folder / name, 1e9 * square.draw(stiction.stream(1, "goals", number))[::2, ::2])
+
+
 #: What is measured: configurations one after the other in one folder, of which the last counts, and arguments.
 RUNS = {
     "first safe length": ([ONE], [LENGTHS]),
@@ -50,6 +85,10 @@ RUNS = {
     "one more humidity": ([ONE, MORE], [LENGTHS]),
     "plan of 250 devices at 4 humidities": ([of_many(250)], ["-n"]),
     "plan of 2500 devices at 4 humidities": ([of_many(2500)], ["-n"]),
+    "2 pairs with their budgets": ([of_pairs(2)], []),
+    "2 pairs of scans with their budgets": ([of_scans(2)], []),
+    "plan of 100 pairs": ([of_pairs(100)], ["-n"]),
+    "plan of 100 scans": ([of_scans(100)], ["-n"]),
     "make devices": (["examples/devices.yaml"], []),
 }
 #: Linux: orphans become children of this process, which counts their time.
@@ -93,6 +132,7 @@ def measured(name, source):
             path = source / one if isinstance(one, str) else Path(folder) / f"{number}.yaml"
             if not isinstance(one, str):
                 path.write_text(yaml.safe_dump(one), encoding="utf-8")
+                write_scans(one, path.parent)
             unit = loop()
             words = ["devices", path, "--directory", Path(folder) / "run", "--", *arguments, "--cores", "1"]
             seconds, megabytes = cpu_of(["-m", "stiction.command.main", *words], source, folder)

@@ -65,6 +65,20 @@ def test_every_device_is_there_with_its_answer_its_page_and_its_warnings(tmp_pat
     assert page.count('<svg xmlns="http://www.w3.org/2000/svg" class="drawing"') == 2
 
 
+def test_many_devices_are_rows_of_a_table_with_their_answers_pages_and_warnings(tmp_path):
+    few, many = (["C1", "S1", *(f"D{k}" for k in range(number))] for number in (18, 19))
+    assert of_run(tmp_path, *few).count('<section class="card">') == len(few)
+    page = of_run(tmp_path, *many)
+    assert 'class="card"><h3>' not in page.replace("\n", "")
+    assert 'class="drawing"' not in page
+    rows = re.findall(r'<tr><td class="text">(.*?)</td>.*?<td class="text">([^<]*)</td><td>(\d+)</td></tr>', page)
+    found = {name: said for name, *said in rows}
+    assert len(found) == len(many)
+    assert found['<a href="devices/C1.html">C1</a>'] == ["Build C1 no longer than 3 µm &amp; more.", "1"]
+    assert found['<a href="devices/S1.html">S1</a>'][1] == "0"
+    assert "D18" in found, "a device without a page has no link"
+
+
 def test_what_does_not_exist_is_not_linked_and_every_link_has_its_file(tmp_path):
     page = of_run(tmp_path, "C1", "S1")
     assert "tables/table_3.html" in files_of(page)

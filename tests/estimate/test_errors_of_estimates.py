@@ -12,7 +12,7 @@ from stiction.config.units import to_si
 from stiction.estimate.learning import errors as of_estimates
 from stiction.estimate.learning.design import FILMS
 from stiction.estimate.learning.errors import coverage, rest_of, scores
-from stiction.estimate.learning.training import FACTORS, SETS, Tips, base, changes_of, plan_of
+from stiction.estimate.learning.training import FACTORS, SETS, TrainingTips, base, changes_of, plan_of
 from stiction.estimate.length import most
 from stiction.estimate.table import content, known
 from stiction.progress import without_progress
@@ -27,7 +27,7 @@ CHANGED = 0.1 * np.exp(0.1 * np.random.default_rng(3).normal(size=200))
 @pytest.fixture(scope="module")
 def tips():
     with without_progress():
-        return Tips.of(POINT, plan_of(POINT, base()), 3, 1)
+        return TrainingTips.of(POINT, plan_of(POINT, base()), 3, 1)
 
 
 @pytest.mark.parametrize("ratio", [0.5, 2.0])

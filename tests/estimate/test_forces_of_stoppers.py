@@ -8,19 +8,19 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from stiction.contact.correction import Change
+from stiction.contact.correction import ElasticChange
 from stiction.estimate.answer import answer
 from stiction.estimate.force import Stopper, reciprocals
 from stiction.estimate.learning import errors as of_estimates
 from stiction.estimate.learning import patches
-from stiction.estimate.learning.design import SIDES, Law
+from stiction.estimate.learning.design import SIDES, SurfaceLaw
 from stiction.estimate.learning.rows import of_forces, patches_of
 from stiction.estimate.learning.training import SETS
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import questions
-from stiction.estimate.state import OF_PATCHES, Patch, film
+from stiction.estimate.state import OF_PATCHES, PatchState, film
 from stiction.estimate.statistics import of_pair
-from stiction.estimate.table import Process, content, known
+from stiction.estimate.table import Surrogate, content, known
 from stiction.life.freeing import stuck_after
 
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "humidities": [0.67], "restoring_force_uN": 60}
@@ -40,13 +40,13 @@ def found(**keys):
 
 def patch_on(sides, area=9e-12):
     """Patch on two surfaces."""
-    return Patch(of_pair(sides), WATER, area, 164e9)
+    return PatchState(of_pair(sides), WATER, area, 164e9)
 
 
 def process_of(**quantities):
     """Process of quantities that are the same everywhere."""
     trend = {key: [value] for key, value in quantities.items()}
-    return Process([], [], [], [], [[]], trend, {key: [0.0] for key in quantities}, [], [], math.inf)
+    return Surrogate([], [], [], [], [[]], trend, {key: [0.0] for key in quantities}, [], [], math.inf)
 
 
 def forces_at(first, step=0.2, slope=0.3):
@@ -78,7 +78,7 @@ def test_full_contact_changes_forces_by_its_ratio(ratio):
 def test_lognormal_forces_change_as_in_a_run(power):
     patch, scatter = patch_on(POINT.sides), 0.25
     forces = patch.flooded_force * np.exp(-1.5 + scatter * np.random.default_rng(1).normal(size=2_000_000))
-    changed = np.sort(Change(0.8, power).of(forces)(forces))
+    changed = np.sort(ElasticChange(0.8, power).of(forces)(forces))
     lengths = reciprocals(patch, forces_at(1.5, scatter, scatter), process_of(ratio=math.log(0.8), power=power))
     for score in (0.0, -0.5, -1.0, -2.0, -3.0):
         assert 1 / lengths.at(score) == pytest.approx(np.quantile(changed, norm.sf(score)), rel=0.01)
@@ -94,7 +94,7 @@ def test_a_tested_force_is_that_of_its_patches_changed_as_a_run_does(monkeypatch
     monkeypatch.setattr(of_estimates, "stored", lambda *_: points)
     processes = forces_at(0.5), process_of(ratio=0.0, power=1.0)
     (one,) = of_estimates.tested_forces(Path(), "any", 164e9, -3.0902, lambda _: processes)
-    changed = Change(0.7, max(power, 1.0)).of(pressures)(pressures)
+    changed = ElasticChange(0.7, max(power, 1.0)).of(pressures)(pressures)
     assert 1 / one.true == pytest.approx(6e-12 * np.quantile(changed, 0.999), rel=0.08)
     assert changed.mean() == pytest.approx(0.7 * pressures.mean(), rel=0.01)
     (patch,) = patches_of(POINT, numbers, 164e9)
@@ -164,12 +164,12 @@ def test_a_stopper_that_was_not_learnt_has_no_number(keys, reason):
 
 
 def test_sides_of_a_point_are_within_their_range_and_its_own():
-    drawn = np.array([patches.sides_of(point, 3, Law.ANY) for point in SETS["learn_any"].all])
+    drawn = np.array([patches.sides_of(point, 3, SurfaceLaw.ANY) for point in SETS["learn_any"].all])
     assert drawn.min() >= SIDES[0]
     assert drawn.max() <= SIDES[1]
     assert len(np.unique(drawn, axis=0)) > 0.9 * len(drawn)
     assert np.median(drawn) == pytest.approx(math.sqrt(SIDES[0] * SIDES[1]), rel=0.15)
-    assert patches.sides_of(POINT, 3, Law.PAPER) == (3.0, 3.0)
+    assert patches.sides_of(POINT, 3, SurfaceLaw.PAPER) == (3.0, 3.0)
 
 
 def test_numbers_of_a_point_have_full_contact_where_the_set_has_it(monkeypatch):

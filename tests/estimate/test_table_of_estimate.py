@@ -7,11 +7,11 @@ import pytest
 
 from stiction.estimate.answer import CONFIDENCES
 from stiction.estimate.learning import training
-from stiction.estimate.learning.design import FILMS, Law, points, states
+from stiction.estimate.learning.design import FILMS, SurfaceLaw, points, states
 from stiction.estimate.learning.make import control_of_forces, control_of_patches, control_of_slopes
 from stiction.estimate.page import page
 from stiction.estimate.state import COORDINATES, OF_PATCHES
-from stiction.estimate.table import FILE, Process, content, process
+from stiction.estimate.table import FILE, Surrogate, content, process
 from stiction.progress import without_progress
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -45,11 +45,11 @@ def test_the_table_has_what_the_estimate_reads():
     assert list(OF_PATCHES) == stoppers["coordinates"]
     for part in (content(), stoppers):
         assert 0 < part["margins"][CONFIDENCES[0]] <= part["margins"][CONFIDENCES[1]] < 5
-    for one in (process("tips"), process("full"), Process(**stoppers["forces"]), Process(**stoppers["full"])):
+    for one in (process("tips"), process("full"), Surrogate(**stoppers["forces"]), Surrogate(**stoppers["full"])):
         assert len(one.nodes[0]) == len(one.columns)
 
 
-@pytest.mark.parametrize("law", [Law.ANY, Law.TYPICAL])
+@pytest.mark.parametrize("law", [SurfaceLaw.ANY, SurfaceLaw.TYPICAL])
 def test_more_points_begin_with_fewer_and_other_seeds_are_other_surfaces(law):
     assert points(9, 1, law)[:4] == points(4, 1, law)
     assert not {str(point.sides) for point in points(9, 1, law)} & {str(point.sides) for point in points(9, 2, law)}

@@ -1,6 +1,6 @@
 """Tables, figures and pages, and the checks of a run.
 
-Above each rule: what it does, the rules whose results it reads -> the files that it writes.
+A comment says what each rule does, whose results it reads -> which files it writes.
 
 Written by docs/rules.py from the declarations of the stages: change these, then run make numbers.
 """
@@ -177,7 +177,7 @@ define("table_safe_lengths")
 #   chart, device_warnings -> results/tables/chart.{csv,md,html}
 define("table_chart")
 
-# Where the results of devices are beyond the model.
+# Limits of the model that devices exceed.
 #   device_warnings, test_beams_rerun, answer -> results/devices/warnings.{md,json}
 define("device_limits")
 
@@ -189,7 +189,7 @@ define("figure_05")
 #   forces, chaos -> results/figures/figure_12.{pdf,png,txt}
 define("figure_12")
 
-# Where the results of pairs are beyond the model.
+# Limits of the model that pairs exceed.
 #   beams, plasticity, estimate, spectrum -> results/warnings.{md,json}
 define("model_limits")
 

@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from stiction.contact.air import is_humid
-from stiction.estimate.force import Force, Stopper
-from stiction.estimate.length import Lengths, NotLearnt, Row, after, normal_score
+from stiction.estimate.force import ForceRow, Stopper
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, after, normal_score
 from stiction.estimate.question import IN_DRY_AIR, Question
 from stiction.estimate.state import film
-from stiction.estimate.table import Process
+from stiction.estimate.table import Surrogate
 from stiction.estimate.voltage import at_voltage, without_voltage
 
 #: Fractions of stuck devices in the answer.
@@ -31,23 +31,23 @@ _STUDENT = {"90": 2.353363, "95": 3.182446}
 
 
 @dataclass(frozen=True)
-class Answer:
+class Estimate:
     """Estimate of one device."""
 
     question: Question | Stopper
-    rows: tuple[Row | Force, ...]
+    rows: tuple[LengthRow | ForceRow, ...]
     stuck: tuple[float, float, float] | None  #: fraction at the stated length or force, and its ends of 95 %
     humidity: float  #: air that decides
 
     @property
-    def chosen(self) -> Row | Force:
+    def chosen(self) -> LengthRow | ForceRow:
         """Row of the length or force to build."""
         return next(row for row in self.rows if row.fraction == CHOSEN)
 
 
 def answer(
-    question: Question | Stopper | NotLearnt, table: Mapping[str, Any], tips: Process, full: Process | None
-) -> Answer:
+    question: Question | Stopper | NotLearnt, table: Mapping[str, Any], tips: Surrogate, full: Surrogate | None
+) -> Estimate:
     """Answer to a question.
 
     Raises
@@ -63,10 +63,12 @@ def answer(
     rows = tuple(map(question.row, worst))
     decides = min(found, key=lambda air: found[air].length(normal_score(of_once[CHOSEN])))
     stuck = None if question.stated is None else _stuck(question, list(found.values()))
-    return Answer(question, rows, stuck, decides)
+    return Estimate(question, rows, stuck, decides)
 
 
-def in_one_air(question: Question | Stopper, air: float, fractions: Sequence[float], *learnt: Any) -> list[Row | Force]:
+def in_one_air(
+    question: Question | Stopper, air: float, fractions: Sequence[float], *learnt: Any
+) -> list[LengthRow | ForceRow]:
     """Lengths or forces for some fractions, at one touchdown in one air. Learnt as of `answer`.
 
     Raises
@@ -81,7 +83,7 @@ def in_one_air(question: Question | Stopper, air: float, fractions: Sequence[flo
 
 
 @dataclass(frozen=True)
-class InAir:
+class LengthsInAir:
     """Lengths of a device in one air."""
 
     errors: Mapping[str, Any]  #: part of the table
@@ -107,7 +109,7 @@ class InAir:
         """Length at the voltage from that without it [m]."""
         return at_voltage(length, self.drive) if self.drive else length
 
-    def row(self, fraction: float, score: float) -> Row:
+    def row(self, fraction: float, score: float) -> LengthRow:
         """Length and intervals at a normal score."""
         mean, scatter = self.centre(score)
         ends = {}
@@ -116,7 +118,7 @@ class InAir:
                 _margin(self.errors, confidence, score, self.stated.slope), _STUDENT[confidence] * scatter
             )
             ends[confidence] = self._driven(math.exp(mean - half)), self._driven(math.exp(mean + half))
-        return Row(fraction, self.length(score), ends)
+        return LengthRow(fraction, self.length(score), ends)
 
 
 def difficulty(slope: float, rest: float) -> float:
@@ -138,7 +140,7 @@ def _margin(errors, confidence, score, slope):
 def _worst(rows):
     """Shortest length and ends of some rows of one fraction."""
     ends = {key: tuple(min(row.intervals[key][side] for row in rows) for side in (0, 1)) for key in CONFIDENCES}
-    return Row(rows[0].fraction, min(row.length for row in rows), ends)
+    return LengthRow(rows[0].fraction, min(row.length for row in rows), ends)
 
 
 def _stuck(question, airs):
@@ -167,7 +169,7 @@ def _in_air(question, air, table, tips, full):
     pairs += [question.members[0].get(name, beam) + question.members[1].get(name, substrate) for name in names]
     stated, *members = (_lengths(question, heights, air, table, tips, full) for heights in pairs)
     drive = question.drive(table["modulus"])
-    return InAir(question.errors(table), stated, tuple(members), question.averaged, drive)
+    return LengthsInAir(question.errors(table), stated, tuple(members), question.averaged, drive)
 
 
 def _lengths(question, heights, air, table, tips, full):

@@ -14,14 +14,14 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from stiction.config.units import to_si
-from stiction.estimate.length import Lengths, NotLearnt, Row, falling, known_at, most_after
-from stiction.estimate.state import OF_PATCHES, Film, Patch
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, most_after
+from stiction.estimate.state import OF_PATCHES, Film, PatchState
 from stiction.estimate.statistics import Heights
-from stiction.estimate.table import Process
+from stiction.estimate.table import Surrogate
 
 
 @dataclass(frozen=True)
-class Force:
+class ForceRow:
     """Restoring force below which a fraction sticks."""
 
     fraction: float
@@ -34,7 +34,7 @@ class Force:
         return self.force
 
 
-def reciprocals(patch: Patch, forces: Process, full: Process) -> Lengths:
+def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate) -> Lengths:
     """Reciprocals of the pull-off forces of a patch [1/N].
 
     Raises
@@ -91,7 +91,7 @@ class Stopper:
         """Part of the table with the errors of its forces."""
         return table["stoppers"]
 
-    def lengths(self, heights: Heights, water: Film, table: Mapping[str, Any], *_tips: Process | None) -> Lengths:
+    def lengths(self, heights: Heights, water: Film, table: Mapping[str, Any], *_tips: Surrogate | None) -> Lengths:
         """Reciprocals of its pull-off forces on the sum of two surfaces [1/N]."""
         learnt = table["stoppers"]
         if self.force is not None and not self.force > 0:
@@ -99,10 +99,10 @@ class Stopper:
         low, high = (to_si(end, "um") for end in learnt["sides"])
         if not all(low <= side <= high for side in self.sides):
             raise NotLearnt(f"sides of a stopper must be from {learnt['sides'][0]:g} to {learnt['sides'][1]:g} µm")
-        patch = Patch(heights, water, math.prod(self.sides), table["modulus"])
-        return reciprocals(patch, *(Process(**learnt[name]) for name in ("forces", "full")))
+        patch = PatchState(heights, water, math.prod(self.sides), table["modulus"])
+        return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full")))
 
-    def row(self, row: Row) -> Force:
+    def row(self, row: LengthRow) -> ForceRow:
         """Force by its reciprocal."""
         ends = {name: (1 / high, 1 / low) for name, (low, high) in row.intervals.items()}
-        return Force(row.fraction, 1 / row.length, ends)
+        return ForceRow(row.fraction, 1 / row.length, ends)

@@ -7,8 +7,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from stiction.estimate.state import COORDINATES, State
-from stiction.estimate.table import Process
+from stiction.estimate.state import COORDINATES, TipState
+from stiction.estimate.table import Surrogate
 
 #: Normal scores of the learnt lengths: the last one and the slope there give all shorter lengths.
 SCORES = (0.0, -1.0, -2.0)
@@ -23,7 +23,7 @@ _OF_FORCES = 4.0
 
 
 @dataclass(frozen=True)
-class Row:
+class LengthRow:
     """Length at which a fraction sticks."""
 
     fraction: float
@@ -70,7 +70,7 @@ class NotLearnt(Exception):
     """Refusal to estimate, in words."""
 
 
-def lengths(state: State, gap: float, tips: Process, full: Process | None) -> Lengths:
+def lengths(state: TipState, gap: float, tips: Surrogate, full: Surrogate | None) -> Lengths:
     """Lengths of beams over a gap [m] in a state.
 
     Full contact changes an attraction by a factor, as a stiffer beam would.
@@ -104,7 +104,7 @@ def falling(values: Mapping[str, float], shift: float) -> Lengths:
     return Lengths((first, second, min(second - _LEAST, third)), max(_LEAST, values["slope"]))
 
 
-def known_at(process: Process, coordinates: Sequence[float], names: Sequence[str]) -> Mapping[str, float]:
+def known_at(process: Surrogate, coordinates: Sequence[float], names: Sequence[str]) -> Mapping[str, float]:
     """Quantities of a process at coordinates with some names.
 
     Raises
@@ -120,7 +120,7 @@ def known_at(process: Process, coordinates: Sequence[float], names: Sequence[str
     return values.of
 
 
-def change(state: State, found: Lengths, gap: float, full: Process) -> float:
+def change(state: TipState, found: Lengths, gap: float, full: Surrogate) -> float:
     """Factor of the attraction of tips by full contact, as a run applies it."""
     slope = 1.5 * gap / found.at(SCORES[-1])
     at_slope = replace(state, stiffness=13.5 * state.film.energy / slope**4)  # flooded flats hold up to this slope

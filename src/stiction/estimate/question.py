@@ -8,10 +8,10 @@ from stiction.config.kinds import KINDS
 from stiction.config.units import to_si
 from stiction.contact.air import is_humid, is_possible
 from stiction.estimate.force import Stopper
-from stiction.estimate.length import Lengths, NotLearnt, Row, lengths, most_after
-from stiction.estimate.state import Film, State, stiffness_of
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, lengths, most_after
+from stiction.estimate.state import Film, TipState, stiffness_of
 from stiction.estimate.statistics import Heights, moments_of, slope_of
-from stiction.estimate.table import Process
+from stiction.estimate.table import Surrogate
 from stiction.estimate.voltage import KEYS as OF_VOLTAGES
 from stiction.estimate.voltage import drive_of, energy_of
 
@@ -91,13 +91,13 @@ class Question:
         return table
 
     def lengths(
-        self, heights: Heights, water: Film, table: Mapping[str, Any], tips: Process, full: Process | None
+        self, heights: Heights, water: Film, table: Mapping[str, Any], tips: Surrogate, full: Surrogate | None
     ) -> Lengths:
         """Lengths at which it sticks on the sum of two surfaces [m]."""
-        state = State(heights, water, self._stiffness(table["modulus"]), self.width, table["modulus"])
+        state = TipState(heights, water, self._stiffness(table["modulus"]), self.width, table["modulus"])
         return lengths(state, self.gap, tips, full)
 
-    def row(self, row: Row) -> Row:
+    def row(self, row: LengthRow) -> LengthRow:
         """Row of lengths as it is."""
         return row
 

@@ -76,7 +76,7 @@ def _of_contact(heights, water, modulus):
 
 
 @dataclass(frozen=True)
-class State:
+class TipState:
     """Surfaces, water and beam."""
 
     heights: Heights  #: of the sum of both surfaces
@@ -104,7 +104,7 @@ class State:
 
 
 @dataclass(frozen=True)
-class Patch:
+class PatchState:
     """Surfaces, water and area of a stopper. ASSUME: the ratio of its sides does not matter."""
 
     heights: Heights  #: of the sum of both surfaces
@@ -119,7 +119,7 @@ class Patch:
 
     @property
     def coordinates(self) -> tuple[float, ...]:
-        """Numbers on which the pull-off force depends, by `OF_PATCHES`, as those of `State`."""
+        """Numbers on which the pull-off force depends, by `OF_PATCHES`, as those of `TipState`."""
         summits = _curvature(self.heights)
         return (
             *_of_contact(self.heights, self.film, self.modulus),

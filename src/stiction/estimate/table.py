@@ -18,7 +18,7 @@ FILE = Path(__file__).with_name("table.json")
 
 
 @dataclass(frozen=True)
-class Process:
+class Surrogate:
     """Quantities over coordinates."""
 
     columns: Sequence[int]  #: numbers of the coordinates that it knows
@@ -69,11 +69,11 @@ def content() -> dict[str, Any]:
 
 
 @cache
-def process(name: str) -> Process:
+def process(name: str) -> Surrogate:
     """Process of the file by name: ``tips`` on summits, or the change of their forces in ``full`` contact."""
-    return Process(**content()[name])
+    return Surrogate(**content()[name])
 
 
-def known() -> tuple[dict[str, Any], Process, Process]:
+def known() -> tuple[dict[str, Any], Surrogate, Surrogate]:
     """All that an answer needs: the content of the file, and its processes of tips on summits and in full contact."""
     return content(), process("tips"), process("full")

@@ -7,7 +7,7 @@ from contextlib import suppress
 
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
-from stiction.estimate.answer import CHOSEN, FRACTIONS, Answer, answer
+from stiction.estimate.answer import CHOSEN, FRACTIONS, Estimate, answer
 from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import Question, of_area, of_numbers, questions, surface
@@ -132,7 +132,7 @@ _NAME = "The device"
 _WORDS = {"um": ("length", "µm"), "uN": ("force", "µN")}
 
 
-def shown(found: Answer) -> Iterator[str]:
+def shown(found: Estimate) -> Iterator[str]:
     """Lines of an answer."""
     asked, (name, symbol) = found.question, _WORDS[found.question.unit]
     left_open = ", typical surfaces stand for what is not stated" * any(asked.members)

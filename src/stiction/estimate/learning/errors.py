@@ -17,7 +17,7 @@ from stiction.estimate.learning.patches import FOLDER
 from stiction.estimate.learning.rows import change_of, of_forces, of_tips, patches_of, states_of, stored
 from stiction.estimate.learning.training import FACTORS, changes_of
 from stiction.estimate.length import NAMES, Lengths, NotLearnt, lengths
-from stiction.estimate.table import Process
+from stiction.estimate.table import Surrogate
 from stiction.streams import stream
 
 #: Numbers between which the rest of `stiction.estimate.answer.difficulty` is found.
@@ -49,7 +49,7 @@ class Tested:
 
 
 #: Processes of tips on summits and in full contact that have not learnt a point.
-Processes = Callable[[Point], tuple[Process, Process]]
+Processes = Callable[[Point], tuple[Surrogate, Surrogate]]
 
 
 def tested(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:

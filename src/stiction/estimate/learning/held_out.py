@@ -15,11 +15,11 @@ import numpy as np
 from stiction.config.reading import read
 from stiction.config.units import from_si
 from stiction.estimate.answer import CONFIDENCES, answer, difficulty
-from stiction.estimate.learning.design import Law
+from stiction.estimate.learning.design import SurfaceLaw
 from stiction.estimate.learning.errors import coverage, noise_of, scores, tested, tested_forces
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import questions
-from stiction.estimate.table import Process, content, known
+from stiction.estimate.table import Surrogate, content, known
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import EITHER
 
@@ -53,7 +53,7 @@ def lines(folder: Path) -> Iterator[str]:
     """Lines of the tables of drawn surfaces."""
     table, *tips = known()
     stoppers = table["stoppers"]
-    of_forces = [Process(**stoppers[name]) for name in ("forces", "full")]
+    of_forces = [Surrogate(**stoppers[name]) for name in ("forces", "full")]
     for words, test, errors, processes in (
         (_OF_LENGTHS, tested, table, tips),
         (_OF_FORCES, tested_forces, stoppers, of_forces),
@@ -69,7 +69,7 @@ def lines(folder: Path) -> Iterator[str]:
 
 def _of_noise(folder, score):
     """Lines about the parts of the errors of lengths that are noise of the run."""
-    if len(noise := noise_of(folder, f"decide_{Law.TYPICAL}", score)):
+    if len(noise := noise_of(folder, f"decide_{SurfaceLaw.TYPICAL}", score)):
         rms, exact = 100 * np.sqrt((noise**2).mean(axis=0)), 100 * _HALF * np.median(noise[:, 0])
         yield (
             f"Of the errors of lengths in the first row, {rms[0]:.1f} % rms are noise of the eight strips in full "

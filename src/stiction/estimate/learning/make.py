@@ -16,7 +16,7 @@ from stiction.config.units import to_si
 from stiction.constants import WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
 from stiction.estimate.answer import CHOSEN, CONFIDENCES
 from stiction.estimate.learning import patches
-from stiction.estimate.learning.design import FILMS, Law
+from stiction.estimate.learning.design import FILMS, SurfaceLaw
 from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
 from stiction.estimate.learning.errors import Tested, conformal, rest_of, scores, tested, tested_forces
 from stiction.estimate.learning.fit import Fitted, fitted, group, rounded
@@ -28,10 +28,10 @@ from stiction.estimate.learning.rows import (
     rows_of_ratios,
     rows_of_tips,
 )
-from stiction.estimate.learning.training import SETS, Tips, base, full_contact_of, plan_of
+from stiction.estimate.learning.training import SETS, TrainingTips, base, full_contact_of, plan_of
 from stiction.estimate.length import normal_score
 from stiction.estimate.state import COORDINATES, OF_PATCHES
-from stiction.estimate.table import FILE, Process
+from stiction.estimate.table import FILE, Surrogate
 from stiction.models import SIDES
 from stiction.progress import without_progress
 from stiction.run.atomic import save_text
@@ -84,7 +84,7 @@ def _control_point():
 def control_of_slopes() -> list[float]:
     """Slopes of a few tips, by which a test sees that contacts are still those that were learnt."""
     point, plan, height = _control_point()
-    return Tips.of(point, plan, SETS["control"].tips, SETS["control"].seed).slopes(height, 1.0).ravel().tolist()
+    return TrainingTips.of(point, plan, SETS["control"].tips, SETS["control"].seed).slopes(height, 1.0).ravel().tolist()
 
 
 def control_of_forces() -> list[float]:
@@ -109,7 +109,7 @@ Test = Callable[..., Iterator[Tested]]
 def errors_of(test: Test, folder: Path, modulus: float, first: Fitted, full: Fitted) -> dict[str, Any]:
     """Numbers of the table about the errors of two processes: on summits and in full contact."""
     of_rest = rest(test, folder, modulus, first, full)
-    of_margins = margins(test, folder, modulus, of_rest, *(Process(**each.content) for each in (first, full)))
+    of_margins = margins(test, folder, modulus, of_rest, *(Surrogate(**each.content) for each in (first, full)))
     own = {"tested_score": TESTED, "left_out": first.scatter | full.scatter}
     return own | {"rest": of_rest, "margins": of_margins}
 
@@ -119,19 +119,19 @@ def rest(test: Test, folder: Path, modulus: float, first: Fitted, full: Fitted) 
 
     def without(point):
         """Processes without a point."""
-        return tuple(Process(**each.without[group(point.number)]) for each in (first, full))
+        return tuple(Surrogate(**each.without[group(point.number)]) for each in (first, full))
 
     return round(rest_of(list(test(folder, "learn", modulus, TESTED, without))), 4)
 
 
-def margins(test: Test, folder: Path, modulus: float, of_rest: float, *processes: Process) -> dict[str, float]:
+def margins(test: Test, folder: Path, modulus: float, of_rest: float, *processes: Surrogate) -> dict[str, float]:
     """Half of the intervals of the logarithm of a length over its difficulty, by confidence.
 
     The widest of those of each law, so that an interval holds for surfaces of either.
     """
     found = [
         scores(list(test(folder, f"decide_{law}", modulus, TESTED, lambda _: processes)), of_rest)
-        for law in (Law.TYPICAL, Law.ANY)
+        for law in (SurfaceLaw.TYPICAL, SurfaceLaw.ANY)
     ]
     return {name: round(max(conformal(errors, int(name) / 100) for errors in found), 4) for name in CONFIDENCES}
 

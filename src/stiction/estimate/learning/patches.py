@@ -19,7 +19,7 @@ from stiction.config.files import load
 from stiction.config.units import in_si, to_si
 from stiction.contact.full.effort import TooLong
 from stiction.errors import NotConverged
-from stiction.estimate.learning.design import SIDES, Law, Point, states
+from stiction.estimate.learning.design import SIDES, Point, SurfaceLaw, states
 from stiction.estimate.learning.training import HUMIDITIES, PAIR, SETS, air_of, main, surfaces_of, water_of
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At
@@ -53,9 +53,9 @@ def base() -> dict[str, Any]:
     )
 
 
-def sides_of(point: Point, seed: int, law: Law) -> tuple[float, float]:
+def sides_of(point: Point, seed: int, law: SurfaceLaw) -> tuple[float, float]:
     """Sides of the patch of a point [µm]."""
-    if law is Law.PAPER:
+    if law is SurfaceLaw.PAPER:
         return _OF_PAPER
     drawn = np.exp(stream(seed, "estimate", "sides", point.number).uniform(*map(math.log, SIDES), 2))
     return tuple(np.round(drawn, 1).tolist())

@@ -10,14 +10,14 @@ from scipy.special import ndtr
 
 from stiction.config.units import to_si
 from stiction.constants import WATER_SURFACE_ENERGY
-from stiction.contact.correction import Change
+from stiction.contact.correction import ElasticChange
 from stiction.devices.tail import fit_tail
 from stiction.estimate.learning.design import Point
-from stiction.estimate.learning.fit import Rows
+from stiction.estimate.learning.fit import DesignRows
 from stiction.estimate.learning.patches import FOLDER
 from stiction.estimate.learning.training import FACTORS, SETS
 from stiction.estimate.length import NAMES, SCORES
-from stiction.estimate.state import Film, Patch, State
+from stiction.estimate.state import Film, PatchState, TipState
 from stiction.estimate.statistics import of_pair
 
 #: More than the points of a set.
@@ -35,12 +35,14 @@ def stored(folder: Path, start: str) -> Iterator[tuple[Point, dict[str, Any]]]:
                     yield replace(point, number=_SET * k + point.number), dict(numbers)
 
 
-def states_of(point: Point, airs: np.ndarray, modulus: float) -> list[list[State]]:
+def states_of(point: Point, airs: np.ndarray, modulus: float) -> list[list[TipState]]:
     """States of a point, by air and stiffness."""
     heights, width = of_pair(point.sides), to_si(point.width, "um")
     return [
         [
-            State(heights, Film(height, 2 * WATER_SURFACE_ENERGY * wetting), factor * point.stiffness, width, modulus)
+            TipState(
+                heights, Film(height, 2 * WATER_SURFACE_ENERGY * wetting), factor * point.stiffness, width, modulus
+            )
             for factor in FACTORS
         ]
         for height, wetting in airs
@@ -55,7 +57,7 @@ def of_tips(slopes: np.ndarray) -> dict[str, float]:
     return dict(zip(NAMES, (first, second, line.logarithm(ndtr(SCORES[2])), line.slope), strict=True))
 
 
-def rows_of_tips(folder: Path, name: str, modulus: float) -> Rows:
+def rows_of_tips(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of all tips of a set on summits."""
     coordinates, values, surface, noise = [], [], [], []
     for point, numbers in stored(folder, name):
@@ -66,14 +68,14 @@ def rows_of_tips(folder: Path, name: str, modulus: float) -> Rows:
                 surface.append(point.number)
                 noise.append(values[-1]["slope"] / len(of_beam) ** 0.5)
     columns = {key: np.array([row[key] for row in values]) for key in NAMES}
-    return Rows(np.array(coordinates), columns, np.array(surface), np.array(noise))
+    return DesignRows(np.array(coordinates), columns, np.array(surface), np.array(noise))
 
 
 #: Coordinates that the change by full contact depends on: ASSUME: no others. Few points have it.
 OF_FULL = (0, 1, 2, 6, 8)
 
 
-def rows_of_full(folder: Path, name: str, modulus: float) -> Rows:
+def rows_of_full(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of the logarithm of the change of tips by full contact, at three slopes of some points.
 
     Their noise is in proportion to the scatter on summits, of which there are more strips.
@@ -87,26 +89,28 @@ def rows_of_full(folder: Path, name: str, modulus: float) -> Rows:
         ratios = np.log(full.mean(axis=0) / summits.mean(axis=0))
         noise += (summits.std(axis=0) / summits.mean(axis=0)).tolist()
         for slope, ratio in zip(numbers["slope"], ratios, strict=True):
-            state = State(of_pair(point.sides), film, 13.5 * film.energy / slope**4, to_si(point.width, "um"), modulus)
+            state = TipState(
+                of_pair(point.sides), film, 13.5 * film.energy / slope**4, to_si(point.width, "um"), modulus
+            )
             coordinates.append(state.coordinates)
             values.append(ratio)
             surface.append(point.number)
-    return Rows(np.array(coordinates), {"ratio": np.array(values)}, np.array(surface), np.array(noise))
+    return DesignRows(np.array(coordinates), {"ratio": np.array(values)}, np.array(surface), np.array(noise))
 
 
-def patches_of(point: Point, numbers: Mapping[str, Any], modulus: float) -> list[Patch]:
+def patches_of(point: Point, numbers: Mapping[str, Any], modulus: float) -> list[PatchState]:
     """Patches of a point, by air."""
     heights, area = of_pair(point.sides), float(np.prod(to_si(numbers["sides"], "um")))
     films = [Film(height, 2 * WATER_SURFACE_ENERGY * wetting) for height, wetting in numbers["airs"]]
-    return [Patch(heights, film, area, modulus) for film in films]
+    return [PatchState(heights, film, area, modulus) for film in films]
 
 
-def of_forces(pressures: np.ndarray, patch: Patch) -> dict[str, float]:
+def of_forces(pressures: np.ndarray, patch: PatchState) -> dict[str, float]:
     """Quantities of a patch from pull-off pressures (n,) [Pa]."""
     return of_tips(pressures.astype(float) * patch.area / patch.flooded_force)
 
 
-def rows_of_patches(folder: Path, name: str, modulus: float) -> Rows:
+def rows_of_patches(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of all patches of a set on summits."""
     coordinates, values, surface, noise = [], [], [], []
     for point, numbers in stored(folder / FOLDER, name):
@@ -116,22 +120,22 @@ def rows_of_patches(folder: Path, name: str, modulus: float) -> Rows:
             surface.append(point.number)
             noise.append(values[-1]["slope"] / len(pressures) ** 0.5)
     columns = {key: np.array([row[key] for row in values]) for key in NAMES}
-    return Rows(np.array(coordinates), columns, np.array(surface), np.array(noise))
+    return DesignRows(np.array(coordinates), columns, np.array(surface), np.array(noise))
 
 
 #: Coordinates that the change of forces depends on, as surfaces that are left out say. ASSUME: no others.
 OF_RATIO = (0, 1, 2, 4, 7)
 
 
-def rows_of_ratios(folder: Path, name: str, modulus: float) -> Rows:
+def rows_of_ratios(folder: Path, name: str, modulus: float) -> DesignRows:
     """Rows of the logarithm of the ratio, and of the power, of the change of pull-off forces by full contact."""
     found = [(p, n) for p, n in stored(folder / FOLDER, name) if np.isfinite(n.get("ratio", np.nan))]
     coordinates = np.array([patches_of(*one, modulus)[0].coordinates for one in found])
     values = {name: np.array([float(numbers[name]) for _, numbers in found]) for name in ("ratio", "ratio_error")}
     changes = {"ratio": np.log(values["ratio"]), "power": np.array([change_of(numbers).power for _, numbers in found])}
-    return Rows(coordinates, changes, np.array([point.number for point, _ in found]), values["ratio_error"])
+    return DesignRows(coordinates, changes, np.array([point.number for point, _ in found]), values["ratio_error"])
 
 
-def change_of(numbers: Mapping[str, Any]) -> Change:
+def change_of(numbers: Mapping[str, Any]) -> ElasticChange:
     """Change of the forces of a point that a run applies: the power of their scatter is at least 1."""
-    return Change(float(numbers["ratio"]), max(float(numbers["power"]), 1.0))
+    return ElasticChange(float(numbers["ratio"]), max(float(numbers["power"]), 1.0))

@@ -19,10 +19,10 @@ from stiction.config.cases import Case, case_id
 from stiction.config.files import load
 from stiction.config.units import from_si, in_si, to_si
 from stiction.contact import meniscus
-from stiction.contact.correction import NONE, Change, Correction, TipChanges
+from stiction.contact.correction import NONE, Correction, ElasticChange, TipChanges
 from stiction.contact.environment import Water
 from stiction.devices.arcs import longest_free, tip_slope
-from stiction.estimate.learning.design import Law, Point, points, states
+from stiction.estimate.learning.design import Point, SurfaceLaw, points, states
 from stiction.pilot import surface
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At
@@ -46,12 +46,12 @@ FACTORS = (0.5, 1.0, 2.0)
 
 
 @dataclass(frozen=True)
-class Effort:
+class TrainingEffort:
     """Points of a set, and numbers that decide their errors."""
 
     points: int
     seed: int
-    law: Law
+    law: SurfaceLaw
     tips: int  #: at least
     tips_by_width: float  #: width of more tips together [m]
     states: int
@@ -68,14 +68,14 @@ class Effort:
 #: Sets of points by name: to learn from, to decide intervals, to check these, and for control numbers. Seeds of sets
 #: that check are in no other set.
 SETS = {
-    "learn_any": Effort(80, 1, Law.ANY, 20, to_si(800, "um"), 8, 2, 100),
-    "learn_typical": Effort(96, 3, Law.TYPICAL, 20, to_si(800, "um"), 8, 1, 100),
-    "decide_typical": Effort(50, 4, Law.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
-    "decide_any": Effort(50, 2, Law.ANY, 40, to_si(1600, "um"), 1, 1, 400),
-    "check_paper": Effort(6, 5, Law.PAPER, 400, 0.0, 1, 1, 400),
-    "check_typical": Effort(80, 11, Law.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
-    "check_any": Effort(48, 12, Law.ANY, 40, to_si(1600, "um"), 1, 1, 400),
-    "control": Effort(1, 1, Law.ANY, 3, 0.0, 1, 1, 3, (1, 1)),
+    "learn_any": TrainingEffort(80, 1, SurfaceLaw.ANY, 20, to_si(800, "um"), 8, 2, 100),
+    "learn_typical": TrainingEffort(96, 3, SurfaceLaw.TYPICAL, 20, to_si(800, "um"), 8, 1, 100),
+    "decide_typical": TrainingEffort(50, 4, SurfaceLaw.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
+    "decide_any": TrainingEffort(50, 2, SurfaceLaw.ANY, 40, to_si(1600, "um"), 1, 1, 400),
+    "check_paper": TrainingEffort(6, 5, SurfaceLaw.PAPER, 400, 0.0, 1, 1, 400),
+    "check_typical": TrainingEffort(80, 11, SurfaceLaw.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
+    "check_any": TrainingEffort(48, 12, SurfaceLaw.ANY, 40, to_si(1600, "um"), 1, 1, 400),
+    "control": TrainingEffort(1, 1, SurfaceLaw.ANY, 3, 0.0, 1, 1, 3, (1, 1)),
 }
 #: Width of strips in full contact [m]. On B2 and Sub1 at RH 0.44, strips of 2, 4, 10 and 30 µm have ratios of 0.36,
 #: 0.35, 0.31 and 0.25 (± 0.06), and scatter alike.
@@ -107,7 +107,7 @@ def base() -> dict[str, Any]:
 
 
 @dataclass(frozen=True)
-class Tips:
+class TrainingTips:
     """Tips of a point on its strips."""
 
     contact: xr.Dataset
@@ -115,7 +115,7 @@ class Tips:
     device: DesignedBeam
 
     @classmethod
-    def of(cls, point: Point, plan: Plan, tips: int, seed: int) -> "Tips":
+    def of(cls, point: Point, plan: Plan, tips: int, seed: int) -> "TrainingTips":
         """Draw a number of tips."""
         case = Case(case_id(DEVICE, HUMIDITIES[0]))
         at = At(**{name: str(value) for name, value in patch_of_tips(plan, case)._asdict().items()})
@@ -151,7 +151,7 @@ def full_contact_of(point: Point, plan: Plan, height: float, name: str) -> dict[
 def changes_of(slope: np.ndarray, full: np.ndarray, summits: np.ndarray) -> TipChanges:
     """Changes of tips that a run applies, from slopes (s,) and attractions (n, s) and (N, s)."""
     ratio, error = few_tip_ratios(full[:, None], summits[:, None], POWER_ERROR)
-    return TipChanges(slope, Change(ratio, np.ones(1), error))
+    return TipChanges(slope, ElasticChange(ratio, np.ones(1), error))
 
 
 def air_of(height: float, wetting: float, temperature: float) -> tuple[float, float]:
@@ -175,7 +175,7 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     effort, plan = SETS[name], plan_of(point, valid)
     airs = states(effort.states, point.number, effort.seed)
     number = effort.tips + round(effort.tips_by_width / to_si(point.width, "um"))
-    tips = Tips.of(point, plan, number, effort.seed)
+    tips = TrainingTips.of(point, plan, number, effort.seed)
     found = {"airs": airs, "slopes": np.array([tips.slopes(*air) for air in airs], np.float32)}
     if point.number % effort.every == 0:
         of_full = full_contact_of(point, plan, airs[0, 0], name)

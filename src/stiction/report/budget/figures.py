@@ -125,7 +125,7 @@ def _force_over_humidity(panel, dataset):
         entries.append(panel.errorbar(at, means[single], reach, **points))
     panel.axhline(TO_UN * float(dataset.restoring_force), color="0.4", linestyle=":", linewidth=0.8)
     if not single.all():
-        label = f"worst {worst.choose(f'humidity {worst.humidity:.2f}', worst.where)}"
+        label = f"worst {worst.choose(f'humidity {worst.humidity:.2f}', worst.where)}, by the mean"
         entries += panel.plot([placed[worst.humidity]], [float(means.max())], "v", color="black", label=label)
     legend_below(panel, entries)
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))

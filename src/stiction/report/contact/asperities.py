@@ -37,7 +37,7 @@ _CAPTION = (
     "the deviation from the published length, and from the length under full elastic contact, if computed; "
     "processor time of a strip over that of spheres on summits; ± standard error over strips. Island: a sphere of the "
     "area of every island; fitted: a sphere by least squares; shape: every island with its true shape, solved alone. "
-    "vdW: the medium through which the solids attract, or none."
+    "Van der Waals: the medium through which the solids attract, or none."
 )
 
 
@@ -98,7 +98,13 @@ def _line(labels, rows):
     """One reading of a pair as text."""
     pair, vdw, reading, spacing = labels
     first, last = rows.iloc[0], rows.iloc[-1]
-    shown = {"pair": pair, "asperity": reading, "grid [nm]": f"{spacing:g}", "vdW": vdw, "strips": str(first.strips)}
+    shown = {
+        "pair": pair,
+        "asperity": reading,
+        "grid [nm]": f"{spacing:g}",
+        "van der Waals": vdw,
+        "strips": str(first.strips),
+    }
     for title, end in (("low RH", first), ("high RH", last)):
         shown[f"Δl_s [%], {title}"] = signed(end.change_percent, end.change_se_percent)
     for title, name in (("published", "published"), ("full contact", "full_contact")):

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from stiction.answer.data import Answer, InAir
+from stiction.answer.data import Answer, AnswerInAir
 from stiction.devices.risk import SCORES
 
 #: Normal scores of shown fractions, from 3e-7 on, and that of a band of 95 %.
@@ -66,7 +66,7 @@ def of_answer(answer: Answer, humidities: Sequence[float], states: Simulated, ow
     """
     at = {air.humidity: air for air in answer.airs if air.humidity in own} | {answer.together.humidity: answer.together}
     airs = [at[humidity] for humidity in sorted(own.keys() & at.keys())]
-    scores = _scores(airs)
+    scores = _scores(answer, airs)
     stated = [air.humidity for air in airs]
     weights = [np.interp(humidities, stated, row) for row in np.eye(len(airs))]
     ratios = [_ratio(states, own[humidity], scores) for humidity in stated]
@@ -79,15 +79,20 @@ def of_answer(answer: Answer, humidities: Sequence[float], states: Simulated, ow
     return Levels(scores, np.array(sizes), first, factor)
 
 
-def of_places(answer: Answer, airs: Sequence[InAir]) -> tuple[np.ndarray, np.ndarray]:
+def of_places(answer: Answer, airs: Sequence[AnswerInAir]) -> tuple[np.ndarray, np.ndarray]:
     """Scores (n,), and levels of the layers in some airs by an answer alone (3, m, n)."""
-    scores = _scores(airs)
+    scores = _scores(answer, airs)
     return scores, np.array([_inverted(answer, air, scores) for air in airs]).swapaxes(0, 1)
 
 
-def _scores(airs):
-    """Scores of levels: those at the stated size are among them, so that it has exactly what the answer says (n,)."""
-    own = ndtri(np.ravel([(air.stuck.value, air.stuck.low, air.stuck.high) for air in airs if air.stuck]))
+def _scores(answer, airs):
+    """Scores of levels (n,).
+
+    Those at the stated size and the allowed fraction are among them, so that the stated size and the size to build have
+    exactly what the answer says.
+    """
+    shares = [part for air in airs if air.stuck for part in (air.stuck.value, air.stuck.low, air.stuck.high)]
+    own = ndtri([*shares, *([answer.share] if np.isfinite(answer.share) else [])])
     return np.unique(np.append(SHOWN, own[np.abs(own) < SHOWN[-1]]))
 
 
@@ -101,8 +106,12 @@ def _inverted(answer, air, scores):
         k = np.searchsorted(v, sign * np.log(answer.size))
         rows = np.insert(rows, k, (air.stuck.value, air.stuck.low, air.stuck.high), axis=1)
         v = np.insert(v, k, sign * np.log(answer.size))
-    heights = np.maximum.accumulate(np.clip(ndtri(rows), _NONE, _ALL), axis=1)
-    found = np.exp([sign * np.interp(scores, row, v, left=np.nan, right=np.nan) for row in heights])
+    curves = [(v, np.clip(ndtri(row), _NONE, _ALL)) for row in rows]
+    if (build := sign * np.log(air.build)) < sign * np.log(air.first):  # the upper end is the allowed fraction there
+        k = np.searchsorted(v, build)
+        curves[2] = np.insert(v, k, build), np.insert(curves[2][1], k, ndtri(answer.share))
+    rising = [(at, np.maximum.accumulate(heights)) for at, heights in curves]
+    found = np.exp([sign * np.interp(scores, heights, at, left=np.nan, right=np.nan) for at, heights in rising])
     if air.stuck is not None:  # also where the curve is flat, without devices that begin to stick near this size
         stated = ndtri([air.stuck.value, air.stuck.low, air.stuck.high])
         found = np.where(scores == stated[:, None], answer.size, found)

@@ -28,7 +28,7 @@ from stiction.report.style import (
 )
 from stiction.report.table import Table, table_stage
 from stiction.stages.devices import device_warnings
-from stiction.stages.life.answers import QUESTIONS, TOUCH, Answer, Name, answers_of
+from stiction.stages.life.answers import QUESTIONS, TOUCH, LifeRow, Name, answers_of
 
 #: Units of the answers by those in SI: factor and text.
 _UNITS = {
@@ -143,7 +143,16 @@ def _beside(build, sought):
     if not 0 < build < np.inf:
         return []
     size = f"{sought.name} to build, {sought.in_words(build)}"
-    return [f"The {size}, has everything inside. Simulated limits below have one cause each and exact inputs."]
+    return [f"The {size}, has inside all that is stated. Simulated limits below have one cause each and exact inputs."]
+
+
+def judged_without(dataset: xr.Dataset, build: float) -> list[str]:
+    """Sentence on the limits that do not allow a size to build [m, N], as nothing that is stated asks for them."""
+    sought, short = _sought(dataset), [row for row in _rows(dataset) if _is_short(row, build)]
+    if not short:
+        return []
+    named = "; ".join(f"{_label(row)}, {sought.in_words(_unsafe_end(row))}" for row in short)
+    return [f"The {sought.name} to build is judged without these limits, which do not allow it: {named}."]
 
 
 def _limit(answers, length):
@@ -297,12 +306,12 @@ def _often(answers, touchdowns, has_shares):
     return [f"{number} if each meets other summits, and {same} if all meet the same ones."]
 
 
-def _low(answer: Answer) -> str:
+def _low(answer: LifeRow) -> str:
     """Lower bound of an answer in its unit."""
     return significant(_UNITS[answer.unit][0] * answer.low)
 
 
-def _high(answer: Answer) -> str:
+def _high(answer: LifeRow) -> str:
     """Upper bound of an answer in its unit."""
     return significant(_UNITS[answer.unit][0] * answer.high)
 
@@ -347,16 +356,29 @@ def _marks(answers, build, widest):
     """One row for each answer from its lower to its upper bound, with both numbers, by its label."""
     rows = {}
     for answer in answers:
-        sought, least = SOUGHT[answer.unit], answer.high if np.isnan(answer.low) else answer.low
-        is_short = answer.high > build * (1 + _ROUNDED) if sought.more_is_better else least < build * (1 - _ROUNDED)
-        colour, low, high = (
-            _SHORT if is_short else _COLOURS[answer.question],
-            least / sought.scale,
-            answer.high / sought.scale,
-        )
+        least, scale = answer.high if np.isnan(answer.low) else answer.low, SOUGHT[answer.unit].scale
+        colour, low, high = _COLOURS[answer.question], least / scale, answer.high / scale
         text = " to ".join(dict.fromkeys([significant(low), significant(high)]))
-        rows[textwrap.fill(answer.what.partition(":")[0], widest)] = [dots.Mark(low, high, colour, text)]
+        mark = dots.Mark(low, high, _SHORT if _is_short(answer, build) else colour, text)
+        rows[textwrap.fill(_label(answer), widest)] = [mark]
     return rows
+
+
+def _label(answer):
+    """What an answer is about, in short."""
+    return answer.what.partition(":")[0]
+
+
+def _unsafe_end(answer):
+    """End of a length or a force that decides about a size: its lower or, of a force, its upper bound."""
+    is_upper = SOUGHT[answer.unit].more_is_better or np.isnan(answer.low)
+    return answer.high if is_upper else answer.low
+
+
+def _is_short(answer, build):
+    """Whether a length or a force does not allow a size to build, beyond rounding."""
+    sign = SOUGHT[answer.unit].sign
+    return sign * np.log(build) > sign * np.log(_unsafe_end(answer)) + _ROUNDED
 
 
 #: What table and figure declare alike.

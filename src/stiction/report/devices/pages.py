@@ -221,14 +221,14 @@ def _settings(plan, at):
     """Section of a device, and its surfaces in words."""
     section = plan.config["devices"][at.device]
     pair = plan.config["pairs"][section["pair"]]
-    names = {f"surface of the {part}": pair[part] for part in ("beam", "substrate")}
+    names = {"surface of the device": pair["beam"], "surface of the substrate": pair["substrate"]}
     materials = list(map(plan.materials.stated, names.values()))
     surfaces = {
         part: f"{name}: {surface_in_words(plan.config['surfaces'][name], material)}"
         for (part, name), material in zip(names.items(), materials, strict=True)
     }
     if "replica" in pair:
-        surfaces["surface of the beam"] += f", {replica_in_words(pair['replica'])}"
+        surfaces["surface of the device"] += f", {replica_in_words(pair['replica'])}"
     left_out = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
     assumed = plan.devices.assumed_inputs(at.device)
     measured = [name for name in names.values() if is_measured(plan.config["surfaces"][name])]
@@ -260,14 +260,18 @@ def _page(data, at, settings):
 
 
 def with_life(page: Page, name: str, answers: xr.Dataset, answer: Answer) -> Page:
-    """Page with the life of its device: in words, and after the first section as table and figure."""
+    """Page with the life of its device: in words, and after the first section as table and figure.
+
+    The first screen names what does not allow the size to build.
+    """
     first, *others = page.sections
     cells = life.table({name: answers}).cells.drop(columns="device")
     build = np.nan if answer.forbidden else answer.build
     picture = life.figure({name: answers}, {name: build})
     section = Section("From the first contact to the last", (life.CAPTION,), cells, picture)
     said, sections = life.sentences(answers, build, bool(answer.stays)), [first, section, *others]
-    return replace(page, answer=[*said, *page.answer], more=[*said, *page.more], sections=sections)
+    summary = page.summary and replace(page.summary, basis=[*page.summary.basis, *life.judged_without(answers, build)])
+    return replace(page, answer=[*said, *page.answer], more=[*said, *page.more], sections=sections, summary=summary)
 
 
 def _save(page, paths):

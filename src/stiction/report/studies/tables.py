@@ -16,14 +16,14 @@ from stiction.report.table import Table, table_stage
 from stiction.stages.beams.variant_beams import by_pair, cases_of
 
 _LABELS = {
-    "van_der_waals": "vdW: {}",
+    "van_der_waals": "van der Waals: {}",
     "psd": "PSD: {}",
     "asperity": "asperity: {}",
     "every": "grid × {}",
     "spacing_nm": "grid {} nm",
     "poisson_ratio": "ν = {}",
     "strips_per_element": "elements of {} strips",
-    "reach": "vdW: across {} gaps",
+    "reach": "van der Waals: across {} gaps",
     "adsorbed_nm": "{} nm of adsorbed water",
     "contact": "{} elastic contact",
 }

@@ -30,7 +30,7 @@ CONFIDENCE = CONFIDENCES[0]
 
 
 @dataclass(frozen=True)
-class Side:
+class AskedSurface:
     """One surface."""
 
     rms: float  #: [m]
@@ -52,17 +52,17 @@ class Side:
 
 
 @dataclass(frozen=True)
-class Asked:
+class AskedCantilever:
     """Cantilever on two surfaces, as the estimate knows it."""
 
-    beam: Side
-    substrate: Side
+    beam: AskedSurface
+    substrate: AskedSurface
     thickness: float  #: [m]
     gap: float  #: [m]
     width: float  #: [m]
 
     @property
-    def sides(self) -> list[Side]:
+    def sides(self) -> list[AskedSurface]:
         """Both surfaces, in the order of `stiction.models.SIDES`."""
         return [getattr(self, side) for side in SIDES]
 
@@ -81,7 +81,7 @@ class Asked:
 class Settings:
     """Numbers of a cantilever, or why the estimate refuses its configuration."""
 
-    asked: Asked | None = None
+    asked: AskedCantilever | None = None
     refused: str = ""
 
 
@@ -89,12 +89,12 @@ class Settings:
 class AskedStopper:
     """Stopper on two surfaces, as the estimate knows it."""
 
-    beam: Side
-    substrate: Side
+    beam: AskedSurface
+    substrate: AskedSurface
     contact: tuple[float, float]  #: sides of its area [m]
 
     @property
-    def sides(self) -> list[Side]:
+    def sides(self) -> list[AskedSurface]:
         """Both surfaces, in the order of `stiction.models.SIDES`."""
         return [getattr(self, side) for side in SIDES]
 
@@ -227,6 +227,6 @@ def _stage(name, of, kind, result, compute):
 
 
 STAGES = (
-    _stage(LENGTHS, Asked, Settings, "lengths", compute),
+    _stage(LENGTHS, AskedCantilever, Settings, "lengths", compute),
     _stage(FORCES, AskedStopper, SettingsOfStopper, "stopper", compute_stopper),
 )
