@@ -170,7 +170,7 @@ class Device:
         return with_limits(answer, [limit for dataset in self._simulated.values() for limit in self.limits(dataset)])
 
     def estimate(self) -> Estimate:
-        """Estimate at once of the lengths at which few stick, for exact inputs and one answer in all airs.
+        """Estimate at once of the lengths or forces at which few stick, for exact inputs and one answer in all airs.
 
         Raises
         ------

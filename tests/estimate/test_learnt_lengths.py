@@ -8,8 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import binom, norm
 
-from stiction.estimate.errors import conformal
-from stiction.estimate.fit import DesignRows, Kernel, coefficients, fitted, group
+from stiction.estimate.learning.errors import conformal
+from stiction.estimate.learning.fit import DesignRows, Kernel, coefficients, fitted, group
 from stiction.estimate.length import SCORES, Lengths, fraction_of, normal_score
 from stiction.estimate.table import Surrogate
 

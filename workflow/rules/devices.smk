@@ -120,3 +120,7 @@ define("answer")
 # Estimate at once of {device} beside its run.
 #   safe_lengths -> results/devices/estimate/{device}.nc
 define("device_estimate")
+
+# Estimate at once of {device} beside its run.
+#   stoppers -> results/devices/estimate_of_force/{device}.nc
+define("stopper_estimate")

@@ -17,6 +17,10 @@ define("table_devices")
 #   device_estimate -> results/tables/estimate.{csv,md,html}
 define("table_estimate")
 
+# Estimate of force: forces at once beside the run.
+#   stopper_estimate -> results/tables/estimate_of_force.{csv,md,html}
+define("table_estimate_of_force")
+
 # Roughness {device}: how rough the surfaces of {device} must be.
 #   roughness -> results/figures/roughness_{device}.{pdf,png,txt}
 define("figure_roughness")
@@ -160,8 +164,9 @@ define("figure_life")
 
 # Page of device {device}.
 #   answer, life, budget, tip_budget, device_warnings, device_model_error, test_beams_rerun, device_estimate,
-#     safe_lengths, roughness, stoppers, stoppers_at_voltage, tilted_stoppers, process_curve,
-#     process_settings, process_law, chart, process_map, process_pairs -> results/devices/{device}.{html,txt}
+#     stopper_estimate, safe_lengths, roughness, stoppers, stoppers_at_voltage, tilted_stoppers,
+#     process_curve, process_settings, process_law, chart, process_map, process_pairs ->
+#     results/devices/{device}.{html,txt}
 define("device_page")
 
 # Simulated limits of beams.

@@ -85,7 +85,7 @@ def _parser():
     _add(commands, "report", _report, "put the results into one file, results/report.html", files="*")
     _add(commands, "show", _show, "open the index of the results, results/index.html", files=None)
     _add(commands, "explain", _explain, "say what would be computed, and why", files="*")
-    words = "estimate the length to build at once, in a tenth of a second"
+    words = "estimate the length or force to build at once, in a tenth of a second"
     added = commands.add_parser("estimate", help=words, description=estimate.PURPOSE)
     estimate.add_options(added)
     added.set_defaults(run=estimate.run, directory=".")

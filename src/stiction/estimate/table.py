@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from operator import mul
 from pathlib import Path
 from typing import Any
 
@@ -36,10 +37,10 @@ class Surrogate:
         known = [coordinates[k] for k in self.columns]
         standard = [(x - mean) / scale for x, mean, scale in zip(known, self.centre, self.scale, strict=True)]
         place = [x / length for x, length in zip(standard, self.lengths, strict=True)]
-        squares = [sum((x - y) * (x - y) for x, y in zip(place, node, strict=True)) for node in self.nodes]
-        near, terms = [math.exp(-0.5 * square) for square in squares], [1.0, *standard]
+        distances = [math.dist(place, node) for node in self.nodes]
+        near, terms = [math.exp(-0.5 * distance * distance) for distance in distances], [1.0, *standard]
         found = {name: _dot(self.trend[name], terms) + _dot(self.weights[name], near) for name in self.trend}
-        return Values(found, math.sqrt(min(squares)), self._outside(known))
+        return Values(found, min(distances), self._outside(known))
 
     def _outside(self, known):
         """Numbers of the coordinates beyond the design."""
@@ -58,7 +59,7 @@ class Values:
 
 def _dot(left, right):
     """Scalar product."""
-    return sum(x * y for x, y in zip(left, right, strict=True))
+    return sum(map(mul, left, right))
 
 
 @cache

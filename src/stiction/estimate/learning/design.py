@@ -30,6 +30,8 @@ RANGES = {
     "ln_stiffness": (1500.0, 300_000.0),
     "ln_width": (8.0, 40.0),
 }
+#: Least and largest side of the patch of a stopper [µm].
+SIDES = (1.0, 6.0)
 #: Heights of the film of water [nm]. At 300 K and perfect wetting, these are relative humidities of 0.34 and 0.92.
 FILMS = (0.96, 12.4)
 #: Slopes of spectra between corner and cut-off.

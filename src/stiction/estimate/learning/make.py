@@ -1,25 +1,37 @@
 """Table of the estimate from a trained design, and its errors on surfaces that were not learnt.
 
-python -m stiction.estimate.make FOLDER
+python -m stiction.estimate.learning.make FOLDER
 """
 
 import json
 import sys
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from stiction.config.reading import paper
 from stiction.config.units import to_si
 from stiction.constants import WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
 from stiction.estimate.answer import CHOSEN, CONFIDENCES
-from stiction.estimate.design import FILMS, SurfaceLaw
-from stiction.estimate.errors import conformal, rest_of, scores, tested
-from stiction.estimate.fit import Fitted, fitted, group, rounded
+from stiction.estimate.learning import patches
+from stiction.estimate.learning.design import FILMS, SurfaceLaw
+from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
+from stiction.estimate.learning.errors import Tested, conformal, rest_of, scores, tested, tested_forces
+from stiction.estimate.learning.fit import Fitted, fitted, group, rounded
+from stiction.estimate.learning.rows import (
+    OF_FULL,
+    OF_RATIO,
+    rows_of_full,
+    rows_of_patches,
+    rows_of_ratios,
+    rows_of_tips,
+)
+from stiction.estimate.learning.training import SETS, TrainingTips, base, full_contact_of, plan_of
 from stiction.estimate.length import normal_score
-from stiction.estimate.rows import OF_FULL, rows_of_full, rows_of_tips
-from stiction.estimate.state import COORDINATES
+from stiction.estimate.state import COORDINATES, OF_PATCHES
 from stiction.estimate.table import FILE, Surrogate
-from stiction.estimate.training import SETS, TrainingTips, base, full_contact_of, plan_of
 from stiction.models import SIDES
 from stiction.progress import without_progress
 from stiction.run.atomic import save_text
@@ -44,18 +56,23 @@ def table_of(folder: Path) -> dict[str, Any]:
         "water": [WATER_SURFACE_ENERGY, WATER_MOLAR_VOLUME],
         "library": library,
         "pairs": {name: {side: pair[side] for side in SIDES} for name, pair in paper()["pairs"].items()},
-        "tested_score": TESTED,
         "sets": {name: vars(effort) for name, effort in SETS.items()},
         "coordinates": COORDINATES,
-        "left_out": tips.scatter | full.scatter,
-        "rest": rest(folder, modulus, tips, full),
         "tips": tips.content,
         "full": full.content,
+        "stoppers": stoppers_of(folder, modulus),
     }
-    return table | {
-        "margins": margins(folder, table),
-        "control": {"slopes": control_of_slopes(), "forces": control_of_forces()},
-    }
+    table |= errors_of(tested, folder, modulus, tips, full)
+    control = {"slopes": control_of_slopes(), "forces": control_of_forces(), "patches": control_of_patches()}
+    return table | {"control": control}
+
+
+def stoppers_of(folder: Path, modulus: float) -> dict[str, Any]:
+    """Part of the table about stoppers."""
+    forces = fitted(rows_of_patches(folder, "learn", modulus), "at_2", range(len(OF_PATCHES)))
+    full = fitted(rows_of_ratios(folder, "learn", modulus), "ratio", OF_RATIO, 90)
+    own = {"sides": SIDES_OF_PATCHES, "coordinates": OF_PATCHES, "forces": forces.content, "full": full.content}
+    return own | errors_of(tested_forces, folder, modulus, forces, full)
 
 
 def _control_point():
@@ -76,24 +93,44 @@ def control_of_forces() -> list[float]:
     return full_contact_of(point, plan, height, "control")["full"].ravel().tolist()
 
 
-def rest(folder: Path, modulus: float, tips: Fitted, full: Fitted) -> float:
+def control_of_patches() -> list[float]:
+    """Pull-off pressures of a few patches, as `control_of_slopes`."""
+    point, _, height = _control_point()
+    effort = SETS["control"]
+    sides = patches.sides_of(point, effort.seed, effort.law)
+    plan = patches.plan_of(point, sides, patches.base())
+    return patches.forces_of(point, plan, np.array([height]), effort.patches, effort.seed)[0].tolist()
+
+
+#: Errors of all surfaces of some sets, as `stiction.estimate.learning.errors.tested`.
+Test = Callable[..., Iterator[Tested]]
+
+
+def errors_of(test: Test, folder: Path, modulus: float, first: Fitted, full: Fitted) -> dict[str, Any]:
+    """Numbers of the table about the errors of two processes: on summits and in full contact."""
+    of_rest = rest(test, folder, modulus, first, full)
+    of_margins = margins(test, folder, modulus, of_rest, *(Surrogate(**each.content) for each in (first, full)))
+    own = {"tested_score": TESTED, "left_out": first.scatter | full.scatter}
+    return own | {"rest": of_rest, "margins": of_margins}
+
+
+def rest(test: Test, folder: Path, modulus: float, first: Fitted, full: Fitted) -> float:
     """Rest of the difficulty from surfaces to learn from, each with the processes that have not learnt it."""
 
     def without(point):
         """Processes without a point."""
-        return tuple(Surrogate(**each.without[group(point.number)]) for each in (tips, full))
+        return tuple(Surrogate(**each.without[group(point.number)]) for each in (first, full))
 
-    return round(rest_of(list(tested(folder, "learn", modulus, TESTED, without))), 4)
+    return round(rest_of(list(test(folder, "learn", modulus, TESTED, without))), 4)
 
 
-def margins(folder: Path, table: dict[str, Any]) -> dict[str, float]:
+def margins(test: Test, folder: Path, modulus: float, of_rest: float, *processes: Surrogate) -> dict[str, float]:
     """Half of the intervals of the logarithm of a length over its difficulty, by confidence.
 
     The widest of those of each law, so that an interval holds for surfaces of either.
     """
-    processes = Surrogate(**table["tips"]), Surrogate(**table["full"])
     found = [
-        scores(list(tested(folder, f"decide_{law}", table["modulus"], TESTED, lambda _: processes)), table["rest"])
+        scores(list(test(folder, f"decide_{law}", modulus, TESTED, lambda _: processes)), of_rest)
         for law in (SurfaceLaw.TYPICAL, SurfaceLaw.ANY)
     ]
     return {name: round(max(conformal(errors, int(name) / 100) for errors in found), 4) for name in CONFIDENCES}

@@ -9,12 +9,16 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 from scipy.special import betaincinv
 
+from stiction.devices.risk import CONFIDENCE
 from stiction.estimate.answer import difficulty
-from stiction.estimate.design import Point
+from stiction.estimate.force import reciprocals
+from stiction.estimate.learning.design import Point
+from stiction.estimate.learning.patches import FOLDER
+from stiction.estimate.learning.rows import change_of, of_forces, of_tips, patches_of, states_of, stored
+from stiction.estimate.learning.training import FACTORS, changes_of
 from stiction.estimate.length import NAMES, Lengths, NotLearnt, lengths
-from stiction.estimate.rows import of_tips, states_of, stored
 from stiction.estimate.table import Surrogate
-from stiction.estimate.training import FACTORS
+from stiction.streams import stream
 
 #: Numbers between which the rest of `stiction.estimate.answer.difficulty` is found.
 _RESTS = 1e-3, 1.0
@@ -54,20 +58,33 @@ def tested(folder: Path, sets: str, modulus: float, score: float, processes: Pro
         if "changed" not in numbers or not np.isfinite(numbers["changed"]).all():
             continue
         state = states_of(point, numbers["airs"][:1], modulus)[0][FACTORS.index(1.0)]
-        true = _of_tips(numbers["changed"]).at(score)
-        try:
-            found = lengths(state, 1.0, *processes(point))
-        except NotLearnt:
-            yield Tested(point.number, math.nan, true, math.nan)
-        else:
-            yield Tested(point.number, found.slope, true, found.at(score))
+        true = _lengths_of(of_tips(numbers["changed"]), math.log(1.5))
+        yield _beside(point, true, score, lambda of=state, at=point: lengths(of, 1.0, *processes(at)))
 
 
-def _of_tips(slopes):
-    """Lengths over a gap of 1 m by the slopes of tips (n,)."""
-    quantities = of_tips(slopes)
-    logarithms = (math.log(1.5) + quantities[name] for name in NAMES[:3])
-    return Lengths(tuple(logarithms), quantities["slope"])
+def tested_forces(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
+    """Reciprocals of forces of some sets, as `tested`."""
+    for point, numbers in stored(folder / FOLDER, sets):
+        if not np.isfinite(numbers.get("ratio", np.nan)):
+            continue
+        patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
+        changed = change_of(numbers).of(pressures)(pressures)
+        true = _lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
+        yield _beside(point, true, score, lambda of=patch, at=point: reciprocals(of, *processes(at)))
+
+
+def _beside(point, true, score, estimate):
+    """Tested length of a point at a score."""
+    try:
+        found = estimate()
+    except NotLearnt:
+        return Tested(point.number, math.nan, true.at(score), math.nan)
+    return Tested(point.number, found.slope, true.at(score), found.at(score))
+
+
+def _lengths_of(quantities, shift):
+    """Lengths by the quantities of tips or patches, whose logarithms are shifted."""
+    return Lengths(tuple(quantities[name] + shift for name in NAMES[:3]), quantities["slope"])
 
 
 def rest_of(found: Sequence[Tested]) -> float:
@@ -108,3 +125,43 @@ def coverage(inside: int, number: int, confidence: float = 0.95) -> tuple[float,
     tail, out = (1 - confidence) / 2, number - inside
     low = float(betaincinv(inside, out + 1, tail)) if inside else 0.0
     return low, float(betaincinv(inside + 1, out, 1 - tail)) if out else 1.0
+
+
+#: Draws of a bootstrap.
+_DRAWS = 200
+
+
+def noise_of(folder: Path, sets: str, score: float) -> np.ndarray:
+    """Standard errors of the logarithm of a length as of a run, by its strips in full contact and by its tips (n, 2).
+
+    Of all points of some sets whose full contact settles. By the bootstrap: B. Efron, Ann. Stat. 7, 1 (1979).
+    """
+    found, rng = [], stream(0, "estimate", "bootstrap")
+    for _, numbers in stored(folder, sets):
+        if "changed" in numbers and np.isfinite(numbers["changed"]).all():
+            found.append((_noise_of_strips(numbers, score, rng), _noise_of_tips(numbers["changed"], score, rng)))
+    return np.array(found)
+
+
+def _noise_of_tips(slopes, score, rng):
+    """Noise of the length of tips (n,)."""
+    drawn = rng.choice(slopes, (_DRAWS, len(slopes)))
+    return float(np.std([math.log(_lengths_of(of_tips(each), 0.0).at(score)) for each in drawn]))
+
+
+def _noise_of_strips(numbers, score, rng):
+    """Noise of the length by the upper end of the change that a run applies at the slope of its tips."""
+    slope = 1 / _lengths_of(of_tips(numbers["changed"]), 0.0).at(score)
+    near = int(np.argmin(np.abs(np.log(numbers["slope"] / slope))))
+    forces = [numbers[name][:, near] for name in ("full", "summits")]
+    ratios = []
+    for _ in range(_DRAWS):
+        drawn = (rng.choice(each, len(each))[:, None] for each in forces)
+        ratios.append(changes_of(np.ones(1), *drawn).change.at_most(CONFIDENCE).ratio.item())
+    return float(np.std(np.log(ratios))) * _power(numbers["slopes"][0])
+
+
+def _power(slopes):
+    """Power with which lengths fall with attractions, from slopes of tips (FACTORS, n)."""
+    ends = [FACTORS.index(end(FACTORS)) for end in (min, max)]
+    return float(np.log(np.divide(*(np.median(slopes[k]) for k in ends))) / math.log(max(FACTORS) / min(FACTORS)))
