@@ -8,8 +8,7 @@ import sys
 from pathlib import Path
 
 BASE = Path(workflow.current_basedir)
-# Jobs use the code that belongs to this file, because its fingerprint decides what reruns: next to it in a checkout, and
-# around it in an installed package.
+# Jobs use the code of this checkout or installed package, because its fingerprint decides which of them rerun.
 SOURCE = str(BASE / "src" if (BASE / "src").is_dir() else BASE.parents[1])
 sys.path.insert(0, SOURCE)
 PATHS = [SOURCE, *filter(None, dict(os.environ).get("PYTHONPATH", "").split(os.pathsep))]
@@ -39,7 +38,7 @@ if is_main:
     remember_code.save()
 
 
-FRONT = Path(".snakemake/front.rst")  # front page of the report, if the command stiction report has written one
+FRONT = Path(".snakemake/front.rst")  # front page of the report, written by the command stiction report
 if FRONT.exists():
 
     report: str(FRONT.absolute())
@@ -47,7 +46,7 @@ if FRONT.exists():
 
 rule tables:
     input:
-        planner.wanted("tables"),
+        planner.files_of("tables"),
     localrule: True
     message:
         "All tables."
@@ -55,7 +54,7 @@ rule tables:
 
 rule figures:
     input:
-        planner.wanted("figures"),
+        planner.files_of("figures"),
     localrule: True
     message:
         "All figures."
@@ -63,7 +62,7 @@ rule figures:
 
 rule study_figures:
     input:
-        planner.wanted("study_figures"),
+        planner.files_of("study_figures"),
     localrule: True
     message:
         "Figures and tables of the studies."
@@ -71,7 +70,7 @@ rule study_figures:
 
 rule model_error:
     input:
-        planner.wanted("model_error"),
+        planner.files_of("model_error"),
     localrule: True
     message:
         "Error of the model of the contact: Table III under full elastic contact."
@@ -79,7 +78,7 @@ rule model_error:
 
 rule asperities:
     input:
-        planner.wanted("asperities"),
+        planner.files_of("asperities"),
     localrule: True
     message:
         "Table III under several readings of an asperity."
@@ -87,7 +86,7 @@ rule asperities:
 
 rule pressing:
     input:
-        planner.wanted("pressing"),
+        planner.files_of("pressing"),
     localrule: True
     message:
         "Adhesion after surfaces were pressed together."
@@ -95,7 +94,7 @@ rule pressing:
 
 rule devices:
     input:
-        planner.wanted("devices"),
+        planner.files_of("devices"),
     localrule: True
     message:
         "Tables, figures and pages of the devices."
@@ -103,7 +102,7 @@ rule devices:
 
 rule measured:
     input:
-        planner.wanted("measured"),
+        planner.files_of("measured"),
     localrule: True
     message:
         "Sheets and tables of the measured surfaces."
@@ -111,21 +110,21 @@ rule measured:
 
 rule scans:
     input:
-        planner.wanted("scans"),
+        planner.files_of("scans"),
     localrule: True
     message:
         "Sheets and statistics of scans, without the pairs of their surfaces."
 
 
-HELD = []  # open file that holds the lock on the folder of this run
+LOCKS = []  # open file with the lock on the folder of this run
 
 
 onstart:
-    # As Ctrl-C. Snakemake's own handler acquires a lock and would deadlock if this thread already holds it.
+    # Stop as Ctrl-C does. Snakemake's handler acquires a lock, and deadlocks if this thread already holds it.
     interrupt = signal.getsignal(signal.SIGINT)
     signal.signal(signal.SIGTERM, interrupt if callable(interrupt) else signal.default_int_handler)
     try:
-        HELD.append(run_lock.reserve(".snakemake/running"))
+        LOCKS.append(run_lock.reserve(".snakemake/running"))
         refuse_what_samples_show()
         refuse_to_touch()
         provenance.record("results/provenance.json", BASE, config)
@@ -136,8 +135,8 @@ onstart:
     except (RuntimeError, ValueError) as error:
         raise WorkflowError(str(error))
     snakemake_patches.limit_timers(workflow)
-    # Kernels are compiled and cached before jobs run in parallel, because two jobs could corrupt a shared cache entry.
-    # The server of the jobs that run on this machine does it.
+    # Compile and cache kernels before jobs run in parallel, because two jobs could corrupt a shared entry of the cache.
+    # The server that forks jobs does this itself.
     if not snakemake_patches.fork_jobs():
         shell("{sys.executable:q} -m stiction.run.warmup")
 
@@ -149,10 +148,10 @@ onsuccess:
 rule all:
     default_target: True
     input:
-        map(planner.wanted, WHOLE),
+        map(planner.files_of, WHOLE),
     localrule: True
     message:
-        "Tables, figures, checks, and what the configuration asks of devices."
+        "Tables, figures, checks and pages of devices."
 
 
 snakemake_patches.list_messages(workflow)

@@ -48,7 +48,7 @@ ROOMS = {
     "process": ("Devices against roughness and process.", ["stages.axes"]),
     "report": ("Tables, figures and pages, and the checks of a run.", ["report"]),
 }
-READING = "Above each rule: what it does, the rules whose results it reads -> the files that it writes."
+READING = "A comment says what each rule does, whose results it reads -> which files it writes."
 NOTE = "Written by docs/rules.py from the declarations of the stages: change these, then run make numbers."
 
 
@@ -137,7 +137,8 @@ def chain() -> str:
     text = f'''"""From two rough surfaces to crack lengths: the rules of the paper, each after the rules that it reads.
 
 surface: a rough surface, such as B2 · pair: two surfaces, such as b · case: a pair at one relative humidity, such as
-b_rh067 · model: the model of the surfaces, or of the beams · chunk, number: one part of the samples, of so many.
+b_rh067 · model: the model of the surfaces, or of the beams · chunk, number: a part of the samples, and the number of
+parts.
 
 {NOTE}
 """

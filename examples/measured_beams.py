@@ -83,7 +83,7 @@ class Measured:
         prior, responses = self.prior(slope=slope, fitted=fitted)
         data, others = self.data(responses), [k for k in self.places if k not in fitted]
         known = inference.update(prior, part(data, list(fitted)))
-        shift, deviation = known.of(data.responses[others])
+        shift, deviation = known.response_moments(data.responses[others])
         return data.differences[others] - shift, np.hypot(deviation, data.errors[others])
 
 
@@ -200,7 +200,11 @@ def lengths(array):
     for beam, row, error, difference in zip(
         array.beams, device, array.data(responses).errors, array.data(responses).differences, strict=True
     ):
-        computed, (shift, after), (_, before) = TO_UM * float(beam.budget.centre), known.of(row), prior.of(row)
+        computed, (shift, after), (_, before) = (
+            TO_UM * float(beam.budget.centre),
+            known.response_moments(row),
+            prior.response_moments(row),
+        )
         measured, updated, end = computed * np.exp(difference), computed * np.exp(shift), round(100 * beam.humidity)
         texts |= {
             f"measured_{end}": with_error(measured, measured * error),
@@ -216,7 +220,7 @@ def from_one_to_another(array, other):
     for name, slope in (("slope", True), ("factor", False)):
         prior, responses = array.prior(other.beams, slope)
         theirs = other.data(responses[len(array.beams) :])
-        shift, deviation = inference.update(prior, array.data(responses)).of(theirs.responses)
+        shift, deviation = inference.update(prior, array.data(responses)).response_moments(theirs.responses)
         away = theirs.differences - shift
         texts[f"rms_of_{name}"] = percent(away)
         if slope:

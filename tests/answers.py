@@ -21,10 +21,10 @@ from stiction.stages.devices import budget, safe_lengths, sticking, stoppers
 from stiction.stages.devices.budget import Responses
 from stiction.stages.devices.device_warnings import OfDevices
 from stiction.stages.devices.opening import EITHER, S_SHAPE, DesignedBeam
-from stiction.stages.devices.uncertain_inputs import Input, State, Uncertainty
+from stiction.stages.devices.uncertain_inputs import Input, InputState, Uncertainty
 from stiction.stages.life.answers import layout
 from stiction.stages.life.beams import beam_answers
-from stiction.stages.life.inputs import Errors, OfBeam, OfStopper
+from stiction.stages.life.inputs import BeamErrors, BeamKeys, StopperKeys
 from stiction.stages.life.stoppers import stopper_answers
 
 CANTILEVER = {
@@ -54,11 +54,13 @@ def safe(kind="cantilever", longest=600e-6, reach=np.inf):
     shapes = {device.opening.shapes[0]: np.linspace(2 / 3, 1, 400) * longest}
     if kind == "cantilever":
         shapes[EITHER] = 0.7 * shapes[S_SHAPE]
-    known = sticking.lengths_without_samples(device, settings.water, 0.67, 0.0, reach)
-    bounds = {shape: sticking.safe_lengths(values, settings, known[shape]) for shape, values in shapes.items()}
-    found = safe_lengths.layout(shapes, bounds, known, settings)
-    floors = "shape", [one.safe for one in known.values()]
-    return found.assign(
+    without_samples = sticking.lengths_without_samples(device, settings.water, 0.67, 0.0, reach)
+    bounds = {
+        shape: sticking.safe_lengths(values, settings, without_samples[shape]) for shape, values in shapes.items()
+    }
+    dataset = safe_lengths.layout(shapes, bounds, without_samples, settings)
+    floors = "shape", [bound.safe for bound in without_samples.values()]
+    return dataset.assign(
         sticking_length=(("shape", "device"), np.array(list(shapes.values()))),
         floor=floors,
         rms=3e-9,
@@ -81,7 +83,7 @@ def least(dataset, share=1e-3):
 
 # Budgets
 
-STATE = State(None, 0.5, Water(300.0))
+STATE = InputState(None, 0.5, Water(300.0))
 NAMES = {"rms of B2": "heights of B2", "skewness of B2": "heights of B2", "thickness": "thickness"}
 COVARIANCE = np.array([[4e-4, -1e-4, 0], [-1e-4, 4e-4, 0], [0, 0, 1e-4]])
 C1 = designed()
@@ -120,17 +122,17 @@ STOPPERS = {"S1": stopper_dataset(), "S2": stopper_dataset(peak=1.0)}
 # Answers
 
 
-def silent(lengths: Mapping[float, xr.Dataset], name="C1", said=()) -> OfDevices:
+def silent(lengths: Mapping[float, xr.Dataset], name="C1", limits=()) -> OfDevices:
     """Warnings of a beam, the same about all its states."""
     shapes = map(str, next(iter(lengths.values()))["shape"].values)
-    return OfDevices({(name, rh, shape): list(said) for shape in shapes for rh in lengths}, {}, {})
+    return OfDevices({(name, rh, shape): list(limits) for shape in shapes for rh in lengths}, {}, {})
 
 
-def beam_data(lengths, budgets=None, *, of=None, after=None, **more):
+def beam_data(lengths, budgets=None, *, keys=None, after=None, **more):
     """Datasets of a beam: safe lengths by humidity, budgets by the keys of pages, and more of stage answer."""
     kind = "bridge" if "middle" in next(iter(lengths.values()))["shape"].values else "cantilever"
-    of = of or OfBeam(device=designed(kind), density=2330.0, liquids={}, uncertainty=Errors())
-    life = layout(beam_answers(lengths, after or {}, of, more.get("biased")), of)
+    keys = keys or BeamKeys(device=designed(kind), density=2330.0, liquids={}, uncertainty=BeamErrors())
+    life = layout(beam_answers(lengths, after or {}, keys, more.get("biased")), keys)
     return {"lengths": lengths, "budgets": list((budgets or {}).values()), "life": life, "biased": {}} | more
 
 
@@ -150,14 +152,14 @@ def beam_answer(section, lengths, budgets=None, limits: Sequence[Limit] = (), **
     return with_limits(_computed(beam_data(lengths, budgets, **more), settings), limits)
 
 
-def stopper_answer(stopper, budgets=None, limits: Sequence[Limit] = (), *, of=None, **more) -> Answer:
+def stopper_answer(stopper, budgets=None, limits: Sequence[Limit] = (), *, keys=None, **more) -> Answer:
     """Answer about a stopper, from its forces."""
     force = float(stopper.restoring_force)
-    of = of or OfStopper(restoring_force=force, contact=(3e-6, 3e-6))
-    life = layout(stopper_answers(stopper, of), of)
+    keys = keys or StopperKeys(restoring_force=force, contact=(3e-6, 3e-6))
+    life = layout(stopper_answers(stopper, keys), keys)
     data = {"stopper": stopper, "budgets": list((budgets or {}).values()), "life": life} | more
     humidities = tuple(humidity for humidity, *_ in budgets or {})
-    settings = stage.Settings(1, "S1", "stopper", touchdowns=of.touchdowns, budgets=humidities)
+    settings = stage.Settings(1, "S1", "stopper", touchdowns=keys.touchdowns, budgets=humidities)
     return with_limits(_computed(data, settings), limits)
 
 
@@ -175,17 +177,17 @@ def screen_of(answer: Answer, section, limits: Sequence[Limit] = ()) -> Summary:
 def beam_page(section, lengths, budgets=None, *, warnings=None, answer=None, name="C1", **data) -> Page:
     """Page of a beam, with the answer on its datasets unless another one is given."""
     warnings = warnings or silent(lengths, name)
-    found = limits_of(name, warnings)
-    answer = answer or replace(beam_answer(section, lengths, budgets, found, **_evidence(data)), device=name)
-    own = {"safe_lengths": lengths, "budgets": budgets or {}, "warnings": warnings}
-    return pages.device_page(name, section, own | data, answer)
+    limits = limits_of(name, warnings)
+    answer = answer or replace(beam_answer(section, lengths, budgets, limits, **_evidence(data)), device=name)
+    datasets = {"safe_lengths": lengths, "budgets": budgets or {}, "warnings": warnings}
+    return pages.device_page(name, section, datasets | data, answer)
 
 
 def stopper_page(section, stopper, budgets=None, limits: Sequence[Limit] = (), *, answer=None, **data) -> Page:
     """Page of a stopper, as of `beam_page`."""
     answer = answer or stopper_answer(stopper, budgets, limits, **_evidence(data))
-    own = {"stopper": stopper, "budgets": budgets or {}, "warnings": OfDevices({}, {}, {"S1": list(limits)})}
-    return pages.device_page("S1", section, own | data, answer)
+    datasets = {"stopper": stopper, "budgets": budgets or {}, "warnings": OfDevices({}, {}, {"S1": list(limits)})}
+    return pages.device_page("S1", section, datasets | data, answer)
 
 
 def _evidence(data):

@@ -1,6 +1,8 @@
 """The paper's configuration with single changes, and the problems reported for the result."""
 
 import copy
+import importlib.util
+import sys
 from functools import cache, reduce
 from pathlib import Path
 from typing import NamedTuple
@@ -59,18 +61,18 @@ def leaves(config, schema, path=(), required=True):
     """All keys of a configuration that hold a value."""
     if schema["type"] != "object":
         return [Leaf(path, schema, required)]
-    found = []
+    leaves_found = []
     for key, value in config.items():
         entry = schema.get("properties", {}).get(key) or schema["additionalProperties"]
-        found += leaves(value, entry, (*path, key), key in schema.get("required", ()))
-    return found
+        leaves_found += leaves(value, entry, (*path, key), key in schema.get("required", ()))
+    return leaves_found
 
 
 def entries(schema):
     """Every part of the schema that describes a section or a value."""
     inside = [*schema.get("properties", {}).values()]
     inside += [schema[key] for key in ("additionalProperties", "items") if isinstance(schema.get(key), dict)]
-    return [schema, *(entry for part in inside for entry in entries(part))]
+    return [schema, *(entry for branch in inside for entry in entries(branch))]
 
 
 def replaced(path, value):
@@ -96,3 +98,12 @@ def without(path):
 # One surface, pair or variant represents all.
 LEAVES = list({id(leaf.entry): leaf for leaf in reversed(leaves(PAPER, SCHEMA))}.values())[::-1]
 NUMBERS = [leaf for leaf in LEAVES if leaf.entry["type"] in ("number", "integer")]
+
+
+def module(path):
+    """Import a module that is not part of the package."""
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    loaded = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = loaded  # dataclasses look their module up
+    spec.loader.exec_module(loaded)
+    return loaded

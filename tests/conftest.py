@@ -44,13 +44,13 @@ def spectra_on_grids():
     """Invert the translation once for each surface and grid, which takes 0.2 s: many tests begin with the same ones."""
     from stiction.stages.surfaces import heights, spectrum
 
-    known, on_grid = {}, spectrum.on_grid
+    spectra, on_grid = {}, spectrum.on_grid
 
     def remembered(target, heights_of_surface, spacing):
         key = pickle.dumps((target, heights.density(heights_of_surface, "NG"), spacing))
-        if key not in known:
-            known[key] = on_grid(target, heights_of_surface, spacing)
-        return known[key].copy(deep=True)
+        if key not in spectra:
+            spectra[key] = on_grid(target, heights_of_surface, spacing)
+        return spectra[key].copy(deep=True)
 
     spectrum.on_grid = remembered
     yield
@@ -62,7 +62,7 @@ def any_variable(monkeypatch):
     """Datasets of made-up stages, whose variables have no row in the table."""
     from stiction.run import variables
 
-    monkeypatch.setattr(variables, "_row", lambda stage, name: variables.Row("1", "", "", name or stage))
+    monkeypatch.setattr(variables, "_row", lambda stage, name: variables.VariableAttributes("1", "", "", name or stage))
 
 
 @pytest.fixture

@@ -18,18 +18,20 @@ def is_udunits(text):
 
 def faults(path):
     """Faults of a file, one sentence each."""
-    found = []
+    sentences = []
     with netCDF4.Dataset(path) as file:
         if not re.fullmatch(r"CF-1\.\d+", getattr(file, "Conventions", "")):
-            found.append("no Conventions")
-        found += [f"no {name}" for name in ("title", "source", "references") if not getattr(file, name, "")]
-        named = " ".join(getattr(one, "coordinates", "") for one in (file, *file.variables.values())).split()
+            sentences.append("no Conventions")
+        sentences += [f"no {name}" for name in ("title", "source", "references") if not getattr(file, name, "")]
+        named = " ".join(
+            getattr(variable_or_file, "coordinates", "") for variable_or_file in (file, *file.variables.values())
+        ).split()
         coordinates = {*named, *(set(file.dimensions) & set(file.variables))}
-        found += [f"coordinate {name} is missing" for name in coordinates - set(file.variables)]
+        sentences += [f"coordinate {name} is missing" for name in coordinates - set(file.variables)]
         for name, variable in file.variables.items():
             attributes = {key: variable.getncattr(key) for key in variable.ncattrs()}
-            found += [f"{name}: {fault}" for fault in _faults(name, variable, attributes, name in coordinates)]
-    return found
+            sentences += [f"{name}: {fault}" for fault in _faults(name, variable, attributes, name in coordinates)]
+    return sentences
 
 
 def _faults(name, variable, attributes, is_coordinate):

@@ -21,24 +21,24 @@ BEAM = DEVICE | {"kind": "bridge", "thickness_um": 2, "gap_um": 2, "width_um": 3
 def law_of(settings=SETTINGS, variable=VARIABLE, surface="B2"):
     """Law of the rms of a surface, with errors of 2 %."""
     values, errors = np.log(3e-9 + 1e-11 * settings)[:, None], np.full((len(settings), 1, 1), 0.02**2)
-    found = law.Settings(variable, surface, tuple(settings), ("rms",))
-    return law.layout(fit(settings, values, errors), values, errors, found)
+    settings_of_law = law.Settings(variable, surface, tuple(settings), ("rms",))
+    return law.layout(fit(settings, values, errors), values, errors, settings_of_law)
 
 
 def _point(margin, refused, is_beam, **coords):
     """Point of a curve with these margins at two humidities."""
     common = {"seed": 1, "water": Water(300.0), "humidities": (0.8, 0.6), "share": SHARE}
-    settings = requirement.OfStopper(**common, contact=(3e-6, 3e-6), restoring_force=REQUIRED[False])
+    settings = requirement.RequiredStopper(**common, contact=(3e-6, 3e-6), restoring_force=REQUIRED[False])
     rows = []
-    for one in margin:
+    for logarithm in margin:
         size, risky = (
-            REQUIRED[is_beam] * np.exp(one if is_beam else -one),
-            np.nan if refused else 1 / (1 + np.exp(20 * one)),
+            REQUIRED[is_beam] * np.exp(logarithm if is_beam else -logarithm),
+            np.nan if refused else 1 / (1 + np.exp(20 * logarithm)),
         )
         safe = size * np.exp(-0.08 if is_beam else 0.08)
         rows.append([requirement.Response(safe, size, 0.05 * size, np.nan, (risky, 0.8 * risky, 1.2 * risky))])
-    said = {"flagged": ("humidity", [""] * 2), "refused": ("humidity", [refused] * 2)}
-    point = requirement.layout(rows, 400, settings).assign(said)
+    flags = {"flagged": ("humidity", [""] * 2), "refused": ("humidity", [refused] * 2)}
+    point = requirement.layout(rows, 400, settings).assign(flags)
     required = point.required.copy(data=REQUIRED[is_beam]).assign_attrs(units="m" if is_beam else "N")
     return point.assign(required=required, **coords)
 
@@ -57,11 +57,9 @@ def etched(is_beam=False, unknown=()):
         )
         for value in map(float, grid(SETTINGS))
     ]
-    known = law_of()
-    curve = of_process.compute(
-        [one.assign(slopes) for one in points], [known], of_process.Settings((VARIABLE,), ("etch",), ("B2",))
-    )
-    return curve, recommended.compute({"D": curve}, {"etch": known}, VARIABLE, 1)
+    etch_law = law_of()
+    curve = of_process.compute([point.assign(slopes) for point in points], [etch_law], [VARIABLE], ["etch"], ["B2"])
+    return curve, recommended.compute({"D": curve}, {"etch": etch_law}, VARIABLE, 1)
 
 
 def mapped():
@@ -74,9 +72,8 @@ def mapped():
         for second in map(float, grid(seconds, 4))
         for value in map(float, grid(SETTINGS))
     ]
-    settings = of_process.Settings((VARIABLE, "bake_min"), ("etch", "bake"), ("B2", "Sub1"))
-    found = of_process.compute(points, laws, settings)
-    return found, recommended.of_pairs(found, laws, "D", 1)
+    process_map = of_process.compute(points, laws, [VARIABLE, "bake_min"], ["etch", "bake"], ["B2", "Sub1"])
+    return process_map, recommended.of_pairs(process_map, laws, "D", 1)
 
 
 def rough(is_beam=False, unknown=(), others=()):
@@ -96,6 +93,6 @@ def biased():
     """Dataset of stage stoppers_at_voltage, some of whose patches no spring frees, not even without voltage."""
     forces = 28e-6 * np.exp(0.2 * np.random.default_rng(4).normal(-2, 1, size=(2, 400)))
     settings = stoppers.Settings(1, Water(300.0), (3e-6, 3e-6), (0.8, 0.6), (0.5, 0.9), restoring_force=REQUIRED[False])
-    found = stoppers.layout(settings, forces, np.array([0.5, 0.7, 0.9]), np.tile(forces[:1], (3, 1)))
+    dataset = stoppers.layout(settings, forces, np.array([0.5, 0.7, 0.9]), np.tile(forces[:1], (3, 1)))
     potentials = 10 * np.sqrt(np.maximum(1 - forces / 28e-6, 0))
-    return found.assign(freeing_potential=(("humidity", "sample"), potentials))
+    return dataset.assign(freeing_potential=(("humidity", "sample"), potentials))

@@ -61,9 +61,9 @@ def drawn(number: int) -> Drawn:
     """A draw by its number: rms and corner between their ends by equal factors."""
     rng = stream(46, "drawn devices", number)
     rms, corner = 10 ** rng.uniform(-1, 2), 2 * 100 ** rng.uniform()
-    skewness, part = rng.uniform(-2, 2), rng.uniform()
+    skewness, fraction = rng.uniform(-2, 2), rng.uniform()
     least = max(1.5, skewness**2 + 1.1)
-    kurtosis = least + part * (min(15, largest_kurtosis(skewness)) - least)
+    kurtosis = least + fraction * (min(15, largest_kurtosis(skewness)) - least)
     return Drawn(
         *(float(np.round(value, 3)) for value in (rms, skewness, kurtosis, corner)),
         str(rng.choice(SUBSTRATES)),
@@ -73,31 +73,31 @@ def drawn(number: int) -> Drawn:
     )
 
 
-def overlay(of: Drawn) -> dict:
+def overlay(draw: Drawn) -> dict:
     """Configuration of a draw: spectra fall with the same power as that of the paper's surface B2."""
-    cutoff, long = min(10 * of.corner, 300.0), max(1.5, round(9 / of.corner, 2))
-    spectrum = {"plateau_nm4": 1e4, "floor_nm4": 1e4 * (cutoff / of.corner) ** -4.6, "corner_rad_per_um": of.corner}
-    surface = {"rms_nm": of.rms, "skewness": of.skewness, "kurtosis": of.kurtosis, "psd": "published"}
+    cutoff, long = min(10 * draw.corner, 300.0), max(1.5, round(9 / draw.corner, 2))
+    spectrum = {"plateau_nm4": 1e4, "floor_nm4": 1e4 * (cutoff / draw.corner) ** -4.6, "corner_rad_per_um": draw.corner}
+    surface = {"rms_nm": draw.rms, "skewness": draw.skewness, "kurtosis": draw.kurtosis, "psd": "published"}
     surface["published_psd"] = spectrum | {"cutoff_rad_per_um": cutoff}
-    device = DEVICES[of.kind] | {"pair": "drawn", "humidities": [of.humidity]} | asked(of)
-    pair = {"beam": "Drawn", "substrate": of.substrate, "gap_um": 2, "humidities": [of.humidity]}
-    reach = {"attraction": {"reach": "all"}} if of.humidity == "dry" else {}
+    device = DEVICES[draw.kind] | {"pair": "drawn", "humidities": [draw.humidity]} | asked(draw)
+    pair = {"beam": "Drawn", "substrate": draw.substrate, "gap_um": 2, "humidities": [draw.humidity]}
+    reach = {"attraction": {"reach": "all"}} if draw.humidity == "dry" else {}
     sampling = {"sampling": {"strip_length_um": long, "margin_um": long}, "beam": {"length_um": 1000 * long}}
     return (
         SMALL | reach | sampling | {"surfaces": {"Drawn": surface}, "pairs": {"drawn": pair}, "devices": {"D": device}}
     )
 
 
-def asked(of: Drawn) -> dict:
+def asked(draw: Drawn) -> dict:
     """Further keys of a device."""
-    if of.extra == "uncertainty":
+    if draw.extra == "uncertainty":
         return {"uncertainty": {"scan_um": 10, "young_modulus_GPa": 5}}
-    if of.extra == "roughness":
-        length = {} if of.kind == "stopper" else {"length_um": 100}
-        rms = {"surface": "Drawn", "rms_nm": [of.rms / 2, 2 * of.rms]}
+    if draw.extra == "roughness":
+        length = {} if draw.kind == "stopper" else {"length_um": 100}
+        rms = {"surface": "Drawn", "rms_nm": [draw.rms / 2, 2 * draw.rms]}
         return {"requirement": {"share": 0.05} | length, "roughness": rms}
-    if of.extra == "chart" and of.kind != "stopper":
-        wet = 0.7 if of.humidity == "dry" else of.humidity
+    if draw.extra == "chart" and draw.kind != "stopper":
+        wet = 0.7 if draw.humidity == "dry" else draw.humidity
         return {"chart": {"thicknesses_um": [2, 3], "humidities": [wet - 0.02, wet + 0.02]}}
     return {}
 
@@ -127,10 +127,10 @@ class Files(Results):
             job.stage.save(result, {key: str(path) for key, path in paths.items()})
 
 
-def outcome(of: Drawn) -> str:
+def outcome(draw: Drawn) -> str:
     """``answer``, ``refused`` with the sentences, or the traceback of the job that failed."""
     try:
-        config = stiction.load(overlay(of))
+        config = stiction.load(overlay(draw))
     except ConfigError as error:
         return f"refused {' | '.join(error.problems)}"
     if problems := pilot.problems(config, {}, "code", DiskCache("none")):
@@ -142,7 +142,7 @@ def outcome(of: Drawn) -> str:
         for stage, _ in stages().values():
             if "devices" not in stage.targets:
                 continue
-            for wildcards in stage.wanted(plan):
+            for wildcards in stage.jobs_of_targets(plan):
                 try:
                     results.write(Job(stage, At(**wildcards), plan))
                 except Exception:

@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[1]
 EXAMPLES = [
     yaml.safe_load((ROOT / "examples" / f"{name}.yaml").read_text()) for name in ("devices", "test_beams", "roughness")
 ]
-SECTIONS = [{key: one[key] for key in ("test_beams", "devices") if key in one} for one in EXAMPLES]
+SECTIONS = [{key: example[key] for key in ("test_beams", "devices") if key in example} for example in EXAMPLES]
 #: Counts beside the crack lengths of an array of the examples.
 COUNTS = [{"humidity": 0.67, "length_um": 300, "stuck": 3, "of": 20}]
 #: Islands as a variant, which the paper does not run.
@@ -75,7 +75,7 @@ def wanted(plan: Plan) -> list[str]:
     return [
         name.format(**at)
         for stage, _ in stages().values()
-        for at in stage.wanted(plan)
+        for at in stage.jobs_of_targets(plan)
         for name in stage.files.values()
     ]
 

@@ -54,7 +54,7 @@ def surfaces(corner=12e6):
     return {"heights": [heights] * 2, "spectrum": [spectrum] * 2}
 
 
-def met(device=C1, vectors=VECTORS, limit=None, corner=12e6):
+def ground_dataset(device=C1, vectors=VECTORS, limit=None, corner=12e6):
     """Dataset of stage ground on given vectors and surfaces with this corner of their spectrum."""
     limit = limit or 1.2 * vectors[:, 1].max()
     drawn = {"vectors": lambda *_: (vectors, limit), "share_flat": lambda *_: 0.0}
@@ -65,7 +65,7 @@ def met(device=C1, vectors=VECTORS, limit=None, corner=12e6):
 
 def computed(wanted, vectors, limit=None):
     """Dataset of stage cracks on given vectors."""
-    return cracks.compute(met(wanted.device, vectors, limit), wanted)
+    return cracks.compute(ground_dataset(wanted.device, vectors, limit), wanted)
 
 
 #: Errors of mean and scatter of the samples.
@@ -81,10 +81,10 @@ def exactly(lengths, tips=np.inf):
 def lognormal_cracks(device=C1, number=400, spread=0.025, seed=1, surfaces=SURFACES):
     """Dataset of stage cracks with lognormal lengths around 700 µm."""
     rng = np.random.default_rng(seed)
-    found = 700 * UM * np.exp(spread * rng.standard_normal(number))
+    crack_lengths = 700 * UM * np.exp(spread * rng.standard_normal(number))
     laws = forcelaw.coefficients(VECTORS[:50], 1.2 * VECTORS[:, 1].max())
     beam = Beam(1500 * UM, 30 * UM, 2.6 * UM, 164e9, 20 * UM, 200)
-    beams = Released(device, found, np.inf, foundation_length(beam, laws), surfaces, None)
+    beams = Released(device, crack_lengths, np.inf, foundation_length(beam, laws), surfaces, None)
     return cracks.layout(beams, beam, laws, RMS).assign(
         share_flat=0.0, longest_strip=device.strip, resampled=0, repetition=0.0, size_error=0.0
     )

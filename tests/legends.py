@@ -12,7 +12,7 @@ def covering(figure):
     return [
         legend.get_texts()[0].get_text()
         for legend, box in drawn
-        if any(box.overlaps(other) for other in boxes + [other for one, other in drawn if one is not legend])
+        if any(box.overlaps(other) for other in boxes + [other for rival, other in drawn if rival is not legend])
         or not (box.x0 >= 0 and box.x1 <= figure.bbox.width)
     ]
 

@@ -139,7 +139,7 @@ def of_comparison(node):
     """Opposite comparison; of counts, with the other boundary as well."""
     first, *others = node.ops
     yield changed(node, ops=[COMPARISONS[type(first)](), *others])
-    counts = {name_of(part) for side in (node.left, *node.comparators) for part in ast.walk(side)} & COUNTS
+    counts = {name_of(operand) for side in (node.left, *node.comparators) for operand in ast.walk(side)} & COUNTS
     if counts and type(first) in BOUNDARIES:
         yield changed(node, ops=[BOUNDARIES[type(first)](), *others])
 
@@ -270,14 +270,14 @@ def modules():
 @cache
 def imported(path):
     """Modules that a file imports and what it imports from them, with those of the helpers of tests that it imports."""
-    found = set()
+    modules_found = set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("stiction"):
-            found |= {f"{node.module}.{alias.name}".removeprefix("stiction.") for alias in node.names}
-            found.add(node.module.removeprefix("stiction."))
+            modules_found |= {f"{node.module}.{alias.name}".removeprefix("stiction.") for alias in node.names}
+            modules_found.add(node.module.removeprefix("stiction."))
         elif isinstance(node, ast.ImportFrom) and (helper := ROOT / "tests" / f"{node.module}.py").is_file():
-            found |= imported(helper) if helper != path else set()
-    return frozenset(found)
+            modules_found |= imported(helper) if helper != path else set()
+    return frozenset(modules_found)
 
 
 def rounds(module):
@@ -285,19 +285,19 @@ def rounds(module):
     *folder, name = module.split(".")
     tests = ROOT / "tests"
     above = [tests.joinpath(*folder[:depth]) for depth in range(len(folder), -1, -1)]
-    own = next(path for path in above if path.is_dir())
-    named = sorted({*own.glob(f"test_{name}*.py"), *own.glob(f"test_*_{name}.py")})
+    folder_of_tests = next(path for path in above if path.is_dir())
+    named = sorted({*folder_of_tests.glob(f"test_{name}*.py"), *folder_of_tests.glob(f"test_*_{name}.py")})
     using = [path for path in sorted(tests.rglob("test_*.py")) if module in imported(path) and path not in named]
-    using.sort(key=lambda path: path.parent != own)
+    using.sort(key=lambda path: path.parent != folder_of_tests)
     readers = {name for name in modules() if module in imported(path_of(name))}
     # Stages, and what modules declare as stages, are also tested through their graph.
     if folder[:1] == ["stages"] or "\nSTAGES = " in path_of(module).read_text(encoding="utf-8"):
         readers |= {"plan.graph"}
     reading = [path for path in sorted(tests.rglob("test_*.py")) if readers & imported(path)]
     reading = [path for path in reading if path not in [*named, *using]]
-    near, far = ([path for path in reading if (path.parent == own) is here] for here in (True, False))
-    found = [(named, FAST), (using, FAST), (near, FAST), (far, FAST), (named or using, SLOW)]
-    return [([str(path.relative_to(ROOT)) for path in paths], marks) for paths, marks in found if paths]
+    near, far = ([path for path in reading if (path.parent == folder_of_tests) is here] for here in (True, False))
+    tests_and_marks = [(named, FAST), (using, FAST), (near, FAST), (far, FAST), (named or using, SLOW)]
+    return [([str(path.relative_to(ROOT)) for path in paths], marks) for paths, marks in tests_and_marks if paths]
 
 
 class Watch:
@@ -446,7 +446,7 @@ def main():
     parser.add_argument("--list", action="store_true", help="only print the errors")
     options = parser.parse_args()
     wanted = options.modules
-    names = [name for name in modules() if not wanted or any(f"{name}.".startswith(f"{part}.") for part in wanted)]
+    names = [name for name in modules() if not wanted or any(f"{name}.".startswith(f"{prefix}.") for prefix in wanted)]
     mutants = sample(names, options.number, options.seed) or parser.error(f"no code in {' '.join(wanted)}")
     if options.list:
         sys.exit("\n".join(map(str, mutants)))

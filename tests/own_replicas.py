@@ -27,10 +27,10 @@ class Meeting:
         self.points = points
         self.zeta = first[:, None], first
         amplitude = np.sqrt(spectrum(np.hypot(*self.zeta))).astype(np.float32)
-        lower, own = (
+        lower, independent = (
             amplitude * fft.fft2(rng.standard_normal((points, points), np.float32)) / points for _ in range(2)
         )
-        self.lower, self.upper = lower, np.sqrt(1 - coherence**2) * own - coherence * lower
+        self.lower, self.upper = lower, np.sqrt(1 - coherence**2) * independent - coherence * lower
 
     def heights(self, offset):
         """Sum of both surfaces at an offset (2,) [m], (points, points) [m]."""

@@ -7,6 +7,7 @@ from pathlib import Path
 import yaml
 
 from stiction.config.units import in_si
+from stiction.streams import stream
 from stiction.surface import maxent
 from stiction.surface.field import RoughSurface
 from stiction.surface.spectrum import CutoffSelfAffine
@@ -65,3 +66,8 @@ SURFACES = {
     name: in_si(PublishedSurface, entry)
     for name, entry in yaml.safe_load(CONFIG.read_text(encoding="utf-8"))["surfaces"].items()
 }
+
+
+def streams(number):
+    """Random streams of both surfaces of a sample."""
+    return stream(2021, "beam", number), stream(2021, "substrate", number)

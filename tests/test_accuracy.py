@@ -165,7 +165,7 @@ def test_the_error_of_the_mean_length_is_a_quarter_of_the_scatter_of_energies():
     pilot = accuracy._Pilot.of(Plan(configured(PLAIN)))
     (case,) = pilot.plan.devices.cases
     ((error,), again) = pilot.mean_error(case), accuracy._Pilot.of(Plan(configured(PLAIN))).mean_error(case)
-    contact = pilot._contact(*pilot._places(case)[0])
+    contact = pilot._contact(*pilot._patches(case)[0])
     energies = curves.energies(contact, case.humidity, in_si(accuracy._Settings, pilot._beam_settings(case)).water)
     assert np.isclose(error, 0.25 * energies.std(ddof=1) / energies.mean(), rtol=0.02)
     assert again == [error]

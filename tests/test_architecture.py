@@ -362,3 +362,16 @@ def test_other_questions_are_none_of_dry_air(tmp_path, line):
     path = tmp_path / "table.py"
     path.write_text(f"def f(humidity):\n    {line}\n")
     assert not list(questions_of_dry_air(path))
+
+
+def classes_of_one_name(paths):
+    """Names of classes that stand in several modules. Stages have their own ``Settings``."""
+    classes = [node.name for path in paths for node in nodes(path) if isinstance(node, ast.ClassDef)]
+    return {name for name in classes if classes.count(name) > 1 and name != "Settings" and not name.startswith("_")}
+
+
+def test_a_class_has_a_name_of_its_own(tmp_path):
+    assert classes_of_one_name(FILES) == set()
+    for name, content in {"a": "class Beam: ...", "b": "class Beam: ...\nclass Settings: ..."}.items():
+        (tmp_path / f"{name}.py").write_text(content)
+    assert classes_of_one_name([tmp_path / "a.py", tmp_path / "b.py"]) == {"Beam"}

@@ -14,6 +14,7 @@ import pandas as pd
 import pytest
 import xarray as xr
 import yaml
+from configurations import module
 from PIL import Image
 
 import stiction
@@ -33,15 +34,6 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 CODE = re.compile(r"^```.*?^```|`[^`\n]*`", re.MULTILINE | re.DOTALL)
 
 each_page = pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
-
-
-def module(path):
-    """Import a module that is not part of the package."""
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    loaded = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = loaded  # dataclasses look their module up
-    spec.loader.exec_module(loaded)
-    return loaded
 
 
 update, quoted = (module(DOCS / f"{name}.py") for name in ("update", "quoted"))

@@ -1,9 +1,7 @@
 """What the docs say can be written passes ``stiction check``: blocks of YAML, snippets, keys, choices."""
 
-import importlib.util
 import re
 import shutil
-import sys
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import reduce
@@ -12,6 +10,7 @@ from unittest.mock import patch
 
 import pytest
 import yaml
+from configurations import module
 
 from stiction import accuracy
 from stiction.command.main import main
@@ -66,15 +65,6 @@ EXAMPLES = ("examples/scans/mine", "examples/devices", "examples/roughness", "ex
 EXAMPLES += ("examples/test_beams", "examples/sealed", "examples/life", "examples/process/mine", "workflow/smoke")
 EXAMPLES += ("examples/range/mine", "examples/switch", "examples/scans/lines", "examples/mission", "examples/probe")
 EXAMPLES += ("examples/pull_offs", "examples/coated")
-
-
-def module(path):
-    """Import a module that is not part of the package."""
-    spec = importlib.util.spec_from_file_location(path.stem, path)
-    loaded = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = loaded
-    spec.loader.exec_module(loaded)
-    return loaded
 
 
 KEYS = list(module(ROOT / "docs" / "keys.py").keys(schema()))

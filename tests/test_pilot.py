@@ -169,7 +169,7 @@ def test_what_the_jobs_would_refuse_is_refused_by_name(overlay, key, words):
     ],
 )
 def test_other_humidities_are_advised_where_a_study_has_humid_air(humidities, weak, advice):
-    use = pilot.Use(Patch("b", 1500, 30000), ("NG",), humidities, (), (), ("pairs", "b", "humidities"))
+    use = pilot.PatchUse(Patch("b", 1500, 30000), ("NG",), humidities, (), (), ("pairs", "b", "humidities"))
     _, message = pilot._weak(use, weak, {"pull": 1e6, "repulsion": 0, "sample": 0, "samples": 5, "together": 0})
     assert message.endswith(f"; increase the roughness or {advice}")
 

@@ -68,7 +68,7 @@ def test_a_study_and_a_device_that_were_used_are_the_same_in_another_process():
     study, device = stiction.PairStudy.of(config, "b"), stiction.Device.of(config, "S1")
     beams, forces = study.beams(0.8), device.forces()
     study_there, device_there = pickle.loads(pickle.dumps([study, device]))
-    assert study_there.results._known.keys() == study.results._known.keys(), "what is known is not computed again"
+    assert study_there.results._datasets.keys() == study.results._datasets.keys(), "what is known is not computed again"
     xr.testing.assert_identical(study_there.beams(0.8), beams)
     xr.testing.assert_identical(device_there.forces(), forces)
 

@@ -37,7 +37,7 @@ def under(config, name):
     plain = plan.variants.summits("b", name)
     settings = [in_si(variants.Settings, merged(plain["base"], changes)) for changes in ({}, plain["changes"])]
     summits = variants.summits_under({}, "b", *settings)
-    found = variants.contact_of(summits, in_si(variants.Solids, plan.variants.solids("b", name)))
+    found = variants.contact_of(summits, in_si(variants.SolidsOfPair, plan.variants.solids("b", name)))
     case = case_id("b", HUMIDITY)
     return variant_beams.compute(
         found, case, in_si(variant_beams.Settings, job_settings(plan, f"studies/variants/{case}_{name}"))

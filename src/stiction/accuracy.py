@@ -36,7 +36,7 @@ from stiction.plan.plan import Plan
 from stiction.plan.stage import At, select
 from stiction.progress import without_progress
 from stiction.stages.contact import curves
-from stiction.stages.contact.changes.patches import GROUND, TIPS, Place
+from stiction.stages.contact.changes.patches import GROUND, TIPS, PatchKind
 from stiction.stages.contact.contact import compute, with_correlations
 from stiction.stages.contact.pairs import Settings, sides_of_strip
 from stiction.stages.devices.contact_names import patch_of, patch_of_tips
@@ -94,14 +94,17 @@ def _for_accuracy(plan, code, remember):
     stated, beams = config["contact"]["samples"], design["beams"]
     fewest = stated if is_stated(config, "contact", "samples") else _fewest(config)
     if spreads and not is_stated(config, "design", "beams"):
-        beams = beams_for([one for some in spreads.values() for one in some], share, accuracy, fewest)
+        beams = beams_for([spread for of_shapes in spreads.values() for spread in of_shapes], share, accuracy, fewest)
     samples = {}
     if not is_stated(config, "contact", "samples"):
         for name, cases in _by_ground(plan, spreads).items():
-            of_ground = [one for case in cases for one in spreads[case]]
+            of_ground = [spread for case in cases for spread in spreads[case]]
             samples[name] = strips_for(of_ground, share, accuracy, beams, fewest)
     strips = {case: samples.get(plan.devices.ground(case.device).name, stated) for case in spreads}
-    errors = {case: max(one.error(beams, strips[case], share) for one in some) for case, some in spreads.items()}
+    errors = {
+        case: max(spread.error(beams, strips[case], share) for spread in of_shapes)
+        for case, of_shapes in spreads.items()
+    }
     return Numbers(accuracy, beams, samples, errors)
 
 
@@ -150,7 +153,7 @@ def _spreads(plan, code, remember):
         case: remember([code, *pilot.determined_by(case)], lambda case=case: pilot.spreads(case))
         for case in plan.devices.cases
     }
-    return {case: [Spread(*one) for one in some] for case, some in spreads.items() if some}
+    return {case: [Spread(*values) for values in of_shapes] for case, of_shapes in spreads.items() if of_shapes}
 
 
 def _mean_errors(plan, code, remember):
@@ -205,7 +208,7 @@ class _Pilot:
         """Settings and surfaces on which the spreads of a case depend."""
         names = self.plan.sides(self.plan.config["devices"][case.device]["pair"])
         entries = [self.plan.config["surfaces"][name] for name in names]
-        of_contacts = [self._settings(*one) for one in self._places(case)]
+        of_contacts = [self._settings(*patch) for patch in self._patches(case)]
         share = _middle(self.plan.config["design"]["shares"])
         return [self._beam_settings(case), *of_contacts, entries, self.plan.config["character"], share]
 
@@ -214,7 +217,7 @@ class _Pilot:
         settings = in_si(_Settings, self._beam_settings(case))
         try:
             with without_progress():
-                contact, *tips = (self._contact(*one) for one in self._places(case))
+                contact, *tips = (self._contact(*patch) for patch in self._patches(case))
                 below = ground(contact, tips[0] if tips else None, case.humidity, settings)
                 beams = release_beams(settings.device, below, settings)
             return spreads_of(beams, _middle(self.plan.config["design"]["shares"]), len(below.strips.sampled))
@@ -247,23 +250,23 @@ class _Pilot:
         """Settings of the beams of a case."""
         return select(_Settings, settings_of_beam(self.plan, case))
 
-    def _places(self, case):
+    def _patches(self, case):
         """Kinds of patch of a case, its ground first, each with the patch."""
         has_tip = self.plan.devices.kind(case.device).has_tip
         return [(GROUND, patch_of(self.plan, case))] + [(TIPS, patch_of_tips(self.plan, case))] * has_tip
 
-    def _settings(self, place: Place, patch: Patch):
+    def _settings(self, patch_kind: PatchKind, patch: Patch):
         """Settings of the contact of a patch."""
-        return place.settings(self.plan, At(**patch._asdict()), PILOT)
+        return patch_kind.settings(self.plan, At(**patch._asdict()), PILOT)
 
-    def _contact(self, place, patch):
+    def _contact(self, patch_kind, patch):
         """Contact of a patch, drawn once for all its humidities."""
-        if (place, patch) not in self.contacts:
+        if (patch_kind, patch) not in self.contacts:
             surfaces = [self.surfaces(name) for name in self.plan.sides(patch.pair)]
-            settings = in_si(Settings, self._settings(place, patch))
+            settings = in_si(Settings, self._settings(patch_kind, patch))
             contact = compute(surfaces, patch.pair, "NG", settings)
-            self.contacts[place, patch] = with_correlations(contact, surfaces, sides_of_strip(settings))
-        return self.contacts[place, patch]
+            self.contacts[patch_kind, patch] = with_correlations(contact, surfaces, sides_of_strip(settings))
+        return self.contacts[patch_kind, patch]
 
 
 def spreads_of(beams: Released, share: float, strips: int) -> list[tuple[float, float]]:
@@ -271,8 +274,10 @@ def spreads_of(beams: Released, share: float, strips: int) -> list[tuple[float, 
 
     def quantiles(move):
         """Lengths of the share by shape (shapes,) [m]."""
-        return np.array([fit_tail(one, _PART).length(share) for one in beams.moved(move).lengths.values()])
+        return np.array(
+            [fit_tail(lengths_of_shape, _PART).length(share) for lengths_of_shape in beams.moved(move).lengths.values()]
+        )
 
     errors = beams.surfaces.error(quantiles) / quantiles(lambda lengths: lengths) * strips**0.5
-    slopes = [fit_tail(one, _PART).slope for one in beams.lengths.values()]
+    slopes = [fit_tail(lengths_of_shape, _PART).slope for lengths_of_shape in beams.lengths.values()]
     return [(float(slope), float(error)) for slope, error in zip(slopes, errors, strict=True)]

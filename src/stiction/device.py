@@ -16,7 +16,7 @@ from stiction.config.kinds import BEAM, KEYS, KINDS, STOPPER, Kind, Release, kin
 from stiction.config.mission.conditions import CONDITIONS
 from stiction.contact.air import Air
 from stiction.devices.limits.limit import Limit, restored
-from stiction.estimate.answer import Answer as Estimate
+from stiction.estimate.answer import Estimate as Estimate
 from stiction.estimate.answer import answer as estimated
 from stiction.estimate.complete import question_of
 from stiction.estimate.table import known
@@ -132,7 +132,8 @@ class Device:
         values = {key: section[key] for key in KEYS if key in section}
         numbers = {key: value if isinstance(value, list) else [value] for key, value in values.items()}
         sizes = {
-            KEYS[key][0]: f"{' x '.join(f'{one:g}' for one in some)} {KEYS[key][1]}" for key, some in numbers.items()
+            KEYS[key][0]: f"{' x '.join(f'{number:g}' for number in of_key)} {KEYS[key][1]}"
+            for key, of_key in numbers.items()
         }
         pair = " on ".join(self._plan.sides(section["pair"]))
         humidities = ", ".join(Air(humidity).name for humidity in section["humidities"])
@@ -145,16 +146,17 @@ class Device:
 
     def _repr_html_(self):
         """Table of its answer, if it is computed already, and of its facts, for notebooks."""
-        known = {}
+        headline = {}
         if self.results.has(f"devices/answer/{self.name}"):
             answer = self.answer()
-            known = (
+            headline = (
                 {answer_words.sign_of(answer)[1]: answer_screen.headline(answer)}
                 if not answer_words.is_forbidden(answer)
                 else {}
             )
         rows = "".join(
-            f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>" for name, value in (known | self.facts).items()
+            f"<tr><td>{escape(name)}</td><td>{escape(value)}</td></tr>"
+            for name, value in (headline | self.facts).items()
         )
         return f"<table><caption>Device {escape(self.name)}, {escape(self.kind.words)}</caption>{rows}</table>"
 
@@ -168,7 +170,7 @@ class Device:
         return with_limits(answer, [limit for dataset in self._simulated.values() for limit in self.limits(dataset)])
 
     def estimate(self) -> Estimate:
-        """Estimate at once of the lengths at which few stick, for exact inputs and one answer in all airs.
+        """Estimate at once of the lengths or forces at which few stick, for exact inputs and one answer in all airs.
 
         Raises
         ------
@@ -249,7 +251,7 @@ class Device:
             {stage: {name: self.results[file] for name, file in files.items()} for stage, files in measured.items()}
         )
         left_out = device_warnings.left_out_gaps(self._plan, self.name).values()
-        changes = {key: of for name in left_out for key, of in left_out_changes(self.results[name]).items()}
+        changes = {key: change for name in left_out for key, change in left_out_changes(self.results[name]).items()}
         flags += map(restored, settings.get("assumed", []))
         by_shape = device_warnings.of_settings(settings).limits(safe_lengths)
         with_gaps = {shape: limits + gap_warnings(changes, shape) for shape, limits in by_shape.items()}
@@ -278,9 +280,9 @@ class Device:
         if self._section["kind"] not in kinds:
             raise ValueError(f"device {self.name} is a {self._section['kind']}; only a {' or '.join(kinds)} has this")
 
-    def _must_state(self, key, stated):
+    def _must_state(self, key, is_stated):
         """Refuse a result without its key in the section of the device."""
-        if not stated:
+        if not is_stated:
             raise ValueError(f"device {self.name} has no {key}: state devices.{self.name}.{key}")
 
 

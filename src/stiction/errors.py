@@ -7,12 +7,12 @@ Each passes its arguments on to the class of Python, which needs them to rebuild
 class NotConverged(RuntimeError):
     """Iteration ended above its tolerance. The message includes its name, residual and tolerance."""
 
-    def __init__(self, what: str, residual: float, tolerance: float, iterations: int):
-        super().__init__(what, residual, tolerance, iterations)
+    def __init__(self, subject: str, residual: float, tolerance: float, iterations: int):
+        super().__init__(subject, residual, tolerance, iterations)
 
     def __str__(self):
-        what, residual, tolerance, iterations = self.args
-        return f"{what}: residual {residual:.3g} > {tolerance:.3g} after {iterations} iterations"
+        subject, residual, tolerance, iterations = self.args
+        return f"{subject}: residual {residual:.3g} > {tolerance:.3g} after {iterations} iterations"
 
 
 class ScanError(ValueError):

@@ -35,9 +35,9 @@ def mean_on_shared_samples(values: np.ndarray, shared: np.ndarray, power: float)
     own, common : float
         Standard errors due to the n values and due to the m samples.
     """
-    mean, own = mean_with_error(values)
+    mean, error_of_mean = mean_with_error(values)
     centre, error = mean_with_error(shared)
-    return mean, own, abs(power * mean * error / centre)
+    return mean, error_of_mean, abs(power * mean * error / centre)
 
 
 def jackknife(

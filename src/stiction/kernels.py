@@ -160,5 +160,5 @@ def _read(path):
     places = [
         f"{module}.{name}" for module, names in _IMPORT.findall(text) for name in ["", *re.findall(r"\w+", names)]
     ]
-    files = {_PACKAGE.joinpath(*place.strip(".").split(".")).with_suffix(".py") for place in places}
+    files = {_PACKAGE.joinpath(*name_in_package.strip(".").split(".")).with_suffix(".py") for name_in_package in places}
     return digest, {file for file in files if file.is_file()}

@@ -62,7 +62,7 @@ _PRELIMINARY = 1.25
 
 
 @dataclass(frozen=True)
-class Use:
+class PatchUse:
     """Use of a patch at some humidities, and its keys."""
 
     patch: Patch
@@ -112,13 +112,17 @@ def problems(
     if infeasible := list(_infeasible_copies(plan, surfaces, uses, guessed)):
         return infeasible
     for use in chain(uses, _in_full_contact(plan, uses)):
-        given = [guessed[name] for name in dict.fromkeys(plan.sides(use.patch.pair)) if name in guessed]
+        preliminary_settings = [guessed[name] for name in dict.fromkeys(plan.sides(use.patch.pair)) if name in guessed]
         is_changed = plan.variants.corrected(use.patch.pair, use.humidities) and not use.in_full_contact
-        given += ["full elastic contact"] * bool(is_changed)
-        for path, message in chain(_coarse_elements(plan, use), _refusals(use, samples, preliminary=bool(given))):
+        preliminary_settings += ["full elastic contact"] * bool(is_changed)
+        for path, message in chain(
+            _coarse_elements(plan, use), _refusals(use, samples, preliminary=bool(preliminary_settings))
+        ):
             value = one_line(reduce(getitem, path, config))
             if not (use.in_full_contact and path in {refused for refused, _ in by_key}):
-                by_key.setdefault((path, use.patch), Problem(path, f"is {value}, {message}{_preliminary(given)}"))
+                by_key.setdefault(
+                    (path, use.patch), Problem(path, f"is {value}, {message}{_preliminary(preliminary_settings)}")
+                )
     return list(by_key.values())
 
 
@@ -149,12 +153,12 @@ def _infeasible_copies(plan, surfaces, uses, guessed):
     """Yield coherences that the surfaces of a pair cannot have. ASSUME: preliminary ones err by as much as allowed."""
     for pair in dict.fromkeys(use.patch.pair for use in uses):
         for path, stated in _stated_copies(plan, pair):
-            given = [guessed[name] for name in dict.fromkeys(plan.sides(pair)) if name in guessed]
+            guesses = [guessed[name] for name in dict.fromkeys(plan.sides(pair)) if name in guessed]
             grid = StripGrid.periodic(to_si(1, "um"), to_si(plan.config["sampling"]["spacing_nm"], "nm"))
             sides = (rough_surface(*surfaces(name), "NG", grid) for name in plan.sides(pair))
             copy = Replica(*sides, in_si(Coherence, stated))
-            if refusal := copy.refusal(2 * ALLOWED if given else ALLOWED):
-                yield Problem(path, f"is {copy.stated.coherence:g}, {refusal}{_preliminary(given)}")
+            if refusal := copy.refusal(2 * ALLOWED if guesses else ALLOWED):
+                yield Problem(path, f"is {copy.of_heights.coherence:g}, {refusal}{_preliminary(guesses)}")
 
 
 def _stated_copies(plan, pair):
@@ -168,9 +172,9 @@ def _stated_copies(plan, pair):
             yield ("devices", name, "roughness", "coherence", 1), stated | {"coherence": largest}
 
 
-def _preliminary(given):
+def _preliminary(settings):
     """End of a message about preliminary samples, given some settings."""
-    return f" (preliminary, given {', '.join(given)})" if given else ""
+    return f" (preliminary, given {', '.join(settings)})" if settings else ""
 
 
 # What sticks
@@ -183,7 +187,7 @@ def _pairs(plan):
         beam = cantilever(in_si(Cantilevers, sections(plan, pair)), pair)
         coarser = config["pairs"][pair].get("coarser_mesh", 1)
         use = partial(
-            Use,
+            PatchUse,
             patch(pair, config["sampling"]["strip_length_um"], config["beam"]["width_um"]),
             SURFACE_MODELS,
             pair=("run", "pairs", number),
@@ -201,10 +205,10 @@ def _devices(plan, section):
     """Patches of devices, also along the axes of their charts and of the worst humidity of stoppers."""
     devices = plan.devices
     for name in devices.sections:
-        own, ground = (section, name), devices.ground(name)
-        use = partial(Use, ground, ("NG",), pair=(*own, "pair"))
+        path_of_device, ground = (section, name), devices.ground(name)
+        use = partial(PatchUse, ground, ("NG",), pair=(*path_of_device, "pair"))
         air = (
-            *own,
+            *path_of_device,
             "humidities" if section == "devices" else next(key for key in DATA if key in plan.config[section][name]),
         )
         yield from _OF_RELEASE[devices.kind(name).release.name](plan, name, use, air)
@@ -212,17 +216,17 @@ def _devices(plan, section):
 
 def _of_strips(plan, name, use, air):
     """Yield the strips of a beam, also along its chart."""
-    device, own = plan.devices.sections[name], air[:2]
-    sizes = [(device["humidities"], air, (*own, "thickness_um"), {})]
+    device, path_of_device = plan.devices.sections[name], air[:2]
+    sizes = [(device["humidities"], air, (*path_of_device, "thickness_um"), {})]
     if chart := device.get("chart"):
         thinnest = {"thickness_um": chart["thicknesses_um"][0], "gap_um": chart.get("gaps_um", [device["gap_um"]])[0]}
-        keys = [(*own, "chart", key) for key in ("humidities", "thicknesses_um")]
+        keys = [(*path_of_device, "chart", key) for key in ("humidities", "thicknesses_um")]
         sizes.append((plan.devices.axis(name), *keys, thinnest))
     for humidities, of_air, key, size in sizes:
         beam = in_si(DesignedBeam, section_of_beam(plan, name) | size)
         yield use(
             humidities,
-            size=(*own, "width_um"),
+            size=(*path_of_device, "width_um"),
             air=of_air,
             resolved=humidities,
             longest_strip=partial(beam.opening.longest_strip, beam),
@@ -266,7 +270,7 @@ def _coarse_elements(plan, use):
 # What the samples show
 
 
-def _refusals(use: Use, samples: Callable, preliminary: bool) -> Iterator[tuple[tuple, str]]:
+def _refusals(use: PatchUse, samples: Callable, preliminary: bool) -> Iterator[tuple[tuple, str]]:
     """Yield keys and messages of the problems of a use."""
     law = use.longest_strip is not None
     try:

@@ -44,9 +44,9 @@ class Process:
         ValueError
             If the configuration has no such process.
         """
-        known = config.get("process", {})
-        if name not in known:
-            raise ValueError(f"there is no process {name}; the configuration has {', '.join(known) or 'none'}")
+        processes = config.get("process", {})
+        if name not in processes:
+            raise ValueError(f"there is no process {name}; the configuration has {', '.join(processes) or 'none'}")
         return cls(name, Results.of(config))
 
     @property
@@ -137,8 +137,10 @@ class Process:
     @property
     def _mapped(self):
         """Devices over this process and another one."""
-        named = {one: process.processes_of(self._plan.config, one) for one in self._plan.devices.processed_twice}
-        return [one for one, processes in named.items() if self.name in processes]
+        named = {
+            device: process.processes_of(self._plan.config, device) for device in self._plan.devices.processed_twice
+        }
+        return [device for device, processes in named.items() if self.name in processes]
 
     @property
     def _plan(self):

@@ -28,7 +28,7 @@ def without_progress() -> Iterator[None]:
         show_progress(shown)
 
 
-def progress(steps: Iterable[T], what: str, total: int | None = None) -> Iterator[T]:
+def progress(steps: Iterable[T], description: str, total: int | None = None) -> Iterator[T]:
     """Iterate over ``steps`` with a progress bar on standard error. Jobs redirect it to their log."""
     off = not _CHOSEN["shown"]
-    return tqdm(steps, desc=what, total=total, mininterval=2.0, ascii=True, file=sys.stderr, disable=off)
+    return tqdm(steps, desc=description, total=total, mininterval=2.0, ascii=True, file=sys.stderr, disable=off)

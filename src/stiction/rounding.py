@@ -6,15 +6,15 @@ import numpy as np
 _ROUNDING = 1e-9
 
 
-def is_multiple(whole: float, part: float) -> bool:
-    """Whether ``whole`` is 1, 2, 3, ... times ``part``, up to rounding.
+def is_multiple(multiple: float, unit: float) -> bool:
+    """Whether ``multiple`` is 1, 2, 3, ... times ``unit``, up to rounding.
 
     Examples
     --------
     >>> is_multiple(0.3, 0.1), is_multiple(0.3, 0.2), is_multiple(0.1, 0.3)
     (True, False, False)
     """
-    return bool(np.isclose(whole / part, max(1, round(whole / part)), rtol=_ROUNDING))
+    return bool(np.isclose(multiple / unit, max(1, round(multiple / unit)), rtol=_ROUNDING))
 
 
 def is_at_most(value: float, limit: float) -> bool:

@@ -50,7 +50,7 @@ def test_error_of_the_mesh_is_that_against_a_very_fine_one():
     law = uniform_laws(1, 60 * forcelaw.energy(LAW), 60 * LAW[0])[0]
     fine = arrest_on_uniform_ground(replace(PAPER, elements=4000), law, 8000)
     found = resolution(PAPER, law, 1000)
-    error = found.used.crack_length / fine.crack_length - 1
+    error = found.coarse.crack_length / fine.crack_length - 1
     assert abs(error) > 0.03  # elements of 6 foundation lengths
     assert found.error == pytest.approx(error, abs=0.004)  # a quarter of 1 %, and rounding
     assert found.excess == pytest.approx(fine.energy / forcelaw.energy(law), abs=0.016)

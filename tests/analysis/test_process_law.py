@@ -103,7 +103,7 @@ def test_drawn_laws_have_the_covariance_of_the_law_and_errors_of_quantities_stay
     monkeypatch.setattr(process_law, "LARGEST_DEGREE", 1)  # quantities of different degrees are less correlated
     errors = np.tile(np.array([[4.0, -3.0], [-3.0, 4.0]]) * 1e-4, (4, 1, 1))
     law = fit(SETTINGS, np.column_stack([0.02 * SETTINGS, -0.01 * SETTINGS]), errors)
-    drawn = law.drawn(20_000, np.random.default_rng(5))[0].reshape(20_000, -1)
+    drawn = law.draw(20_000, np.random.default_rng(5))[0].reshape(20_000, -1)
     size = law.coefficients.size
     np.testing.assert_allclose(np.cov(drawn.T), law.covariance.reshape(size, size), atol=4e-6)
     at = law.covariance_at([60])[0]

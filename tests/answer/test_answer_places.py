@@ -7,12 +7,12 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.answer.data import INPUTS, Cause, Probability, PullOff, Verdict
-from stiction.answer.places import Asked, Places, answer, pull_off
+from stiction.answer.places import Places, ProbeQuestion, answer, pull_off
 from stiction.answer.unknowns import Draws, Exact, OfBudgets, Slopes
 from stiction.stages.answer.answer import answer_of, layout
 
 DRAWS = Draws(800, 3)
-ASKED = Asked("P", "probe", "force", "stoppers")
+ASKED = ProbeQuestion("P", "probe", "force", "stoppers")
 INPUT, ERROR, SCATTER = 0.3, 0.15, 0.4
 
 

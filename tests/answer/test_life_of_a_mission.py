@@ -118,7 +118,7 @@ def test_air_without_enough_sticking_devices_takes_its_bound_and_nothing_below_f
     assert_allclose(size([free, wet], shares), min(size([wet], [(0.8, 0.1)]), -0.6), atol=1e-6)
     shorter = replace(free, sampled=replace(free.sampled, flat=-2.0))
     assert -1.5 < size([shorter, wet], shares) <= size([wet], [(0.8, 0.1)])  # what is stated for all touchdowns holds
-    nothing = replace(shorter, sampled=replace(shorter.sampled, stated=()))
+    nothing = replace(shorter, sampled=replace(shorter.sampled, stated_sizes=()))
     assert_allclose(size([nothing, wet], shares), -2.0, atol=1e-6)
 
 

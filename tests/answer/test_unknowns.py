@@ -36,6 +36,13 @@ def test_a_surface_of_a_kind_is_one_group_beside_its_slopes():
     assert found.if_measured == pytest.approx(asked([one], budgets([one], (0.02,))).build, rel=1e-12)
 
 
+@pytest.mark.parametrize("shift", [0.3, -0.3])
+def test_what_all_members_of_a_kind_shift_moves_the_size_that_way(shift):
+    unknowns = OfBudgets({AT: slopes((0.0,), members=(Members("B2", np.full(4, shift)), Members("Sub1", np.zeros(4))))})
+    assert_allclose(unknowns.shift(AT, MANY, NONE), shift)
+    assert_allclose(unknowns.shift(AT, MANY, frozenset({"the surface B2"})), 0)
+
+
 def test_inputs_that_are_all_exact_leave_the_size_of_the_simulation():
     one = air(lognormal(np.random.default_rng(1)))
     unknowns = budgets([one], (0.2, 0.1), 0.02, -0.02)

@@ -53,12 +53,12 @@ def said(capsys, *words):
 
 
 def test_an_estimate_needs_no_library_for_numbers_and_a_tenth_of_a_second():
-    tries = [measured(*OPTIONS) for _ in range(3)]
+    tries = [measured(*OPTIONS) for _ in range(5)]
     for lines, status, libraries, _ in tries:
         assert status == 0
         assert lengths(lines)
         assert not {"numpy", "scipy", "xarray", "netCDF4", "numba", "snakemake", "matplotlib"} & set(libraries)
-    assert min(seconds for *_, seconds in tries) < 0.3  # 0.1 on a machine without other work
+    assert min(seconds for *_, seconds in tries) < 0.1
 
 
 def test_a_file_and_options_give_the_same_lengths(tmp_path, capsys):
@@ -109,7 +109,7 @@ def test_more_touchdowns_need_shorter_beams_and_a_stated_length_has_a_probabilit
 @pytest.mark.parametrize(
     ("old", "new", "reason"),
     [
-        ("kind: cantilever", "kind: bridge", "only cantilevers"),
+        ("kind: cantilever", "kind: bridge", "only cantilevers and stoppers"),
         ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, voltage_V: 5, humidities: [0.6]}\n", "dielectric"),
         ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 20, strip_um: 1, humidities: [0.6]}\n", "strip_um"),
         ("humidities: [0.6]}\n", "humidities: [0.999]}\n", "beyond what was learnt"),
@@ -183,6 +183,47 @@ def test_a_voltage_shortens_and_needs_its_dielectric(tmp_path, capsys):
     status, lines = said(capsys, *OPTIONS, "--voltage=5")
     assert status == 2
     assert "--dielectric is missing" in lines[0]
+
+
+def test_a_stopper_by_options_is_that_of_a_file(tmp_path, capsys):
+    beam, _, _ = FILE.rpartition("Lever")
+    bump = "Bump: {kind: stopper, pair: mine, contact_um: [3, 2], restoring_force_uN: 40, humidities: [0.6]}\n"
+    (tmp_path / "mine.yaml").write_text(beam + bump)
+    options = ["--rms=3", "--like=B2", "--rh=0.6", "--contact", "3", "2", "--force=40"]
+    of_file, (status, of_options) = said(capsys, str(tmp_path / "mine.yaml"))[1], said(capsys, *options)
+    assert status == 0
+    assert of_file[1:-1] == of_options[1:-1]
+    assert "force [µN]" in of_options[1]
+    forces = [row[0] for row in lengths(of_options).values()]
+    assert forces == sorted(forces)
+    assert [line for line in of_options if line.startswith("  At 40 µN, ")]
+    assert "--rms is missing" in said(capsys, "--rh=0.6", "--contact", "3", "2")[1][0]
+    assert any(f"{forces[2]:.3g} µN" in line for line in estimate.in_short([str(tmp_path / "mine.yaml")]))
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["--contact", "3", "3", "--voltage=5"], "--voltage is for cantilevers alone"),
+        (["--contact", "3", "3", "--thickness=2"], "--thickness is for cantilevers alone"),
+        (["--thickness=2", "--gap=20", "--force=5"], "--force is for stoppers alone"),
+    ],
+)
+def test_an_option_of_another_device_is_refused_and_not_left_out(capsys, words, reason):
+    status, (line,) = said(capsys, "--rms=3", "--rh=0.6", *words)
+    assert status == 2
+    assert reason in line
+
+
+def test_more_than_half_is_at_least_half(capsys):
+    (line,) = [line for line in said(capsys, *OPTIONS, "--length=2000")[1] if "% stick (95 %:" in line]
+    assert "at least 50 % stick" in line
+    (line,) = [
+        line for line in said(capsys, *OPTIONS, "--length=2000", "--touchdowns=1000")[1] if "% stick (95 %:" in line
+    ]
+    assert "at least 99 % stick" in line
+    (line,) = [line for line in said(capsys, *OPTIONS, "--length=20")[1] if "% stick (95 %:" in line]
+    assert "less than 0.0001 % stick" in line
 
 
 @pytest.mark.parametrize("missing", ["rms", "rh", "thickness", "gap"])

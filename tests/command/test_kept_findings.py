@@ -10,7 +10,7 @@ from stiction.command.prepared import prepared, problems_of_samples
 from stiction.config.files import joined
 from stiction.config.messages import Problem
 from stiction.plan.numbers import Numbers
-from stiction.run.disk_cache import NOWHERE, Kept
+from stiction.run.disk_cache import NOWHERE, Caches
 from stiction.run.fingerprint import PACKAGE, fingerprint
 
 FOUND = [Problem(("devices", "C1", "humidities", 0), "is weak", (("seed",),)), Problem(("seed",), "is bad")]
@@ -25,7 +25,7 @@ def counted(target, name, found):
 
 
 def test_problems_of_samples_are_found_once(tmp_path):
-    kept = Kept(tmp_path)
+    kept = Caches(tmp_path)
     with counted(pilot, "problems", FOUND) as found:
         for config, estimates in (({"seed": 1}, {}), ({"seed": 2}, {}), ({"seed": 2}, {"B2": {"rms_nm": 3}})):
             assert [problems_of_samples(config, estimates, kept) for _ in range(2)] == [FOUND] * 2
@@ -40,16 +40,16 @@ def test_problems_of_samples_are_found_once(tmp_path):
 def test_numbers_are_decided_once(tmp_path):
     numbers = Numbers(None, 1000, {"b_1500x30000": 400}, {})
     with counted(accuracy, "numbers", numbers) as decided:
-        first, again = (prepared(joined(OPEN), Kept(tmp_path)) for _ in range(2))
+        first, again = (prepared(joined(OPEN), Caches(tmp_path)) for _ in range(2))
         assert first == again
         assert first.numbers == numbers
         assert first.config["design"]["samples_of_patches"] == {"b_1500x30000": 400}
         assert decided.call_count == 1
         thinner = OPEN | {"devices": {"C1": BEAM | {"thickness_um": 2.5}}}
-        prepared(joined(thinner), Kept(tmp_path))
+        prepared(joined(thinner), Caches(tmp_path))
         assert decided.call_count == 2
         with OTHER_CODE:
-            prepared(joined(thinner), Kept(tmp_path))
+            prepared(joined(thinner), Caches(tmp_path))
         assert decided.call_count == 3
 
 

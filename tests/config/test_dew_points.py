@@ -6,8 +6,6 @@ from configurations import problems
 
 import stiction
 from stiction.config.files import joined
-from stiction.config.meetings import LIQUID
-from stiction.config.relations import schema
 
 STUDY = {
     "run": {"pairs": [], "studies": []},
@@ -58,11 +56,6 @@ def test_a_dew_point_that_is_no_number_is_refused(wrong):
     study = {"pairs": {"b": {"humidities": [{"dew_point_C": wrong}]}}}
     (line,) = problems(joined(study))
     assert line.startswith("pairs.b.humidities[0] is {'dew_point_C': ")
-
-
-def test_limits_of_the_temperature_are_those_of_the_schema():
-    water = schema()["properties"]["water"]["properties"]["temperature_K"]
-    assert (water["minimum"], water["maximum"]) == LIQUID
 
 
 @pytest.mark.parametrize("kelvin", [1, 5, 25, 272.9, 1e9])

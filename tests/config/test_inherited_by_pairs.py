@@ -1,8 +1,9 @@
 """A pair of other surfaces that has the name of one of the paper's does not leave out attraction across gaps."""
 
 import pytest
+from configurations import problems
 
-from stiction.config.files import load
+from stiction.config.files import joined, load
 from stiction.config.reading import paper
 
 OF_PAPER = "attraction", "coarser_mesh"
@@ -27,3 +28,12 @@ def test_other_surfaces_inherit_nothing_that_is_meant_for_the_paper(name, side):
 def test_what_an_earlier_file_states_stays():
     first = {"pairs": {"b": {"beam": "B1", "attraction": "touching"}}}
     assert load(first, {"pairs": {"b": {"gap_um": 7}}})["pairs"]["b"]["attraction"] == "touching"
+
+
+@pytest.mark.parametrize("wrong", [5, ["B2"], None])
+def test_what_is_no_pair_is_refused_by_its_key_whatever_came_before(wrong):
+    before = {"pairs": {"b": {"beam": "B1"}}}
+    assert problems(joined(before)) == ()
+    for more in ({"pairs": {"b": wrong}}, {"pairs": wrong}):
+        key = "pairs.b" if more["pairs"] != wrong else "pairs"
+        assert any(line.startswith(f"{key} is {wrong!r}, must be a section") for line in problems(joined(before, more)))

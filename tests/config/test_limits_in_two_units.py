@@ -12,7 +12,7 @@ import pytest
 from stiction.config import meetings, relations, scans
 from stiction.config.keys import Keys, Relations
 from stiction.config.units import in_si, to_si
-from stiction.contact.correction import Change, Correction
+from stiction.contact.correction import Correction, ElasticChange
 from stiction.rounding import is_at_most
 from stiction.stages.surfaces.measured_spectrum import Settings, cutoff_and_clipping
 from stiction.surface.field import RoughSurface, StripGrid
@@ -112,7 +112,7 @@ def test_uncertain_humidities_within_those_of_full_contact_are_corrected():
         relation = meetings.corrections_are_not_extrapolated
         assert not refusals(relation, **sections, devices={"C1": device})
         assert refusals(relation, **sections, devices={"C1": device | {"humidities": [float(low)]}})
-        ratios = Correction(np.array([float(low), float(high)]), *[Change(np.array([0.5, 1.0]))] * 2)
+        ratios = Correction(np.array([float(low), float(high)]), *[ElasticChange(np.array([0.5, 1.0]))] * 2)
         changes = ratios.at(stated["humidities"][0] - float(deviation))
         assert [change.ratio for change in changes] == pytest.approx([0.5, 0.5])
 

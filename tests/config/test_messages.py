@@ -4,6 +4,7 @@ import copy
 import math
 import re
 from functools import partial, reduce
+from unittest.mock import patch
 
 import jsonschema
 import pytest
@@ -15,6 +16,7 @@ from wrong_configurations import UNKNOWN, UNNAMEABLE, WRONG_VALUES
 
 from stiction.config import messages
 from stiction.config.cases import in_numbers
+from stiction.config.keys import Relations
 from stiction.config.kinds import KINDS
 from stiction.config.merging import merged
 from stiction.config.reading import read
@@ -296,6 +298,24 @@ def test_a_long_value_is_cut_off_in_a_message():
 
 #: Without its grid, which then follows the surfaces.
 WITHOUT_GRID = read(ROOT / "config.yaml")
+#: With devices in conditions and at dew points, test beams, settings of a process, and copies.
+WITH_DEVICES = merged(
+    WITHOUT_GRID,
+    yaml.safe_load("""
+        devices:
+          Lever: {kind: cantilever, pair: b, thickness_um: 2.6, width_um: 30, gap_um: 20, process: etch,
+                  requirement: {length_um: 100, share: 0.01}, test_beams: [Array],
+                  conditions: [{temperature_C: 25, humidity: {dew_point_C: 10}}, {temperature_C: 60, humidity: 0.6}]}
+          Stop: {kind: stopper, pair: b, contact_um: [1, 1], restoring_force_uN: 2, humidities: [{dew_point_C: 10}]}
+        test_beams:
+          Array: {pair: b, length_um: 1500, thickness_um: 2.5, gap_um: 2, width_um: 30,
+                  crack_lengths: [{humidity: 0.67, mean_um: 700, std_um: 20, beams: 9}]}
+        process:
+          etch: {variable: etch_time_s, surface: B2, settings: [{value: 30, rms_nm: 2, uncertainty: {rms_nm: 0.1}},
+                                                               {value: 60, rms_nm: 3, uncertainty: {rms_nm: 0.1}}]}
+        compare: {devices.Stop.restoring_force_uN: [1, 2]}
+    """),
+)
 FUZZ = settings(max_examples=120, suppress_health_check=[HealthCheck.too_slow])
 JUNK = st.recursive(
     st.one_of(
@@ -317,10 +337,13 @@ JUNK = st.recursive(
 )
 
 
+BASES = [PAPER, WITHOUT_GRID, WITH_DEVICES]
+
+
 @st.composite
 def mutilated(draw):
-    """The paper's configuration with up to four errors: values replaced or scaled, keys removed or added."""
-    config = {"root": copy.deepcopy(draw(st.sampled_from([PAPER, WITHOUT_GRID])))}
+    """A valid configuration with up to four errors: values replaced or scaled, keys removed or added."""
+    config = {"root": copy.deepcopy(draw(st.sampled_from(BASES)))}
     for _ in range(draw(st.integers(1, 4))):
         section, key = config, "root"
         while isinstance(section[key], dict) and section[key] and draw(st.integers(0, 9)):
@@ -344,6 +367,27 @@ def test_any_configuration_runs_or_is_rejected_in_lines_that_name_a_key(config):
     for line in problems(config):
         assert re.match(r"\S.* (is|cannot) .*must ", line)
         assert "\n" not in line
+
+
+@pytest.mark.parametrize("config", BASES)
+def test_configurations_to_break_are_valid(config):
+    assert problems(config) == ()
+
+
+@FUZZ
+@given(mutilated())
+def test_relations_see_nothing_that_the_schema_refuses(config):
+    """A violation of the schema ends the check before any relation."""
+    relate = Relations.problems
+
+    def relate_what_is_valid(self, keys):
+        """Problems of keys of a configuration that agrees with the schema."""
+        of_schema = messages.schema_problems({key: value for key, value in keys.config.items() if value != {}}, SCHEMA)
+        assert [str(problem) for problem in of_schema if problem.path[0] != "run"] == []
+        return relate(self, keys)
+
+    with patch.object(Relations, "problems", relate_what_is_valid):
+        problems(config)
 
 
 @pytest.mark.parametrize(

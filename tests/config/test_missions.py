@@ -11,7 +11,7 @@ from plans import job_settings
 
 from stiction.config.files import joined
 from stiction.config.merging import merged
-from stiction.config.mission.airs import COLDEST, HOTTEST, OF_DEVICE, expanded
+from stiction.config.mission.airs import OF_DEVICE, expanded
 from stiction.config.mission.conditions import temperatures
 from stiction.config.mission.stays import stays
 from stiction.config.relations import schema
@@ -186,21 +186,23 @@ def test_test_beams_are_at_the_temperature_of_the_water():
     assert "must have another humidity than 0.67, such as 0.6701" in line
 
 
+CONDITION = schema()["properties"]["devices"]["additionalProperties"]["properties"]["conditions"]["items"]["properties"]
+
+
 @pytest.mark.parametrize("key", OF_DEVICE)
 def test_a_wrong_value_is_refused_where_it_was_written(key):
-    for value in (OF_DEVICE[key][0] - 1, OF_DEVICE[key][1] + 1, "much", True, *[2.5] * (key == "touchdowns")):
+    least, most = CONDITION[key]["minimum"], CONDITION[key]["maximum"]
+    for value in (least - 1, most + 1, "much", True, *[2.5] * (key == "touchdowns")):
         (line,) = problems(configuration(conditions=[MISSION[0] | {key: value}], **DIELECTRIC, offset_V=1))
         assert line.startswith(f"devices.Lever.conditions[0].{key} is {value!r}, must be a")
-    for value in (OF_DEVICE[key][0], OF_DEVICE[key][1]):
+    for value in (least, most):
         lever(conditions=[MISSION[0] | {key: value}], **DIELECTRIC, offset_V=1)
 
 
-def test_limits_of_conditions_are_those_of_the_schema():
-    allowed = schema()["properties"]["devices"]["additionalProperties"]["properties"]["conditions"]["items"]
-    celsius = allowed["properties"]["temperature_C"]
-    assert (celsius["minimum"], celsius["maximum"]) == (COLDEST, HOTTEST)
-    for key, ends in OF_DEVICE.items():
-        assert (allowed["properties"][key]["minimum"], allowed["properties"][key]["maximum"]) == ends
+def test_touchdowns_of_all_conditions_have_the_limit_of_a_device():
+    most = CONDITION["touchdowns"]["maximum"]
+    (line,) = problems(configuration(conditions=[one | {"touchdowns": most} for one in MISSION]))
+    assert line.startswith(f"devices.Lever.touchdowns is {len(MISSION) * most}, must be a whole number")
 
 
 def test_touchdowns_add_up_and_the_largest_voltage_counts():

@@ -3,11 +3,11 @@ import pytest
 from vectors import F_LIMIT, VECTORS
 
 from stiction.contact import forcelaw
-from stiction.contact.correction import NONE, Change, Correction, TipChanges, interpolated
+from stiction.contact.correction import NONE, Correction, ElasticChange, TipChanges, interpolated
 
 HUMIDITIES = np.array([0.44, 0.67, 0.92])
 ENERGY = np.array([0.64, 0.9, 1.0])
-CORRECTION = Correction(HUMIDITIES, Change(ENERGY), Change(np.array([0.72, 0.95, 1.0])))
+CORRECTION = Correction(HUMIDITIES, ElasticChange(ENERGY), ElasticChange(np.array([0.72, 0.95, 1.0])))
 
 
 def ratios_at(given, humidity):
@@ -39,7 +39,7 @@ def test_between_the_computed_humidities_ratios_are_geometric_means():
 
 def test_more_points_on_the_same_lines_change_no_correction():
     axis = np.linspace(0.44, 0.92, 7)
-    finer = Correction(axis, *map(Change, np.array([ratios_at(CORRECTION, humidity) for humidity in axis]).T))
+    finer = Correction(axis, *map(ElasticChange, np.array([ratios_at(CORRECTION, humidity) for humidity in axis]).T))
     finer_at = [ratios_at(finer, humidity) for humidity in (0.44, 0.48, 0.6, 0.92)]
     np.testing.assert_allclose(finer_at, [ratios_at(CORRECTION, humidity) for humidity in (0.44, 0.48, 0.6, 0.92)])
 
@@ -58,7 +58,7 @@ def test_beyond_the_airs_of_devices_ratios_err_to_the_safe_side():
     """Energies above those on summits stay and forces grow in wetter air, both rise from below; drier air is as dry."""
 
     def ratios(wettest, humidity):
-        changes = Change(np.array([0.9, wettest]))
+        changes = ElasticChange(np.array([0.9, wettest]))
         return ratios_at(Correction(np.array([0.44, 0.67]), changes, changes, nearest=True), humidity)
 
     for humidity in (0.8, 0.95):
@@ -72,7 +72,7 @@ def test_beyond_the_airs_of_devices_ratios_err_to_the_safe_side():
 @pytest.mark.parametrize("power", [1.0, 1.4, 2.0])
 def test_a_change_gives_samples_the_mean_and_the_scatter_of_full_contact(power):
     summits = np.random.default_rng(1).lognormal(-8, 0.5, 4000)
-    full = Change(1.3, power).of(summits)(summits)
+    full = ElasticChange(1.3, power).of(summits)(summits)
     assert full.mean() == pytest.approx(1.3 * summits.mean())
     assert np.log(full).std() == pytest.approx(power * np.log(summits).std())
     assert np.all(np.argsort(full) == np.argsort(summits)), "the order of the samples stays"
@@ -80,24 +80,26 @@ def test_a_change_gives_samples_the_mean_and_the_scatter_of_full_contact(power):
 
 def test_a_change_holds_for_other_values_of_the_same_samples_and_for_endless_ones():
     summits = np.array([1.0, 2.0, 4.0])
-    change = Change(1.3, 1.5).of(summits)
+    change = ElasticChange(1.3, 1.5).of(summits)
     assert change(np.array([2.0]))[0] == change(summits)[1]
     assert change(np.inf) == np.inf
-    np.testing.assert_array_equal(Change(1.3, 1.5).of(np.zeros(3))(np.zeros(3)), np.zeros(3))
+    np.testing.assert_array_equal(ElasticChange(1.3, 1.5).of(np.zeros(3))(np.zeros(3)), np.zeros(3))
     assert NONE.of(summits)(summits) is summits
 
 
 def test_scatter_is_never_less_than_on_summits():
-    less = Correction(np.array([0.0]), Change(3.0, 0.4, 0.0, 0.1), Change(2.0, np.nan))
-    assert less.at(0) == (Change(3.0), Change(2.0))
-    nearly, more = Correction(np.array([0.0]), Change(3.0, 0.95, 0.0, 0.15), Change(3.0, 1.2, 0.0, 0.15)).at(0)
+    less = Correction(np.array([0.0]), ElasticChange(3.0, 0.4, 0.0, 0.1), ElasticChange(2.0, np.nan))
+    assert less.at(0) == (ElasticChange(3.0), ElasticChange(2.0))
+    nearly, more = Correction(
+        np.array([0.0]), ElasticChange(3.0, 0.95, 0.0, 0.15), ElasticChange(3.0, 1.2, 0.0, 0.15)
+    ).at(0)
     assert (nearly.power, nearly.power_error) == pytest.approx((1.0, 0.1))
     assert (more.power, more.power_error) == (1.2, 0.15)
 
 
 def test_the_upper_end_of_a_ratio_is_as_far_as_its_error_says():
-    assert Change(2.0, 1.2, 0.1).at_most(0.95) == pytest.approx((2 * np.exp(0.1645), 1.2, 0.1, 0.0), rel=1e-3)
-    assert Change(2.0).at_most(0.95) == Change(2.0)
+    assert ElasticChange(2.0, 1.2, 0.1).at_most(0.95) == pytest.approx((2 * np.exp(0.1645), 1.2, 0.1, 0.0), rel=1e-3)
+    assert ElasticChange(2.0).at_most(0.95) == ElasticChange(2.0)
 
 
 # Tips
@@ -105,8 +107,8 @@ def test_the_upper_end_of_a_ratio_is_as_far_as_its_error_says():
 
 def tips(*rows, powers=1.2):
     """Correction in dry air and at 0.44, or at 0.44 alone, with the ratios of tips at slopes of 0.01, 0.02 and 0.08."""
-    change = Change(np.array(rows), np.full(len(rows), powers), np.full((len(rows), 3), 0.1))
-    air = Change(np.ones(len(rows)))
+    change = ElasticChange(np.array(rows), np.full(len(rows), powers), np.full((len(rows), 3), 0.1))
+    air = ElasticChange(np.ones(len(rows)))
     return Correction(np.array([0.0, 0.44])[-len(rows) :], air, air, TipChanges(np.array([0.01, 0.02, 0.08]), change))
 
 

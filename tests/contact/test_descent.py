@@ -14,7 +14,7 @@ from stiction.contact.full.elements import Adhesion, separation
 from stiction.contact.full.halfspace import SPRINGS, periodic_waves
 from stiction.contact.vanderwaals import attraction
 from stiction.errors import NotConverged
-from stiction.stages.contact.full_contact import InAir, separated
+from stiction.stages.contact.full_contact import StripInAir, separated
 
 SOLIDS = attraction("dry")
 #: Half the modulus makes the strip, much shorter than those of stages, as soft as long ones.
@@ -202,9 +202,9 @@ def test_a_descent_without_enough_steps_is_refused(monkeypatch):
 
 def test_the_study_descends_where_turns_do_not_settle():
     curve, z = led(0.6), smooth(0.6)
-    by_study = separated(SOFT, z, InAir(dry(SOFT), curve, 0.0))
+    by_study = separated(SOFT, z, StripInAir(dry(SOFT), curve, 0.0))
     assert by_study.adhesion_energy == found().adhesion_energy
-    settles = InAir(dry(SOFT), led(1.0), 0.0)
+    settles = StripInAir(dry(SOFT), led(1.0), 0.0)
     assert (
         separated(SOFT, smooth(1.0), settles).closed.turns == separation(SOFT, smooth(1.0), *settles[:2]).closed.turns
     )
@@ -231,7 +231,7 @@ def test_under_a_film_a_smooth_strip_settles_where_turns_do_not():
     z, curve = smooth(0.6), led(0.6)
     with pytest.raises((NotConverged, ValueError), match="full elastic contact"):
         separation(SOFT, z, wet(SOFT), curve)
-    found = separated(SOFT, z, InAir(wet(SOFT), curve, 0.0))
+    found = separated(SOFT, z, StripInAir(wet(SOFT), curve, 0.0))
     work = -float(wet(SOFT).energy(np.zeros(1))[0])
     assert 0.4 < found.adhesion_energy / work < 1
     state = found.closed

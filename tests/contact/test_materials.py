@@ -7,12 +7,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from stiction.config.units import without_unit
-from stiction.contact.materials import ELASTIC, OF_COATINGS, PROPERTIES, Solid, Step
+from stiction.contact.materials import ELASTIC, OF_COATINGS, PROPERTIES, InputStep, Solid
 
 
 @pytest.mark.parametrize("value", [0.3, 1e-19, 164e9])
 def test_ends_of_a_relative_step_differ_by_it_in_their_logarithm(value):
-    step = Step(0.2)
+    step = InputStep(0.2)
     less, more = step.ends(value)
     assert_allclose([less / value, more / value], [0.8, 1.2], rtol=1e-12)
     assert_allclose(step.difference, np.log(more / less), rtol=1e-12)
@@ -20,7 +20,7 @@ def test_ends_of_a_relative_step_differ_by_it_in_their_logarithm(value):
 
 @pytest.mark.parametrize("value", [0.23, 0, -0.3])
 def test_ends_of_an_absolute_step_differ_by_it_where_the_value_is_zero_too(value):
-    step = Step(0.05, relative=False)
+    step = InputStep(0.05, relative=False)
     less, more = step.ends(value)
     assert_allclose([less, more], [value - 0.05, value + 0.05], rtol=1e-12, atol=1e-15)
     assert_allclose(step.difference, more - less, rtol=1e-12)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
-from published import IDENTITY, SPACING, SURFACES
+from published import IDENTITY, SPACING, SURFACES, streams
 from scipy.stats import norm
 from standard_errors import ALLOWED, errors_off
 
@@ -27,10 +27,6 @@ HERTZ = dataclasses.replace(PAIR, asperity=NONE)
 #: The table interpolates between rows of λ: error of 1.5 % of the force scale πwR at first contact, 1e-4 of a
 #: large load.
 TABLE, TABLE_DEEP = 0.015, 1e-4
-
-
-def streams(number):
-    return stream(2021, "beam", number), stream(2021, "substrate", number)
 
 
 def rough(number=0, pair=PAIR):

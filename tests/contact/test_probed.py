@@ -156,7 +156,7 @@ def in_full_contact(modulus):
         space = HalfSpace(met.shape, SPACING, modulus, periodic=False)
         distance, force = curve(found, heights, 0.7)
         area = met.size * SPACING**2
-        case = full_contact.InAir(Adhesion(*film(0.7, 300.0)), (distance, force / area), 0.0)
+        case = full_contact.StripInAir(Adhesion(*film(0.7, 300.0)), (distance, force / area), 0.0)
         package = full_contact.separated(space, met, case).pull_off * area
         rows.append((package, elastically(met, 0.7, modulus), pull_off(found, heights, 0.7)))
     return np.array(rows)

@@ -9,7 +9,15 @@ import logging
 import numpy as np
 import pytest
 
-from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths, lognormal, update, with_discrepancy
+from stiction.devices.inference import (
+    Counts,
+    CrackData,
+    DiscrepancyOfModel,
+    KnownInputs,
+    lognormal,
+    update,
+    with_discrepancy,
+)
 from stiction.streams import stream
 
 TRUTHS, SCATTER = 400, 0.05
@@ -20,16 +28,16 @@ CENTRES = {"cracks": (0.0, 10.0), "tips": (10.0, 0.0), "both": (0.0, 0.0)}
 BEAMS, DEVICE = np.hstack([SHARED, np.full((3, 1), 0.75), np.zeros((3, 1))]), np.zeros((3, 4))
 DEVICE[:, [0, 1, 3]] = BEAMS[:, :3]
 PRIOR, RESPONSES = with_discrepancy(
-    Knowledge(("rms", "modulus", "thickness of A", "thickness"), np.zeros(4), np.diag([0.05, 0.03, 0.03, 0.03]) ** 2),
+    KnownInputs(("rms", "modulus", "thickness of A", "thickness"), np.zeros(4), np.diag([0.05, 0.03, 0.03, 0.03]) ** 2),
     np.vstack([BEAMS, BEAMS, DEVICE, DEVICE]),
     np.concatenate([REDUCED, np.zeros(3)] * 2),
     [*"abc", None, None, None, *"def", None, None, None],
-    Discrepancy(0.1, 0.3, 0.05),
+    DiscrepancyOfModel(0.1, 0.3, 0.05),
 )
 # Tips err by 4/3 of what the cracks of the same beams do.
 RESPONSES[3:6, 4:], RESPONSES[9:, 4:] = 4 / 3 * RESPONSES[:3, 4:], 4 / 3 * RESPONSES[6:9, 4:]
 CRACKS, TIPS, RESULTS = RESPONSES[:3], RESPONSES[3:6], RESPONSES[6:]
-NOTHING = Lengths(np.empty((0, RESPONSES.shape[1])), np.empty(0), np.empty(0))
+NOTHING = CrackData(np.empty((0, RESPONSES.shape[1])), np.empty(0), np.empty(0))
 
 
 def drawn(rng, centres, beams):
@@ -58,7 +66,7 @@ def test_intervals_of_95_percent_hold_95_percent_of_the_true_lengths(held_by, be
     for k in range(TRUTHS):
         truth, counts = drawn(stream(k, "truth"), CENTRES[held_by], beams)
         found, lengths = update(PRIOR, NOTHING, counts, stream(k, "draws")), RESULTS @ truth
-        mean, deviation = found.of(RESULTS)
+        mean, deviation = found.response_moments(RESULTS)
         low, high = found.quantiles(RESULTS, np.array([-1.96, 1.96])).T
         by_deviation.append(np.abs(lengths - mean) < 1.96 * deviation)
         by_quantiles.append((low < lengths) & (lengths < high))

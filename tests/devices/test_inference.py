@@ -10,20 +10,20 @@ from scipy.special import chdtrc, logsumexp, ndtr, ndtri, softmax
 
 from stiction.devices import inference
 from stiction.devices.budget import Budget
-from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths, given_lengths, update
+from stiction.devices.inference import Counts, CrackData, DiscrepancyOfModel, KnownInputs, given_lengths, update
 from stiction.report import published
 from stiction.streams import stream
 
 NAMES = ("rms", "skewness", "modulus", "thickness of test beams", "thickness")
 #: Skewness is correlated with the rms, as errors from one scan are.
-PRIOR = Knowledge(NAMES, np.zeros(5), np.diag([0.05, 0.04, 0.03, 0.02, 0.02]) ** 2)
+PRIOR = KnownInputs(NAMES, np.zeros(5), np.diag([0.05, 0.04, 0.03, 0.02, 0.02]) ** 2)
 PRIOR.covariance[0, 1] = PRIOR.covariance[1, 0] = 0.6 * 0.05 * 0.04
 #: Responses of test beams at three humidities, and of a device at two.
 BEAMS = np.array([[1.0, 0.9, 0.56, 0.76, 0], [1.3, 1.1, 0.5, 0.76, 0], [0.4, 0.3, 0.3, 0.75, 0]])
 DEVICE = np.array([[1.0, 0.9, 0.56, 0, 0.76], [0.6, 0.5, 0.4, 0, 0.75]])
-DATA = Lengths(BEAMS, np.array([0.08, 0.11, -0.01]), np.array([0.01, 0.02, 0.015]))
+DATA = CrackData(BEAMS, np.array([0.08, 0.11, -0.01]), np.array([0.01, 0.02, 0.015]))
 #: The default of the configuration.
-STATED = Discrepancy(factor=0.1, slope=0.3, rest=0.05)
+STATED = DiscrepancyOfModel(factor=0.1, slope=0.3, rest=0.05)
 
 
 def part(data, *places):
@@ -45,11 +45,11 @@ def test_without_data_the_posterior_is_the_prior():
 
 def test_an_input_measured_exactly_leaves_the_conditional_distribution():
     # Of the rms alone: E[x | x_0 = d] = C[:, 0] d / C[0, 0], and the budget's own remaining uncertainty.
-    exact = update(PRIOR, Lengths(np.eye(5)[:1], np.array([0.03]), np.zeros(1)))
+    exact = update(PRIOR, CrackData(np.eye(5)[:1], np.array([0.03]), np.zeros(1)))
     assert_allclose(exact.mean, PRIOR.covariance[:, 0] * 0.03 / PRIOR.covariance[0, 0], rtol=1e-12)
     budget = Budget(NAMES, DEVICE[0], PRIOR.covariance)
-    assert_allclose(exact.of(DEVICE[0])[1], budget.remaining(["rms"]), rtol=1e-9)
-    assert abs(exact.of(DEVICE[0])[1] / budget.remaining(["modulus"]) - 1) > 0.1  # control
+    assert_allclose(exact.response_moments(DEVICE[0])[1], budget.remaining(["rms"]), rtol=1e-9)
+    assert abs(exact.response_moments(DEVICE[0])[1] / budget.remaining(["modulus"]) - 1) > 0.1  # control
 
 
 def test_equal_data_twice_are_data_of_twice_as_many_beams():
@@ -68,22 +68,22 @@ def test_the_order_of_the_data_does_not_matter_nor_whether_they_come_at_once():
 def test_more_beams_widen_no_interval(seed):
     rng = np.random.default_rng(seed)
     root = rng.normal(size=(5, 5))
-    known = Knowledge(NAMES, np.zeros(5), root @ root.T)
+    known = KnownInputs(NAMES, np.zeros(5), root @ root.T)
     results = rng.normal(size=(20, 5))
-    widths = [known.of(results)[1]]
+    widths = [known.response_moments(results)[1]]
     for response in rng.normal(size=(6, 5)):
-        known = update(known, Lengths(response[None], rng.normal(size=1), np.array([0.3])))
-        widths.append(known.of(results)[1])
+        known = update(known, CrackData(response[None], rng.normal(size=1), np.array([0.3])))
+        widths.append(known.response_moments(results)[1])
     assert np.all(np.diff(widths, axis=0) <= 1e-12)
     assert widths[-1].max() < 0.9 * widths[0].max()
 
 
 def test_shared_inputs_tell_about_the_device_and_inputs_of_the_test_beams_alone_do_not():
     found = update(PRIOR, DATA)
-    assert found.of(DEVICE[0])[1] < 0.5 * PRIOR.of(DEVICE[0])[1]
+    assert found.response_moments(DEVICE[0])[1] < 0.5 * PRIOR.response_moments(DEVICE[0])[1]
     assert_allclose(found.deviations[-1], PRIOR.deviations[-1], rtol=1e-12)  # thickness of the device
-    apart = Lengths(BEAMS * (np.array(NAMES) == "thickness of test beams"), DATA.differences, DATA.errors)
-    assert_allclose(update(PRIOR, apart).of(DEVICE[0]), PRIOR.of(DEVICE[0]), rtol=1e-12)
+    apart = CrackData(BEAMS * (np.array(NAMES) == "thickness of test beams"), DATA.differences, DATA.errors)
+    assert_allclose(update(PRIOR, apart).response_moments(DEVICE[0]), PRIOR.response_moments(DEVICE[0]), rtol=1e-12)
 
 
 # Known truth
@@ -92,7 +92,7 @@ def test_shared_inputs_tell_about_the_device_and_inputs_of_the_test_beams_alone_
 def drawn(rng, truth, beams=12, scatter=0.05):
     """Mean crack lengths of test beams with these inputs, and their standard errors as an engineer states them."""
     single = DATA.responses @ truth + scatter * rng.normal(size=(beams, len(DATA.responses)))
-    return Lengths(DATA.responses, single.mean(axis=0), single.std(axis=0, ddof=1) / np.sqrt(beams))
+    return CrackData(DATA.responses, single.mean(axis=0), single.std(axis=0, ddof=1) / np.sqrt(beams))
 
 
 def coverage(posterior, repeats=100):
@@ -101,7 +101,7 @@ def coverage(posterior, repeats=100):
     for k in range(repeats):
         rng = np.random.default_rng(k)
         truth = rng.multivariate_normal(np.zeros(5), PRIOR.covariance)
-        mean, deviation = posterior(drawn(rng, truth)).of(DEVICE)
+        mean, deviation = posterior(drawn(rng, truth)).response_moments(DEVICE)
         scores.append((DEVICE @ truth - mean) / deviation)
     return np.mean(np.abs(scores) < 1), np.mean(np.abs(scores) < 1.96)
 
@@ -123,7 +123,7 @@ def test_intervals_that_forget_the_scatter_between_beams_do_not():
 
 #: No crack lengths of beams with five inputs, or with the logarithm of their length alone.
 NOTHING = part(DATA)
-OF_LENGTH = Lengths(np.empty((0, 1)), np.empty(0), np.empty(0))
+OF_LENGTH = CrackData(np.empty((0, 1)), np.empty(0), np.empty(0))
 
 
 def one_shape(responses, margins, scatter, stuck, beams):
@@ -167,7 +167,7 @@ def most_probable(prior, counts):
     best = minimize(lambda z: z @ z / 2 + counts.deviance(root @ z) / 2, np.zeros(len(root)), jac=slope).x
     steps = 1e-4 * np.eye(len(root))
     curvature = np.array([(slope(best + step) - slope(best - step)) / 2e-4 for step in steps])
-    return Knowledge(prior.names, root @ best, root @ np.linalg.inv((curvature + curvature.T) / 2) @ root.T)
+    return KnownInputs(prior.names, root @ best, root @ np.linalg.inv((curvature + curvature.T) / 2) @ root.T)
 
 
 def on_grid(known, counts, points=301):
@@ -189,7 +189,7 @@ def test_the_knowledge_after_counts_is_that_of_quadrature(counts, stuck):
     at, chances = on_grid(known, counts)
     mean = chances @ at
     deviations = np.sqrt(chances @ (at - mean) ** 2)
-    for number, exact, tolerance in zip(found.of(BEAMS[:2]), (mean, deviations), (1, 2), strict=True):
+    for number, exact, tolerance in zip(found.response_moments(BEAMS[:2]), (mean, deviations), (1, 2), strict=True):
         assert_allclose(number, exact, atol=4 * tolerance * deviations.max() / np.sqrt(WORTH))
     for length, quantiles in zip(at.T, found.quantiles(BEAMS[:2], np.array([-2, 0, 2])), strict=True):
         for quantile, share in zip(quantiles, ndtr([-2, 0, 2]), strict=True):
@@ -199,13 +199,13 @@ def test_the_knowledge_after_counts_is_that_of_quadrature(counts, stuck):
 
 @pytest.mark.parametrize("stuck", [0, 40])
 def test_intervals_hold_what_is_probable_where_all_or_no_beams_stick_and_those_of_the_curvature_do_not(stuck):
-    prior = Knowledge(("ln l",), np.zeros(1), np.full((1, 1), 0.12**2))
+    prior = KnownInputs(("ln l",), np.zeros(1), np.full((1, 1), 0.12**2))
     counts = one_shape(np.ones((1, 1)), np.zeros(1), 0.03, [stuck], [40])
     at = np.linspace(-0.8, 0.8, 4001)[:, None]
     chances = softmax(-((at[:, 0] / 0.12) ** 2) / 2 - counts.deviance(at) / 2)
 
     def held(known):
-        mean, deviation = known.of(np.ones((1, 1)))
+        mean, deviation = known.response_moments(np.ones((1, 1)))
         return chances[np.abs(at[:, 0] - mean) < 1.96 * deviation].sum()
 
     found = after(prior, OF_LENGTH, counts)
@@ -253,9 +253,9 @@ def test_counts_say_what_the_lengths_of_the_same_beams_say():
     # to √(π/2) s/√N (a probit at Φ = 1/2).
     number, scatter = 4000, 0.06
     rng, response = np.random.default_rng(3), np.ones((1, 1))
-    flat = Knowledge(("ln l",), np.zeros(1), np.ones((1, 1)))
+    flat = KnownInputs(("ln l",), np.zeros(1), np.ones((1, 1)))
     single = 0.1 + scatter * rng.normal(size=number)
-    measured = update(flat, Lengths(response, single.mean(keepdims=True), np.array([scatter / np.sqrt(number)])))
+    measured = update(flat, CrackData(response, single.mean(keepdims=True), np.array([scatter / np.sqrt(number)])))
     counts = one_shape(response, np.array([0.1]), scatter, [np.sum(single < 0.1)], [number])
     counted = after(flat, OF_LENGTH, counts)
     assert_allclose(counted.deviations / measured.deviations, np.sqrt(np.pi / 2), rtol=4 / np.sqrt(2 * WORTH))
@@ -264,7 +264,7 @@ def test_counts_say_what_the_lengths_of_the_same_beams_say():
 
 @pytest.mark.parametrize(("stuck", "sign"), [(0, 1), (20, -1)])
 def test_beams_that_all_stick_or_all_come_free_bound_the_length_on_one_side(stuck, sign):
-    flat = Knowledge(("ln l",), np.zeros(1), np.full((1, 1), 0.2**2))
+    flat = KnownInputs(("ln l",), np.zeros(1), np.full((1, 1), 0.2**2))
     found = after(flat, OF_LENGTH, one_shape(np.ones((1, 1)), np.zeros(1), 0.05, [stuck], [20]))
     assert sign * found.mean[0] > found.deviations[0]
     assert found.deviations[0] < 0.2
@@ -314,14 +314,14 @@ def test_p_values_of_counts_that_err_as_stated_are_nearly_uniform_and_those_of_o
 
 
 def test_exactly_known_inputs_explain_counts_by_chance_alone():
-    exact, none = Knowledge((), np.zeros(0), np.zeros((0, 0))), Lengths(np.empty((0, 0)), np.empty(0), np.empty(0))
+    exact, none = KnownInputs((), np.zeros(0), np.zeros((0, 0))), CrackData(np.empty((0, 0)), np.empty(0), np.empty(0))
     for stuck in ([12, 5], [20, 0]):
         counts = one_shape(BEAMS[:2, :0], np.array([0.02, -0.05]), 0.06, stuck, [20, 20])
         expected = chdtrc(2, counts.deviance(np.zeros(0)))
         assert inference.p_value(exact, none, counts) == pytest.approx(expected)
         # As with an input of which beams know nothing.
         unrelated = one_shape(np.zeros((2, 1)), np.array([0.02, -0.05]), 0.06, stuck, [20, 20])
-        assert inference.p_value(Knowledge(("x",), np.zeros(1), np.eye(1)), OF_LENGTH, unrelated) == pytest.approx(
+        assert inference.p_value(KnownInputs(("x",), np.zeros(1), np.eye(1)), OF_LENGTH, unrelated) == pytest.approx(
             expected
         )
         assert after(exact, none, counts).mean.shape == (0,)
@@ -364,8 +364,8 @@ def test_one_length_determines_one_combination_and_leaves_its_inputs_on_a_line()
 def test_combinations_leave_out_what_is_known_and_what_is_fully_correlated():
     covariance = np.diag([0.0, 1, 1])
     covariance[1, 2] = covariance[2, 1] = 1
-    known = Knowledge(("exact", "angle", "other angle"), np.zeros(3), covariance)
-    data = Lengths(np.array([[1.0, 1, 1]]), np.zeros(1), np.ones(1))
+    known = KnownInputs(("exact", "angle", "other angle"), np.zeros(3), covariance)
+    data = CrackData(np.array([[1.0, 1, 1]]), np.zeros(1), np.ones(1))
     (only,) = inference.combinations(known, update(known, data))
     assert_allclose(only.correlations, [0, 1, 1], atol=1e-9)
     assert_allclose(only.remaining**2, 1 / (1 + 4), rtol=1e-9)
@@ -374,10 +374,12 @@ def test_combinations_leave_out_what_is_known_and_what_is_fully_correlated():
 def test_the_expected_gain_of_further_beams_is_that_of_the_update_with_them():
     found = update(PRIOR, DATA)
     expected = inference.further_beams(found, DEVICE[0], BEAMS[2], 0.01)
-    later = update(found, Lengths(BEAMS[2:], np.array([0.3]), np.array([0.01])))
-    assert_allclose(expected, later.of(DEVICE[0])[1], rtol=1e-12)
-    assert expected < found.of(DEVICE[0])[1]
-    assert_allclose(inference.further_beams(found, DEVICE[0], np.zeros(5), 0.01), found.of(DEVICE[0])[1], rtol=1e-12)
+    later = update(found, CrackData(BEAMS[2:], np.array([0.3]), np.array([0.01])))
+    assert_allclose(expected, later.response_moments(DEVICE[0])[1], rtol=1e-12)
+    assert expected < found.response_moments(DEVICE[0])[1]
+    assert_allclose(
+        inference.further_beams(found, DEVICE[0], np.zeros(5), 0.01), found.response_moments(DEVICE[0])[1], rtol=1e-12
+    )
 
 
 # The lengths that the paper measured, beside those of its model NG
@@ -402,12 +404,12 @@ def predicted(known, asked, stated=STATED, beams=1):
     (differences, errors, logarithms), (truth, scatter, others) = known, asked
     n = len(differences)
     reduced = np.concatenate([logarithms, others]) - logarithms.mean()
-    nothing = Knowledge((), np.zeros(0), np.zeros((0, 0)))
+    nothing = KnownInputs((), np.zeros(0), np.zeros((0, 0)))
     prior, responses = inference.with_discrepancy(
         nothing, np.zeros((len(reduced), 0)), reduced, list(range(len(reduced))), stated
     )
-    data = Lengths(responses[:n], differences, errors / np.sqrt(beams))
-    mean, deviation = update(prior, data).of(responses[n:])
+    data = CrackData(responses[:n], differences, errors / np.sqrt(beams))
+    mean, deviation = update(prior, data).response_moments(responses[n:])
     return truth - mean, np.hypot(deviation, scatter / np.sqrt(beams)), inference.p_value(prior, data)
 
 

@@ -104,7 +104,7 @@ def test_a_run_scatters_about_the_mean_process_and_is_never_known_exactly():
     assert np.all(found.safe < found.safe_mean)
     curve = Margins((VALUES,), law.at(VALUES)[:, 0], np.full((4, 1), 2.0), np.zeros(4))
     np.testing.assert_allclose(run_error(curve, [law]), 2 * law.scatter[0])
-    _, runs = law.drawn(40_000, np.random.default_rng(6))
+    _, runs = law.draw(40_000, np.random.default_rng(6))
     np.testing.assert_allclose(runs.std(), law.scatter[0], rtol=0.05)
     calm = replace(law, scatter=np.zeros(1))
     np.testing.assert_array_equal(run_error(curve, [calm]), 0)

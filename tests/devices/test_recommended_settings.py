@@ -95,7 +95,7 @@ def test_a_straight_margin_crosses_with_the_error_of_its_law():
     curve, law = exact()
     found = recommended([curve], [law], [np.array([[0.01]])], np.random.default_rng(8))
     (crossing,) = found.crossings
-    np.testing.assert_allclose(crossing.place, 60, atol=1e-6)
+    np.testing.assert_allclose(crossing.coordinate, 60, atol=1e-6)
     np.testing.assert_allclose(crossing.error, 30 * 0.1 / np.sqrt(2), rtol=0.08)  # of 1000 draws
     np.testing.assert_allclose(law_error(curve, [law])[3], 0.1 / np.sqrt(2))
     ((low, high),) = found.sufficient

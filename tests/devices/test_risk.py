@@ -10,7 +10,7 @@ from scipy.stats import binom
 from stiction.beam.foundation import foundation_length
 from stiction.beam.release import EndState, released_beam
 from stiction.devices import arcs, risk
-from stiction.devices.risk import Basis, Known
+from stiction.devices.risk import Basis, LengthBounds
 from stiction.devices.tail import fit_tail, scaled_errors
 from stiction.streams import stream
 
@@ -254,7 +254,10 @@ def drawn_until(reach, samples, rng):
 def test_safe_lengths_hold_in_95_of_100_studies_however_few_devices_stick(samples, stuck, share):
     rng, repeats, reach = np.random.default_rng(stuck), 400, true_length(stuck / samples)
     flat = true_length(1e-9)
-    found = [risk.safe_length(drawn_until(reach, samples, rng), share, rng, Known(reach, flat)) for _ in range(repeats)]
+    found = [
+        risk.safe_length(drawn_until(reach, samples, rng), share, rng, LengthBounds(reach, flat))
+        for _ in range(repeats)
+    ]
     lengths = np.array([one.length for one in found])
     safe = np.mean(lengths <= true_length(share))
     assert safe > 0.95 - 4 * np.sqrt(0.95 * 0.05 / repeats)
@@ -267,7 +270,7 @@ def test_safe_lengths_hold_in_95_of_100_studies_however_few_devices_stick(sample
 
 
 def test_where_none_sticks_the_longest_simulated_length_is_safe_as_far_as_so_many_devices_say():
-    never, known = np.full(1000, np.inf), Known(reach=3e-3, flat=1e-4)
+    never, known = np.full(1000, np.inf), LengthBounds(reach=3e-3, flat=1e-4)
     found = [risk.safe_length(never, share, stream(0), known) for share in (0.01, 1e-3)]
     assert [(one.length, one.basis) for one in found] == [(3e-3, Basis.LONGEST), (1e-4, Basis.FLAT)]
     assert_allclose(risk.most_stuck(never, 3e-3), 1 - 0.05 ** (1 / 1000), rtol=1e-12)
@@ -283,9 +286,9 @@ def test_the_bound_of_stuck_devices_covers_the_true_share_in_95_of_100_studies()
 def test_tips_that_hold_longer_beams_than_were_simulated_do_not_prolong_a_safe_length():
     # Cracks of 1 mm are beyond the simulated 0.8 mm, and tips hold 2 mm at least: only flat surfaces bound the cracks.
     tips = 2e-3 * np.exp(np.abs(np.random.default_rng(1).standard_normal(400)))
-    found = risk.safe_length(tips, 1e-3, stream(0), Known(reach=0.8e-3, flat=1e-4))
+    found = risk.safe_length(tips, 1e-3, stream(0), LengthBounds(reach=0.8e-3, flat=1e-4))
     assert (found.length, found.basis) == (1e-4, Basis.FLAT)
-    strong = risk.safe_length(tips / 100, 1e-3, stream(0), Known(reach=0.8e-3, flat=1e-4))
+    strong = risk.safe_length(tips / 100, 1e-3, stream(0), LengthBounds(reach=0.8e-3, flat=1e-4))
     alone = risk.safe_length(tips / 100, 1e-3, stream(0))
     assert repr(strong) == repr(alone)  # an unknown error is NaN, which differs from itself
 

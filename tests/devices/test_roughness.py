@@ -17,16 +17,18 @@ def dip(x):
 def test_a_power_law_meets_what_is_required_where_its_closed_form_does():
     forces = 1e-3 * np.exp(-3 * AXIS)
     (found,) = crossings(AXIS, margins(forces, 3e-5, more_is_better=False), np.full(8, 0.03))
-    np.testing.assert_allclose(found.place, np.log(1e-3 / 3e-5) / 3, rtol=1e-9)
+    np.testing.assert_allclose(found.coordinate, np.log(1e-3 / 3e-5) / 3, rtol=1e-9)
     np.testing.assert_allclose(found.error, 0.03 / 3, rtol=1e-9)
 
 
 def test_both_sides_of_the_worst_roughness_are_found_within_the_error_of_the_cubic():
     exact = crossings(AXIS, dip(AXIS), np.zeros(8))
-    assert [abs(one.place - place) < 3 * one.error for one, place in zip(exact, (0.5, 1.5), strict=True)] == [True] * 2
+    assert [abs(one.coordinate - place) < 3 * one.error for one, place in zip(exact, (0.5, 1.5), strict=True)] == [
+        True
+    ] * 2
     assert max(one.error for one in exact) < 0.02
     ranges = sufficient(AXIS, dip(AXIS))
-    np.testing.assert_allclose(ranges, [(0, exact[0].place), (exact[1].place, AXIS[-1])])
+    np.testing.assert_allclose(ranges, [(0, exact[0].coordinate), (exact[1].coordinate, AXIS[-1])])
 
 
 @pytest.mark.parametrize("margin", [0.1 + AXIS, -0.1 - AXIS])
@@ -46,7 +48,7 @@ def test_where_nothing_sticks_only_the_computed_points_are_sure():
     ((low, high),) = sufficient(axis, margin)
     assert (round(low, 4), high) == (2, 4)
     (crossing,) = crossings(axis, margin, np.full(5, 0.01))
-    assert 1 < crossing.place < 2
+    assert 1 < crossing.coordinate < 2
     assert crossing.error > 1 / np.sqrt(12)
     ((low, _),) = sufficient(axis, np.minimum(margin, 0.5))  # control: known margins
     assert 1 < low < 1.9
@@ -74,7 +76,7 @@ def test_crossings_of_curves_with_common_random_numbers_scatter_as_their_errors_
     found = [
         crossings(AXIS, 1 - AXIS + deviation * rng.standard_normal(), np.full(8, deviation)) for _ in range(number)
     ]
-    places = np.array([one.place for (one,) in found])
+    places = np.array([one.coordinate for (one,) in found])
     assert abs(places.mean() - 1) < 4 * deviation / np.sqrt(number)
     coverage = np.mean(np.abs(places - 1) < np.array([one.error for (one,) in found]))
     expected, error = 2 * norm.cdf(1) - 1, np.sqrt(0.68 * 0.32 / number)

@@ -9,12 +9,12 @@ from scipy.stats import binom
 
 from stiction.analysis.model_error import few_tip_ratios
 from stiction.config.units import to_si
-from stiction.estimate import errors as of_estimates
-from stiction.estimate.design import FILMS
-from stiction.estimate.errors import coverage, rest_of, scores
+from stiction.estimate.learning import errors as of_estimates
+from stiction.estimate.learning.design import FILMS
+from stiction.estimate.learning.errors import coverage, rest_of, scores
+from stiction.estimate.learning.training import FACTORS, SETS, TrainingTips, base, changes_of, plan_of
 from stiction.estimate.length import most
 from stiction.estimate.table import content, known
-from stiction.estimate.training import FACTORS, SETS, Tips, base, changes_of, plan_of
 from stiction.progress import without_progress
 from stiction.stages.contact.pair_model_error import POWER_ERROR
 
@@ -27,7 +27,7 @@ CHANGED = 0.1 * np.exp(0.1 * np.random.default_rng(3).normal(size=200))
 @pytest.fixture(scope="module")
 def tips():
     with without_progress():
-        return Tips.of(POINT, plan_of(POINT, base()), 3, 1)
+        return TrainingTips.of(POINT, plan_of(POINT, base()), 3, 1)
 
 
 @pytest.mark.parametrize("ratio", [0.5, 2.0])
@@ -116,3 +116,25 @@ def test_none_or_all_inside_have_one_end_without_a_tail():
     assert coverage(0, 10)[0] == 0
     assert coverage(10, 10)[1] == 1
     assert coverage(10, 10)[0] == pytest.approx(0.025**0.1)
+
+
+def noise_of(monkeypatch, strips, tips):
+    """Noise of a length by strips and by tips that scatter so, and of a point that does not settle."""
+    rng = np.random.default_rng(5)
+    full, summits = (np.exp(strips * rng.normal(size=(n, 3))) for n in (8, 64))
+    changed = 0.1 * np.exp(tips * rng.normal(size=200))
+    slopes = changed * np.array([0.5, 1.0, 2.0])[:, None] ** -0.3
+    point = {"slope": np.array([0.01, 0.1, 0.3]), "full": full, "summits": summits, "changed": changed}
+    unsettled = {"changed": np.full(200, np.nan)}
+    monkeypatch.setattr(of_estimates, "stored", lambda *_: [(POINT, point | {"slopes": [slopes]}), (POINT, unsettled)])
+    (found,) = of_estimates.noise_of(Path(), "any", -3.0)
+    return found
+
+
+def test_noise_of_a_length_is_that_of_its_strips_and_of_its_tips(monkeypatch):
+    of_strips, of_tips = noise_of(monkeypatch, 0.3, 0.1)
+    alike, of_more = noise_of(monkeypatch, 1e-6, 0.2)
+    assert alike < 1e-6 < of_strips
+    assert of_more == pytest.approx(2 * of_tips, rel=0.05)
+    # Eight strips leave 0.3 / 8^(1/2) of their ratio, whose upper end scatters more, and 0.3 of it in a length.
+    assert 0.3 * 0.3 / math.sqrt(8) < of_strips < 2.5 * 0.3 * 0.3 / math.sqrt(8)

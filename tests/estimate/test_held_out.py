@@ -9,20 +9,21 @@ import numpy as np
 import pytest
 
 from stiction.config.reading import read
-from stiction.estimate import errors as of_estimates
-from stiction.estimate import held_out
 from stiction.estimate.answer import difficulty
+from stiction.estimate.learning import errors as of_estimates
+from stiction.estimate.learning import held_out
 from stiction.estimate.question import questions
 from stiction.estimate.table import content
 
 ROOT = Path(__file__).parents[2]
-DEVICES, LENGTHS = ROOT / "examples" / "devices.yaml", ROOT / "docs" / "tables" / "safe_lengths.csv"
+DEVICES, TABLES = ROOT / "examples" / "devices.yaml", ROOT / "docs" / "tables"
+LENGTHS, FORCES = TABLES / "safe_lengths.csv", TABLES / "stoppers.csv"
 SLOPE = 0.1
 
 
-def of_surfaces(*errors):
+def of_surfaces(*errors, part):
     """One length of each surface that is longer than its estimate by an error, in units of the half of 90 %."""
-    half = content()["margins"]["90"] * difficulty(SLOPE, content()["rest"])
+    half = part["margins"]["90"] * difficulty(SLOPE, part["rest"])
     return half, [of_estimates.Tested(k, SLOPE, math.exp(half * error), 1.0) for k, error in enumerate(errors)]
 
 
@@ -30,11 +31,15 @@ def cells(line):
     return [cell.strip() for cell in line.strip("|").split("|")]
 
 
+@pytest.mark.parametrize("test", ["tested", "tested_forces"])
 @pytest.mark.parametrize(("errors", "inside"), [((0.5, -0.9, 0.99), 3), ((0.5, -1.1, 0.99), 2), ((2.0, 3.0, -4.0), 0)])
-def test_a_row_has_the_errors_and_the_surfaces_within_the_intervals(monkeypatch, errors, inside):
-    half, found = of_surfaces(*errors)
+def test_a_row_has_the_errors_and_the_surfaces_within_the_intervals(monkeypatch, errors, inside, test):
+    part = content() if test == "tested" else content()["stoppers"]
+    half, found = of_surfaces(*errors, part=part)
+    monkeypatch.setattr(held_out, "tested", lambda *_: [])
+    monkeypatch.setattr(held_out, "tested_forces", lambda *_: [])
     refused = of_estimates.Tested(len(errors), math.nan, 1.0, math.nan)
-    monkeypatch.setattr(held_out, "tested", lambda folder, name, *_, **__: [*found, refused] * (name == "check_any"))
+    monkeypatch.setattr(held_out, test, lambda folder, name, *_, **__: [*found, refused] * (name == "check_any"))
     monkeypatch.setattr(held_out, "SETS", {"check_any": "any", "check_none": "none"})
     (line,) = [line for line in held_out.lines(Path()) if line.startswith("| any")]
     assert not [line for line in held_out.lines(Path()) if line.startswith("| none")]
@@ -51,7 +56,7 @@ def test_a_row_has_the_errors_and_the_surfaces_within_the_intervals(monkeypatch,
 def rows_of_c1():
     """Estimates [µm] of a cantilever in the rows beside a run, by humidity, from many to few that stick."""
     found = {}
-    for line in held_out.of_runs(LENGTHS, DEVICES):
+    for line in held_out.of_runs(LENGTHS, FORCES, DEVICES):
         if re.match(r"\| C1 \| 0", line):
             _, air, _, _, estimate, interval = cells(line)
             low, high = map(float, interval.split(" to "))
@@ -73,3 +78,16 @@ def test_rows_beside_a_run_are_of_one_touchdown(monkeypatch):
     found = rows_of_c1()
     monkeypatch.setattr(held_out, "questions", lambda *_: {"C1": replace(asked, touchdowns=1)})
     assert rows_of_c1() == found
+
+
+def test_rows_of_a_stopper_are_forces_that_grow_where_fewer_stick():
+    found = {}
+    for line in held_out.of_runs(LENGTHS, FORCES, DEVICES):
+        if line.startswith("| S1 | 0"):
+            _, air, one_in, of_run, estimate, interval = cells(line)
+            low, high = map(float, interval.split(" to "))
+            assert low < float(estimate) < high
+            found[float(air), int(one_in)] = float(of_run.removesuffix(" µN")), float(estimate)
+    assert sorted(found) == [(air, one_in) for air in (0.44, 0.67, 0.9) for one_in in (100, 1000)]
+    for air in (0.44, 0.67, 0.9):
+        assert all(fewer > more for fewer, more in zip(found[air, 1000], found[air, 100], strict=True))

@@ -8,10 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.stats import binom, norm
 
-from stiction.estimate.errors import conformal
-from stiction.estimate.fit import Rows, fitted, group
+from stiction.estimate.learning.errors import conformal
+from stiction.estimate.learning.fit import DesignRows, Kernel, coefficients, fitted, group
 from stiction.estimate.length import SCORES, Lengths, fraction_of, normal_score
-from stiction.estimate.table import Process
+from stiction.estimate.table import Surrogate
 
 
 def drawn(number, seed, noise=0.0):
@@ -23,27 +23,39 @@ def drawn(number, seed, noise=0.0):
     values = np.sin(2 * x) + y * z + 0.5 * np.cos(2 * y)
     values = values + noise * rng.normal(size=number).repeat(3)
     of_rows = np.arange(number).repeat(3), np.ones(3 * number)
-    return Rows(coordinates, {"f": values, "g": 2 * values + x}, *of_rows)
+    return DesignRows(coordinates, {"f": values, "g": 2 * values + x}, *of_rows)
 
 
 def test_a_process_follows_a_smooth_function_and_its_trend_alone_does_not():
     learnt, other = drawn(80, 1), drawn(40, 2)
     found = fitted(learnt, "f", range(3), 100)
-    content, process = found.content, Process(**found.content)
+    content, process = found.content, Surrogate(**found.content)
     errors = [process.at(row).of["f"] - value for row, value in zip(other.coordinates, other.values["f"], strict=True)]
     scatter = np.std(other.values["f"])
     assert np.std(errors) < 0.04 * scatter  # kernels have a noise of at least 2 %
     assert found.scatter["f"] < 0.08 * scatter
     none = {name: [0.0] * len(content["nodes"]) for name in ("f", "g")}
-    trend = Process(**content | {"weights": none})
+    trend = Surrogate(**content | {"weights": none})
     alone = [trend.at(row).of["f"] - value for row, value in zip(other.coordinates, other.values["f"], strict=True)]
     assert np.std(alone) > 5 * np.std(errors)
+
+
+def test_a_node_that_is_given_twice_shares_its_weight():
+    """The kernel between the nodes is singular then. Without what is added to it there would be no solution."""
+    rows = drawn(40, 1)
+    kernel, nodes = Kernel(np.zeros(3), np.ones(3), np.ones(3), 0.1), rows.coordinates[::6]
+    (trend, once), (same, twice) = (
+        coefficients(kernel, rows, np.vstack(some))["f"] for some in ((nodes,), (nodes, nodes[:5]))
+    )
+    np.testing.assert_allclose(same, trend, atol=1e-3)
+    np.testing.assert_allclose(twice[:5], twice[len(nodes) :], atol=1e-3 * np.abs(once).max())
+    np.testing.assert_allclose(twice[:5] + twice[len(nodes) :], once[:5], atol=1e-3 * np.abs(once).max())
 
 
 def test_noise_of_a_surface_is_not_followed():
     noise = 0.1
     learnt, other = drawn(80, 1, noise), drawn(40, 2)
-    process = Process(**fitted(learnt, "f", range(3), 100).content)
+    process = Surrogate(**fitted(learnt, "f", range(3), 100).content)
     errors = [process.at(row).of["f"] - value for row, value in zip(other.coordinates, other.values["f"], strict=True)]
     assert np.std(errors) < noise
 
@@ -55,7 +67,9 @@ def test_rows_with_less_noise_decide():
 
     def error(noise):
         """Scatter of the errors of a process that is told the noise."""
-        process = Process(**fitted(Rows(learnt.coordinates, wrong, learnt.surface, noise), "f", range(3), 100).content)
+        process = Surrogate(
+            **fitted(DesignRows(learnt.coordinates, wrong, learnt.surface, noise), "f", range(3), 100).content
+        )
         found = [process.at(row).of["f"] for row in other.coordinates]
         return np.std(found - other.values["f"])
 
@@ -63,7 +77,7 @@ def test_rows_with_less_noise_decide():
 
 
 def test_a_place_beyond_the_design_is_named():
-    process = Process(**fitted(drawn(40, 1), "f", range(3), 60).content)
+    process = Surrogate(**fitted(drawn(40, 1), "f", range(3), 60).content)
     assert process.at([0.0, 0.0, 0.0]).outside == ()
     assert process.at([0.0, 1.5, -1.5]).outside == (1, 2)
     assert process.at([3.0, 0.0, 0.0]).distance > process.farthest
@@ -73,13 +87,13 @@ def test_a_process_is_trusted_up_to_the_farthest_surface_that_was_left_out():
     learnt = drawn(40, 1)
     found = fitted(learnt, "f", range(3), 60)
     groups = group(learnt.surface)
-    without = [Process(**found.without[k]) for k in groups]
+    without = [Surrogate(**found.without[k]) for k in groups]
     left_out = [one.at(row) for one, row in zip(without, learnt.coordinates, strict=True)]
     assert max(one.distance for one in left_out) == pytest.approx(found.content["farthest"])
     errors = [value - one.of["f"] for one, value in zip(left_out, learnt.values["f"], strict=True)]
     np.testing.assert_allclose(errors, found.errors["f"], atol=1e-9)
     learnt_all = [found.without[(k + 1) % len(found.without)] for k in groups]
-    other = [Process(**one).at(row) for one, row in zip(learnt_all, learnt.coordinates, strict=True)]
+    other = [Surrogate(**one).at(row) for one, row in zip(learnt_all, learnt.coordinates, strict=True)]
     assert np.std([value - one.of["f"] for one, value in zip(other, learnt.values["f"], strict=True)]) < np.std(errors)
 
 

@@ -11,6 +11,7 @@ import pytest
 
 import stiction.estimate.table as table_of_estimate
 from stiction.estimate.answer import CONFIDENCES, answer
+from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import Question, surface
 
@@ -31,8 +32,8 @@ console.log(JSON.stringify(answers));
 """
 
 
-def drawn(rng):
-    """Random question, with all numbers of the surface or some typical ones in its place."""
+def drawn(rng, of_kind):
+    """Random question about a device of a kind, with all numbers of the surface or some typical ones in its place."""
     beams = [
         {
             "rms_nm": math.exp(rng.uniform(0, 2.3)),
@@ -45,11 +46,22 @@ def drawn(rng):
         for _ in range(rng.choice([1, 5]))
     ]
     substrate = beams[0] | {"rms_nm": 0.2, "corner_rad_per_um": 10.0}
+    airs, often = rng.uniform(0.4, 0.92, rng.choice([1, 2])).tolist(), int(rng.choice([1, 1000]))
+    asked = {"beams": beams, "substrate": substrate, "humidities": airs, "averaged": bool(rng.random() < 0.5)}
+    return asked | {"touchdowns": often} | of_kind(rng)
+
+
+def cantilever(rng):
+    """Numbers of a random cantilever."""
     device = {"thickness": 2.6e-6, "gap": rng.uniform(5e-6, 25e-6), "width": rng.uniform(8e-6, 40e-6)}
-    device |= {"length": rng.uniform(1e-4, 4e-4), "touchdowns": int(rng.choice([1, 1000]))}
+    device |= {"length": rng.uniform(1e-4, 4e-4)}
     device["added"] = float(rng.choice([0, 10 ** rng.uniform(-5, -1)]))  # 0.1 J/m² alone holds many of these lengths
-    airs = rng.uniform(0.4, 0.92, rng.choice([1, 2])).tolist()
-    return {"beams": beams, "substrate": substrate, "humidities": airs, "averaged": bool(rng.random() < 0.5)} | device
+    return device
+
+
+def stopper(rng):
+    """Numbers of a random stopper, of which a few are too large."""
+    return {"sides": rng.uniform(1e-6, 6.3e-6, 2).tolist(), "force": 10 ** rng.uniform(-6, -3)}
 
 
 def in_python(question, table):
@@ -59,14 +71,14 @@ def in_python(question, table):
         [surface(one, library)[0] for one in question["beams"]],
         surface(question["substrate"], library),
     )
-    own = {key: question[key] for key in ("thickness", "gap", "width", "length", "touchdowns", "averaged", "added")}
-    named = {str(k): member for k, member in enumerate(members)}
-    asked = Question("", (stated, other), (named, {}), tuple(question["humidities"]), **own)
+    own = {key: value for key, value in question.items() if key not in ("beams", "substrate", "humidities")}
+    named, of = {str(k): member for k, member in enumerate(members)}, Stopper if "sides" in question else Question
+    asked = of("", (stated, other), (named, {}), tuple(question["humidities"]), **own)
     try:
         found = answer(asked, table, table_of_estimate.process("tips"), table_of_estimate.process("full"))
     except NotLearnt as reason:
         return str(reason)
-    rows = [[row.length, *(end for name in CONFIDENCES for end in row.intervals[name])] for row in found.rows]
+    rows = [[row.size, *(end for name in CONFIDENCES for end in row.intervals[name])] for row in found.rows]
     return [*np.ravel(rows), *found.stuck]
 
 
@@ -77,16 +89,16 @@ def in_javascript(answers):
             yield found["unknown"]
         else:
             rows = [
-                [row["length"], *(end for name in CONFIDENCES for end in row["intervals"][name])]
-                for row in found["rows"]
+                [row["size"], *(end for name in CONFIDENCES for end in row["intervals"][name])] for row in found["rows"]
             ]
             yield [*np.ravel(rows), *found["stuck"]]
 
 
 @pytest.mark.skipif(NODE is None, reason="node is not on this machine")
-def test_the_page_computes_what_python_does():
+@pytest.mark.parametrize("of_kind", [cantilever, stopper])
+def test_the_page_computes_what_python_does(of_kind):
     rng, table = np.random.default_rng(7), table_of_estimate.content()
-    questions = [drawn(rng) for _ in range(STATES)]
+    questions = [drawn(rng, of_kind) for _ in range(STATES)]
     source = Path(table_of_estimate.FILE).with_name("estimate.js").read_text(encoding="utf-8") + SCRIPT
     given = json.dumps({"questions": questions, "table": table})
     done = subprocess.run([NODE, "-e", source], input=given, capture_output=True, text=True, check=True)

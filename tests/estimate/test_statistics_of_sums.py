@@ -16,7 +16,7 @@ from stiction.contact import meniscus
 from stiction.devices.arcs import longest_free
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import surface
-from stiction.estimate.state import Film, State, film, stiffness_of
+from stiction.estimate.state import Film, TipState, film, stiffness_of
 from stiction.estimate.statistics import ORDERS, Heights, heights_of, moments_of
 from stiction.surface.self_affine import spectrum
 
@@ -110,7 +110,7 @@ def test_a_film_is_the_meniscus_of_the_contact(humidity, cosine):
 def test_flooded_flats_hold_a_tip_up_to_the_flooded_slope(thickness, gap):
     beam = Beam(1e-4, 3e-5, 1e-6 * thickness, 164e9, 1e-6 * gap, 1)
     heights = Heights(1e-9, 0.0, 3.0, (1e-7, 1e14, 1e29))
-    state = State(heights, Film(2e-9, 0.144), stiffness_of(164e9, beam.thickness, beam.gap), 3e-5, 164e9)
+    state = TipState(heights, Film(2e-9, 0.144), stiffness_of(164e9, beam.thickness, beam.gap), 3e-5, 164e9)
     slopes = np.geomspace(0.5, 2, 9) * state.flooded_slope
     (length,) = longest_free(slopes, 0.144 / slopes[None], beam)
     assert 1.5 * beam.gap / length == pytest.approx(state.flooded_slope)
@@ -129,8 +129,8 @@ def test_coordinates_do_not_depend_on_the_scale_of_lateral_lengths():
     """Softer solids on longer waves have the same pressures; only the curvature beside the radius of edges changes."""
     film_of_water = Film(2e-9, 0.144)
     low, second, fourth = 1e-7, 1e14, 1e29
-    one = State(Heights(3e-9, -0.5, 3.4, (low, second, fourth)), film_of_water, 7e3, 3e-5, 164e9)
+    one = TipState(Heights(3e-9, -0.5, 3.4, (low, second, fourth)), film_of_water, 7e3, 3e-5, 164e9)
     longer = Heights(3e-9, -0.5, 3.4, (2 * low, second / 4, fourth / 16))
-    other = State(longer, film_of_water, 16 * 7e3, 6e-5, 2 * 164e9)
+    other = TipState(longer, film_of_water, 16 * 7e3, 6e-5, 2 * 164e9)
     np.testing.assert_allclose(one.coordinates[:9], other.coordinates[:9], rtol=1e-12)
     assert one.coordinates[9] != pytest.approx(other.coordinates[9])

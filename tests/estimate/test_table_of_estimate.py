@@ -5,23 +5,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from stiction.estimate import training
 from stiction.estimate.answer import CONFIDENCES
-from stiction.estimate.design import FILMS, Law, points, states
-from stiction.estimate.make import control_of_forces, control_of_slopes
+from stiction.estimate.learning import training
+from stiction.estimate.learning.design import FILMS, SurfaceLaw, points, states
+from stiction.estimate.learning.make import control_of_forces, control_of_patches, control_of_slopes
 from stiction.estimate.page import page
-from stiction.estimate.state import COORDINATES
-from stiction.estimate.table import FILE, content, process
+from stiction.estimate.state import COORDINATES, OF_PATCHES
+from stiction.estimate.table import FILE, Surrogate, content, process
 from stiction.progress import without_progress
 
 DOCS = Path(__file__).parents[2] / "docs"
-AGAIN = "tips have changed since the estimate was learnt: run make surrogate"
+AGAIN = "tips or patches have changed since the estimate was learnt: run make surrogate"
 
 
-def test_tips_are_still_those_that_were_learnt():
+def test_tips_and_patches_are_still_those_that_were_learnt():
     with without_progress():
         slopes = control_of_slopes()
+        pressures = control_of_patches()
     np.testing.assert_allclose(slopes, content()["control"]["slopes"], rtol=1e-4, err_msg=AGAIN)
+    np.testing.assert_allclose(pressures, content()["control"]["patches"], rtol=1e-4, err_msg=AGAIN)
 
 
 @pytest.mark.slow
@@ -38,13 +40,16 @@ def test_the_table_is_small_and_the_page_of_the_docs_has_it():
 
 
 def test_the_table_has_what_the_estimate_reads():
+    stoppers = content()["stoppers"]
     assert list(COORDINATES) == content()["coordinates"]
-    assert 0 < content()["margins"][CONFIDENCES[0]] <= content()["margins"][CONFIDENCES[1]] < 5
-    for name in ("tips", "full"):
-        assert len(process(name).nodes[0]) == len(process(name).columns)
+    assert list(OF_PATCHES) == stoppers["coordinates"]
+    for part in (content(), stoppers):
+        assert 0 < part["margins"][CONFIDENCES[0]] <= part["margins"][CONFIDENCES[1]] < 5
+    for one in (process("tips"), process("full"), Surrogate(**stoppers["forces"]), Surrogate(**stoppers["full"])):
+        assert len(one.nodes[0]) == len(one.columns)
 
 
-@pytest.mark.parametrize("law", [Law.ANY, Law.TYPICAL])
+@pytest.mark.parametrize("law", [SurfaceLaw.ANY, SurfaceLaw.TYPICAL])
 def test_more_points_begin_with_fewer_and_other_seeds_are_other_surfaces(law):
     assert points(9, 1, law)[:4] == points(4, 1, law)
     assert not {str(point.sides) for point in points(9, 1, law)} & {str(point.sides) for point in points(9, 2, law)}
@@ -57,10 +62,13 @@ def test_films_of_a_point_are_within_their_range_and_its_own():
     assert not np.any(films == states(8, 4, 1)[:, 0])
 
 
-def test_training_goes_on_where_it_was(monkeypatch, tmp_path):
+def test_training_goes_on_where_it_was(tmp_path):
     done = []
-    monkeypatch.setattr(training, "base", dict)
-    monkeypatch.setattr(training, "computed", lambda point, *_: done.append(point.number) or {"airs": np.zeros(1)})
+
+    def compute(point, *_):
+        """Numbers of a point, which is noted."""
+        return done.append(point.number) or {"airs": np.zeros(1)}
+
     for chosen in (range(2), range(1, 4), range(4)):
-        training.train(tmp_path, "check_typical", chosen)
+        training.train(tmp_path, "check_typical", chosen, {}, compute)
     assert done == [0, 1, 2, 3]

@@ -270,7 +270,9 @@ def test_the_plan_of_a_device_takes_as_long_among_many_devices_as_among_few():
         stated = {"uncertainty": {"humidity": 0.01}}
         sections = {f"C{k}": PLAN.config["devices"]["C1"] | stated for k in range(number)}
         of_many = Plan(PLAN.config | {"devices": sections})
-        jobs = [Job(stage, At(**at), of_many) for stage, _ in stages().values() for at in stage.wanted(of_many)]
+        jobs = [
+            Job(stage, At(**at), of_many) for stage, _ in stages().values() for at in stage.jobs_of_targets(of_many)
+        ]
         each = [job for job in jobs if vars(job.at).keys() & {"device", "case"}]
         assert len(each) >= number
         counted = []

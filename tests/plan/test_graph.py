@@ -45,7 +45,7 @@ def wanted_files(plan):
     return [
         name.format(**at)
         for stage, _ in stages().values()
-        for at in stage.wanted(plan)
+        for at in stage.jobs_of_targets(plan)
         for name in stage.files.values()
     ]
 
@@ -105,11 +105,17 @@ def test_no_input_or_file_of_a_job_has_a_name_that_snakemake_reserves():
         assert not reserved & {*job.inputs, *job.stage.files}, name
 
 
+def _single(job):
+    """Settings that a computation takes one by one."""
+    is_whole = job.stage.kind or "settings" in signature(job.stage.compute).parameters
+    return set() if is_whole else {*job.settings}
+
+
 def test_every_computation_gets_what_its_parameters_name():
     for name, job in JOBS.items():
-        known = {*job.inputs, *vars(job.at), "settings", "data", "at"}
+        arguments = {*_single(job), *job.inputs, *vars(job.at), "settings", "data", "at"}
         parameters = signature(job.stage.compute).parameters.values()
-        assert {parameter.name for parameter in parameters if parameter.default is Parameter.empty} <= known, name
+        assert {parameter.name for parameter in parameters if parameter.default is Parameter.empty} <= arguments, name
 
 
 def test_no_two_of_the_inputs_and_wildcards_of_a_job_have_the_same_name():
@@ -117,6 +123,7 @@ def test_no_two_of_the_inputs_and_wildcards_of_a_job_have_the_same_name():
     for name, job in JOBS.items():
         assert not {*job.inputs, "data", "at", "settings"} & {*vars(job.at)}, name
         assert not {"data", "at", "settings"} & {*job.inputs}, name
+        assert not {"data", "at", "settings", *job.inputs, *vars(job.at)} & _single(job), name
 
 
 def test_the_code_of_a_stage_has_all_that_its_jobs_run_and_no_declaration():

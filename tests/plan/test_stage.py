@@ -64,12 +64,24 @@ def test_a_computation_takes_the_inputs_wildcards_and_settings_that_its_paramete
         return data, at
 
     stage = Stage.writing("one", "one_{model}", message="", compute=compute)
-    data, at = {"forces": 1, "unused": 2}, At(model="NG", case="b_rh067")
-    assert stage.result(data, at, 3) == (1, "NG", 3, "no fit")
-    assert stage.result(data | {"fit": 4}, at, 3) == (1, "NG", 3, 4)
-    assert replace(stage, compute=of_all).result(data, at, 3) == (data, at)
+    data, at, own = {"forces": 1, "unused": 2}, At(model="NG", case="b_rh067"), {"seed": 3}
+    assert stage.result(data, at, own) == (1, "NG", own, "no fit")
+    assert stage.result(data | {"fit": 4}, at, own) == (1, "NG", own, 4)
+    assert replace(stage, compute=of_all).result(data, at, own) == (data, at)
     with pytest.raises(TypeError, match="forces"):
-        stage.result({}, at, 3)
+        stage.result({}, at, own)
+
+
+def test_a_computation_takes_single_settings_unless_a_class_has_them():
+    def compute(forces, seed=0):
+        return forces, seed
+
+    stage = Stage.writing("one", "one", message="", compute=compute)
+    data, at = {"forces": 1}, At()
+    assert stage.result(data, at, {"seed": 3}) == (1, 3)
+    assert stage.result(data | {"seed": 4}, at, {"seed": 3}) == (1, 4)
+    assert stage.result(data, at, None) == (1, 0)
+    assert replace(stage, kind=Beam).result(data, at, Beam(3)) == (1, 0)
 
 
 @pytest.mark.parametrize(
@@ -93,9 +105,9 @@ def test_the_data_of_the_inputs_complete_the_settings_of_a_computation():
         return forces, settings
 
     stage = Stage.writing(
-        "one", "one", message="", complete=lambda settings, data: settings + data["error"], compute=compute
+        "one", "one", message="", complete=lambda settings, data: settings | data["error"], compute=compute
     )
-    assert stage.result({"forces": 1, "error": 2}, At(), 3) == (1, 5)
+    assert stage.result({"forces": 1, "error": {"b": 2}}, At(), {"a": 1}) == (1, {"a": 1, "b": 2})
 
 
 def test_a_stage_with_ends_writes_one_dataset_for_each():

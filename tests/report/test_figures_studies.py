@@ -309,7 +309,7 @@ def test_the_summary_states_the_share_of_the_published_deviation_that_a_variant_
     table = tables_studies.variants(VARIANTS, PUBLISHED)
     lines = table.markdown.splitlines()
     table = table.frame
-    (line,) = (line for line in lines if line.replace(" ", "").startswith("|a|") and "vdW: none" in line)
+    (line,) = (line for line in lines if line.replace(" ", "").startswith("|a|") and "van der Waals: none" in line)
     base, other = (
         np.mean(table[(table.pair == "a") & (table.variant == name)].published_deviation_percent ** 2)
         for name in ("base", "van_der_waals_none")

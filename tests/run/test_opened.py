@@ -76,8 +76,10 @@ def test_parts_are_those_of_the_whole(tmp_path):
 
 
 def test_opening_reads_no_numbers_and_a_part_reads_only_its_files(tmp_path, monkeypatch):
-    read, part = [], opened._Joined._part
-    monkeypatch.setattr(opened._Joined, "_part", lambda self, path: read.append((self.name, path)) or part(self, path))
+    read, part = [], opened._Joined._filled
+    monkeypatch.setattr(
+        opened._Joined, "_filled", lambda self, path: read.append((self.name, path)) or part(self, path)
+    )
     energies = stiction.open(tmp_path)["forces"].adhesion_energy
     assert read == []
     energies.sel(pair="b", relative_humidity=0.45, model="NG").load()

@@ -87,7 +87,7 @@ def test_a_file_that_is_no_dataset_is_reported_with_the_remedy(tmp_path):
 
 def test_the_order_of_keys_does_not_change_a_label():
     one, other = ({"b": 1, "a": {"d": 1, "c": 2}}, {"a": {"c": 2, "d": 1}, "b": 1})
-    labelled = [labels.Label("s", "x", settings, {"f": settings}).attributes for settings in (one, other)]
+    labelled = [labels.DatasetLabel("s", "x", settings, {"f": settings}).attributes for settings in (one, other)]
     assert labelled[0] == labelled[1]
 
 

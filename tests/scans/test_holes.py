@@ -173,7 +173,7 @@ def test_many_holes_leave_moments_and_corner(kind, share):
     errors = np.sqrt(np.diag(found.fit.covariance) + (kind != "random") * np.diag(whole.fit.covariance))
     off = (parameters(found) - parameters(whole)) / errors
     assert np.all(np.abs(off[:2]) < (1 if kind == "random" else 2.5))
-    part = found.largest.part.shape
+    part = found.largest.complete_frame.shape
     assert (part == shape) == (kind == "random")
     assert found.largest.area == pytest.approx((1 - mask.mean()) * 1e-10)
 
@@ -218,7 +218,7 @@ def test_a_scan_that_was_stopped_is_the_scan_of_its_lines(rest, axis):
     size = tuple(SIDE * (180 / len(z) if k == axis else 1) for k in range(2))
     lines = dataclasses.replace(WHOLE, heights=np.moveaxis(z[:180], 0, axis), size=size)
     found, expected = (inspect([scan], Settings()) for scan in (stopped, lines))
-    assert found.largest.part.shape == lines.heights.shape
+    assert found.largest.complete_frame.shape == lines.heights.shape
     np.testing.assert_allclose(found.moments, expected.moments, rtol=1e-9)
     np.testing.assert_allclose(parameters(found), parameters(expected), rtol=1e-9)
 

@@ -52,9 +52,9 @@ def test_a_floor_that_heights_cannot_have_stays_in_them_and_is_kept():
     steps = 5e-9 * np.sign(drawn.heights)
     two, one = (inspect([noisy(Scan(z, drawn.size), rms)], Settings()).largest
                 for z, rms in ((steps, 3e-9), (drawn.heights, 0.3e-9)))  # fmt: skip
-    assert two.kept.density > two.floor.density == 0
+    assert two.floor_left.density > two.floor.density == 0
     np.testing.assert_array_equal(two.moments, two.noisy_moments)
-    assert one.floor.density > one.kept.density == 0, "control: the noise of other heights is subtracted"
+    assert one.floor.density > one.floor_left.density == 0, "control: the noise of other heights is subtracted"
 
 
 @pytest.mark.slow

@@ -228,9 +228,9 @@ def test_a_part_gives_the_spectrum_of_a_scan_with_more_undefined_points_than_may
     z[:10, :100] = np.nan
     scan = Scan(z, (SIDE, SIDE), "a.spm")
     (other, many), (filled,) = (inspect([B2[1], scan], Settings(undefined_share=share)).sizes for share in (0.01, 0.02))
-    assert (many.names, many.part.shape) == (("a.spm",), (240, 250)), "1.6 % are undefined"
-    assert (other.names, other.part.shape) == ((B2[1].name,), z.shape)
-    assert (filled.names, filled.part.shape) == ((B2[1].name, "a.spm"), z.shape)
+    assert (many.names, many.complete_frame.shape) == (("a.spm",), (240, 250)), "1.6 % are undefined"
+    assert (other.names, other.complete_frame.shape) == ((B2[1].name,), z.shape)
+    assert (filled.names, filled.complete_frame.shape) == ((B2[1].name, "a.spm"), z.shape)
 
 
 @pytest.mark.slow
@@ -295,7 +295,7 @@ FLAGS = {
     "psd: tabulated":
         lambda: fit_with(chi2=400.0, freedom=100),
     "beyond 101 rad/µm the scans show less than half of the power law: either surface or microscope has no shorter "
-    "waves, or the spectrum becomes steeper; beyond: cut leaves these waves out":
+    "waves, or the spectrum becomes steeper; with key beyond: cut these waves are left out":
         lambda: with_inspection(reach=dataclasses.replace(of_b2().inspection.reach, end=1.01e8)),
     "pixels of 20 nm do not resolve the power law of the spectrum, which falls by less than half up to 78.5 rad/µm: "
     "corner and slope are not measured; roughness beyond 125 rad/µm is left out, so that surfaces are too smooth and "
@@ -303,7 +303,7 @@ FLAGS = {
         lambda: fit_with(corner=7.8e7),
     "a floor of the spectrum like white noise of 2 nm in scans of 5 x 5 µm is not subtracted, because no heights "
     "have the remaining moments; if it is noise, the surface is smoother than computed and sticks more":
-        lambda: with_inspection(sizes=(dataclasses.replace(of_b2().inspection.largest, kept=floor_of(2e-9)),)),
+        lambda: with_inspection(sizes=(dataclasses.replace(of_b2().inspection.largest, floor_left=floor_of(2e-9)),)),
     "white noise of 1 nm in scans of 5 x 5 µm, 8.8 % of their variance, is subtracted from rms, skewness, kurtosis and "
     "spectrum, not from heights: measured":
         lambda: with_inspection(sizes=(dataclasses.replace(of_b2().inspection.largest, floor=floor_of(1e-9)),)),

@@ -112,7 +112,7 @@ def identified(radius=1.0, density=1.0, corner=32e6):
     return identification.layout(found, SummitTarget(1.7e-9, 4e-7, 7e13, 20e-9))
 
 
-USE = spectrum.Use("Mine", 1.5e-6, 1e-6)
+USE = spectrum.SpectrumUse("Mine", 1.5e-6, 1e-6)
 
 
 @pytest.mark.slow
@@ -121,9 +121,9 @@ def test_an_identified_spectrum_is_used_for_strips_of_any_length_with_margins_lo
         bound = correlation_length(CutoffSelfAffine(525e-36, 0.8e-36, corner, 138e6))
         message = f"sampling.margin_um is .* surface Mine, {1e6 * bound:.3g} µm for the .* identified"
         for length in (bound * 0.99, bound * 1.01):
-            spectrum.refuse_misuse(identified(corner=corner), spectrum.Use("Mine", length, bound * 1.01))
+            spectrum.refuse_misuse(identified(corner=corner), spectrum.SpectrumUse("Mine", length, bound * 1.01))
             with pytest.raises(ValueError, match=message):
-                spectrum.refuse_misuse(identified(corner=corner), spectrum.Use("Mine", length, bound * 0.99))
+                spectrum.refuse_misuse(identified(corner=corner), spectrum.SpectrumUse("Mine", length, bound * 0.99))
 
 
 def test_a_patch_is_longer_than_the_correlation_of_the_identified_spectrum(monkeypatch):
@@ -164,7 +164,7 @@ def test_misfits_are_the_deviations_from_the_measured_summits():
 def test_the_spectrum_of_a_job_is_checked_where_it_is_identified():
     plan = Plan(merged(small.PLAN.config, {"surfaces": {"B2": {"psd": "identified"}}, "sampling": {"margin_um": 0.2}}))
     settings = small.settings_of(spectrum, job_settings(plan, "spectrum/B2"))
-    assert settings.identified == spectrum.Use("B2", 1.5e-6, pytest.approx(0.2e-6))
+    assert settings.identified == spectrum.SpectrumUse("B2", 1.5e-6, pytest.approx(0.2e-6))
     with pytest.raises(ValueError, match=r"sampling.margin_um is 0.2, .* surface B2"):
         spectrum.compute(small.heights_of("B2"), settings, identified())
 

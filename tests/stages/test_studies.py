@@ -77,7 +77,7 @@ def test_sensitivity_is_that_of_the_energies_at_both_values(shifted):
 def test_slopes_and_their_errors_are_those_of_the_chosen_quantities():
     values = np.arange(6.0).reshape(3, 2)
     dataset = slopes.layout(["rms", "skewness", "kurtosis"], (0.44, 0.88), values, 0.1 * values)
-    assert_allclose(slopes.of(dataset, ["kurtosis", "rms"]), [[4, 0], [5, 1]])
+    assert_allclose(slopes.by_quantity(dataset, ["kurtosis", "rms"]), [[4, 0], [5, 1]])
     assert_allclose(slopes.errors_of(dataset, ["kurtosis", "rms"]), [[0.4, 0], [0.5, 0.1]])
 
 
@@ -89,11 +89,11 @@ def test_slopes_are_those_of_the_energies_at_both_values_and_of_their_own_quanti
     for k, h in enumerate(wanted.humidities):
         low, high = (curves.energies(contact, h, WATER) for contact in (less, more))
         expected = np.log(high.mean() / low.mean()) / 0.1
-        assert_allclose(slopes.of(found, ["rms", "kurtosis"])[k], [expected, -expected], rtol=1e-9)
+        assert_allclose(slopes.by_quantity(found, ["rms", "kurtosis"])[k], [expected, -expected], rtol=1e-9)
         paired = np.std(np.log(high / low) / 0.1, ddof=1) / np.sqrt(len(low))
         assert 0.3 * paired < float(found.standard_error[0, k]) < 3 * paired
     # Rougher surfaces adhere less, the more so the drier the air.
-    of_rms = slopes.of(found, ["rms"])[:, 0]
+    of_rms = slopes.by_quantity(found, ["rms"])[:, 0]
     assert np.all(of_rms < 0)
     assert of_rms[0] < of_rms[-1]
 
@@ -235,7 +235,7 @@ def test_the_fields_of_an_iteration_are_drawn_from_the_stream_of_the_surface():
 
 def test_all_samples_are_at_no_distance_from_themselves_and_densities_hold_one():
     vectors = sampled_vectors(400)
-    found = sample_sizes.compute(of_vectors(vectors), sample_sizes.Settings((0.001, 0.1, 0.5), small.CASE))
+    found = sample_sizes.compute(of_vectors(vectors), (0.001, 0.1, 0.5))
     assert list(found["size"]) == [2, 40, 200, 400]
     assert found.distance[-1] == 0
     assert found.distance_error[-1] == 0
@@ -252,17 +252,17 @@ def test_all_samples_are_at_no_distance_from_themselves_and_densities_hold_one()
 
 def test_marginals_of_every_order_are_drawn_from_the_model_cut_there():
     vectors = sampled_vectors(300)
-    settings = small.settings_of(orders, job_settings(small.PLAN, "studies/orders"))
+    settings = job_settings(small.PLAN, "studies/orders")
     model = fit(vectors, 1.1 * vectors[:, 1].max(), 2, 0.2)
     assert model.dimension < 4
     dataset = chaos.layout(model, (np.zeros((3, 4, 4)), np.zeros((3, 4, 4))), 0.0)
-    found = orders.compute(of_vectors(vectors), dataset, settings)
+    found = orders.compute(of_vectors(vectors), dataset, **settings)
     assert list(found.order) == [1, 2]
     assert (found.samples, found.draws) == (300, 2000)
     eta = model.coordinates.reduce(vectors)[:, : model.dimension]
     edges = np.linspace(-4, 4, 65)
     for order in (1, 2):
-        xi = stream(small.SEED, "orders", settings.case).random((2000, model.dimension))
+        xi = stream(small.SEED, "orders", settings["case"]).random((2000, model.dimension))
         drawn = truncated(model, order)(xi)
         for k in range(model.dimension):
             chosen = found.sel(order=order, eta=k + 1)
@@ -286,9 +286,7 @@ def test_an_order_has_converged_if_its_marginals_are_near_the_kernels(monkeypatc
     vectors = sampled_vectors(300)
     model = fit(vectors, 1.1 * vectors[:, 1].max(), 2, 0.2)
     dataset = chaos.layout(model, (np.zeros((3, 4, 4)), np.zeros((3, 4, 4))), 0.0)
-    found = orders.compute(
-        of_vectors(vectors), dataset, small.settings_of(orders, job_settings(small.PLAN, "studies/orders"))
-    )
+    found = orders.compute(of_vectors(vectors), dataset, **job_settings(small.PLAN, "studies/orders"))
     assert_array_equal(found.converged_order, converged)
 
 
@@ -350,7 +348,7 @@ def test_the_meshes_that_resolve_the_crack_remain():
 
 def test_autocorrelation_starts_at_one_and_ends_below_its_threshold():
     names = ("B2", "Sub1")
-    found = correlation.compute({name: small.spectrum_of(name) for name in names}, correlation.Settings(names))
+    found = correlation.compute({name: small.spectrum_of(name) for name in names}, names)
     assert_allclose(found.autocorrelation[:, 0], 1, rtol=1e-14)
     for name in names:
         chosen = found.sel(surface=name)

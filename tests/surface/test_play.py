@@ -4,10 +4,9 @@ import dataclasses
 
 import numpy as np
 import pytest
-from published import SPACING, SURFACES
+from published import SPACING, SURFACES, streams
 from standard_errors import ALLOWED, errors_off
 
-from stiction.streams import stream
 from stiction.surface.field import StripGrid, radial_periodogram
 from stiction.surface.replica import Coherence, Replica
 from stiction.surface.spectrum import ring_means
@@ -16,10 +15,6 @@ from stiction.surface.translation import spectrum_of_heights
 FIELD = StripGrid(1.28e-6, 1.28e-6, SPACING, margin=0)
 GAUSSIAN = SURFACES["B2"].with_gaussian_heights(FIELD)
 PLAY = 15e-9
-
-
-def streams(number):
-    return stream(2021, "beam", number), stream(2021, "substrate", number)
 
 
 def sums(stated, surface=GAUSSIAN, count=200):

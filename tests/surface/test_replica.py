@@ -2,11 +2,10 @@ import dataclasses
 
 import numpy as np
 import pytest
-from published import IDENTITY, SPACING, SURFACES
+from published import IDENTITY, SPACING, SURFACES, streams
 from scipy import fft
 from standard_errors import ALLOWED, errors_off
 
-from stiction.streams import stream
 from stiction.surface.field import RoughSurface, StripGrid
 from stiction.surface.replica import Coherence, Replica
 from stiction.surface.spectrum import ring_means
@@ -18,10 +17,6 @@ STRIP = StripGrid(0.6e-6, 0.8e-6, SPACING, margin=0.4e-6)
 B1, B2, SUB1 = (SURFACES[name].on(FIELD) for name in ("B1", "B2", "Sub1"))
 GAUSSIAN = SURFACES["B2"].with_gaussian_heights(FIELD)
 OFFSET = 55e-9
-
-
-def streams(number):
-    return stream(2021, "beam", number), stream(2021, "substrate", number)
 
 
 def drawn(replica, count=100):

@@ -15,7 +15,7 @@ from stiction.config.merging import differing
 from stiction.config.reading import paper
 from stiction.devices.risk import SCORES
 from stiction.report.devices import curve_views, explorer, voltage_views
-from stiction.report.devices.grid import Axis, Grid
+from stiction.report.devices.grid import Grid, GridAxis
 from stiction.report.devices.levels import counted
 from stiction.report.page import Page, Summary
 
@@ -90,7 +90,7 @@ def test_a_small_chart_has_the_noise_of_its_curve_as_a_band(browser, tmp_path):
     grid = Grid(
         axes,
         explorer.share_axis([0.01], 0.01, ""),
-        Axis("length_um", "length", "µm", "linear", (100, 400), 200, True, ""),
+        GridAxis("length_um", "length", "µm", "linear", (100, 400), 200, True, ""),
         noisy,
         counted(noisy * np.exp(0.1 * SCORES), 400),
         400,

@@ -17,7 +17,7 @@ from test_report import STYLE, faults
 import stiction
 from stiction.command import main
 from stiction.config.merging import merged
-from stiction.report.devices.grid import Axis, Grid
+from stiction.report.devices.grid import Grid, GridAxis
 
 pytestmark = pytest.mark.slow
 
@@ -221,7 +221,8 @@ def grid_of(run, device):
     page = page_of(run, device).read_text(encoding="utf-8")
     content = json.loads(re.search(r'id="explorer-data">(.*?)</script>', page)[1])["views"][0]["grid"]
     axes = [
-        Axis(**one | {"values": tuple(one["values"])}) for one in (*content["axes"], content["share"], content["size"])
+        GridAxis(**one | {"values": tuple(one["values"])})
+        for one in (*content["axes"], content["share"], content["size"])
     ]
     arrays = {name: np.array(content[name], float) for name in ("safe", "levels", "scores", "first")}
     numbers = {name: content[name] for name in ("samples", "falls")}

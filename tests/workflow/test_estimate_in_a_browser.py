@@ -61,3 +61,23 @@ def test_the_file_of_the_page_is_that_of_its_sliders(opened):
     opened.run("const box = document.getElementById('known_skewness'); box.click(); return 1")
     assert "skewness:" in opened.run("return document.getElementById('yaml').textContent")
     assert math.isfinite(float(opened.run("return document.getElementById('of_skewness').textContent")))
+
+
+def test_a_stopper_has_its_own_sliders_forces_and_file(opened):
+    choose = """
+    const kind = document.getElementById('kind');
+    kind.value = 'KIND';
+    kind.dispatchEvent(new Event('input', {bubbles: true}));
+    const seen = (id) => document.getElementById(id).offsetParent !== null;
+    return [seen('side_um'), seen('gap_um'), ...['said', 'yaml'].map((id) => document.getElementById(id).textContent)];
+    """
+    side, gap, said, text = opened.run(choose.replace("KIND", "stopper"))
+    assert (side, gap) == (True, False)
+    assert "µN" in said
+    assert "kind: stopper" in text
+    assert "contact_um: [3, 3]" in text
+    assert opened.errors() == []
+    side, gap, said, text = opened.run(choose.replace("KIND", "cantilever"))
+    assert (side, gap) == (False, True)
+    assert "µm" in said
+    assert "kind: cantilever" in text

@@ -63,7 +63,7 @@ def test_origins_differ_where_the_settings_of_any_job_behind_a_file_do(change):
 def test_what_jobs_note_from_the_labels_of_their_inputs_is_what_the_plan_expects(smoke):
     planner, _ = planned(CHANGES[-1])
     noted = recorded_origins(smoke / "results" / "logs")
-    wanted = {file for target in WHOLE for file in planner.wanted(target) if not file.endswith(".nc")}
+    wanted = {file for target in WHOLE for file in planner.files_of(target) if not file.endswith(".nc")}
     assert set(noted) >= wanted
     assert len(wanted) > 50
     assert noted == {file: planner.origin(file) for file in noted}

@@ -1,7 +1,8 @@
 """From two rough surfaces to crack lengths: the rules of the paper, each after the rules that it reads.
 
 surface: a rough surface, such as B2 · pair: two surfaces, such as b · case: a pair at one relative humidity, such as
-b_rh067 · model: the model of the surfaces, or of the beams · chunk, number: one part of the samples, of so many.
+b_rh067 · model: the model of the surfaces, or of the beams · chunk, number: a part of the samples, and the number of
+parts.
 
 Written by docs/rules.py from the declarations of the stages: change these, then run make numbers.
 """

@@ -1,4 +1,4 @@
-"""Configuration and plan of a run, and what the rules of all stages share."""
+"""Configuration and plan of a run, and functions for the rules of all stages."""
 
 import atexit
 import hashlib
@@ -17,7 +17,7 @@ from stiction.plan.planner import WHOLE, Planner
 from stiction.plan.stage import WILDCARDS
 from stiction.run import provenance, run_lock, snakemake_patches, stale_results
 from stiction.run.atomic import DataError, save_text
-from stiction.run.disk_cache import DiskCache, Kept, SharedCache
+from stiction.run.disk_cache import Caches, DiskCache, SharedCache
 from stiction.run.fingerprint import PACKAGE, fingerprint
 
 
@@ -44,32 +44,32 @@ def code(file):
     return fingerprint(file, remember_code)
 
 
-def stated():
-    """Configuration as its files state it, read strictly. Snakemake silently uses the last of duplicate keys."""
+def contents_of_files():
+    """Read the files of the configuration strictly. Snakemake silently uses the last of duplicate keys."""
     contents = {file: files.read(file) for file in snakemake_patches.files_of_configuration(workflow)}
-    # A workflow that uses this one as a module states its changes alone, and replaces the file of all keys by them.
+    # A workflow that imports this one as a module gives only its changes, in place of the file with all keys.
     defaults = BASE / "config.yaml"
-    whole = merging.merged(contents.get(defaults) or files.read(defaults), config)
+    sections = merging.merged(contents.get(defaults) or files.read(defaults), config)
     changes = [contents[file] for file in contents if file != defaults]
-    whole = merging.without_inherited(whole, files.paper(), changes)
-    for file in contents:  # files of scans, test beams and devices are relative to the first match
-        whole = files.located(whole, contents[file], file.parent)
-    return device_table.with_rows(whole)
+    sections = merging.without_inherited(sections, files.paper(), changes)
+    for file in contents:  # paths of scans, test beams and devices are relative to the first file that matches
+        sections = files.located(sections, contents[file], file.parent)
+    return device_table.with_rows(sections)
 
 
-#: What one plan finds out for the next.
-KEPT = Kept(Path(".snakemake"), remember_code)
+#: Results of this plan for the next one.
+CACHES = Caches(Path(".snakemake"), remember_code)
 
 
 def complete():
-    """Complete configuration and numbers of measured surfaces. Names the numbers that it leaves open."""
-    ready = prepared(stated(), KEPT)
+    """Complete the configuration, with numbers of measured surfaces. Report the numbers that it leaves open."""
+    ready = prepared(contents_of_files(), CACHES)
     if ready.numbers:
         logger.warning(str(ready.numbers))
     return ready.config, ready.estimates
 
 
-#: Complete configuration and numbers of measured surfaces, which a run hands to the jobs that plan it again.
+#: File with the complete configuration and the numbers of measured surfaces, for the jobs of this run.
 PLANNED = ".snakemake/configuration.json"
 
 try:
@@ -83,7 +83,7 @@ config.update(planned)
 
 def refuse_what_samples_show():
     """Refuse a configuration whose first samples show that a job would fail."""
-    if problems := problems_of_samples(config, preliminary, KEPT):
+    if problems := problems_of_samples(config, preliminary, CACHES):
         raise WorkflowError("The configuration is invalid:\n" + "\n".join(map(str, problems)))
 
 
@@ -95,7 +95,7 @@ if is_main:
 
 
 def hand_to_jobs():
-    """Keep what the jobs of this run need to plan it again in a fraction of the time."""
+    """Store the plan, so that jobs plan again in a fraction of the time."""
     remember_jobs.save()
     save_text(json.dumps({"planned": [config, preliminary]}), PLANNED)
     snakemake_patches.read_in_jobs(workflow, Path(PLANNED).absolute())
@@ -105,17 +105,17 @@ def hand_to_jobs():
 
 
 def unlike_this_run():
-    """Results of other settings, or damaged. Caches their labels for the next plan."""
-    read = DiskCache(".snakemake/labels.json")
-    found = dict(stale_results.damaged("results/logs", read))
-    found |= dict(stale_results.foreign(Path("results").rglob("*.nc"), planner.settings, read))
-    found |= dict(stale_results.made_otherwise("results/logs", planner.origin))
-    read.save()
-    return found
+    """Find damaged results and results of other settings. Cache their labels for the next plan."""
+    labels = DiskCache(".snakemake/labels.json")
+    reasons = dict(stale_results.damaged("results/logs", labels))
+    reasons |= dict(stale_results.foreign(Path("results").rglob("*.nc"), planner.settings, labels))
+    reasons |= dict(stale_results.made_otherwise("results/logs", planner.origin))
+    labels.save()
+    return reasons
 
 
-#: Marker: an input of jobs that must rerun. It is newer than their results, and its content is never the same, because
-#: Snakemake takes a newer input of the same content for unchanged.
+#: Marker: an input of jobs that must rerun. It is newer than their results. Each run writes other content into it,
+#: because Snakemake takes a newer input with the same content for unchanged.
 STALE = Path(".snakemake/stale")
 
 
@@ -124,12 +124,12 @@ def unusable():
     """Warn about unusable results and return them. This run recomputes them."""
     if not is_main:
         return {}
-    found = RUN.unlike = unlike_this_run()
-    for line in stale_results.summary(found):
+    reasons = RUN.unlike = unlike_this_run()
+    for line in stale_results.summary(reasons):
         logger.warning(line)
-    if found:
+    if reasons:
         save_text(uuid.uuid4().hex, STALE)
-    return found
+    return reasons
 
 
 def refuse_to_touch():
@@ -142,14 +142,14 @@ def refuse_to_touch():
 
 
 def end_of_run():
-    """Write the index without the files that are not of this run."""
+    """Write the index. Leave out files of other runs."""
     from stiction.command import index
 
     RUN.unlike = unlike_this_run()
     index.write(Path("results"), planner.rules, RUN.unlike)
 
 
-# Rules of stages: a declaration (`stiction.plan.stage`) is in the module of its stage, its name is that of the rule
+# Rules of stages. The module of a stage declares it (`stiction.plan.stage`), under the name of its rule
 
 SCRIPT = code(BASE / "workflow" / "scripts" / "stage.py")
 #: Declared stages with files under this configuration, by name.
@@ -163,10 +163,10 @@ def inputs_of(stage):
 
     def inputs(wildcards):
         files = planner.inputs(declared, dict(wildcards)) | caption
-        files |= {name: ancient(paths) for name, paths in files.items() if own_files(paths)}
+        files |= {name: ancient(paths) for name, paths in files.items() if package_files(paths)}
         files |= {"before": ancient(planner.before_last)} if declared["last"] else {}
-        written = {file.format(**dict(wildcards)) for file in declared["files"].values()} if unusable() else set()
-        return files | {"stale": STALE} if written & unusable().keys() else files
+        outputs = {file.format(**dict(wildcards)) for file in declared["files"].values()} if unusable() else set()
+        return files | {"stale": STALE} if outputs & unusable().keys() else files
 
     return inputs
 
@@ -177,13 +177,13 @@ def caption_of(declared):
     return {"caption": str(BASE / "workflow" / "report" / f"{caption}.rst")} if caption else {}
 
 
-def own_files(paths):
-    """Files of this checkout among some inputs: captions, styles, templates, published tables.
+def package_files(paths):
+    """Files of this package among some inputs: captions, styles, templates, published tables.
 
-    Their content is a parameter of the jobs. Their times say nothing, because those of a new checkout are new.
+    Their content is a parameter of the jobs. Their times are those of a checkout and decide nothing.
     """
-    listed = [paths] if isinstance(paths, str) else paths
-    return [file for file in listed if file.startswith((str(PACKAGE), str(BASE / "workflow")))]
+    files = [paths] if isinstance(paths, str) else paths
+    return [file for file in files if file.startswith((str(PACKAGE), str(BASE / "workflow")))]
 
 
 @cache
@@ -195,13 +195,13 @@ def digest(file):
 def outputs_of(stage):
     """Files of a stage by key."""
     declared = DECLARED[stage]
-    marked = {key: temp(file) if declared["temporary"] else file for key, file in declared["files"].items()}
+    outputs = {key: temp(file) if declared["temporary"] else file for key, file in declared["files"].items()}
     if shown := declared["shown"]:
         labels = {"shows": shown["title"]}
-        marked[shown["file"]] = report(
-            marked[shown["file"]], category=shown["category"], labels=labels, **caption_of(declared)
+        outputs[shown["file"]] = report(
+            outputs[shown["file"]], category=shown["category"], labels=labels, **caption_of(declared)
         )
-    return marked
+    return outputs
 
 
 #: Memory of a job that draws the largest field [MB].
@@ -209,7 +209,7 @@ MEMORY = memory.job_memory(config)
 
 
 def resources_of(stage):
-    """Functions that give the time, the memory and the CPU time to reserve for a job, see `stiction.plan.cost`."""
+    """Functions for the time, the memory and the CPU time of a job, see `stiction.plan.cost`."""
     declared, job = DECLARED[stage], partial(planner.job, stage)
     megabytes = max(MEMORY, round(declared["memory"]))
     return {
@@ -227,9 +227,9 @@ def params_of(stage):
     code, caption = planner.code(declared) | SCRIPT, caption_of(declared)
 
     def texts(wildcards):
-        """Own files that a job reads, by name."""
-        read = (job(wildcards)["files"] | caption).values()
-        return {f"stiction.{Path(file).name}": digest(file) for paths in read for file in own_files(paths)}
+        """Digests of the files of the package that a job reads, by name."""
+        inputs = (job(wildcards)["files"] | caption).values()
+        return {f"stiction.{Path(file).name}": digest(file) for paths in inputs for file in package_files(paths)}
 
     return {
         "module": declared["module"],

@@ -1,6 +1,6 @@
 """Contact beside the chain: patches and tips of devices, changed inputs, variants, full elastic contact.
 
-Above each rule: what it does, the rules whose results it reads -> the files that it writes.
+A comment says what each rule does, whose results it reads -> which files it writes.
 
 Written by docs/rules.py from the declarations of the stages: change these, then run make numbers.
 """
@@ -34,11 +34,11 @@ define("device_slope_contact")
 #     results/devices/contact/tips/slopes/{pair}_{length}x{width}_{surface}_{quantity}_{each}.nc
 define("tip_slope_contact")
 
-# Contact of pair {pair}, {length} x {width} nm, with {member} in place of what is assumed of {surface}.
+# Contact of pair {pair}, {length} x {width} nm, with {member} in place of the partly assumed {surface}.
 #   no results -> results/devices/contact/members/{pair}_{length}x{width}_{surface}_like_{member}.nc
 define("device_member_contact")
 
-# Contact of pair {pair}, {length} x {width} nm, at the tips of beams, with {member} in place of what is assumed of {surface}.
+# Contact of pair {pair}, {length} x {width} nm, at the tips of beams, with {member} in place of the partly assumed {surface}.
 #   no results -> results/devices/contact/tips/members/{pair}_{length}x{width}_{surface}_like_{member}.nc
 define("tip_member_contact")
 

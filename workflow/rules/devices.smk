@@ -1,6 +1,6 @@
 """Devices: safe lengths, stoppers, budgets, life, test beams.
 
-Above each rule: what it does, the rules whose results it reads -> the files that it writes.
+A comment says what each rule does, whose results it reads -> which files it writes.
 
 Written by docs/rules.py from the declarations of the stages: change these, then run make numbers.
 """
@@ -41,7 +41,7 @@ define("sizes")
 #   model_error_of_devices, full_contact_dry, probe_in_full_contact -> results/devices/model_error/{device}.nc
 define("device_model_error")
 
-# Where the results of device {device} are beyond the model.
+# Limits of the model that device {device} exceeds.
 #   safe_lengths, plasticity, model_error_of_devices, model_error_of_probes, stoppers, chart, left_out_gaps ->
 #     results/devices/warnings/{device}.json
 define("device_warnings")
@@ -51,7 +51,7 @@ define("device_warnings")
 #     results/devices/ground/{case}_{length}x{width}.nc
 define("ground")
 
-# What attraction across gaps would change of device {device}.
+# Effect of attraction across gaps on device {device}.
 #   contact, device_contact, tip_contact, model_error_of_devices -> results/devices/left_out_gaps/{device}.nc
 define("left_out_gaps")
 
@@ -120,3 +120,7 @@ define("answer")
 # Estimate at once of {device} beside its run.
 #   safe_lengths -> results/devices/estimate/{device}.nc
 define("device_estimate")
+
+# Estimate at once of {device} beside its run.
+#   stoppers -> results/devices/estimate_of_force/{device}.nc
+define("stopper_estimate")

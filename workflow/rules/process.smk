@@ -1,6 +1,6 @@
 """Devices against roughness and process.
 
-Above each rule: what it does, the rules whose results it reads -> the files that it writes.
+A comment says what each rule does, whose results it reads -> which files it writes.
 
 Written by docs/rules.py from the declarations of the stages: change these, then run make numbers.
 """

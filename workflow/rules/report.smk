@@ -1,6 +1,6 @@
 """Tables, figures and pages, and the checks of a run.
 
-Above each rule: what it does, the rules whose results it reads -> the files that it writes.
+A comment says what each rule does, whose results it reads -> which files it writes.
 
 Written by docs/rules.py from the declarations of the stages: change these, then run make numbers.
 """
@@ -16,6 +16,10 @@ define("table_devices")
 # Estimate: estimates at once beside the run.
 #   device_estimate -> results/tables/estimate.{csv,md,html}
 define("table_estimate")
+
+# Estimate of force: forces at once beside the run.
+#   stopper_estimate -> results/tables/estimate_of_force.{csv,md,html}
+define("table_estimate_of_force")
 
 # Roughness {device}: how rough the surfaces of {device} must be.
 #   roughness -> results/figures/roughness_{device}.{pdf,png,txt}
@@ -160,8 +164,9 @@ define("figure_life")
 
 # Page of device {device}.
 #   answer, life, budget, tip_budget, device_warnings, device_model_error, test_beams_rerun, device_estimate,
-#     safe_lengths, roughness, stoppers, stoppers_at_voltage, tilted_stoppers, process_curve,
-#     process_settings, process_law, chart, process_map, process_pairs -> results/devices/{device}.{html,txt}
+#     stopper_estimate, safe_lengths, roughness, stoppers, stoppers_at_voltage, tilted_stoppers,
+#     process_curve, process_settings, process_law, chart, process_map, process_pairs ->
+#     results/devices/{device}.{html,txt}
 define("device_page")
 
 # Simulated limits of beams.
@@ -172,7 +177,7 @@ define("table_safe_lengths")
 #   chart, device_warnings -> results/tables/chart.{csv,md,html}
 define("table_chart")
 
-# Where the results of devices are beyond the model.
+# Limits of the model that devices exceed.
 #   device_warnings, test_beams_rerun, answer -> results/devices/warnings.{md,json}
 define("device_limits")
 
@@ -184,7 +189,7 @@ define("figure_05")
 #   forces, chaos -> results/figures/figure_12.{pdf,png,txt}
 define("figure_12")
 
-# Where the results of pairs are beyond the model.
+# Limits of the model that pairs exceed.
 #   beams, plasticity, estimate, spectrum -> results/warnings.{md,json}
 define("model_limits")
 

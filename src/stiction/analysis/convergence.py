@@ -34,10 +34,10 @@ def distance_to(samples: np.ndarray, distribution: Callable[[np.ndarray], np.nda
     return max(np.max(np.arange(1, n + 1) / n - expected), np.max(expected - np.arange(n) / n))
 
 
-def distance_between(samples: np.ndarray, others: np.ndarray) -> float:
+def distance_between(samples: np.ndarray, reference: np.ndarray) -> float:
     """Kolmogorov's distance between the empirical distributions of two sets of samples, (n,) and (m,) [-]."""
-    at = np.sort(np.concatenate([samples, others]))
-    shares = [np.searchsorted(np.sort(s), at, side="right") / len(s) for s in (samples, others)]
+    at = np.sort(np.concatenate([samples, reference]))
+    shares = [np.searchsorted(np.sort(s), at, side="right") / len(s) for s in (samples, reference)]
     return np.max(np.abs(shares[0] - shares[1]))
 
 
@@ -55,7 +55,7 @@ def distance_of_parts(samples: np.ndarray, size: int) -> tuple[float, float]:
     correlation = (size / (n - size)) ** 2 if len(parts) > 1 else 0.0
     independent = len(parts) / (1 + (len(parts) - 1) * correlation)  # parts that would give the same error
     error = KOLMOGOROV_DEVIATION * np.sqrt((1 / size - 1 / n) / independent)
-    return np.mean([distance_between(part, samples) for part in parts]), error
+    return np.mean([distance_between(subset, samples) for subset in parts]), error
 
 
 def kernel_distribution(

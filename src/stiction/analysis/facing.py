@@ -70,12 +70,12 @@ def facing_coherence(upper: Scan, lower: Scan) -> FacingCoherence:
     for scan in (upper, lower):
         if not scan.defined.all() or scan.frame != lower.frame:
             raise ScanError(scan.name, "files", f"must have heights at all points, and points and size of {lower.name}")
-    one, other = (level(scan.heights, Levelling()) for scan in (upper, lower))
-    turned, both = [one[turn] for turn in _TURNS], []
+    upper_heights, lower_heights = (level(scan.heights, Levelling()) for scan in (upper, lower))
+    turned, both = [upper_heights[turn] for turn in _TURNS], []
     for half in (0, 1):
-        shifts = [_shift(each, other, lower.frame, half) for each in turned]
+        shifts = [_shift(each, lower_heights, lower.frame, half) for each in turned]
         best = int(np.argmax([mean for mean, _ in shifts]))
-        both.append(_refined(turned[best], other, lower.frame, half, shifts[best][1]))
+        both.append(_refined(turned[best], lower_heights, lower.frame, half, shifts[best][1]))
     sums = np.sum([of_half for _, of_half in both], axis=0)
     seen = np.flatnonzero(sums[-1] > _LEAST)
     crossed, *powers, number = sums[:, seen]
@@ -111,15 +111,15 @@ class _Waves:
         return float(np.average(in_register, weights=self.weight[inside]))
 
 
-def _waves(one, other, frame):
+def _waves(upper, lower, frame):
     """Waves of two maps (n1, n2) with this distance of their points [m]."""
-    spectra = [periodogram([z], tuple(np.multiply(z.shape, frame.pixel))) for z in (one, other)]
-    window = np.outer(*tapers(one.shape))
-    waves = np.array([fft.fft2(z * window) for z in (one, other)])
+    spectra = [periodogram([z], tuple(np.multiply(z.shape, frame.pixel))) for z in (upper, lower)]
+    window = np.outer(*tapers(upper.shape))
+    waves = np.array([fft.fft2(z * window) for z in (upper, lower)])
     first, second = spectra[0].wavenumbers
     number = np.hypot(first, second) * min(spectra[0].size) / (2 * np.pi)
     ring = np.rint(number).astype(int)
-    inside = (number >= _FEWEST) & (number < min(one.shape) / 2) & ~spectra[0].near_slow_axis
+    inside = (number >= _FEWEST) & (number < min(upper.shape) / 2) & ~spectra[0].near_slow_axis
     weight = np.ones(ring.shape)
     for z in waves:
         of_rings = np.bincount(ring.ravel(), np.abs(z.ravel()) ** 2) / np.bincount(ring.ravel())
@@ -142,30 +142,30 @@ def _waves(one, other, frame):
     )
 
 
-def _shift(one, other, frame, half):
+def _shift(upper, lower, frame, half):
     """Largest mean over the waves of a half, and its shift in whole pixels (2,)."""
-    waves = _waves(one, other, frame)
-    of_half = np.zeros(one.shape, complex)
+    waves = _waves(upper, lower, frame)
+    of_half = np.zeros(upper.shape, complex)
     weight = np.where(waves.half == half, waves.weight, 0)
     of_half[waves.places] = weight * waves.crossed / weight.sum()
     means = fft.fft2(of_half).real
-    shifts = [np.rint(fft.fftfreq(n, 1 / n)).astype(int) for n in one.shape]
+    shifts = [np.rint(fft.fftfreq(n, 1 / n)).astype(int) for n in upper.shape]
     near = [np.abs(shift) <= _LARGEST_SHIFT * len(shift) for shift in shifts]
     best = np.unravel_index(np.argmax(np.where(np.outer(*near), means, -np.inf)), means.shape)
     return means[best], np.array([shift[k] for shift, k in zip(shifts, best, strict=True)])
 
 
-def _refined(one, other, frame, half, shift):
+def _refined(upper, lower, frame, half, shift):
     """Shift in pixels (2,), and sums over the waves of the other half in bands (4, bands).
 
     Sums are those of the cross spectrum, of both powers, and the number of independent waves.
     """
-    parts = [np.s_[max(-s, 0) : n - max(s, 0)] for s, n in zip(shift, one.shape, strict=True)]
-    facing = [np.s_[max(s, 0) : n - max(-s, 0)] for s, n in zip(shift, one.shape, strict=True)]
-    waves = _waves(one[tuple(parts)], other[tuple(facing)], frame)
+    parts = [np.s_[max(-s, 0) : n - max(s, 0)] for s, n in zip(shift, upper.shape, strict=True)]
+    facing = [np.s_[max(s, 0) : n - max(-s, 0)] for s, n in zip(shift, upper.shape, strict=True)]
+    waves = _waves(upper[tuple(parts)], lower[tuple(facing)], frame)
     finer = minimize(lambda s: -waves.mean(s, half), np.zeros(2), method="Nelder-Mead", bounds=[(-1, 1)] * 2).x
     in_register, ends = (waves.crossed * np.exp(-1j * (finer @ waves.zeta))).real, _ends(frame)
-    overlap = min(np.multiply([part.stop - part.start for part in parts], frame.pixel))
+    overlap = min(np.multiply([overlap_range.stop - overlap_range.start for overlap_range in parts], frame.pixel))
     band = np.digitize(overlap / waves.number, ends) - 1
     inside = (waves.half != half) & (band >= 0) & (band < len(ends) - 1)
     values = in_register, *waves.powers, np.full(len(band), 2 * waves.independence)

@@ -46,7 +46,7 @@ class GreenwoodWilliamson:
     def energy(self, film: tuple[float, float]) -> float:
         """Adhesion energy: the integral of the attraction beyond its zero crossing [J m⁻²]."""
         distance = np.linspace(-_REACH * self.rms, _REACH * self.rms + film[0], _DISTANCES)
-        force = np.concatenate([self.force(part, film) for part in np.array_split(distance, 10)])
+        force = np.concatenate([self.force(distances, film) for distances in np.array_split(distance, 10)])
         return float(np.trapezoid(np.maximum(-force, 0.0), distance))
 
     def plasticity_index(self, hardness: float) -> float:

@@ -119,7 +119,7 @@ def numbers(chain: Sequence[int], scatters: Sequence[float], target: float) -> d
 
 def cheapest(values: Mapping[int, np.ndarray], target: float) -> tuple[tuple[int, ...], dict[int, int]]:
     """Chain with the least cost of a target, and its numbers of strips."""
-    grids, found = sorted(set(values) - {SUMMITS, FINE}), []
+    grids, chains = sorted(set(values) - {SUMMITS, FINE}), []
     for size in range(len(grids) + 1):
         for between in combinations(grids, size):
             chain = (FINE, *between, SUMMITS)
@@ -127,8 +127,8 @@ def cheapest(values: Mapping[int, np.ndarray], target: float) -> tuple[tuple[int
             widening = half_of_two([each.variance for each in of_chain], [each.freedom for each in of_chain])
             widening /= np.sqrt(sum(each.variance for each in of_chain))
             needed = numbers(chain, np.array([each.scatter for each in of_chain]), target / widening)
-            found.append((sum(COSTS[level] * number for level, number in needed.items()), chain, needed))
-    return min(found)[1:]
+            chains.append((sum(COSTS[level] * number for level, number in needed.items()), chain, needed))
+    return min(chains)[1:]
 
 
 def by_levels(value: Value, grids: Sequence[int], target: float) -> Ratio | None:
@@ -148,10 +148,10 @@ def by_levels(value: Value, grids: Sequence[int], target: float) -> Ratio | None
         if min(link(values[FINE], values[grid], BELIEFS[grid]).scatter for grid in values if grid != FINE) > CONTROL:
             return None
         chain, needed = cheapest(values, target)
-        found = _of_chain(values, chain)
+        ratio = _of_chain(values, chain)
         wanted = {level: min(number, 2 * counts[level], _most(level)) for level, number in needed.items()}
-        if found.error <= target or all(number <= counts[level] for level, number in wanted.items()):
-            return found
+        if ratio.error <= target or all(number <= counts[level] for level, number in wanted.items()):
+            return ratio
         counts |= {level: max(number, counts[level]) for level, number in wanted.items()}
         counts |= {level: max(counts[level], counts[FINE]) for level in counts}
 
@@ -208,9 +208,9 @@ def in_proportion(value: Value, target: float, rng: np.random.Generator) -> Rati
         number *= 2
     power, power_error = scatter_ratio(full, of_drawn, 1 / of_drawn)
     of_strip = np.bincount(drawn[:number], residuals**2)
-    part = float(of_strip.max() / max(of_strip.sum(), np.finfo(float).tiny))
+    largest = float(of_strip.max() / max(of_strip.sum(), np.finfo(float).tiny))
     strips = {FINE: number, SUMMITS: POOL}
-    return Ratio(float(ratios.mean()), error, power, power_error, (FINE, SUMMITS), strips, part)
+    return Ratio(float(ratios.mean()), error, power, power_error, (FINE, SUMMITS), strips, largest)
 
 
 def ratio_of_means(value: Value, grids: Sequence[int], target: float, rng: np.random.Generator) -> Ratio:

@@ -51,22 +51,22 @@ def finer_mesh(beam: Beam, law: np.ndarray, points: int) -> tuple[Beam, int]:
     length = foundation_length(beam, law[None])
     fine = points * max(2, ceil(2 * beam.length / points / (STRIP * length)))
     element = min(beam.element_length, ELEMENT * length) / 2
-    whole = (n for n in range(beam.elements, fine + 1) if fine % n == 0 and beam.length / n <= element)
-    return replace(beam, elements=next(whole)), fine
+    multiples = (n for n in range(beam.elements, fine + 1) if fine % n == 0 and beam.length / n <= element)
+    return replace(beam, elements=next(multiples)), fine
 
 
 @dataclass(frozen=True)
 class Resolution:
     """Arrest on uniform ground on the mesh in use and on a finer one."""
 
-    used: Arrest
+    coarse: Arrest
     fine: Arrest
     law: np.ndarray  #: force law of the ground [SI]
 
     @property
     def error(self) -> float:
         """Relative error of the crack length on the mesh in use [-]."""
-        return self.used.crack_length / self.fine.crack_length - 1
+        return self.coarse.crack_length / self.fine.crack_length - 1
 
     @property
     def excess(self) -> float:
@@ -106,9 +106,9 @@ def whole_meshes(
         If there is no such pair.
     """
     pairs = [(element, point) for point in point_distances for element in element_lengths]
-    whole = [(e, p) for e, p in pairs if is_multiple(length, e) and is_multiple(e, p)]
-    if not whole:
+    divisors = [(e, p) for e, p in pairs if is_multiple(length, e) and is_multiple(e, p)]
+    if not divisors:
         raise ValueError(
             f"no elements of {element_lengths} m with points {point_distances} m apart divide {length} m evenly"
         )
-    return whole
+    return divisors

@@ -112,13 +112,13 @@ def scatter_ratios(
 
     logarithms = (np.log(values / values.mean(axis=0)) for values in (full, summits))
     with np.errstate(divide="ignore", invalid="ignore"):
-        return factors(scatter, *(np.stack([one, one**2], axis=-1) for one in logarithms), humidities, at)
+        return factors(scatter, *(np.stack([values, values**2], axis=-1) for values in logarithms), humidities, at)
 
 
 def error_of_largest(
     full: np.ndarray, summits: np.ndarray, moved: tuple[np.ndarray, np.ndarray] | None = None
 ) -> np.ndarray:
-    r"""Relative standard error, by the strips, of the largest values after `stiction.contact.correction.Change`.
+    r"""Relative standard error, by the strips, of the largest values after `stiction.contact.correction.ElasticChange`.
 
     Values of the same strips by both models, (n, h) each, and ``moved`` by `beside_more` if the ratio of the means is
     that of moved ones; NaN if some are zero. ASSUME: those on summits are log-normal with a known standard deviation s
@@ -141,7 +141,7 @@ def error_of_largest(
         logarithms = [np.log(values / values.mean(axis=0)) for values in (full, summits)]
         scatter = logarithms[1].std(axis=0)
         means = (full, summits) if moved is None else moved
-        columns = [*means, *(power for one in logarithms for power in (one, one**2))]
+        columns = [*means, *(power for values in logarithms for power in (values, values**2))]
         return jackknife(largest, np.stack(columns, axis=1).reshape(len(full), -1))[1]
 
 
@@ -201,7 +201,9 @@ def length_factors(
     return factors(lambda energies: energies**CRACK_LENGTH_POWER, full, summits, humidities, at)
 
 
-def rms_deviation(energies: np.ndarray, others: np.ndarray, relative: float | np.ndarray = 1.0) -> tuple[float, float]:
+def rms_deviation(
+    energies: np.ndarray, reference: np.ndarray, relative: float | np.ndarray = 1.0
+) -> tuple[float, float]:
     """Root mean square deviation of crack lengths from a reference, over humidities, and its jackknife error [-].
 
     Energies e (n, h) are those of the same strips at h humidities by two models of the contact [J m⁻²]. The other model
@@ -212,4 +214,4 @@ def rms_deviation(energies: np.ndarray, others: np.ndarray, relative: float | np
         """Root mean square of the relative deviations of the crack lengths [-]."""
         return np.sqrt(np.mean((relative * np.divide(*np.split(means, 2)) ** CRACK_LENGTH_POWER - 1) ** 2))
 
-    return jackknife(rms, np.hstack([energies, others]))
+    return jackknife(rms, np.hstack([energies, reference]))

@@ -63,37 +63,37 @@ class Discrepancy:
             values @ values / _chi_squared(len(values), axis) - share * rest
             for axis, (values, share) in enumerate(zip((self.factors, self.slopes), self.shares, strict=True), 1)
         )
-        return np.array([*(np.maximum(one, 0.0) for one in between), rest])
+        return np.array([*(np.maximum(variance, 0.0) for variance in between), rest])
 
-    def probability(self, half_widths: np.ndarray, places: np.ndarray, errors: np.ndarray) -> np.ndarray:
+    def probability(self, half_widths: np.ndarray, coordinates: np.ndarray, errors: np.ndarray) -> np.ndarray:
         """Probability of a measured length in the interval of ln l, (r,) [-].
 
         Parameters
         ----------
         half_widths : (r,) array
             Of the interval around the computed ln l [-].
-        places : (r,) array
+        coordinates : (r,) array
             u, ln l less its mean over the lengths of the pair [-].
         errors : (r,) array
             Standard errors of the computed ln l [-].
         """
         factor, slope, rest = self.variances()
-        deviations = np.sqrt(factor + slope * places[:, None] ** 2 + rest + errors[:, None] ** 2)
+        deviations = np.sqrt(factor + slope * coordinates[:, None] ** 2 + rest + errors[:, None] ** 2)
         return 2 * ndtr(half_widths[:, None] / deviations).mean(axis=1) - 1
 
-    def half_widths(self, places: np.ndarray, errors: np.ndarray, coverage: float) -> np.ndarray:
+    def half_widths(self, coordinates: np.ndarray, errors: np.ndarray, coverage: float) -> np.ndarray:
         """Half-widths of the interval of ln l with a probability of a measured length, (r,) [-]."""
-        low, high = np.zeros(len(places)), np.full(len(places), self._widest(places, errors, coverage))
+        low, high = np.zeros(len(coordinates)), np.full(len(coordinates), self._widest(coordinates, errors, coverage))
         for _ in range(_HALVINGS):
             middle = (low + high) / 2
-            is_short = self.probability(middle, places, errors) < coverage
+            is_short = self.probability(middle, coordinates, errors) < coverage
             low, high = np.where(is_short, middle, low), np.where(is_short, high, middle)
         return (low + high) / 2
 
-    def _widest(self, places, errors, coverage):
+    def _widest(self, coordinates, errors, coverage):
         """Half-width that contains the length with more than a probability at all places [-]."""
         widest = 1.0
-        while (self.probability(np.full(len(places), widest), places, errors) <= coverage).any():
+        while (self.probability(np.full(len(coordinates), widest), coordinates, errors) <= coverage).any():
             widest *= 2
         return widest
 

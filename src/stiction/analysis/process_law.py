@@ -125,7 +125,7 @@ class Law:
         basis = self.basis(values)
         return np.einsum("nc,qcrd,nd->nqr", basis, self.covariance, basis)
 
-    def drawn(self, number: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    def draw(self, number: int, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
         """Errors of some laws as likely as this one, and the next run of each beyond it.
 
         Returns the errors of the coefficients (number, q, c), and the deviations of one run (number, q).
@@ -137,19 +137,19 @@ class Law:
         for quantity, likely in enumerate(parts.likely):
             degree, scatter = np.unravel_index(rng.choice(likely.size, number, p=likely.ravel()), likely.shape)
             wide = parts.scatters[scatter]
-            own = errors[:, :, quantity] + wide[:, None] * rng.standard_normal((number, settings))
+            of_settings = errors[:, :, quantity] + wide[:, None] * rng.standard_normal((number, settings))
             away = parts.coefficients[quantity, degree, scatter] - self.coefficients[quantity]
-            drawn.append(away + np.einsum("mcn,mn->mc", parts.weights[quantity, degree, scatter], own))
+            drawn.append(away + np.einsum("mcn,mn->mc", parts.weights[quantity, degree, scatter], of_settings))
             runs.append(wide * rng.standard_normal(number))
         return np.stack(drawn, axis=1), np.stack(runs, axis=1)
 
     def with_setting(self, value: float, errors: np.ndarray) -> np.ndarray:
         """Covariance of the coefficients after one more setting with errors of the covariance (q, q)."""
         (basis,) = self.basis(value)
-        known = self.covariance
-        column = np.einsum("qcrd,d->qcr", known, basis)
+        covariance = self.covariance
+        column = np.einsum("qcrd,d->qcr", covariance, basis)
         expected = np.einsum("c,qcr->qr", basis, column) + errors + np.diag(self.scatter**2)
-        return known - np.einsum("qcr,rs,tds->qctd", column, np.linalg.inv(expected), column)
+        return covariance - np.einsum("qcr,rs,tds->qctd", column, np.linalg.inv(expected), column)
 
 
 def fit(settings: np.ndarray, values: np.ndarray, covariances: np.ndarray) -> Law:
@@ -182,20 +182,20 @@ def fit(settings: np.ndarray, values: np.ndarray, covariances: np.ndarray) -> La
     return Law(np.asarray(settings, float), coefficients, covariance, degrees, scatter, np.transpose(surprise), parts)
 
 
-def _covariance(parts, coefficients):
+def _covariance(fits, coefficients):
     """Covariance of all coefficients (q, c, q, c), within and between the parts."""
-    mean = np.einsum("qdt,qdtcn->qcn", parts.likely, parts.weights)
-    covariance = np.einsum("qcn,nqr,rdn->qcrd", mean, parts.errors, mean)
-    variances = np.einsum("nqq->qn", parts.errors)[:, None, None] + (parts.scatters**2)[:, None]
-    away = parts.coefficients - coefficients[:, None, None]
-    own = np.arange(len(coefficients))
-    covariance[own, :, own] = np.einsum(
+    mean = np.einsum("qdt,qdtcn->qcn", fits.likely, fits.weights)
+    covariance = np.einsum("qcn,nqr,rdn->qcrd", mean, fits.errors, mean)
+    variances = np.einsum("nqq->qn", fits.errors)[:, None, None] + (fits.scatters**2)[:, None]
+    away = fits.coefficients - coefficients[:, None, None]
+    numbers = np.arange(len(coefficients))
+    covariance[numbers, :, numbers] = np.einsum(
         "qdt,qdtan,qdtn,qdtbn->qab",
-        parts.likely,
-        parts.weights,
-        np.broadcast_to(variances, (*parts.likely.shape, variances.shape[-1])),
-        parts.weights,
-    ) + np.einsum("qdt,qdta,qdtb->qab", parts.likely, away, away)
+        fits.likely,
+        fits.weights,
+        np.broadcast_to(variances, (*fits.likely.shape, variances.shape[-1])),
+        fits.weights,
+    ) + np.einsum("qdt,qdta,qdtb->qab", fits.likely, away, away)
     return covariance
 
 
@@ -204,11 +204,11 @@ def contradictions(law: Law) -> list[tuple[int, int]]:
 
     With one setting more than coefficients, all are equally far from the law of the others: then the first is named.
     """
-    found = []
+    worst = []
     for quantity, column in enumerate(np.abs(law.surprise).T):
         if np.isfinite(column).any() and np.nanmax(column) > CONTRADICTS:
-            found.append((int(np.nanargmax(column.round(6))), quantity))
-    return found
+            worst.append((int(np.nanargmax(column.round(6))), quantity))
+    return worst
 
 
 def is_unique(law: Law, quantity: int) -> bool:
@@ -228,12 +228,14 @@ def _parts(position, values, errors):
     """
     size = min(max(len(position) - 2, 1), LARGEST_DEGREE) + 1
     fits = [_fitted(position, values, errors, degree) for degree in range(size)]
-    likely = np.array([one for one, *_ in fits])
+    likely = np.array([probability for probability, *_ in fits])
     scores = np.array([_prediction(position, values, errors, *fit) for fit in enumerate(likely)])
-    shares = softmax(_of_possible(scores, [one @ found for one, found, _ in fits], values))
+    shares = softmax(
+        _of_possible(scores, [probability @ coefficients for probability, coefficients, _ in fits], values)
+    )
     weights, coefficients = np.zeros((size, len(SCATTERS), size, len(position))), np.zeros((size, len(SCATTERS), size))
-    for degree, (_, found, of) in enumerate(fits):
-        coefficients[degree, :, : degree + 1], weights[degree, :, : degree + 1] = found, of
+    for degree, (_, of_degree, weights_of_degree) in enumerate(fits):
+        coefficients[degree, :, : degree + 1], weights[degree, :, : degree + 1] = of_degree, weights_of_degree
     return shares[:, None] * likely, coefficients, weights
 
 
@@ -247,7 +249,7 @@ def _of_possible(scores, coefficients, values):
     if len(values) == 2:
         return np.array([-np.inf, 0.0])
     if (changes > 0).all() or (changes < 0).all():
-        monotone = np.array([_is_monotone(one) for one in coefficients])
+        monotone = np.array([_is_monotone(polynomial) for polynomial in coefficients])
         return np.where(monotone | (scores > scores[monotone].max() + CONTRADICTS**2 / 2), scores, -np.inf)
     return scores
 
@@ -267,8 +269,8 @@ def _fitted(position, values, errors, degree):
     weights = _weights(position, wide, degree)
     coefficients = weights @ values
     squares = np.sum(((values - coefficients @ basis.T) / wide) ** 2, axis=1)
-    known = np.linalg.slogdet(np.einsum("na,tn,nb->tab", basis, wide**-2, basis))[1]
-    restricted = -(squares + 2 * np.log(wide).sum(axis=1) + known) / 2
+    information = np.linalg.slogdet(np.einsum("na,tn,nb->tab", basis, wide**-2, basis))[1]
+    restricted = -(squares + 2 * np.log(wide).sum(axis=1) + information) / 2
     prior = np.log(SCATTERS) - np.log1p((SCATTERS / TYPICAL) ** 2)  # of logarithms, which are evenly spaced
     return np.maximum(softmax(restricted + prior), np.finfo(float).tiny), coefficients, weights
 

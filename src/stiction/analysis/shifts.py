@@ -208,6 +208,6 @@ def _bent(spectrum, corner, steeper):
     if isinstance(spectrum, CutoffSelfAffine):
         floor = spectrum.plateau * (spectrum.cutoff / corner) ** (spectrum.slope + steeper)
         return CutoffSelfAffine(spectrum.plateau, floor, corner, spectrum.cutoff)
-    known = spectrum.wavenumber
-    density = np.interp(known * spectrum.corner / corner, known, spectrum.density)
-    return replace(spectrum, density=density * np.maximum(known / corner, 1.0) ** steeper)
+    wavenumber = spectrum.wavenumber
+    density = np.interp(wavenumber * spectrum.corner / corner, wavenumber, spectrum.density)
+    return replace(spectrum, density=density * np.maximum(wavenumber / corner, 1.0) ** steeper)

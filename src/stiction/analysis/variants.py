@@ -60,17 +60,16 @@ def relative_shift(values: np.ndarray, base: np.ndarray) -> tuple[float, float]:
 
 
 def rms_deviation(
-    values: np.ndarray, own: np.ndarray, common: np.ndarray, references: np.ndarray
+    values: np.ndarray, independent: np.ndarray, common: np.ndarray, references: np.ndarray
 ) -> tuple[float, float]:
     """Root mean square of relative deviations of values from references (n,), with its standard error [-].
 
-    The values have errors of their ``own``, independent between cases, and ``common`` ones from samples that all cases
-    share, (n,) each.
+    The values have ``independent`` errors, and ``common`` ones from samples that all cases share, (n,) each.
     """
     deviations = np.asarray(values) / references - 1
     rms = np.sqrt(np.mean(deviations**2))
     slopes = deviations / (len(deviations) * rms * references)
-    return rms, np.hypot(np.linalg.norm(slopes * own), slopes @ common)
+    return rms, np.hypot(np.linalg.norm(slopes * independent), slopes @ common)
 
 
 def removed_share(
@@ -85,6 +84,6 @@ def removed_share(
     before, after = (np.asarray(x) / references - 1 for x in (base, values))
     total, left = np.sum(before**2), np.sum(after**2)
     by_shift, by_base = 2 * after / references / total, 2 * (left / total * before - after) / references / total
-    shift, own, common = errors
-    parts = np.abs(by_shift) @ shift, np.linalg.norm(by_base * own), by_base @ common
+    shift, independent, common = errors
+    parts = np.abs(by_shift) @ shift, np.linalg.norm(by_base * independent), by_base @ common
     return 1 - left / total, np.linalg.norm(parts)

@@ -62,7 +62,7 @@ class Probability:
     """Expected fraction of stuck devices, and a band of the fraction that contains all that is unknown.
 
     Where no simulated device sticks, the upper end is a bound with 95 % confidence. It is the allowed fraction at the
-    size to build.
+    size to build, and a few draws of which many devices stick can raise the expected fraction above it.
     """
 
     value: float
@@ -72,7 +72,7 @@ class Probability:
 
 
 @dataclass(frozen=True)
-class InAir:
+class AnswerInAir:
     """Answer for one of the stated airs alone."""
 
     humidity: float  #: [-]
@@ -126,7 +126,7 @@ class Answer:
     build: float  #: size to build, NaN if none is known
     exact: float  #: the same if all inputs were exact
     steps: tuple[Step, ...]
-    airs: tuple[InAir, ...]
+    airs: tuple[AnswerInAir, ...]
     size: float = np.nan  #: stated, NaN without one
     stuck: Probability | None = None  #: at the stated size, in the worst stated air
     touchdowns: int = 1
@@ -157,7 +157,7 @@ class Answer:
     @property
     def pull_off(self) -> PullOff:
         """Pull-off forces in the air where places hold most, of a device that is asked for them."""
-        return next(one for one in self.pull_offs if one.humidity == self.stated_steps[-1].humidity)
+        return next(force for force in self.pull_offs if force.humidity == self.stated_steps[-1].humidity)
 
     @property
     def is_enough(self) -> bool:
@@ -200,16 +200,16 @@ class Answer:
         return max(self.stated_steps[1:], key=lambda step: abs(np.log(step.factor)))
 
     @property
-    def together(self) -> InAir:
+    def together(self) -> AnswerInAir:
         """Answer for all stated airs, under the humidity of the one that decides."""
         first = min((air.first for air in self.airs), key=lambda size: self.sought.sign * size, default=np.nan)
-        return InAir(self.stated_steps[-1].humidity, self.build, np.nan, self.stuck, self.curve, first)
+        return AnswerInAir(self.stated_steps[-1].humidity, self.build, np.nan, self.stuck, self.curve, first)
 
     @property
     def is_by_tip(self) -> bool:
         """Whether the tip holds devices in the air that decides: without it, they may be longer by over 1 %."""
-        decides = [one for one in self.airs if one.humidity == self.stated_steps[-1].humidity]
-        return any(one.without_tip > 1.01 * one.build for one in decides)
+        decides = [air for air in self.airs if air.humidity == self.stated_steps[-1].humidity]
+        return any(air.without_tip > 1.01 * air.build for air in decides)
 
     @property
     def included(self) -> tuple[Cause, ...]:

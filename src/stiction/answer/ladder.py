@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from stiction.answer.data import Answer, Cause, InAir, Probability, Stay, Step, band
+from stiction.answer.data import Answer, AnswerInAir, Cause, Probability, Stay, Step, band
 from stiction.answer.sought import SOUGHT
 from stiction.answer.unknowns import Draws, OfBudgets, OfTestBeams, Unknowns
 from stiction.answer.worlds import Condition, World
@@ -17,7 +17,7 @@ _POINTS, _BELOW, _MOST = 41, 0.25, 0.99
 
 
 @dataclass(frozen=True)
-class Question:
+class MainQuestion:
     """Main question about a device."""
 
     device: str
@@ -46,7 +46,7 @@ class Question:
 
 
 def answer(
-    question: Question,
+    question: MainQuestion,
     conditions: Sequence[Condition],
     unknowns: Unknowns,
     draws: Draws,
@@ -56,8 +56,8 @@ def answer(
 
     With test beams, ``before`` are the errors of the inputs without them.
     """
-    stated = question.share, question.touchdowns
-    start = World(tuple(conditions), unknowns, frozenset(), *stated, draws, stays=question.stays)
+    requirement = question.share, question.touchdowns
+    start = World(tuple(conditions), unknowns, frozenset(), *requirement, draws, stays=question.stays)
     steps = _steps(question, start, _present(question, start))
     inside = frozenset(step.cause for step in steps if step.stated) - {Cause.ESTIMATE}
     world = replace(start, causes=inside)
@@ -95,15 +95,15 @@ def _steps(question, start, causes):
 def _step(question, cause, before, after):
     """Step from one world to the next."""
     change = 0.0 if before.size == after.size else question.sign * (after.size - before.size)
-    one, is_stated = after.decides, all(one.stated for one in after.conditions if one.cause is cause)
-    where = one.humidity, one.shape, one.source
+    is_stated = all(condition.is_stated for condition in after.conditions if condition.cause is cause)
+    where = after.decides.humidity, after.decides.shape, after.decides.source
     return Step(cause, question.size_of(after.size), float(np.exp(change)), *where, is_stated)
 
 
 def _present(question, world):
     """Causes that a device has, in their order."""
     unknowns = world.unknowns
-    present = {Cause.SIMULATION, *(one.cause for one in world.conditions)} - {Cause.ESTIMATE}
+    present = {Cause.SIMULATION, *(condition.cause for condition in world.conditions)} - {Cause.ESTIMATE}
     present |= {Cause.TOUCHDOWNS} if question.touchdowns > 1 else set()
     present |= {Cause.INPUTS} if isinstance(unknowns, OfBudgets) and unknowns.budgets else set()
     present |= {Cause.TEST_BEAMS} if isinstance(unknowns, OfTestBeams) else set()
@@ -118,58 +118,66 @@ def _stuck(question, world):
 def probability(world: World, v: float) -> Probability:
     """P(stuck) at v.
 
-    A few draws of which all devices stick can raise the expectation above the band, which then ends there.
+    A few draws of which all devices stick can raise the expectation above the band, which then ends there, or above the
+    bound of a fraction of which no device is seen. The bound is the statement of the size to build and stays.
     """
-    fractions, none_seen = world.stuck(v), v < world.first
-    value, (low, high) = float(fractions.mean()), band(fractions)
-    if none_seen:
-        low, high = 0.0, float(np.quantile(fractions, CONFIDENCE, method="lower"))
-    return Probability(value, min(low, value), max(high, value, world.least_bound(v)), none_seen)
+    fractions, least = world.stuck(v), world.least_bound(v)
+    value = float(fractions.mean())
+    if v < world.first:
+        bound = float(np.quantile(fractions, CONFIDENCE, method="lower"))
+        return Probability(value, 0.0, max(bound, least), none_seen=True)
+    low, high = band(fractions)
+    return Probability(value, min(low, value), max(high, value, least))
 
 
 def _sizes(question, world):
     """Sizes of the curves of P(stuck), from below the size to build to those at which most stick in every air."""
     ends: dict[float, float] = {}
     share = probability_for(_MOST, question.touchdowns)
-    for one in (one for one in world.inside if one.sampled):
-        most = float(one.sampled.values[int(share * (len(one.sampled.values) - 1))])
-        ends[one.humidity] = min(most, one.sampled.reach, ends.get(one.humidity, np.inf))
-    known = [end for end in (*ends.values(), world.size, question.v) if np.isfinite(end)]
-    if not known:
+    for condition in (condition for condition in world.inside if condition.sampled):
+        most = float(condition.sampled.values[int(share * (len(condition.sampled.values) - 1))])
+        ends[condition.humidity] = min(most, condition.sampled.reach, ends.get(condition.humidity, np.inf))
+    finite_ends = [end for end in (*ends.values(), world.size, question.v) if np.isfinite(end)]
+    if not finite_ends:
         return np.empty(0)
-    low, high = min(known) - _BELOW, max(known) + 0.02
+    low, high = min(finite_ends) - _BELOW, max(finite_ends) + 0.02
     return np.exp(question.sign * np.linspace(low, high, _POINTS))
 
 
 def _in_air(question, world, humidity, sizes):
     """Answer for one stated air alone."""
-    own = replace(world, conditions=tuple(one for one in world.conditions if one.humidity == humidity))
-    without_tip, shapes = np.nan, list(dict.fromkeys(one.shape for one in own.inside if one.sampled))
+    alone = replace(
+        world, conditions=tuple(condition for condition in world.conditions if condition.humidity == humidity)
+    )
+    without_tip = np.nan
+    shapes = list(dict.fromkeys(condition.shape for condition in alone.inside if condition.sampled))
     if len(shapes) > 1:
-        along = replace(own, conditions=tuple(one for one in own.conditions if one.shape != shapes[-1]))
+        along = replace(
+            alone, conditions=tuple(condition for condition in alone.conditions if condition.shape != shapes[-1])
+        )
         without_tip = question.size_of(along.size)
-    first, curve = question.size_of(own.first), _curve(question, own, sizes)
-    return InAir(humidity, question.size_of(own.size), without_tip, _stuck(question, own), curve, first)
+    first, curve = question.size_of(alone.first), _curve(question, alone, sizes)
+    return AnswerInAir(humidity, question.size_of(alone.size), without_tip, _stuck(question, alone), curve, first)
 
 
 def _curve(question, world, sizes):
     """Expected fraction stuck at some sizes, and ends of its band (3, n) [-]."""
-    found = [probability(world, v) for v in question.sign * np.log(sizes)]
-    return np.array([[one.value, one.low, one.high] for one in found]).reshape(-1, 3).T
+    probabilities = [probability(world, v) for v in question.sign * np.log(sizes)]
+    return np.array([[p.value, p.low, p.high] for p in probabilities]).reshape(-1, 3).T
 
 
 def _to_measure(question, world):
     """Group of inputs whose exact knowledge changes the size to build most, and the size then."""
     if Cause.INPUTS not in world.causes:
         return "", np.nan
-    left = {group: replace(world, exact=frozenset({group})).size for group in world.unknowns.groups}
-    best = max(left, key=left.get, default="")
-    return best, question.size_of(left[best]) if best else np.nan
+    sizes = {group: replace(world, exact=frozenset({group})).size for group in world.unknowns.groups}
+    best = max(sizes, key=sizes.get, default="")
+    return best, question.size_of(sizes[best]) if best else np.nan
 
 
 def _spread_of_budget(world):
     """Part of the size that the errors of the budget itself take [-]."""
     if Cause.INPUTS not in world.causes or np.isinf(world.size):
         return 0.0
-    known = replace(world, unknowns=replace(world.unknowns, own_errors=False))
-    return abs(known.size - world.size)
+    without_errors = replace(world, unknowns=replace(world.unknowns, own_errors=False))
+    return abs(without_errors.size - world.size)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtri
 
-from stiction.answer.data import Answer, Cause, InAir, Probability, PullOff, Step, band
+from stiction.answer.data import Answer, AnswerInAir, Cause, Probability, PullOff, Step, band
 from stiction.answer.sought import PULL_OFF
 from stiction.answer.unknowns import Draws, Unknowns, normal
 from stiction.devices import probes
@@ -29,7 +29,7 @@ class Places:
 
 
 @dataclass(frozen=True)
-class Asked:
+class ProbeQuestion:
     """Question about a probe."""
 
     device: str
@@ -42,57 +42,65 @@ class Asked:
     forbidden: tuple[str, ...] = ()  #: kinds of the limits that forbid a number
 
 
-def answer(asked: Asked, places: Mapping[float, Places], unknowns: Unknowns, draws: Draws) -> Answer:
+def answer(question: ProbeQuestion, places: Mapping[float, Places], unknowns: Unknowns, draws: Draws) -> Answer:
     """Answer from places by humidity. The air of its steps is the one that holds most."""
-    sizes = _sizes(asked, places)
-    found = [
-        (pull_off(asked, *air, unknowns, draws), _curve(asked, *air, unknowns, draws, sizes)) for air in places.items()
+    sizes = _sizes(question, places)
+    distributions = [
+        (pull_off(question, *air, unknowns, draws), _curve(question, *air, unknowns, draws, sizes))
+        for air in places.items()
     ]
     airs = tuple(
-        InAir(one.humidity, np.nan, np.nan, one.more, curve, float(places[one.humidity].forces.max()))
-        for one, curve in found
+        AnswerInAir(
+            distribution.humidity,
+            np.nan,
+            np.nan,
+            distribution.more,
+            curve,
+            float(places[distribution.humidity].forces.max()),
+        )
+        for distribution, curve in distributions
     )
-    most = max(range(len(airs)), key=lambda k: found[k][0].quantiles[1, 0])
+    most = max(range(len(airs)), key=lambda k: distributions[k][0].quantiles[1, 0])
     causes = [Cause.ESTIMATE, Cause.SIMULATION, *([Cause.INPUTS] if unknowns.groups else [])]
     return Answer(
-        asked.device,
-        asked.kind,
+        question.device,
+        question.kind,
         np.nan,
         PULL_OFF.unit,
         build=np.nan,
         exact=np.nan,
-        steps=tuple(Step(cause, np.nan, 1.0, airs[most].humidity, asked.shape, asked.source) for cause in causes),
+        steps=tuple(Step(cause, np.nan, 1.0, airs[most].humidity, question.shape, question.source) for cause in causes),
         airs=airs,
-        size=asked.measured,
+        size=question.measured,
         stuck=airs[most].stuck,
-        left_out=asked.left_out,
-        forbidden=asked.forbidden,
-        measure=_to_measure(asked, airs[most].humidity, unknowns, draws),
+        left_out=question.left_out,
+        forbidden=question.forbidden,
+        measure=_to_measure(question, airs[most].humidity, unknowns, draws),
         sizes=sizes,
         curve=airs[most].curve,
-        pull_offs=tuple(one for one, _ in found),
+        pull_offs=tuple(distribution for distribution, _ in distributions),
     )
 
 
-def _shifts(asked, humidity, places, unknowns, draws):
+def _shifts(question, humidity, places, unknowns, draws):
     """Errors of ln force by the inputs and by the simulation of all forces, with the opposite sign (draws,)."""
-    of_inputs = unknowns.shift((humidity, asked.shape), draws, frozenset())
+    of_inputs = unknowns.shift((humidity, question.shape), draws, frozenset())
     return of_inputs + places.error * normal(draws, "surfaces")
 
 
-def pull_off(asked: Asked, humidity: float, places: Places, unknowns: Unknowns, draws: Draws) -> PullOff:
+def pull_off(question: ProbeQuestion, humidity: float, places: Places, unknowns: Unknowns, draws: Draws) -> PullOff:
     """Forces of the places in one air, and the measured one among them."""
-    forces, shifts = places.forces, _shifts(asked, humidity, places, unknowns, draws)
+    forces, shifts = places.forces, _shifts(question, humidity, places, unknowns, draws)
     rows = []
     for share in SHARES:
         value = float(np.quantile(forces, share))
         low, high = band(probes.quantile(forces, share, shifts, normal(draws, "counts")))
         rows.append([value, min(low, value), max(high, value)])
-    if np.isnan(asked.measured):
+    if np.isnan(question.measured):
         return PullOff(humidity, np.array(rows))
-    more = _more(forces, shifts, asked.measured, asked.error, draws)
+    more = _more(forces, shifts, question.measured, question.error, draws)
     less = Probability(1 - more.value, 1 - more.high, 1 - more.low)
-    return PullOff(humidity, np.array(rows), asked.error, less, more, _two_sided(less.value, len(forces)))
+    return PullOff(humidity, np.array(rows), question.error, less, more, _two_sided(less.value, len(forces)))
 
 
 def _more(forces, shifts, measured, error, draws):
@@ -103,34 +111,34 @@ def _more(forces, shifts, measured, error, draws):
     return Probability(value, min(low, value), max(high, value))
 
 
-def _two_sided(less, places):
+def _two_sided(less, number):
     """Two-sided probability, with the error of the number of sampled places."""
-    ends = probes.counted(less, places, _ENDS)
+    ends = probes.counted(less, number, _ENDS)
     low, high = np.sort(probes.two_sided(ends))
     high = 1.0 if ends[0] <= 1 / 2 <= ends[1] else high
     return Probability(float(probes.two_sided(less)), float(low), float(high))
 
 
-def _sizes(asked, places):
+def _sizes(question, places):
     """Forces at which curves are known, decreasing from above all forces to below them (n,) [N]."""
-    forces = np.concatenate([one.forces for one in places.values()])
-    known = np.append(forces, asked.measured)
-    known = known[known > 0]
-    if not len(known):
+    forces = np.concatenate([sample.forces for sample in places.values()])
+    positive = np.append(forces, question.measured)
+    positive = positive[positive > 0]
+    if not len(positive):
         return np.empty(0)
-    return np.exp(np.linspace(np.log(known.max()) + _BEYOND, np.log(known.min()) - _BEYOND, _POINTS))
+    return np.exp(np.linspace(np.log(positive.max()) + _BEYOND, np.log(positive.min()) - _BEYOND, _POINTS))
 
 
-def _curve(asked, humidity, places, unknowns, draws, sizes):
+def _curve(question, humidity, places, unknowns, draws, sizes):
     """Probability that a measurement gives more than some forces, and the ends of its band (3, n) [-]."""
     few = draws._replace(number=min(draws.number, _FEWER))
-    shifts, error = _shifts(asked, humidity, places, unknowns, few), np.nan_to_num(asked.error)
-    found = [_more(places.forces, shifts, size, error, few) for size in sizes]
-    return np.array([[one.value, one.low, one.high] for one in found]).reshape(-1, 3).T
+    shifts, error = _shifts(question, humidity, places, unknowns, few), np.nan_to_num(question.error)
+    probabilities = [_more(places.forces, shifts, size, error, few) for size in sizes]
+    return np.array([[p.value, p.low, p.high] for p in probabilities]).reshape(-1, 3).T
 
 
-def _to_measure(asked, humidity, unknowns, draws):
+def _to_measure(question, humidity, unknowns, draws):
     """Group of inputs without whose error the forces are known best, empty without uncertain ones."""
-    at = humidity, asked.shape
-    left = {group: float(np.std(unknowns.shift(at, draws, frozenset({group})))) for group in unknowns.groups}
-    return min(left, key=left.get, default="")
+    at = humidity, question.shape
+    spreads = {group: float(np.std(unknowns.shift(at, draws, frozenset({group})))) for group in unknowns.groups}
+    return min(spreads, key=spreads.get, default="")

@@ -112,7 +112,7 @@ class Slopes:
     @property
     def is_known(self) -> bool:
         """Whether enough devices stick to show what every input changes."""
-        return all(np.isfinite(values).all() for values in (self.slopes, *(one.shifts for one in self.members)))
+        return all(np.isfinite(values).all() for values in (self.slopes, *(member.shifts for member in self.members)))
 
 
 #: Group of the inputs that a scan of a surface determines together.
@@ -132,16 +132,16 @@ class OfBudgets:
     def groups(self) -> tuple[str, ...]:
         """Groups of inputs, in the order of the budgets."""
         of_slopes = [group for budget in self.budgets.values() for group in budget.groups]
-        surfaces = [_OF_SURFACE.format(one.surface) for budget in self.budgets.values() for one in budget.members]
+        surfaces = [_OF_SURFACE.format(member.surface) for budget in self.budgets.values() for member in budget.members]
         return tuple(dict.fromkeys([*surfaces, *of_slopes]))
 
     def of(self, at: At) -> Slopes | None:
         """Budget of an air and end state, or the most uncertain one of this end state where too few devices stick."""
-        own = self.budgets.get(at)
-        if own is None or own.is_known:
-            return own
-        known = [one for (_, shape), one in self.budgets.items() if shape == at[1] and one.is_known]
-        return max(known, key=lambda one: one.total, default=None)
+        slopes = self.budgets.get(at)
+        if slopes is None or slopes.is_known:
+            return slopes
+        others = [slopes for (_, shape), slopes in self.budgets.items() if shape == at[1] and slopes.is_known]
+        return max(others, key=lambda slopes: slopes.total, default=None)
 
     def shift(self, at: At, draws: Draws, exact: frozenset[str]) -> np.ndarray:
         """Shift as of `Unknowns`."""
@@ -180,8 +180,8 @@ def joint(budgets: Sequence[Slopes]) -> tuple[list[str], np.ndarray]:
     names = list(dict.fromkeys(name for budget in budgets for name in budget.names))
     covariance = np.zeros((len(names), len(names)))
     for budget in reversed(budgets):
-        places = [names.index(name) for name in budget.names]
-        covariance[np.ix_(places, places)] = budget.covariance
+        positions = [names.index(name) for name in budget.names]
+        covariance[np.ix_(positions, positions)] = budget.covariance
     return names, covariance
 
 

@@ -40,7 +40,7 @@ _SCORES = np.linspace(-4.0, 4.0, 33)
 
 
 @dataclass(frozen=True)
-class Stated:
+class StatedSize:
     """Size for a fraction as a dataset states it, as v."""
 
     share: float  #: p [-]
@@ -53,7 +53,7 @@ class Sampled:
     """Thresholds of simulated devices."""
 
     values: np.ndarray  #: increasing, infinite where a device does not stick (n,)
-    stated: tuple[Stated, ...]  #: for the fraction after one touchdown, and after all of them
+    stated_sizes: tuple[StatedSize, ...]  #: for the fraction after one touchdown, and after all of them
     reach: float = np.inf  #: end of the simulation
     floor: float = -np.inf  #: below which no surfaces hold a device
     flat: float = -np.inf  #: threshold on flat surfaces, the bound without a line and a statement
@@ -72,14 +72,14 @@ class Sampled:
         """Largest threshold that is known."""
         return float(min(self.reach, np.max(self.values, where=np.isfinite(self.values), initial=-np.inf)))
 
-    def stated_for(self, share: float) -> Stated | None:
+    def stated_for(self, share: float) -> StatedSize | None:
         """Statement for a fraction, none if there is none."""
-        return next((one for one in self.stated if np.isclose(one.share, share, rtol=1e-9, atol=0)), None)
+        return next((size for size in self.stated_sizes if np.isclose(size.share, share, rtol=1e-9, atol=0)), None)
 
     def bound_for(self, share: float) -> float:
         """Bound for a fraction without a line."""
-        stated = self.stated_for(share)
-        return self.flat if stated is None else stated.bound
+        size = self.stated_for(share)
+        return self.flat if size is None else size.bound
 
     def moved(self, move: Callable[[np.ndarray], np.ndarray]) -> "Sampled":
         """Thresholds after a change that increases with them."""
@@ -88,9 +88,9 @@ class Sampled:
             """Finite end after the change."""
             return float(move(np.array(v))) if np.isfinite(v) else v
 
-        stated = tuple(Stated(one.share, end(one.estimate), end(one.bound)) for one in self.stated)
+        sizes = tuple(StatedSize(size.share, end(size.estimate), end(size.bound)) for size in self.stated_sizes)
         ends = {name: end(getattr(self, name)) for name in ("reach", "floor", "flat")}
-        return replace(self, values=move(self.values), stated=stated, **ends)
+        return replace(self, values=move(self.values), stated_sizes=sizes, **ends)
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,7 @@ class Condition:
     bound: float = np.nan  #: threshold of all devices, where none is sampled
     shift: float = 0.0  #: of all thresholds
     error: float = 0.0  #: standard error of ``shift`` by the simulation, or of ``bound`` by its inputs
-    stated: bool = True  #: whether the user stated its cause
+    is_stated: bool = True  #: whether the user stated its cause
 
 
 @dataclass(frozen=True)
@@ -127,7 +127,11 @@ class World:
     @cached_property
     def inside(self) -> tuple[Condition, ...]:
         """Conditions of the causes inside."""
-        return tuple(one for one in self.conditions if one.cause is Cause.ESTIMATE or one.cause in self.causes)
+        return tuple(
+            condition
+            for condition in self.conditions
+            if condition.cause is Cause.ESTIMATE or condition.cause in self.causes
+        )
 
     @property
     def _is_simulated(self):
@@ -148,67 +152,74 @@ class World:
     def _shifts(self):
         """Shift of every condition by the errors of the inputs, and by its own (conditions, draws)."""
         of_inputs = self.causes & {Cause.INPUTS, Cause.TEST_BEAMS}
-        shifts = np.array([np.full(self.draws.number, one.shift) for one in self.inside])
-        for row, one in zip(shifts, self.inside, strict=True):
-            if one.error and (self._is_simulated if one.sampled else of_inputs):
-                row += one.error * normal(self.draws, "shift", one.source)
+        shifts = np.array([np.full(self.draws.number, condition.shift) for condition in self.inside])
+        for row, condition in zip(shifts, self.inside, strict=True):
+            if condition.error and (self._is_simulated if condition.sampled else of_inputs):
+                row += condition.error * normal(self.draws, "shift", condition.source)
             if of_inputs:
-                row += self.unknowns.shift((one.humidity, one.shape), self.draws, self.exact)
+                row += self.unknowns.shift((condition.humidity, condition.shape), self.draws, self.exact)
         return shifts
 
     @cached_property
     def _lines(self):
         """Intercepts and slopes of the tails of all sampled conditions, with the errors of the simulation."""
-        return {k: self._line(one.sampled) for k, one in enumerate(self.inside) if one.sampled and one.sampled.tail}
+        return {
+            k: self._line(condition.sampled)
+            for k, condition in enumerate(self.inside)
+            if condition.sampled and condition.sampled.tail
+        }
 
-    def _line(self, of):
+    def _line(self, sampled):
         """Intercepts and slopes of one tail (draws,) each.
 
         The same draw is the same rank in all conditions. The least of their bounds then is one of all of them, whatever
         their errors have in common.
         """
-        tail, slope = of.tail, max(of.tail.slope, _ALIKE)
+        tail, slope = sampled.tail, max(sampled.tail.slope, _ALIKE)
         if not self._is_simulated:
             exact = np.full(self.draws.number, tail.intercept), np.full(self.draws.number, slope)
-            return _to_stated(of, self._once, *exact)
+            return _to_stated(sampled, self._once, *exact)
         at, along = _pivots(tail.samples, tail.fitted, self.draws)
         slopes = slope / along
-        intercepts = tail.intercept - at * slopes + of.surfaces_error * normal(self.draws, "surfaces")
+        intercepts = tail.intercept - at * slopes + sampled.surfaces_error * normal(self.draws, "surfaces")
         order = np.argsort(intercepts + slopes * ndtri(self._once))
-        intercepts, slopes = _to_stated(of, self._once, intercepts, slopes)
+        intercepts, slopes = _to_stated(sampled, self._once, intercepts, slopes)
         return intercepts[order], slopes[order]
 
     @cached_property
     def thresholds(self) -> np.ndarray:
         """Thresholds of the allowed fraction in every condition and draw (conditions, draws)."""
         score, rows = ndtri(self._once), []
-        for k, one in enumerate(self.inside):
+        for k, condition in enumerate(self.inside):
             if k in self._by_line:
                 intercepts, slopes = self._lines[k]
-                rows.append(np.maximum(intercepts + slopes * score, one.sampled.floor))
+                rows.append(np.maximum(intercepts + slopes * score, condition.sampled.floor))
             else:
-                rows.append(np.full(self.draws.number, self._bound(one)))
+                rows.append(np.full(self.draws.number, self._bound(condition)))
         return np.array(rows) + self._shifts
 
     @cached_property
     def _by_line(self):
         """Conditions of which a line gives the threshold of the allowed fraction."""
-        stated = {k: self.inside[k].sampled.stated_for(self._once) for k in self._lines}
-        return frozenset(k for k, one in stated.items() if one is None or np.isfinite(one.estimate))
+        sizes = {k: self.inside[k].sampled.stated_for(self._once) for k in self._lines}
+        return frozenset(k for k, size in sizes.items() if size is None or np.isfinite(size.estimate))
 
     @cached_property
     def _spread(self):
         """Parts of the mission if they count, each with the places of its conditions."""
         stays = self.stays if Cause.TOUCHDOWNS in self.causes else ()
-        found = [([k for k, one in enumerate(self.inside) if one.humidity in stay.humidities], stay) for stay in stays]
-        return [(places, stay.touchdowns) for places, stay in found if places]
+        conditions_of_stays = [
+            ([k for k, condition in enumerate(self.inside) if condition.humidity in stay.humidities], stay)
+            for stay in stays
+        ]
+        return [(positions, stay.touchdowns) for positions, stay in conditions_of_stays if positions]
 
     def _after_all(self, once):
         """Fraction stuck after all touchdowns (draws,), from that of one in each condition (conditions, draws)."""
         if not self._spread:
             return stuck_after(once.max(axis=0), self._repeats)
         with np.errstate(divide="ignore"):  # all stick
-            free = [number * np.log1p(-once[places].max(axis=0)) for places, number in self._spread]
+            free = [number * np.log1p(-once[positions].max(axis=0)) for positions, number in self._spread]
         return -np.expm1(np.sum(free, axis=0))
 
     @cached_property
@@ -220,23 +231,26 @@ class World:
         low = self.thresholds.min(axis=0)
         if not self._spread:
             return low
-        known = np.isfinite(low)
-        low, high = np.where(known, low, 0.0), np.maximum(low, self._ends)
+        finite = np.isfinite(low)
+        low, high = np.where(finite, low, 0.0), np.maximum(low, self._ends)
         for _ in range(_HALVES):
-            middle = np.where(known, (low + high) / 2, 0.0)
+            middle = np.where(finite, (low + high) / 2, 0.0)
             is_safe = self._after_all(self._at_most(middle)) <= self.share
             low, high = np.where(is_safe, middle, low), np.where(is_safe, high, middle)
-        return np.where(known, low, -np.inf)
+        return np.where(finite, low, -np.inf)
 
     @cached_property
     def _ends(self):
         """Least value beyond which a condition says nothing (draws,)."""
-        ends = [one.sampled.last if k in self._by_line else self._bound(one) for k, one in enumerate(self.inside)]
+        ends = [
+            condition.sampled.last if k in self._by_line else self._bound(condition)
+            for k, condition in enumerate(self.inside)
+        ]
         return (np.array(ends)[:, None] + self._shifts).min(axis=0)
 
-    def _bound(self, one):
+    def _bound(self, condition):
         """Threshold of the allowed fraction without a line."""
-        return one.sampled.bound_for(self._once) if one.sampled else one.bound
+        return condition.sampled.bound_for(self._once) if condition.sampled else condition.bound
 
     def _at_most(self, v):
         """Fraction stuck at one touchdown in every condition that is safe to state at v (draws,): (conditions, draws).
@@ -244,13 +258,13 @@ class World:
         That is the allowed one up to a bound, none on what holds no device, and all beyond what is known.
         """
         rows = []
-        for k, one in enumerate(self.inside):
+        for k, condition in enumerate(self.inside):
             at = v - self._shifts[k]
             if k in self._by_line:
-                rows.append(np.where(at <= one.sampled.last, self._stuck(k, at), 1.0))
+                rows.append(np.where(at <= condition.sampled.last, self._stuck(k, at), 1.0))
             else:
-                free = max(one.sampled.flat, one.sampled.floor) if one.sampled else one.bound
-                rows.append(np.where(at <= free, 0.0, np.where(at <= self._bound(one), self._once, 1.0)))
+                free = max(condition.sampled.flat, condition.sampled.floor) if condition.sampled else condition.bound
+                rows.append(np.where(at <= free, 0.0, np.where(at <= self._bound(condition), self._once, 1.0)))
         return np.array(rows)
 
     @cached_property
@@ -266,8 +280,8 @@ class World:
     def _most_stuck(self, near):
         """Places of the conditions with most stuck devices over the life, in some draws at their sizes."""
         once, counts = self._at_most(self._together)[:, near], np.zeros(len(self.inside))
-        for places, number in self._spread:
-            counts[places] += number
+        for positions, number in self._spread:
+            counts[positions] += number
         return (counts[:, None] * once).argmax(axis=0)
 
     @property
@@ -290,7 +304,10 @@ class World:
     def stuck(self, v: float) -> np.ndarray:
         """Fraction stuck at v in the worst sampled condition, or over a mission, in every draw (draws,)."""
         none = np.zeros(self.draws.number)
-        rows = [self._stuck(k, v - self._shifts[k]) if one.sampled else none for k, one in enumerate(self.inside)]
+        rows = [
+            self._stuck(k, v - self._shifts[k]) if condition.sampled else none
+            for k, condition in enumerate(self.inside)
+        ]
         return self._after_all(np.array(rows))
 
     def _stuck(self, k, at):
@@ -298,19 +315,19 @@ class World:
 
         ASSUME: beyond the reach, devices that did not stick there do so in every second draw.
         """
-        of = self.inside[k].sampled
-        n, number = len(of.values), normal(self.draws, "counts")
-        moved = at - of.surfaces_error * normal(self.draws, "surfaces")
-        share = _counted(n, np.searchsorted(of.values, moved), number)
+        sampled = self.inside[k].sampled
+        n, number = len(sampled.values), normal(self.draws, "counts")
+        moved = at - sampled.surfaces_error * normal(self.draws, "surfaces")
+        share = _counted(n, np.searchsorted(sampled.values, moved), number)
         if k in self._lines:
             intercepts, slopes = self._lines[k]
-            end = of.values[of.tail.fitted - 1]
+            end = sampled.values[sampled.tail.fitted - 1]
             line = ndtr((np.minimum(at, end) - intercepts) / slopes)
             share = np.where(at > end, np.maximum(share, line), line)
         if k not in self._by_line:
-            share = np.where(at <= of.bound_for(self._once), np.minimum(share, self._once), share)
-        share = np.where(at < of.floor, 0.0, share)
-        return np.where((at > of.reach) & (normal(self.draws, "beyond") > 0), 1.0, share)
+            share = np.where(at <= sampled.bound_for(self._once), np.minimum(share, self._once), share)
+        share = np.where(at < sampled.floor, 0.0, share)
+        return np.where((at > sampled.reach) & (normal(self.draws, "beyond") > 0), 1.0, share)
 
     @cached_property
     def first(self) -> float:
@@ -319,14 +336,18 @@ class World:
         Below it no simulated device sticks, all inputs as stated, and the band ends before that of one that does.
         """
         two_sided = (1 + CONFIDENCE) / 2
-        fewest = min(len(one.sampled.values) for one in self.inside if one.sampled)
+        fewest = min(len(condition.sampled.values) for condition in self.inside if condition.sampled)
         of_one = stuck_after(upper_bound(1, fewest, two_sided), self._repeats)
 
         def excess(v):
             """Upper end of the band at v above that of one device of all."""
             return np.quantile(self.stuck(v), two_sided) - of_one
 
-        ends = [min(one.sampled.values[0], one.sampled.reach) + one.shift for one in self.inside if one.sampled]
+        ends = [
+            min(condition.sampled.values[0], condition.sampled.reach) + condition.shift
+            for condition in self.inside
+            if condition.sampled
+        ]
         last = float(min(ends))
         if not np.isfinite(last) or excess(last) <= 0:
             return last
@@ -342,9 +363,9 @@ class World:
         allowed one. Elsewhere none of n devices leave 3 / n (95 % confidence).
         """
         least = 0.0
-        for k, one in enumerate(self.inside):
-            if one.sampled:
-                count = upper_bound(0, len(one.sampled.values))
+        for k, condition in enumerate(self.inside):
+            if condition.sampled:
+                count = upper_bound(0, len(condition.sampled.values))
                 is_stated = k in self._by_line or v <= _least(self.thresholds[k])
                 least = max(least, min(VERIFIED, self._once, count) if is_stated else count)
         return float(stuck_after(least, self._repeats))
@@ -368,33 +389,33 @@ def _counted(n, stuck, scores):
 
     They increase with the counts in every draw, to one where all devices stick.
     """
-    place = np.clip((scores - _SCORES[0]) / (_SCORES[1] - _SCORES[0]), 0, len(_SCORES) - 1.001)
-    left = place.astype(int)
-    low, high = _table(n)[stuck, left], _table(n)[stuck, left + 1]
-    return np.where(stuck < n, expit(low + (place - left) * (high - low)), 1.0)
+    position = np.clip((scores - _SCORES[0]) / (_SCORES[1] - _SCORES[0]), 0, len(_SCORES) - 1.001)
+    lower = position.astype(int)
+    low, high = _table(n)[stuck, lower], _table(n)[stuck, lower + 1]
+    return np.where(stuck < n, expit(low + (position - lower) * (high - low)), 1.0)
 
 
-def _to_stated(of, share, intercepts, slopes):
+def _to_stated(sampled, share, intercepts, slopes):
     """Lines (draws,) with the median and the 5 % quantile of a stated bound. They turn about the end of the fit.
 
     A bound of order statistics, or one that is no larger than that in drier air, is not that of a line. Where nothing
     is stated for a fraction, no line passes what is stated for another one.
     """
-    stated = of.stated_for(share) or next(iter(of.stated), None)
-    if stated is None or not np.isfinite([stated.estimate, stated.bound]).all():
+    size = sampled.stated_for(share) or next(iter(sampled.stated_sizes), None)
+    if size is None or not np.isfinite([size.estimate, size.bound]).all():
         return intercepts, slopes
-    score, end = ndtri(stated.share), ndtri(of.tail.fitted / of.tail.samples)
-    drawn = intercepts + slopes * score
-    middle, least = np.median(drawn), _least(drawn)
-    if of.stated_for(share) is None:
-        return intercepts + min(0.0, (stated.bound if middle > least else stated.estimate) - least), slopes
-    wider = (stated.estimate - stated.bound) / (middle - least) if middle > least else 0.0
-    moved = stated.estimate + (drawn - middle) * wider
+    score, end = ndtri(size.share), ndtri(sampled.tail.fitted / sampled.tail.samples)
+    draws = intercepts + slopes * score
+    middle, least = np.median(draws), _least(draws)
+    if sampled.stated_for(share) is None:
+        return intercepts + min(0.0, (size.bound if middle > least else size.estimate) - least), slopes
+    wider = (size.estimate - size.bound) / (middle - least) if middle > least else 0.0
+    moved = size.estimate + (draws - middle) * wider
     if score < end - _APART:
         slopes = np.maximum((intercepts + slopes * end - moved) / (end - score), _ALIKE)
     return moved - slopes * score, slopes
 
 
-def _least(drawn):
+def _least(draws):
     """5 % quantile of draws (draws,), one of them."""
-    return np.sort(drawn)[int((1 - CONFIDENCE) * len(drawn))]
+    return np.sort(draws)[int((1 - CONFIDENCE) * len(draws))]

@@ -328,11 +328,11 @@ def _relax(u, laws, mesh, ahead, tolerance, max_iterations):
         first = _open(u, laws, mesh, first)
         reached, front = front, _front(system.stretch, points, max(first, front), elements)
         arrested = arrested and front == reached
-        whole = arrested or iteration % WHOLE == 0
-        window = (first, elements if whole else min(front + ahead, elements))
+        all_elements = arrested or iteration % WHOLE == 0
+        window = (first, elements if all_elements else min(front + ahead, elements))
         residual = _assemble(u, laws, system, mesh, 0, window, viscosity)
         settled = residual <= tolerance
-        if settled and whole:
+        if settled and all_elements:
             _fill_open_part(u, mesh, first)
             if _open(u, laws, mesh, 0) >= first:
                 return residual, iteration

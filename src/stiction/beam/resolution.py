@@ -44,5 +44,7 @@ def resolved(beam: Beam, points: int, laws: np.ndarray, coarser: float = 1.0) ->
         )
     if strip > coarser * allowed:
         return replace(beam, elements=points)
-    whole = (n for n in range(beam.elements, points + 1) if points % n == 0 and beam.length / n <= coarser * element)
-    return replace(beam, elements=next(whole))
+    multiples = (
+        n for n in range(beam.elements, points + 1) if points % n == 0 and beam.length / n <= coarser * element
+    )
+    return replace(beam, elements=next(multiples))

@@ -60,20 +60,20 @@ def _kernel_weights(squares, weights):
 
 
 @kernel
-def _locate(points, start, step, cells, parts):
+def _locate(points, start, step, cells, fractions):
     """Cells of points (m,) on a grid, and their positions within the cells."""
     for i in range(points.size):
         position = (points[i] - start) / step
         cells[i] = int(position)
-        parts[i] = position - cells[i]
+        fractions[i] = position - cells[i]
 
 
 @kernel
-def _bin_linearly(cells, parts, weights, bins):
+def _bin_linearly(cells, fractions, weights, bins):
     """Split each weight between the two nearest nodes of a grid."""
     bins.fill(0.0)
     for i in range(cells.size):
-        upper = parts[i] * weights[i]
+        upper = fractions[i] * weights[i]
         bins[cells[i]] += weights[i] - upper
         bins[cells[i] + 1] += upper
 
@@ -98,33 +98,33 @@ def _invert(masses, start, step, probabilities, quantiles):
         while below + masses[cell] < probabilities[i] and cell < masses.size - 2:
             below += masses[cell]
             cell += 1
-        rest = max(probabilities[i] - below, 0.0)
+        remainder = max(probabilities[i] - below, 0.0)
         mass = masses[cell]
         tilt = 0.5 * (masses[cell + 1] - masses[cell - 1])
         tilt = min(max(tilt, -mass), mass)  # the density must not become negative
-        left = mass - 0.5 * tilt  # rest = left t + tilt t² / 2, solved in the form without cancellation
-        part = 2 * rest / (left + np.sqrt(left * left + 2 * tilt * rest)) if rest > 0 else 0.0
-        quantiles[i] = start + (cell + part) * step
+        linear = mass - 0.5 * tilt  # remainder = linear t + tilt t² / 2, solved in the form without cancellation
+        fraction = 2 * remainder / (linear + np.sqrt(linear * linear + 2 * tilt * remainder)) if remainder > 0 else 0.0
+        quantiles[i] = start + (cell + fraction) * step
 
 
 @kernel
-def _quantile_rows(given, centres, bandwidth, grid, taps, probabilities, rows):
+def _quantile_rows(leading, centres, bandwidth, grid, taps, probabilities, rows):
     """Fill ``rows`` (r, n) of `conditional_quantiles` on a ``grid`` of (first node, step, number of nodes)."""
     start, step, count = grid
-    coordinate, m = given.shape[1], centres.shape[1]
+    coordinate, m = leading.shape[1], centres.shape[1]
     squares, weights = np.zeros((coordinate + 1, m)), np.empty(m)
-    cells, parts = np.empty(m, np.int64), np.empty(m)
-    _locate(centres[coordinate], start, step, cells, parts)
+    cells, fractions = np.empty(m, np.int64), np.empty(m)
+    _locate(centres[coordinate], start, step, cells, fractions)
     bins, masses = np.empty(count), np.empty(count + taps.size - 1)
     edge = start - 0.5 * taps.size * step
-    for r in range(given.shape[0]):
+    for r in range(leading.shape[0]):
         first = 0
-        while r > 0 and first < coordinate and given[r, first] == given[r - 1, first]:
+        while r > 0 and first < coordinate and leading[r, first] == leading[r - 1, first]:
             first += 1  # the distances in the leading coordinates are unchanged from the previous row
         for j in range(first, coordinate):
-            _add_squares(given[r, j], centres[j], bandwidth, squares[j], squares[j + 1])
+            _add_squares(leading[r, j], centres[j], bandwidth, squares[j], squares[j + 1])
         _kernel_weights(squares[coordinate], weights)
-        _bin_linearly(cells, parts, weights, bins)
+        _bin_linearly(cells, fractions, weights, bins)
         _smooth(bins, taps, masses)
         _invert(masses, edge, step, probabilities, rows[r])
 
@@ -136,7 +136,7 @@ def _taps(deviation, step):
     return np.diff(ndtr(edges / deviation))
 
 
-def conditional_quantiles(density: KernelDensity, given: np.ndarray, probabilities: np.ndarray) -> np.ndarray:
+def conditional_quantiles(density: KernelDensity, leading: np.ndarray, probabilities: np.ndarray) -> np.ndarray:
     """Quantiles of coordinate k + 1 of a density, conditional on the first k coordinates.
 
     The weighted kernels are binned on a grid of an eighth of the bandwidth and smoothed there: the probabilities of the
@@ -146,7 +146,7 @@ def conditional_quantiles(density: KernelDensity, given: np.ndarray, probabiliti
     ----------
     density : KernelDensity
         Density of N_g > k coordinates.
-    given : (r, k) float64
+    leading : (r, k) float64
         Values of the first k coordinates; k = 0 for the first coordinate.
     probabilities : (n,) float64
         Increasing, at least 1e-7 away from 0 and 1.
@@ -155,13 +155,13 @@ def conditional_quantiles(density: KernelDensity, given: np.ndarray, probabiliti
     -------
     (r, n) float64
     """
-    points = density.centres[given.shape[1]]
+    points = density.centres[leading.shape[1]]
     step = density.bandwidth / 8
     # Linear binning adds a variance of step² / 6 on average; it is subtracted from that of the kernel.
     taps = _taps(np.sqrt(density.bandwidth**2 - step**2 / 6), step)
     grid = (float(points.min()), float(step), int(np.ptp(points) / step) + 2)
-    rows = np.empty((len(given), len(probabilities)))
-    _quantile_rows(np.ascontiguousarray(given), density.centres, density.bandwidth, grid, taps, probabilities, rows)
+    rows = np.empty((len(leading), len(probabilities)))
+    _quantile_rows(np.ascontiguousarray(leading), density.centres, density.bandwidth, grid, taps, probabilities, rows)
     return rows
 
 
@@ -171,9 +171,9 @@ def quantile_tables(density: KernelDensity, probabilities: np.ndarray) -> list[n
     Table k, of shape (n,) * k, holds η_k at the probabilities ξ_1, ..., ξ_k.
     """
     n = len(probabilities)
-    given, tables = np.empty((1, 0)), []
+    leading, tables = np.empty((1, 0)), []
     for k in range(1, len(density.centres) + 1):
-        rows = conditional_quantiles(density, given, probabilities)
+        rows = conditional_quantiles(density, leading, probabilities)
         tables.append(rows.reshape((n,) * k))
-        given = np.column_stack([np.repeat(given, n, axis=0), rows.ravel()])
+        leading = np.column_stack([np.repeat(leading, n, axis=0), rows.ravel()])
     return tables

@@ -90,9 +90,9 @@ def fit(vectors: np.ndarray, f_limit: float, order: int, tolerance: float) -> Ch
 
 def truncated(model: ChaosModel, order: int) -> ChaosModel:
     """Model of lower total order. It equals a new fit of lower order, because the projection is orthogonal."""
-    kept = model.indices.sum(axis=1) <= order
-    coefficients = np.ascontiguousarray(model.coefficients[:, kept])
-    return ChaosModel(model.coordinates, coefficients, model.indices[kept], model.f_limit)
+    lower = model.indices.sum(axis=1) <= order
+    coefficients = np.ascontiguousarray(model.coefficients[:, lower])
+    return ChaosModel(model.coordinates, coefficients, model.indices[lower], model.f_limit)
 
 
 # Draws
@@ -106,10 +106,10 @@ def _accept(candidates: Callable[[int], tuple[np.ndarray, np.ndarray]], n: int) 
     ``candidates(k)`` draws k rows and states which are admissible. Only the missing number is drawn, so that the result
     does not depend on how the draws are batched.
     """
-    kept, missing, rejected = [], n, 0
+    accepted, missing, rejected = [], n, 0
     while missing > 0:
         rows, good = candidates(missing)
-        kept.append(rows if good.all() else rows[good])
+        accepted.append(rows if good.all() else rows[good])
         missing -= int(good.sum())
         rejected += int((~good).sum())
         if rejected > 10 * n + 1000:
@@ -117,7 +117,7 @@ def _accept(candidates: Callable[[int], tuple[np.ndarray, np.ndarray]], n: int) 
                 f"{rejected} of {n - missing + rejected} vectors drawn from the model have no force law, a_right <= 0: "
                 "most samples have none either, or they are too few for chaos.order"
             )
-    return kept[0] if len(kept) == 1 else np.concatenate([np.empty((0, 4)), *kept]), rejected
+    return accepted[0] if len(accepted) == 1 else np.concatenate([np.empty((0, 4)), *accepted]), rejected
 
 
 def _judged(vectors, f_limit):

@@ -158,14 +158,14 @@ def _expand_block(xi, indices, coefficients, values, partial, eta):
 def _expand(xi, indices, coefficients, order, eta):
     """Sum Eq. (19) at points (N_g, n), block by block. Unused points fill up the last block."""
     dimension, n = xi.shape
-    points, part = np.zeros((dimension, _BLOCK)), np.empty((dimension, _BLOCK))
+    points, block = np.zeros((dimension, _BLOCK)), np.empty((dimension, _BLOCK))
     values, partial = np.empty((dimension, order + 1, _BLOCK)), np.empty((dimension, _BLOCK))
     for start in range(0, n, _BLOCK):
         size = min(_BLOCK, n - start)
         for j in range(dimension):
             for i in range(size):
                 points[j, i] = xi[j, start + i]
-        _expand_block(points, indices, coefficients, values, partial, part)
+        _expand_block(points, indices, coefficients, values, partial, block)
         for k in range(dimension):
             for i in range(size):
-                eta[k, start + i] = part[k, i]
+                eta[k, start + i] = block[k, i]

@@ -87,8 +87,8 @@ def _answer(address, largest, headers):
     with requests.get(address, headers=headers, stream=True, timeout=_SILENCE) as response:
         response.raise_for_status()
         received = bytearray()
-        for part in response.iter_content(_PART):
-            received += part
+        for block in response.iter_content(_PART):
+            received += block
             if len(received) > largest * _MIB:
                 raise RefusedError(f"{address} sends more than {largest:g} MiB: give a smaller container")
     return bytes(received)

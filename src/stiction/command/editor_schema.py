@@ -23,16 +23,19 @@ def _reduced(entry):
     """Part of the schema without demands on a complete configuration only."""
     if not isinstance(entry, dict):
         return entry
-    kept = {name: value for name, value in entry.items() if name not in _OF_COMPLETE}
-    if "word" in kept:
+    fragment = {name: value for name, value in entry.items() if name not in _OF_COMPLETE}
+    if "word" in fragment:
         dew_point = {"type": "object", "properties": {"dew_point_C": {"type": "number"}}, "additionalProperties": False}
-        return {"description": kept.pop("description"), "anyOf": [{"const": kept.pop("word")}, kept, dew_point]}
+        return {
+            "description": fragment.pop("description"),
+            "anyOf": [{"const": fragment.pop("word")}, fragment, dew_point],
+        }
     for name in ("additionalProperties", "items"):
-        if name in kept:
-            kept[name] = _reduced(kept[name])
-    if "properties" in kept:
-        kept["properties"] = {name: _reduced(value) for name, value in kept["properties"].items()}
-    return kept
+        if name in fragment:
+            fragment[name] = _reduced(fragment[name])
+    if "properties" in fragment:
+        fragment["properties"] = {name: _reduced(value) for name, value in fragment["properties"].items()}
+    return fragment
 
 
 if __name__ == "__main__":

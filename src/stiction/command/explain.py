@@ -5,7 +5,7 @@ import re
 from collections import Counter
 from collections.abc import Iterator
 
-from stiction.command.run_state import Job, Run
+from stiction.command.run_state import Run, RunJob
 from stiction.plan import cost
 
 #: A reason of Snakemake, by its first words, and what it says.
@@ -47,15 +47,15 @@ def count_jobs(rules: Counter) -> str:
     return ", ".join(f"{rule} ({number})" if number > 1 else rule for rule, number in rules.items())
 
 
-def reasons(job: Job) -> Iterator[str]:
+def reasons(job: RunJob) -> Iterator[str]:
     """Yield the reasons of a job in words, apart from jobs before it."""
-    others, params, values = job.reason.partition("Params have changed")
+    other_reasons, params, values = job.reason.partition("Params have changed")
     if params:  # also explains results that are missing because they were temporary
         yield what_changed(values)
         return
-    for part in filter(None, others.split("; ")):
-        known = [words for start, words in _REASONS.items() if part.startswith(start)]
-        yield from filter(None, known[:1] or [part])
+    for reason in filter(None, other_reasons.split("; ")):
+        texts = [words for start, words in _REASONS.items() if reason.startswith(start)]
+        yield from filter(None, texts[:1] or [reason])
 
 
 def what_changed(reason: str) -> str:
@@ -69,15 +69,15 @@ def what_changed(reason: str) -> str:
     settings = [
         f"{key}: {before.get(key, 'nothing')} → {now.get(key, 'nothing')}" for key in differing if key not in code
     ]
-    parts = [f"the code of {', '.join(code)}"] * bool(code) + [f"settings: {', '.join(settings)}"] * bool(settings)
-    return " and ".join(parts) or "settings or code changed"
+    changes = [f"the code of {', '.join(code)}"] * bool(code) + [f"settings: {', '.join(settings)}"] * bool(settings)
+    return " and ".join(changes) or "settings or code changed"
 
 
 def _printed_parameters(text):
     """Parameters printed one after the other, as one dictionary with dotted keys."""
     none = "<nothing exclusive>"
-    parts = () if text.strip() == none else ast.literal_eval(f"[{text.strip()}]")
-    return {key: value for part in parts for key, value in _dotted_entries(part)}
+    printed = () if text.strip() == none else ast.literal_eval(f"[{text.strip()}]")
+    return {key: value for parameters in printed for key, value in _dotted_entries(parameters)}
 
 
 def _dotted_entries(section, path=()):

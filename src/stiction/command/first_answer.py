@@ -29,20 +29,20 @@ def first_answer(log: str, folder: Path) -> str:
         If the dataset of the job cannot be read.
     """
     path = folder / log.replace(_LOGS, _RESULTS, 1).removesuffix(".log")
-    said = {"safe_lengths": _length, "stoppers": _share}[stage := path.parent.name]
-    return f"{said(storage.load(path.with_name(f'{path.name}.nc'), stage), path.name)} The run goes on."
+    sentence = {"safe_lengths": _length, "stoppers": _share}[stage := path.parent.name]
+    return f"{sentence(storage.load(path.with_name(f'{path.name}.nc'), stage), path.name)} The run goes on."
 
 
 def _length(dataset, name):
     """Safe length of a case."""
-    found = dataset.isel(shape=-1).sel(share=chosen_share(dataset))
-    length, estimate = (from_si(float(found[name]), "um") for name in ("safe_length", "estimate"))
-    error = from_si(float(np.hypot(found.beams_error, found.surfaces_error.fillna(0))), "um")
-    known = f" (estimate {estimate:.0f} ± {error:.2g} µm)" if np.isfinite(error) else ""
+    state = dataset.isel(shape=-1).sel(share=chosen_share(dataset))
+    length, estimate = (from_si(float(state[name]), "um") for name in ("safe_length", "estimate"))
+    error = from_si(float(np.hypot(state.beams_error, state.surfaces_error.fillna(0))), "um")
+    with_estimate = f" (estimate {estimate:.0f} ± {error:.2g} µm)" if np.isfinite(error) else ""
     case = Case(name)
     return (
         f"First number: by simulation alone, {case.device} {Air(case.humidity).where} can be {length:.0f} µm long"
-        f"{known} if at most {one_in(float(found.share))} may stick."
+        f"{with_estimate} if at most {one_in(float(state.share))} may stick."
     )
 
 

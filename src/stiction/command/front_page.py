@@ -65,8 +65,10 @@ def is_finished(results: Path) -> bool:
 
 def subjects(config: Mapping[str, Any]) -> str:
     """Pairs and devices of a configuration in words."""
-    named = {"pair": config["run"]["pairs"], "device": config.get("devices", {})}
-    return " and ".join(f"{kind}{'s' * (len(names) > 1)} {', '.join(names)}" for kind, names in named.items() if names)
+    by_kind = {"pair": config["run"]["pairs"], "device": config.get("devices", {})}
+    return " and ".join(
+        f"{kind}{'s' * (len(names) > 1)} {', '.join(names)}" for kind, names in by_kind.items() if names
+    )
 
 
 def answers(results: Present, config: Mapping[str, Any]) -> Iterator[str]:
@@ -124,7 +126,7 @@ def warnings(results: Present, config: Mapping[str, Any]) -> Iterator[str]:
     """Sentences about results beyond the limits of the model."""
     from stiction.report.limits.pages import sentence  # imports the physics
 
-    return (sentence(*found) for found in limits(results, config))
+    return (sentence(*limit) for limit in limits(results, config))
 
 
 def limits(results: Present, config: Mapping[str, Any]) -> Iterator["tuple[Limit, list[Subject]]"]:

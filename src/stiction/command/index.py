@@ -30,7 +30,7 @@ from stiction.report.html import rendered
 from stiction.report.surfaces.words import surface_in_words
 from stiction.run import stale_results
 from stiction.run.atomic import save_text
-from stiction.run.disk_cache import DiskCache, Kept
+from stiction.run.disk_cache import Caches, DiskCache
 from stiction.run.provenance import code_of, recorded_runs, start_of
 
 #: Name of the page.
@@ -72,8 +72,8 @@ def write_for_last_run(results: Path) -> Path | None:
     ValueError
         If the record of runs is damaged.
     """
-    kept = results.parent / ".snakemake"
-    with Kept(kept if kept.is_dir() else None).cache("index.json") as remember:
+    caches = results.parent / ".snakemake"
+    with Caches(caches if caches.is_dir() else None).cache("index.json") as remember:
         page = remember([_states(results), hashes("*.py", "*.yaml", "*.html", "*.css")], lambda: _page(results))
     if page and Present(results).text(INDEX) != page:
         save_text(page, results / INDEX)
@@ -109,11 +109,11 @@ def unlike_last_run(results: Path) -> dict[str, str]:
 
 def _planner(results, config):
     """Planner of the last run of a folder, with its numbers of measured surfaces if they are still there."""
-    kept, preliminary = results.parent / ".snakemake", None
+    caches, preliminary = results.parent / ".snakemake", None
     with contextlib.suppress(OSError, ValueError, TypeError, KeyError):
-        planned, numbers = json.loads(Present(kept).text(_PLANNED))["planned"]
+        planned, numbers = json.loads(Present(caches).text(_PLANNED))["planned"]
         preliminary = numbers if planned == config and isinstance(numbers, dict) else None
-    return Planner(config, preliminary, _now, DiskCache(kept / "jobs.json"))
+    return Planner(config, preliminary, _now, DiskCache(caches / "jobs.json"))
 
 
 def _now(_key: Any, compute: Callable[[], Any]) -> Any:
@@ -124,18 +124,18 @@ def _now(_key: Any, compute: Callable[[], Any]) -> Any:
 def index(folder: Path, rules: Iterable[Mapping[str, Any]], unlike: Collection[str] = ()) -> str:
     """Page with the results of the last run of a folder, without the files ``unlike`` this run."""
     runs, results = recorded_runs(folder / "provenance.json"), Present(folder, unlike)
-    last, config, found = runs[-1], runs[-1]["config"], list(items(results, rules))
+    last, config, all_items = runs[-1], runs[-1]["config"], list(items(results, rules))
     shown = _computed(results, config)
     changes, checks = differing(config, paper()), list(csv.DictReader(results.text("checks.csv").splitlines()))
     return rendered(
         "index.html",
         title=front_page.subjects(shown) or f"surfaces {', '.join(_surfaces_of_run(shown))}",
         made=f"Last run: {start_of(last)}, {next(code_of(last))}.",
-        devices=list(_devices(results, config, found)),
+        devices=list(_devices(results, config, all_items)),
         pairs=list(front_page.pair_answers(results, config)),
         surfaces=list(_surfaces(results, shown)),
-        figures=_by_category(item for item in found if item.shown.endswith(".png")),
-        tables=[item for item in found if item.category == "Tables"],
+        figures=_by_category(item for item in all_items if item.shown.endswith(".png")),
+        tables=[item for item in all_items if item.category == "Tables"],
         verdict=results.text("verdict.txt").strip() or _failed(checks),
         checks=checks,
         judged=bool(front_page.warning_pages(results, config)),
@@ -165,8 +165,8 @@ def items(results: Present, rules: Iterable[Mapping[str, Any]]) -> Iterator[Item
         if not rule["shown"]:
             continue
         key, patterns = rule["shown"]["file"], rule["files"]
-        wanted = [path.removeprefix(RESULTS) for path in rule["wanted"]]
-        for paths in zip(*(wanted[k :: len(patterns)] for k in range(len(patterns))), strict=True):
+        targets = [path.removeprefix(RESULTS) for path in rule["wanted"]]
+        for paths in zip(*(targets[k :: len(patterns)] for k in range(len(patterns))), strict=True):
             files = dict(zip(patterns, paths, strict=True))
             if results.has(files[key]):
                 at = expression(patterns[key], WILDCARDS).fullmatch(RESULTS + files[key]).groupdict()
@@ -182,10 +182,10 @@ def _by_category(figures: Iterable[Item]) -> dict[str, list[Item]]:
     return ordered
 
 
-def _devices(results: Present, config: Mapping, found: Sequence[Item]) -> Iterator[dict[str, Any]]:
+def _devices(results: Present, config: Mapping, all_items: Sequence[Item]) -> Iterator[dict[str, Any]]:
     """Devices with their first answer, their page and the number of warnings, and a few with drawings."""
-    pages, sections = {item.shown for item in found}, config.get("devices", {})
-    named = ({one.name for one in subjects} for _, subjects in front_page.limits(results, config))
+    pages, sections = {item.shown for item in all_items}, config.get("devices", {})
+    named = ({device.name for device in subjects} for _, subjects in front_page.limits(results, config))
     warned = Counter(chain.from_iterable(named))
     verdicts = {row["device"]: row for row in csv.DictReader(results.text("tables/devices.csv").splitlines())}
     for name, section in sections.items():

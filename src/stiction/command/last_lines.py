@@ -9,7 +9,7 @@ from pathlib import Path
 
 from stiction.command.present import Present
 from stiction.command.progress_line import duration
-from stiction.command.run_state import Job, Run, is_fault
+from stiction.command.run_state import Run, RunJob, is_fault
 from stiction.run import stale_results
 
 
@@ -153,16 +153,16 @@ def _failed_checks(results):
     yield f"{len(failed)} of {len(rows)} checks of the results failed: {results / 'checks.md'}"
 
 
-def _first_error(jobs: list[Job], directory: Path) -> Iterator[str]:
+def _first_error(jobs: list[RunJob], directory: Path) -> Iterator[str]:
     """Yield the error of the first failed job, and its log."""
     first, logs = jobs[0], list(_existing(jobs[0].logs, directory))
-    others = f" (and {len(jobs) - 1} more)" if len(jobs) > 1 else ""
-    yield f"failed: {first.message}{others}"
-    said = next(
+    more = f" (and {len(jobs) - 1} more)" if len(jobs) > 1 else ""
+    yield f"failed: {first.message}{more}"
+    error = next(
         filter(None, map(sentence, logs)), "the job ended without a message: was it killed, or the memory full?"
     )
-    yield said
-    if is_fault(said.partition(":")[0], ValueError, RuntimeError):
+    yield error
+    if is_fault(error.partition(":")[0], ValueError, RuntimeError):
         yield FAULT
     yield f"log: {logs[0] if logs else short_path(directory / 'results' / 'logs')}"
 

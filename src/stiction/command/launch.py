@@ -33,8 +33,10 @@ def require_snakemake() -> None:
     if importlib.util.find_spec("snakemake") is None:
         from importlib import metadata  # takes longer than all other imports
 
-        needed = (text.partition(";")[0].strip() for text in metadata.requires("stiction") or () if "workflow" in text)
-        raise RefusedError(f"this needs Snakemake: {sys.executable} -m pip install '{' '.join(needed)}'")
+        requirements = (
+            text.partition(";")[0].strip() for text in metadata.requires("stiction") or () if "workflow" in text
+        )
+        raise RefusedError(f"this needs Snakemake: {sys.executable} -m pip install '{' '.join(requirements)}'")
     if signs := sorted(_SPECIAL & set(sys.executable)):
         raise RefusedError(
             f"the path of Python ({sys.executable}) contains {' '.join(map(repr, signs))}, which Snakemake does not "

@@ -85,7 +85,7 @@ def _parser():
     _add(commands, "report", _report, "put the results into one file, results/report.html", files="*")
     _add(commands, "show", _show, "open the index of the results, results/index.html", files=None)
     _add(commands, "explain", _explain, "say what would be computed, and why", files="*")
-    words = "estimate the length to build at once, in a tenth of a second"
+    words = "estimate the length or force to build at once, in a tenth of a second"
     added = commands.add_parser("estimate", help=words, description=estimate.PURPOSE)
     estimate.add_options(added)
     added.set_defaults(run=estimate.run, directory=".")
@@ -153,8 +153,8 @@ def _write(contents):
     """Write new files from texts, or from files with them. A file of the same content remains."""
     texts = {target: _text(content) for target, content in contents.items()}
     missing = {target: text for target, text in texts.items() if not (target.is_file() and _text(target) == text)}
-    if there := [target for target in missing or texts if os.path.lexists(target)]:
-        raise launch.RefusedError(f"{there[0]} exists already: nothing was written")
+    if existing := [target for target in missing or texts if os.path.lexists(target)]:
+        raise launch.RefusedError(f"{existing[0]} exists already: nothing was written")
     for target, text in missing.items():
         launch.require_folder(target.parent)
         try:
@@ -174,23 +174,23 @@ def _check(arguments):
     """Check files."""
     from stiction.command.prepared import prepared
     from stiction.config.files import joined
-    from stiction.run.disk_cache import kept_below
+    from stiction.run.disk_cache import caches_below
 
     launch.require_folder(directory := Path(arguments.directory))
-    with kept_below(directory) as kept:
-        ready = prepared(joined(*arguments.files), kept, with_samples=True)
-        cost = _cost(ready, kept)
+    with caches_below(directory) as caches:
+        ready = prepared(joined(*arguments.files), caches, with_samples=True)
+        cost = _cost(ready, caches)
     config = ready.config
     pairs, devices = config["run"]["pairs"], config.get("devices", {})
     scanned = [name for name, entry in config["surfaces"].items() if "scans" in entry]
-    named = {f"pair{'s' * (len(pairs) > 1)}": pairs, "devices": devices, "scans of": scanned}
-    parts = [f"{what} {', '.join(names)}" for what, names in named.items() if names]
-    say(f"{' '.join(arguments.files)} can run: {' and '.join(parts) or 'nothing'}.")
+    by_kind = {f"pair{'s' * (len(pairs) > 1)}": pairs, "devices": devices, "scans of": scanned}
+    texts = [f"{kind} {', '.join(names)}" for kind, names in by_kind.items() if names]
+    say(f"{' '.join(arguments.files)} can run: {' and '.join(texts) or 'nothing'}.")
     if ready.numbers:
         say(str(ready.numbers))
     for question, words in _ASKED.items():
-        if asked := [name for name, device in devices.items() if kind_of(device).question(device) == question]:
-            say(f"{words} {', '.join(asked)}.")
+        if probes := [name for name, device in devices.items() if kind_of(device).question(device) == question]:
+            say(f"{words} {', '.join(probes)}.")
     say(f"It takes {cost}, less for results that are already there.")
     for line in estimate.in_short(arguments.files):
         say(line)
@@ -203,13 +203,13 @@ def _check(arguments):
     return Status.DONE
 
 
-def _cost(ready, kept):
+def _cost(ready, caches):
     """CPU time and memory of the whole run of a configuration, in words."""
     from stiction.plan import cost
     from stiction.plan.planner import Planner
 
-    with kept.cache("cost.json") as remember:
-        return cost.in_words(*Planner(ready.config, ready.estimates, kept.code, remember).cost)
+    with caches.cache("cost.json") as remember:
+        return cost.in_words(*Planner(ready.config, ready.estimates, caches.code, remember).cost)
 
 
 def _run(arguments, *targets):
@@ -231,9 +231,9 @@ def _run(arguments, *targets):
         index.write_for_last_run(directory / "results")
         RUN.unlike = index.unlike_last_run(directory / "results")
     printed = "" if verbose else launch.printed_last(directory)
-    asked = ["compared_*"] * any("compare" in reading.read(file) for file in arguments.files)
-    asked += [Path(word).stem for word in (*targets, *arguments.more)]
-    lines = explain.explained(RUN) if dry and not ended else last_lines(RUN, ended, directory, printed, asked)
+    stems = ["compared_*"] * any("compare" in reading.read(file) for file in arguments.files)
+    stems += [Path(word).stem for word in (*targets, *arguments.more)]
+    lines = explain.explained(RUN) if dry and not ended else last_lines(RUN, ended, directory, printed, stems)
     for line in lines:
         say(line, sys.stderr if ended else None)
     return ended
@@ -261,14 +261,14 @@ def _scans(arguments):
     from stiction.command import scans_alone
 
     launch.require_folder(directory := Path(arguments.directory))
-    found = scans_alone.alone(arguments.files, directory)
-    for words in found.lines:
+    surfaces = scans_alone.alone(arguments.files, directory)
+    for words in surfaces.lines:
         say(f"{words}.")
-    arguments.files, ended = [found.write(directory)], Status.DONE
-    if found.overlay["surfaces"]:
+    arguments.files, ended = [surfaces.write(directory)], Status.DONE
+    if surfaces.overlay["surfaces"]:
         arguments.more = ["--keep-going", *arguments.more]
         ended = _run(arguments, "scans")
-    for name, (entry, reasons) in found.refused.items():
+    for name, (entry, reasons) in surfaces.refused.items():
         say(f"{name} cannot be estimated: {'; '.join(reasons)}")
         if not arguments.dry_run:
             say(f"  sheet: {scans_alone.draw_refused(name, entry, reasons, directory / 'results')}")
@@ -292,10 +292,10 @@ def _figures(arguments):
 
 def _results(find, folder, purpose="", note=""):
     """Find something in a folder of results, and refuse a folder without results or with damaged ones."""
-    if not (found := _of_record(find, folder)):
+    if not (results := _of_record(find, folder)):
         run = "run stiction paper or stiction run FILE first"
         raise launch.RefusedError(f"there are no results{purpose} in {folder}: {run}{note}")
-    return found
+    return results
 
 
 def _of_record(find, folder):

@@ -69,8 +69,8 @@ class Display:
 
 def line(run: Run, now: float) -> str:
     """Progress of a run in one line: jobs, time left, and the latest job."""
-    left = run.seconds_left(now)
-    remaining = "" if left is None else f", about {duration(left)} left"
+    seconds = run.seconds_left(now)
+    remaining = "" if seconds is None else f", about {duration(seconds)} left"
     jobs = list(run.jobs.values())  # another thread adds jobs
     latest = max(jobs, key=lambda job: job.started).message if jobs else _START
     return f"{run.done} of {run.total} jobs{remaining}: {latest}" if run.planned else "planning"

@@ -51,8 +51,8 @@ def written(source: str, folder: Path) -> Path:
 @contextmanager
 def _drafts(folder) -> Iterator[Path]:
     """Folder for drafts, which is removed at the end. Those of killed processes are removed before."""
-    for left in folder.glob(f"{_DRAFTS}*"):
-        shutil.rmtree(left, ignore_errors=True)
+    for stale in folder.glob(f"{_DRAFTS}*"):
+        shutil.rmtree(stale, ignore_errors=True)
     drafts = Path(tempfile.mkdtemp(prefix=_DRAFTS, dir=folder))
     try:
         yield drafts

@@ -42,13 +42,13 @@ def is_fault(kind: str, *expected: type[Exception]) -> bool:
     >>> is_fault("KeyError"), is_fault("OSError"), is_fault("ConfigError"), is_fault("ValueError", ValueError)
     (True, False, False, False)
     """
-    known = getattr(builtins, kind, None)
+    builtin = getattr(builtins, kind, None)
     expected = (OSError, MemoryError, *expected)
-    return isinstance(known, type) and issubclass(known, Exception) and not issubclass(known, expected)
+    return isinstance(builtin, type) and issubclass(builtin, Exception) and not issubclass(builtin, expected)
 
 
 @dataclass(frozen=True)
-class Job:
+class RunJob:
     """One job of a run."""
 
     rule: str
@@ -97,10 +97,10 @@ class Run:
     """
 
     planned: Counter = field(default_factory=Counter)
-    jobs: dict[int, Job] = field(default_factory=dict)
+    jobs: dict[int, RunJob] = field(default_factory=dict)
     seconds: dict[str, list[float]] = field(default_factory=dict)
-    first: dict[str, Job] = field(default_factory=dict)
-    failures: dict[int, Job] = field(default_factory=dict)
+    first: dict[str, RunJob] = field(default_factory=dict)
+    failures: dict[int, RunJob] = field(default_factory=dict)
     refusal: str = ""
     fault: str = ""
     warnings: list[str] = field(default_factory=list)
@@ -154,9 +154,9 @@ class Run:
         """Note the start of a job, perhaps its second."""
         logs = tuple(map(str, record.log))
         message = " ".join(str(record.rule_msg or record.rule_name).split())
-        asked = getattr(record, "resources", None) or {}
-        seconds, megabytes = to_si(float(asked.get("cpu_ms", 0)), "ms"), float(asked.get("mem_mb", 0))
-        self.jobs[record.jobid] = Job(
+        resources = getattr(record, "resources", None) or {}
+        seconds, megabytes = to_si(float(resources.get("cpu_ms", 0)), "ms"), float(resources.get("mem_mb", 0))
+        self.jobs[record.jobid] = RunJob(
             record.rule_name, message, str(record.reason), logs, record.created, seconds, megabytes
         )
         self.failures.pop(record.jobid, None)
@@ -170,18 +170,18 @@ class Run:
 
     def _hear_failure(self, record):
         """Note the failure of a job. Its logs include the cluster's."""
-        job = self.jobs.get(record.jobid, Job(record.rule_name, record.rule_name, "", (), record.created))
+        job = self.jobs.get(record.jobid, RunJob(record.rule_name, record.rule_name, "", (), record.created))
         self.failures[record.jobid] = replace(job, logs=tuple(map(str, record.log)))
 
     def _hear_error(self, record):
         """Note an error of the run itself. For a command started by a run, the command's own output says more."""
         kind = getattr(record, "exception", "")
         if kind != "CalledProcessError":
-            said = _ORIGIN.sub("", str(record.msg)).strip()
-            if of_plan := _OF_PLAN.match(said):
-                kind, said = of_plan.groups()
+            text = _ORIGIN.sub("", str(record.msg)).strip()
+            if of_plan := _OF_PLAN.match(text):
+                kind, text = of_plan.groups()
             self.fault = str(record.msg) if is_fault(kind) else ""
-            self.refusal = f"{kind}: {said}" if self.fault else said
+            self.refusal = f"{kind}: {text}" if self.fault else text
 
     def seconds_left(self, now: float) -> float | None:
         """Estimate of the time left [s], ``None`` while too little is known, or at the end.
@@ -193,8 +193,8 @@ class Run:
         finished = sum(map(sum, list(self.seconds.values())))
         if self.done < 3 or elapsed < 5 or not finished:
             return None
-        left = elapsed * self._time_left(finished / self.done) / finished - (now - self.ended)
-        return left if left >= 0 else None
+        remaining = elapsed * self._time_left(finished / self.done) / finished - (now - self.ended)
+        return remaining if remaining >= 0 else None
 
     def _time_left(self, mean):
         """Time of all unfinished jobs [s]. The mean is for rules without a finished job."""

@@ -50,25 +50,25 @@ def alone(overlays: Iterable[str], directory: Path) -> Alone:
     config, lines = _of_surfaces(files.joined(*overlays), directory / _KEPT)
     measured = {name: _entry(entry) for name, entry in config["surfaces"].items() if scans.is_measured(entry)}
     overlay = {"surfaces": measured, "scans": config["scans"], "seed": config["seed"], "run": {"pairs": []}}
-    used, refused = {}, {}
+    usable_entries, refused = {}, {}
     for name, entry in measured.items():
         usable, reasons = scans.usable(entry, config["scans"], directory / _KEPT)
         if usable is None:
             refused[name] = entry, reasons
         else:
-            used[name] = usable
-    return Alone(overlay | {"surfaces": used}, refused, lines)
+            usable_entries[name] = usable
+    return Alone(overlay | {"surfaces": usable_entries}, refused, lines)
 
 
-def _of_surfaces(stated, kept):
+def _of_surfaces(contents, folder):
     """Sections of the paper, with those about surfaces from a configuration and what it makes, and words of lines."""
-    sections = paper() | {key: stated[key] for key in _ABOUT_SURFACES if key in stated} | {"run": {"pairs": []}}
+    sections = paper() | {key: contents[key] for key in _ABOUT_SURFACES if key in contents} | {"run": {"pairs": []}}
     if faults := schema_problems(sections, schema()):
         raise ConfigError(*map(str, faults))
-    of_lines, faults = profiles.evaluated(sections, kept)
+    of_lines, faults = profiles.evaluated(sections, folder)
     if faults:
         raise ConfigError(*map(str, faults))
-    sections, _ = profiles.with_numbers(sections, kept)
+    sections, _ = profiles.with_numbers(sections, folder)
     if compare := sections.pop("compare", None):
         changed = {path: values for path, values in compare.items() if path.partition(".")[0] in _ABOUT_SURFACES}
         sections |= {"compare": changed} if changed else {}
@@ -79,7 +79,7 @@ def _of_surfaces(stated, kept):
     ]
     if faults:
         raise ConfigError(*process.in_settings(faults, config))
-    return config, tuple(profiles.in_words(*found) for found in of_lines.items())
+    return config, tuple(profiles.in_words(*line) for line in of_lines.items())
 
 
 def _entry(entry: Mapping[str, Any]) -> dict[str, Any]:

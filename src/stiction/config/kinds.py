@@ -165,6 +165,17 @@ class Kind:
         return sorted({"mass_ng", "electrode", "voltage_V"} - set(self.allowed_keys))
 
     @property
+    def is_patch(self) -> bool:
+        """Whether it touches with a flat area at once.
+
+        Examples
+        --------
+        >>> [name for name, kind in KINDS.items() if kind.is_patch]
+        ['stopper']
+        """
+        return self.release is STOPPER and not self.shape
+
+    @property
     def has_short_strips(self) -> bool:
         """Whether its strips may be shorter than those of pairs and than the correlation of the surfaces."""
         return self.longest_strip < math.inf

@@ -4,7 +4,7 @@ import math
 import operator
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -31,8 +31,8 @@ relation = Relations()
 TEMPERATURE, ADSORBED, _SHOWN = "water.temperature_K", "water.adsorbed_nm", "figures.humidity"
 #: Key of air by its dew point.
 _DEW_POINT = "dew_point_C"
-#: Temperatures of water that the schema allows [K], and a humidity in place of a dew point at another one.
-LIQUID, _ANY = (273, 373), 0.5
+#: Humidity in place of one that follows from other keys, where the schema looks.
+ANY = 0.5
 #: Levels above ``test_beams.T.crack_lengths[0].humidity``, the deepest humidity.
 _LEVELS = 5
 
@@ -167,8 +167,13 @@ def _refusal(meeting, humidity):
     return meeting.too_dry(humidity) or (refusal if meeting.config[gap] < least else None)
 
 
-def at_dew_points(config: Any, path: tuple = (), temperature: float | None = None) -> Any:
-    """Configuration, valid or not, with the humidity at the temperature of the water for each dew point.
+def with_any_humidity(config: Any) -> Any:
+    """Configuration, valid or not, with some humidity for each dew point. A schema wants numbers there."""
+    return _at_dew_points(config, lambda _value, _path: ANY)
+
+
+def at_dew_points(config: dict[str, Any]) -> dict[str, Any]:
+    """Configuration with the humidity at the temperature of the water for each dew point.
 
     ``humidities: [{dew_point_C: 10}]`` is the humidity, to four decimals, of air with this dew point.
 
@@ -177,17 +182,18 @@ def at_dew_points(config: Any, path: tuple = (), temperature: float | None = Non
     ConfigError
         If water condenses at the temperature.
     """
-    if not path:
-        temperature = dict(Keys(config).given(TEMPERATURE)).get(TEMPERATURE)
-    if not is_number(temperature) or not temperature > 0 or len(path) > _LEVELS:
-        return config  # the schema reports it, or no humidity is so deep
-    if _is_dew_point(config, path):
-        return _humidity_of_dew_point(config, path, temperature)
-    if isinstance(config, dict):
-        return {key: at_dew_points(value, (*path, key), temperature) for key, value in config.items()}
-    if isinstance(config, list):
-        return [at_dew_points(value, (*path, k), temperature) for k, value in enumerate(config)]
-    return config
+    return _at_dew_points(config, partial(_humidity_of_dew_point, temperature=Keys(config)[TEMPERATURE]))
+
+
+def _at_dew_points(value, humidity, path=()):
+    """Part of a configuration, valid or not, at a path. A function of dew points and their paths gives humidities."""
+    if _is_dew_point(value, path):
+        return humidity(value, path)
+    if isinstance(value, dict) and len(path) <= _LEVELS:
+        return {key: _at_dew_points(inner, humidity, (*path, key)) for key, inner in value.items()}
+    if isinstance(value, list) and len(path) <= _LEVELS:
+        return [_at_dew_points(inner, humidity, (*path, k)) for k, inner in enumerate(value)]
+    return value
 
 
 def _is_dew_point(value, path):
@@ -199,10 +205,7 @@ def _is_dew_point(value, path):
 
 def _humidity_of_dew_point(value, path, temperature):
     """Humidity of a dew point. Refuses air from which water condenses on the surfaces."""
-    dew_point = value[_DEW_POINT] + ZERO_CELSIUS
-    if not LIQUID[0] <= temperature <= LIQUID[1]:
-        return _ANY  # the schema refuses the temperature
-    humidity = humidity_of_air(temperature, dew_point)
+    humidity = humidity_of_air(temperature, value[_DEW_POINT] + ZERO_CELSIUS)
     if humidity is None:
         words = (
             f"is {one_line(value)}, must be below the temperature of the water, {temperature - ZERO_CELSIUS:.4g} °C: "

@@ -31,6 +31,30 @@ _NAMED = {
 }
 
 
+def section_at(config: Any, *keys: str) -> Mapping[str, Any]:
+    """Section of a configuration, valid or not, below some keys. Empty if there is none, or no section in its place.
+
+    Examples
+    --------
+    >>> section_at({"pairs": {"b": {"gap_um": 20}}}, "pairs", "b"), section_at({"pairs": 5}, "b"), section_at(5)
+    ({'gap_um': 20}, {}, {})
+    """
+    for key in keys:
+        config = config.get(key) if isinstance(config, Mapping) else None
+    return config if isinstance(config, Mapping) else {}
+
+
+def texts(value: Any) -> list[str]:
+    """List of texts in a configuration, valid or not. Empty if anything else is in its place.
+
+    Examples
+    --------
+    >>> texts(["a.csv", "b.csv"]), texts(["a.csv", 5]), texts("a.csv")
+    (['a.csv', 'b.csv'], [], [])
+    """
+    return value if isinstance(value, list) and all(isinstance(text, str) for text in value) else []
+
+
 def merged(base: Any, overlay: Any) -> Any:
     """Mapping ``base`` changed key by key, as Snakemake does. Lists and numbers are replaced as a whole."""
     if not (isinstance(base, Mapping) and isinstance(overlay, Mapping)):
@@ -43,22 +67,15 @@ def merged(base: Any, overlay: Any) -> Any:
 _OF_PAPER = ("attraction", "coarser_mesh")
 
 
-def _is_named(overlay):
-    """Whether an overlay has pairs by name. Other things in their place are refused by the schema."""
-    return isinstance(overlay.get("pairs"), Mapping)
-
-
 def without_inherited(config: dict[str, Any], base: Mapping[str, Any], overlays: Sequence[Any]) -> dict[str, Any]:
     """Configuration in which a pair of other surfaces than that of its name in ``base`` has no key for the paper alone.
 
     What an overlay states itself stays.
     """
-    stated = [overlay["pairs"] for overlay in overlays if isinstance(overlay, Mapping) and _is_named(overlay)]
-    pairs = dict(config["pairs"]) if isinstance(config.get("pairs"), Mapping) else {}
-    for name, pair_of_paper in base["pairs"].items():
-        changed = {
-            key: value for pair in stated if isinstance(pair.get(name), Mapping) for key, value in pair[name].items()
-        }
+    pairs = dict(section_at(config, "pairs"))
+    for name in [name for name in base["pairs"] if section_at(pairs, name)]:
+        pair_of_paper, stated = base["pairs"][name], (section_at(overlay, "pairs", name) for overlay in overlays)
+        changed = dict(chain.from_iterable(pair.items() for pair in stated))
         if any(changed.get(side, pair_of_paper[side]) != pair_of_paper[side] for side in ("beam", "substrate")):
             pairs[name] = {key: value for key, value in pairs[name].items() if key in changed or key not in _OF_PAPER}
     return config | {"pairs": pairs} if pairs else config
@@ -163,9 +180,9 @@ def _only_at(value, *place):
 def _places(config):
     """Yield places of sections with entries to copy, and of sections keyed by the name of a pair."""
     yield from ((section,) for section in _NAMED if section in config)
-    studies = {study: section for study, section in config["studies"].items() if isinstance(section, dict)}
-    for study, section in studies.items():
-        yield from (("studies", study, key) for key, value in section.items() if isinstance(value, dict))
+    for study in config["studies"]:
+        by_key = section_at(config, "studies", study).items()
+        yield from (("studies", study, key) for key, value in by_key if isinstance(value, dict))
 
 
 def _users_of(config, *entries):

@@ -332,18 +332,17 @@ def uncertain_replicas_are_stated(config):
     """Require a pair with a replica for an uncertain one, and test beams with the same."""
     for entry in OF_REPLICAS.values():
         for name, deviation, pair in config.entries("devices", f"uncertainty.{entry.key}", "pair"):
-            key, replica = f"devices.{name}.uncertainty.{entry.key}", config["pairs"].get(pair, {}).get("replica")
+            key, replica = f"devices.{name}.uncertainty.{entry.key}", config["pairs"][pair].get("replica")
             if deviation and not replica:
                 yield key, f"must be left out, because pair {pair} has no replica", f"devices.{name}.pair"
             for used in _pairs_of_arrays(config, name) if deviation and replica else ():
-                if config["pairs"].get(used, {}).get("replica") != replica:
+                if config["pairs"][used].get("replica") != replica:
                     yield key, f"must be left out, because pair {used} of its test beams has another replica"
 
 
 def _pairs_of_arrays(config, device):
-    """Pairs of the test beams of a device, where they are known."""
-    used = config["devices"][device].get("test_beams", ())
-    return dict.fromkeys(pair_of(config, name) for name in used if name in config["test_beams"])
+    """Pairs of the test beams of a device."""
+    return dict.fromkeys(pair_of(config, name) for name in config["devices"][device].get("test_beams", ()))
 
 
 @relation
@@ -351,7 +350,7 @@ def uncertain_coherences_leave_some(config):
     """Require a coherence of which a step of its slope leaves some for an uncertain one."""
     key, step = f"uncertainty.{COHERENCE.key}", COHERENCE.step
     for name, deviation, pair in config.entries("devices", key, "pair"):
-        replica = config["pairs"].get(pair, {}).get("replica")
+        replica = config["pairs"][pair].get("replica")
         if deviation and replica and step.ends(replica["coherence"])[0] < 0:
             message = f"must be left out below a coherence of {step.size / (1 + step.size):.2g}"
             yield f"devices.{name}.{key}", message, f"pairs.{pair}.replica.coherence"

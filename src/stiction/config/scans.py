@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from stiction.config.memory import GRID
+from stiction.config.merging import section_at, texts
 from stiction.config.messages import Problem
 from stiction.config.surfaces.knowledge import with_uncertainty
 from stiction.config.units import NM_PER_UM, from_si, in_si, to_si
@@ -62,7 +63,7 @@ def quantities(entry: Mapping[str, Any]) -> tuple[str, ...]:
 
 def has_scans(config: Mapping[str, Any]) -> bool:
     """Whether a configuration, valid or not, describes a surface by scans or lines."""
-    return any(isinstance(entry, dict) and not entry.keys().isdisjoint(_FILED) for entry in _surfaces(config).values())
+    return any(key in section_at(entry) for entry in section_at(config, "surfaces").values() for key in _FILED)
 
 
 def complete(entry: dict[str, Any]) -> dict[str, Any]:
@@ -75,27 +76,18 @@ def complete(entry: dict[str, Any]) -> dict[str, Any]:
 def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
     """Configuration, valid or not, with paths of scans and lines relative to the folder of the file naming them."""
     for key in _FILED:
-        files = {name: _files(entry, key) for name, entry in _surfaces(named).items()}
         moved = {
             name: _in_folder(entry, key, Path(folder).absolute())
-            for name, entry in _surfaces(config).items()
-            if _files(entry, key) and _files(entry, key) == files.get(name)
+            for name, entry in section_at(config, "surfaces").items()
+            if (files := _files(entry, key)) and files == _files(section_at(named, "surfaces", name), key)
         }
         config = config | {"surfaces": config["surfaces"] | moved} if moved else config
     return config
 
 
-def _surfaces(config):
-    """Section of the surfaces. Empty if there is none."""
-    surfaces = config.get("surfaces")
-    return surfaces if isinstance(surfaces, dict) else {}
-
-
 def _files(entry, key):
-    """Files of a section of a surface, if they are a list of texts."""
-    scans = entry.get(key) if isinstance(entry, dict) else None
-    files = scans.get("files") if isinstance(scans, dict) else None
-    return files if isinstance(files, list) and all(isinstance(file, str) for file in files) else None
+    """Files of a section of a surface. None if they are no list of texts."""
+    return texts(section_at(entry, key).get("files"))
 
 
 def _in_folder(entry, key, folder):

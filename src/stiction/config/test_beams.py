@@ -14,6 +14,7 @@ from statistics import fmean, median, stdev
 from typing import Any, NamedTuple
 
 from stiction.config.kinds import KEYS
+from stiction.config.merging import section_at
 from stiction.config.messages import ConfigError, one_line
 from stiction.config.reading import text
 from stiction.config.tables import csv_rows
@@ -119,7 +120,7 @@ def _cantilever(config, name, measured_at):
 # Files of single beams
 
 
-class Beam(NamedTuple):
+class BeamRow(NamedTuple):
     """One row."""
 
     row: int  #: line of the file
@@ -133,7 +134,7 @@ class Origin(NamedTuple):
     """Stands in for a file name once the file has been read."""
 
     file: str  #: name
-    beams: list[Beam]
+    beams: list[BeamRow]
 
 
 def with_files(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
@@ -155,9 +156,8 @@ def with_files(config: dict[str, Any], named: Mapping[str, Any], folder: str | P
 
 def _arrays(config) -> Iterator[tuple[str, dict]]:
     """Yield arrays with a file."""
-    arrays = config.get("test_beams")
-    for name, entry in arrays.items() if isinstance(arrays, dict) else ():
-        if isinstance(entry, dict) and isinstance(entry.get("file"), str):
+    for name, entry in section_at(config, "test_beams").items():
+        if isinstance(section_at(entry).get("file"), str):
             yield name, entry
 
 
@@ -197,9 +197,7 @@ def in_files(sentence: str, config: Any) -> str:
 
 def _origins(config):
     """Origins by the name of the array."""
-    arrays = config.get("test_beams") if isinstance(config, dict) else None
-    entries = arrays.items() if isinstance(arrays, dict) else ()
-    files = {name: entry.get("file") for name, entry in entries if isinstance(entry, dict)}
+    files = {name: section_at(entry).get("file") for name, entry in section_at(config, "test_beams").items()}
     return {name: origin for name, origin in files.items() if isinstance(origin, Origin)}
 
 
@@ -228,7 +226,7 @@ def _places(of_file, array):
 # Rows
 
 
-def beams(content: str) -> list[Beam]:
+def beams(content: str) -> list[BeamRow]:
     """Single beams from the text of a file. Lines beginning with # are comments."""
     return [_beam(row, cells) for row, cells in csv_rows.rows(content, COLUMNS, COLUMNS[:2], "beam")]
 
@@ -245,9 +243,9 @@ def _beam(row, cells):
     if row_cells["stuck"]:
         if row_cells["stuck"].lower() not in _WORDS:
             raise WrongFileError(f"row {row}: stuck is {one_line(row_cells['stuck'])}, must be yes or no")
-        return Beam(row, humidity, length, None, _WORDS[row_cells["stuck"].lower()])
+        return BeamRow(row, humidity, length, None, _WORDS[row_cells["stuck"].lower()])
     crack = _number(row, row_cells, "crack_length_um", length, f"below the length of the beam, {length:g} µm")
-    return Beam(row, humidity, length, crack, None)
+    return BeamRow(row, humidity, length, crack, None)
 
 
 def _number(row, cells, column, limit, words):
@@ -264,7 +262,7 @@ def _number(row, cells, column, limit, words):
 # Means and counts
 
 
-def summary(beams: list[Beam]) -> dict[str, Any]:
+def summary(beams: list[BeamRow]) -> dict[str, Any]:
     """Keys of an array: means of crack lengths by humidity, and counts by humidity and length."""
     measured, counted = _by_kind(beams).values()
     data = {}

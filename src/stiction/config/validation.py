@@ -1,7 +1,7 @@
 """Validation of a whole configuration: schema, relations between its keys, files of scans.
 
 Each step ends the check if it refuses something, so that the next one sees sections as it needs them: of the right
-types, then with names of what exists, then with surfaces by numbers.
+types, then with all humidities, then with names of what exists, then with surfaces by numbers.
 """
 
 from collections.abc import Iterable, Iterator
@@ -33,7 +33,6 @@ NAMES = Relations(
         *_NAMES_OF_DEVICES,
         *pull_offs.relation_of_names,
         *process_relations.relation,
-        *airs.relation_of_names,
     ]
 )
 RELATIONS = Relations(
@@ -76,13 +75,7 @@ def checked(stated: Any, kept: Path | None = None) -> Checked:
 
 def _checked(stated, kept):
     """Checked configuration without a file of devices. Raises the errors of `checked`."""
-    stated = meetings.at_dew_points(airs.expanded(stated))
-    _refuse(schema_problems(sections := _plain(stated), schema()), stated, {})
-    stated, unreadable = profiles.with_numbers(stated, kept)
-    _refuse(unreadable, stated, {})
-    stated = process.with_surfaces(expanded(materials.with_named(stated)))
-    if (whole := _plain(stated)) != sections:  # with copies and surfaces of settings
-        _refuse(schema_problems(whole, schema()), stated, whole)
+    stated, whole = _typed(stated, kept)
     library = paper()["surfaces"]
     _refuse(_broken(NAMES, _NAMES_OF_DEVICES, Keys(_OPTIONAL | whole)), stated, whole)
     _refuse(described.problems(whole, library), stated, whole)
@@ -95,6 +88,20 @@ def _checked(stated, kept):
     config, by_numbers = merged(config, shown), replace(by_numbers, config=merged(by_numbers.config, shown))
     _refuse(_broken(RELATIONS, _OF_DEVICES, by_numbers), stated, whole)
     return Checked(normalised(config), estimates)
+
+
+def _typed(stated, kept):
+    """Configuration with all its airs, surfaces and copies, as stated and in plain values, which the schema allows."""
+    stated = airs.with_keys_of_airs(stated)
+    sections = _plain(airs.with_any_air(meetings.with_any_humidity(stated)))
+    _refuse(schema_problems(sections, schema()), stated, {})
+    _refuse(airs.relation_of_conditions.problems(Keys(_OPTIONAL | sections)), stated, {})
+    stated, unreadable = profiles.with_numbers(airs.expanded(meetings.at_dew_points(stated)), kept)
+    _refuse(unreadable, stated, {})
+    stated = process.with_surfaces(expanded(materials.with_named(stated)))
+    if (whole := _plain(stated)) != sections:  # with airs, copies and surfaces of settings
+        _refuse(schema_problems(whole, schema()), stated, whole)
+    return stated, whole
 
 
 def _plain(stated):

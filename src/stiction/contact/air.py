@@ -95,7 +95,7 @@ class Air:
         """End of the names of cases in it, with two to four decimals. ``None`` if four are not exact."""
         if self.is_dry:
             return f"_{DRY}"
-        texts = (f"{self.humidity:.{places}f}" for places in (2, 3, 4))
+        texts = (f"{self.humidity:.{decimals}f}" for decimals in (2, 3, 4))
         return next((f"_rh{text.replace('.', '')}" for text in texts if float(text) == self.humidity), None)
 
 

@@ -269,8 +269,8 @@ class MaugisTable:
         """Force of one sphere without interpolation in λ [N], 0 beyond snap-off. Interference (n,) [m], radius [m]."""
         load, delta = maugis_branch(transition_parameter(radius, self.modulus, self.attraction), 20000)
         scaled = np.asarray(interference) / interference_scale(radius, self.modulus, self.attraction)
-        held = np.interp(np.sqrt(np.maximum(scaled - delta[0], 0)), np.sqrt(delta - delta[0]), load)
-        return np.pi * self.attraction.work_of_adhesion * radius * np.where(scaled < delta[0], 0.0, held)
+        interpolated = np.interp(np.sqrt(np.maximum(scaled - delta[0], 0)), np.sqrt(delta - delta[0]), load)
+        return np.pi * self.attraction.work_of_adhesion * radius * np.where(scaled < delta[0], 0.0, interpolated)
 
     def add_forces(
         self, tops: np.ndarray, curvatures: np.ndarray, step: float, force: np.ndarray, between: Ranges | None = None
@@ -314,9 +314,9 @@ def _add_sphere(sphere, step, scales, snap_off, load, roots, force):
     """Add the force of one sphere (top, radius). ``roots``: workspace."""
     top, radius = sphere
     third = radius ** (1 / 3)
-    place = (scales.log_transition + np.log(third) - scales.first) / scales.log_step
-    row = int(np.floor(place))
-    share = place - row
+    position = (scales.log_transition + np.log(third) - scales.first) / scales.log_step
+    row = int(np.floor(position))
+    share = position - row
     row += scales.before
     inverse, weight = 1 / (scales.interference * third), scales.force * radius
     if row < 0:  # DMT
@@ -327,13 +327,13 @@ def _add_sphere(sphere, step, scales, snap_off, load, roots, force):
     if row >= len(snap_off) - 1:  # JKR
         row, share = len(snap_off) - 2, 1.0
     deepest = (1 - share) * snap_off[row] + share * snap_off[row + 1]
-    held = min(max(int(np.floor((top - deepest / inverse) / step)) + 1, 0), len(force))
-    _roots(top, step, inverse, deepest, scales.root_step, roots[:held])
+    count = min(max(int(np.floor((top - deepest / inverse) / step)) + 1, 0), len(force))
+    _roots(top, step, inverse, deepest, scales.root_step, roots[:count])
     deep = 0  # number of distances beyond the table; the root falls with the distance
-    while deep < held and roots[deep] >= load.shape[1] - 1:
+    while deep < count and roots[deep] >= load.shape[1] - 1:
         force[deep] += weight * deep_load((top - deep * step) * inverse)
         deep += 1
-    _add_loads(roots[deep:held], load[row], load[row + 1], share, weight, force[deep:])
+    _add_loads(roots[deep:count], load[row], load[row + 1], share, weight, force[deep:])
 
 
 # Two loops, because only one without a look-up computes several distances at a time.
@@ -352,7 +352,7 @@ def _add_loads(roots, low, high, share, weight, force):
     """Add ``weight`` times the load between two rows of the table, at these places of their columns."""
     for k in range(roots.size):
         cell = np.uint32(np.int32(roots[k]))  # without a sign, so that it cannot count from the end of a row
-        part = roots[k] - cell
-        below = low[cell] + part * (low[cell + np.uint32(1)] - low[cell])
-        above = high[cell] + part * (high[cell + np.uint32(1)] - high[cell])
+        fraction = roots[k] - cell
+        below = low[cell] + fraction * (low[cell + np.uint32(1)] - low[cell])
+        above = high[cell] + fraction * (high[cell + np.uint32(1)] - high[cell])
         force[k] += weight * ((1 - share) * below + share * above)

@@ -23,13 +23,13 @@ def interpolated(ratios: np.ndarray, humidities: np.ndarray, at: float | np.ndar
     >>> round(float(interpolated(np.array([0.64, 1.0]), np.array([0.4, 0.8]), 0.6)), 12)
     0.8
     """
-    humid, found = is_humid(humidities), np.full(np.shape(at), np.nan)
+    humid, values = is_humid(humidities), np.full(np.shape(at), np.nan)
     if humid.any():
-        found = np.exp(np.interp(at, humidities[humid], np.log(ratios[humid]), left=np.nan, right=np.nan))
-    return found if humid.all() else np.where(is_humid(at), found, ratios[~humid][0])
+        values = np.exp(np.interp(at, humidities[humid], np.log(ratios[humid]), left=np.nan, right=np.nan))
+    return values if humid.all() else np.where(is_humid(at), values, ratios[~humid][0])
 
 
-class Change(NamedTuple):
+class ElasticChange(NamedTuple):
     r"""Change of a quantity of samples by full elastic contact, at one humidity or at several (h,).
 
     A value x on summits becomes :math:`c x^b`. c follows from the ratio of both means, and the power b is the ratio of
@@ -50,13 +50,13 @@ class Change(NamedTuple):
         scale = self.ratio * np.divide(mean, powered, out=np.ones_like(mean), where=powered > 0)
         return lambda values: scale * values**self.power
 
-    def at_most(self, confidence: float) -> "Change":
+    def at_most(self, confidence: float) -> "ElasticChange":
         """Change with the upper end of the ratio at a one-sided confidence."""
         return self._replace(ratio=self.ratio * np.exp(ndtri(confidence) * self.ratio_error))
 
 
 #: Without a correction.
-NONE = Change()
+NONE = ElasticChange()
 
 
 class TipChanges(NamedTuple):
@@ -68,20 +68,20 @@ class TipChanges(NamedTuple):
     slopes: np.ndarray  #: increasing (s,) [-]
     #: At the humidities of the correction: ratio and its error (h, s), and one power (h,). The error is that of what 1
     #: in 1000 tips exceeds.
-    change: Change
+    change: ElasticChange
 
-    def at(self, slope: float) -> Change:
+    def at(self, slope: float) -> ElasticChange:
         """Change at a slope, at each humidity (h,)."""
-        place = np.interp(np.log(slope), np.log(self.slopes), np.arange(len(self.slopes)))
-        below = min(int(place), len(self.slopes) - 2)
-        parts, near = [below + 1 - place, place - below], np.s_[:, below : below + 2]
-        ratio, error = np.exp(np.log(self.change.ratio[near]) @ parts), self.change.ratio_error[near] @ parts
-        return Change(ratio, self.change.power, error)
+        position = np.interp(np.log(slope), np.log(self.slopes), np.arange(len(self.slopes)))
+        below = min(int(position), len(self.slopes) - 2)
+        weights, near = [below + 1 - position, position - below], np.s_[:, below : below + 2]
+        ratio, error = np.exp(np.log(self.change.ratio[near]) @ weights), self.change.ratio_error[near] @ weights
+        return ElasticChange(ratio, self.change.power, error)
 
 
-def _not_falling(ratio, computed, humidity):
+def _not_falling(ratio, reference, humidity):
     """Ratio of energies in air wetter than where it was computed: one above 1 stays, as that of rough pairs falls."""
-    return max(ratio, in_wetter_air(min(ratio, 1.0), computed, humidity))
+    return max(ratio, in_wetter_air(min(ratio, 1.0), reference, humidity))
 
 
 @dataclass(frozen=True)
@@ -93,15 +93,15 @@ class Correction:
     """
 
     humidities: np.ndarray  #: increasing (h,), 0 for dry air [-]
-    energy: Change  #: of the energies e (h,)
-    pull_off: Change  #: of the largest attractions f_max (h,)
+    energy: ElasticChange  #: of the energies e (h,)
+    pull_off: ElasticChange  #: of the largest attractions f_max (h,)
     tips: TipChanges | None = None  #: of the largest attractions of tips, if any are on the pair
     #: Whether changes hold beyond these, where shifts of a budget are, instead of an error. ASSUME: in drier air the
     #: change is that in the driest. In wetter air ratios of energies below 1 rise to 1 in saturated air, others stay,
     #: and those of forces are as `stiction.contact.full.smooth_pairs.in_wetter_air`.
     nearest: bool = False
 
-    def at(self, humidity: float) -> tuple[Change, Change]:
+    def at(self, humidity: float) -> tuple[ElasticChange, ElasticChange]:
         """Changes of e and of f_max at a humidity, 0 for dry air: none in humid air if dry air alone is corrected.
 
         Raises
@@ -111,7 +111,7 @@ class Correction:
         """
         return self._at(humidity, self.energy), self._at(humidity, self.pull_off, in_wetter_air)
 
-    def of_tips(self, humidity: float, slopes: np.ndarray) -> list[Change]:
+    def of_tips(self, humidity: float, slopes: np.ndarray) -> list[ElasticChange]:
         """Changes of the largest attraction of tips at slopes (n,) [-], none without tips. Otherwise as `at`."""
         if self.tips is None:
             return [NONE] * len(slopes)
@@ -120,13 +120,13 @@ class Correction:
     def _at(self, humidity, changes, wetter=_not_falling):
         """Change at a humidity."""
         in_humid_air = is_humid(humidity)
-        known = self.humidities[is_humid(self.humidities) == in_humid_air]
-        if in_humid_air and not known.size:
+        same_air = self.humidities[is_humid(self.humidities) == in_humid_air]
+        if in_humid_air and not same_air.size:
             return NONE
-        low, high = known.min(initial=1.0), known.max(initial=0.0)
+        low, high = same_air.min(initial=1.0), same_air.max(initial=0.0)
         is_near = self.nearest and in_humid_air
         if not (is_near or is_at_most(low, humidity) and is_at_most(humidity, high)):
-            where = f"at relative humidities from {low:g} to {high:g}" if known.size else "in other air alone"
+            where = f"at relative humidities from {low:g} to {high:g}" if same_air.size else "in other air alone"
             raise ValueError(
                 f"full elastic contact was computed {where} and is not extrapolated to {humidity:g}: add it to the "
                 "humidities of the pair, or choose contact.model: summits"
@@ -140,7 +140,7 @@ class Correction:
         """Change at a humidity within the computed ones. A power below 1 errs only as far as it may be above."""
         ratio, power, *errors = (np.broadcast_to(each, self.humidities.shape) for each in changes)
         ratio, power = (float(interpolated(each, self.humidities, humidity)) for each in (ratio, power))
-        of_ratio, of_power = (float(np.interp(humidity, self.humidities, one)) for one in errors)
+        of_ratio, of_power = (float(np.interp(humidity, self.humidities, error)) for error in errors)
         if not power >= 1:
             power, of_power = 1.0, max(0.0, power + of_power - 1)
-        return Change(ratio, power, of_ratio, of_power)
+        return ElasticChange(ratio, power, of_ratio, of_power)

@@ -24,7 +24,7 @@ import numpy as np
 
 from stiction.contact import forcelaw, gaps, vanderwaals
 from stiction.contact.air import Air
-from stiction.contact.correction import NONE, Change, Correction
+from stiction.contact.correction import NONE, Correction, ElasticChange
 from stiction.contact.materials import Solid
 from stiction.contact.meniscus import BRIDGE, MOLECULES, Isotherm, film
 from stiction.contact.solids import attraction_between, interfaces
@@ -60,8 +60,8 @@ class Gaps:
     def scaled(self, factor: float, sides: Collection[str]) -> "Gaps":
         """Gaps with a factor of the Hamaker constants of the solids on some sides, see ``combined``."""
         scales = {side: factor if side in sides else 1.0 for side in SIDES}
-        both = vanderwaals.combined(*scales.values())
-        constants = {medium: both * constant for medium, constant in self.hamaker_constant.items()}
+        scale = vanderwaals.combined(*scales.values())
+        constants = {medium: scale * constant for medium, constant in self.hamaker_constant.items()}
         bodies = {side: body.attracting(scales[side]) for side, body in self.bodies.items()}
         return replace(self, hamaker_constant=constants, bodies=bodies)
 
@@ -95,15 +95,15 @@ class Water:
         """Temperature of the water at a humidity [K]."""
         return self.temperature + self.warmer.get(Air(humidity).name, 0.0)
 
-    def between(self, stated: Collection[float], humidities: Collection[float]) -> "Water":
+    def between(self, device_airs: Collection[float], humidities: Collection[float]) -> "Water":
         """Water with temperatures at some humidities (n,) between those of humid airs in which devices are stated [-].
 
         ASSUME: from one of these to the next, the temperature follows the humidity linearly. Beyond them it stays.
         """
-        if not self.warmer or not stated:
+        if not self.warmer or not device_airs:
             return self
-        known = sorted(stated)
-        differences = np.interp(humidities, known, [self.temperature_at(air) - self.temperature for air in known])
+        nodes = sorted(device_airs)
+        differences = np.interp(humidities, nodes, [self.temperature_at(air) - self.temperature for air in nodes])
         added = zip(map(float, humidities), map(float, differences), strict=True)
         return replace(self, warmer=self.warmer | {Air(air).name: more for air, more in added})
 
@@ -117,13 +117,13 @@ class Water:
         work = self.gaps.work(gap, height) if self.gaps else 0.0
         return work + self.capacitor.work(gap) if self.capacitor else work
 
-    def changes(self, humidity: float) -> tuple[Change, Change]:
+    def changes(self, humidity: float) -> tuple[ElasticChange, ElasticChange]:
         """Changes of e and f_max by full elastic contact at a humidity: those of dry air without condensation."""
         if self.correction is None:
             return NONE, NONE
         return self.correction.at(humidity if self.film(humidity)[0] else 0.0)
 
-    def changes_of_tips(self, humidity: float, slopes: np.ndarray) -> list[Change]:
+    def changes_of_tips(self, humidity: float, slopes: np.ndarray) -> list[ElasticChange]:
         """Changes of the largest attraction of tips at slopes (s,) [-] by full elastic contact, as `changes`."""
         if self.correction is None:
             return [NONE] * len(slopes)

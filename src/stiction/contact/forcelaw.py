@@ -24,21 +24,21 @@ DECAYED = 1e-4
 
 
 @kernel
-def _node(values, index, left):
-    """Value at a node of a uniform grid: ``left`` before its first node, 0 beyond its last."""
+def _node(values, index, before):
+    """Value at a node of a uniform grid: ``before`` before its first node, 0 beyond its last."""
     if index < 0:
-        return left
+        return before
     return values[index] if index < values.size else 0.0
 
 
 @kernel
-def _add_interpolated(values, offset, left, factor, out):
+def _add_interpolated(values, offset, before, factor, out):
     """Add ``factor`` times a curve, linear between nodes, to ``out``, from ``offset`` steps into the curve."""
     first = int(np.floor(offset))
     weight = offset - first
     for i in range(out.size):
-        here, ahead = _node(values, first + i, left), _node(values, first + i + 1, left)
-        out[i] += factor * ((1 - weight) * here + weight * ahead)
+        behind, ahead = _node(values, first + i, before), _node(values, first + i + 1, before)
+        out[i] += factor * ((1 - weight) * behind + weight * ahead)
 
 
 @kernel
@@ -143,13 +143,13 @@ def largest_attractions(
     Where a curve attracts most at its first node, because too few summits stop the tip, it is the force there.
     """
     samples, slopes, points = solid.shape
-    found, force = np.empty((samples, slopes)), np.empty(points)
+    largest, force = np.empty((samples, slopes)), np.empty(points)
     for k in range(samples):
         for i in range(slopes):
             ends = (starts[0], starts[1], starts[0])
             apparent_force(solid[k, i], bearing[k, i], ends, step, film[0], film[1], force)
-            found[k, i] = _deepest(force)
-    return found
+            largest[k, i] = _deepest(force)
+    return largest
 
 
 @kernel
@@ -169,8 +169,8 @@ def _deepest(force):
 @kernel
 def _crossing(distance, force, index, level):
     """Distance of the value ``level`` on the line between nodes ``index`` and ``index + 1`` [m]."""
-    part = (level - force[index]) / (force[index + 1] - force[index])
-    return distance[index] + part * (distance[index + 1] - distance[index])
+    fraction = (level - force[index]) / (force[index + 1] - force[index])
+    return distance[index] + fraction * (distance[index + 1] - distance[index])
 
 
 @kernel
@@ -272,14 +272,14 @@ def repulsions(forces: np.ndarray) -> np.ndarray:
     return np.array([force[: force.argmin()].max(initial=-np.inf) for force in forces])
 
 
-def together(forces: np.ndarray, needed: float) -> int | None:
+def together(forces: np.ndarray, force: float) -> int | None:
     """Number of areas for resistance, as far as samples show: every mean curve of them rises to a force [Pa].
 
     Curves (n, n_d) [Pa]; the least power of two, ``None`` if not even the mean of most samples rises.
     """
     for size in (2**k for k in range(len(forces).bit_length())):
-        whole = len(forces) // size
-        if np.all(repulsions(forces[: whole * size].reshape(whole, size, -1).mean(axis=1)) > needed):
+        groups = len(forces) // size
+        if np.all(repulsions(forces[: groups * size].reshape(groups, size, -1).mean(axis=1)) > force):
             return size
     return None
 
@@ -349,12 +349,12 @@ def parametrise(
     with _remedy(curve, samples):
         wells = _each_sample(lambda f, k: _well(distance, f, beyond[k], flat), curve, samples)
         d_max, f_max, e = wells.T
-        held = np.isfinite(d_max)
-        f_limit = float(f_max[held if held.any() else ~held].max())
+        attracts = np.isfinite(d_max)
+        f_limit = float(f_max[attracts if attracts.any() else ~attracts].max())
         d_limit = _each_sample(lambda f, _: _limit(distance, f, f_limit, flat), curve, samples)
-    if not held.all():
-        d_max[~held] = distance[0]
-        d_limit[~held] = distance[0] - _rise(f_limit / flat[1]) * flat[0] / (2 * flat[1])
+    if not attracts.all():
+        d_max[~attracts] = distance[0]
+        d_limit[~attracts] = distance[0] - _rise(f_limit / flat[1]) * flat[0] / (2 * flat[1])
     return np.column_stack([e, f_max, d_max, d_limit]), f_limit
 
 

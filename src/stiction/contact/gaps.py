@@ -125,10 +125,10 @@ def gap_pressures(
         raise ValueError(f"distances must be {step:.3g} m apart, as the nodes of the bearing area are")
     steps, number = bearing.shape[-1] - 1, len(distance)
     # Every gap between a distance and a node, increasing: those of all steps at one distance are a window of them.
-    needed = work(np.maximum(distance[0] - first + step * np.arange(-steps, number), 0.0))
+    works = work(np.maximum(distance[0] - first + step * np.arange(-steps, number), 0.0))
     size = fft.next_fast_len(steps + number - 1, real=True)
-    waves = fft.rfft(np.diff(needed) / step, size)
-    energy = 0.5 * (needed[number:] + needed[number - 1 : -1])[::-1]
+    waves = fft.rfft(np.diff(works) / step, size)
+    energy = 0.5 * (works[number:] + works[number - 1 : -1])[::-1]
     samples, rows = bearing.reshape(-1, steps + 1), max(_BLOCK // size, 1)
     pressure, beyond = np.empty((len(samples), number), np.float32), np.empty(len(samples))
     for start in range(0, len(samples), rows):

@@ -51,7 +51,7 @@ class Solid:
 
 
 @dataclass(frozen=True)
-class Step:
+class InputStep:
     """Change of an input in either direction for its slope."""
 
     size: float  #: of the value of the input if it is relative, otherwise in its unit
@@ -90,13 +90,13 @@ class Step:
         """Errors of an input of this value that count: all."""
         return -np.inf, np.inf
 
-    def by(self, _deviation: float) -> "Step":
+    def by(self, _deviation: float) -> "InputStep":
         """Step for an input with a standard uncertainty in its unit."""
         return self
 
 
 @dataclass(frozen=True)
-class StepOfRest(Step):
+class StepOfRest(InputStep):
     """Change of a share, relative in the rest of one: less of the share is more of the rest."""
 
     def ends(self, value: float) -> tuple[float, float]:
@@ -120,7 +120,7 @@ class StepOfRest(Step):
 
 
 @dataclass(frozen=True)
-class StepOfError(Step):
+class StepOfError(InputStep):
     """Change of a length by its standard uncertainty, the unit of its errors. It is never below zero.
 
     ASSUME: beyond one standard uncertainty more, errors count as that. Where more of it is safe, this is the safe side.
@@ -167,7 +167,7 @@ class Property:
 
     key: str  #: of the configuration, where materials and uncertainties have it
     words: str
-    step: Step | None = None  #: for its slope, if the contact of surfaces depends on it
+    step: InputStep | None = None  #: for its slope, if the contact of surfaces depends on it
 
     @property
     def group(self) -> str:
@@ -178,10 +178,10 @@ class Property:
 #: All properties by name, which those of uncertain ones have in names of files. Poisson's ratio may be zero. The larger
 #: step of the Hamaker constant, on which lengths depend little, halves the error of its slope.
 PROPERTIES = {
-    "modulus": Property("young_modulus_GPa", "Young's modulus", Step(0.05)),
-    "poisson_ratio": Property("poisson_ratio", "Poisson's ratio", Step(0.05, relative=False)),
+    "modulus": Property("young_modulus_GPa", "Young's modulus", InputStep(0.05)),
+    "poisson_ratio": Property("poisson_ratio", "Poisson's ratio", InputStep(0.05, relative=False)),
     "hardness": Property("hardness_GPa", "hardness"),
-    "hamaker_constant": Property("hamaker_constant_zJ", "Hamaker constant", Step(0.2)),
+    "hamaker_constant": Property("hamaker_constant_zJ", "Hamaker constant", InputStep(0.2)),
     "contact_angle": Property("contact_angle_deg", "contact angle"),
 }
 #: Properties of a coating, which only some materials have, in words: its thickness, and the attraction of its own.

@@ -68,8 +68,8 @@ class Isotherm:
         x = np.array([humidity, *wetter, 1.0])
         t = np.interp(x, (0.0, *self.humidities), (0.0, *self.thickness))
         slope = np.diff(t) / np.diff(x)
-        parts = (t[:-1] - slope * x[:-1]) * np.log(x[1:] / x[:-1]) + np.diff(t)
-        return float(2 * parts.sum() / -np.log(humidity))
+        segments = (t[:-1] - slope * x[:-1]) * np.log(x[1:] / x[:-1]) + np.diff(t)
+        return float(2 * segments.sum() / -np.log(humidity))
 
 
 def tabulated_surface_tension(temperature: float) -> float:

@@ -148,13 +148,15 @@ class EquivalentSurface:
         levels = DistanceGrid(stride * grid.step, 0, -(-grid.above // stride))
         lowest = min(int(np.ceil(rms / levels.step)), levels.above - 1)
         by_fit, numbers = self.definition == Definition.FITTED, (lowest, levels.above)
-        found = find_islands(heights, self.spacing, levels.step, numbers, fitted=by_fit)
-        overlap = found.tops - found.levels * levels.step
-        spheres = np.stack([found.tops, (found.curvatures + 2 * np.pi * overlap / self.spacing**2) / found.points], 1)
+        islands = find_islands(heights, self.spacing, levels.step, numbers, fitted=by_fit)
+        overlap = islands.tops - islands.levels * levels.step
+        spheres = np.stack(
+            [islands.tops, (islands.curvatures + 2 * np.pi * overlap / self.spacing**2) / islands.points], 1
+        )
         if by_fit:
-            spheres = np.where(np.isfinite(found.fits), found.fits, spheres)
-        first = np.where(found.levels == lowest, 0, found.levels * stride)
-        touching = Ranges(first, np.minimum((found.levels + 1) * stride, self._first_without_contact(found.tops)))
+            spheres = np.where(np.isfinite(islands.fits), islands.fits, spheres)
+        first = np.where(islands.levels == lowest, 0, islands.levels * stride)
+        touching = Ranges(first, np.minimum((islands.levels + 1) * stride, self._first_without_contact(islands.tops)))
         high = summits.tops >= lowest * levels.step
         apart = Ranges(self._first_without_contact(summits.tops[high]), np.full(high.sum(), grid.above))
         return Summits(
@@ -245,12 +247,12 @@ def contacts_of_samples(
 
     A surface that is the same object in several pairs is drawn once for all of them.
     """
-    found = [([], []) for _ in pairs]
+    contacts = [([], []) for _ in pairs]
     for k in samples:
-        for curves, pair, heights in zip(found, pairs, _equivalent_surface(pairs, streams, k), strict=True):
+        for curves, pair, heights in zip(contacts, pairs, _equivalent_surface(pairs, streams, k), strict=True):
             for column, curve in zip(curves, pair.contact(heights), strict=True):
                 column.append(curve.astype(np.float32))
-    return [(np.array(solid), np.array(bearing)) for solid, bearing in found]
+    return [(np.array(solid), np.array(bearing)) for solid, bearing in contacts]
 
 
 def _equivalent_surface(pairs, streams, sample):
@@ -262,8 +264,8 @@ def _equivalent_surface(pairs, streams, sample):
     for pair in pairs:
         above = (id(pair.beam), id(pair.substrate)) if pair.replica else id(pair.beam)
         if above not in strips:
-            drawn = streams(sample)
-            strips[above] = pair.replica.draw_beam(*drawn) if pair.replica else pair.beam.draw(drawn[0])
+            rngs = streams(sample)
+            strips[above] = pair.replica.draw_beam(*rngs) if pair.replica else pair.beam.draw(rngs[0])
         below = "substrate", id(pair.substrate)
         if below not in strips:
             strips[below] = pair.substrate.draw(streams(sample)[1])

@@ -58,17 +58,17 @@ def alone(heights: np.ndarray, space: HalfSpace) -> _Within:
 
     def within(level):
         """Places of the points above a level [m], and their regions."""
-        places, ends = _connected(heights, level, space.periodic)
-        rows, columns = (k.astype(np.int32) for k in np.unravel_index(places, heights.shape))
-        return places, Regions(rows, columns, ends, offsets, space.unit)
+        positions, ends = _connected(heights, level, space.periodic)
+        rows, columns = (k.astype(np.int32) for k in np.unravel_index(positions, heights.shape))
+        return positions, Regions(rows, columns, ends, offsets, space.unit)
 
     return within
 
 
 def together(space: HalfSpace) -> _Within:
     """All elements of a strip, with mutual displacements."""
-    everything = np.arange(space.shape[0] * space.shape[1])
-    return lambda level: (everything, space)
+    elements = np.arange(space.shape[0] * space.shape[1])
+    return lambda level: (elements, space)
 
 
 @dataclass(frozen=True)
@@ -87,8 +87,8 @@ class Strip:
     @cached_property
     def pull(self) -> np.ndarray:
         """Largest tension of all films per apparent area at ``grid.solid`` (n_solid,) [Pa]."""
-        nothing = np.zeros(self.grid.above)
-        return np.max([-self._curve(nothing, film)[1][: self.grid.above] for film in self.films], axis=0)
+        no_pressure = np.zeros(self.grid.above)
+        return np.max([-self._curve(no_pressure, film)[1][: self.grid.above] for film in self.films], axis=0)
 
     def energies(self, solid: np.ndarray) -> list[float]:
         """Adhesion energy e under each film [J m⁻²], for a pressure at the last distances of ``grid.solid`` [Pa]."""
@@ -113,21 +113,21 @@ def solid_pressure(strip: Strip, within: _Within, attraction: Adhesion) -> np.nd
     numbers = np.arange(grid.above - 1, -1, -max(round(BETWEEN / grid.step), 1))
     reach = 2 * attraction.reach
     pressure, pull = np.zeros((2, heights.size), np.float32)
-    found = []
+    pressures = []
     for number in numbers:
         distance = float(grid.solid[number])
-        places, space = within(distance - reach)
-        if not places.size:
-            found.append(0.0)
+        points, space = within(distance - reach)
+        if not points.size:
+            pressures.append(0.0)
             continue
-        z, *before = (values[places].reshape(space.shape) for values in (heights, pressure, pull))
+        z, *before = (values[points].reshape(space.shape) for values in (heights, pressure, pull))
         state = equilibrium(space, z, distance, attraction, State(distance, *before, z, 0))
-        pressure[places], pull[places] = state.pressure.ravel(), state.attraction.ravel()
-        found.append(state.force * places.size / heights.size)
-        if found[-1] > strip.pull[number]:
+        pressure[points], pull[points] = state.pressure.ravel(), state.attraction.ravel()
+        pressures.append(state.force * points.size / heights.size)
+        if pressures[-1] > strip.pull[number]:
             break
-    known = numbers[: len(found)][::-1]
-    return PchipInterpolator(known, found[::-1])(np.arange(known[0], grid.above))
+    solved = numbers[: len(pressures)][::-1]
+    return PchipInterpolator(solved, pressures[::-1])(np.arange(solved[0], grid.above))
 
 
 @kernel
@@ -135,27 +135,27 @@ def _connected(heights, level, periodic):
     """Places of the points above a level (m,), region after region, and the end of each region (k,)."""
     rows, columns = heights.shape
     unseen = heights.ravel() > level
-    places, ends = np.empty(unseen.sum(), np.int64), np.empty(unseen.sum(), np.int64)
-    found, seen, regions = 0, 0, 0
+    positions, ends = np.empty(unseen.sum(), np.int64), np.empty(unseen.sum(), np.int64)
+    end, head, regions = 0, 0, 0
     for first in range(unseen.size):
         if unseen[first]:
             unseen[first] = False
-            places[found] = first
-            found += 1
-            while seen < found:
-                i, j = places[seen] // columns, places[seen] % columns
-                seen += 1
+            positions[end] = first
+            end += 1
+            while head < end:
+                i, j = positions[head] // columns, positions[head] % columns
+                head += 1
                 for down, right in _AROUND:
                     row, column = i + down, j + right
                     if periodic or (0 <= row < rows and 0 <= column < columns):
-                        place = row % rows * columns + column % columns
-                        if unseen[place]:
-                            unseen[place] = False
-                            places[found] = place
-                            found += 1
-            ends[regions] = found
+                        position = row % rows * columns + column % columns
+                        if unseen[position]:
+                            unseen[position] = False
+                            positions[end] = position
+                            end += 1
+            ends[regions] = end
             regions += 1
-    return places, ends[:regions].copy()
+    return positions, ends[:regions].copy()
 
 
 @kernel

@@ -47,26 +47,26 @@ def _above(bearing, beyond, position):
     k = int(position)
     if k >= bearing.size - 1:
         return 0.0, 0.0
-    rest = position - k
-    area = bearing[k] + rest * (bearing[k + 1] - bearing[k])
-    return area, beyond[k] - 0.5 * rest * (bearing[k] + area)
+    fraction = position - k
+    area = bearing[k] + fraction * (bearing[k + 1] - bearing[k])
+    return area, beyond[k] - 0.5 * fraction * (bearing[k] + area)
 
 
 @kernel
-def _keep_volume(bearing, beyond, distance, rest, water, force):
-    """Replace the water of equilibrium in a ``force`` beyond the distance ``rest`` by one of constant volume.
+def _keep_volume(bearing, beyond, distance, equilibrium, water, force):
+    """Replace the water of equilibrium in a ``force`` beyond its distance by one of constant volume.
 
     Lengths are in steps from the first node of the bearing area, on whose nodes the distances are. Water has a height
     and a tension in equilibrium, and a height at which its tension is largest. Returns the area wetted at the last
     distance.
     """
     height, tension, thinnest = water
-    area, above = _above(bearing, beyond, rest - height)
-    volume = height * area - above + _above(bearing, beyond, rest)[1]
-    k = max(int(rest - height), 0)
+    area, above = _above(bearing, beyond, equilibrium - height)
+    volume = height * area - above + _above(bearing, beyond, equilibrium)[1]
+    k = max(int(equilibrium - height), 0)
     for i in range(distance.size):
         d = distance[i]
-        if d <= rest or volume <= 0:
+        if d <= equilibrium or volume <= 0:
             continue
         force[i] += tension * _above(bearing, beyond, d - height)[0]
         filled = volume - _above(bearing, beyond, d)[1]
@@ -114,6 +114,7 @@ def keep_volume(
         return None
     step, areas, fast = distance[1] - distance[0], bearing.astype(float), force.astype(float)
     beyond = np.append(np.cumsum((0.5 * (areas[1:] + areas[:-1]))[::-1])[::-1], 0.0)
-    rest, water = (limit_distance(distance, fast, 0.0) - first) / step, (layer[0] / step, layer[1], THINNEST / step)
-    wetted = _keep_volume(areas, beyond, (distance - first) / step, rest, water, fast)
+    equilibrium = (limit_distance(distance, fast, 0.0) - first) / step
+    water = layer[0] / step, layer[1], THINNEST / step
+    wetted = _keep_volume(areas, beyond, (distance - first) / step, equilibrium, water, fast)
     return fast, float(layer[0] * layer[1] * wetted)

@@ -17,8 +17,8 @@ def composite_modulus(first: Solid, second: Solid) -> float:
 
     .. math:: \frac{1}{E'} = \frac{1 - \nu_1^2}{E_1} + \frac{1 - \nu_2^2}{E_2}
     """
-    one, other = (reduced_modulus(solid.young_modulus, solid.poisson_ratio) for solid in (first, second))
-    return one * (2 * other / (one + other))  # in this order, equal bodies give exactly their reduced modulus
+    e1, e2 = (reduced_modulus(solid.young_modulus, solid.poisson_ratio) for solid in (first, second))
+    return e1 * (2 * e2 / (e1 + e2))  # in this order, equal bodies give exactly their reduced modulus
 
 
 def softer_hardness(first: Solid, second: Solid) -> float:
@@ -36,8 +36,8 @@ def hamaker_constant(first: Solid, second: Solid, medium: str) -> float:
     """
     for solid in (first, second):
         if medium not in solid.hamaker_constant:
-            stated = ", ".join(solid.hamaker_constant)
-            raise ValueError(f"the Hamaker constant of a solid through {medium} is not stated, only through {stated}")
+            media = ", ".join(solid.hamaker_constant)
+            raise ValueError(f"the Hamaker constant of a solid through {medium} is not stated, only through {media}")
     return combined(first.hamaker_constant[medium], second.hamaker_constant[medium])
 
 
@@ -66,9 +66,9 @@ def interfaces(first: Solid, second: Solid, medium: str) -> tuple[tuple[float, f
 
 def _interfaces(solid, medium):
     """Hamaker constant of the interfaces of a solid [J], and their depth below its coating [m]."""
-    whole, outer = solid.hamaker_constant[medium], solid.coating_hamaker_constant.get(medium, 0.0)
-    ratio = np.sqrt(outer / whole)
-    inner = (whole - outer) * (1 - ratio) / (1 + ratio)  # (√whole - √outer)², exact if there is one interface alone
+    total, outer = solid.hamaker_constant[medium], solid.coating_hamaker_constant.get(medium, 0.0)
+    ratio = np.sqrt(outer / total)
+    inner = (total - outer) * (1 - ratio) / (1 + ratio)  # (√total - √outer)², exact if there is one interface alone
     return (outer, 0.0), (inner, solid.coating)
 
 

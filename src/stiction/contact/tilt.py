@@ -12,11 +12,11 @@ from enum import StrEnum
 
 import numpy as np
 
-from stiction.contact.materials import Property, Step
+from stiction.contact.materials import InputStep, Property
 
 #: Radius of a rounded edge as an uncertain input. Slopes by steps of 0.2 and 0.5 are equal within their errors, and the
 #: larger step halves the errors.
-EDGE_RADIUS = Property("edge_radius_um", "radius of the edge", Step(0.5))
+EDGE_RADIUS = Property("edge_radius_um", "radius of the edge", InputStep(0.5))
 
 
 class Edge(StrEnum):

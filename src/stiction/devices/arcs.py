@@ -39,7 +39,7 @@ def arc_length(energy: float | np.ndarray, beam: Beam) -> float | np.ndarray:
     return (3 / 8 * beam.young_modulus * beam.thickness**3 * beam.gap**2 / energy) ** (1 / 4)
 
 
-def flat_force(slope: np.ndarray, parts: np.ndarray, radius: float) -> np.ndarray:
+def flat_force(slope: np.ndarray, attractions: np.ndarray, radius: float) -> np.ndarray:
     r"""Largest attraction of smooth tips with a rounded edge, an upper bound (s,) [N m⁻¹].
 
     An attraction of the energy e and of at most q adds
@@ -59,21 +59,21 @@ def flat_force(slope: np.ndarray, parts: np.ndarray, radius: float) -> np.ndarra
     radius : float
         R of the edge [m]; 0 leaves the wedge alone.
     """
-    energy, largest = parts[parts[:, 0] > 0].T[..., np.newaxis]
+    energy, largest = attractions[attractions[:, 0] > 0].T[..., np.newaxis]
     edge = np.sqrt(2 * radius * energy * largest)
     on_wedge = slope**2 * radius / 2 < energy / largest
     return np.where(on_wedge, energy / slope + largest * slope * radius / 2 + edge, 2 * edge).sum(axis=0)
 
 
-def flat_length(parts: np.ndarray, radius: float, beam: Beam) -> float:
+def flat_length(attractions: np.ndarray, radius: float, beam: Beam) -> float:
     """Longest releasing arc with a smooth tip that has a rounded edge, a lower bound [m]. Arguments as of `flat_force`.
 
     The root lies between the slope of a sharp edge and the slope at which the force there bends the beam.
     """
-    sharp = np.atleast_1d(tip_slope(arc_length(parts[:, 0].sum(), beam), beam.gap))
-    steepest = (flat_force(sharp, parts, radius) / bending_force(sharp, beam)) ** (1 / 3)
+    sharp = np.atleast_1d(tip_slope(arc_length(attractions[:, 0].sum(), beam), beam.gap))
+    steepest = (flat_force(sharp, attractions, radius) / bending_force(sharp, beam)) ** (1 / 3)
     slopes = sharp * np.geomspace(1 / 2, 2 * steepest.item(), _STEPS)
-    return float(longest_free(slopes, flat_force(slopes, parts, radius)[np.newaxis], beam)[0])
+    return float(longest_free(slopes, flat_force(slopes, attractions, radius)[np.newaxis], beam)[0])
 
 
 def longest_free(slopes: np.ndarray, forces: np.ndarray, beam: Beam) -> np.ndarray:
@@ -101,8 +101,8 @@ def longest_free(slopes: np.ndarray, forces: np.ndarray, beam: Beam) -> np.ndarr
     with np.errstate(divide="ignore"):
         # Logarithm of P/w over the force that frees the tip: positive at the slopes at which it holds the beam.
         excess = np.log(forces / bending_force(slopes, beam))
-    held, logarithms, last = excess >= 0, np.log(slopes), len(slopes) - 1
-    above = np.where(held.any(axis=1), len(slopes) - np.argmax(held[:, ::-1], axis=1), 0)
+    holds, logarithms, last = excess >= 0, np.log(slopes), len(slopes) - 1
+    above = np.where(holds.any(axis=1), len(slopes) - np.argmax(holds[:, ::-1], axis=1), 0)
     below, row, ahead = np.maximum(above - 1, 0), np.arange(len(forces)), np.minimum(above, last)
     step = logarithms[ahead] - logarithms[below]
     with np.errstate(invalid="ignore", divide="ignore"):

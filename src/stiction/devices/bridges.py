@@ -53,12 +53,12 @@ def half_of_bridge(beam: Beam, residual_stress: float) -> Beam:
 # Finite elements
 
 
-def longest_strip(part: Beam, laws: np.ndarray) -> float:
-    """Longest strip to resolve the middle of a bridge on force laws (n, 4) [m]. ``part`` is any part of it."""
-    return STRIP * foundation_length(part, laws)
+def longest_strip(beam: Beam, laws: np.ndarray) -> float:
+    """Longest strip to resolve the middle of a bridge on force laws (n, 4) [m]. ``beam`` is any part of it."""
+    return STRIP * foundation_length(beam, laws)
 
 
-def middle_zone(part: Beam, strip: float, laws: np.ndarray) -> tuple[Beam, int]:
+def middle_zone(beam: Beam, strip: float, laws: np.ndarray) -> tuple[Beam, int]:
     """Zone around the middle of a bridge with fine enough elements, and its number of strips.
 
     From any part of the bridge, under its tension, the length of a strip of ground [m], and a sample of the force laws
@@ -69,7 +69,7 @@ def middle_zone(part: Beam, strip: float, laws: np.ndarray) -> tuple[Beam, int]:
     ValueError
         If the strips are too long for the laws.
     """
-    foundation, allowed = foundation_length(part, laws), longest_strip(part, laws)
+    foundation, allowed = foundation_length(beam, laws), longest_strip(beam, laws)
     if strip > LONGER * allowed:
         raise ValueError(
             f"strips of {1e6 * strip:.3g} µm do not resolve the middle of a bridge on these surfaces: they must be at "
@@ -77,7 +77,7 @@ def middle_zone(part: Beam, strip: float, laws: np.ndarray) -> tuple[Beam, int]:
         )
     strips = 2 * int(np.ceil(ZONE * foundation / strip))
     each = int(np.ceil(strip / (ELEMENT * foundation)))
-    return replace(part, length=strips * strip, elements=strips * each), strips
+    return replace(beam, length=strips * strip, elements=strips * each), strips
 
 
 def held_length(zone: Beam, laws: np.ndarray) -> float:
@@ -124,14 +124,14 @@ def held_lengths(
 # Closed form
 
 
-def pull(length: float, part: Beam) -> tuple[float, float]:
+def pull(length: float, beam: Beam) -> tuple[float, float]:
     """Force of a bridge of a length [m] at its middle [N], and the curvature there [m⁻¹]."""
     half = length / 2
-    force, moment, _, _ = end_stiffness(part.decay * half) if part.tension else (12.0, 6.0, 4.0, 2.0)
-    return 2 * force * part.bending_stiffness * part.gap / half**3, moment * part.gap / half**2
+    force, moment, _, _ = end_stiffness(beam.decay * half) if beam.tension else (12.0, 6.0, 4.0, 2.0)
+    return 2 * force * beam.bending_stiffness * beam.gap / half**3, moment * beam.gap / half**2
 
 
-def least_length(energy: float, pull_off: float, part: Beam) -> float:
+def least_length(energy: float, pull_off: float, beam: Beam) -> float:
     r"""Least length of a bridge to stick at its middle, over all laws of this energy [J m⁻²] and pull-off [Pa] [m].
 
     The law that holds most attracts with f_max as far as e / f_max, and not beyond. It balances the force P of the
@@ -154,13 +154,13 @@ def least_length(energy: float, pull_off: float, part: Beam) -> float:
 
     def excess(length):
         """Gap at the end of the stuck width beyond the reach of the law, at a length of the bridge [m]."""
-        force, curvature = pull(length, part)
-        width = force / (2 * part.width * pull_off)
-        rise = curvature * width**2 / 2 - 7 / 48 * force * width**3 / part.bending_stiffness
+        force, curvature = pull(length, beam)
+        width = force / (2 * beam.width * pull_off)
+        rise = curvature * width**2 / 2 - 7 / 48 * force * width**3 / beam.bending_stiffness
         return rise - energy / pull_off
 
-    longer = 2 * float(arrest_length(energy, part))
-    while longer > part.thickness:
+    longer = 2 * float(arrest_length(energy, beam))
+    while longer > beam.thickness:
         shorter = _SHORTER * longer
         if excess(shorter) > 0:
             return float(brentq(excess, shorter, longer))

@@ -69,10 +69,10 @@ class Budget:
     @property
     def uncorrelated(self) -> "Budget":
         """Budget of the same inputs, taken as independent. Surfaces of one kind are one input."""
-        kept = np.eye(len(self.names), dtype=bool)
+        correlated = np.eye(len(self.names), dtype=bool)
         for kind in self.kinds:
-            kept[np.ix_(*[self._places(kind)] * 2)] = True
-        return replace(self, covariance=np.where(kept, self.covariance, 0.0))
+            correlated[np.ix_(*[self._positions(kind)] * 2)] = True
+        return replace(self, covariance=np.where(correlated, self.covariance, 0.0))
 
     def unsafe_total(self, bends: np.ndarray) -> float:
         r"""Half of a margin that keeps its probability where the response is curved [-].
@@ -88,16 +88,22 @@ class Budget:
 
     def effect(self, group: Sequence[str]) -> float:
         """Relative standard uncertainty of the length due to some inputs together, the others being exact [-]."""
-        of = self._places(group)
-        return float(np.sqrt(np.maximum(self.slopes[of] @ self.covariance[np.ix_(of, of)] @ self.slopes[of], 0)))
+        positions = self._positions(group)
+        return float(
+            np.sqrt(
+                np.maximum(
+                    self.slopes[positions] @ self.covariance[np.ix_(positions, positions)] @ self.slopes[positions], 0
+                )
+            )
+        )
 
     def error_of_effect(self, group: Sequence[str], slope_errors: np.ndarray) -> float:
         """Standard error of `effect` due to those of the slopes of all inputs (k,) [-]."""
-        of, effect = self._places(group), self.effect(group)
+        positions, effect = self._positions(group), self.effect(group)
         if effect == 0:
             return 0.0
-        gradient = self.covariance[np.ix_(of, of)] @ self.slopes[of] / effect
-        return float(np.linalg.norm(gradient * np.asarray(slope_errors)[of]))
+        gradient = self.covariance[np.ix_(positions, positions)] @ self.slopes[positions] / effect
+        return float(np.linalg.norm(gradient * np.asarray(slope_errors)[positions]))
 
     def remaining(self, group: Sequence[str]) -> float:
         """Relative standard uncertainty of the length left if some inputs were known exactly [-].
@@ -105,13 +111,13 @@ class Budget:
         What is correlated with these inputs is then better known, too: the variance falls by that of the regression
         on them.
         """
-        of = self._places(group)
-        shared = self.covariance[of] @ self.slopes
-        known = shared @ np.linalg.pinv(self.covariance[np.ix_(of, of)], hermitian=True) @ shared
-        left = self.total**2 - known
-        return 0.0 if left < _ROUNDING * self.total**2 else float(np.sqrt(left))
+        positions = self._positions(group)
+        shared = self.covariance[positions] @ self.slopes
+        explained = shared @ np.linalg.pinv(self.covariance[np.ix_(positions, positions)], hermitian=True) @ shared
+        unexplained = self.total**2 - explained
+        return 0.0 if unexplained < _ROUNDING * self.total**2 else float(np.sqrt(unexplained))
 
-    def _places(self, group):
+    def _positions(self, group):
         """Positions of inputs."""
         return [self.names.index(name) for name in group]
 
@@ -135,17 +141,17 @@ def log_slope(
     devices stick.
     """
 
-    def slope(used):
+    def slope(devices):
         """Central difference of ln length over the step, NaN without finite lengths."""
-        ends = length(less[used]), length(more[used])
+        ends = length(less[devices]), length(more[devices])
         return np.log(ends[1] / ends[0]) / step if np.isfinite(ends).all() else np.nan
 
     group = np.arange(len(less)) % groups
-    whole, left_out = float(slope(np.ones(len(less), bool))), np.array([slope(group != k) for k in range(groups)])
-    if not np.isfinite([whole, *left_out]).all():
+    of_all, left_out = float(slope(np.ones(len(less), bool))), np.array([slope(group != k) for k in range(groups)])
+    if not np.isfinite([of_all, *left_out]).all():
         return np.nan, np.nan
     error = float(np.sqrt((groups - 1) / groups * np.sum((left_out - left_out.mean()) ** 2)))
-    return whole, error if error > _ROUNDING * abs(whole) else 0.0
+    return of_all, error if error > _ROUNDING * abs(of_all) else 0.0
 
 
 def choice_effect(base: float, changed: float) -> float:

@@ -107,8 +107,8 @@ def error_between(humidities: np.ndarray, lengths: np.ndarray) -> float:
         return np.nan
     left_out = np.arange(1, len(humidities) - 1, 2)
     kept = np.delete(np.arange(len(humidities)), left_out)
-    found = between(humidities[kept], lengths[kept], humidities[left_out])
-    return float(np.max(np.abs(found / lengths[left_out] - 1)))
+    interpolated = between(humidities[kept], lengths[kept], humidities[left_out])
+    return float(np.max(np.abs(interpolated / lengths[left_out] - 1)))
 
 
 def of_sizes(humidities: Sequence[float]) -> list[float]:
@@ -119,8 +119,8 @@ def of_sizes(humidities: Sequence[float]) -> list[float]:
     >>> of_sizes([0.44, 0.5, 0.6, 0.67, 0.8, 0.92, 0.95])
     [0.44, 0.67, 0.95]
     """
-    places = np.linspace(0, len(humidities) - 1, min(OF_SIZES, len(humidities)))
-    return [humidities[round(place)] for place in places]
+    positions = np.linspace(0, len(humidities) - 1, min(OF_SIZES, len(humidities)))
+    return [humidities[round(position)] for position in positions]
 
 
 #: Normal scores at which the lengths of two sizes are compared: the median, and 1 of 700.
@@ -135,9 +135,9 @@ def spread_of(quantiles: np.ndarray, scores: np.ndarray) -> np.ndarray:
     NaN where a quantile between the 2nd percentile and the median is not known.
     """
     used = (scores >= _FITTED[0]) & (scores <= _FITTED[1])
-    known, centred = np.log(quantiles[..., used]), scores[used] - scores[used].mean()
-    slope = known @ centred / (centred @ centred)
-    return known.mean(axis=-1, keepdims=True) + slope[..., None] * (SCORES - scores[used].mean())
+    logarithms, centred = np.log(quantiles[..., used]), scores[used] - scores[used].mean()
+    slope = logarithms @ centred / (centred @ centred)
+    return logarithms.mean(axis=-1, keepdims=True) + slope[..., None] * (SCORES - scores[used].mean())
 
 
 def parabola(humidities: Sequence[float], values: np.ndarray, at: float) -> tuple[np.ndarray, np.ndarray]:
@@ -148,7 +148,10 @@ def parabola(humidities: Sequence[float], values: np.ndarray, at: float) -> tupl
     dry, middle, wet = humidities
     share = (middle - dry) / (wet - dry)
     error = np.abs((1 - share) * values[0] + share * values[2] - values[1])
-    weights = [np.prod([(at - other) / (one - other) for other in humidities if other != one]) for one in humidities]
+    weights = [
+        np.prod([(at - other) / (humidity - other) for other in humidities if other != humidity])
+        for humidity in humidities
+    ]
     return np.tensordot(weights, values, axes=1), error
 
 

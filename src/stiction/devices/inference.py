@@ -51,7 +51,7 @@ _ROUNDING = 1e-12
 
 
 @dataclass(frozen=True)
-class Draws:
+class NormalMixture:
     """Equally probable normal distributions of the errors of inputs. Together they are their distribution."""
 
     centres: np.ndarray  #: (m, k)
@@ -71,20 +71,20 @@ class Draws:
 
 
 @dataclass(frozen=True)
-class Knowledge:
+class KnownInputs:
     """Distribution of the errors of inputs, normal unless there are draws."""
 
     names: tuple[str, ...]  #: of the inputs
     mean: np.ndarray  #: (k,), zero before a measurement, in the units of the inputs
     covariance: np.ndarray  #: (k, k)
-    draws: Draws | None = None
+    draws: NormalMixture | None = None
 
     @property
     def deviations(self) -> np.ndarray:
         """Standard deviation of every input (k,)."""
         return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
-    def of(self, response: np.ndarray) -> tuple[float | np.ndarray, float | np.ndarray]:
+    def response_moments(self, response: np.ndarray) -> tuple[float | np.ndarray, float | np.ndarray]:
         """Mean and standard deviation of the linear response of some results to the inputs, (..., k) -> (...)."""
         variance = np.einsum("...i,ij,...j->...", response, self.covariance, response)
         return response @ self.mean, np.sqrt(np.maximum(variance, 0.0))
@@ -92,14 +92,14 @@ class Knowledge:
     def quantiles(self, responses: np.ndarray, scores: np.ndarray = SCORES) -> np.ndarray:
         """Quantiles of the linear responses of some results (n, k) at normal scores (s,), (n, s)."""
         if self.draws is None:
-            mean, deviation = self.of(responses)
+            mean, deviation = self.response_moments(responses)
             return mean[:, None] + deviation[:, None] * scores
         rows = [self.draws.quantiles(response, scores) for response in responses]
         return np.reshape(rows, (len(responses), len(scores)))
 
 
 @dataclass(frozen=True)
-class Lengths:
+class CrackData:
     """Mean crack lengths of test beams beside the computed ones."""
 
     responses: np.ndarray  #: d ln l / dx (n, k)
@@ -141,9 +141,9 @@ class Counts:
     def deviance(self, errors: np.ndarray) -> float | np.ndarray:
         """Deviance of errors: twice the log of the likelihood ratio to the counted fractions, (..., k) -> (...)."""
         stuck, free = self.logarithms(errors)
-        others = self.beams - self.stuck
-        best = xlogy(self.stuck, self.stuck / self.beams) + xlogy(others, others / self.beams)
-        return 2 * np.sum(best - self.stuck * stuck - others * free, axis=-1)
+        released = self.beams - self.stuck
+        best = xlogy(self.stuck, self.stuck / self.beams) + xlogy(released, released / self.beams)
+        return 2 * np.sum(best - self.stuck * stuck - released * free, axis=-1)
 
     def slope(self, errors: np.ndarray) -> np.ndarray:
         """Derivative of the deviance by the errors of the inputs (k,), (k,)."""
@@ -180,7 +180,7 @@ def _last_slope(inner):
 
 
 @dataclass(frozen=True)
-class Discrepancy:
+class DiscrepancyOfModel:
     """Standard deviations of the discrepancy of the model in ln l, before test beams are measured."""
 
     factor: float  #: of α [-]
@@ -194,12 +194,12 @@ def rest(condition: Hashable) -> str:
 
 
 def with_discrepancy(
-    prior: Knowledge,
+    prior: KnownInputs,
     responses: np.ndarray,
     reduced: np.ndarray,
     conditions: Sequence[Hashable | None],
-    stated: Discrepancy,
-) -> tuple[Knowledge, np.ndarray]:
+    discrepancy: DiscrepancyOfModel,
+) -> tuple[KnownInputs, np.ndarray]:
     """Prior of the inputs and of the discrepancy, and the responses of all results to both.
 
     Parameters
@@ -220,27 +220,27 @@ def with_discrepancy(
         Of k + 2 + m inputs for m different conditions.
     (n, k + 2 + m) array
     """
-    rests = [one for one in dict.fromkeys(conditions) if one is not None]
-    has_rest = np.array([[one == other for other in rests] for one in conditions], float)
+    rests = [condition for condition in dict.fromkeys(conditions) if condition is not None]
+    has_rest = np.array([[condition == other for other in rests] for condition in conditions], float)
     has_rest = has_rest.reshape(len(conditions), len(rests))
-    errs = np.array([one is not None for one in conditions], float)
-    variances = np.array([stated.factor, stated.slope, *[stated.rest] * len(rests)]) ** 2
+    errs = np.array([condition is not None for condition in conditions], float)
+    variances = np.array([discrepancy.factor, discrepancy.slope, *[discrepancy.rest] * len(rests)]) ** 2
     mean = np.concatenate([prior.mean, np.zeros(len(variances))])
     names = (*prior.names, FACTOR, SLOPE, *map(rest, rests))
-    widened = Knowledge(names, mean, block_diag(prior.covariance, np.diag(variances)))
+    widened = KnownInputs(names, mean, block_diag(prior.covariance, np.diag(variances)))
     return widened, np.column_stack([responses, errs, errs * reduced, has_rest])
 
 
 # Update
 
 
-def given_lengths(prior: Knowledge, data: Lengths) -> Knowledge:
+def given_lengths(prior: KnownInputs, data: CrackData) -> KnownInputs:
     """Knowledge after mean crack lengths were measured."""
     shared = prior.covariance @ data.responses.T
     gain = np.linalg.solve(_spread(prior, data), shared.T).T
     mean = prior.mean + gain @ (data.differences - data.responses @ prior.mean)
     covariance = prior.covariance - gain @ shared.T
-    return Knowledge(prior.names, mean, (covariance + covariance.T) / 2)
+    return KnownInputs(prior.names, mean, (covariance + covariance.T) / 2)
 
 
 def _spread(prior, data):
@@ -249,8 +249,8 @@ def _spread(prior, data):
 
 
 def update(
-    prior: Knowledge, lengths: Lengths, counts: Counts | None = None, rng: np.random.Generator | None = None
-) -> Knowledge:
+    prior: KnownInputs, lengths: CrackData, counts: Counts | None = None, rng: np.random.Generator | None = None
+) -> KnownInputs:
     """Knowledge after measured crack lengths and counts of stuck beams. For counts, errors are drawn.
 
     Raises
@@ -258,25 +258,25 @@ def update(
     NotConverged
         If too few draws are probable.
     """
-    known = given_lengths(prior, lengths)
+    after_lengths = given_lengths(prior, lengths)
     if counts is None or not len(counts):
-        return known
-    gain = _counted_directions(known, counts)
-    misfit = _Misfit(known.mean, gain, counts)
+        return after_lengths
+    gain = _counted_directions(after_lengths, counts)
+    misfit = _Misfit(after_lengths.mean, gain, counts)
     mode = misfit.most_probable()
     errors, weights = weighted(misfit.log_likelihood, mode, misfit.curvature(mode), rng)
-    mean, others = weights @ errors, known.covariance - gain @ gain.T
+    mean, residual = weights @ errors, after_lengths.covariance - gain @ gain.T
     spread = (errors - mean).T @ ((errors - mean) * weights[:, None])
-    kept = np.searchsorted(np.cumsum(weights), (np.arange(_KEPT) + 0.5) / _KEPT)
-    draws = Draws(known.mean + errors[kept] @ gain.T, others)
-    return Knowledge(prior.names, known.mean + gain @ mean, others + gain @ spread @ gain.T, draws)
+    resampled = np.searchsorted(np.cumsum(weights), (np.arange(_KEPT) + 0.5) / _KEPT)
+    draws = NormalMixture(after_lengths.mean + errors[resampled] @ gain.T, residual)
+    return KnownInputs(prior.names, after_lengths.mean + gain @ mean, residual + gain @ spread @ gain.T, draws)
 
 
-def _counted_directions(known, counts):
+def _counted_directions(knowledge, counts):
     """Expected inputs per independent standard normal error (k, r). Counts depend on these errors alone."""
     *shape, inputs = counts.responses.shape
     responses = counts.responses.reshape(math.prod(shape), inputs)
-    shared = known.covariance @ responses.T
+    shared = knowledge.covariance @ responses.T
     variances, axes = np.linalg.eigh(responses @ shared)
     uncertain = variances > _ROUNDING * variances.max()
     return shared @ (axes[:, uncertain] / np.sqrt(variances[uncertain]))
@@ -316,22 +316,22 @@ class _Misfit:
 # What the data say
 
 
-def least_misfits(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> list[tuple[float, int]]:
+def least_misfits(prior: KnownInputs, lengths: CrackData, counts: Counts | None = None) -> list[tuple[float, int]]:
     r"""Least misfits of lengths, and of counts after these, each with its number of data.
 
     :math:`d^T S^{-1} d` is the least sum of the squares of all pulls, on the data and on the inputs. Of counts, their
     deviance takes the place of a pull.
     """
     away = lengths.differences - lengths.responses @ prior.mean
-    found = [(float(away @ np.linalg.solve(_spread(prior, lengths), away)), len(away))]
+    misfits = [(float(away @ np.linalg.solve(_spread(prior, lengths), away)), len(away))]
     if counts is not None and len(counts):
-        known = given_lengths(prior, lengths)
-        misfit = _Misfit(known.mean, _counted_directions(known, counts), counts)
-        found.append((2 * misfit(misfit.most_probable()), len(counts)))
-    return found
+        after_lengths = given_lengths(prior, lengths)
+        misfit = _Misfit(after_lengths.mean, _counted_directions(after_lengths, counts), counts)
+        misfits.append((2 * misfit(misfit.most_probable()), len(counts)))
+    return misfits
 
 
-def p_value(prior: Knowledge, lengths: Lengths, counts: Counts | None = None) -> float:
+def p_value(prior: KnownInputs, lengths: CrackData, counts: Counts | None = None) -> float:
     """Probability of differences at least as large as the measured ones, before these are used [-].
 
     Each of the `least_misfits` has a chi-squared distribution if inputs and discrepancy err as stated: data that no
@@ -353,7 +353,7 @@ class Combination:
     remaining: float  #: its standard deviation after the measurement, that before being 1 [-]
 
 
-def combinations(prior: Knowledge, posterior: Knowledge) -> list[Combination]:
+def combinations(prior: KnownInputs, posterior: KnownInputs) -> list[Combination]:
     """Independent combinations of the errors of all inputs, the best determined by the data first.
 
     Data determine as many of them as there are independent data. Inputs that are correlated with the same combination
@@ -364,8 +364,8 @@ def combinations(prior: Knowledge, posterior: Knowledge) -> list[Combination]:
     uncertain = variances > _ROUNDING
     root = axes[:, uncertain] * np.sqrt(variances[uncertain])
     inverse = root / variances[uncertain]
-    left, directions = np.linalg.eigh(inverse.T @ (posterior.covariance / np.outer(scale, scale)) @ inverse)
-    deviations = np.sqrt(np.maximum(left, 0.0))
+    ratios, directions = np.linalg.eigh(inverse.T @ (posterior.covariance / np.outer(scale, scale)) @ inverse)
+    deviations = np.sqrt(np.maximum(ratios, 0.0))
     return [Combination(_signed(axis), float(at)) for axis, at in zip((root @ directions).T, deviations, strict=True)]
 
 
@@ -387,11 +387,11 @@ def expected_share(margins: np.ndarray, weights: np.ndarray, quantiles: np.ndarr
     return float(weights @ ndtr(score(margins)))
 
 
-def further_beams(knowledge: Knowledge, target: np.ndarray, response: np.ndarray, error: float) -> float:
+def further_beams(knowledge: KnownInputs, target: np.ndarray, response: np.ndarray, error: float) -> float:
     """Standard deviation of a result after the mean length of further test beams is measured [-].
 
     The responses of the result, ``target``, and of the further test beams are (k,); the error is that of their ln l
     [-].
     """
-    data = Lengths(response[None], np.zeros(1), np.array([error]))
-    return float(given_lengths(knowledge, data).of(target)[1])
+    data = CrackData(response[None], np.zeros(1), np.array([error]))
+    return float(given_lengths(knowledge, data).response_moments(target)[1])

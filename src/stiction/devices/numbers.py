@@ -69,7 +69,8 @@ def beams_for(spreads: Sequence[Spread], share: float, accuracy: float, strips: 
     numbers = np.arange(_BEAMS, MOST_BEAMS + 1, _BEAMS)
     errors = quantile_errors(numbers, share)
     enough = np.all(
-        [one.slope * errors <= _remaining_error(accuracy, one.surfaces / strips**0.5) for one in spreads], axis=0
+        [spread.slope * errors <= _remaining_error(accuracy, spread.surfaces / strips**0.5) for spread in spreads],
+        axis=0,
     )
     return int(numbers[np.argmax(enough) if enough.any() else np.argmin(errors)])
 
@@ -77,8 +78,8 @@ def beams_for(spreads: Sequence[Spread], share: float, accuracy: float, strips: 
 def strips_for(spreads: Sequence[Spread], share: float, accuracy: float, beams: int, fewest: int) -> int:
     """Smallest number of strips for an accuracy of all lengths with a number of beams, up to `MOST_STRIPS`."""
     error = quantile_errors(np.array([beams]), share)[0]
-    needed = max((one.surfaces / _remaining_error(accuracy, one.slope * error)) ** 2 for one in spreads)
-    return min(max(int(np.ceil(needed / _STRIPS)), -(-fewest // _STRIPS)) * _STRIPS, MOST_STRIPS)
+    strips = max((spread.surfaces / _remaining_error(accuracy, spread.slope * error)) ** 2 for spread in spreads)
+    return min(max(int(np.ceil(strips / _STRIPS)), -(-fewest // _STRIPS)) * _STRIPS, MOST_STRIPS)
 
 
 def strips_for_mean(error: float, fewest: int) -> int:
@@ -91,8 +92,8 @@ def strips_for_mean(error: float, fewest: int) -> int:
     >>> strips_for_mean(0.25 * 0.24, 300), strips_for_mean(0.25 * 0.59, 300), strips_for_mean(0.25 * 0.24, 1820)
     (500, 2500, 2000)
     """
-    needed = max((error / MEAN_ERROR) ** 2, fewest, 1)
-    return min(math.ceil(needed / FEWEST_OF_MEAN) * FEWEST_OF_MEAN, MOST_OF_MEAN)
+    strips = max((error / MEAN_ERROR) ** 2, fewest, 1)
+    return min(math.ceil(strips / FEWEST_OF_MEAN) * FEWEST_OF_MEAN, MOST_OF_MEAN)
 
 
 def _remaining_error(accuracy, other):

@@ -45,9 +45,9 @@ def counted(share: float | np.ndarray, places: int, scores: float | np.ndarray) 
     >>> counted(0.0, 600, np.array([-1.96, 1.96])).round(4), float(counted(0.5, 100, 0.0))
     (array([0.    , 0.0042]), 0.5)
     """
-    found = betaincinv(places * share + 0.5, places * (1 - share) + 0.5, ndtr(scores))
-    found = np.where((share <= 0) & (scores < 0), 0.0, found)
-    return np.where((share >= 1) & (scores > 0), 1.0, found)
+    fraction = betaincinv(places * share + 0.5, places * (1 - share) + 0.5, ndtr(scores))
+    fraction = np.where((share <= 0) & (scores < 0), 0.0, fraction)
+    return np.where((share >= 1) & (scores > 0), 1.0, fraction)
 
 
 def two_sided(share: float | np.ndarray) -> float | np.ndarray:

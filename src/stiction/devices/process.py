@@ -43,9 +43,9 @@ class Margins:
     def at(self, axes: Sequence[np.ndarray]) -> "Margins":
         """Margins at other settings within their own."""
         margin, slopes, error = self.margin, self.slopes, self.error
-        for axis, places in enumerate(zip(self.axes, axes, strict=True)):
-            margin = np.apply_along_axis(_smooth, axis, margin, *places)
-            slopes, error = (np.apply_along_axis(_linear, axis, values, *places) for values in (slopes, error))
+        for axis, points in enumerate(zip(self.axes, axes, strict=True)):
+            margin = np.apply_along_axis(_smooth, axis, margin, *points)
+            slopes, error = (np.apply_along_axis(_linear, axis, values, *points) for values in (slopes, error))
         return Margins(tuple(axes), np.clip(margin, -LARGEST, LARGEST), slopes, error)
 
     def settings(self, number: int) -> np.ndarray:
@@ -53,14 +53,14 @@ class Margins:
         return np.meshgrid(*self.axes, indexing="ij")[max(-1 - number, -len(self.axes))]
 
 
-def _smooth(values, places, others):
+def _smooth(values, points, targets):
     """Values (n,) at places (n,), smoothly between them at others (m,)."""
-    return Akima1DInterpolator(places, values)(others)
+    return Akima1DInterpolator(points, values)(targets)
 
 
-def _linear(values, places, others):
+def _linear(values, points, targets):
     """Values (n,) at places (n,), linearly between them at others (m,)."""
-    return np.interp(others, places, values)
+    return np.interp(targets, points, values)
 
 
 @dataclass(frozen=True)
@@ -113,16 +113,16 @@ def recommended(
         Covariance of the errors of one setting, of each law.
     rng : numpy.random.Generator
     """
-    axes, (parts, runs) = _compared(devices, laws), _drawn(laws, rng)
-    drawn, margin, margins, of_run = np.concatenate(parts, axis=1), np.inf, np.inf, np.inf
+    axes, (deviations, runs) = _compared(devices, laws), _drawn(laws, rng)
+    together, margin, margins, of_run = np.concatenate(deviations, axis=1), np.inf, np.inf, np.inf
     for device in devices:
-        here = device.at(axes)
-        of_mean, of_next = _drawn_margins(here, laws, drawn, runs, rng.standard_normal((DRAWS, 1)))
-        margin, margins = np.minimum(margin, here.margin), np.minimum(margins, of_mean)
+        on_grid = device.at(axes)
+        of_mean, of_next = _drawn_margins(on_grid, laws, together, runs, rng.standard_normal((DRAWS, 1)))
+        margin, margins = np.minimum(margin, on_grid.margin), np.minimum(margins, of_mean)
         of_run = np.minimum(of_run, of_next)
     best = np.array([_best(axes, values) for values in margins])
-    subject, wanted = _wanted(axes, margins, best)
-    following, again, before, after = _advice(laws, errors, parts, wanted)
+    subject, targets = _wanted(axes, margins, best)
+    following, again, before, after = _advice(laws, errors, deviations, targets)
     return Recommendation(
         axes=axes,
         margin=margin,
@@ -178,34 +178,34 @@ def _compared(devices, laws):
 
 def _drawn(laws, rng):
     """Errors of the coefficients of drawn laws (draws, all) of each law, and deviations of the next runs (draws, q)."""
-    drawn = [law.drawn(DRAWS, rng) for law in laws]
-    return [errors.reshape(DRAWS, -1) for errors, _ in drawn], np.concatenate([runs for _, runs in drawn], axis=1)
+    draws = [law.draw(DRAWS, rng) for law in laws]
+    return [errors.reshape(DRAWS, -1) for errors, _ in draws], np.concatenate([runs for _, runs in draws], axis=1)
 
 
-def _drawn_margins(margins, laws, drawn, runs, common):
-    """Margins on drawn laws, whose coefficients differ by ``drawn`` (draws, all): of mean and run, (draws, axes...).
+def _drawn_margins(margins, laws, deviations, runs, common):
+    """Margins on laws whose coefficients differ by ``deviations`` (draws, all): of mean and run, (draws, axes...).
 
     A run differs by ``runs`` (draws, q). Errors ``common`` (draws, 1) are those of simulation and model [standard
     errors].
     """
     sizes, shape = np.cumsum([len(law.coefficients) for law in laws])[:-1], margins.margin.shape
-    parts = []
+    products = []
     for number, (law, slopes) in enumerate(zip(laws, np.split(margins.slopes, sizes, axis=-1), strict=True)):
         basis = law.basis(margins.settings(number).ravel()).reshape(*shape, -1)
-        parts.append((slopes[..., None] * basis[..., None, :]).reshape(*shape, -1))
-    by_coefficients = np.concatenate(parts, axis=-1)
+        products.append((slopes[..., None] * basis[..., None, :]).reshape(*shape, -1))
+    by_coefficients = np.concatenate(products, axis=-1)
     of_mean, of_run = np.empty((2, DRAWS, *shape))
     for row in np.ndindex(shape[:-1]):
         at = (slice(None), *row)
-        of_mean[at] = margins.margin[row] + drawn @ by_coefficients[row].T + common * margins.error[row]
+        of_mean[at] = margins.margin[row] + deviations @ by_coefficients[row].T + common * margins.error[row]
         of_run[at] = of_mean[at] + runs @ margins.slopes[row].T
     return of_mean, of_run
 
 
 def _best(axes, margin):
     """Setting of each process with the largest margin, the middle of several, (processes,)."""
-    places = np.nonzero(margin >= margin.max() - 1e-12)
-    return np.array([axis[at].mean() for axis, at in zip(axes, places, strict=True)][::-1])
+    positions = np.nonzero(margin >= margin.max() - 1e-12)
+    return np.array([axis[at].mean() for axis, at in zip(axes, positions, strict=True)][::-1])
 
 
 def _wanted(axes, margins, best):
@@ -215,32 +215,33 @@ def _wanted(axes, margins, best):
     return "range", (margins >= 0).mean(axis=1)[:, None] * np.ptp(axes[0])
 
 
-def _advice(laws, errors, parts, wanted):
+def _advice(laws, errors, deviations, targets):
     """Settings of each process to measure next, as by `_next`: of all surfaces of one process, or of one each."""
-    groups = [slice(number, number + 1) for number in range(len(laws))] if wanted.shape[1] > 1 else [slice(None)]
+    groups = [slice(number, number + 1) for number in range(len(laws))] if targets.shape[1] > 1 else [slice(None)]
     advice = [
-        _next(laws[group], errors[group], parts[group], column) for group, column in zip(groups, wanted.T, strict=True)
+        _next(laws[group], errors[group], deviations[group], column)
+        for group, column in zip(groups, targets.T, strict=True)
     ]
     return map(np.array, zip(*advice, strict=True))
 
 
-def _next(laws, errors, drawn, wanted):
+def _next(laws, errors, deviations, target):
     """Setting whose measurement shrinks the error of a wanted number most.
 
     Returns the setting, whether it is measured already, and the errors before and after. The number, one of each draw,
     is taken as linear in the coefficients of the laws, as far as the draws show.
     """
-    before, ends = float(wanted.std()), [law.ends for law in laws]
-    slopes, *_ = np.linalg.lstsq(np.concatenate(drawn, axis=1), wanted - wanted.mean(), rcond=1e-9)
-    parts = np.split(slopes, np.cumsum([law.coefficients.size for law in laws])[:-1])
+    before, ends = float(target.std()), [law.ends for law in laws]
+    slopes, *_ = np.linalg.lstsq(np.concatenate(deviations, axis=1), target - target.mean(), rcond=1e-9)
+    law_slopes = np.split(slopes, np.cumsum([law.coefficients.size for law in laws])[:-1])
     settings = np.unique(np.concatenate([law.settings for law in laws]))
     candidates = np.sort([*settings, *(settings[1:] + settings[:-1]) / 2])
     low, high = max(end[0] for end in ends), min(end[1] for end in ends)
     candidates = candidates[(candidates >= low) & (candidates <= high)]
     gained = [
         sum(
-            _gain(law, part.reshape(law.coefficients.shape), value, error)
-            for law, part, error in zip(laws, parts, errors, strict=True)
+            _gain(law, law_slope.reshape(law.coefficients.shape), value, error)
+            for law, law_slope, error in zip(laws, law_slopes, errors, strict=True)
         )
         for value in candidates
     ]

@@ -48,7 +48,7 @@ class SafeLength:
 
 
 @dataclass(frozen=True)
-class Known:
+class LengthBounds:
     """Lengths of devices known without samples, and the end of the samples [m]."""
 
     reach: float = (
@@ -59,7 +59,7 @@ class Known:
 
 
 #: Devices of which all lengths are from samples.
-NOTHING = Known()
+NO_BOUNDS = LengthBounds()
 
 
 # Sticking lengths
@@ -121,9 +121,9 @@ def quantiles(values: np.ndarray, reach: float = np.inf) -> np.ndarray:
     """
     n, levels = len(values), ndtr(SCORES)
     with np.errstate(invalid="ignore"):
-        found = np.quantile(np.where(values <= reach, values, np.inf), levels, method="hazen")
+        estimates = np.quantile(np.where(values <= reach, values, np.inf), levels, method="hazen")
     inside = (n * levels >= 0.5) & (n * (1 - levels) >= 0.5)
-    return np.where(inside & np.isfinite(found), found, np.nan)
+    return np.where(inside & np.isfinite(estimates), estimates, np.nan)
 
 
 def most_stuck(sticking: np.ndarray, reach: float) -> float:
@@ -182,7 +182,9 @@ def sampled_bound(values: np.ndarray, share: float) -> tuple[float, float, float
     return float(_sampled_length(ordered, share)), float(estimate), float(error)
 
 
-def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator, known: Known = NOTHING) -> SafeLength:
+def safe_length(
+    sticking: np.ndarray, share: float, rng: np.random.Generator, bounds: LengthBounds = NO_BOUNDS
+) -> SafeLength:
     """Safe length for one share p of stuck devices, at most 5 %, from their sticking lengths (n,) [m].
 
     It is sampled if there are enough devices (`samples_for`), and at most as long as they were simulated. Otherwise it
@@ -196,41 +198,41 @@ def safe_length(sticking: np.ndarray, share: float, rng: np.random.Generator, kn
     """
     if not 0 < share <= TAIL:
         raise ValueError(f"a safe length needs a share in (0, {TAIL}], got {share}")
-    found = _sampled(sticking, share, known) if len(sticking) >= samples_for(share) else None
-    found = found or _fitted(sticking, share, rng, known)
-    return replace(found, length=max(found.length, known.safe))
+    bound = _sampled(sticking, share, bounds) if len(sticking) >= samples_for(share) else None
+    bound = bound or _fitted(sticking, share, rng, bounds)
+    return replace(bound, length=max(bound.length, bounds.safe))
 
 
-def _sampled(sticking, share, known):
+def _sampled(sticking, share, bounds):
     """Safe length by order statistics."""
     bound, estimate, error = sampled_bound(sticking, share)
-    if bound <= known.reach:
+    if bound <= bounds.reach:
         return SafeLength(share, bound, estimate, error, Basis.SAMPLED)
-    return SafeLength(share, known.reach, np.inf, np.nan, Basis.LONGEST)
+    return SafeLength(share, bounds.reach, np.inf, np.nan, Basis.LONGEST)
 
 
-def _fitted(sticking, share, rng, known):
+def _fitted(sticking, share, rng, bounds):
     """Safe length by a fit of the shortest known lengths.
 
     Those of tips may all be known, and longer than any simulated crack: up to the length that sticks on flat surfaces,
     no crack stops.
     """
-    within = np.where(sticking <= known.reach, sticking, np.inf)
+    within = np.where(sticking <= bounds.reach, sticking, np.inf)
     few = np.isfinite(within).sum() < FEWEST
     lengths = sticking if few else within
     if np.isfinite(lengths).sum() < FEWEST:
-        return SafeLength(share, known.flat, np.inf, np.nan, Basis.FLAT)
+        return SafeLength(share, bounds.flat, np.inf, np.nan, Basis.FLAT)
     fitted = fit_tail(lengths)
     estimate = fitted.length(share)
     errors, pivots = scaled_errors(len(lengths), share, rng, fitted=fitted.fitted)
     bound = float(estimate * np.exp(-np.quantile(pivots, CONFIDENCE) * fitted.slope))
-    if few and bound > known.flat:
-        return SafeLength(share, known.flat, np.inf, np.nan, Basis.FLAT)
+    if few and bound > bounds.flat:
+        return SafeLength(share, bounds.flat, np.inf, np.nan, Basis.FLAT)
     basis = Basis.FITTED if share >= VERIFIED and len(lengths) * share >= DECADE else Basis.EXTRAPOLATED
     return SafeLength(share, bound, estimate, float(estimate * fitted.slope * errors.std()), basis)
 
 
-def on_sampled_surfaces(safe: SafeLength, of_length: float, of_estimate: float, known: Known) -> SafeLength:
+def on_sampled_surfaces(safe: SafeLength, of_length: float, of_estimate: float, bounds: LengthBounds) -> SafeLength:
     """Safe length with the standard errors of itself and of its estimate due to the number of sampled surfaces [m].
 
     The distance of the bound from the estimate, given the surfaces, and 1.64 errors are margins of independent errors
@@ -238,9 +240,9 @@ def on_sampled_surfaces(safe: SafeLength, of_length: float, of_estimate: float, 
     surfaces: tips, one for each beam, are the same whatever the strips, and their scatter is among the errors due to
     the number of devices.
     """
-    own = max(np.log(safe.estimate / safe.length), 0.0) if np.isfinite(safe.estimate) else 0.0
-    both = np.hypot(own, ndtri(CONFIDENCE) * of_length / safe.length)
-    length = max(float(safe.length * np.exp(own - both)), known.safe)
+    margin = max(np.log(safe.estimate / safe.length), 0.0) if np.isfinite(safe.estimate) else 0.0
+    total = np.hypot(margin, ndtri(CONFIDENCE) * of_length / safe.length)
+    length = max(float(safe.length * np.exp(margin - total)), bounds.safe)
     return replace(safe, length=length, surfaces_error=float(of_estimate) if of_estimate > 0 else np.nan)
 
 

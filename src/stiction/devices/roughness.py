@@ -21,7 +21,7 @@ _LEAST = 1e-12
 class Scale:
     """Coordinate of a quantity in which margins are smooth."""
 
-    place: Callable  #: coordinate of a value
+    coordinate: Callable  #: coordinate of a value
     value: Callable  #: value at a coordinate
     slope: Callable  #: derivative of the value, by the value
     spaced: Callable  #: values from one to another, evenly spaced in the coordinate
@@ -34,10 +34,13 @@ def _spaced_by_rests(low, high, number):
 
 #: Scales by name. The variance of surfaces that follow each other falls like the rest of their coherence.
 SCALES = {
-    "linear": Scale(lambda value: value, lambda place: place, np.ones_like, np.linspace),
+    "linear": Scale(lambda value: value, lambda coordinate: coordinate, np.ones_like, np.linspace),
     "log": Scale(np.log, np.exp, lambda value: value, np.geomspace),
     "rest": Scale(
-        lambda value: -np.log1p(-value), lambda place: -np.expm1(-place), lambda value: 1 - value, _spaced_by_rests
+        lambda value: -np.log1p(-value),
+        lambda coordinate: -np.expm1(-coordinate),
+        lambda value: 1 - value,
+        _spaced_by_rests,
     ),
 }
 
@@ -46,7 +49,7 @@ SCALES = {
 class Crossing:
     """Place of zero margin."""
 
-    place: float  #: coordinate of the roughness
+    coordinate: float  #: coordinate of the roughness
     error: float  #: standard error, of the margin and of the cubic between its points
 
 
@@ -85,10 +88,12 @@ def crossings(axis: np.ndarray, margin: np.ndarray, errors: np.ndarray) -> list[
     for points in _known_runs(margin):
         monotone = PchipInterpolator(axis[points], margin[points])
         other = Akima1DInterpolator(axis[points], margin[points])
-        for place in _zeros(monotone):
-            error = np.hypot(np.interp(place, axis[points], errors[points]), other(place))
-            anywhere = _anywhere(place, axis[points], margin[points])
-            crossed.append(Crossing(place, float(np.hypot(error / abs(monotone.derivative()(place)), anywhere))))
+        for coordinate in _zeros(monotone):
+            error = np.hypot(np.interp(coordinate, axis[points], errors[points]), other(coordinate))
+            anywhere = _anywhere(coordinate, axis[points], margin[points])
+            crossed.append(
+                Crossing(coordinate, float(np.hypot(error / abs(monotone.derivative()(coordinate)), anywhere)))
+            )
     return crossed
 
 
@@ -99,8 +104,8 @@ def sufficient(axis: np.ndarray, margin: np.ndarray) -> list[tuple[float, float]
     """
     ranges, margin = [], np.where(margin >= LARGEST, _LEAST, margin)
     for points in _known_runs(margin):
-        monotone, known = PchipInterpolator(axis[points], margin[points]), axis[points]
-        ends = np.array([known[0], *_zeros(monotone), known[-1]])
+        monotone, grid = PchipInterpolator(axis[points], margin[points]), axis[points]
+        ends = np.array([grid[0], *_zeros(monotone), grid[-1]])
         enough = monotone((ends[:-1] + ends[1:]) / 2) >= 0
         ranges += [(float(low), float(high)) for low, high, holds in zip(ends, ends[1:], enough, strict=False) if holds]
     return ranges
@@ -112,17 +117,17 @@ def _known_runs(margin: np.ndarray) -> list[slice]:
     return [run for run in runs if run.stop - run.start > 1]
 
 
-def _anywhere(place: float, axis: np.ndarray, margin: np.ndarray) -> float:
+def _anywhere(coordinate: float, axis: np.ndarray, margin: np.ndarray) -> float:
     """Standard deviation of a place anywhere between two points, one of them with the largest margin."""
-    right = np.searchsorted(axis, place)
+    right = np.searchsorted(axis, coordinate)
     between = slice(right - 1, right + 1)
     return float(np.ptp(axis[between]) / np.sqrt(12)) if np.abs(margin[between]).max() >= LARGEST else 0.0
 
 
 def _zeros(curve: PchipInterpolator) -> list[float]:
     """Places inside a curve with a change of its sign, without the ends of the curve."""
-    places = np.unique(curve.roots(extrapolate=False).round(12))
-    inside = places[(places > curve.x[0]) & (places < curve.x[-1])]
+    roots = np.unique(curve.roots(extrapolate=False).round(12))
+    inside = roots[(roots > curve.x[0]) & (roots < curve.x[-1])]
     ends = np.array([curve.x[0], *inside, curve.x[-1]])
     signs = np.sign(curve((ends[:-1] + ends[1:]) / 2))
-    return [float(place) for place, before, after in zip(inside, signs, signs[1:], strict=False) if before != after]
+    return [float(root) for root, before, after in zip(inside, signs, signs[1:], strict=False) if before != after]

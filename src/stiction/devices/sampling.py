@@ -73,13 +73,13 @@ def sampled_surfaces(
     ``contribution`` of the laws is (m, ...), and ``length_on_mean`` of some of it is proportional to the length;
     ``uniform`` is the length without scatter [m].
     """
-    parts, energies, works = contribution(laws), forcelaw.energy(laws), _works(laws)
+    contributions, energies, works = contribution(laws), forcelaw.energy(laws), _works(laws)
     groups = min(GROUPS, len(laws))
     group = np.arange(len(laws)) % groups
 
     def logarithms(used):
         """Logarithms of length and scatter of some samples (m,) bool."""
-        return np.log([length_on_mean(parts[used]), works[used].std() / energies[used].mean()])
+        return np.log([length_on_mean(contributions[used]), works[used].std() / energies[used].mean()])
 
     left_out = np.array([logarithms(group != k) for k in range(groups)])
     covariance = (groups - 1) ** 2 / groups * np.cov(left_out.T)

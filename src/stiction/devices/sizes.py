@@ -44,9 +44,9 @@ def _by(powers, thickness, gap):
     return np.exp(np.array([1.0, np.log(thickness), np.log(gap)]) @ powers)
 
 
-def _errors(found, lengths):
+def _errors(predicted, lengths):
     """Relative errors of sorted lengths (n,): mean of the shortest 5 %, and of all."""
-    errors = np.log(found / lengths)
+    errors = np.log(predicted / lengths)
     return [float(errors[: int(TAIL * errors.size) or 1].mean()), float(errors.mean())]
 
 
@@ -67,5 +67,5 @@ def fitted(thicknesses: Sequence[float], gaps: Sequence[float], lengths: Sequenc
     terms = np.column_stack([np.ones(len(corners)), np.log(corners)])
     # A dimension that does not vary has no power of its own: the least one of all solutions holds at its value.
     powers = np.linalg.lstsq(terms, np.log([sizes[size] for size in corners]))[0]
-    errors = [error for size, own in sizes.items() for error in _errors(_by(powers, *size), own)]
+    errors = [error for size, simulated in sizes.items() for error in _errors(_by(powers, *size), simulated)]
     return PowerLaws(powers, max(map(abs, errors)), max(0.0, *errors))

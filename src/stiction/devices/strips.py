@@ -85,8 +85,8 @@ def repetition(correlations: np.ndarray) -> float:
     grid = np.arange(1001) / 1000
     of_chain = np.cumsum(grid[:, None] ** np.arange(1, len(correlations) + 1), axis=1)
     suffices = np.all(of_chain >= np.cumsum(correlations), axis=1)
-    found = float(grid[np.argmax(suffices)])
-    return found if found >= INDEPENDENT else 0.0
+    probability = float(grid[np.argmax(suffices)])
+    return probability if probability >= INDEPENDENT else 0.0
 
 
 def in_row(draw: Draw, repetition: float, arms: int) -> Draw:

@@ -49,20 +49,20 @@ def _lines(logarithms, scores):
     return logarithms.mean(axis=-1) - slopes * scores.mean(), slopes
 
 
-def fit_tail(lengths: np.ndarray, part: float = TAIL) -> TailFit:
-    """Fit the lowest ``part`` of n lengths (n,) [m], by default 5 %, or the known, finite ones among them.
+def fit_tail(lengths: np.ndarray, fraction: float = TAIL) -> TailFit:
+    """Fit the lowest ``fraction`` of n lengths (n,) [m], by default 5 %, or the known, finite ones among them.
 
     Raises
     ------
     ValueError
         If fewer than ``FEWEST`` lengths are fitted.
     """
-    samples, known = len(lengths), int(np.isfinite(lengths).sum())
-    if int(part * samples) < FEWEST:
-        raise ValueError(f"a fit of the lowest {part:.0%} needs {round(FEWEST / part)} lengths, got {samples}")
-    if known < FEWEST:
-        raise ValueError(f"a fit of the shortest lengths needs {FEWEST} of them, got {known}")
-    fitted = min(int(part * samples), known)
+    samples, finite = len(lengths), int(np.isfinite(lengths).sum())
+    if int(fraction * samples) < FEWEST:
+        raise ValueError(f"a fit of the lowest {fraction:.0%} needs {round(FEWEST / fraction)} lengths, got {samples}")
+    if finite < FEWEST:
+        raise ValueError(f"a fit of the shortest lengths needs {FEWEST} of them, got {finite}")
+    fitted = min(int(fraction * samples), finite)
     intercept, slope = _lines(np.log(np.sort(lengths)[:fitted]), normal_scores(samples, fitted))
     return TailFit(float(intercept), float(slope), samples, fitted)
 

@@ -1,1 +1,1 @@
-"""Estimates at once of the length to build, learnt from contacts of drawn surfaces."""
+"""Estimates at once of the length or force to build, learnt from contacts of drawn surfaces."""

@@ -1,4 +1,6 @@
-r"""Answer to a question: lengths for fractions of stuck cantilevers, with intervals. Plain Python.
+r"""Answer to a question: lengths or forces for fractions of stuck devices, with intervals. Plain Python.
+
+Of a stopper, the reciprocal of a force stands for a length.
 
 The interval of a length has two parts. The estimate errs by a factor that is known from surfaces that were not learnt:
 split conformal prediction of errors over their `difficulty`. Where a surface is partly assumed, the logarithm of the
@@ -12,12 +14,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from stiction.contact.air import is_humid
-from stiction.estimate.length import Lengths, NotLearnt, fraction_of, lengths, normal_score
+from stiction.estimate.force import ForceRow, Stopper
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, after, normal_score
 from stiction.estimate.question import IN_DRY_AIR, Question
-from stiction.estimate.state import State, film, stiffness_of
-from stiction.estimate.statistics import Heights
-from stiction.estimate.table import Process
-from stiction.estimate.voltage import at_voltage, drive_of, without_voltage
+from stiction.estimate.state import film
+from stiction.estimate.table import Surrogate
+from stiction.estimate.voltage import at_voltage, without_voltage
 
 #: Fractions of stuck devices in the answer.
 FRACTIONS = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
@@ -29,30 +31,23 @@ _STUDENT = {"90": 2.353363, "95": 3.182446}
 
 
 @dataclass(frozen=True)
-class Row:
-    """Length at which a fraction sticks."""
+class Estimate:
+    """Estimate of one device."""
 
-    fraction: float
-    length: float  #: [m]
-    intervals: dict[str, tuple[float, float]]  #: by confidence [m]
-
-
-@dataclass(frozen=True)
-class Answer:
-    """Estimate of one cantilever."""
-
-    question: Question
-    rows: tuple[Row, ...]
-    stuck: tuple[float, float, float] | None  #: fraction at the stated length, and its ends of 95 %
+    question: Question | Stopper
+    rows: tuple[LengthRow | ForceRow, ...]
+    stuck: tuple[float, float, float] | None  #: fraction at the stated length or force, and its ends of 95 %
     humidity: float  #: air that decides
 
     @property
-    def chosen(self) -> Row:
-        """Row of the length to build."""
+    def chosen(self) -> LengthRow | ForceRow:
+        """Row of the length or force to build."""
         return next(row for row in self.rows if row.fraction == CHOSEN)
 
 
-def answer(question: Question | NotLearnt, table: Mapping[str, Any], tips: Process, full: Process | None) -> Answer:
+def answer(
+    question: Question | Stopper | NotLearnt, table: Mapping[str, Any], tips: Surrogate, full: Surrogate | None
+) -> Estimate:
     """Answer to a question.
 
     Raises
@@ -64,14 +59,17 @@ def answer(question: Question | NotLearnt, table: Mapping[str, Any], tips: Proce
         raise question
     found = {air: _in_air(question, air, table, tips, full) for air in question.humidities}
     of_once = {p: -math.expm1(math.log1p(-p) / question.touchdowns) for p in FRACTIONS}
-    rows = tuple(_worst([one.row(p, normal_score(of_once[p]), table) for one in found.values()]) for p in FRACTIONS)
+    worst = (_worst([one.row(p, normal_score(of_once[p])) for one in found.values()]) for p in FRACTIONS)
+    rows = tuple(map(question.row, worst))
     decides = min(found, key=lambda air: found[air].length(normal_score(of_once[CHOSEN])))
-    stuck = None if question.length is None else _stuck(question, list(found.values()), table)
-    return Answer(question, rows, stuck, decides)
+    stuck = None if question.stated is None else _stuck(question, list(found.values()))
+    return Estimate(question, rows, stuck, decides)
 
 
-def in_one_air(question: Question, air: float, fractions: Sequence[float], *learnt: Any) -> list[Row]:
-    """Lengths of a cantilever for some fractions, at one touchdown in one air. Learnt as of `answer`.
+def in_one_air(
+    question: Question | Stopper, air: float, fractions: Sequence[float], *learnt: Any
+) -> list[LengthRow | ForceRow]:
+    """Lengths or forces for some fractions, at one touchdown in one air. Learnt as of `answer`.
 
     Raises
     ------
@@ -80,14 +78,15 @@ def in_one_air(question: Question, air: float, fractions: Sequence[float], *lear
     """
     if not is_humid(air):
         raise NotLearnt(IN_DRY_AIR)
-    table, found = learnt[0], _in_air(question, air, *learnt)
-    return [found.row(p, normal_score(p), table) for p in fractions]
+    found = _in_air(question, air, *learnt)
+    return [question.row(found.row(p, normal_score(p))) for p in fractions]
 
 
 @dataclass(frozen=True)
-class InAir:
-    """Lengths of a cantilever in one air."""
+class LengthsInAir:
+    """Lengths of a device in one air."""
 
+    errors: Mapping[str, Any]  #: part of the table
     stated: Lengths
     members: tuple[Lengths, ...]  #: on typical surfaces in place of a partly assumed one
     averaged: bool  #: as of `stiction.estimate.question.Question`
@@ -110,14 +109,16 @@ class InAir:
         """Length at the voltage from that without it [m]."""
         return at_voltage(length, self.drive) if self.drive else length
 
-    def row(self, fraction: float, score: float, table: Mapping[str, Any]) -> Row:
+    def row(self, fraction: float, score: float) -> LengthRow:
         """Length and intervals at a normal score."""
         mean, scatter = self.centre(score)
         ends = {}
         for confidence in CONFIDENCES:
-            half = math.hypot(_margin(table, confidence, score, self.stated.slope), _STUDENT[confidence] * scatter)
+            half = math.hypot(
+                _margin(self.errors, confidence, score, self.stated.slope), _STUDENT[confidence] * scatter
+            )
             ends[confidence] = self._driven(math.exp(mean - half)), self._driven(math.exp(mean + half))
-        return Row(fraction, self.length(score), ends)
+        return LengthRow(fraction, self.length(score), ends)
 
 
 def difficulty(slope: float, rest: float) -> float:
@@ -128,36 +129,32 @@ def difficulty(slope: float, rest: float) -> float:
     return math.hypot(slope, rest)
 
 
-def _margin(table, confidence, score, slope):
+def _margin(errors, confidence, score, slope):
     """Half of the interval of the logarithm of a length by the error of the estimate.
 
     ASSUME: beyond the score that was tested, it grows in proportion to the score.
     """
-    return table["margins"][confidence] * difficulty(slope, table["rest"]) * max(1.0, score / table["tested_score"])
+    return errors["margins"][confidence] * difficulty(slope, errors["rest"]) * max(1.0, score / errors["tested_score"])
 
 
 def _worst(rows):
     """Shortest length and ends of some rows of one fraction."""
     ends = {key: tuple(min(row.intervals[key][side] for row in rows) for side in (0, 1)) for key in CONFIDENCES}
-    return Row(rows[0].fraction, min(row.length for row in rows), ends)
+    return LengthRow(rows[0].fraction, min(row.length for row in rows), ends)
 
 
-def _stuck(question, airs, table):
-    """Fraction stuck at the stated length in the worst air, with the ends of 95 %, after all touchdowns."""
-
-    def after(score):
-        """Fraction after all touchdowns."""
-        return -math.expm1(question.touchdowns * math.log1p(-fraction_of(score)))
-
+def _stuck(question, airs):
+    """Fraction stuck at the stated length or force in the worst air, with the ends of 95 %, after all touchdowns."""
     found = []
     for one in airs:
-        length = without_voltage(question.length, one.drive)
+        length = without_voltage(question.stated, one.drive)
         score = one.stated.score(length)
         mean, scatter = one.centre(score)
-        half = math.hypot(_margin(table, "95", score, one.stated.slope), _STUDENT["95"] * scatter)
+        half = math.hypot(_margin(one.errors, "95", score, one.stated.slope), _STUDENT["95"] * scatter)
         shift = mean - math.log(one.stated.at(score))
         moves = [-shift if question.averaged else 0.0, -shift - half, -shift + half]
-        found.append([after(one.stated.score(length * math.exp(move))) for move in moves])
+        scores = (one.stated.score(length * math.exp(move)) for move in moves)
+        found.append([after(each, question.touchdowns) for each in scores])
     return tuple(max(column) for column in zip(*found, strict=True))
 
 
@@ -171,17 +168,14 @@ def _in_air(question, air, table, tips, full):
     pairs = [beam + substrate]
     pairs += [question.members[0].get(name, beam) + question.members[1].get(name, substrate) for name in names]
     stated, *members = (_lengths(question, heights, air, table, tips, full) for heights in pairs)
-    stiffness = stiffness_of(table["modulus"], question.thickness, question.gap)
-    drive = drive_of(question.added, stiffness, question.gap)
-    return InAir(stated, tuple(members), question.averaged, drive)
+    drive = question.drive(table["modulus"])
+    return LengthsInAir(question.errors(table), stated, tuple(members), question.averaged, drive)
 
 
-def _lengths(question: Question, heights: Heights, air: float, table, tips, full):
+def _lengths(question, heights, air, table, tips, full):
     """Lengths on the sum of two surfaces at one humidity."""
     try:
-        stiffness = stiffness_of(table["modulus"], question.thickness, question.gap)
         water = film(air, table["temperature"], 2.0, table["water"])
-        state = State(heights, water, stiffness, question.width, table["modulus"])
-        return lengths(state, question.gap, tips, full)
+        return question.lengths(heights, water, table, tips, full)
     except (ArithmeticError, ValueError) as impossible:  # such as the logarithm of a negative number
         raise NotLearnt("one of its numbers is impossible") from impossible

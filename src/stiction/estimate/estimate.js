@@ -29,13 +29,21 @@ function film(humidity, temperature, wetting, [tension, volume]) {
   const energy = tension * wetting;
   return {height: energy * volume / (-GAS * temperature * Math.log(humidity)), energy};
 }
+const curvature = ({moments: [, second, fourth]}) => Math.sqrt(fourth / second);
+const tensionOf = ({height, energy}) => energy / height;
+function ofContact({heights, film, modulus}) {
+  const [low, second, fourth] = heights.moments, slope = heights.rms * Math.sqrt(second);
+  return [Math.log(heights.rms / film.height), Math.log(tensionOf(film) / (modulus * slope)), Math.log(fourth / second ** 2),
+    Math.log(low ** 2 * second), heights.skewness, heights.kurtosis];
+}
 const floodedSlope = (state) => (13.5 * state.film.energy / state.stiffness) ** 0.25;
 function coordinates(state) {
-  const [low, second, fourth] = state.heights.moments, summits = Math.sqrt(fourth / second);
-  const slope = state.heights.rms * Math.sqrt(second), {height, energy} = state.film;
-  return [Math.log(state.heights.rms / height), Math.log(energy / height / (state.modulus * slope)), Math.log(fourth / second ** 2),
-    Math.log(low ** 2 * second), state.heights.skewness, state.heights.kurtosis, Math.log(floodedSlope(state) / slope),
-    Math.log(state.width * summits), Math.log(height), Math.log(summits)];
+  const summits = curvature(state.heights), slope = state.heights.rms * Math.sqrt(state.heights.moments[1]);
+  return [...ofContact(state), Math.log(floodedSlope(state) / slope), Math.log(state.width * summits), Math.log(state.film.height), Math.log(summits)];
+}
+function ofPatch(patch) {
+  const summits = curvature(patch.heights);
+  return [...ofContact(patch), Math.log(patch.area * summits ** 2), Math.log(patch.film.height), Math.log(summits)];
 }
 
 // table
@@ -52,17 +60,19 @@ function at(process, all) {
 
 // length
 class NotLearnt extends Error {}
-function known(process, state, names) {
-  const values = at(process, coordinates(state));
+function known(process, place, names) {
+  const values = at(process, place);
   if (values.outside.length) throw new NotLearnt(values.outside.map((k) => names[k]).join(" and ") + " beyond what was learnt");
-  if (values.distance > process.farthest) throw new NotLearnt("unlike all surfaces and beams that were learnt");
+  if (values.distance > process.farthest) throw new NotLearnt("unlike all surfaces and devices that were learnt");
   return values.of;
 }
-function onSummits(state, gap, table) {
-  const values = known(table.tips, state, table.coordinates), flooded = Math.log(1.5 * gap / floodedSlope(state));
-  const first = values.at_0 + flooded, second = Math.min(first - LEAST, values.at_1 + flooded);
-  const third = Math.min(second - LEAST, values.at_2 + flooded);
+function falling(values, shift) {
+  const first = values.at_0 + shift, second = Math.min(first - LEAST, values.at_1 + shift);
+  const third = Math.min(second - LEAST, values.at_2 + shift);
   return {logarithms: [first, second, third], slope: Math.max(LEAST, values.slope)};
+}
+function onSummits(state, gap, table) {
+  return falling(known(table.tips, coordinates(state), table.coordinates), Math.log(1.5 * gap / floodedSlope(state)));
 }
 function lengthAt({logarithms: [first, second, third], slope}, score) {
   const [, b, c] = SCORES;
@@ -78,7 +88,8 @@ function scoreOf({logarithms: [first, second, third], slope}, length) {
 }
 function change(state, found, gap, table) {
   const slope = 1.5 * gap / lengthAt(found, -2);
-  const ratio = Math.exp(known(table.full, {...state, stiffness: 13.5 * state.film.energy / slope ** 4}, table.coordinates).ratio);
+  const atSlope = coordinates({...state, stiffness: 13.5 * state.film.energy / slope ** 4});
+  const ratio = Math.exp(known(table.full, atSlope, table.coordinates).ratio);
   const scatter = 4 * (found.logarithms[0] - found.logarithms[2]) / 2;
   const ofMeans = 1.17 * Math.sqrt(Math.expm1(scatter ** 2) * (1 / 7 + 1 / 63));
   return ratio * Math.exp(1.645 * Math.hypot(ofMeans, 0.1 * scatter * Math.max(3.09 - scatter, 0)));
@@ -89,6 +100,36 @@ function lengths(state, gap, table) {
     found = onSummits({...state, stiffness: state.stiffness / change(state, found, gap, table)}, gap, table);
   }
   return found;
+}
+
+// force: its reciprocal stands for a length
+function reciprocals(patch, {forces, full, coordinates: names}) {
+  const place = ofPatch(patch), {ratio, power} = known(full, place, names);
+  return changedBy(falling(known(forces, place, names), -Math.log(tensionOf(patch.film) * patch.area)), ratio, Math.max(1, power));
+}
+function changedBy({logarithms, slope}, ratio, power) {
+  const [median, , last] = logarithms, scatter = (median - last) / 2;
+  const shift = median - ratio - (1 - power ** 2) * scatter ** 2 / 2;
+  return {logarithms: logarithms.map((each) => shift + power * (each - median)), slope: power * slope};
+}
+function ofStopper({sides, force}, {modulus, stoppers}) {
+  const [low, high] = stoppers.sides, [one, other] = sides;
+  return {
+    lengths: (heights, water) => {
+      if (!sides.every((side) => low * 1e-6 <= side && side <= high * 1e-6)) throw new NotLearnt(`sides of a stopper must be from ${low} to ${high} µm`);
+      return reciprocals({heights, film: water, area: one * other, modulus}, stoppers);
+    },
+    drive: 0, errors: stoppers, stated: force && 1 / force,
+    row: ({length, intervals}) => ({size: 1 / length, intervals: Object.fromEntries(Object.entries(intervals).map(([key, [low, high]]) => [key, [1 / high, 1 / low]]))}),
+  };
+}
+function ofCantilever({thickness, gap, width, length, added}, table) {
+  const stiffness = table.modulus * thickness ** 3 / gap ** 2;
+  return {
+    lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus: table.modulus}, gap, table),
+    drive: 8 * (added || 0) / (3 * stiffness * gap ** 4), errors: table, stated: length,
+    row: ({length, intervals}) => ({size: length, intervals}),
+  };
 }
 
 // normal distribution: continued fraction and series of erfc
@@ -131,8 +172,8 @@ function withoutVoltage(length, drive) {
 
 // answer
 const FRACTIONS = [1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6], STUDENT = {90: 2.353363, 95: 3.182446};
-function margin(table, confidence, score, slope) {
-  return table.margins[confidence] * Math.hypot(slope, table.rest) * Math.max(1, score / table.tested_score);
+function margin(errors, confidence, score, slope) {
+  return errors.margins[confidence] * Math.hypot(slope, errors.rest) * Math.max(1, score / errors.tested_score);
 }
 function centre(one, score) {
   if (!one.members.length) return [Math.log(lengthAt(one.stated, score)), 0];
@@ -140,34 +181,34 @@ function centre(one, score) {
   return [mean, Math.sqrt(sum(values.map((value) => (value - mean) ** 2)) / (m - 1)) * Math.sqrt(1 + 1 / m)];
 }
 function answer(question, table) {
-  const stiffness = table.modulus * question.thickness ** 3 / question.gap ** 2;
-  const of = (sumOfBoth, air) => lengths({heights: sumOfBoth, film: film(air, table.temperature, 2, table.water), stiffness,
-    width: question.width, modulus: table.modulus}, question.gap, table);
-  const airs = question.humidities.map((air) => ({stated: of(question.stated, air), members: question.members.map((each) => of(each, air))}));
-  const drive = 8 * (question.added || 0) / (3 * stiffness * question.gap ** 4);
+  const {lengths: of, drive, errors, stated, row} = (question.sides ? ofStopper : ofCantilever)(question, table);
+  const airs = question.humidities.map((air) => {
+    const water = film(air, table.temperature, 2, table.water);
+    return {stated: of(question.stated, water), members: question.members.map((each) => of(each, water))};
+  });
   const driven = (length) => drive ? atVoltage(length, drive) : length;
   const once = (p) => -Math.expm1(Math.log1p(-p) / question.touchdowns);
   const rows = FRACTIONS.map((fraction) => {
     const score = normalScore(once(fraction)), ends = {};
     for (const confidence of ["90", "95"]) {
       const both = airs.map((one) => {
-        const [mean, scatter] = centre(one, score), half = Math.hypot(margin(table, confidence, score, one.stated.slope), STUDENT[confidence] * scatter);
+        const [mean, scatter] = centre(one, score), half = Math.hypot(margin(errors, confidence, score, one.stated.slope), STUDENT[confidence] * scatter);
         return [mean - half, mean + half].map((end) => driven(Math.exp(end)));
       });
       ends[confidence] = [0, 1].map((side) => Math.min(...both.map((each) => each[side])));
     }
     const length = (one) => question.averaged ? Math.exp(centre(one, score)[0]) : lengthAt(one.stated, score);
-    return {fraction, length: driven(Math.min(...airs.map(length))), intervals: ends};
+    return {fraction, ...row({length: driven(Math.min(...airs.map(length))), intervals: ends})};
   });
-  return {rows, stuck: question.length ? stuck(question, airs, table, withoutVoltage(question.length, drive)) : null};
+  return {rows, stuck: stated ? stuck(question, airs, errors, withoutVoltage(stated, drive)) : null};
 }
-function stuck(question, airs, table, bare) {
-  const after = (score) => -Math.expm1(question.touchdowns * Math.log1p(-fractionOf(score)));
+const after = (score, touchdowns) => -Math.expm1(touchdowns * Math.log1p(-fractionOf(score)));
+function stuck(question, airs, errors, bare) {
   const found = airs.map((one) => {
     const score = scoreOf(one.stated, bare), [mean, scatter] = centre(one, score);
-    const half = Math.hypot(margin(table, "95", score, one.stated.slope), STUDENT["95"] * scatter), shift = mean - Math.log(lengthAt(one.stated, score));
+    const half = Math.hypot(margin(errors, "95", score, one.stated.slope), STUDENT["95"] * scatter), shift = mean - Math.log(lengthAt(one.stated, score));
     return [question.averaged ? -shift : 0, -shift - half, -shift + half]
-      .map((move) => after(scoreOf(one.stated, bare * Math.exp(move))));
+      .map((move) => after(scoreOf(one.stated, bare * Math.exp(move)), question.touchdowns));
   });
   return [0, 1, 2].map((k) => Math.max(...found.map((each) => each[k])));
 }

@@ -4,10 +4,11 @@ Plain Python: the page has the same arithmetic in JavaScript.
 """
 
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from stiction.estimate.state import COORDINATES, State
-from stiction.estimate.table import Process
+from stiction.estimate.state import COORDINATES, TipState
+from stiction.estimate.table import Surrogate
 
 #: Normal scores of the learnt lengths: the last one and the slope there give all shorter lengths.
 SCORES = (0.0, -1.0, -2.0)
@@ -19,6 +20,20 @@ _AT_MOST = 1.645
 _FULL, _SUMMITS, _STUDENT, _POWER_ERROR, _LARGEST = 8, 64, 1.17, 0.1, 3.09
 #: Scatter of the logarithm of P over that of the length. ASSUME: P falls as θ⁻¹ as that of smooth tips, the safe side.
 _OF_FORCES = 4.0
+
+
+@dataclass(frozen=True)
+class LengthRow:
+    """Length at which a fraction sticks."""
+
+    fraction: float
+    length: float  #: [m]
+    intervals: dict[str, tuple[float, float]]  #: by confidence [m]
+
+    @property
+    def size(self) -> float:
+        """What a device is built to, in SI."""
+        return self.length
 
 
 @dataclass(frozen=True)
@@ -55,7 +70,7 @@ class NotLearnt(Exception):
     """Refusal to estimate, in words."""
 
 
-def lengths(state: State, gap: float, tips: Process, full: Process | None) -> Lengths:
+def lengths(state: TipState, gap: float, tips: Surrogate, full: Surrogate | None) -> Lengths:
     """Lengths of beams over a gap [m] in a state.
 
     Full contact changes an attraction by a factor, as a stiffer beam would.
@@ -74,32 +89,43 @@ def lengths(state: State, gap: float, tips: Process, full: Process | None) -> Le
 
 def _on_summits(state, gap, tips):
     """Lengths on summits alone."""
-    values = _known(tips, state)
-    flooded = math.log(1.5 * gap / state.flooded_slope)
-    first, second, third = (values[name] + flooded for name in NAMES[:3])
-    second = min(first - _LEAST, second)
-    return Lengths((first, second, min(second - _LEAST, third)), max(_LEAST, values["slope"]))
+    values = known_at(tips, state.coordinates, COORDINATES)
+    return falling(values, math.log(1.5 * gap / state.flooded_slope))
 
 
 #: Least fall of the logarithm of a length by one normal score.
 _LEAST = 2e-3
 
 
-def _known(process, state):
-    """Quantities of a process in a state."""
-    values = process.at(state.coordinates)
+def falling(values: Mapping[str, float], shift: float) -> Lengths:
+    """Lengths from learnt quantities, whose logarithms are shifted and fall with the score."""
+    first, second, third = (values[name] + shift for name in NAMES[:3])
+    second = min(first - _LEAST, second)
+    return Lengths((first, second, min(second - _LEAST, third)), max(_LEAST, values["slope"]))
+
+
+def known_at(process: Surrogate, coordinates: Sequence[float], names: Sequence[str]) -> Mapping[str, float]:
+    """Quantities of a process at coordinates with some names.
+
+    Raises
+    ------
+    NotLearnt
+        If it is beyond what was learnt.
+    """
+    values = process.at(coordinates)
     if values.outside:
-        raise NotLearnt(f"{' and '.join(COORDINATES[k] for k in values.outside)} beyond what was learnt")
+        raise NotLearnt(f"{' and '.join(names[k] for k in values.outside)} beyond what was learnt")
     if values.distance > process.farthest:
-        raise NotLearnt("unlike all surfaces and beams that were learnt")
+        raise NotLearnt("unlike all surfaces and devices that were learnt")
     return values.of
 
 
-def change(state: State, found: Lengths, gap: float, full: Process) -> float:
+def change(state: TipState, found: Lengths, gap: float, full: Surrogate) -> float:
     """Factor of the attraction of tips by full contact, as a run applies it."""
     slope = 1.5 * gap / found.at(SCORES[-1])
     at_slope = replace(state, stiffness=13.5 * state.film.energy / slope**4)  # flooded flats hold up to this slope
-    return most(math.exp(_known(full, at_slope)["ratio"]), found.fall)
+    ratio = known_at(full, at_slope.coordinates, COORDINATES)["ratio"]
+    return most(math.exp(ratio), found.fall)
 
 
 def most(ratio: float, fall: float) -> float:
@@ -128,3 +154,13 @@ def normal_score(fraction: float) -> float:
 def fraction_of(score: float) -> float:
     """Fraction below a normal score [-]."""
     return 0.5 * math.erfc(-score / math.sqrt(2))
+
+
+def after(score: float, touchdowns: int) -> float:
+    """Fraction that sticks after some independent touchdowns, of which each has a normal score [-]."""
+    return -math.expm1(touchdowns * math.log1p(-fraction_of(score)))
+
+
+def most_after(touchdowns: int) -> float:
+    """Largest fraction that is known after some touchdowns, that at the first of `SCORES` [-]."""
+    return after(SCORES[0], touchdowns)

@@ -1,6 +1,8 @@
 // Sliders, table and file of the page. The arithmetic is in estimate.js.
 const TABLE = JSON.parse(document.getElementById("content").textContent);
+const CANTILEVER = "cantilever", STOPPER = "stopper";
 const INPUTS = [
+  ["kind", "Device", [CANTILEVER, STOPPER], CANTILEVER],
   ["like", "Typical surface for what you do not know", Object.keys(TABLE.library), "B2"],
   ["rms_nm", "rms of the underside [nm]", 1, 8, 0.1, 3],
   ["hurst", "Hurst exponent", 0.3, 2.5, 0.05, null],
@@ -10,6 +12,9 @@ const INPUTS = [
   ["kurtosis", "kurtosis", 3, 6, 0.05, null],
   ["substrate", "opposite surface", Object.keys(TABLE.library), "Sub1"],
   ["humidity", "relative humidity", 0.35, 0.92, 0.01, 0.6],
+  ["side_um", "one side of the area in contact [µm]", 1, 6, 0.1, 3],
+  ["other_um", "other side [µm]", 1, 6, 0.1, 3],
+  ["force_uN", "restoring force [µN]", 1, 500, 1, 100],
   ["thickness_um", "thickness of the beam [µm]", 1, 6, 0.1, 2.6],
   ["gap_um", "gap [µm]", 2, 30, 0.5, 20],
   ["width_um", "width of the beam [µm]", 8, 40, 1, 30],
@@ -18,6 +23,7 @@ const INPUTS = [
   ["voltage_V", "voltage in contact [V]", 0, 50, 0.5, 0],
   ["dielectric_nm", "dielectric, thickness over permittivity [nm]", 10, 1000, 10, 100],
 ];
+const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
 const OPEN = ["hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis"], byId = (id) => document.getElementById(id);
 
 function slider([key, words, low, high, step, start]) {
@@ -37,37 +43,44 @@ function typical(name) {
 function stated() {
   const value = (key) => Number(byId(key).value), known = OPEN.filter((key) => byId("known_" + key).checked);
   const own = Object.fromEntries(["rms_nm", ...known].map((key) => [key, value(key)]));
-  return {own, like: byId("like").value, substrate: byId("substrate").value, value, open: known.length < OPEN.length};
+  return {own, kind: byId("kind").value, like: byId("like").value, substrate: byId("substrate").value, value, open: known.length < OPEN.length};
 }
-function questionOf({own, like, substrate, value, open}) {
+function questionOf({own, kind, like, substrate, value, open}) {
   const of = (name) => added(heights({...typical(name), ...own}), heights(typical(substrate)));
+  const asked = {stated: of(like), members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false,
+    humidities: [value("humidity")], touchdowns: value("touchdowns")};
+  if (kind === STOPPER) return {...asked, sides: ["side_um", "other_um"].map((key) => value(key) * 1e-6), force: value("force_uN") * 1e-6};
   const gap = value("gap_um") * 1e-6, energy = energyOf(value("voltage_V"), value("dielectric_nm") * 1e-9, gap);
-  return {stated: of(like), added: energy, members: open ? Object.keys(TABLE.library).map(of) : [], averaged: false, humidities: [value("humidity")],
-    thickness: value("thickness_um") * 1e-6, gap, width: value("width_um") * 1e-6,
-    length: value("length_um") * 1e-6, touchdowns: value("touchdowns")};
+  return {...asked, added: energy, thickness: value("thickness_um") * 1e-6, gap, width: value("width_um") * 1e-6, length: value("length_um") * 1e-6};
 }
-const RAREST = 1e-6; // of which the table has a length
-const um = (length) => Number((length * 1e6).toPrecision(3)).toString();
-const percent = (part) => part < RAREST ? `less than ${(100 * RAREST).toFixed(4)}` : Number((100 * part).toPrecision(2)).toString();
+const RAREST = 1e-6, NEARLY_ALL = 0.99; // fractions that are shown
+const WORDS = {[CANTILEVER]: ["length", "µm", "length_um"], [STOPPER]: ["force", "µN", "force_uN"]};
+const micro = (size) => Number((size * 1e6).toPrecision(3)).toString();
+function percent(part, touchdowns) {
+  if (part < RAREST) return `less than ${(100 * RAREST).toFixed(4)}`;
+  return (part >= after(SCORES[0], touchdowns) ? "at least " : "") + Number((100 * Math.min(part, NEARLY_ALL)).toPrecision(2)).toString();
+}
 function show() {
   for (const [key, , low] of INPUTS) if (!Array.isArray(low)) byId("of_" + key).textContent = byId(key).value;
   const given = stated();
+  for (const kind in OWN) for (const key of OWN[kind]) byId(key).closest("label").hidden = kind !== given.kind;
   for (const key of OPEN) byId(key).disabled = !(key in given.own);
   byId("yaml").textContent = yamlOf(given);
   try { write(answer(questionOf(given), TABLE), given); }
   catch (reason) { if (!(reason instanceof NotLearnt)) throw reason; refuse(reason); }
   draw(given);
 }
-function write(found, {value}) {
-  const row = ({fraction, length, intervals}) => `<tr><th scope="row">1 in ${Math.round(1 / fraction)}</th><td>${um(length)}</td>` +
-    ["90", "95"].map((key) => `<td>${intervals[key].map(um).join(" to ")}</td>`).join("") + "</tr>";
-  const caption = "<caption>Length at which a fraction sticks [µm]</caption>";
-  byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">length</th><th scope="col">90 %</th>` +
+function write(found, {kind, value}) {
+  const [name, symbol, key] = WORDS[kind];
+  const row = ({fraction, size, intervals}) => `<tr><th scope="row">1 in ${Math.round(1 / fraction)}</th><td>${micro(size)}</td>` +
+    ["90", "95"].map((key) => `<td>${intervals[key].map(micro).join(" to ")}</td>`).join("") + "</tr>";
+  const caption = `<caption>${name === "length" ? "Length" : "Force"} at which a fraction sticks [${symbol}]</caption>`;
+  byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">${name}</th><th scope="col">90 %</th>` +
     `<th scope="col">95 %</th></tr></thead><tbody>${found.rows.map(row).join("")}</tbody>`;
   byId("said").className = "said";
-  byId("said").textContent = `1 in 1000 sticks at about ${um(found.rows[2].length)} µm. The estimate is no length to build: a run adds what it leaves out.`;
-  const [middle, low, high] = found.stuck.map(percent);
-  byId("stuck").textContent = `At ${value("length_um")} µm, ${middle} % stick (95 %: ${low} to ${high} %).`;
+  byId("said").textContent = `1 in 1000 sticks at about ${micro(found.rows[2].size)} ${symbol}. The estimate is no ${name} to build: a run adds what it leaves out.`;
+  const [middle, low, high] = found.stuck.map((part) => percent(part, value("touchdowns")));
+  byId("stuck").textContent = `At ${value(key)} ${symbol}, ${middle} % stick (95 %: ${low} to ${high} %).`;
 }
 function refuse(reason) {
   byId("said").className = "said refused";
@@ -75,20 +88,33 @@ function refuse(reason) {
   byId("table").innerHTML = "<caption>No number</caption>";
   byId("stuck").textContent = "";
 }
-function yamlOf({own, like, substrate, value, open}) {
+function yamlOf({own, kind, like, substrate, value, open}) {
   const surface = Object.entries({...own, ...(open ? {like} : {})}).map(([key, of]) => `${key}: ${of}`).join(", ");
-  const sizes = ["length_um", "thickness_um", "gap_um", "width_um", "touchdowns"].map((key) => `${key}: ${value(key)}`).join(", ");
-  const air = `humidities: [${value("humidity")}]`, dielectric = `dielectric: {thickness_nm: ${value("dielectric_nm")}, permittivity: 1}`;
-  const voltage = value("voltage_V") ? `voltage_V: ${value("voltage_V")}, ${dielectric}, ` : "";
+  const air = `humidities: [${value("humidity")}], touchdowns: ${value("touchdowns")}`;
   return `run: {pairs: [mine], studies: []}\nsurfaces:\n  Mine: {${surface}}\npairs:\n` +
-    `  mine: {beam: Mine, substrate: ${substrate}, gap_um: ${value("gap_um")}, ${air}}\ndevices:\n` +
-    `  Lever: {kind: cantilever, pair: mine, ${sizes}, ${voltage}${air}}\n`;
+    `  mine: {beam: Mine, substrate: ${substrate}, gap_um: ${value("gap_um")}, humidities: [${value("humidity")}]}\n` +
+    `devices:\n  ${kind === STOPPER ? `Bump: {kind: stopper, pair: mine, contact_um: [${value("side_um")}, ${value("other_um")}], ` +
+    `restoring_force_uN: ${value("force_uN")}, ` : `Lever: {kind: cantilever, pair: mine, ${sizesOf(value)}, `}${air}}\n`;
 }
-function draw({value}) {
+function sizesOf(value) {
+  const sizes = ["length_um", "thickness_um", "gap_um", "width_um"].map((key) => `${key}: ${value(key)}`).join(", ");
+  const dielectric = `dielectric: {thickness_nm: ${value("dielectric_nm")}, permittivity: 1}`;
+  return value("voltage_V") ? `${sizes}, voltage_V: ${value("voltage_V")}, ${dielectric}` : sizes;
+}
+function draw({kind, value}) {
+  const substrate = '<rect x="0" y="75" width="300" height="12" fill="#8c959f"/>';
+  byId("drawing").innerHTML = substrate + (kind === STOPPER ? bump(value) : beam(value));
+  byId("drawing").setAttribute("aria-label", `Cross-section of the ${kind} that sticks${kind === STOPPER ? "" : " at its tip"}`);
+}
+function bump(value) {
+  const width = 20 * value("side_um");
+  return `<rect x="40" y="35" width="220" height="20" fill="#57606a"/><rect x="${150 - width / 2}" y="55" width="${width}" height="20" fill="#0969da"/>`;
+}
+function beam(value) {
   const gap = 10 + 1.3 * value("gap_um"), thickness = 2 + 2 * value("thickness_um"), y = 75 - gap;
   const curve = `M30 ${y} C 120 ${y} 200 ${y + 0.35 * gap} 285 75`;
-  byId("drawing").innerHTML = `<rect x="0" y="75" width="300" height="12" fill="#8c959f"/><rect x="0" y="${y - thickness}" width="30" ` +
-    `height="${75 - y + thickness}" fill="#57606a"/><path d="${curve}" fill="none" stroke="#0969da" stroke-width="${thickness}"/>`;
+  return `<rect x="0" y="${y - thickness}" width="30" height="${75 - y + thickness}" fill="#57606a"/>` +
+    `<path d="${curve}" fill="none" stroke="#0969da" stroke-width="${thickness}"/>`;
 }
 byId("form").innerHTML = INPUTS.map(slider).join("");
 byId("form").addEventListener("input", show);

@@ -1,32 +1,37 @@
-"""Question to the estimate: a cantilever on two described surfaces, from a file or from options. Plain Python."""
+"""Question to the estimate: a device on two described surfaces, from a file or from options. Plain Python."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from stiction.config.kinds import KINDS
 from stiction.config.units import to_si
 from stiction.contact.air import is_humid, is_possible
-from stiction.estimate.length import NotLearnt
+from stiction.estimate.force import Stopper
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, lengths, most_after
+from stiction.estimate.state import Film, TipState, stiffness_of
 from stiction.estimate.statistics import Heights, moments_of, slope_of
+from stiction.estimate.table import Surrogate
 from stiction.estimate.voltage import KEYS as OF_VOLTAGES
-from stiction.estimate.voltage import energy_of
+from stiction.estimate.voltage import drive_of, energy_of
 
 Library = Mapping[str, Mapping[str, Any]]
 
-#: Keys of a surface, of a pair and of a device that the estimate knows.
+#: Keys of a surface, of a pair, of a cantilever and of a stopper that the estimate knows.
 OF_SURFACES = ("rms_nm", "like", "hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis")
 OF_SURFACES += ("unknown", "uncertainty", "psd", "published_psd", "mean_summit_radius_um", "summit_density_per_um2")
 OF_PAIRS = ("beam", "substrate", "gap_um", "humidities", "attraction", "coarser_mesh")
 OF_DEVICES = ("kind", "pair", "length_um", "thickness_um", "gap_um", "width_um", "humidities", "touchdowns")
 OF_DEVICES += OF_VOLTAGES
+OF_STOPPERS = ("kind", "pair", "contact_um", "restoring_force_uN", "stiffness_N_per_m", "gap_um", "mass_ng")
+OF_STOPPERS += ("humidities", "touchdowns", "electrode")
 #: Keys that change the length to build alone: the estimate is of exact inputs, and leaves out what a run adds.
 LEFT_OUT = ("uncertainty", "requirement", "chart", "roughness")
-#: Sections of a file that change no length of a cantilever.
+#: Sections of a file that change no length or force.
 OF_FILES = ("run", "surfaces", "pairs", "devices", "figures", "studies", "beam", "chaos", "character", "seed")
-#: Sections that change a cantilever only where its device, pair or surface names an entry, with a key that is refused.
+#: Sections that change a device only where its device, pair or surface names an entry, with a key that is refused.
 OF_NAMES = ("materials", "process", "test_beams", "liquids", "scans")
-#: Keys of sections that change no length of a cantilever but by its numbers of samples.
+#: Keys of sections that change no length or force but by their numbers of samples.
 OF_SAMPLES = {
     "design": ("accuracy", "beams", "shares", "chart_points", "budget_beams", "budget_samples", "samples_of_patches")
     + ("worst_humidities",),
@@ -56,6 +61,45 @@ class Question:
     left_out: tuple[str, ...] = ()  #: keys that a run would read as well
     averaged: bool = False  #: whether the length is the mean over typical surfaces, not that on the stated one
     added: float = 0.0  #: energy that a voltage adds [J m⁻²]
+    unit: ClassVar[str] = "um"  #: of its size, a length
+
+    @property
+    def size(self) -> float | None:
+        """Its length [m]."""
+        return self.length
+
+    @property
+    def most(self) -> float:
+        """Largest fraction that is known after all touchdowns [-]."""
+        return most_after(self.touchdowns)
+
+    @property
+    def stated(self) -> float | None:
+        """Its length [m]."""
+        return self.length
+
+    def _stiffness(self, modulus):
+        """Stiffness as of `stiction.estimate.state`."""
+        return stiffness_of(modulus, self.thickness, self.gap)
+
+    def drive(self, modulus: float) -> float:
+        """Drive of its voltage [m⁻⁴], from the modulus of the solids [Pa]."""
+        return drive_of(self.added, self._stiffness(modulus), self.gap)
+
+    def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Part of the table with the errors of its lengths."""
+        return table
+
+    def lengths(
+        self, heights: Heights, water: Film, table: Mapping[str, Any], tips: Surrogate, full: Surrogate | None
+    ) -> Lengths:
+        """Lengths at which it sticks on the sum of two surfaces [m]."""
+        state = TipState(heights, water, self._stiffness(table["modulus"]), self.width, table["modulus"])
+        return lengths(state, self.gap, tips, full)
+
+    def row(self, row: LengthRow) -> LengthRow:
+        """Row of lengths as it is."""
+        return row
 
 
 def surface(entry: Mapping[str, Any], library: Library) -> tuple[Heights, dict[str, Heights]]:
@@ -105,7 +149,7 @@ def _statistics(numbers):
     return Heights(to_si(numbers["rms_nm"], "nm"), numbers["skewness"], numbers["kurtosis"], moments)
 
 
-def questions(content: Mapping[str, Any], table: Mapping[str, Any]) -> dict[str, Question | NotLearnt]:
+def questions(content: Mapping[str, Any], table: Mapping[str, Any]) -> dict[str, Question | Stopper | NotLearnt]:
     """Questions of the devices of a file as it is written, or why the estimate does not know them.
 
     The table has the typical surfaces, and the pairs of the paper.
@@ -126,11 +170,9 @@ def _question(name, device, content, table):
     others = [f"{part}.{key}" for part, keys in OF_SAMPLES.items() for key in content.get(part, {}) if key not in keys]
     if others := [*others, *(key for key in content if key not in (*OF_FILES, *OF_NAMES, *OF_SAMPLES))]:
         raise NotLearnt(f"{others[0]} was not learnt")
-    kind = KINDS.get(device["kind"])
-    if kind is None or not kind.has_tip:
-        raise NotLearnt("only cantilevers were learnt")
+    known, of = _of_kind(device["kind"])
     left_out = tuple(key for key in LEFT_OUT if key in device)
-    if others := [key for key in device if key not in OF_DEVICES + LEFT_OUT]:
+    if others := [key for key in device if key not in known + LEFT_OUT]:
         raise NotLearnt(f"{others[0]} was not learnt")
     pair, library = (table["pairs"] | content.get("pairs", {}))[device["pair"]], table["library"]
     if others := [key for key in pair if key not in OF_PAIRS]:
@@ -139,7 +181,25 @@ def _question(name, device, content, table):
         raise NotLearnt(IN_DRY_AIR)
     surfaces = library | content.get("surfaces", {})
     sides = [surface(surfaces[pair[side]], library) for side in ("beam", "substrate")]
-    return of_numbers(name, device, sides, left_out=left_out)
+    return of(name, device, sides, left_out=left_out)
+
+
+def _of_kind(name):
+    """Known keys of devices of a kind, and their question as `of_numbers`."""
+    kind = KINDS.get(name)
+    if kind is None or not (kind.has_tip or kind.is_patch):
+        raise NotLearnt("only cantilevers and stoppers were learnt")
+    return (OF_DEVICES, of_numbers) if kind.has_tip else (OF_STOPPERS, of_area)
+
+
+def of_area(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) -> Stopper:
+    """Question about a stopper, as of `of_numbers`."""
+    surfaces, members = zip(*sides, strict=True)
+    area = tuple(to_si(side, "um") for side in device["contact_um"])
+    stated = KINDS[device["kind"]].stated(device) if "kind" in device else device
+    force = to_si(stated["restoring_force_uN"], "uN") if "restoring_force_uN" in stated else None
+    airs, touchdowns = tuple(device["humidities"]), device.get("touchdowns", 1)
+    return Stopper(name, surfaces, members, airs, area, force, touchdowns, **more)
 
 
 def of_numbers(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) -> Question:

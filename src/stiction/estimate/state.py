@@ -1,4 +1,4 @@
-r"""Pair of surfaces in humid air under a beam, as the estimate knows them. Plain Python, SI units.
+r"""Pair of surfaces in humid air under a beam or a stopper, as the estimate knows them. Plain Python, SI units.
 
 The tip of a beam of the length L has the slope :math:`\theta = 3h / 2L` and releases below an attraction
 
@@ -6,6 +6,7 @@ The tip of a beam of the length L has the slope :math:`\theta = 3h / 2L` and rel
 
 so that a beam enters by its stiffness K and its width alone. Flooded flats would hold it up to the slope
 :math:`\theta_0 = (27 \, \Gamma / 2 K)^{1/4}`, with the energy :math:`\Gamma = p \, h_C` of the water.
+Flooded flats of the area A would hold a stopper with the force :math:`p A`.
 """
 
 import math
@@ -14,19 +15,23 @@ from dataclasses import dataclass
 from stiction.constants import GAS_CONSTANT
 from stiction.estimate.statistics import Heights
 
-#: Names of the coordinates, for messages.
-COORDINATES = (
+#: Names of the coordinates, for messages: of both, of a beam and of a stopper.
+_OF_CONTACT = (
     "rms of the heights over the film of water",
     "tension of the water",
     "breadth of the spectrum",
     "correlation length",
     "skewness",
     "kurtosis",
+)
+COORDINATES = (
+    *_OF_CONTACT,
     "stiffness of the beam",
     "width of the beam",
     "humidity",
     "curvature of the summits",
 )
+OF_PATCHES = (*_OF_CONTACT, "area in contact", "humidity", "curvature of the summits")
 
 
 @dataclass(frozen=True)
@@ -46,8 +51,32 @@ def film(humidity: float, temperature: float, wetting: float, water: tuple[float
     return Film(energy * volume / (-GAS_CONSTANT * temperature * math.log(humidity)), energy)
 
 
+def _tension(water):
+    """Tension p of a film [Pa]."""
+    return water.energy / water.height
+
+
+def _curvature(heights):
+    """Root of the ratio of the spectrum's moments of fourth and second order, which sets the size of summits [1/m]."""
+    _, second, fourth = heights.moments
+    return math.sqrt(fourth / second)
+
+
+def _of_contact(heights, water, modulus):
+    """Coordinates of the contact of surfaces in a film."""
+    low, second, fourth = heights.moments
+    return (
+        math.log(heights.rms / water.height),
+        math.log(_tension(water) / (modulus * heights.slope)),
+        math.log(fourth / second**2),
+        math.log(low**2 * second),
+        heights.skewness,
+        heights.kurtosis,
+    )
+
+
 @dataclass(frozen=True)
-class State:
+class TipState:
     """Surfaces, water and beam."""
 
     heights: Heights  #: of the sum of both surfaces
@@ -64,17 +93,37 @@ class State:
     @property
     def coordinates(self) -> tuple[float, ...]:
         """Numbers on which the slope of a stuck tip depends, by `COORDINATES`, logarithms but for heights' form."""
-        low, second, fourth = self.heights.moments
-        tension, summits = self.film.energy / self.film.height, math.sqrt(fourth / second)
+        summits = _curvature(self.heights)
         return (
-            math.log(self.heights.rms / self.film.height),
-            math.log(tension / (self.modulus * self.heights.slope)),
-            math.log(fourth / second**2),
-            math.log(low**2 * second),
-            self.heights.skewness,
-            self.heights.kurtosis,
+            *_of_contact(self.heights, self.film, self.modulus),
             math.log(self.flooded_slope / self.heights.slope),
             math.log(self.width * summits),
+            math.log(self.film.height),
+            math.log(summits),
+        )
+
+
+@dataclass(frozen=True)
+class PatchState:
+    """Surfaces, water and area of a stopper. ASSUME: the ratio of its sides does not matter."""
+
+    heights: Heights  #: of the sum of both surfaces
+    film: Film
+    area: float  #: [m²]
+    modulus: float  #: E of the solids [Pa]
+
+    @property
+    def flooded_force(self) -> float:
+        """Force p A with which flooded flats hold [N]."""
+        return _tension(self.film) * self.area
+
+    @property
+    def coordinates(self) -> tuple[float, ...]:
+        """Numbers on which the pull-off force depends, by `OF_PATCHES`, as those of `TipState`."""
+        summits = _curvature(self.heights)
+        return (
+            *_of_contact(self.heights, self.film, self.modulus),
+            math.log(self.area * summits**2),
             math.log(self.film.height),
             math.log(summits),
         )

@@ -10,6 +10,7 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
+from operator import mul
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ FILE = Path(__file__).with_name("table.json")
 
 
 @dataclass(frozen=True)
-class Process:
+class Surrogate:
     """Quantities over coordinates."""
 
     columns: Sequence[int]  #: numbers of the coordinates that it knows
@@ -36,10 +37,10 @@ class Process:
         known = [coordinates[k] for k in self.columns]
         standard = [(x - mean) / scale for x, mean, scale in zip(known, self.centre, self.scale, strict=True)]
         place = [x / length for x, length in zip(standard, self.lengths, strict=True)]
-        squares = [sum((x - y) * (x - y) for x, y in zip(place, node, strict=True)) for node in self.nodes]
-        near, terms = [math.exp(-0.5 * square) for square in squares], [1.0, *standard]
+        distances = [math.dist(place, node) for node in self.nodes]
+        near, terms = [math.exp(-0.5 * distance * distance) for distance in distances], [1.0, *standard]
         found = {name: _dot(self.trend[name], terms) + _dot(self.weights[name], near) for name in self.trend}
-        return Values(found, math.sqrt(min(squares)), self._outside(known))
+        return Values(found, min(distances), self._outside(known))
 
     def _outside(self, known):
         """Numbers of the coordinates beyond the design."""
@@ -58,7 +59,7 @@ class Values:
 
 def _dot(left, right):
     """Scalar product."""
-    return sum(x * y for x, y in zip(left, right, strict=True))
+    return sum(map(mul, left, right))
 
 
 @cache
@@ -68,11 +69,11 @@ def content() -> dict[str, Any]:
 
 
 @cache
-def process(name: str) -> Process:
+def process(name: str) -> Surrogate:
     """Process of the file by name: ``tips`` on summits, or the change of their forces in ``full`` contact."""
-    return Process(**content()[name])
+    return Surrogate(**content()[name])
 
 
-def known() -> tuple[dict[str, Any], Process, Process]:
+def known() -> tuple[dict[str, Any], Surrogate, Surrogate]:
     """All that an answer needs: the content of the file, and its processes of tips on summits and in full contact."""
     return content(), process("tips"), process("full")

@@ -28,8 +28,8 @@ def without_axes(heights: np.ndarray) -> tuple[np.ndarray, str]:
     """
     columns, rows = _axes(heights), _axes(heights.T)
     counted = [
-        f"{'first' if number == 1 else 'first two'} {what}{'s' * (number > 1)}"
-        for what, number in (("row", rows), ("column", columns))
+        f"{'first' if number == 1 else 'first two'} {lines}{'s' * (number > 1)}"
+        for lines, number in (("row", rows), ("column", columns))
         if number
     ]
     if not counted:

@@ -95,10 +95,10 @@ def own_reader(file: Content) -> OwnReader | None:
         return OwnReader(_HIGH_SPEED, high_speed.channels(file.content))
     if file.content.startswith(simple_field.MAGIC):
         return OwnReader("gsf", simple_field.channels(file.content))
-    if file.content.startswith(HDF5) and (found := jpk.channels(file.content, file.label)):
-        return OwnReader("h5-jpk", found)
-    if file.content.startswith(netcdf.MAGIC) and (found := netcdf.channels(file.content, file.label)):
-        return OwnReader("netcdf", found)
-    if file.content.startswith(float_tiff.MAGIC) and (found := float_tiff.channels(file.content, file.label)):
-        return OwnReader("float-tiff", found)
+    if file.content.startswith(HDF5) and (channels := jpk.channels(file.content, file.label)):
+        return OwnReader("h5-jpk", channels)
+    if file.content.startswith(netcdf.MAGIC) and (channels := netcdf.channels(file.content, file.label)):
+        return OwnReader("netcdf", channels)
+    if file.content.startswith(float_tiff.MAGIC) and (channels := float_tiff.channels(file.content, file.label)):
+        return OwnReader("float-tiff", channels)
     return None

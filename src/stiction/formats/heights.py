@@ -25,14 +25,14 @@ _MOST_LISTED = 12
 _NAMELESS = re.compile(r"(default|channel \d+)$", re.IGNORECASE)
 
 
-def height_channel(channels: Sequence[Any], wanted: str | None, name: str) -> tuple[Any, tuple[str, ...]]:
+def height_channel(channels: Sequence[Any], channel_name: str | None, name: str) -> tuple[Any, tuple[str, ...]]:
     """Channel of the heights and notes on its choice.
 
     Parameters
     ----------
     channels : sequence of `stiction.formats.channel.Channel`
         Or of the library.
-    wanted : str or None
+    channel_name : str or None
         Name of the channel, or name#2 for the second of equal names.
     name : str
         Of the file, for messages.
@@ -42,10 +42,10 @@ def height_channel(channels: Sequence[Any], wanted: str | None, name: str) -> tu
     ScanError
         If no channel, or more than one kind, has heights.
     """
-    if wanted is not None:
-        chosen = [channel for channel in channels if wanted in (channel.channel_id, channel.name)]
+    if channel_name is not None:
+        chosen = [channel for channel in channels if channel_name in (channel.channel_id, channel.name)]
         if not chosen:
-            raise ScanError(name, "channel", f"has no channel {wanted}, only: {_first_channels(channels)}")
+            raise ScanError(name, "channel", f"has no channel {channel_name}, only: {_first_channels(channels)}")
     else:
         chosen = [channel for channel in channels if _is_height(channel)] or _only_length(channels)
         if not chosen:
@@ -57,7 +57,7 @@ def height_channel(channels: Sequence[Any], wanted: str | None, name: str) -> tu
                 name, "channel", f"has several channels of heights; name one of: {_first_channels(_first(chosen))}"
             )
     others = f"; the file also has {_first_channels(chosen[1:])}" if chosen[1:] else ""
-    unnamed = not (wanted or _is_height(chosen[0]) or _NAMELESS.match(chosen[0].name))
+    unnamed = not (channel_name or _is_height(chosen[0]) or _NAMELESS.match(chosen[0].name))
     others += "; its name does not say that it has heights, but no other has lengths" if unnamed else ""
     return chosen[0], (f"{name}: channel {chosen[0].channel_id} was read{others}",) if others else ()
 

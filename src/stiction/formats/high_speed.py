@@ -49,16 +49,16 @@ def channels(content: bytes) -> list[Channel]:
         raise ValueError(f"its version is {version}, not 0, 1 or 2")
     layout, places = (_VERSION_0, _PLACES[0]) if version == 0 else (_VERSION_1, _PLACES[1])
     header = struct.unpack_from(layout, content)
-    value = {name: _at(header, place) for name, place in places.items()}
+    value = {name: _at(header, position) for name, position in places.items()}
     if min(*value["texts"], *value["points"], value["frame"], value["frames"]) < 0:
         raise ValueError("its header has a negative size")
     start = struct.calcsize(layout) + sum(value["texts"]) + _after_the_texts(version, content, layout, value["texts"])
     return numbered(_frames(content[start:], value))
 
 
-def _at(header, place):
+def _at(header, position):
     """Value, or values, of a header."""
-    return tuple(header[one] for one in place) if isinstance(place, tuple) else header[place]
+    return tuple(header[index] for index in position) if isinstance(position, tuple) else header[position]
 
 
 def _after_the_texts(version, content, layout, texts):
@@ -83,7 +83,9 @@ def _frames(data, value) -> Iterator[Channel]:
     if min(points) < 1 or len(data) != size * value["frames"] * sum(map(bool, kinds)):
         raise ValueError("its size is not that of the frames in its header")
     first = size * value["frames"] * kinds.index(_HEIGHTS)
-    if not all(least <= one <= most for one, (least, most) in zip(value["piezo"], _PIEZO, strict=True)):
+    if not all(
+        least <= value_of_piezo <= most for value_of_piezo, (least, most) in zip(value["piezo"], _PIEZO, strict=True)
+    ):
         raise ValueError("the extension of its piezo, or its gain, is that of no instrument")
     for number in range(value["frames"]):
         levels = np.frombuffer(data, "<i2", points[0] * points[1], first + size * number + value["frame"])

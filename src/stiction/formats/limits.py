@@ -27,15 +27,15 @@ def require_points(shape: Sequence[int], label: str) -> None:
 
 def inflated(content: bytes, label: str, form: int = zlib.MAX_WBITS) -> bytes:
     """Content of a stream of zlib, or of gzip (form 31), up to the limit. Raises ScanError beyond, zlib.error."""
-    whole, rest = [], content
+    blocks, rest = [], content
     while rest:
         stream = zlib.decompressobj(form)
-        whole.append(stream.decompress(rest, MOST_BYTES + 1))
-        require_bytes(sum(map(len, whole)), label)
+        blocks.append(stream.decompress(rest, MOST_BYTES + 1))
+        require_bytes(sum(map(len, blocks)), label)
         if not stream.eof:
             raise zlib.error("the stream ends too early")
         rest = stream.unused_data.lstrip(b"\0")
-    return b"".join(whole)
+    return b"".join(blocks)
 
 
 def require_no_links(content: bytes, label: str) -> None:
@@ -62,5 +62,5 @@ def _leads_out(file, name, link):
 
     if isinstance(link, h5py.ExternalLink):
         return True
-    found = None if isinstance(link, h5py.SoftLink) else file.get(name)
-    return isinstance(found, h5py.Dataset) and bool(found.external or found.is_virtual)
+    item = None if isinstance(link, h5py.SoftLink) else file.get(name)
+    return isinstance(item, h5py.Dataset) and bool(item.external or item.is_virtual)

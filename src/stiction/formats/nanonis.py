@@ -31,14 +31,14 @@ def channels(content: bytes) -> list[Channel]:
     if tags["SCANIT_TYPE"].split() != ["FLOAT", "MSBFIRST"]:
         raise ValueError(f"its numbers are {' '.join(tags['SCANIT_TYPE'].split())}, not FLOAT MSBFIRST")
     points, sides = tuple(map(int, tags["SCAN_PIXELS"].split())), tuple(map(float, tags["SCAN_RANGE"].split()))
-    size, found = points[0] * points[1], list(_images(tags["DATA_INFO"]))
-    if any(parts[1::2].count(tag) > 1 for tag in _USED) or min(points) < 1 or len(data) != 4 * size * len(found):
+    size, images = points[0] * points[1], list(_images(tags["DATA_INFO"]))
+    if any(parts[1::2].count(tag) > 1 for tag in _USED) or min(points) < 1 or len(data) != 4 * size * len(images):
         raise ValueError("its data are not those that its tags describe")
-    values = np.frombuffer(data, ">f4").reshape(len(found), points[1], points[0])
+    values = np.frombuffer(data, ">f4").reshape(len(images), points[1], points[0])
     upwards = tags["SCAN_DIR"].strip() == "up"
     return numbered(
-        Channel(f"{name} ({direction})", unit, points, sides, lambda k=k: _oriented(values[k], upwards, found[k][2]))
-        for k, (name, unit, direction) in enumerate(found)
+        Channel(f"{name} ({direction})", unit, points, sides, lambda k=k: _oriented(values[k], upwards, images[k][2]))
+        for k, (name, unit, direction) in enumerate(images)
     )
 
 

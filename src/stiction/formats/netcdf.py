@@ -28,15 +28,15 @@ def channels(content: bytes, label: str) -> list[Channel]:
     except OSError:
         return []  # other files of HDF5
     with file:
-        found = [variable for variable in file.variables.values() if _is_map(file, variable)]
-        return numbered(_channel(file, variable, label) for variable in found)
+        maps = [variable for variable in file.variables.values() if _is_map(file, variable)]
+        return numbered(_channel(file, variable, label) for variable in maps)
 
 
 def _is_map(file, variable):
     """Whether a variable is a map of numbers over two coordinates."""
     sides = [file.variables.get(name) for name in variable.dimensions]
-    known = len(sides) == 2 and all(side is not None and side.dimensions == (side.name,) for side in sides)
-    return known and variable.dtype.kind in "iuf" and not any("length" in side.ncattrs() for side in sides)
+    on_grid = len(sides) == 2 and all(side is not None and side.dimensions == (side.name,) for side in sides)
+    return on_grid and variable.dtype.kind in "iuf" and not any("length" in side.ncattrs() for side in sides)
 
 
 def _channel(file, variable, label) -> Channel:

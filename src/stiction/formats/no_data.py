@@ -40,21 +40,21 @@ def without_marks(heights: np.ndarray) -> tuple[np.ndarray, str]:
     ([[7, 8], [7, 9]], '2 points have -9999, the mark of no data, and count as undefined')
     """
     values, counts = np.unique(heights[np.isfinite(heights)], return_counts=True)
-    known = (np.abs(values) > _IMPOSSIBLE) | np.isclose(values[:, None], MARKS, rtol=_ROUNDING, atol=0).any(axis=1)
-    if not known.any() or known.all():
+    is_mark = (np.abs(values) > _IMPOSSIBLE) | np.isclose(values[:, None], MARKS, rtol=_ROUNDING, atol=0).any(axis=1)
+    if not is_mark.any() or is_mark.all():
         return heights, ""
-    rest, most = values[~known], int(counts[~known].max())
+    rest, most = values[~is_mark], int(counts[~is_mark].max())
     away = np.maximum(values - rest[-1], rest[0] - values)
-    marks = known & (away > rest[-1] - rest[0])
-    doubtful = known & ~marks & (counts >= max(_OFTEN, most + 1))
+    marks = is_mark & (away > rest[-1] - rest[0])
+    doubtful = is_mark & ~marks & (counts >= max(_OFTEN, most + 1))
     if doubtful.any():
         raise ValueError(_doubt(values[doubtful][0], counts[doubtful][0]))
     if not marks.any():
         return heights, ""
     number, shown = int(counts[marks].sum()), ", ".join(f"{value:.6g}" for value in values[marks])
-    what = f"{number} points have {shown}, the mark" if number > 1 else f"1 point has {shown}, the mark"
+    subject = f"{number} points have {shown}, the mark" if number > 1 else f"1 point has {shown}, the mark"
     verb = "count" if number > 1 else "counts"
-    return np.where(np.isin(heights, values[marks]), np.nan, heights), f"{what} of no data, and {verb} as undefined"
+    return np.where(np.isin(heights, values[marks]), np.nan, heights), f"{subject} of no data, and {verb} as undefined"
 
 
 def require_no_mark(heights: np.ndarray) -> None:

@@ -47,20 +47,20 @@ def _from_archive(name, content, levels):
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         require_bytes(sum(member.file_size for member in archive.infolist()), name)
         members = [member for member in archive.namelist() if not member.endswith("/")]
-        own = [member for member in members if not _ADDED.search(member)]
-        if len(own) == 1:
-            return unpacked(posixpath.basename(own[0]), archive.read(own[0]), levels - 1)
-        index = next((member for member in own if posixpath.basename(member) == _INDEX), _INDEX)
+        data_files = [member for member in members if not _ADDED.search(member)]
+        if len(data_files) == 1:
+            return unpacked(posixpath.basename(data_files[0]), archive.read(data_files[0]), levels - 1)
+        index = next((member for member in data_files if posixpath.basename(member) == _INDEX), _INDEX)
         folder = index.removesuffix(_INDEX)
-        stored = {member.removeprefix(folder): archive.read(member) for member in own}
+        stored = {member.removeprefix(folder): archive.read(member) for member in data_files}
     written = stored | ({_INDEX: _meant(stored[_INDEX])} if _INDEX in stored else {})
-    return name, content if own == members and not folder and written == stored else _archive(written)
+    return name, content if data_files == members and not folder and written == stored else _archive(written)
 
 
 def _meant(index):
     """Index of an x3p file as the library reads it."""
-    for found, meant in _MEANT.items():
-        index = index.replace(found, meant)
+    for written, meant in _MEANT.items():
+        index = index.replace(written, meant)
     return index
 
 

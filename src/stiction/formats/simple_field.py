@@ -27,9 +27,9 @@ def channels(content: bytes) -> list[Channel]:
         If its data are not those that its head describes, or its sides are no lengths.
     """
     end = content.index(b"\0")
-    found = _LINE.findall(content[len(MAGIC) : end].decode("utf-8"))
-    head = dict(found)
-    if len(head) < len(found):
+    lines = _LINE.findall(content[len(MAGIC) : end].decode("utf-8"))
+    head = dict(lines)
+    if len(head) < len(lines):
         raise ValueError("its head has a key twice")
     points, start = (int(head["XRes"]), int(head["YRes"])), end + 4 - end % 4
     if min(points) < 1 or content[end:start].strip(b"\0") or len(content) != start + points[0] * points[1] * 4:

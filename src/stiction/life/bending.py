@@ -124,8 +124,8 @@ class Bent:
 
         def largest(begin):
             """Largest λ of a drop from x = ``begin`` to the end [-]."""
-            factor, there = self.under_part(begin, 1.0)
-            return factor / (4 * there)
+            factor, pull = self.under_part(begin, 1.0)
+            return factor / (4 * pull)
 
         return _least(largest, 1.0 if self.clamps == 1 else 0.5)[1]
 
@@ -183,10 +183,10 @@ class Bent:
     def _work(self, load, u):
         """Work of a load from rest to some coefficients, at λ = 1."""
         basis = _basis(self.clamps)
-        parts, weights = (1 + _PARTS[0]) / 2, _PARTS[1] / 2
+        nodes, weights = (1 + _PARTS[0]) / 2, _PARTS[1] / 2
         along, end = basis.at @ u, basis.end @ u
-        by_place = along * (weights @ load.along(parts[:, None] * along))
-        return basis.weights @ by_place + end * (weights @ (load.at_end(parts * end) + 0 * parts))
+        by_place = along * (weights @ load.along(nodes[:, None] * along))
+        return basis.weights @ by_place + end * (weights @ (load.at_end(nodes * end) + 0 * nodes))
 
     def overshoot(self) -> float:
         r"""Deflection of the end or middle with all modes of one sign, relative to a uniform load's.
@@ -198,11 +198,11 @@ class Bent:
         basis = _basis(self.clamps)
         mass = basis.at.T @ (basis.weights[:, None] * basis.at)
         squares, modes = eigh(basis.bending + self.tension * basis.slope, mass)
-        parts = (basis.end @ modes) * (basis.weights @ basis.at @ modes) / squares
-        return float(np.abs(parts).sum() / parts.sum())
+        modal = (basis.end @ modes) * (basis.weights @ basis.at @ modes) / squares
+        return float(np.abs(modal).sum() / modal.sum())
 
 
 def _least(function, upper):
     """Place and value of the least of a function between 0 and an upper bound."""
-    found = minimize_scalar(function, bounds=(0.02 * upper, 0.98 * upper), method="bounded")
-    return float(found.x), float(found.fun)
+    minimum = minimize_scalar(function, bounds=(0.02 * upper, 0.98 * upper), method="bounded")
+    return float(minimum.x), float(minimum.fun)

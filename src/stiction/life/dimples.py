@@ -49,7 +49,7 @@ _ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
-class State:
+class HeldBeam:
     """How a beam bends while some rows of dimples hold it, per deflection at these rows."""
 
     rows: tuple[int, ...]  #: that touch, numbered along the beam
@@ -57,7 +57,7 @@ class State:
     bent: np.ndarray  #: deflections along the beam over that at the rows (n,) [-]
     sag: np.ndarray  #: deflections by a uniform load on parts that bring the place down (n,) [m² N⁻¹]
     lift: np.ndarray  #: the same upwards, by one on the other parts (n,) [m² N⁻¹]
-    others: np.ndarray  #: deflections at all other rows over that at the rows that touch (k,) [-]
+    other_rows: np.ndarray  #: deflections at all other rows over that at the rows that touch (k,) [-]
     influence: np.ndarray  #: deflections there by a unit load per length on each place along the beam (k, n) [m² N⁻¹]
 
     @property
@@ -66,7 +66,7 @@ class State:
         return float(self.bent.max())
 
 
-def states(beam: Beam, clamps: int, at: Sequence[float]) -> list[State]:
+def states(beam: Beam, clamps: int, at: Sequence[float]) -> list[HeldBeam]:
     """States of rest of a beam on rows of dimples at increasing distances from a clamp [m], below its length.
 
     Examples
@@ -78,38 +78,38 @@ def states(beam: Beam, clamps: int, at: Sequence[float]) -> list[State]:
     >>> [one.rows for one in states(beam, clamps=1, at=[100e-6, 150e-6])]
     [(1,), (0, 1)]
     """
-    places, found = [0.0, *at, beam.length], []
-    along = np.concatenate([np.linspace(*span, _POINTS) for span in zip(places, places[1:], strict=False)])
+    supports, states_of_rest = [0.0, *at, beam.length], []
+    along = np.concatenate([np.linspace(*span, _POINTS) for span in zip(supports, supports[1:], strict=False)])
     for number in range(1, len(at) + 1):
         for rows in combinations(range(len(at)), number):
-            held = _Held(beam, clamps, tuple(at[row] for row in rows))
+            held = _HeldBeam(beam, clamps, tuple(at[row] for row in rows))
             u = held.turned(1.0)
             if all(held.bent(u, np.array(at)) <= 1 + _ROUNDING):
                 pull = (held.stiffness @ u)[2 : 2 * number + 2 : 2]
                 free = [at[row] for row in range(len(at)) if row not in rows]
-                influence = np.array([held.influence(place, along) for place in free]).reshape(-1, len(along))
+                influence = np.array([held.influence(distance, along) for distance in free]).reshape(-1, len(along))
                 others = held.bent(u, np.array(free))
-                found.append(State(rows, pull, held.bent(u, along), *held.sags(along), others, influence))
-    return found
+                states_of_rest.append(HeldBeam(rows, pull, held.bent(u, along), *held.sags(along), others, influence))
+    return states_of_rest
 
 
-def least_pull(found: Sequence[State]) -> float:
+def least_pull(rest_states: Sequence[HeldBeam]) -> float:
     """Largest pull on a row in the state in which it is least, per deflection [N m⁻¹]."""
-    return min(float(state.pull.max()) for state in found)
+    return min(float(state.pull.max()) for state in rest_states)
 
 
-def holds(found: Sequence[State], way: float, held: np.ndarray) -> np.ndarray:
+def holds(rest_states: Sequence[HeldBeam], way: float, forces: np.ndarray) -> np.ndarray:
     """Whether rows that hold forces (beams, rows) [N] keep beams down, deflected by a way [m], (beams,) bool."""
-    return np.any([np.all(held[:, state.rows] > way * state.pull, axis=1) for state in found], axis=0)
+    return np.any([np.all(forces[:, state.rows] > way * state.pull, axis=1) for state in rest_states], axis=0)
 
 
-def least_load(found: Sequence[State], way: float, gap: float, power: int) -> float:
+def least_load(rest_states: Sequence[HeldBeam], way: float, gap: float, power: int) -> float:
     """Largest load per length, times the ``power`` of the gap, that brings no place down to the substrate [SI].
 
     The rows are deflected by a way [m]. Zero if the beam touches beside them without a load.
     """
     loads = []
-    for state in found:
+    for state in rest_states:
         bears = state.sag > _ROUNDING * state.sag.max()
         clear, sag = gap - way * state.bent[bears], state.sag[bears]
         gaps = np.linspace(0, max(clear.min(), 0.0), _POINTS)
@@ -127,13 +127,13 @@ def _brings_down(state, way, gap, loads, gaps, power):
             pressure, unloaded = load / least**power, gap - way * state.bent
             most, few = unloaded + pressure * state.lift, np.maximum(unloaded - pressure * state.sag, least)
             down = load * (state.influence / np.where(state.influence > 0, most, few) ** power).sum(axis=1)
-            if np.any(way * state.others + down > way):
+            if np.any(way * state.other_rows + down > way):
                 return True
     return False
 
 
 @dataclass(frozen=True)
-class _Held:
+class _HeldBeam:
     """Beam as exact elements between clamps and the rows that hold it. Unknowns are [u, u'] of every node."""
 
     beam: Beam
@@ -158,8 +158,8 @@ class _Held:
             f, c, m, o = self._ends(size)
             by = np.array([[f, c, -f, c], [c, m, -c, o], [-f, -c, f, -c], [c, o, -c, m]])
             scale = np.array([1, size, 1, size])
-            part = slice(2 * i, 2 * i + 4)
-            matrix[part, part] += self.beam.bending_stiffness / size**3 * scale[:, None] * by * scale
+            block = slice(2 * i, 2 * i + 4)
+            matrix[block, block] += self.beam.bending_stiffness / size**3 * scale[:, None] * by * scale
         return matrix
 
     def _ends(self, size):
@@ -170,10 +170,10 @@ class _Held:
     def turned(self, deflection, moments=0.0):
         """Unknowns of all nodes with rows at a deflection, under moments at all nodes."""
         turning = np.arange(3, 2 * len(self.at) + 3, 2)
-        u, given = np.zeros(len(self.stiffness)), np.broadcast_to(moments, len(self.nodes))
+        u, by_moments = np.zeros(len(self.stiffness)), np.broadcast_to(moments, len(self.nodes))
         u[turning - 1] = deflection
-        rest = given[1 : len(self.at) + 1] - (self.stiffness @ u)[turning]
-        u[turning] = np.linalg.solve(self.stiffness[np.ix_(turning, turning)], rest)
+        unbalanced = by_moments[1 : len(self.at) + 1] - (self.stiffness @ u)[turning]
+        u[turning] = np.linalg.solve(self.stiffness[np.ix_(turning, turning)], unbalanced)
         return u
 
     def bent(self, u, along):
@@ -185,15 +185,15 @@ class _Held:
             deflections[inside] = _between(self.beam.decay * size, ends * [1, size, 1, size], x)
         return deflections
 
-    def influence(self, place, along):
+    def influence(self, distance, along):
         """Deflection at a place by a unit load per length around each point along the beam (n,) [m² N⁻¹].
 
         It is that of these points by a force at the place (Maxwell and Betti), times the length between them.
         """
-        at = tuple(sorted((*self.at, place)))
-        further = _Held(self.beam, self.clamps, at)
-        u = further.turned(np.array([float(one == place) for one in at]))
-        force = (further.stiffness @ u)[2 * at.index(place) + 2]
+        at = tuple(sorted((*self.at, distance)))
+        further = _HeldBeam(self.beam, self.clamps, at)
+        u = further.turned(np.array([float(row == distance) for row in at]))
+        force = (further.stiffness @ u)[2 * at.index(distance) + 2]
         steps = np.diff(along, append=along[-1]) / 2 + np.diff(along, prepend=along[0]) / 2
         return further.bent(u, along) / force * steps
 
@@ -207,10 +207,10 @@ class _Held:
             scale = size**4 / self.beam.bending_stiffness
             by[inside] += scale * _bow(self.beam.decay * size, (along[inside] - start) / size)
             by_part.append(by)
-        if self.clamps == 1 and (rest := self.beam.length - self.nodes[-1]) > 0:
-            moments, beyond = np.zeros(len(self.nodes)), np.maximum(along - self.nodes[-1], 0.0) / rest
-            moments[-1] = rest**2 / 2
-            arm = rest**4 / (24 * self.beam.bending_stiffness) * (beyond**4 - 4 * beyond**3 + 6 * beyond**2)
+        if self.clamps == 1 and (overhang := self.beam.length - self.nodes[-1]) > 0:
+            moments, beyond = np.zeros(len(self.nodes)), np.maximum(along - self.nodes[-1], 0.0) / overhang
+            moments[-1] = overhang**2 / 2
+            arm = overhang**4 / (24 * self.beam.bending_stiffness) * (beyond**4 - 4 * beyond**3 + 6 * beyond**2)
             by_part.append(self.bent(self.turned(0.0, moments), along) + arm)
         return [np.maximum(sign * np.array(by_part), 0.0).sum(axis=0) for sign in (1, -1)]
 
@@ -227,8 +227,8 @@ def _between(kl, ends, x):
         """Solutions of the bent beam without load, (4, n)."""
         return np.array([np.ones_like(x), x, np.exp(-kl * x), np.exp(-kl * (1 - x))])
 
-    both = np.array([0.0, 1.0])
-    values, (_, _, fall, rise) = shapes(both), shapes(both)
+    ends_of_part = np.array([0.0, 1.0])
+    values, (_, _, fall, rise) = shapes(ends_of_part), shapes(ends_of_part)
     rates = np.array([np.zeros(2), np.ones(2), -kl * fall, kl * rise])
     system = np.array([values[:, 0], rates[:, 0], values[:, 1], rates[:, 1]])
     return np.linalg.solve(system, ends) @ shapes(x)

@@ -50,7 +50,7 @@ def longest_standing(beam: Beam, clamps: int, adhesion: float) -> float:
     >>> round(longest_standing(beam, 1, 0.072) * 1e6)  # µm, water
     246
     """
-    return _longest(beam, clamps, adhesion, lambda one, _: one.fold_of_drop())
+    return _longest(beam, clamps, adhesion, lambda bent, _: bent.fold_of_drop())
 
 
 def longest_standing_each(beam: Beam, clamps: int, tension: float, angle: float = 0.0) -> float:
@@ -72,10 +72,10 @@ def longest_standing_each(beam: Beam, clamps: int, tension: float, angle: float 
         """Load per length over that of the open gap on a wide beam [-]."""
         return pull_of_liquid(beam.width / (beam.gap * (1 - u)), angle) * beam.gap / (2 * np.cos(angle) * beam.width)
 
-    def fold(one, length):
+    def fold(bent, length):
         """Load factor at the fold of a beam of a length [m]."""
         end = beam.gap / (2 * np.cos(angle) * length)
-        return one.fold(Load(along, lambda u: end + 0 * u))
+        return bent.fold(Load(along, lambda u: end + 0 * u))
 
     return _longest(beam, clamps, adhesion, fold)
 

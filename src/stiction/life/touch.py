@@ -164,12 +164,12 @@ def stopper_voltage_at_once(stiffness: float, way: float, area: float, gap: floa
     """
     points, weights = np.polynomial.legendre.leggauss(24)
 
-    def squared(part):
+    def squared(fraction):
         """Squared voltage that does as much work on a part of the way as the spring stores [V²]."""
-        moved = part * min(way, gap)
+        moved = fraction * min(way, gap)
         left = gap - moved * (1 + points) / 2
         sides = area**0.5 + 4 * left / np.pi  # 2 / π gaps at each edge
         return stiffness * moved / (VACUUM_PERMITTIVITY * (weights / 2) @ (sides / left) ** 2)
 
-    found = minimize_scalar(lambda part: -squared(part), bounds=(0, 1), method="bounded")
-    return float(squared(found.x) ** 0.5)
+    optimum = minimize_scalar(lambda fraction: -squared(fraction), bounds=(0, 1), method="bounded")
+    return float(squared(optimum.x) ** 0.5)

@@ -44,8 +44,8 @@ def job_cost(settings: Mapping[str, Any], wildcards: Mapping[str, str], datasets
     >>> round(job_cost(settings, {})), round(job_cost(settings, {"chunk": "0", "number": "5"}), 1)
     (36, 7.7)
     """
-    parts, sections = int(wildcards["number"]) if "chunk" in wildcards else 1, list(_sections(settings))
-    contacts = sum(map(_contact_time, sections)) * datasets / parts
+    chunks, sections = int(wildcards["number"]) if "chunk" in wildcards else 1, list(_sections(settings))
+    contacts = sum(map(_contact_time, sections)) * datasets / chunks
     full = (section for section in sections if section.keys() >= _FULL)
     strips = sum(section["strips"] * _strip_time(section) for section in full)
     return PER_JOB + contacts + strips + PER_BEAM * sum(map(_beams, sections))

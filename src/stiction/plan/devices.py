@@ -22,7 +22,7 @@ from stiction.config.surfaces.knowledge import Knowledge, assumed, knowledge, st
 from stiction.config.surfaces.members import is_itself, like, members
 from stiction.config.units import NM_PER_UM, from_si, to_si
 from stiction.contact.air import DRY_AIR, has_dry, humid
-from stiction.contact.materials import OF_PAIRS, Step
+from stiction.contact.materials import OF_PAIRS, InputStep
 from stiction.contact.meniscus import flooded_energy, meniscus_height
 from stiction.contact.tilt import EDGE_RADIUS, Edge, length_of_edge
 from stiction.devices.arcs import arc_length, slopes_of_tips, tip_slope
@@ -173,8 +173,8 @@ class DevicePlan:
         """Humidities along the axis of the chart of a device, with at most four decimals, and its own between them."""
         low, high = ends = self.sections[device]["chart"]["humidities"]
         axis = np.linspace(*ends, self.config["design"]["chart_points"])
-        stated = {humidity for humidity in self.sections[device]["humidities"] if low < humidity < high}
-        return sorted({round(float(humidity), 4) for humidity in axis} | stated)
+        humidities = {humidity for humidity in self.sections[device]["humidities"] if low < humidity < high}
+        return sorted({round(float(humidity), 4) for humidity in axis} | humidities)
 
     @property
     def pressed_pairs(self) -> list[str]:
@@ -362,8 +362,8 @@ class DevicePlan:
             is_flat = not self.kind(name).has_tip or "dimples" in section
             if section["pair"] == pair and is_flat:
                 of_chart = section.get("chart", {}).get("humidities", [])
-                others = self._searched if self.kind(name).release.in_any_air else of_chart
-                airs |= {*section["humidities"], max(others, default=0)}
+                further = self._searched if self.kind(name).release.in_any_air else of_chart
+                airs |= {*section["humidities"], max(further, default=0)}
         return humid(sorted(airs))
 
     @property
@@ -441,8 +441,8 @@ class DevicePlan:
     def _temperatures(self, section):
         """Temperatures of the water of a device by humidity, those of its chart and dry air among them [K]."""
         humidities = section["humidities"] + section.get("chart", {}).get("humidities", [])
-        own = self._in_conditions.get(section["pair"], {})
-        return {air: own.get(air, self.config["water"]["temperature_K"]) for air in humidities}
+        by_humidity = self._in_conditions.get(section["pair"], {})
+        return {air: by_humidity.get(air, self.config["water"]["temperature_K"]) for air in humidities}
 
     @cached_property
     def _in_conditions(self):
@@ -457,8 +457,8 @@ class DevicePlan:
     def _roughest_of_both(self, pair):
         """As `_rms_of_both`, of the roughest members [nm]."""
         names = [self.config["pairs"][pair][side] for side in SIDES]
-        others = [[member.get("rms", 0.0) for member in self.members_of(name).values()] for name in names]
-        return math.hypot(*(max(self.rms(name), *rms, 0.0) for name, rms in zip(names, others, strict=True)))
+        rms_of_members = [[member.get("rms", 0.0) for member in self.members_of(name).values()] for name in names]
+        return math.hypot(*(max(self.rms(name), *rms, 0.0) for name, rms in zip(names, rms_of_members, strict=True)))
 
     def rms(self, surface: str) -> float:
         """Standard deviation of the heights of a surface, preliminary if it is described by scans [nm]."""
@@ -505,19 +505,19 @@ class DevicePlan:
     @cached_property
     def with_budget(self) -> list[str]:
         """Devices with an uncertain input: with a stated uncertainty, or on a surface described by scans."""
-        given = {name: any(device.get("uncertainty", {}).values()) for name, device in self.sections.items()}
-        return [name for name in self.sections if given[name] or self.quantities(name) or self.members(name)]
+        is_uncertain = {name: any(device.get("uncertainty", {}).values()) for name, device in self.sections.items()}
+        return [name for name in self.sections if is_uncertain[name] or self.quantities(name) or self.members(name)]
 
     def uncertain_properties(self, device: str) -> list[str]:
         """Uncertain properties of the contact of a device, keys of ``OF_PAIRS``."""
-        stated = self.sections[device].get("uncertainty", {})
-        return [name for name, entry in OF_PAIRS.items() if stated.get(entry.key)]
+        uncertainty = self.sections[device].get("uncertainty", {})
+        return [name for name, entry in OF_PAIRS.items() if uncertainty.get(entry.key)]
 
-    def step(self, pair: str, name: str) -> Step:
+    def step(self, pair: str, name: str) -> InputStep:
         """Step of a property of the contact of a pair, a key of ``OF_PAIRS``. Devices and test beams on it share it."""
         users = (*self.sections.values(), *test_beams.as_cantilevers(self.config).values())
-        stated = [user.get("uncertainty", {}) for user in users if user["pair"] == PairInAir(pair).pair]
-        deviations = [one.get(OF_PAIRS[name].key, 0.0) for one in stated]
+        uncertainties = [user.get("uncertainty", {}) for user in users if user["pair"] == PairInAir(pair).pair]
+        deviations = [uncertainty.get(OF_PAIRS[name].key, 0.0) for uncertainty in uncertainties]
         return OF_PAIRS[name].step.by(max(deviations, default=0.0))
 
     def has_uncertain_edge(self, device: str) -> bool:
@@ -528,9 +528,9 @@ class DevicePlan:
         """Budgets of devices, of all with an uncertain input by default: at each humidity, and those of tips."""
         names = []
         for name in devices or self.with_budget:
-            parts = ("", "_tip") if self.kind(name).has_tip else ("",)
+            suffixes = ("", "_tip") if self.kind(name).has_tip else ("",)
             cases = [case_id(name, humidity) for humidity in self.sections[name]["humidities"]]
-            names += [case + part for part in parts for case in cases]
+            names += [case + suffix for suffix in suffixes for case in cases]
         return names
 
     def members(self, device: str) -> dict[str, dict[str, dict[str, float]]]:
@@ -543,8 +543,8 @@ class DevicePlan:
         """
         if self.sections[device].get("test_beams") or device in self._pulled:
             return {}
-        found = {name: self.members_of(name) for name in self._surfaces(device)}
-        return {name: others for name, others in found.items() if others}
+        by_surface = {name: self.members_of(name) for name in self._surfaces(device)}
+        return {name: typical for name, typical in by_surface.items() if typical}
 
     @cached_property
     def _pulled(self):
@@ -584,7 +584,7 @@ class DevicePlan:
         by_surface = {
             name: quantities(entry)
             if is_measured(entry)
-            else [one for one in ALL_QUANTITIES if one in of_heights.union(errors[name].quantities)]
+            else [quantity for quantity in ALL_QUANTITIES if quantity in of_heights.union(errors[name].quantities)]
             for name, entry in self._surfaces(device).items()
         }
         return [(name, quantity) for name, of_surface in by_surface.items() for quantity in of_surface]
@@ -605,7 +605,7 @@ class DevicePlan:
         """Inputs of the budget of a device assumed without measurement, such as ``B2 like Sub1``."""
         by_members = self.members(device)
         return [
-            *(like(name, other) for name, others in by_members.items() for other in others),
+            *(like(name, other) for name, typical in by_members.items() for other in typical),
             *(
                 f"{word} of {name}"
                 for name, entry in self._surfaces(device).items()

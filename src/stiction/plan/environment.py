@@ -35,8 +35,8 @@ class Environment:
         ASSUME: otherwise across all gaps, which is the safe side. A pair can state another range for its beams in humid
         air, as those of the paper do. It does not hold for devices.
         """
-        if stated := self.config["attraction"].get("reach"):
-            return stated
+        if reach := self.config["attraction"].get("reach"):
+            return reach
         in_humid_air = contact == PairInAir(contact).pair and self.is_wetted(contact)
         of_pair = in_humid_air and not self.of_devices
         return self.config["pairs"][contact].get("attraction", "all") if of_pair else "all"
@@ -111,8 +111,10 @@ class Environment:
         touching = [pair for pair in pairs if pair in humid and self.reach(pair) == "touching"]
         nothing_attracts = self.config["van_der_waals"] == "none"
         left_out = ["van_der_waals"] if nothing_attracts else ["gaps"] * bool(touching)
-        left = [case for case in cases if not (self.corrected(case[0], case[1:]) or self.by_levels(case[0], case[1:]))]
-        dry = {self.is_dry(*case) for case in left}
+        uncorrected = [
+            case for case in cases if not (self.corrected(case[0], case[1:]) or self.by_levels(case[0], case[1:]))
+        ]
+        dry = {self.is_dry(*case) for case in uncorrected}
         left_out += ["summits"] * (False in dry) + ["bent"] * (True in dry)
         follows = {"copied": True} if pairs and all("replica" in self.config["pairs"][pair] for pair in pairs) else {}
         of_some = {"pairs": touching} if "gaps" in left_out and len(touching) < len(pairs) else {}
@@ -131,21 +133,21 @@ class Environment:
         angles = self._contact_angles(contact)
         gaps = self._gaps(contact, self.around(contact, config))
         water = {key: value for key, value in (config or self.config)["water"].items() if value}
-        own = self._warmer(contact) | self._bounded(contact, angles)
-        return water | own | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
+        further = self._warmer(contact) | self._bounded(contact, angles)
+        return water | further | ({"contact_angles_deg": angles} if any(angles) else {}) | gaps
 
     def temperature(self, pair: str, humidity: float) -> float:
         """Temperature of the water of a pair at a humidity: that of a condition of its devices where they stick [K]."""
-        own = self._temperatures.get(PairInAir(pair).pair, {}) if self.of_devices else {}
-        return own.get(humidity, self.config["water"]["temperature_K"])
+        by_humidity = self._temperatures.get(PairInAir(pair).pair, {}) if self.of_devices else {}
+        return by_humidity.get(humidity, self.config["water"]["temperature_K"])
 
     @cached_property
     def _on_pairs(self):
         """Devices by pair and name."""
-        found = {}
+        devices = {}
         for name, device in self.config.get("devices", {}).items():
-            found.setdefault(device["pair"], {})[name] = device
-        return found
+            devices.setdefault(device["pair"], {})[name] = device
+        return devices
 
     @cached_property
     def _temperatures(self):
@@ -162,8 +164,10 @@ class Environment:
 
     def _warmer(self, contact):
         """How much warmer the water of a pair is in conditions of its devices."""
-        own = self._temperatures.get(PairInAir(contact).pair, {}) if self.of_devices else {}
-        differences = {Air(air).name: round(at - self.config["water"]["temperature_K"], 6) for air, at in own.items()}
+        by_humidity = self._temperatures.get(PairInAir(contact).pair, {}) if self.of_devices else {}
+        differences = {
+            Air(air).name: round(at - self.config["water"]["temperature_K"], 6) for air, at in by_humidity.items()
+        }
         warmer = {air: differences[air] for air in sorted(differences) if differences[air]}
         return {"warmer_K": warmer} if warmer else {}
 
@@ -194,11 +198,11 @@ class Environment:
             return {}
         constants = {medium: self._hamaker_constant(pair, medium) for medium in (summits, "dry")}
         retarded = {"wavelength_nm": across["wavelength_nm"]} if across["retarded"] else {}
-        stated = self._materials.bodies(pair)
-        spacer = sum(material.get(COATING, 0) for material in stated)
+        materials = self._materials.bodies(pair)
+        spacer = sum(material.get(COATING, 0) for material in materials)
         coated = {"spacer_nm": spacer} if spacer else {}
-        if any(COATING_ATTRACTION in material for material in stated):
-            bodies = (subsection(material, ("hamaker_constant_zJ", *OF_COATINGS)) for material in stated)
+        if any(COATING_ATTRACTION in material for material in materials):
+            bodies = (subsection(material, ("hamaker_constant_zJ", *OF_COATINGS)) for material in materials)
             coated["bodies"] = dict(zip(SIDES, bodies, strict=True))
         return {"gaps": {"hamaker_constant_zJ": constants, "summits": summits} | retarded | coated}
 

@@ -116,7 +116,7 @@ class Graph:
         jobs, waiting = {}, []
         for stage, _ in stages().values():
             if set(targets) & set(stage.targets) and stage.patterns(self.plan):
-                waiting += [Job(stage, At(**at), self.plan) for at in stage.wanted(self.plan)]
+                waiting += [Job(stage, At(**at), self.plan) for at in stage.jobs_of_targets(self.plan)]
         while waiting:
             job = waiting.pop()
             if (key := (job.stage.name, *sorted(vars(job.at).items()))) not in jobs:
@@ -154,7 +154,7 @@ class Results:
     """
 
     graph: Graph
-    _known: dict[str, xr.Dataset] = field(default_factory=dict, repr=False)
+    _datasets: dict[str, xr.Dataset] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, config: dict) -> "Results":
@@ -163,19 +163,19 @@ class Results:
 
     def __getitem__(self, file: str) -> xr.Dataset:
         """Dataset by the name of its file, such as ``contact/b_NG``. Raises a KeyError if no stage writes it."""
-        if file in self._known:
-            return self._known[file]
+        if file in self._datasets:
+            return self._datasets[file]
         job = self.graph.job(file)
         result = job.compute(self.inputs(job))
-        parts = [described(dataset, job.stage.stage) for dataset in job.stage.datasets(result, job.at)]
-        datasets = dict(zip(job.names, parts, strict=True))
+        results = [described(dataset, job.stage.stage) for dataset in job.stage.datasets(result, job.at)]
+        datasets = dict(zip(job.names, results, strict=True))
         if not job.stage.running.temporary:
-            self._known.update(datasets)
+            self._datasets.update(datasets)
         return datasets[file]
 
     def has(self, file: str) -> bool:
         """Whether a dataset is computed already."""
-        return file in self._known
+        return file in self._datasets
 
     def inputs(self, job: Job) -> dict[str, Any]:
         """Data of the inputs of a job."""

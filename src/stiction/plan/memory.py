@@ -24,13 +24,15 @@ def for_attempt(first: int, attempt: int) -> int:
 def _largest_field_memory(config):
     """Memory of a job with the largest of all fields [MB]."""
     sampling, patch = config["sampling"], config["identification"]["patch_um"]
-    spacing, others, margin = sampling["spacing_nm"], config["studies"]["variants"]["spacing_nm"], sampling["margin_um"]
-    drawn = [((FIELD_UM, FIELD_UM), spacing), ((patch, patch), spacing)]
+    spacing = sampling["spacing_nm"]
+    other_spacings = config["studies"]["variants"]["spacing_nm"]
+    margin = sampling["margin_um"]
+    fields = [((FIELD_UM, FIELD_UM), spacing), ((patch, patch), spacing)]
     strip = sampling["strip_length_um"] + margin, config["beam"]["width_um"] + margin
-    drawn += [(strip, at) for at in (spacing, *others)]
+    fields += [(strip, at) for at in (spacing, *other_spacings)]
     devices = DevicePlan(config)
     tips = [devices.tips(name) for name in devices.with_tips]
-    drawn += [((tip.length / NM_PER_UM + margin, tip.width / NM_PER_UM + margin), spacing) for tip in tips]
+    fields += [((tip.length / NM_PER_UM + margin, tip.width / NM_PER_UM + margin), spacing) for tip in tips]
     for device in devices.sections.values():
-        drawn += [(sides, at) for _, sides, at in fields_of(device, sampling, others)]
-    return max(field_memory(*side, at) for side, at in drawn)
+        fields += [(sides, at) for _, sides, at in fields_of(device, sampling, other_spacings)]
+    return max(field_memory(*side, at) for side, at in fields)

@@ -97,8 +97,8 @@ class Plan:
     @cached_property
     def surfaces(self) -> list[str]:
         """Surfaces of the pairs in the run, in the order of the configuration."""
-        used = {name for pair in self.pairs for name in self.sides(pair)}
-        return [name for name in self.config["surfaces"] if name in used]
+        names = {name for pair in self.pairs for name in self.sides(pair)}
+        return [name for name in self.config["surfaces"] if name in names]
 
     def is_drawn(self, surface: str) -> bool:
         """Whether a surface is drawn for a pair in the run, a device or test beams."""
@@ -115,8 +115,8 @@ class Plan:
         """
         changed = {key: value for key, value in (self.config["contact"] | contact).items() if value is not None}
         of_pair = {"surfaces": self.sides(pair), "water": self.air.water(pair), "contact": changed}
-        others = {key: value for key, value in self.air.around(pair).items() if key != "materials"}
-        return others | of_pair | self.materials.settings(pair, properties) | self.replica(pair)
+        sections = {key: value for key, value in self.air.around(pair).items() if key != "materials"}
+        return sections | of_pair | self.materials.settings(pair, properties) | self.replica(pair)
 
     def replica(self, pair: str) -> dict[str, dict]:
         """Setting ``replica`` of a pair, empty if its surfaces are independent."""
@@ -173,11 +173,11 @@ class Plan:
         """Stored limits by assumed properties of the surfaces of some pairs, by pair, without empty ones."""
         library, entries = paper()["surfaces"], self.config["surfaces"]
         end = self.devices.nyquist
-        by_surface = {name: limits(name, entries[name], library, end) for name in self.scans.others}
-        named = {pair: dict.fromkeys(self.sides(pair)) for pair in pairs}
+        by_surface = {name: limits(name, entries[name], library, end) for name in self.scans.described_by_numbers}
+        surfaces_of_pairs = {pair: dict.fromkeys(self.sides(pair)) for pair in pairs}
         by_pair = {
             pair: [limit.stored() for name in names for limit in by_surface.get(name, ())]
-            for pair, names in named.items()
+            for pair, names in surfaces_of_pairs.items()
         }
         return {pair: of_pair for pair, of_pair in by_pair.items() if of_pair}
 
@@ -185,8 +185,8 @@ class Plan:
         """Stored limits of the pairs in the run by pair, without empty ones: of `assumptions`, and of films."""
         assumed, pairs = self.assumptions(*self.pairs), self.config["pairs"]
         films = {pair: self.unmeasured_films(self.air.wet(pair, pairs[pair]["humidities"])) for pair in self.pairs}
-        found = {pair: assumed.get(pair, []) + films[pair] for pair in self.pairs}
-        return {pair: of_pair for pair, of_pair in found.items() if of_pair}
+        by_pair = {pair: assumed.get(pair, []) + films[pair] for pair in self.pairs}
+        return {pair: of_pair for pair, of_pair in by_pair.items() if of_pair}
 
     def unmeasured_films(self, wet: Iterable[float]) -> list[dict[str, Any]]:
         """Stored limit by films at humidities at which water condenses, see `stiction.config.mission.adsorption`."""
@@ -221,8 +221,8 @@ class Plan:
     @property
     def figure_pair(self) -> str:
         """Pair of the figures: the configuration's if it is in the run, otherwise the first one."""
-        wanted = self.config["figures"]["pair"]
-        return wanted if wanted in self.pairs else self.pairs[0]
+        pair = self.config["figures"]["pair"]
+        return pair if pair in self.pairs else self.pairs[0]
 
     @property
     def figure_pairs(self) -> list[str]:
@@ -271,10 +271,10 @@ class Plan:
         Those over the humidity need pairs that water wets.
         """
         of_paper = [name for name in self.config["studies"] if name != "full_contact"]
-        wanted = self.config["run"].get("studies", of_paper)
-        needed = {"sensitivity": self.figure_pairs} if self.pairs else {}
-        needed |= dict.fromkeys(IN_HUMID_AIR, self.pairs)
-        return [name for name in wanted if name not in needed or any(map(self.air.humid, needed[name]))]
+        names = self.config["run"].get("studies", of_paper)
+        pairs = {"sensitivity": self.figure_pairs} if self.pairs else {}
+        pairs |= dict.fromkeys(IN_HUMID_AIR, self.pairs)
+        return [name for name in names if name not in pairs or any(map(self.air.humid, pairs[name]))]
 
     def states_model_error(self, pair: str, humidities: Iterable[float]) -> bool:
         """Whether the error of the model is stated beside predictions for a pair at some humidities."""
@@ -308,13 +308,13 @@ class Plan:
 
     def humidities_of_full_contact(self, pair: str) -> list[float]:
         """Humidities of a pair, that of its figures if these show corrected laws beyond them, its devices' dry air."""
-        stated, shown = self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
-        wet = humid(stated)
-        within = shown in stated or is_humid(shown) and wet and min(wet) <= shown <= max(wet)
+        humidities, shown = self.config["pairs"][pair]["humidities"], self.config["figures"]["humidity"]
+        wet = humid(humidities)
+        within = shown in humidities or is_humid(shown) and wet and min(wet) <= shown <= max(wet)
         corrected = pair in self.pairs and self.variants.corrected(pair, [shown])
         devices = [*self.devices.sections.values(), *as_cantilevers(self.config).values()]
         dry = [DRY_AIR.humidity] * any(has_dry(section["humidities"]) for section in devices if section["pair"] == pair)
-        return list(dict.fromkeys([*stated, *([shown] if corrected and not within else []), *dry]))
+        return list(dict.fromkeys([*humidities, *([shown] if corrected and not within else []), *dry]))
 
     @property
     def pressed_pairs(self) -> list[str]:

@@ -47,10 +47,10 @@ class Planner:
         """Hash of all sources of the jobs: code, configuration and files of scans."""
         scans = [Path(file) for surface in self.plan.scans.surfaces for file in self.plan.scans.files(surface).values()]
         states = [(str(file), *_state(file)) for file in scans]
-        known = dict(self.plan.preliminary or {})
+        numbers = dict(self.plan.preliminary or {})
         # Files of the package are inputs by their paths, which are others in another checkout.
         text = json.dumps(
-            [str(PACKAGE), hashes("*.py", "*.yaml"), self.plan.config, states, known], sort_keys=True, default=str
+            [str(PACKAGE), hashes("*.py", "*.yaml"), self.plan.config, states, numbers], sort_keys=True, default=str
         )
         return hashlib.sha256(text.encode()).hexdigest()
 
@@ -103,15 +103,19 @@ class Planner:
             "stage": stage.stage,
             "files": {key: path_of(stage, name) for key, name in stage.patterns(self.plan).items()},
             "wanted": [
-                path_of(stage, name.format(**at)) for at in stage.wanted(self.plan) for name in stage.files.values()
+                path_of(stage, name.format(**at))
+                for at in stage.jobs_of_targets(self.plan)
+                for name in stage.files.values()
             ],
             "log": f"{RESULTS}logs/{stage.log}.log",
-            "constraints": {key: one for key, one in constraints(stage, self.plan).items() if one != WILDCARDS[key]},
+            "constraints": {
+                key: pattern for key, pattern in constraints(stage, self.plan).items() if pattern != WILDCARDS[key]
+            },
             "message": re.sub(r"{(\w+)}", r"{wildcards.\1}", stage.message),
             "shown": vars(stage.shown) if stage.shown else None,
         }
 
-    def wanted(self, target: str) -> list[str]:
+    def files_of(self, target: str) -> list[str]:
         """Files wanted by a target of the workflow."""
         return [file for rule in self.rules if target in rule["targets"] for file in rule["wanted"]]
 
@@ -124,8 +128,8 @@ class Planner:
         """Sum over the jobs, see `cost`."""
         jobs = self._graph.needed(*WHOLE)
         of_stages = {job.stage.name: job.stage.running.memory for job in jobs}
-        needed = (round(needs(self.plan)) for needs in of_stages.values() if needs)
-        megabytes = max(memory.job_memory(self.plan.config), *needed, 0)
+        memories = (round(needs(self.plan)) for needs in of_stages.values() if needs)
+        megabytes = max(memory.job_memory(self.plan.config), *memories, 0)
         return sum(job.seconds for job in jobs), megabytes
 
     @cached_property
@@ -212,10 +216,10 @@ class Planner:
         """Digests of the settings of all datasets behind a file, by file, without its chunks."""
         if path not in self._behind_datasets:
             rule, _ = self._job_of(path)
-            found = self._behind_datasets[path] = {}
+            digests = self._behind_datasets[path] = {}
             for file, label in self._inputs_of(path):
-                found |= self._datasets_behind(file) if label else {}
-                found |= {file: labels.digest(self.settings(file))} if label not in (None, rule["stage"]) else {}
+                digests |= self._datasets_behind(file) if label else {}
+                digests |= {file: labels.digest(self.settings(file))} if label not in (None, rule["stage"]) else {}
         return self._behind_datasets[path]
 
     def _inputs_of(self, path):
@@ -227,10 +231,10 @@ class Planner:
     def _job_of(self, path):
         """Rule and job of a file, both ``None`` without such a job in the configuration."""
         if path not in self._jobs:
-            self._jobs[path] = self._found(path)
+            self._jobs[path] = self._matched(path)
         return self._jobs[path]
 
-    def _found(self, path):
+    def _matched(self, path):
         """Rule and job of a file, see `_job_of`."""
         for rule, matches in self._expressions:
             if match := matches.fullmatch(path):

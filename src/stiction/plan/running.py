@@ -14,27 +14,27 @@ from stiction.run.logs import log_of, note_origin, recorded_origin
 def run(job: Any) -> None:
     """Run a job as Snakemake describes it to a script."""
     (stage,) = (stage for stage in stages_of(job.params.module) if stage.name == job.params.stage)
-    stated = job.params.settings
-    settings = stage.converted(stated)
-    part = stage.running.first(settings) if stage.running.first else {}
-    data = {name: _load_input(job.input.get(name, []), *how, part, stage) for name, how in job.params.inputs.items()}
+    plain = job.params.settings
+    settings = stage.converted(plain)
+    first = stage.running.first(settings) if stage.running.first else {}
+    data = {name: _load_input(job.input.get(name, []), *how, first, stage) for name, how in job.params.inputs.items()}
     at = At(**job.wildcards)
     result = stage.result(data, at, settings)
     if stage.save is not None:
         stage.save(result, dict(job.output.items()))
         if template := job.input.get("caption"):
             save_text(_caption(stage, job, template, result.get_label()), job.output.txt)
-        note_origin(labels.origin(stated, _behind(stage, job)))
+        note_origin(labels.origin(plain, _behind(stage, job)))
         return
     datasets = _inputs(job, of_datasets=True)
     for dataset, path in zip(stage.datasets(result, at), job.output, strict=True):
-        storage.save(dataset, path, stage.stage, stated, datasets)
+        storage.save(dataset, path, stage.stage, plain, datasets)
 
 
 def _inputs(job, of_datasets) -> list[str]:
     """Paths of the inputs of a job that are datasets, or of all others."""
-    named = (name for name, (label, _) in job.params.inputs.items() if bool(label) == of_datasets)
-    return [path for name in named for path in _as_list(job.input.get(name, []))]
+    names = (name for name, (label, _) in job.params.inputs.items() if bool(label) == of_datasets)
+    return [path for name in names for path in _as_list(job.input.get(name, []))]
 
 
 def _behind(stage, job) -> dict[str, str]:
@@ -60,15 +60,15 @@ def _as_list(paths) -> list[str]:
     return [paths] if isinstance(paths, str) else list(paths)
 
 
-def _load_input(paths: Any, label: str | None, keys: Any, part: dict, stage: Stage) -> Any:
+def _load_input(paths: Any, label: str | None, keys: Any, first: dict, stage: Stage) -> Any:
     """Data of an input, structured as it was declared. Paths of files other than datasets stay paths.
 
     ``keys`` are those of a dict, ``True`` for an order, and ``None`` for one dataset.
     """
     paths = _as_list(paths)
-    read: Iterator = (storage.load(path, label, **part) for path in paths) if label else iter(paths)
+    values: Iterator = (storage.load(path, label, **first) for path in paths) if label else iter(paths)
     if keys is None:
-        return next(read)
+        return next(values)
     if keys is True:
-        return read if stage.running.streamed else list(read)
-    return {tuple(key) if isinstance(key, list) else key: value for key, value in zip(keys, read, strict=True)}
+        return values if stage.running.streamed else list(values)
+    return {tuple(key) if isinstance(key, list) else key: value for key, value in zip(keys, values, strict=True)}

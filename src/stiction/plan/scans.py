@@ -21,7 +21,7 @@ class Scans:
         return [name for name, entry in self.config["surfaces"].items() if is_measured(entry)]
 
     @property
-    def others(self) -> list[str]:
+    def described_by_numbers(self) -> list[str]:
         """Surfaces described by numbers."""
         return [name for name in self.config["surfaces"] if name not in self.surfaces]
 

@@ -69,8 +69,8 @@ class At(SimpleNamespace):
     """
 
     def __init__(self, **wildcards: str):
-        known = {name: kind(wildcards[name]) for name, kind in _KINDS.items() if name in wildcards}
-        super().__init__(**wildcards | known)
+        numbers = {name: kind(wildcards[name]) for name, kind in _KINDS.items() if name in wildcards}
+        super().__init__(**wildcards | numbers)
 
     @property
     def identity(self) -> dict[str, str | float]:
@@ -81,12 +81,12 @@ class At(SimpleNamespace):
         >>> At(case="b_rh067", model="NG").identity, At(pair="b_dry").identity
         ({'pair': 'b', 'relative_humidity': 0.67, 'model': 'NG'}, {'pair': 'b', 'relative_humidity': 0.0})
         """
-        known, found = vars(self), {}
-        if contact := known.get("case", known.get("pair")):
-            found["pair"] = contact.pair
-        if "case" in known or getattr(contact, "medium", None):
-            found["relative_humidity"] = getattr(contact, "humidity", DRY_AIR.humidity)
-        return found | {name: known[name] for name in ("surface", "model", "variant") if name in known}
+        wildcards, coordinates = vars(self), {}
+        if contact := wildcards.get("case", wildcards.get("pair")):
+            coordinates["pair"] = contact.pair
+        if "case" in wildcards or getattr(contact, "medium", None):
+            coordinates["relative_humidity"] = getattr(contact, "humidity", DRY_AIR.humidity)
+        return coordinates | {name: wildcards[name] for name in ("surface", "model", "variant") if name in wildcards}
 
 
 class File(str):
@@ -171,7 +171,8 @@ class Stage:
 
     ``inputs`` and ``settings`` are functions of the plan of a configuration (`stiction.plan.plan.Plan`) and of the
     wildcards of a job. ``compute`` takes what its parameters name: an input, structured as ``inputs`` structures its
-    names, a wildcard, or the ``settings``; and all inputs as ``data``, all wildcards as ``at``.
+    names, a wildcard, a setting that no ``kind`` converts, or all ``settings``; and all inputs as ``data``, all
+    wildcards as ``at``.
     """
 
     name: str  #: of the rule
@@ -216,7 +217,7 @@ class Stage:
             else self.files["dataset"].removesuffix("_{each}")
         )
 
-    def wanted(self, plan: Any) -> list[dict]:
+    def jobs_of_targets(self, plan: Any) -> list[dict]:
         """Wildcards of the jobs for the files of the targets."""
         return self.jobs(plan) if self.targets and (not self.study or self.study in plan.studies) else []
 
@@ -232,8 +233,11 @@ class Stage:
     def result(self, data: Mapping[str, Any], at: At, settings: Any) -> Any:
         """Compute from the data of the inputs, the wildcards and the converted settings."""
         complete = self.complete(settings, data) if self.complete else settings
-        known = vars(at) | {"settings": complete, "data": data, "at": at} | data
-        return self.compute(**{name: known[name] for name in signature(self.compute).parameters if name in known})
+        single = settings if self.kind is None and settings else {}
+        arguments = single | vars(at) | {"settings": complete, "data": data, "at": at} | data
+        return self.compute(
+            **{name: arguments[name] for name in signature(self.compute).parameters if name in arguments}
+        )
 
     def datasets(self, result: Any, at: At) -> list[Any]:
         """Datasets of a result in the order of their files, with the identity of the job unless they are of devices."""
@@ -261,8 +265,8 @@ def expression(pattern: str, constraints: Mapping[str, str]) -> re.Pattern:
     {'case': 'b_rh067', 'model': 'NG'}
     """
     texts = re.split(r"\{(\w+)\}", pattern)
-    parts = [f"(?P<{text}>{constraints[text]})" if k % 2 else re.escape(text) for k, text in enumerate(texts)]
-    return re.compile("".join(parts))
+    patterns = [f"(?P<{text}>{constraints[text]})" if k % 2 else re.escape(text) for k, text in enumerate(texts)]
+    return re.compile("".join(patterns))
 
 
 def filled(pattern: str, at: At) -> str:
@@ -275,7 +279,7 @@ def subsection(section: Mapping[str, Any], names: Iterable[str]) -> dict[str, An
     return {name: section[name] for name in names if name in section}
 
 
-def select(kind: type, section: Mapping[str, Any], **given: Any) -> dict[str, Any]:
+def select(kind: type, section: Mapping[str, Any], **values: Any) -> dict[str, Any]:
     """Settings for a dataclass from a section of the configuration: exactly its fields.
 
     Nested sections are reduced to the fields of their dataclasses. Fields with a default are left out where the section
@@ -287,7 +291,7 @@ def select(kind: type, section: Mapping[str, Any], **given: Any) -> dict[str, An
         Dataclass whose fields are named like the keys, without units.
     section : dict
         Plain numbers, strings, lists and dicts.
-    **given
+    **values
         Settings that do not have the value of the section, by key.
 
     Raises
@@ -302,14 +306,14 @@ def select(kind: type, section: Mapping[str, Any], **given: Any) -> dict[str, An
     >>> select(Water, {"temperature_K": 300, "samples": 5, "more": 1}, samples=7)
     {'temperature_K': 300, 'samples': 7}
     """
-    keys = {without_unit(key): key for key in (*section, *given)}
+    keys = {without_unit(key): key for key in (*section, *values)}
     kinds, selected = _kinds_of(kind), {}
     for field in fields(kind):
         key = keys.get(field.name)
-        if key in given:
-            selected[key] = given[key]
+        if key in values:
+            selected[key] = values[key]
         elif key is not None:
-            selected[key] = _part(kinds[field.name], section[key])
+            selected[key] = _reduced(kinds[field.name], section[key])
         elif field.default is MISSING and field.default_factory is MISSING:
             raise KeyError(f"no key for {kind.__qualname__}.{field.name}")
     return selected
@@ -318,7 +322,7 @@ def select(kind: type, section: Mapping[str, Any], **given: Any) -> dict[str, An
 _kinds_of = cache(get_type_hints)  # a plan asks for those of a few classes thousands of times
 
 
-def _part(kind, value):
+def _reduced(kind, value):
     """Value of one key, reduced to the fields of its dataclass if it has one."""
     if not isinstance(value, dict):
         return value

@@ -47,11 +47,11 @@ class Variants:
     @cached_property
     def changes(self) -> dict[str, dict]:
         """Changes of every variant, ``base`` first."""
-        wanted = self.config["studies"]["variants"]
+        studied = self.config["studies"]["variants"]
         changes = {
             f"{key}_{value}": {section: {key: value}} if section else {key: value}
             for key, section in CHANGED.items()
-            for value in wanted.get(key, [])
+            for value in studied.get(key, [])
         }
         full = {CORRECTED: {"contact": {"model": "full"}}} if "full_contact" in self.plan.studies else {}
         return {"base": {}} | changes | {name: {"beam": mesh} for name, mesh in self.finer_beams.items()} | full
@@ -59,8 +59,8 @@ class Variants:
     def surface(self, variant: str, surface: str) -> dict:
         """Description of a surface under a variant, for drawing it."""
         entry, psd = self.config["surfaces"][surface], self._psd_under(variant, surface)
-        used = [*MOMENTS, "published_psd"] if psd == "published" else MOMENTS
-        return subsection(entry, used) | {"psd": psd}
+        keys = [*MOMENTS, "published_psd"] if psd == "published" else MOMENTS
+        return subsection(entry, keys) | {"psd": psd}
 
     def water(self, pair: str, variant: str) -> dict:
         """Section ``water`` of a pair under a variant."""
@@ -70,8 +70,8 @@ class Variants:
         """Source of the spectrum of a surface: the variant's if available, otherwise unchanged."""
         entry = self.config["surfaces"][surface]
         sources = {"published": "published_psd" in entry, "identified": self.plan.has_summits(surface)}
-        wanted = self.changes[variant].get("psd", entry["psd"])
-        return wanted if sources[wanted] else entry["psd"]
+        source = self.changes[variant].get("psd", entry["psd"])
+        return source if sources[source] else entry["psd"]
 
     def summits(self, pair: str, variant: str) -> dict:
         """Settings of the summits of a pair without the variant, and the changes of the variant.
@@ -103,8 +103,8 @@ class Variants:
 
     def with_summits_of(self, pair: str, variant: str) -> str:
         """First variant with the same summits of a pair: solids do not change them."""
-        wanted = self._all_summits(pair, variant)
-        return next(name for name in self.changes if self._all_summits(pair, name) == wanted)
+        summits = self._all_summits(pair, variant)
+        return next(name for name in self.changes if self._all_summits(pair, name) == summits)
 
     def has_islands(self, variant: str) -> bool:
         """Whether the asperities are islands under a variant. Their contact depends on more than the summits."""

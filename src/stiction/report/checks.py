@@ -267,8 +267,8 @@ def crack_is_resolved(
     if not np.isfinite(crack.error):
         return
     message = (
-        f"crack on uniform ground is {TO_UM * crack.used.crack_length:.4g} µm, {100 * crack.error:+.2f} % off that on "
-        f"a finer mesh (allowed ± {100 * accuracy:g} %)"
+        f"crack on uniform ground is {TO_UM * crack.coarse.crack_length:.4g} µm, {100 * crack.error:+.2f} % off that "
+        f"on a finer mesh (allowed ± {100 * accuracy:g} %)"
     )
     yield Check(RESOLVED, case, bool(abs(crack.error) <= accuracy), message)
     gamma, error = mean_with_error(TO_MJ * stuck)
@@ -297,8 +297,8 @@ def surface_checks(
         yield heights_are_as_measured(surface, density)
     for (surface, model), character in characters.items():
         used = heights[surface] if model == "NG" else {"skewness": 0.0, "kurtosis": 3.0}
-        given = targets.get(surface, {"rms_nm": TO_NM * float(heights[surface].rms)})
-        wanted = given | {name: float(used[name]) for name in ("skewness", "kurtosis")}
+        moments = targets.get(surface, {"rms_nm": TO_NM * float(heights[surface].rms)})
+        wanted = moments | {name: float(used[name]) for name in ("skewness", "kurtosis")}
         yield from moments_meet_targets(f"{surface} {model}", character, wanted, defects[surface])
 
 

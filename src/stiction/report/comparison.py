@@ -14,7 +14,7 @@ from stiction.report.style import DOUBLE, SINGLE, dashes, figure_stage, letter, 
 from stiction.report.table import HUMIDITY, Columns, Table, table_stage
 
 
-class Source(NamedTuple):
+class ComparedPart(NamedTuple):
     """Compared part of a table of the results."""
 
     table: str
@@ -27,17 +27,17 @@ class Source(NamedTuple):
 
 
 SOURCES = (
-    Source(
+    ComparedPart(
         *("table_3", "pair", "model", "mean crack length [µm]", ("crack_length_um", "crack_length_se_um")),
         more={"model": (str, "model")},
         target="tables",
     ),
-    Source(
+    ComparedPart(
         *("safe_lengths", "device", "held_by", "length that a share p holds [µm]", ("estimate_um", "estimate_se_um")),
         more={"held by": (str, "held_by"), "p": ("g", "share"), "simulated limit [µm]": (".1f", "safe_length_um")},
         target="devices",
     ),
-    Source(
+    ComparedPart(
         *("stoppers", "device", "device", "pull-off force [µN]", ("pull_off_uN", "pull_off_se_uN")),
         more={"P(stuck) [%]": (fraction_with_band, "share_stuck", "share_stuck_low", "share_stuck_high")},
         target="devices",
@@ -45,7 +45,7 @@ SOURCES = (
 )
 
 
-def rows(table: pd.DataFrame, source: Source, ends: Mapping[str, Sequence[float]]) -> pd.DataFrame:
+def rows(table: pd.DataFrame, source: ComparedPart, ends: Mapping[str, Sequence[float]]) -> pd.DataFrame:
     """Rows of all copies under the names of their originals, with the compared values in increasing order.
 
     ``ends`` maps the end of the names of copies to their values, see `stiction.config.merging.values`.
@@ -73,7 +73,7 @@ def _columns(keys):
 
 
 def comparison_table(
-    table: pd.DataFrame, source: Source, keys: Sequence[str], ends: Mapping[str, Sequence[float]]
+    table: pd.DataFrame, source: ComparedPart, keys: Sequence[str], ends: Mapping[str, Sequence[float]]
 ) -> Table:
     """Numbers of all copies, those of different values below each other."""
     caption = (
@@ -88,7 +88,7 @@ def comparison_table(
 
 @styled
 def comparison_figure(
-    table: pd.DataFrame, source: Source, keys: Sequence[str], ends: Mapping[str, Sequence[float]]
+    table: pd.DataFrame, source: ComparedPart, keys: Sequence[str], ends: Mapping[str, Sequence[float]]
 ) -> Figure:
     """Compared number against the values of a key: a line for each humidity, for the middle fraction.
 
@@ -104,8 +104,8 @@ def comparison_figure(
         frame = frame[frame.share == shares[len(shares) // 2]]
     parts = dict(list(frame.groupby(list(dict.fromkeys([source.subject, source.panels])), sort=False)))
     figure, axes = panels(1, len(parts), (min(DOUBLE, SINGLE * len(parts)), 3.0))
-    for panel, part in zip(axes[0], parts.values(), strict=True):
-        for k, (humidity, line) in enumerate(part.groupby("relative_humidity")):
+    for panel, table_of_panel in zip(axes[0], parts.values(), strict=True):
+        for k, (humidity, line) in enumerate(table_of_panel.groupby("relative_humidity")):
             at, error = line.sort_values("value"), source.numbers[1]
             style = {"color": f"C{k}", "linestyle": dashes(k), "marker": marker(k), "capsize": 2}
             panel.errorbar(at.value, at[source.numbers[0]], at[error], label=Air(humidity).words, **style)
@@ -126,7 +126,7 @@ def _stages(source):
         """One job if copies of a subject are compared."""
         devices = plan.devices.stoppers if source.table == "stoppers" else plan.devices.beams
         subjects = plan.pairs if source.subject == "pair" else devices
-        return [{}] if any(one.endswith(tuple(values(plan.config))) for one in subjects) else []
+        return [{}] if any(subject.endswith(tuple(values(plan.config))) for subject in subjects) else []
 
     def settings(plan, _at):
         """Compared keys and their values by suffix of the copies."""
@@ -141,13 +141,13 @@ def _stages(source):
     }
     shows = f"{source.words.partition(' [')[0]} for values of one key"
 
-    def made(show):
+    def showing(show):
         """Function of a stage to show its table."""
         return lambda data, settings: show(pd.read_csv(data["table"]), source, settings["keys"], settings["ends"])
 
     return (
-        table_stage(name, shows, compute=made(comparison_table), **declared),
-        figure_stage(name, shows, "Comparison", caption="compared", compute=made(comparison_figure), **declared),
+        table_stage(name, shows, compute=showing(comparison_table), **declared),
+        figure_stage(name, shows, "Comparison", caption="compared", compute=showing(comparison_figure), **declared),
     )
 
 

@@ -37,14 +37,14 @@ def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, column: str | None 
     Numbers are beside their marks, or in a ``column`` below its name at the right end of the panel.
     """
     in_column = {"xycoords": panel.get_yaxis_transform(), "xytext": (-2, 0), "ha": "right", **_NUMBER}
-    for place, marks in enumerate(rows.values()):
-        panel.axhline(place, color="0.9", linewidth=0.6, zorder=0)
+    for row, marks in enumerate(rows.values()):
+        panel.axhline(row, color="0.9", linewidth=0.6, zorder=0)
         for mark in marks:
-            _draw(panel, place, mark)
+            _draw(panel, row, mark)
             if column is not None:
-                panel.annotate(mark.text, (1, place), **in_column)
+                panel.annotate(mark.text, (1, row), **in_column)
             else:
-                panel.annotate(mark.text, (mark.high + mark.error, place), (6, 0), **_NUMBER)
+                panel.annotate(mark.text, (mark.high + mark.error, row), (6, 0), **_NUMBER)
     panel.set_yticks(range(len(rows)), list(rows))
     panel.tick_params(axis="y", length=0)
     panel.set_ylim(len(rows) - 0.4, -0.6 - bool(column))
@@ -80,24 +80,24 @@ def signed(number: float) -> str:
     return f"{rounded:+.1f}".replace("-", "−") if rounded else "0.0"
 
 
-def _draw(panel, place, mark):
+def _draw(panel, row, mark):
     """One mark without its text."""
     style = {"color": mark.color, "label": mark.label or "_"}
     if mark.low < mark.high:
-        panel.plot([mark.low, mark.high], [place] * 2, linewidth=_THICK, solid_capstyle="butt", **style)
-        panel.plot([mark.low, mark.high], [place] * 2, "|", color=mark.color, markersize=_END)
+        panel.plot([mark.low, mark.high], [row] * 2, linewidth=_THICK, solid_capstyle="butt", **style)
+        panel.plot([mark.low, mark.high], [row] * 2, "|", color=mark.color, markersize=_END)
     else:
         face = mark.color if mark.filled else "white"
-        panel.errorbar([mark.high], [place], xerr=[mark.error], fmt="o", markersize=4, markerfacecolor=face, **style)
+        panel.errorbar([mark.high], [row], xerr=[mark.error], fmt="o", markersize=4, markerfacecolor=face, **style)
 
 
-def references(panel: Axes, length: float, base: str, known: pd.DataFrame) -> None:
+def references(panel: Axes, length: float, base: str, references_of_case: pd.DataFrame) -> None:
     """Lines of changes [%] of a crack length [µm], of some name: none, and those to the published and measured ones.
 
     The rows of Table III of a case are known, or none.
     """
     panel.axvline(0, color="black", linewidth=0.8, label=base)
-    for row in known.itertuples():
+    for row in references_of_case.itertuples():
         if np.isfinite(row.ng):
             panel.axvline(100 * (row.ng / length - 1), color=PUBLISHED, label="published")
         if np.isfinite(row.experiment):

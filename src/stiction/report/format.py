@@ -67,13 +67,15 @@ def conditions_in_words(conditions: Iterable[Mapping[str, Any]]) -> str:
     >>> conditions_in_words([{"temperature_C": -20, "dew_point_C": 10}])
     '-20 °C at a dew point of 10 °C: water condenses'
     """
-    said = []
-    for one in conditions:
-        dew, air = one.get("dew_point_C"), humidity_of(one)
-        at = f"{one['temperature_C']:g} °C" + (f" at a dew point of {dew:g} °C" if dew is not None else "")
+    texts = []
+    for condition in conditions:
+        dew, air = condition.get("dew_point_C"), humidity_of(condition)
+        at = f"{condition['temperature_C']:g} °C" + (f" at a dew point of {dew:g} °C" if dew is not None else "")
         air = "water condenses" if air is None else Air(air).choose(f"RH {air:g}", DRY_AIR.name)
-        said.append(f"{at}: {air}" + (f", {100 * one['share']:.3g} % of the touchdowns" if "share" in one else ""))
-    return "; ".join(said)
+        texts.append(
+            f"{at}: {air}" + (f", {100 * condition['share']:.3g} % of the touchdowns" if "share" in condition else "")
+        )
+    return "; ".join(texts)
 
 
 def listed(names: Sequence[str]) -> str:
@@ -189,7 +191,7 @@ def _of_the_rest(fraction):
 
 def with_band(stuck: float, low: float, high: float) -> str:
     """Fraction of devices and its band as `fraction_with_band`, from percent."""
-    return fraction_with_band(*(part / 100 for part in (stuck, low, high)))
+    return fraction_with_band(*(end / 100 for end in (stuck, low, high)))
 
 
 def error_alone(error: float) -> str:

@@ -190,7 +190,7 @@ def blocks_of_columns(
     wide, tall = (PAGE, np.inf) if _ON_A_PAGE.get() else (width(across), TALLEST)
     figure = Figure(figsize=(wide, min(height * many * blocks, tall)), layout="constrained")
     parts = [figure] if blocks == 1 else figure.subfigures(blocks, 1)
-    return figure, [(part, *_columns(part, count, rows, shared)) for part in parts]
+    return figure, [(block, *_columns(block, count, rows, shared)) for block in parts]
 
 
 def _arrangement(count):
@@ -199,13 +199,13 @@ def _arrangement(count):
     return many, -(-count // many)
 
 
-def _columns(part, count, rows, shared):
+def _columns(block, count, rows, shared):
     """Columns of panels in a figure or a part of it, and the same panels line by line."""
     many, across = _arrangement(count)
     if many == 1 or rows == 1:
-        lines = np.split(part.subplots(rows * many, across, squeeze=False, **shared), many)
+        lines = np.split(block.subplots(rows * many, across, squeeze=False, **shared), many)
     else:
-        lines = [line.subplots(rows, across, squeeze=False, **shared) for line in part.subfigures(many, 1)]
+        lines = [line.subplots(rows, across, squeeze=False, **shared) for line in block.subfigures(many, 1)]
     lines[-1], unused = np.split(lines[-1], [count - across * (many - 1)], axis=1)
     for panel in unused.flat:
         panel.remove()
@@ -233,17 +233,17 @@ def legend_below(panel: Axes, entries: Sequence[Artist]) -> None:
     grid, figure = panel.get_gridspec(), panel.figure
     columns = _fitting(figure.bbox.width / figure.dpi / grid.ncols, [entry.get_label() for entry in entries])
     below = panel.transAxes + ScaledTranslation(0, -_LABELLED / _POINTS, figure.dpi_scale_trans)
-    place = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": below}
-    panel.legend(handles=entries, ncols=columns, **place)
+    position = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "bbox_transform": below}
+    panel.legend(handles=entries, ncols=columns, **position)
 
 
-def legend_outside(figure: Figure, shown: tuple[Sequence[Artist], Sequence[str]], place: str, most: int) -> None:
+def legend_outside(figure: Figure, shown: tuple[Sequence[Artist], Sequence[str]], side: str, most: int) -> None:
     """Legend of ``shown`` handles and labels above (``upper``) or below (``lower``) all panels of a figure.
 
     It has as many columns as fit, at most ``most``.
     """
     columns = min(most, _fitting(figure.get_figwidth(), shown[1]))
-    figure.legend(*shown, loc=f"outside {place} center", ncols=columns)
+    figure.legend(*shown, loc=f"outside {side} center", ncols=columns)
 
 
 def _fitting(width, labels):
@@ -414,13 +414,13 @@ def strips(figure: Figure) -> list[bytes]:
             text.set_wrap(True)
     canvas.draw()
     pixels, around = np.asarray(canvas.buffer_rgba()), _AROUND * figure.dpi
-    shown, legends = ([_ends(canvas, part) for part in parts] for parts in (figure.axes, _legends(figure)))
-    found = []
+    shown, legends = ([_ends(canvas, artist) for artist in parts] for parts in (figure.axes, _legends(figure)))
+    pictures = []
     for low, high in _with_legends(_joined(shown), legends):
         ends = len(pixels) - np.array([high + around, low - around])
         top, bottom = np.clip(ends, 0, len(pixels)).round().astype(int)
-        found.append(picture(pixels[top:bottom, :, :3]))
-    return found
+        pictures.append(picture(pixels[top:bottom, :, :3]))
+    return pictures
 
 
 def picture(pixels: np.ndarray) -> bytes:
@@ -437,15 +437,15 @@ def picture(pixels: np.ndarray) -> bytes:
     return content.getvalue()
 
 
-def _ends(canvas, part):
+def _ends(canvas, artist):
     """Lower and upper end of a part of a figure [pixels]."""
-    box = part.get_tightbbox(canvas.get_renderer())
+    box = artist.get_tightbbox(canvas.get_renderer())
     return box.y0, box.y1
 
 
 def _legends(figure):
     """Legends of a figure and its parts that are outside of panels."""
-    return [*figure.legends, *chain.from_iterable(part.legends for part in figure.subfigs)]
+    return [*figure.legends, *chain.from_iterable(block.legends for block in figure.subfigs)]
 
 
 def _with_legends(strips, legends):
@@ -459,9 +459,9 @@ def _with_legends(strips, legends):
 
 def _joined(intervals):
     """Intervals with overlapping ones joined, from the highest to the lowest."""
-    found: list[tuple[float, float]] = []
+    joined: list[tuple[float, float]] = []
     for low, high in sorted(intervals, key=lambda ends: -ends[1]):
-        if found and high > found[-1][0]:
-            low, high = min(low, found[-1][0]), found.pop()[1]
-        found.append((low, high))
-    return found
+        if joined and high > joined[-1][0]:
+            low, high = min(low, joined[-1][0]), joined.pop()[1]
+        joined.append((low, high))
+    return joined

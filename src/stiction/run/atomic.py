@@ -23,8 +23,8 @@ def replacing(path: Path) -> Iterator[Path]:
     draft = path.with_name(f".{path.name}.{uuid.uuid4().hex}")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        for left in path.parent.glob(f".{path.name}.*"):  # from a run that was killed
-            left.unlink(missing_ok=True)
+        for stale in path.parent.glob(f".{path.name}.*"):  # from a run that was killed
+            stale.unlink(missing_ok=True)
         draft.touch()
     except OSError as error:
         raise DataError(f"folder {path.parent} cannot be written ({error}); make it writable") from error

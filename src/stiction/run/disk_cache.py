@@ -43,13 +43,13 @@ class DiskCache:
 
     def save(self) -> None:
         """Keep the used results. If the file cannot be written, only time is lost."""
-        others = [key for key in self._known if key not in self._used] if self._unused else []
-        kept = {key: self._known[key] for key in others[-self._unused :]} | self._used
-        if kept != self._known:
+        unused = [key for key in self._known if key not in self._used] if self._unused else []
+        results = {key: self._known[key] for key in unused[-self._unused :]} | self._used
+        if results != self._known:
             with contextlib.suppress(OSError, DataError):
-                text = json.dumps(kept)
+                text = json.dumps(results)
                 save_text(f"{_checksum(text)}\n{text}", self._path)
-            self._known = kept
+            self._known = results
 
 
 def _stored(path):
@@ -67,8 +67,8 @@ def _checksum(text):
 
 
 @dataclass(frozen=True)
-class Kept:
-    """What is kept for the next process that reads the same configuration; nothing without a folder."""
+class Caches:
+    """Caches for the next process that reads the same configuration. Without a folder, nothing is kept."""
 
     folder: Path | None = None
     code: Callable = not_kept  #: keeps the fingerprints of modules, see `stiction.run.fingerprint.fingerprint`
@@ -84,7 +84,7 @@ class Kept:
 
 
 #: Nothing is kept.
-NOWHERE = Kept()
+NOWHERE = Caches()
 
 
 class SharedCache(DiskCache):
@@ -103,9 +103,9 @@ class SharedCache(DiskCache):
 
     def __call__(self, determined_by: object, compute: Callable[[], Any]) -> Any:
         """As `DiskCache`."""
-        own = super().__call__
-        value = self._of_user(determined_by, lambda: own(determined_by, compute))
-        return own(determined_by, lambda: value)
+        cached = super().__call__
+        value = self._of_user(determined_by, lambda: cached(determined_by, compute))
+        return cached(determined_by, lambda: value)
 
     def save(self) -> None:
         """As `DiskCache`."""
@@ -114,13 +114,13 @@ class SharedCache(DiskCache):
 
 
 @contextlib.contextmanager
-def kept_below(directory: Path) -> Iterator[Kept]:
+def caches_below(directory: Path) -> Iterator[Caches]:
     """Keep what a command finds out below the folder of a run. Nothing is kept if the folder is missing."""
     if not directory.is_dir():
         yield NOWHERE
         return
     code = SharedCache(directory / ".snakemake" / "code.json")
     try:
-        yield Kept(directory / ".snakemake", code)
+        yield Caches(directory / ".snakemake", code)
     finally:
         code.save()

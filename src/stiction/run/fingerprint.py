@@ -77,7 +77,7 @@ def _read(path, _modified, remember):
     text = path.read_bytes()
     determined_by = [_this_module(), sys.implementation.cache_tag, hashlib.sha256(text).hexdigest()]
     hashed, names = remember(determined_by, lambda: _parsed(text))
-    modules = {place: file for name in names for place, file in files_of(name).items()}
+    modules = {module: file for name in names for module, file in files_of(name).items()}
     return hashed, list(modules.items())
 
 
@@ -118,7 +118,7 @@ def imports_of(node: ast.AST) -> list[str]:
 
 def files_of(name: str) -> dict[str, Path]:
     """Files of the package behind a full name, by module: a module, or the module with the definition of an object."""
-    return {place: _modules()[place] for place in (name, name.rpartition(".")[0]) if place in _modules()}
+    return {module: _modules()[module] for module in (name, name.rpartition(".")[0]) if module in _modules()}
 
 
 @cache

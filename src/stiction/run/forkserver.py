@@ -178,14 +178,14 @@ def serve(requests: socket.socket) -> str | None:
             if not message:
                 return None
             reply = socket.socket(fileno=descriptors[0])
-            lasting, held = os.pipe()
+            lasting, end_of_child = os.pipe()
             child = os.fork()
             if child == 0:
                 _end_with(server)
                 for other in (requests, reply, *(other for _, other in running.values())):
                     other.close()
                 return os.fsdecode(message)
-            os.close(held)
+            os.close(end_of_child)
             running[lasting] = child, reply
 
 

@@ -16,7 +16,7 @@ from stiction.run.atomic import DataError
 LAYOUT = 2
 
 
-class Label(NamedTuple):
+class DatasetLabel(NamedTuple):
     """Origin of a dataset."""
 
     stage: str | None  #: ``None`` if the file is no result of this study
@@ -32,7 +32,7 @@ class Label(NamedTuple):
         return {"stage": self.stage, "name": self.name, "layout": self.layout} | texts
 
 
-def made_from(inputs: Iterable[str | Path], stage: str, name: str, settings: dict[str, Any]) -> Label:
+def made_from(inputs: Iterable[str | Path], stage: str, name: str, settings: dict[str, Any]) -> DatasetLabel:
     """Label of a dataset computed by a stage from other datasets.
 
     Datasets of the same stage are its chunks. They have its settings and are not listed, because their number does not
@@ -47,7 +47,7 @@ def made_from(inputs: Iterable[str | Path], stage: str, name: str, settings: dic
     for path in inputs:
         label = read(path)
         before |= label.before | ({} if label.stage == stage else {Path(path).as_posix(): label.settings})
-    return Label(stage, name, settings, before)
+    return DatasetLabel(stage, name, settings, before)
 
 
 def digest(value: Any) -> str:
@@ -63,7 +63,7 @@ def origin(settings: Any, behind: Mapping[str, str]) -> str:
     return digest([settings, dict(behind)])
 
 
-def read(path: str | Path) -> Label:
+def read(path: str | Path) -> DatasetLabel:
     """Label of a dataset, without its numbers.
 
     Raises
@@ -83,7 +83,9 @@ def read(path: str | Path) -> Label:
     sections = [settings, before, *(before.values() if isinstance(before, dict) else ())]
     if not all(isinstance(section, dict) for section in sections):
         raise unreadable(path, ValueError("its label holds no settings"))
-    return Label(attributes.get("stage"), attributes.get("name"), settings, before, int(attributes.get("layout", 1)))
+    return DatasetLabel(
+        attributes.get("stage"), attributes.get("name"), settings, before, int(attributes.get("layout", 1))
+    )
 
 
 def unreadable(path: str | Path, reason: Exception) -> DataError:

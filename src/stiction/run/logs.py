@@ -73,8 +73,8 @@ def recorded_origins(folder: str | Path) -> dict[str, str]:
 
 def log_of(result: str | Path) -> Path:
     """Log of the job of a result without a label. Both are relative to the folder of the run."""
-    _, *parts = Path(result).with_suffix(".log").parts
-    return Path("results", "logs", *parts)
+    _, *folders = Path(result).with_suffix(".log").parts
+    return Path("results", "logs", *folders)
 
 
 def _texts(folder):

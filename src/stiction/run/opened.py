@@ -37,8 +37,8 @@ class _Joined(BackendArray):
         kinds = {variable.dtype.kind for variable in of_files}
         self.dtype = np.dtype(object)
         if kinds <= set("fiub"):
-            own = np.result_type(*(variable.dtype for variable in of_files))
-            self.dtype = own if same or own.kind == "f" else np.dtype(float)
+            common = np.result_type(*(variable.dtype for variable in of_files))
+            self.dtype = common if same or common.kind == "f" else np.dtype(float)
         self.shape = files.shape + self.sizes
 
     def __getitem__(self, key: indexing.ExplicitIndexer) -> Any:
@@ -46,10 +46,10 @@ class _Joined(BackendArray):
 
     def _read(self, key):
         files = np.array(_outer(self.files, key[: self.files.ndim]), object)
-        parts = np.array([_outer(self._part(file), key[self.files.ndim :]) for file in files.flat], self.dtype)
-        return parts.reshape(files.shape + parts.shape[1:])
+        values = np.array([_outer(self._filled(file), key[self.files.ndim :]) for file in files.flat], self.dtype)
+        return values.reshape(files.shape + values.shape[1:])
 
-    def _part(self, path):
+    def _filled(self, path):
         """Numbers of one file, filled up to the largest size."""
         filled = np.full(
             self.sizes, "" if self.dtype == object else np.nan if self.dtype.kind == "f" else 0, self.dtype
@@ -111,14 +111,14 @@ def _structure(path):
 def _nodes(name: str, files: list[_File]) -> Iterator[tuple[str, xr.Dataset]]:
     """Yield the node of a folder, or those of its files, by name."""
     axes = [axis for axis in _AXES if all(axis in file.coords and not file.coords[axis].ndim for file in files)]
-    if axes and len({_place(file, axes) for file in files}) == len(files) and _alike(files):
+    if axes and len({_coordinates(file, axes) for file in files}) == len(files) and _alike(files):
         yield name, _join(files, axes)
     else:
         for file in files:
             yield f"{name}/{file.path.stem}", _join([file], [])
 
 
-def _place(file, axes):
+def _coordinates(file, axes):
     """Values of the coordinates of a file."""
     return tuple(file.coords[axis].item() for axis in axes)
 
@@ -136,11 +136,11 @@ def _variables(file):
 
 def _join(files: list[_File], axes: list[str]) -> xr.Dataset:
     """Dataset of files along some of their coordinates."""
-    places = [_place(file, axes) for file in files]
-    values = [sorted(set(column)) for column in zip(*places, strict=True)]
+    coordinates = [_coordinates(file, axes) for file in files]
+    values = [sorted(set(column)) for column in zip(*coordinates, strict=True)]
     grid = np.full([len(of_axis) for of_axis in values], None, object)
-    for file, place in zip(files, places, strict=True):
-        grid[tuple(of_axis.index(value) for of_axis, value in zip(values, place, strict=True))] = file.path
+    for file, position in zip(files, coordinates, strict=True):
+        grid[tuple(of_axis.index(value) for of_axis, value in zip(values, position, strict=True))] = file.path
     first = files[0].coords
     shared = [
         name

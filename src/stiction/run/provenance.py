@@ -85,9 +85,9 @@ def understood(record: Path) -> Iterator[None]:
     except (OSError, DataError, RecordError):
         raise
     except Exception as reason:  # a record can say anything
-        said = " ".join(f"{type(reason).__name__}: {reason}".split())[:200]
+        error = " ".join(f"{type(reason).__name__}: {reason}".split())[:200]
         raise RecordError(
-            f"{record} describes no run of this version of stiction ({said}): run stiction paper or stiction run FILE "
+            f"{record} describes no run of this version of stiction ({error}): run stiction paper or stiction run FILE "
             "again"
         ) from reason
 

@@ -25,7 +25,7 @@ THREADS = ("OMP_NUM", "GOTO_NUM", "OPENBLAS_NUM", "MKL_NUM", "VECLIB_MAXIMUM", "
 FOLDERS = ("TMPDIR", "TMP", "TEMPDIR", "TEMP")
 
 
-def _part(module, name):
+def _object(module, name):
     """Object of a module of Snakemake, ``None`` if this version has no such module or no such object."""
     with contextlib.suppress(ImportError):
         return getattr(importlib.import_module(f"snakemake.{module}"), name, None)
@@ -44,7 +44,7 @@ def fork_jobs() -> bool:
     container, an environment or threads of its own still starts as a new interpreter, like every script if forking is
     not possible; the reason is then printed.
     """
-    script = _part("script", "PythonScript")
+    script = _object("script", "PythonScript")
     start = getattr(script, "execute_script", None)
     if sys.platform != "linux":  # the libraries of macOS do not survive a fork
         return _without_forks("forks of loaded libraries are safe on Linux only")
@@ -105,7 +105,7 @@ def compare_without_pandas() -> None:
     Snakemake imports pandas to recognise its objects among the parameters of jobs; the import takes longer than the
     comparison of all parameters.
     """
-    records = _part("persistence", "PersistenceBase")
+    records = _object("persistence", "PersistenceBase")
     if not hasattr(records, "_serialize_param_builtin") or not hasattr(records, "_serialize_param_pandas"):
         return
     compared = records._serialize_param_pandas
@@ -119,7 +119,7 @@ def compare_without_pandas() -> None:
 
 def look_for_scripts_once() -> None:
     """Let Snakemake look for the script of a rule once, not for every job. An unknown way to look for it remains."""
-    processor = _part("dag", "ScriptProcessor")
+    processor = _object("dag", "ScriptProcessor")
     look_for = getattr(processor, "process_job", None)
     if look_for is None or list(inspect.signature(look_for).parameters) != ["self", "job"]:
         return
@@ -137,17 +137,17 @@ def look_for_scripts_once() -> None:
 
 def remember_signatures() -> None:
     """Let Snakemake read the signature of a function once, not nine times for every job. An unknown way remains."""
-    inspected = _part("common", "get_function_params")
-    if inspected is None or _part("rules", "get_function_params") is not inspected:
+    inspected = _object("common", "get_function_params")
+    if inspected is None or _object("rules", "get_function_params") is not inspected:
         return
     if list(inspect.signature(inspected).parameters) != ["func"]:
         return
-    known = cache(inspected)
+    cached = cache(inspected)
 
     def get_function_params(func):
         """Names of the parameters of a function, from memory if it has a hash."""
         try:
-            return known(func)
+            return cached(func)
         except TypeError:  # it has no hash
             return inspected(func)
 

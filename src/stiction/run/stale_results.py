@@ -42,7 +42,7 @@ def foreign(
 def _difference(path, settings, expected, remember):
     """Difference between a dataset and this run's, empty without any."""
     try:
-        label = labels.Label(*remember([_state(path), labels.Label._fields], lambda: labels.read(path)))
+        label = labels.DatasetLabel(*remember([_state(path), labels.DatasetLabel._fields], lambda: labels.read(path)))
     except (DataError, OSError):
         return "cannot be read"
     if label.name != path.stem:
@@ -63,15 +63,15 @@ def _state(path):
     return [str(path), state.st_ino, state.st_size, state.st_mtime_ns, state.st_ctime_ns]
 
 
-def _first(stored, wanted, path=()):
+def _first(stored, expected, path=()):
     """First different key of two sections, with both values, empty if they agree."""
-    if stored == wanted:
+    if stored == expected:
         return ""
-    if isinstance(stored, dict) and isinstance(wanted, dict):
-        keys = sorted({*stored, *wanted})
-        return next(filter(None, (_first(stored.get(key), wanted.get(key), (*path, key)) for key in keys)), "")
-    wanted = json.loads(json.dumps(wanted))  # as it would be stored
-    return "" if stored == wanted else f"{'.'.join(path)}: {_value(stored)} instead of {_value(wanted)}"
+    if isinstance(stored, dict) and isinstance(expected, dict):
+        keys = sorted({*stored, *expected})
+        return next(filter(None, (_first(stored.get(key), expected.get(key), (*path, key)) for key in keys)), "")
+    expected = json.loads(json.dumps(expected))  # as it would be stored
+    return "" if stored == expected else f"{'.'.join(path)}: {_value(stored)} instead of {_value(expected)}"
 
 
 def _value(value):
@@ -95,9 +95,9 @@ def damaged(logs: str | Path, remember: Callable[[object, Callable[[], Any]], An
     Files that are missing and files without a checksum are left out. A `stiction.run.disk_cache.DiskCache` keeps the
     checksums of files that have not changed.
     """
-    for path, written in recorded_checksums(logs).items():
+    for path, recorded in recorded_checksums(logs).items():
         file = Path(path)
-        if file.is_file() and remember([_state(file), "checksum"], partial(checksum, file)) != written:
+        if file.is_file() and remember([_state(file), "checksum"], partial(checksum, file)) != recorded:
             yield path, "is not as its job wrote it"
 
 
@@ -105,8 +105,8 @@ def summary(unusable: Mapping[str, str]) -> Iterator[str]:
     """Yield one line about the first unusable file of each folder, with the number of the others."""
     paths = sorted(map(Path, unusable), key=lambda path: (path.parent, path.name))
     for _, files in groupby(paths, key=lambda path: path.parent):
-        first, *others = map(Path.as_posix, files)
-        more = f" (nor {len(others)} more of this folder)" if others else ""
+        first, *further = map(Path.as_posix, files)
+        more = f" (nor {len(further)} more of this folder)" if further else ""
         yield f"{first} {unusable[first]}; this run does not use it{more}."
 
 
@@ -114,5 +114,5 @@ def in_words(unusable: Mapping[str, str]) -> str:
     """Say which unusable file matters most to a reader, and the number of the others: datasets matter least."""
     first = min(unusable, key=lambda file: (file.endswith(".nc"), not file.endswith("verdict.txt"), file))
     more = len(unusable) - 1
-    others = f" (and {more} more file{'s' * (more > 1)})" if more else ""
-    return f"{first} {unusable[first]}{others}"
+    remainder = f" (and {more} more file{'s' * (more > 1)})" if more else ""
+    return f"{first} {unusable[first]}{remainder}"

@@ -62,7 +62,7 @@ def load(path: str | Path, stage: str, **parts: slice) -> xr.Dataset:
     DataError
         If the file is truncated, was not written by `save`, or belongs to another stage or case.
     """
-    wanted = stage, Path(path).stem
+    expected = stage, Path(path).stem
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
             label = dataset.attrs.get("stage"), dataset.attrs.get("name")
@@ -70,9 +70,9 @@ def load(path: str | Path, stage: str, **parts: slice) -> xr.Dataset:
             loaded = dataset.isel(parts, missing_dims="ignore").load()
     except (OSError, ValueError, RuntimeError, AttributeError) as error:
         raise labels.unreadable(path, error) from error
-    if label != wanted:
-        held = "{} of {}".format(*label) if all(label) else "no result of this study"
-        raise DataError(f"{path} holds {held}, not {stage} of {wanted[1]}; delete it and start again")
+    if label != expected:
+        content = "{} of {}".format(*label) if all(label) else "no result of this study"
+        raise DataError(f"{path} holds {content}, not {stage} of {expected[1]}; delete it and start again")
     if layout != labels.LAYOUT:
         raise DataError(f"{path} was written by another version; delete it and start again")
     return loaded

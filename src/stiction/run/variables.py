@@ -18,7 +18,7 @@ _STATED = "stated"
 _STANDARD_NAMES = {"RH": "relative_humidity"}
 
 
-class Row(NamedTuple):
+class VariableAttributes(NamedTuple):
     """Attributes of a variable, empty where it has none."""
 
     units: str  #: as UDUNITS spells it; empty for text and for mixed quantities
@@ -28,11 +28,11 @@ class Row(NamedTuple):
 
 
 @cache
-def rows() -> dict[tuple[str, str], Row]:
+def rows() -> dict[tuple[str, str], VariableAttributes]:
     """Rows of the table by stage and variable. The stage is empty in rows for all stages."""
     with Path(__file__).with_name("variables.csv").open(encoding="utf-8", newline="") as file:
         _, *lines = csv.reader(file)
-    return {(stage, name): Row(*row) for stages, name, *row in lines for stage in stages.split() or [""]}
+    return {(stage, name): VariableAttributes(*row) for stages, name, *row in lines for stage in stages.split() or [""]}
 
 
 def described(dataset: xr.Dataset, stage: str) -> xr.Dataset:
@@ -41,27 +41,29 @@ def described(dataset: xr.Dataset, stage: str) -> xr.Dataset:
     A variable without a row keeps what its stage states, with a warning, which fails every test: a description that is
     missing is no reason to lose what a run has computed.
     """
-    found = dataset.copy()
+    labelled = dataset.copy()
     if title := _row(stage, ""):
-        found.attrs["title"] = title.long_name
-    for name in found.variables:
+        labelled.attrs["title"] = title.long_name
+    for name in labelled.variables:
         if row := _row(stage, name):
-            found[name].attrs = _attributes(found[name].attrs, row)
-    return found
+            labelled[name].attrs = _attributes(labelled[name].attrs, row)
+    return labelled
 
 
 def _row(stage, name):
     """Row of a variable, of its stage or of all, or None with a warning."""
-    known = rows()
-    if row := known.get((stage, name)) or known.get(("", name)):
+    table = rows()
+    if row := table.get((stage, name)) or table.get(("", name)):
         return row
-    of = f"variable {name} of stage {stage}" if name else f"title of stage {stage}"
-    warnings.warn(f"run/variables.csv has no row for the {of}; add one", stacklevel=2)
+    subject = f"variable {name} of stage {stage}" if name else f"title of stage {stage}"
+    warnings.warn(f"run/variables.csv has no row for the {subject}; add one", stacklevel=2)
     return None
 
 
-def _attributes(stated, row):
+def _attributes(attributes, row):
     """Attributes of a variable: of its row, and others that the stage states."""
-    units = stated.get("units", "") if row.units == _STATED else row.units
-    own = row._asdict() | {"units": units, "standard_name": _STANDARD_NAMES.get(row.symbol, "")}
-    return {key: text for key, text in own.items() if text} | {k: v for k, v in stated.items() if k not in own}
+    units = attributes.get("units", "") if row.units == _STATED else row.units
+    of_row = row._asdict() | {"units": units, "standard_name": _STANDARD_NAMES.get(row.symbol, "")}
+    return {key: text for key, text in of_row.items() if text} | {
+        k: v for k, v in attributes.items() if k not in of_row
+    }

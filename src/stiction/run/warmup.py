@@ -105,7 +105,7 @@ def main() -> None:
             load()
     except _NotCachedError:
         context = get_context("fork" if sys.platform == "linux" else "spawn")
-        compiling = [context.Process(target=part) for part in PARTS]
+        compiling = [context.Process(target=kernels) for kernels in PARTS]
         for process in compiling:
             process.start()
         for process in compiling:
@@ -115,8 +115,8 @@ def main() -> None:
 
 def load() -> None:
     """Run all parts in this process."""
-    for part in PARTS:
-        part()
+    for kernels in PARTS:
+        kernels()
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ _PER_SCAN = 8
 _CORRELATED = 2
 
 
-def seen(inspection: Inspection, model: SurfaceModel, maps: Maps) -> SurfaceModel:
+def model_in(inspection: Inspection, model: SurfaceModel, maps: Maps) -> SurfaceModel:
     """Model of a surface in scans of another size."""
     return (
         model if maps is inspection.largest else replace(model, spectrum=inspection.spectrum_in(maps), frame=maps.frame)
@@ -161,17 +161,19 @@ def estimate(
     )
 
 
-def _covariances(inspection, model, drawn):
+def _covariances(inspection, model, model_scans):
     """Covariance of the moments of every size, (3, 3) each."""
     return [
-        seen(inspection, model, maps).covariance / maps.number + part.bias_covariance + maps.noise_covariance
-        for maps, part in zip(inspection.counted, drawn, strict=False)
+        model_in(inspection, model, maps).covariance / maps.number
+        + scans_of_size.bias_covariance
+        + maps.noise_covariance
+        for maps, scans_of_size in zip(inspection.counted, model_scans, strict=False)
     ]
 
 
-def _errors(inspection, model, drawn, of_sizes, described):
+def _errors(inspection, model, model_scans, of_sizes, described):
     """Covariance of the moments, by their form if four moments describe the heights, and their errors of all kinds."""
-    closed_form = inspection.propagated(_covariances(inspection, model, drawn))
+    closed_form = inspection.propagated(_covariances(inspection, model, model_scans))
     of_tiles = [tile_errors(maps.levelled, inspection.settings.tiles) ** 2 for maps in inspection.counted]
     by_tiles = np.sqrt(inspection.propagated(of_tiles))
     here = closed_form if described else widened(closed_form, by_tiles)
@@ -192,7 +194,7 @@ def _places(inspection, model, of_sizes, wider):
     rows = []
     for maps, weight, unbiased in zip(inspection.counted, inspection.weights, of_sizes, strict=True):
         values = moments(maps.powers) + unbiased - maps.noisy_moments
-        variances = np.diag(seen(inspection, model, maps).covariance) * wider
+        variances = np.diag(model_in(inspection, model, maps).covariance) * wider
         rows += [(*scan, *variances, weight / len(values)) for scan in values]
     of_moments, of_spectra = np.array(rows), np.array(inspection.spectra_of_scans)
     columns = [(of_moments, 3, k) for k in range(3)] + [(of_spectra, 2, k) for k in range(2)]
@@ -207,11 +209,13 @@ def _sectors(inspection):
     return {"sectors": sectors, "sector_errors": errors}
 
 
-def _unbiased(inspection, drawn, model):
+def _unbiased(inspection, model_scans, model):
     """Moments of every size, and quantiles of all together, less the changes by levelling and the finite size."""
-    counted = list(zip(inspection.counted, drawn, strict=False))
-    of_sizes = [maps.moments - part.bias(model.moments, len(maps.names)) for maps, part in counted]
-    return of_sizes, inspection.averaged([maps.quantiles - part.levelled_off.mean(axis=0) for maps, part in counted])
+    counted = list(zip(inspection.counted, model_scans, strict=False))
+    of_sizes = [maps.moments - scans_of_size.bias(model.moments, len(maps.names)) for maps, scans_of_size in counted]
+    return of_sizes, inspection.averaged(
+        [maps.quantiles - scans_of_size.levelled_off.mean(axis=0) for maps, scans_of_size in counted]
+    )
 
 
 def _drawn_scans(inspection, model, rng, fewest):
@@ -220,7 +224,7 @@ def _drawn_scans(inspection, model, rng, fewest):
     first = np.cumsum([0, *counts])
     return [
         draw_model_scans(
-            seen(inspection, model, maps), inspection.settings.levelling, (rng(k + start) for k in range(count))
+            model_in(inspection, model, maps), inspection.settings.levelling, (rng(k + start) for k in range(count))
         )
         for maps, count, start in zip(inspection.sizes, counts, first, strict=False)
     ]
@@ -261,14 +265,14 @@ def _model(inspection, values, heights, largest=LARGEST_DISTANCE_OF_SCANS):
 def _covariance(inspection, model):
     """Covariance of the moments of all scans by the finite scans, (3, 3)."""
     return inspection.propagated(
-        [seen(inspection, model, maps).covariance / maps.number for maps in inspection.counted]
+        [model_in(inspection, model, maps).covariance / maps.number for maps in inspection.counted]
     )
 
 
 def _homogeneity(inspection, model):
     """`stiction.scans.moments.homogeneity` of the scans of every size, together."""
     parts = [
-        (maps, homogeneity(moments(maps.powers), seen(inspection, model, maps).covariance))
+        (maps, homogeneity(moments(maps.powers), model_in(inspection, model, maps).covariance))
         for maps in inspection.counted
     ]
     several = [(len(maps.names) - 1, chi2) for maps, (chi2, _) in parts if len(maps.names) > 1]
@@ -287,11 +291,11 @@ def _agreement(of_sizes, values, covariances):
     return chi2, chdtrc(freedom, chi2)
 
 
-def _quantile_errors(inspection, drawn):
+def _quantile_errors(inspection, model_scans):
     """Standard errors of the quantiles by the scatter of model scans, (49,) [-]."""
     variances = [
-        (part.quantiles.std(axis=0, ddof=1) / np.sqrt(len(maps.names))) ** 2
-        for maps, part in zip(inspection.counted, drawn, strict=False)
+        (scans_of_size.quantiles.std(axis=0, ddof=1) / np.sqrt(len(maps.names))) ** 2
+        for maps, scans_of_size in zip(inspection.counted, model_scans, strict=False)
     ]
     return np.sqrt(inspection.propagated(variances))
 
@@ -331,12 +335,12 @@ def _residual(nearest: Feasible | None, quantile: np.ndarray, moment: np.ndarray
     return quantile[..., COMPARED] - nearest.density.quantile_of_normal(SCORES[COMPARED]) - shift @ slopes
 
 
-def _summits(inspection, drawn):
+def _summits(inspection, model_scans):
     """Summits of the finest scans, with errors by tiles, and of the model scans."""
     maps, count = inspection.finest, inspection.settings.tiles
     per_tile = [summits_of_map(tile, _tile_frame(maps.frame, tile)) for z in maps.complete for tile in tiles(z, count)]
     values, errors = jackknife(radius_and_density, np.array(per_tile))
-    of_model = drawn[inspection.sizes.index(maps)].summits
+    of_model = model_scans[inspection.sizes.index(maps)].summits
     modelled, error = jackknife(radius_and_density, of_model)
     return {
         "summits": values,

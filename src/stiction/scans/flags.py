@@ -85,7 +85,7 @@ def _bowed(estimate):
 
 def _holes(estimate):
     inspection = estimate.inspection
-    parts = [maps.part_in_words for maps in inspection.sizes if maps.part.shape != maps.frame.shape]
+    parts = [maps.part_in_words for maps in inspection.sizes if maps.complete_frame.shape != maps.frame.shape]
     share = f"{in_percent(inspection.filled_share)} of the points"
     if parts:
         return (
@@ -156,7 +156,7 @@ def _noise(estimate):
 
 def _noise_stays(estimate):
     """Floor in the heights like noise, which stays there."""
-    levels = [_in_scans(maps, maps.kept) for maps in estimate.inspection.sizes if maps.kept.density > 0]
+    levels = [_in_scans(maps, maps.floor_left) for maps in estimate.inspection.sizes if maps.floor_left.density > 0]
     if not levels:
         return ""
     return (
@@ -186,7 +186,8 @@ def _spectrum_ends(estimate):
         return ""
     return (
         f"beyond {1e-6 * within.end:.3g} rad/µm the scans show less than half of the power law: either surface or "
-        "microscope has no shorter waves, or the spectrum becomes steeper; beyond: cut leaves these waves out"
+        "microscope has no shorter waves, or the spectrum becomes steeper; with key beyond: cut these waves are left "
+        "out"
     )
 
 

@@ -24,7 +24,7 @@ def whole_part(heights: np.ndarray) -> tuple[slice, slice]:
     (slice(0, 40, None), slice(15, 50, None))
     """
     wide = ndimage.binary_opening(~np.isfinite(heights), np.ones((_WIDE, _WIDE)))
-    best, found = (0, 0), (slice(0, 0), slice(0, 0))
+    best, rectangle = (0, 0), (slice(0, 0), slice(0, 0))
     columns = np.arange(heights.shape[1])
     length, left, right = np.zeros_like(columns), np.zeros_like(columns), np.full_like(columns, len(columns))
     for row, free in enumerate(~wide):
@@ -38,8 +38,8 @@ def whole_part(heights: np.ndarray) -> tuple[slice, slice]:
         k = int(np.lexsort((area, shorter))[-1])
         if (shorter[k], area[k]) > best:
             best = shorter[k], area[k]
-            found = slice(row + 1 - int(length[k]), row + 1), slice(int(left[k]), int(right[k]))
-    return found
+            rectangle = slice(row + 1 - int(length[k]), row + 1), slice(int(left[k]), int(right[k]))
+    return rectangle
 
 
 def filled(heights: np.ndarray, pixel: tuple[float, float]) -> np.ndarray:

@@ -57,12 +57,12 @@ class Maps:
     frame: Frame
     levelled: tuple[np.ndarray, ...]  #: heights, NaN where undefined, (n1, n2) each [m]
     complete: tuple[np.ndarray, ...]  #: the same, or their largest whole part, with undefined points filled [m]
-    part: Frame  #: of these
+    complete_frame: Frame  #: of these
     periodogram: Periodogram
     rings: Rings  #: without the floor of the noise
     reach: Reach
     floor: Floor  #: of white noise
-    kept: Floor  #: floor that stays in heights and spectrum, because no heights are left without it
+    floor_left: Floor  #: floor that stays in heights and spectrum, because no heights are left without it
 
     @classmethod
     def of(cls, alike: Mapping[int, Scan], settings: Settings) -> "Maps":
@@ -70,18 +70,20 @@ class Maps:
         scans = list(alike.values())
         frame = scans[0].frame
         levelled = tuple(level(scan.heights, settings.levelling) for scan in scans)
-        complete = tuple(map(partial(_whole, settings), scans, levelled))
-        part = _part(complete[0], frame)
-        noisy = spectra.periodogram(complete, part.size)
+        complete = tuple(map(partial(_without_holes, settings), scans, levelled))
+        frame_of_part = _frame_of(complete[0], frame)
+        noisy = spectra.periodogram(complete, frame_of_part.size)
         tip = np.inf if settings.tip_radius is None else tip_reach(complete, frame.pixel[0], settings.tip_radius)
-        within = reach(part.size, frame.pixel, settings.shortest, tip)
+        within = reach(frame_of_part.size, frame.pixel, settings.shortest, tip)
         floor, kept = white_floor(spectra.rings(noisy), within), Floor()
         if not can_be_noise(moments(np.mean([powers(z) for z in levelled], axis=0)), floor.variance(frame.pixel)[0]):
             floor, kept = kept, floor
         within, clean = above(spectra.rings(noisy), within, floor), spectra.without_floor(noisy, floor.density)
         names = tuple(scan.name for scan in scans)
         spectrum_of = spectra.rings(clean)
-        return cls(names, tuple(alike), frame, levelled, complete, part, clean, spectrum_of, within, floor, kept)
+        return cls(
+            names, tuple(alike), frame, levelled, complete, frame_of_part, clean, spectrum_of, within, floor, kept
+        )
 
     @property
     def size(self) -> str:
@@ -91,7 +93,7 @@ class Maps:
     @property
     def part_in_words(self) -> str:
         """Size of the part used for the spectrum."""
-        return _in_words(self.part)
+        return _in_words(self.complete_frame)
 
     @property
     def area(self) -> float:
@@ -138,12 +140,12 @@ class Maps:
     def fits(self, within: Reach) -> list[WhittleFit]:
         """Fits to the spectrum of every scan alone, within a reach as far as it is that of these scans."""
         within = replace(within, low=max(within.low, self.reach.low), high=min(within.high, self.reach.high))
-        alone = (spectra.periodogram([z], self.part.size) for z in self.complete)
+        alone = (spectra.periodogram([z], self.complete_frame.size) for z in self.complete)
         return [fit(spectra.rings(spectra.without_floor(each, self.floor.density)), within) for each in alone]
 
     def wavelengths(self, fit: WhittleFit) -> float:
         """Wavelengths of the corner along the shorter side [-]."""
-        return fit.corner * min(self.part.size) / (2 * np.pi)
+        return fit.corner * min(self.complete_frame.size) / (2 * np.pi)
 
 
 @dataclass(frozen=True)
@@ -223,10 +225,10 @@ class Inspection:
             return [(0.0, 0.0, 1.0, 1.0, 1.0)]
         shares = np.repeat(np.divide(self.weights, list(map(len, fits))), list(map(len, fits)))
         variances = np.diag(self.fit.covariance)[1:] / shares[:, None]
-        alone = (one for of_size in fits for one in of_size)
+        fits_of_scans = (scan_fit for of_size in fits for scan_fit in of_size)
         return [
-            (np.log(one.corner), one.slope, *of_one, share)
-            for one, of_one, share in zip(alone, variances, shares, strict=True)
+            (np.log(scan_fit.corner), scan_fit.slope, *of_one, share)
+            for scan_fit, of_one, share in zip(fits_of_scans, variances, shares, strict=True)
         ]
 
     @property
@@ -278,10 +280,13 @@ class Inspection:
             low = max(_first_wave(maps, self.sizes) for maps in (first, second))
             high = min(self.reach.high, *(maps.reach.high for maps in (first, second)))
             rings = [maps.rings.between(low, high) for maps in (first, second)]
-            if all(len(part.wavenumber) for part in rings):
+            if all(len(of_size.wavenumber) for of_size in rings):
                 fitted = self.fit.density
-                means = [np.average(part.density / fitted(part.wavenumber), weights=part.weight) for part in rings]
-                error = NON_GAUSSIAN * np.sqrt(sum(1 / part.weight.sum() for part in rings))
+                means = [
+                    np.average(of_size.density / fitted(of_size.wavenumber), weights=of_size.weight)
+                    for of_size in rings
+                ]
+                error = NON_GAUSSIAN * np.sqrt(sum(1 / of_size.weight.sum() for of_size in rings))
                 yield first, second, means[1] / means[0], error * means[1] / means[0]
 
 
@@ -295,7 +300,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
     """
     names = ", ".join(scan.name for scan in scans)
     groups = [Maps.of(alike, settings) for alike in by_size(scans, settings.undefined_share)]
-    sizes = tuple(sorted(groups, key=lambda maps: _extent(maps.part), reverse=True))
+    sizes = tuple(sorted(groups, key=lambda maps: _extent(maps.complete_frame), reverse=True))
     try:
         fitted, rings, within = _fitted(sizes)
     except ValueError as reason:
@@ -303,7 +308,7 @@ def inspect(scans: Sequence[Scan], settings: Settings) -> Inspection:
     return Inspection(sizes, settings, rings, within, fitted)
 
 
-def _whole(settings, scan, levelled):
+def _without_holes(settings, scan, levelled):
     """Levelled heights without holes. Of a scan with many undefined points only its largest whole part, levelled anew.
 
     Raises
@@ -313,13 +318,13 @@ def _whole(settings, scan, levelled):
     """
     if scan.undefined_share <= settings.undefined_share:
         return filled(levelled, scan.frame.pixel)
-    part = level(scan.heights[whole_part(scan.heights)], settings.levelling) if scan.defined.any() else levelled[:0]
-    if min(part.shape) < FEWEST_POINTS:
+    heights = level(scan.heights[whole_part(scan.heights)], settings.levelling) if scan.defined.any() else levelled[:0]
+    if min(heights.shape) < FEWEST_POINTS:
         share = f"{100 * scan.undefined_share:.3g} % of its points undefined"
         share += f" ({scan.stopped})" if scan.stopped else ""
         reason = f"has {share}, and no part without holes that has {FEWEST_POINTS} points along each side"
         raise ScanError(scan.name, "files", reason)
-    return filled(part, scan.frame.pixel)
+    return filled(heights, scan.frame.pixel)
 
 
 def _in_words(frame):
@@ -327,7 +332,7 @@ def _in_words(frame):
     return " x ".join(f"{1e6 * side:.4g}" for side in frame.size) + " µm"
 
 
-def _part(heights, frame):
+def _frame_of(heights, frame):
     """Frame of a part of a map."""
     if heights.shape == frame.shape:
         return frame
@@ -354,10 +359,10 @@ def _extent(frame):
     return min(frame.size), math.prod(frame.shape)
 
 
-def _alike(one, other, undefined_share):
+def _alike(first, second, undefined_share):
     """Whether two scans have the same number of points and, nearly, the same size, and neither has many holes."""
-    same = one.frame.shape == other.frame.shape and np.allclose(one.size, other.size, rtol=_SAME_SIZE, atol=0)
-    return same and max(one.undefined_share, other.undefined_share) <= undefined_share
+    same = first.frame.shape == second.frame.shape and np.allclose(first.size, second.size, rtol=_SAME_SIZE, atol=0)
+    return same and max(first.undefined_share, second.undefined_share) <= undefined_share
 
 
 def _fitted(sizes):
@@ -377,7 +382,7 @@ def _fitted(sizes):
 
 def _first_wave(maps, sizes):
     """Wave number from which scans count for a spectrum of several sizes [rad m⁻¹]."""
-    return maps.reach.low if maps is sizes[0] else 2 * np.pi * _FEWEST_WAVES / min(maps.part.size)
+    return maps.reach.low if maps is sizes[0] else 2 * np.pi * _FEWEST_WAVES / min(maps.complete_frame.size)
 
 
 def _last_wave(maps, finest):

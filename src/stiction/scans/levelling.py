@@ -80,5 +80,5 @@ def line_jump(heights: np.ndarray, pixel: tuple[float, float]) -> tuple[float, f
 def _typical_step(heights, points):
     """Root mean square of the medians of the steps between rows this number of points apart [m]."""
     steps = heights[points:] - heights[:-points]
-    known = steps[np.isfinite(steps).any(axis=1)]
-    return float(np.sqrt(np.mean(np.nanmedian(known, axis=1) ** 2)))
+    defined = steps[np.isfinite(steps).any(axis=1)]
+    return float(np.sqrt(np.mean(np.nanmedian(defined, axis=1) ** 2)))

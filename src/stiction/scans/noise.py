@@ -69,11 +69,11 @@ def slopes_with_noise(moments: np.ndarray) -> np.ndarray:
 
 def above(rings: Rings, within: Reach, floor: Floor) -> Reach:
     """Reach up to the last ring, noise included, of at least twice its floor."""
-    known = rings.between(within.low, within.high)
-    last = np.flatnonzero(known.density >= 2 * floor.density)
-    if len(last) and last[-1] == len(known.density) - 1:
+    inside = rings.between(within.low, within.high)
+    last = np.flatnonzero(inside.density >= 2 * floor.density)
+    if len(last) and last[-1] == len(inside.density) - 1:
         return within
-    return replace(within, high=float(known.wavenumber[last[-1]]) if len(last) else within.low)
+    return replace(within, high=float(inside.wavenumber[last[-1]]) if len(last) else within.low)
 
 
 def white_floor(rings: Rings, within: Reach) -> Floor:
@@ -87,11 +87,11 @@ def white_floor(rings: Rings, within: Reach) -> Floor:
     """
     if len(rings.between(within.low, within.high).wavenumber) < FEWEST_RINGS:
         return Floor()
-    fitted, found = fit_to_the_end(rings, within)
-    if not fitted.is_resolved(found):
+    fitted, resolved = fit_to_the_end(rings, within)
+    if not fitted.is_resolved(resolved):
         return Floor()
-    ended = found.end < found.nyquist
-    beyond = rings.between(found.end if ended else found.nyquist / _OCTAVE, found.nyquist)
+    ended = resolved.end < resolved.nyquist
+    beyond = rings.between(resolved.end if ended else resolved.nyquist / _OCTAVE, resolved.nyquist)
     flat = _flat(beyond)
     if len(flat.wavenumber) >= FEWEST_RINGS and (ended or len(flat.wavenumber) == len(beyond.wavenumber)):
         level = float(np.average(flat.density, weights=flat.weight))
@@ -135,8 +135,8 @@ def _better(fitted, other):
 
 def _averaged(fits, best):
     """Mean floor over all ends of the spectrum by their likelihood. Its error includes the unknown end."""
-    weight = np.exp((best.deviance - np.array([one.deviance for one in fits])) / (2 * NON_GAUSSIAN**2))
-    level, error = (np.array([getattr(one.floor, name) for one in fits]) for name in ("density", "error"))
+    weight = np.exp((best.deviance - np.array([fit.deviance for fit in fits])) / (2 * NON_GAUSSIAN**2))
+    level, error = (np.array([getattr(fit.floor, name) for fit in fits]) for name in ("density", "error"))
     mean = np.average(level, weights=weight)
     return Floor(float(mean), float(np.sqrt(np.average(error**2 + (level - mean) ** 2, weights=weight))))
 
@@ -195,15 +195,15 @@ def _noisy(rings, waves, end, start, floor=True):
         return np.log(plateau) + np.average(np.log(relative), weights=rings.weight)
 
     guess = [np.log(start.corner), start.slope, np.log(rings.density.min() / start.plateau)]
-    found = minimize(objective, guess[: 2 + floor], method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-8})
-    relative = total(found.x)
+    optimum = minimize(objective, guess[: 2 + floor], method="Nelder-Mead", options={"xatol": 1e-4, "fatol": 1e-8})
+    relative = total(optimum.x)
     plateau = np.average(rings.density / relative, weights=rings.weight)
     chi2 = np.sum(rings.modes * (rings.density / (plateau * relative) - 1) ** 2)
-    level = plateau * np.exp(found.x[2]) if floor else 0.0
+    level = plateau * np.exp(optimum.x[2]) if floor else 0.0
     return _Noisy(
         end,
-        Floor(float(level), float(level * _relative_error(rings, total, found.x)) if floor else 0.0),
-        float(2 * rings.weight.sum() * found.fun),
+        Floor(float(level), float(level * _relative_error(rings, total, optimum.x)) if floor else 0.0),
+        float(2 * rings.weight.sum() * optimum.fun),
         bool(_likely(chi2, len(rings.density) - 3 - floor)),
     )
 

@@ -67,11 +67,11 @@ class Rings:
         return Rings(*(getattr(self, field.name)[inside] for field in fields(self)))
 
 
-def in_order(parts: Iterable[Rings]) -> Rings:
+def in_order(spectra: Iterable[Rings]) -> Rings:
     """Rings of several spectra together, by increasing wave number."""
-    parts = list(parts)
-    order = np.argsort(np.concatenate([part.wavenumber for part in parts]), kind="stable")
-    columns = (np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Rings))
+    spectra = list(spectra)
+    order = np.argsort(np.concatenate([spectrum.wavenumber for spectrum in spectra]), kind="stable")
+    columns = (np.concatenate([getattr(spectrum, field.name) for spectrum in spectra]) for field in fields(Rings))
     return Rings(*(values[order] for values in columns))
 
 

@@ -115,7 +115,9 @@ def _entries(text):
         if id(node) not in counted:
             counted[id(node)] = float("inf")  # until known: a node that contains itself has no end
             parts = node.value if isinstance(node.value, list) else []
-            inside = (part for entry in parts for part in (entry if isinstance(entry, tuple) else (entry,)))
+            inside = (
+                node_inside for entry in parts for node_inside in (entry if isinstance(entry, tuple) else (entry,))
+            )
             counted[id(node)] = 1 + sum(map(size, inside))
         return counted[id(node)]
 
@@ -136,22 +138,22 @@ def _reads_others(content):
         return False
     import h5py  # comes with SurfaceTopography
 
-    found = []
+    links = []
 
     def look(group):
         """Look at the links and datasets of a group."""
         for name in group:
             link = group.get(name, getlink=True)
             if not isinstance(link, h5py.HardLink):
-                found.append(name)
+                links.append(name)
             elif isinstance(entry := group[name], h5py.Group):
                 look(entry)
             elif isinstance(entry, h5py.Dataset) and (entry.external or entry.is_virtual):
-                found.append(name)
+                links.append(name)
 
     with h5py.File(io.BytesIO(content), "r") as file:
         look(file)
-    return bool(found)
+    return bool(links)
 
 
 def _title(name, otherwise):
@@ -160,13 +162,13 @@ def _title(name, otherwise):
     return textwrap.shorten(signs, _LONGEST_TITLE, placeholder=" ...") or otherwise
 
 
-def _key(name, others):
+def _key(name, keys):
     """Name of a surface as a key, unlike others."""
     stem = _NOT_IN_KEYS.sub("_", name).strip("_-")[: _LONGEST_NAME - 6]
     stem = stem if stem[:1].isalpha() and not stem.startswith("dry_") else f"Surface_{stem}"[: _LONGEST_NAME - 6]
-    if stem not in others:
+    if stem not in keys:
         return stem
-    return next(name for number in count(2) if (name := f"{stem}_{number}") not in others)
+    return next(name for number in count(2) if (name := f"{stem}_{number}") not in keys)
 
 
 def _unpacked(name, container, folder):
@@ -205,8 +207,8 @@ def _measurements(container) -> Iterator[tuple[str, Any]]:
     for number, about in enumerate(container.info["topographies"]):
         with silenced():
             try:
-                found = container[number]
-                found = found if found.dim == 2 and found.is_uniform else "it is no map of equal distances"
+                heights = container[number]
+                heights = heights if heights.dim == 2 and heights.is_uniform else "it is no map of equal distances"
             except Exception as reason:  # whatever a reader raises on a damaged file
-                found = f"it cannot be read ({type(reason).__name__})"
-        yield _title(about.get("name"), f"measurement {number + 1}"), found
+                heights = f"it cannot be read ({type(reason).__name__})"
+        yield _title(about.get("name"), f"measurement {number + 1}"), heights

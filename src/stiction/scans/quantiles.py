@@ -49,10 +49,10 @@ def measured_density(heights: np.ndarray, areas: float) -> MeasuredDensity:
     """
     largest = max(-ndtri(min(_AREAS_BEYOND / areas, 0.5)), 1.0)
     inside = np.abs(SCORES) <= largest + 1e-9
-    known = np.asarray(heights)[inside]
-    if not known[-1] > known[0]:
+    values = np.asarray(heights)[inside]
+    if not values[-1] > values[0]:
         raise ValueError("nearly all of the heights are equal")
-    return MeasuredDensity(SCORES[inside], known)
+    return MeasuredDensity(SCORES[inside], values)
 
 
 @dataclass(frozen=True)

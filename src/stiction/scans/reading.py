@@ -105,7 +105,7 @@ def _read(library, path, source):
             _require_all_lines(library, file, reader.format(), channel)
         require_points(channel.nb_grid_pts, name)
         unit, (size, resized) = _unit(channel, source, name), _size(channel, source, name)
-        heights, found = _stored_heights(channel, unit, reader.format(), name)
+        heights, remarks = _stored_heights(channel, unit, reader.format(), name)
         heights, times = stored_once(heights)
         notes += _instrument_levelling(channel, name) + _note(channel, name)
         identifier = channel.channel_id
@@ -113,8 +113,8 @@ def _read(library, path, source):
         heights, size = heights.T, size[::-1]
     scan = _scan(heights, size, name, source, UNITS[unit])
     _require_no_mark(scan.heights, name, UNITS[unit])
-    found = resized + found + _oddities(scan, times)
-    return ScanFile(scan, identifier, unit, notes + tuple(f"{name}: {note}" for note in found))
+    remarks = resized + remarks + _oddities(scan, times)
+    return ScanFile(scan, identifier, unit, notes + tuple(f"{name}: {note}" for note in remarks))
 
 
 def _oddities(scan, times):
@@ -148,9 +148,9 @@ def _require_no_mark(heights, name, unit):
 def _undefined(heights, kind):
     """Note on points without a height in the file. Empty if there are none."""
     number = int((~np.isfinite(heights)).sum())
-    what = "under a mask" if kind in _MASKED else "without a height"
+    cause = "under a mask" if kind in _MASKED else "without a height"
     points = f"{number} point{'s' * (number > 1)} ({in_percent(number / heights.size)})"
-    return f"{points} {what} in the file count as undefined" if number else ""
+    return f"{points} {cause} in the file count as undefined" if number else ""
 
 
 def _scan(heights, size, name, source, unit):
@@ -214,8 +214,8 @@ def _library(name):
 
 def _reader_of(library, file):
     """Reader of a file, first by its ending. Refuses a file of no known format."""
-    if own := own_reader(file):
-        return own
+    if reader_of_format := own_reader(file):
+        return reader_of_format
     kinds = [kind.format() for kind in library.endings.get(file.ending, ()) if kind.format() not in _TEXTS]
     for kind in kinds:
         with contextlib.suppress(Exception):  # whatever a reader raises on a file of another format
@@ -261,9 +261,9 @@ def _first_line_of(library, error):
 
 def _require_all_lines(library, file, kind, channel):
     """Refuse a text with lines left out by the library, and with points taken for a map of three columns."""
-    found = misread(file.text, commas=kind == _POINTS)
-    if found is not None:
-        line, value = found
+    wrong = misread(file.text, commas=kind == _POINTS)
+    if wrong is not None:
+        line, value = wrong
         shown = value if len(value) <= _LONGEST_REASON else value[:_LONGEST_REASON] + " …"
         raise ScanError(
             file.label,
@@ -277,9 +277,9 @@ def _require_all_lines(library, file, kind, channel):
 
 def _require_even_lines(file):
     """Refuse a table of numbers whose lines have different numbers of values."""
-    found = uneven(file.text, commas=True) if file.text is not None else None
-    if found is not None:
-        line, number, usual = found
+    uneven_line = uneven(file.text, commas=True) if file.text is not None else None
+    if uneven_line is not None:
+        line, number, usual = uneven_line
         values = f"{number} value{'s' * (number > 1)} in line {line}, and {usual} in others"
         raise ScanError(file.label, "files", f"has {values}: write nan where no height is defined")
 
@@ -321,10 +321,10 @@ def _size(channel, source, name):
     raise ScanError(name, "size_um", f"{reason}: leave out size_um, or correct the size in Gwyddion")
 
 
-def _same_size(stated, found, points):
+def _same_size(size_of_key, extent, points):
     """Whether two sizes agree, the stated one between the outer edges of the points or between their centres."""
-    nominal = _between_centres(found, points)
-    return any(np.allclose(stated, size, rtol=_SAME_SIZE, atol=0) for size in (found, nominal))
+    nominal = _between_centres(extent, points)
+    return any(np.allclose(size_of_key, size, rtol=_SAME_SIZE, atol=0) for size in (extent, nominal))
 
 
 def _between_centres(size, points):
@@ -339,18 +339,24 @@ def _size_of_coordinates(channel, size, name):
     """
     extent, points = tuple(map(float, channel.physical_sizes)), channel.nb_grid_pts
     scaled = [tuple(length / unit for length in size) for unit in UNITS.values()]
-    errors = [min(_difference(size, found) for size in scaled) for found in (extent, _between_centres(extent, points))]
+    errors = [
+        min(_difference(size, extent_of) for size in scaled) for extent_of in (extent, _between_centres(extent, points))
+    ]
     if _difference(extent, points) <= _SAME_SIZE or errors[0] <= min(_SAME_SIZE, errors[1]):
         return size
     if errors[1] <= _SAME_SIZE:
         return tuple(length * n / (n - 1) for length, n in zip(size, points, strict=True))
-    stated, found = (" x ".join(f"{length:.4g}" for length in pair) for pair in (np.array(size) / UNITS["um"], extent))
-    raise ScanError(name, "size_um", f"has coordinates over {found}, which are {stated} µm in no unit of length")
+    stated_words, found_words = (
+        " x ".join(f"{length:.4g}" for length in pair) for pair in (np.array(size) / UNITS["um"], extent)
+    )
+    raise ScanError(
+        name, "size_um", f"has coordinates over {found_words}, which are {stated_words} µm in no unit of length"
+    )
 
 
-def _difference(stated, found):
+def _difference(first, second):
     """Largest relative difference of two sizes."""
-    return float(np.max(np.abs(np.divide(stated, found) - 1)))
+    return float(np.max(np.abs(np.divide(first, second) - 1)))
 
 
 def _heights(channel, name):
@@ -371,8 +377,8 @@ def _instrument_levelling(channel, name):
     """Note on heights stored already levelled by the instrument, according to the metadata."""
     levelled = []
     for key, value in channel.info.get("raw_metadata", {}).items():
-        known = _LEVELLED.fullmatch(str(key))
-        if known and known[1] in (None, str(channel.index)) and str(value).strip().lower() not in _NOT_LEVELLED:
+        match = _LEVELLED.fullmatch(str(key))
+        if match and match[1] in (None, str(channel.index)) and str(value).strip().lower() not in _NOT_LEVELLED:
             levelled.append(f"{key}: {value}")
     if not levelled:
         return ()

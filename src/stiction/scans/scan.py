@@ -84,14 +84,14 @@ class Scan:
             raise ScanError(
                 self.name, "files", f"{reason}: it is a profile or a pattern, and a map of heights is needed"
             )
-        for key, what, value, (least, largest) in (
+        for key, phrase, value, (least, largest) in (
             ("size_um", "a distance of its points of {} µm", 1e6 * min(self.frame.pixel), PIXELS),
             ("size_um", "a distance of its points of {} µm", 1e6 * max(self.frame.pixel), PIXELS),
             ("height_unit", "heights with an rms of {} µm", 1e6 * np.nanstd(self.heights), _HEIGHTS),
             ("height_unit", "an rms slope of {}", self._rms_slope(), SLOPES),
         ):
             if not least <= value <= largest:
-                reason = f"has {what.format(f'{value:.3g}')}, must be from {least:g} to {largest:g}"
+                reason = f"has {phrase.format(f'{value:.3g}')}, must be from {least:g} to {largest:g}"
                 coarse = key == "size_um" and value > largest
                 cause = "it is too coarse for what touches, or its size is" if coarse else "its size or its heights are"
                 raise ScanError(self.name, key, f"{reason}: {cause} in another unit than is stated")
@@ -99,8 +99,8 @@ class Scan:
     def _rms_slope(self):
         """Rms slope between neighbours, with the tilt of the map [-]. NaN without neighbours."""
         steps = [np.diff(self.heights, axis=axis) / pixel for axis, pixel in enumerate(self.frame.pixel)]
-        known = [step[np.isfinite(step)] for step in steps]
-        return float(np.sqrt(sum(np.mean(step**2) if step.size else np.nan for step in known)))
+        defined = [step[np.isfinite(step)] for step in steps]
+        return float(np.sqrt(sum(np.mean(step**2) if step.size else np.nan for step in defined)))
 
     @property
     def frame(self) -> Frame:

@@ -82,8 +82,8 @@ def tip_reach(scans: Sequence[np.ndarray], pixel: float, radius: float) -> float
     if len(sharp) == 0:
         return np.inf
     last = min(sharp[-1], len(halves) - 2)
-    part = np.interp(-_TIP_SAFETY / radius, -curvature[[last, last + 1]], [0, 1])
-    return np.pi / (pixel * (halves[last] + part))
+    fraction = np.interp(-_TIP_SAFETY / radius, -curvature[[last, last + 1]], [0, 1])
+    return np.pi / (pixel * (halves[last] + fraction))
 
 
 def _peak_curvature(z, half, pixel):
@@ -151,22 +151,22 @@ def fit_to_the_end(rings: Rings, within: Reach) -> tuple[WhittleFit, Reach]:
     """
     fitted, high = fit(rings, within), within.high
     if fitted.contradicted:
-        known = rings.between(within.low, within.high)
-        parts = [_Part(fitted, high, _end(rings, within, fitted))]
-        for shorter in _shorter(known):
-            part = fit(rings, replace(within, high=shorter))
-            parts.append(_Part(part, shorter, _end(rings, within, part)))
+        inside = rings.between(within.low, within.high)
+        parts = [_ShorterFit(fitted, high, _end(rings, within, fitted))]
+        for shorter in _shorter(inside):
+            shorter_fit = fit(rings, replace(within, high=shorter))
+            parts.append(_ShorterFit(shorter_fit, shorter, _end(rings, within, shorter_fit)))
         showing = _showing(parts, within.nyquist)
-        likely = (part for part in showing if part.fitted.likely)
-        ended = [part for part in parts if part.fitted.likely and part.near(part.end)]
+        likely = (candidate for candidate in showing if candidate.fitted.likely)
+        ended = [candidate for candidate in parts if candidate.fitted.likely and candidate.near(candidate.end)]
         rivals = [*showing, *ended] if showing else parts
-        best = next(likely, None) or min(rivals, key=lambda part: _deviance(known, part))
+        best = next(likely, None) or min(rivals, key=lambda candidate: _deviance(inside, candidate))
         fitted, high = best.fitted, best.high
     return _up_to_the_end(rings, within, fitted, high)
 
 
 @dataclass(frozen=True)
-class _Part:
+class _ShorterFit:
     """Fit to a part of the reach, and its end."""
 
     fitted: WhittleFit
@@ -182,12 +182,17 @@ class _Part:
         return 1 / _STEP < self.end / end < _STEP and self.fitted.corner <= end / _SOON
 
 
-def _showing(parts, nyquist):
+def _showing(candidates, nyquist):
     """Parts near the ends shown by all parts near them, from the last end, longest part first."""
-    ends = sorted({part.end for part in parts if parts[-1].high <= part.end / _SOON < nyquist / _SOON}, reverse=True)
-    near = [[part for part in parts if part.near(end)] for end in ends]
-    shown = (of_end for end, of_end in zip(ends, near, strict=True) if all(part.shows(end) for part in of_end))
-    return [part for of_end in shown for part in of_end]
+    ends = sorted(
+        {candidate.end for candidate in candidates if candidates[-1].high <= candidate.end / _SOON < nyquist / _SOON},
+        reverse=True,
+    )
+    near = [[candidate for candidate in candidates if candidate.near(end)] for end in ends]
+    shown = (
+        of_end for end, of_end in zip(ends, near, strict=True) if all(candidate.shows(end) for candidate in of_end)
+    )
+    return [candidate for of_end in shown for candidate in of_end]
 
 
 def _shorter(rings):
@@ -196,20 +201,20 @@ def _shorter(rings):
     return rings.wavenumber[np.geomspace(len(rings.wavenumber), FEWEST_RINGS, steps + 1).astype(int)[1:] - 1]
 
 
-def _deviance(known, part):
+def _deviance(rings, candidate):
     """Deviance of rings from the fit to a part. Rings beyond it count as if they were at half of the fit [-]."""
-    ratio = known.density / part.fitted.density(known.wavenumber)
-    ratio = np.where(known.wavenumber <= part.high, np.maximum(ratio, np.finfo(float).tiny), _ENDED)
-    return 2 * np.sum(known.modes * (ratio - 1 - np.log(ratio)))
+    ratio = rings.density / candidate.fitted.density(rings.wavenumber)
+    ratio = np.where(rings.wavenumber <= candidate.high, np.maximum(ratio, np.finfo(float).tiny), _ENDED)
+    return 2 * np.sum(rings.modes * (ratio - 1 - np.log(ratio)))
 
 
 def _up_to_the_end(rings, within, fitted, high):
     """Fit with all rings up to the end shown by one up to ``high``, unless they are few or unlikely, and its reach."""
     last = min(_end(rings, within, fitted), within.high)
     if len(rings.between(within.low, last).wavenumber) >= FEWEST_RINGS:
-        whole = fit(rings, replace(within, high=last))
-        if whole.likely or whole.misfit <= fitted.misfit:
-            fitted, high = whole, last
+        joint = fit(rings, replace(within, high=last))
+        if joint.likely or joint.misfit <= fitted.misfit:
+            fitted, high = joint, last
     end = _end(rings, within, fitted)
     return fitted, replace(within, high=min(within.high if fitted.contradicted else high, end), end=end)
 
@@ -329,7 +334,9 @@ def tabulated(rings: Rings, within: Reach, slope: float, cutoff: float) -> Tabul
     """
     inside = rings.between(within.low, within.high)
     shown = inside.density > 0  # noise hides the others
-    known, wavenumber = inside.wavenumber[shown], np.linspace(0, cutoff, _POINTS)
-    inner = np.interp(np.log(np.maximum(wavenumber, known[0])), np.log(known), np.log(inside.density[shown]))
-    beyond = slope * np.log(np.maximum(wavenumber / known[-1], 1.0))
+    shown_waves, wavenumber = inside.wavenumber[shown], np.linspace(0, cutoff, _POINTS)
+    inner = np.interp(
+        np.log(np.maximum(wavenumber, shown_waves[0])), np.log(shown_waves), np.log(inside.density[shown])
+    )
+    beyond = slope * np.log(np.maximum(wavenumber / shown_waves[-1], 1.0))
     return TabulatedSpectrum(wavenumber, np.exp(inner + beyond), cutoff)

@@ -163,9 +163,9 @@ def _locate(scores, points, cells, fractions):
     scale, offset = np.float32((points - 1) / (2 * LARGEST_SCORE)), np.float32((points - 1) / 2)
     last = np.float32(points - 1.001)
     for j in range(cells.size):
-        place = min(max(scores[j] * scale + offset, np.float32(0)), last)
-        cells[j] = np.int32(place)
-        fractions[j] = place - np.float32(cells[j])
+        position = min(max(scores[j] * scale + offset, np.float32(0)), last)
+        cells[j] = np.int32(position)
+        fractions[j] = position - np.float32(cells[j])
 
 
 @kernel

@@ -92,27 +92,27 @@ def identify(
         surface = RoughSurface(underlying, translation, target.rms, grid)
         return _summits_per_area(surface, target.spacing, streams)
 
-    known = {}
+    misfits = {}
 
     def misfit(parameters):
         """Logarithm of radius and density over their targets (2,)."""
         key = tuple(parameters)
-        if key not in known:
+        if key not in misfits:
             radius, density = radius_and_density(simulated(parameters, rngs()).mean(axis=0))
-            known[key] = np.log([radius / target.mean_radius, density / target.density])
-        return known[key]
+            misfits[key] = np.log([radius / target.mean_radius, density / target.density])
+        return misfits[key]
 
     def slopes(parameters):
         """Derivatives of the misfit by the parameters (2, 2), as differences."""
-        there = [misfit(parameters + step) for step in _STEP * np.eye(2)]
-        return (np.transpose(there) - misfit(parameters)[:, None]) / _STEP
+        ahead = [misfit(parameters + step) for step in _STEP * np.eye(2)]
+        return (np.transpose(ahead) - misfit(parameters)[:, None]) / _STEP
 
     bounds = np.log([_CORNERS, _SLOPES]).T
     fit = least_squares(misfit, _start(target), slopes, bounds, xtol=_TOLERANCE, max_nfev=_MAX_EVALUATIONS)
     if not fit.success:
         raise NotConverged("identified spectrum, gradient of the misfit", fit.optimality, _TOLERANCE, fit.nfev)
     values, errors = jackknife(radius_and_density, simulated(fit.x, control()))
-    return Identification(_spectrum(fit.x, target), len(known), *map(float, (*values, *errors)))
+    return Identification(_spectrum(fit.x, target), len(misfits), *map(float, (*values, *errors)))
 
 
 def estimated_spectrum(target: SummitTarget) -> CutoffSelfAffine:

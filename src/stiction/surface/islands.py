@@ -106,7 +106,7 @@ def _grown(z, places, ends, fitted):
     parents, points = np.arange(places.size).astype(np.int32), np.ones(places.size, np.int32)
     roots, islands = np.empty(places.size, np.int32), 0
     ring = np.arange(places.size).astype(np.int32)
-    listed, fits, found = np.empty((_SPACE, 3), np.int32), np.empty((_SPACE if fitted else 0, 2)), 0
+    listed, fits, number = np.empty((_SPACE, 3), np.int32), np.empty((_SPACE if fitted else 0, 2)), 0
     for level in range(ends.size - 2, -1, -1):
         for rank in range(ends[level + 1], ends[level]):
             place = places[rank] + columns + 3 + 2 * (places[rank] // columns)
@@ -115,29 +115,29 @@ def _grown(z, places, ends, fitted):
             roots[islands] = rank
             islands += 1
         islands = _keep_roots(roots, islands, parents)
-        if found + islands > len(listed):
+        if number + islands > len(listed):
             more = max(len(listed), islands)
             listed = np.concatenate((listed, np.empty((more, 3), np.int32)))
             fits = np.concatenate((fits, np.empty((more if fitted else 0, 2))))
         for root in roots[:islands]:
             i, j = places[root] // columns, places[root] % columns
             if 0 < i < rows - 1 and 0 < j < columns - 1:
-                listed[found, 0], listed[found, 1], listed[found, 2] = level, places[root], points[root]
+                listed[number, 0], listed[number, 1], listed[number, 2] = level, places[root], points[root]
                 if fitted:
-                    fits[found] = _fit(root, ring, places, heights, columns)
-                found += 1
-    return listed[:found, 0].copy(), listed[:found, 1].copy(), listed[:found, 2].copy(), fits[:found].copy()
+                    fits[number] = _fit(root, ring, places, heights, columns)
+                number += 1
+    return listed[:number, 0].copy(), listed[:number, 1].copy(), listed[:number, 2].copy(), fits[:number].copy()
 
 
 @kernel
 def _keep_roots(roots, islands, parents):
     """Drop the islands already joined with a higher one, in place. Return the number of islands left."""
-    kept = 0
+    remaining = 0
     for n in range(islands):
         if parents[roots[n]] == roots[n]:
-            roots[kept] = roots[n]
-            kept += 1
-    return kept
+            roots[remaining] = roots[n]
+            remaining += 1
+    return remaining
 
 
 @kernel(inline="always")

@@ -65,21 +65,21 @@ def iterate(
     periodograms : (fields, n) array
         Spectra of the fields translated from it, of unit variance [m²].
     """
-    wavenumber, wanted = target_rings(target, grid)
+    wavenumber, densities = target_rings(target, grid)
     spectrum = TabulatedSpectrum(wavenumber, target(wavenumber) / target.variance, target.cutoff)
     while True:
         surface = RoughSurface(spectrum, translation, 1.0, grid)
         # DEPARTS: averages over rings and fields; with the raw periodogram of one field, as in Fig. 4, noise would be
         # divided by noise.
-        drawn = [radial_periodogram(surface.draw(rng), grid.spacing)[1] for _ in range(fields)]
-        periodograms = np.array(drawn)[:, : len(wavenumber)]
+        samples = [radial_periodogram(surface.draw(rng), grid.spacing)[1] for _ in range(fields)]
+        periodograms = np.array(samples)[:, : len(wavenumber)]
         yield spectrum.density, periodograms
-        spectrum = replace(spectrum, density=spectrum.density * wanted / periodograms.mean(axis=0))
+        spectrum = replace(spectrum, density=spectrum.density * densities / periodograms.mean(axis=0))
 
 
-def misfit(spectrum: np.ndarray, wanted: np.ndarray) -> float | np.ndarray:
+def misfit(spectrum: np.ndarray, target: np.ndarray) -> float | np.ndarray:
     """Error |ln(s / s_Z)| of a spectrum (..., n), the mean over its rings [-]."""
-    return np.abs(np.log(spectrum / wanted)).mean(axis=-1)
+    return np.abs(np.log(spectrum / target)).mean(axis=-1)
 
 
 def sampling_misfit(periodograms: np.ndarray) -> float | np.ndarray:

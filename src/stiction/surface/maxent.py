@@ -58,13 +58,13 @@ class HeightDensity:
         """
         from scipy.interpolate import PchipInterpolator  # takes 0.3 s, and only jobs that draw surfaces need it
 
-        height, known = self._normal_score
-        if np.any((score < known[0]) | (score > known[-1])):
+        height, scores = self._normal_score
+        if np.any((score < scores[0]) | (score > scores[-1])):
             raise ValueError(
-                f"heights within {SUPPORT:g} rms cover normal scores from {known[0]:.3g} to {known[-1]:.3g} only: "
+                f"heights within {SUPPORT:g} rms cover normal scores from {scores[0]:.3g} to {scores[-1]:.3g} only: "
                 f"the tails of the density with multipliers {self.multipliers} are too heavy"
             )
-        return PchipInterpolator(known, height, extrapolate=False)(score)
+        return PchipInterpolator(scores, height, extrapolate=False)(score)
 
 
 #: Heights of a Gaussian surface; its translation is the identity.

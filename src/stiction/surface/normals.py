@@ -45,8 +45,8 @@ def standard_normal(rng: np.random.Generator, n: int) -> np.ndarray:
     if state["bit_generator"] != "SFC64":
         return rng.standard_normal(n, dtype=np.float32)
     normals, numbers = np.empty(n, np.float32), state["state"]["state"]
-    held, half = _fill(numbers, bool(state["has_uint32"]), state["uinteger"], normals)
-    rng.bit_generator.state = state | {"has_uint32": int(held), "uinteger": int(half)}
+    has_half, half = _fill(numbers, bool(state["has_uint32"]), state["uinteger"], normals)
+    rng.bit_generator.state = state | {"has_uint32": int(has_half), "uinteger": int(half)}
     return normals
 
 
@@ -57,8 +57,8 @@ def standard_normal(rng: np.random.Generator, n: int) -> np.ndarray:
 @kernel
 def _bits(source):
     """Next 32 random bits, and the source after them: lower half of a number of SFC64, then its upper half."""
-    a, b, c, counter, held, half = source
-    if held:
+    a, b, c, counter, has_half, half = source
+    if has_half:
         return uint32(half), (a, b, c, counter, False, half)
     number = a + b + counter
     a, b, c = b ^ (b >> uint64(11)), c + (c << uint64(3)), ((c << uint64(24)) | (c >> uint64(40))) + number
@@ -95,9 +95,9 @@ def _at_the_edge(source, layer, steps, x):
 
 
 @kernel
-def _fill(numbers, held, half, normals):
+def _fill(numbers, has_half, half, normals):
     """Fill ``normals`` (n,). Advances ``numbers`` (4,), the state of SFC64, and returns the rest of the source."""
-    source = (numbers[0], numbers[1], numbers[2], numbers[3], held, uint64(half))
+    source = (numbers[0], numbers[1], numbers[2], numbers[3], has_half, uint64(half))
     k = 0
     while k < normals.size:
         bits, source = _bits(source)
@@ -110,5 +110,5 @@ def _fill(numbers, held, half, normals):
         if accepted:
             normals[k] = x
             k += 1
-    numbers[0], numbers[1], numbers[2], numbers[3], held, half = source
-    return held, half
+    numbers[0], numbers[1], numbers[2], numbers[3], has_half, half = source
+    return has_half, half

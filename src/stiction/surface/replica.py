@@ -68,7 +68,7 @@ class Replica:
 
     beam: RoughSurface
     substrate: RoughSurface
-    stated: Coherence  #: of the heights
+    of_heights: Coherence
 
     def __post_init__(self):
         if self.beam.grid != self.substrate.grid:
@@ -89,33 +89,33 @@ class Replica:
             return None
         return (
             f"must be at most {self._largest(allowed):g} for surfaces with these moments: their sum would have an rms "
-            f"of {1e9 * self.rms:.3g} in place of {1e9 * self._rms_of_sum(self._waves.wanted):.3g} nm; a full replica "
-            "has the opposite skewness of its original"
+            f"of {1e9 * self.rms:.3g} in place of {1e9 * self._rms_of_sum(self._waves.correlation):.3g} nm; a full "
+            "replica has the opposite skewness of its original"
         )
 
     def require_feasible(self) -> None:
         """Raise a `refusal` as ``ValueError``."""
         if refusal := self.refusal():
-            raise ValueError(f"coherence of heights is {self.stated.coherence:g}, {refusal}")
+            raise ValueError(f"coherence of heights is {self.of_heights.coherence:g}, {refusal}")
 
     def _reaches(self, allowed):
         """Whether z₁ + z₂ is rougher than stated by at most a share of its rms."""
-        return self.rms <= (1 + allowed) * self._rms_of_sum(self._waves.wanted)
+        return self.rms <= (1 + allowed) * self._rms_of_sum(self._waves.correlation)
 
     def _largest(self, allowed):
         """Largest coherence that these surfaces reach, in steps of 0.01 below the stated one [-]."""
-        steps = range(int(100 * self.stated.coherence) + 1)
-        lower = [replace(self, stated=replace(self.stated, coherence=k / 100)) for k in steps]
+        steps = range(int(100 * self.of_heights.coherence) + 1)
+        lower = [replace(self, of_heights=replace(self.of_heights, coherence=k / 100)) for k in steps]
         return max(bisect_left(lower, True, key=lambda other: not other._reaches(allowed)) - 1, 0) / 100
 
     def _rms_of_sum(self, correlation):
         """Root mean square of z₁ + z₂ with this correlation of the heights in register [m]."""
-        one, other = self.beam.rms, self.substrate.rms
-        return float(np.hypot(one - other, np.sqrt(2 * max(1 + correlation, 0.0) * one * other)))
+        upper, lower = self.beam.rms, self.substrate.rms
+        return float(np.hypot(upper - lower, np.sqrt(2 * max(1 + correlation, 0.0) * upper * lower)))
 
     @cached_property
     def _waves(self):
-        return _gaussian_waves(self.beam, self.substrate, self.stated)
+        return _gaussian_waves(self.beam, self.substrate, self.of_heights)
 
     @cached_property
     def _mixing(self):
@@ -123,21 +123,21 @@ class Replica:
 
         Components ζ₁ and ζ₂ are (2, n) [rad m⁻¹].
         """
-        (own, amplitude, _), (other, amplitude_of_other, _) = self.beam.modes, self.substrate.modes
-        places, of_own, of_other = np.intersect1d(own, other, assume_unique=True, return_indices=True)
+        (beam_waves, amplitude, _), (other, amplitude_of_other, _) = self.beam.modes, self.substrate.modes
+        places, of_own, of_other = np.intersect1d(beam_waves, other, assume_unique=True, return_indices=True)
         n1, _ = self.beam.grid.field_shape
         step1, step2 = self.beam.grid.wavenumber_steps
         zeta1, zeta2 = step1 * ((places + n1 // 2) % n1 - n1 // 2), step2 * (places // n1)
         coherence = self._waves.coherence(np.hypot(zeta1, zeta2))
         ratio = amplitude[of_own] / amplitude_of_other[of_other]
-        factor = -coherence * ratio * np.exp(-1j * zeta1 * self.stated.offset)
+        factor = -coherence * ratio * np.exp(-1j * zeta1 * self.of_heights.offset)
         return places, np.sqrt(1 - coherence**2).astype(np.float32), factor.astype(np.complex64), (zeta1, zeta2)
 
     def draw(self, beam_rng: np.random.Generator, substrate_rng: np.random.Generator) -> np.ndarray:
         """Draw one strip of z₁ + z₂, (n1, n2) float32 [m]. Without coherence it is that of independent surfaces."""
-        others = self.substrate.waves(substrate_rng)
-        heights = self._beam_above(others, beam_rng)
-        self.substrate.add_waves(heights, others)
+        substrate_waves = self.substrate.waves(substrate_rng)
+        heights = self._beam_above(substrate_waves, beam_rng)
+        self.substrate.add_waves(heights, substrate_waves)
         return heights
 
     def draw_beam(self, beam_rng: np.random.Generator, substrate_rng: np.random.Generator) -> np.ndarray:
@@ -146,15 +146,15 @@ class Replica:
 
     def displacement(self, beam_rng: np.random.Generator) -> float:
         """Distance from the register of the strip of a stream [m]."""
-        return float(np.hypot(*(self._play(beam_rng) + (self.stated.offset, 0))))
+        return float(np.hypot(*(self._play(beam_rng) + (self.of_heights.offset, 0))))
 
-    def _beam_above(self, others, rng):
+    def _beam_above(self, substrate_waves, rng):
         """Draw one strip of z₁ above a substrate with these waves, (n1, n2) float32 [m]."""
         waves, heights = self.beam.waves(rng), np.zeros(self.beam.grid.shape, np.float32)
         places, share, factor, zeta = self._mixing
-        if self.stated.play:
+        if self.of_heights.play:
             factor = factor * np.exp(-1j * (self._play(rng) @ zeta)).astype(np.complex64)
-        waves[places] = share * waves[places] + factor * others[places]
+        waves[places] = share * waves[places] + factor * substrate_waves[places]
         self.beam.add_waves(heights, waves)
         return heights
 
@@ -163,51 +163,51 @@ class Replica:
 
         Surfaces half a period apart are independent. Farther ones would near the next period.
         """
-        grid, stated = self.beam.grid, np.array([self.stated.offset, 0.0])
+        grid, offset = self.beam.grid, np.array([self.of_heights.offset, 0.0])
         half = np.array(grid.field_shape) * grid.spacing / 2
-        moved = stated + self.stated.play * rng.spawn(1)[0].standard_normal(2)
-        return np.clip(moved, -half, half) - stated
+        moved = offset + self.of_heights.play * rng.spawn(1)[0].standard_normal(2)
+        return np.clip(moved, -half, half) - offset
 
 
 @dataclass(frozen=True)
 class _GaussianWaves:
     """Coherence of the Gaussian waves of two surfaces, and the correlation of their heights in register."""
 
-    stated: Coherence  #: of the heights
+    of_heights: Coherence
     tables: tuple  #: wave numbers (n,) [rad m⁻¹] and coherences (n,) [-] of waves that are copied, and of the others
-    wanted: float  #: correlation as stated [-]
+    correlation: float  #: of the heights, as stated [-]
     reached: float  #: correlation of the drawn heights [-]
 
     def coherence(self, wavenumber):
         """Coherence at |ζ| [-], shape of ``wavenumber`` [rad m⁻¹]."""
-        return _tabulated(self.stated, self.tables, wavenumber)
+        return _tabulated(self.of_heights, self.tables, wavenumber)
 
 
-def _tabulated(stated, tables, wavenumber):
+def _tabulated(coherence, tables, wavenumber):
     """Coherence at |ζ| from the tables of copied and other waves, between which it is not continuous."""
     copied, others = (np.interp(wavenumber, *table) if len(table[0]) else 0.0 for table in tables)
-    return np.where(stated.copies(wavenumber), copied, others)
+    return np.where(coherence.copies(wavenumber), copied, others)
 
 
-def _gaussian_waves(beam, substrate, stated):
+def _gaussian_waves(beam, substrate, coherence):
     """Coherence of the Gaussian waves for a stated one of the heights, as far as it is feasible."""
     zeta, _ = square(beam.grid.spacing, _POINTS)
     gaussian, heights = zip(*(_spectra(surface, zeta) for surface in (beam, substrate)), strict=True)
-    one, other = (surface.translation.hermite_coefficients for surface in (beam, substrate))
-    powers = np.r_[0.0, one * other / np.sqrt(np.sum(one**2) * np.sum(other**2))]
+    upper, lower = (surface.translation.hermite_coefficients for surface in (beam, substrate))
+    powers = np.r_[0.0, upper * lower / np.sqrt(np.sum(upper**2) * np.sum(lower**2))]
     of_heights = np.polynomial.polynomial.polyval(_CORRELATIONS, powers)
-    wanted = fft.fft2(-stated(zeta) * np.sqrt(heights[0] * heights[1])).real
-    crossed = fft.ifft2(np.interp(wanted, of_heights, _CORRELATIONS)).real
+    target = fft.fft2(-coherence(zeta) * np.sqrt(heights[0] * heights[1])).real
+    crossed = fft.ifft2(np.interp(target, of_heights, _CORRELATIONS)).real
     inside = zeta <= min(beam.underlying.cutoff, substrate.underlying.cutoff)
-    both, copied = np.where(inside, np.sqrt(gaussian[0] * gaussian[1]), 0.0), stated.copies(zeta)
-    tables = [_table(-crossed, both, inside & waves, zeta[0, 1]) for waves in (copied, ~copied)]
-    drawn = -np.sum(_tabulated(stated, tables, zeta) * both)
-    return _GaussianWaves(stated, tables, wanted[0, 0], float(np.interp(drawn, _CORRELATIONS, of_heights)))
+    joint, copied = np.where(inside, np.sqrt(gaussian[0] * gaussian[1]), 0.0), coherence.copies(zeta)
+    tables = [_table(-crossed, joint, inside & waves, zeta[0, 1]) for waves in (copied, ~copied)]
+    correlation = -np.sum(_tabulated(coherence, tables, zeta) * joint)
+    return _GaussianWaves(coherence, tables, target[0, 0], float(np.interp(correlation, _CORRELATIONS, of_heights)))
 
 
-def _table(crossed, both, inside, step):
+def _table(crossed, joint, inside, step):
     """Wave numbers of the rings with some waves [rad m⁻¹], and their ratio of spectra (n, n), from 0 to 1 [-]."""
-    across, along = ring_means(crossed, inside), ring_means(both, inside)
+    across, along = ring_means(crossed, inside), ring_means(joint, inside)
     rings = np.flatnonzero(along)
     return step * rings, np.clip(across[rings] / along[rings], 0, 1)
 

@@ -49,8 +49,8 @@ def spectrum(rms: float, slope: float, corner: float, cutoff: float) -> CutoffSe
     """Spectrum of a surface with this rms height [m], slope [-], corner and cut-off [rad m⁻¹]."""
     plateau = rms**2 / (np.pi * corner**2)  # of a surface without roughness beyond the corner
     decay = (cutoff / corner) ** slope
-    whole = CutoffSelfAffine(plateau, plateau * decay, corner, cutoff)
-    plateau *= rms**2 / whole.variance
+    unscaled = CutoffSelfAffine(plateau, plateau * decay, corner, cutoff)
+    plateau *= rms**2 / unscaled.variance
     return CutoffSelfAffine(plateau, plateau * decay, corner, cutoff)
 
 
@@ -63,9 +63,9 @@ def correlation_at(lag: float, slope: float, corner: float, cutoff: float) -> fl
     from scipy.special import j0, j1  # takes 0.2 s, and a plan needs only the numbers of spectra
 
     shape, end = spectrum(1e-9, slope, corner, cutoff), min(cutoff, max(_FAR / lag, corner))
-    places = np.linspace(np.log(corner), np.log(end), _FEWEST + int(np.log(end / corner) * end * lag / _STEP))
-    zeta = np.exp(places)
-    beyond = np.trapezoid(shape(zeta) * zeta**2 * j0(zeta * lag), places)
+    logarithms = np.linspace(np.log(corner), np.log(end), _FEWEST + int(np.log(end / corner) * end * lag / _STEP))
+    zeta = np.exp(logarithms)
+    beyond = np.trapezoid(shape(zeta) * zeta**2 * j0(zeta * lag), logarithms)
     plateau = shape.plateau * corner * j1(corner * lag) / lag
     return float(2 * np.pi * (plateau + beyond) / shape.variance)
 

@@ -115,10 +115,10 @@ def _horner(x, coefficients):
     """Horner's rule for many x, (n,), in parts small enough for the cache of the processor."""
     result = np.full(len(x), coefficients[-1])
     for start in range(0, len(x), 256):
-        part, value = x[start : start + 256], result[start : start + 256]
+        block, value = x[start : start + 256], result[start : start + 256]
         for k in range(len(coefficients) - 2, -1, -1):
-            for j in range(len(part)):
-                value[j] = coefficients[k] + value[j] * part[j]
+            for j in range(len(block)):
+                value[j] = coefficients[k] + value[j] * block[j]
     return result
 
 
@@ -174,9 +174,9 @@ def underlying_spectrum(
     zeta, cell = square(spacing, points)
     correlation = fft.fft2(on_square(target, zeta)).real
     rho = _on_one_half(translation.underlying_autocorrelation, correlation / correlation[0, 0])
-    wanted = fft.ifft2(rho).real / cell
-    possible = np.where(zeta <= target.cutoff, np.maximum(wanted, 0), 0)
-    defect = np.abs(wanted - possible).sum() * cell
+    density = fft.ifft2(rho).real / cell
+    possible = np.where(zeta <= target.cutoff, np.maximum(density, 0), 0)
+    defect = np.abs(density - possible).sum() * cell
     return _radial(possible / (possible.sum() * cell), zeta, target.cutoff), float(defect)
 
 
@@ -199,8 +199,8 @@ def square(spacing: float, points: int) -> tuple[np.ndarray, float]:
 
 def on_square(spectrum: Spectrum, zeta: np.ndarray) -> np.ndarray:
     """Spectrum at all wave numbers of `square`, computed in a quarter and mirrored to the others."""
-    places = np.arange(len(zeta))
-    mirrored = np.minimum(places, len(zeta) - places)
+    numbers = np.arange(len(zeta))
+    mirrored = np.minimum(numbers, len(zeta) - numbers)
     quarter = spectrum(zeta[: mirrored.max() + 1, : mirrored.max() + 1])
     return quarter[mirrored[:, None], mirrored]
 

@@ -32,12 +32,17 @@ from stiction.devices.limits import rules
 from stiction.report.answer import tables, words
 from stiction.report.devices import explorer
 from stiction.stages.answer.answer import layout
-from stiction.stages.life.inputs import Errors, OfBeam, OfStopper
+from stiction.stages.life.inputs import BeamErrors, BeamKeys, StopperKeys
 
 UNSAFE = rules.plastic_contact(0.5, 1e8)
 TIP = {(0.67, "tip"): BUDGETS["C1", 0.67, "tip"]}
-VOLTAGE = OfBeam(
-    device=designed(), density=2330.0, liquids={}, uncertainty=Errors(), voltage=5.0, dielectric=Dielectric(1e-7, 4.0)
+VOLTAGE = BeamKeys(
+    device=designed(),
+    density=2330.0,
+    liquids={},
+    uncertainty=BeamErrors(),
+    voltage=5.0,
+    dielectric=Dielectric(1e-7, 4.0),
 )
 #: Section, datasets, budgets and more of each kind of beam. The budget of "uncertain" leaves no number.
 BEAMS = {
@@ -68,7 +73,7 @@ def case(request):
     section, lengths, budgets, more = BEAMS[request.param]
     limits = more.get("limits", ())
     answer = beam_answer(section, lengths, budgets, **more)
-    page = beam_page(section, lengths, budgets, warnings=silent(lengths, said=limits), answer=answer)
+    page = beam_page(section, lengths, budgets, warnings=silent(lengths, limits=limits), answer=answer)
     return section, lengths, answer, page
 
 
@@ -198,8 +203,8 @@ def test_touchdowns_are_inside_the_headline_and_never_lengthen_a_beam():
 def test_a_voltage_is_inside_length_and_probability():
     """Row 4: P of a device with a voltage is not that of 0 V."""
     section, lengths = CANTILEVER | {"length_um": 300}, {0.67: of_length(300e-6)}
-    of = OfBeam(**{**VOLTAGE.__dict__, "voltage": 40.0})
-    without, at = beam_answer(section, lengths), beam_answer(section, lengths, of=of)
+    of = BeamKeys(**{**VOLTAGE.__dict__, "voltage": 40.0})
+    without, at = beam_answer(section, lengths), beam_answer(section, lengths, keys=of)
     assert Cause.VOLTAGE in at.included
     assert at.build < 0.9 * without.build
     assert at.stuck.value > without.stuck.value + 0.1
@@ -209,8 +214,8 @@ def test_a_voltage_is_inside_length_and_probability():
 def test_a_count_of_none_is_an_upper_bound_also_after_touchdowns(touchdowns):
     """Row 5 of the table: none of 400 patches stick at a force that all of them fall short of."""
     strong = stopper_dataset().assign(restoring_force=2e-5 * 1.0001)
-    of = OfStopper(restoring_force=float(strong.restoring_force), contact=(3e-6, 3e-6), touchdowns=touchdowns)
-    answer = stopper_answer(strong, of=of)
+    of = StopperKeys(restoring_force=float(strong.restoring_force), contact=(3e-6, 3e-6), touchdowns=touchdowns)
+    answer = stopper_answer(strong, keys=of)
     # A fraction p of which none of 400 shows up in 5 % of all runs, after n touchdowns on other summits each.
     most = 1 - 0.05 ** (touchdowns / 400)
     assert answer.stuck.none_seen

@@ -7,7 +7,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from scipy.special import ndtr
 
-from stiction.answer.data import Answer, Cause, InAir, Step
+from stiction.answer.data import Answer, AnswerInAir, Cause, Step
 from stiction.report.answer import tables
 from stiction.report.answer.figures import ladder, risk
 from stiction.report.style import humidity_colour
@@ -21,7 +21,7 @@ def curve(median):
 
 
 def answered(**changed):
-    airs = tuple(InAir(rh, np.nan, np.nan, None, curve(m)) for rh, m in ((0.44, 260e-6), (0.92, 200e-6)))
+    airs = tuple(AnswerInAir(rh, np.nan, np.nan, None, curve(m)) for rh, m in ((0.44, 260e-6), (0.92, 200e-6)))
     sizes = {Cause.ESTIMATE: 160e-6, Cause.SIMULATION: 155e-6, Cause.INPUTS: 140e-6}
     steps = tuple(Step(cause, size, 0.9, 0.92, "S-shape", "safe_lengths") for cause, size in sizes.items())
     known = {"share": 1e-3, "unit": "m", "build": 140e-6, "exact": 155e-6, "size": 250e-6}

@@ -165,7 +165,7 @@ def test_a_limit_on_the_unsafe_side_stands_in_place_of_the_number():
         assert (shown.cells.iloc[:, 1:] == "–").all(axis=None)
     assert (
         "No longer than"
-        in beam_page(CANTILEVER, {0.67: safe()}, warnings=silent({0.67: safe()}, said=[STEEP])).lines[0]
+        in beam_page(CANTILEVER, {0.67: safe()}, warnings=silent({0.67: safe()}, limits=[STEEP])).lines[0]
     )
 
 
@@ -229,7 +229,7 @@ def beam(section, warnings, **given):
     """Page of a cantilever or bridge, with a warning about all shapes."""
     is_bridge = section["kind"] == "bridge"
     lengths = {rh: safe("bridge") if is_bridge else of_length(800e-6) for rh in (0.44, 0.67)}
-    return beam_page(section, lengths, {} if is_bridge else OF_TIP, warnings=silent(lengths, said=warnings), **given)
+    return beam_page(section, lengths, {} if is_bridge else OF_TIP, warnings=silent(lengths, limits=warnings), **given)
 
 
 def stopper(warnings, **given):
@@ -270,7 +270,7 @@ def test_the_limit_that_forbids_a_number_stands_in_the_place_of_all_numbers_in_w
 def test_a_number_comes_with_the_error_of_the_model_or_says_that_it_is_not_stated():
     for said, number in (([], 1), ([UNSAFE], 0)):
         lengths = {0.67: safe()}
-        page = beam_page(CANTILEVER, lengths, warnings=silent(lengths, said=said))
+        page = beam_page(CANTILEVER, lengths, warnings=silent(lengths, limits=said))
         assert sum("error of the model" in text for text in page.summary.basis) == number
 
 

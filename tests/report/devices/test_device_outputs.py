@@ -71,7 +71,7 @@ def test_a_table_without_warnings_does_not_speak_of_them(found):
 
 def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
     figure = figures_devices.simulated(found, WARNINGS)
-    first, second = figure.axes
+    first, tip, second = figure.axes
     lines = [line for line in first.lines if len(line.get_xdata()) > 1]
     one = found["C1", 0.44].isel(shape=0)
     known = one.stuck.values > 0
@@ -79,7 +79,7 @@ def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
     np.testing.assert_allclose(lines[0].get_xdata(), 1e6 * one.length.values[known])
     points = {
         (round(float(line.get_xdata()[0]), 6), float(line.get_ydata()[0]))
-        for line in first.lines
+        for line in (*first.lines, *tip.lines)
         if len(line.get_xdata()) == 1
     }
     for dataset in (found["C1", 0.44], found["C1", 0.67]):
@@ -87,8 +87,9 @@ def test_the_risk_shows_shares_bands_and_safe_lengths_of_every_device(found):
             for share in dataset.share.values:
                 assert (round(1e6 * float(dataset.safe_length.sel(shape=shape, share=share)), 6), share) in points
     assert first.get_ylabel() == "P(stuck), simulated [–]"
-    assert len(first.collections) == 4
-    assert len(second.collections) == 1
+    assert [len(panel.collections) for panel in figure.axes] == [2, 2, 1]
+    assert [panel.get_title(loc="left") for panel in (first, tip)] == ["(a) C1, beam", "(b) C1, beam or tip"]
+    assert second.get_ylabel() == ""
     assert [text.get_text() for text in first.get_legend().get_texts()] == ["RH 0.44 (1) (2)", "RH 0.67 (2)"]
     assert figure._supxlabel.get_text().startswith("(1)")
     # A humidity is a line, so that it cannot be taken for a safe length.
@@ -99,7 +100,7 @@ def test_a_humidity_has_one_colour_in_all_panels(found):
     figure = figures_devices.simulated(
         {("C1", 0.44): found["C1", 0.44], ("C1", 0.67): found["C1", 0.67], ("R1", 0.67): found["C1", 0.67]}, {}
     )
-    first, second = ([line.get_color() for line in panel.get_legend().get_lines()] for panel in figure.axes)
+    first, _, second, _ = ([line.get_color() for line in panel.get_legend().get_lines()] for panel in figure.axes)
     np.testing.assert_array_equal(first[1], second[0])
     assert not np.array_equal(first[0], first[1])
 
@@ -118,7 +119,7 @@ def test_entries_of_a_legend_look_different(found):
 def test_the_risk_can_be_read_at_the_length_of_the_device(found):
     own = safe_lengths.at_length(exactly(np.linspace(200e-6, 400e-6, 100)), 300e-6)
     figure = figures_devices.simulated({("C1", 0.44): found["C1", 0.44].assign(own)}, WARNINGS)
-    (panel,) = figure.axes
+    *_, panel = figure.axes
     share = 100 * float(own["stuck_at_length"][1][-1, 0])
     assert panel.get_legend().get_texts()[0].get_text() == f"RH 0.44: {share:.3g} % at 300 µm (1) (2)"
     assert [300, 300] in [list(line.get_xdata()) for line in panel.lines if line.get_linestyle() == ":"]

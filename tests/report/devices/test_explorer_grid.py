@@ -11,7 +11,7 @@ from scipy.interpolate import PchipInterpolator
 from scipy.special import ndtr
 
 from stiction.devices.risk import SCORES
-from stiction.report.devices.grid import Axis, Grid, Stuck, monotone
+from stiction.report.devices.grid import Grid, GridAxis, StuckShares, monotone
 from stiction.report.devices.levels import counted
 from stiction.report.page import Page
 
@@ -19,7 +19,7 @@ RNG = np.random.default_rng(5)
 
 
 def axis(key, values, scale="log", between=True):
-    return Axis(key, key, "µm", scale, tuple(values), values[0], between, "it was not computed", f"{key}_um")
+    return GridAxis(key, key, "µm", scale, tuple(values), values[0], between, "it was not computed", f"{key}_um")
 
 
 #: Lognormal sticking lengths, whose median is a power of thickness, of thirty thousand devices.
@@ -30,7 +30,7 @@ STATE = {"thickness": 3.0, "share": 4e-3, "length": 200.0}
 
 def lognormal(falls=False):
     medians = 100 * np.array(THICKNESS.values)[:, None] ** 0.75
-    safe = medians * np.exp(SLOPE * SHARE.places * (-1 if falls else 1))
+    safe = medians * np.exp(SLOPE * SHARE.coordinates * (-1 if falls else 1))
     size = axis("length", (10.0, 1000.0), "linear")
     known = medians * np.exp((-1 if falls else 1) * SLOPE * SCORES)
     return Grid((THICKNESS,), SHARE, size, safe, counted(known, DEVICES), DEVICES, falls)
@@ -49,7 +49,7 @@ def test_the_cubic_is_that_of_fritsch_and_butland(count):
 
 def test_a_power_law_is_answered_exactly_between_its_states():
     grid = lognormal()
-    assert grid.safe_size(STATE) == pytest.approx(100 * 3**0.75 * np.exp(SLOPE * SHARE.place(4e-3)), rel=1e-9)
+    assert grid.safe_size(STATE) == pytest.approx(100 * 3**0.75 * np.exp(SLOPE * SHARE.coordinate(4e-3)), rel=1e-9)
     assert grid.stuck(STATE).share == pytest.approx(ndtr(score_of(STATE)), rel=1e-9)
     assert grid.stuck(STATE | {"length": grid.safe_size(STATE)}).share == pytest.approx(4e-3, rel=1e-9)
 
@@ -93,7 +93,7 @@ def test_below_a_size_the_upper_end_of_a_fraction_alone_is_known():
     below = 0.99 * float(100 * 3**0.75 * np.exp(-3 * SLOPE))
     band = grid.stuck(STATE | {"length": below})
     bounded = replace(grid, first=first)
-    assert bounded.stuck(STATE | {"length": below}) == Stuck(band.share, 0.0, band.high, -1)
+    assert bounded.stuck(STATE | {"length": below}) == StuckShares(band.share, 0.0, band.high, -1)
     above = STATE | {"length": 1.02 * below / 0.99}
     assert bounded.stuck(above) == grid.stuck(above)
     assert grid.stuck(above).beyond == 0

@@ -40,7 +40,7 @@ from stiction.report.devices import tables as tables_devices
 from stiction.report.page import Page, Section, Summary
 from stiction.report.surfaces.words import surface_in_words
 from stiction.stages.axes import requirement, roughness
-from stiction.stages.axes.requirement import OfStopper, Response
+from stiction.stages.axes.requirement import RequiredStopper, Response
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.device_warnings import OfDevices
 from stiction.stages.devices.opening import EITHER, S_SHAPE
@@ -96,7 +96,7 @@ def test_a_worst_humidity_at_the_end_is_stated_as_one():
 
 
 def test_a_page_names_the_roughness_that_was_asked_for_and_its_answer_in_the_second_sentence():
-    asked = OfStopper(
+    asked = RequiredStopper(
         seed=1, water=Water(300.0), humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
     )
     forces = {rms: 1e-6 * (4e-9 / rms) ** 3 for rms in (2e-9, 8e-9, 3.4e-9)}

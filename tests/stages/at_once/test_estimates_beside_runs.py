@@ -136,20 +136,24 @@ def test_rows_of_the_table_have_all_inputs_from_which_the_estimate_follows():
     assert {cell for cell in table.cells["stuck"]} == {"1 in 100", "1 in 1000", "1 in 10000"}
 
 
-def test_only_cantilevers_in_humid_air_have_it():
+def test_only_cantilevers_and_stoppers_in_humid_air_have_it():
     bridge = BEAM | {"kind": "bridge", "residual_stress_MPa": 50}
     stopper = {"kind": "stopper", "pair": "mine", "contact_um": [3, 3], "restoring_force_uN": 20, "humidities": [0.6]}
     dry = BEAM | {"humidities": ["dry"]}
-    plan = Plan(stiction.load(FILE, {"devices": {"R": bridge, "S": stopper, "D": dry}}))
+    probe = stopper | {"kind": "probe", "radius_um": 5}
+    del probe["contact_um"]
+    more = {"R": bridge, "S": stopper, "D": dry, "P": probe, "T": stopper | {"humidities": ["dry"]}}
+    plan = Plan(stiction.load(FILE, {"devices": more}))
     graph = Graph(plan)
-    assert beside.estimated(plan) == ["Lever"]
+    assert beside.estimated(plan, beside.LENGTHS) == ["Lever"]
+    assert beside.estimated(plan, beside.FORCES) == ["S"]
     read = {name: "estimate" in graph.job(f"devices/{name}.html").inputs for name in plan.devices.sections}
-    assert read == {"Lever": True, "R": False, "S": False, "D": False}
+    assert read == {"Lever": True, "R": False, "S": True, "D": False, "P": False, "T": False}
     without = Plan(stiction.load())
     assert not [
         job
         for job in Graph(without).needed("all", "devices")
-        if "estimate" in job.names[0] and job.stage.name in ("device_estimate", "table_estimate")
+        if "estimate" in job.names[0] and "_estimate" in job.stage.name
     ]
     assert [job for job in graph.needed("devices") if job.stage.name == "table_estimate"]
 
@@ -196,3 +200,65 @@ def test_a_stored_estimate_makes_the_same_table(tmp_path):
     again = storage.load(tmp_path / "a.nc", "device_estimate")
     assert tables.table({"Lever": again}).csv == tables.table({"Lever": found}).csv
     assert tables.refusals(again) == tables.refusals(found) != []
+
+
+# Stoppers
+
+STOPPER = {"kind": "stopper", "pair": "mine", "contact_um": [3, 2], "restoring_force_uN": 20, "humidities": [0.6]}
+
+
+def stoppers(**device):
+    """Graph of the file with a stopper."""
+    return Graph(Plan(stiction.load(FILE, {"devices": {"Bump": STOPPER | device}})))
+
+
+def dataset_of_forces(forces, graph=None):
+    """Dataset of the job of the stopper beside forces [µN] for 1 in 100 and 1 in 1000 by humidity, which err by 3 %."""
+    parts = np.moveaxis([1e-6 * np.array(one) * np.array([[1.2], [1.0], [0.03]]) for one in forces.values()], 1, 0)
+    coords = {"part": ["safe", "estimate", "error"], "humidity": list(forces), "share": [1e-2, 1e-3]}
+    run = xr.Dataset({"safe_force": (("part", "humidity", "share"), parts)}, coords)
+    job = (graph or stoppers()).job("devices/estimate_of_force/Bump")
+    return beside.compute_stopper(run, in_si(beside.SettingsOfStopper, job.settings))
+
+
+def test_the_estimate_of_a_stopper_is_that_of_the_file_beside_the_force_of_the_run():
+    found = dataset_of_forces({0.6: [40, 50], 0.8: [60, 70]})
+    content = FILE | {"devices": {"Bump": STOPPER}}
+    exact = {"members": ({}, {}), "touchdowns": 1}
+    for k, air in enumerate((0.6, 0.8)):
+        asked = replace(questions(content, known()[0])["Bump"], **exact, humidities=(air,))
+        rows = {row.fraction: row for row in answer(asked, *known()).rows}
+        for share in (1e-2, 1e-3):
+            at = found.sel(humidity=air, share=share)
+            numbers = [float(at[name]) for name in ("estimate", "low", "high")]
+            np.testing.assert_allclose(numbers, [rows[share].force, *rows[share].intervals["90"]], rtol=1e-7)
+        np.testing.assert_allclose(found.force[k], np.array([[4e-5, 5e-5], [6e-5, 7e-5]])[k])
+        np.testing.assert_allclose(found.force_error, 0.03 * found.force)
+
+
+def test_a_table_of_stoppers_has_their_inputs_and_what_is_inside(tmp_path):
+    found = dataset_of_forces({0.6: [1, 2]})
+    found = found.assign(force=found.estimate.copy(data=found.estimate * [[1.0, 1e3]]))
+    sizes = tables.SIZES["force"]
+    table = tables.table({"Bump": found}, sizes)
+    rows = list(csv.DictReader(io.StringIO(table.csv)))
+    assert [row["inside"] for row in rows] == ["yes", "no"]
+    assert [(float(row["contact_x_um"]), float(row["contact_y_um"])) for row in rows] == [(3, 2)] * 2
+    assert float(rows[0]["run_uN"]) == pytest.approx(1e6 * float(found.force[0, 0]))
+    assert "1 of 2 forces are outside the interval of 90 %." in table.caption
+    assert tables.section(found).cells["stuck"].tolist() == ["1 in 100", "1 in 1000"]
+    storage.save(found, tmp_path / "a.nc", "stopper_estimate", {}, [])
+    assert tables.table({"Bump": storage.load(tmp_path / "a.nc", "stopper_estimate")}, sizes).csv == table.csv
+
+
+def test_a_stopper_that_was_not_learnt_has_a_reason():
+    tilted = dataset_of_forces({0.6: [1, 2]}, stoppers(tilt_deg=[0.1]))
+    assert tilted.refused.values.tolist() == ["tilt_deg was not learnt"]
+    assert np.isnan(tilted.estimate).all()
+    large = dataset_of_forces({0.6: [1, 2]}, stoppers(contact_um=[3, 30]))
+    assert large.refused.values.tolist() == ["sides of a stopper must be from 1 to 6 µm"]
+
+
+def test_the_tables_of_lengths_and_of_forces_are_of_their_devices():
+    tables_of = {job.stage.name for job in stoppers().needed("devices") if job.stage.name.startswith("table_estimate")}
+    assert tables_of == {"table_estimate", "table_estimate_of_force"}

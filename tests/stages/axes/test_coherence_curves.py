@@ -9,7 +9,7 @@ from test_roughness_curves import RANGE8, WATER, point
 
 import stiction
 from stiction.config.messages import ConfigError
-from stiction.contact.correction import Change, Correction
+from stiction.contact.correction import Correction, ElasticChange
 from stiction.devices.roughness import SCALES
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
@@ -19,7 +19,7 @@ from stiction.stages.axes import requirement, roughness
 from stiction.stages.axes.roughness import POINTS
 
 SAMPLES, SHARE, FORCE = 200, 0.05, 8
-FULL = replace(WATER, correction=Correction(np.array([0.5, 0.8]), Change(1.2), Change(1.3)))
+FULL = replace(WATER, correction=Correction(np.array([0.5, 0.8]), ElasticChange(1.2), ElasticChange(1.3)))
 STOPPER = {"kind": "stopper", "pair": "r", "contact_um": [1, 1], "restoring_force_uN": FORCE, "humidities": [0.67]}
 STOPPER |= {"requirement": {"share": SHARE}, "roughness": {"surface": "G", "coherence": [0, 0.97]}}
 
@@ -86,10 +86,10 @@ def test_coherences_are_spaced_by_equal_factors_of_their_rest_and_plays_evenly()
 @pytest.mark.parametrize("name", SCALES)
 def test_scales_are_inverted_and_have_their_slope(name):
     scale, value = SCALES[name], np.array([0.2, 0.9])
-    at, step = scale.place(value), 1e-6
+    at, step = scale.coordinate(value), 1e-6
     np.testing.assert_allclose(scale.value(at), value, rtol=1e-12)
     np.testing.assert_allclose((scale.value(at + step) - scale.value(at - step)) / (2 * step), scale.slope(value))
-    np.testing.assert_allclose(np.diff(scale.place(scale.spaced(*value, 5)), 2), 0, atol=1e-12)
+    np.testing.assert_allclose(np.diff(scale.coordinate(scale.spaced(*value, 5)), 2), 0, atol=1e-12)
 
 
 def job_settings(number, **stated):

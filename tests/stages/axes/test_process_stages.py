@@ -5,21 +5,24 @@ import pickle
 import re
 from dataclasses import replace
 
+import drawn_curves
 import numpy as np
 import pytest
 import xarray as xr
 from legends import covering
 
 import stiction
-from stiction.contact.correction import Change, Correction
+from stiction.contact.correction import Correction, ElasticChange
 from stiction.contact.environment import Water
 from stiction.devices.process import unknown
 from stiction.plan.graph import Results
+from stiction.plan.plan import Plan
 from stiction.report.axes import process as sentences
 from stiction.report.axes import section, tables
 from stiction.report.devices import pages
 from stiction.report.style import png
 from stiction.stages.axes import law, margins, recommended, requirement
+from stiction.stages.axes.process import values_of
 from stiction.stages.surfaces.descriptions import description
 
 SAMPLES, SHARE = 200, 0.05
@@ -80,7 +83,7 @@ def test_a_setting_alone_is_todays_roughness_at_its_value_bit_for_bit():
 def test_settings_smoother_than_the_surfaces_of_full_contact_are_flagged_and_no_others():
     """Their forces are corrected by the changes of the given surface, which are too small for them."""
     results = Results.of(config(RMS, Bump=BUMP | {"process": "etch"}))
-    full = Correction(np.array([0.6]), Change(1.2), Change(1.3))
+    full = Correction(np.array([0.6]), ElasticChange(1.2), ElasticChange(1.3))
     given = float(results["heights/B2"].rms)
     for number, water in itertools.product((0, 6), (None, full)):
         job = results.graph.job(f"process/points/Bump_{number}")
@@ -219,8 +222,8 @@ def test_the_error_of_the_model_is_its_change_or_if_applied_the_error_of_that(et
         {"shape": ["force"], "humidity": [0.6]},
     )
     at = [etched.results[f"process/points/Bump_{number}"] for number in range(7)]
-    settings = margins.Settings(("etch_time_s",), ("etch",), ("B2",))
-    with_model, without = (margins.compute(at, [etched.law], settings, error) for error in (model, None))
+    named = {"variables": ["etch_time_s"], "processes": ["etch"], "surfaces": ["B2"]}
+    with_model, without = (margins.compute(at, [etched.law], **named, model_error=error) for error in (model, None))
     np.testing.assert_allclose(with_model.model_error, expected)
     assert np.all(without.model_error == 0)
     wide, narrow = (
@@ -231,7 +234,7 @@ def test_the_error_of_the_model_is_its_change_or_if_applied_the_error_of_that(et
 
 
 def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_without_any():
-    settings = requirement.OfStopper(
+    settings = requirement.RequiredStopper(
         seed=1, water=Water(300.0), humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
     )
     none = requirement.Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)
@@ -240,7 +243,7 @@ def test_points_that_cannot_be_computed_are_named_and_nothing_is_recommended_wit
     slopes = {"slopes": (("humidity", "shape", "law_quantity"), np.full((1, 1, 1), np.nan))}
     known = Results.of(config(RMS, Bump=BUMP | {"process": "etch"}))["process/laws/etch"]
     at = [refused.assign(value=float(value)).assign(slopes) for value in (30, 60, 90)]
-    curve = margins.compute(at, [known], margins.Settings(("etch_time_s",), ("etch",), ("B2",)))
+    curve = margins.compute(at, [known], ["etch_time_s"], ["etch"], ["B2"])
     found = recommended.compute({"Bump": curve}, {"etch": known}, "etch_time_s", 1)
     assert sentences.answers(found, "Bump") == [
         "Settings of the etch time that suffice are not known: too few could be computed."
@@ -301,3 +304,26 @@ def test_both_surfaces_of_a_pair_change_together():
     assert together.surface == "B2 and Sub1"
     rougher = float(alone["process/points/Bump_6"].estimate[0, 0]), float(together.estimate[-1, 0, 0])
     assert rougher[1] < 0.9 * rougher[0]
+
+
+def test_values_are_within_the_settings_of_all_processes_of_a_device():
+    polish = RMS | {"surface": "Sub1", "together_with": "etch"}
+    polish["settings"] = [setting(value, rms_nm=2.0) for value in (20, 50, 100)]
+    both = stiction.load(
+        SECTIONS, {"process": {"etch": ETCH, "polish": polish}, "devices": {"Bump": BUMP | {"process": "etch"}}}
+    )
+    values = values_of(Plan(both), "Bump")
+    assert (values[0], values[-1]) == (30, 100)
+    assert {50, 60, 90} < {*values}
+
+
+def test_a_device_of_which_one_air_and_end_state_is_unknown_has_no_settings():
+    curve, _ = drawn_curves.etched(is_beam=True)
+    curve = xr.concat([curve, curve.assign_coords(shape=["other"])], "shape", data_vars="minimal", coords="minimal")
+    gap = curve.assign(margin=curve.margin.where((curve.humidity != 0.6) | (curve["shape"] != "other")))
+    known, none = (
+        recommended.compute({"D": one}, {"etch": drawn_curves.law_of()}, drawn_curves.VARIABLE, 1)
+        for one in (curve, gap)
+    )
+    assert np.isnan(none.safe).all()
+    assert not np.isnan(known.safe).all()

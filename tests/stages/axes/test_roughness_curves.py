@@ -11,10 +11,10 @@ from legends import covering
 from noted import noted
 
 import stiction
-from stiction.contact.correction import Change, Correction
+from stiction.contact.correction import Correction, ElasticChange
 from stiction.contact.environment import Water
 from stiction.devices import stoppers
-from stiction.devices.risk import Known
+from stiction.devices.risk import LengthBounds
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.report.axes import figures as figures_roughness
@@ -197,7 +197,7 @@ WATER = Water(300.0)
 
 def point(rms, refused="", force=None, flagged="", water=WATER):
     """Point of a curve of a stopper with the force 1e-6 (4 nm / rms)³, or with another one [N]."""
-    settings = requirement.OfStopper(
+    settings = requirement.RequiredStopper(
         seed=1, water=water, humidities=(0.6,), contact=(1e-6, 1e-6), share=0.05, restoring_force=1e-6
     )
     force = 1e-6 * (4e-9 / rms) ** 3 if force is None else force
@@ -249,8 +249,8 @@ def test_none_and_all_of_a_range_are_answers(force, said):
 def test_a_beam_that_sticks_at_no_length_is_an_answer():
     device = SimpleNamespace(opening=SimpleNamespace(shapes=(S_SHAPE,)))
     common = {"seed": 1, "chaos": None, "water": WATER, "humidities": (0.6,), "device": device, "beams": 100}
-    beam = requirement.OfBeam(**common, share=SHARE, length=1e-4, edge_radius=0.0)
-    known, lengths = Known(2e-4, 5e-5, 5e-5), np.full(100, np.inf)
+    beam = requirement.RequiredBeam(**common, share=SHARE, length=1e-4, edge_radius=0.0)
+    known, lengths = LengthBounds(2e-4, 5e-5, 5e-5), np.full(100, np.inf)
     never = beam._response(lengths, *sticking.safe_lengths(lengths, beam, known), known)
     points = [
         requirement.layout([[never]], 100, beam).assign(
@@ -302,7 +302,7 @@ def test_what_is_less_accurate_is_named_with_its_place():
 
 def test_smoother_surfaces_than_those_of_full_contact_are_flagged_and_no_others():
     """Their forces are corrected by the ratios of the given surface, which are too small for them."""
-    full = replace(WATER, correction=Correction(np.array([0.5, 0.8]), Change(1.2), Change(1.3)))
+    full = replace(WATER, correction=Correction(np.array([0.5, 0.8]), ElasticChange(1.2), ElasticChange(1.3)))
     values = [*RANGE, 3.4e-9]
     points = [point(value, flagged=as_text([noted("Long.")] * (k == 0)), water=full) for k, value in enumerate(values)]
     flags = joined(points).flagged.sel(humidity=0.6)
@@ -390,7 +390,7 @@ def test_a_skewness_comes_with_the_largest_kurtosis_up_to_that_of_the_surface_an
     device = S1 | {"roughness": section, "humidities": [0.6]}
     plan = Plan(stiction.load({"devices": {"S1": device}, "contact": {"model": "summits"}}))
     seen = []
-    with patch.object(points.Device, "on", lambda *given: seen.append(given[2][0]["B2"]) or [xr.Dataset()]):
+    with patch.object(points.DeviceAtPoint, "on", lambda *given: seen.append(given[2][0]["B2"]) or [xr.Dataset()]):
         for number in range(0, 40, POINTS) if len(varied) > 1 else (0, 3, 6):
             job = Graph(plan).job(f"devices/roughness/points/S1_{number}")
             found = job.compute(Results(Graph(plan)).inputs(job))
@@ -405,10 +405,10 @@ def test_the_kurtosis_stands_beside_every_skewness_in_sentences_tables_and_figur
     )
     alone = [point(3e-9).assign(roughness=value, kurtosis=3 + value**2) for value in (-1.0, 0.5, 0.0)]
     over_one = joined(alone, "skewness")
-    for found, axis in ((over_both, "yaxis"), (over_one, "xaxis")):
+    for found, axis, between in ((over_both, "yaxis", " "), (over_one, "xaxis", "\n")):
         draw = figures_roughness.roughness_map if "other" in found.dims else figures_roughness.roughness
         labels = [text.get_text() for text in getattr(draw(found).axes[0], axis).get_ticklabels()]
-        assert labels == ["-1\n(4)", "0\n(3)", "0.5\n(3.25)"]
+        assert labels == [f"-1{between}(4)", f"0{between}(3)", f"0.5{between}(3.25)"]
         table = tables.of_roughness({"S1": found})
         assert set(table.cells["kurtosis"]) == {"4", "3", "3.25"}
         assert "kurtosis" in table.caption

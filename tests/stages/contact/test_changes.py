@@ -199,7 +199,7 @@ def contact_under(variant, samples=3):
     plain = small.PLAN.variants.summits("b", variant)
     base, changed = (small.settings_of(variants, merged(plain["base"], c)) for c in ({}, plain["changes"]))
     fewer = replace(changed, contact=replace(changed.contact, samples=samples))
-    solids = in_si(variants.Solids, small.PLAN.variants.solids("b", variant))
+    solids = in_si(variants.SolidsOfPair, small.PLAN.variants.solids("b", variant))
     return variants.contact_of(variants.summits_under({}, "b", base, fewer), solids)
 
 

@@ -16,7 +16,7 @@ from stiction.beam.energy import arrest_length
 from stiction.beam.montecarlo import Experiment, released_beams
 from stiction.config.files import load
 from stiction.contact import forcelaw, solids
-from stiction.contact.correction import NONE, Change
+from stiction.contact.correction import NONE, ElasticChange
 from stiction.contact.full import elements
 from stiction.contact.full.halfspace import HalfSpace
 from stiction.plan.graph import Results
@@ -92,7 +92,7 @@ def excess(models, gap, corrected=(True, True)):
     (vectors, limit), full = models
     base, other, mean = vectors[:, :2], full[0][:, :2], full[0][:, 0].mean()
     ratios, powers = other.mean(axis=0) / base.mean(axis=0), np.log(other).std(axis=0) / np.log(base).std(axis=0)
-    changes = map(Change, ratios, np.maximum(1.0, powers))
+    changes = map(ElasticChange, ratios, np.maximum(1.0, powers))
     used = [change if used else NONE for change, used in zip(changes, corrected, strict=True)]
     energy, pull_off = (change.of(values)(values) for change, values in zip(used, base.T, strict=True))
     laws = np.column_stack([energy, pull_off, vectors[:, 2:]]), max(used[1].ratio * limit, pull_off.max())

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from plans import job_settings
 
 from stiction.config.files import load
-from stiction.contact.correction import NONE, Change, Correction
+from stiction.contact.correction import NONE, Correction, ElasticChange
 from stiction.contact.environment import Water
 from stiction.plan.graph import Graph
 from stiction.plan.plan import Plan
@@ -25,7 +25,7 @@ WATER = Water(300.0)
 
 def corrected(energy, pull_off):
     """Water with the same ratios at all humidities."""
-    return replace(WATER, correction=Correction(np.array(HUMIDITIES), *map(Change, (energy, pull_off))))
+    return replace(WATER, correction=Correction(np.array(HUMIDITIES), *map(ElasticChange, (energy, pull_off))))
 
 
 def ratios_at(given, humidity):
@@ -67,7 +67,7 @@ def test_every_reader_of_the_curves_is_corrected_by_the_same_ratios():
 
 def test_samples_of_corrected_laws_scatter_as_full_contact_does_and_keep_their_order():
     given = small.contact_of_pair(), small.HUMIDITY
-    wide = replace(WATER, correction=Correction(np.array(HUMIDITIES), Change(0.7, 1.3), Change(0.8, 1.2)))
+    wide = replace(WATER, correction=Correction(np.array(HUMIDITIES), ElasticChange(0.7, 1.3), ElasticChange(0.8, 1.2)))
     (base, _), (vectors, limit) = (curves.vectors(*given, water) for water in (WATER, wide))
     for k, (ratio, power) in enumerate([(0.7, 1.3), (0.8, 1.2)]):
         assert_allclose(vectors[:, k].mean(), ratio * base[:, k].mean())
@@ -133,23 +133,23 @@ def test_cracks_on_corrected_laws_follow_the_fourth_root_of_the_energy(base):
 
 
 def test_dry_air_has_a_ratio_of_its_own_and_is_no_end_of_a_line():
-    ratios = Change(np.array([0.5, 0.6, 1.0])), Change(np.array([0.4, 0.7, 0.9]))
+    ratios = ElasticChange(np.array([0.5, 0.6, 1.0])), ElasticChange(np.array([0.4, 0.7, 0.9]))
     given = Correction(np.array([0, 0.44, 0.92]), *ratios)
     assert ratios_at(given, 0) == pytest.approx((0.5, 0.4))
     assert ratios_at(given, 0.44) == pytest.approx((0.6, 0.7))
     with pytest.raises(ValueError, match=r"from 0\.44 to 0\.92 and is not extrapolated to 0\.2"):
         given.at(0.2)
     with pytest.raises(ValueError, match="in other air alone and is not extrapolated to 0"):
-        Correction(np.array([0.44, 0.92]), Change(0.6), Change(0.7)).at(0)
-    assert Correction(np.array([0.0]), Change(0.6), Change(0.7)).at(0.5) == (NONE, NONE), (
+        Correction(np.array([0.44, 0.92]), ElasticChange(0.6), ElasticChange(0.7)).at(0)
+    assert Correction(np.array([0.0]), ElasticChange(0.6), ElasticChange(0.7)).at(0.5) == (NONE, NONE), (
         "humid air has none by default"
     )
 
 
 def test_surfaces_without_condensation_have_the_ratios_of_dry_air_at_any_humidity():
-    given = Correction(np.array([0.0]), Change(0.6), Change(0.7))
+    given = Correction(np.array([0.0]), ElasticChange(0.6), ElasticChange(0.7))
     waxed = Water(300.0, contact_angles=(1.8, 1.8), correction=given)
-    assert waxed.changes(0.5) == waxed.changes(0.0) == (Change(0.6), Change(0.7))
+    assert waxed.changes(0.5) == waxed.changes(0.0) == (ElasticChange(0.6), ElasticChange(0.7))
     assert Water(300.0).changes(0.5) == (NONE, NONE)
 
 

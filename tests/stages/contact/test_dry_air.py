@@ -172,10 +172,10 @@ def test_surfaces_that_water_does_not_wet_are_dry_at_any_humidity():
 
 def test_a_study_of_a_pair_takes_the_word_and_the_number(dry):
     study = PairStudy("b", "NG", Results.of(PLAN.config))
-    study.results._known.update({"contact/b_dry_NG": dry})  # noqa: SLF001 - computed above
+    study.results._datasets.update({"contact/b_dry_NG": dry})  # noqa: SLF001 - computed above
     ratios = {f"{of}_ratio": ([ratio], [0.0]) for of, ratio in (("energy", 1.5), ("pull_off", 2.0))}
     ratios |= {f"{of}_power": ([1.0], [0.0]) for of in ("energy", "pull_off")}
-    study.results._known["studies/model_error/dry/b"] = pair_model_error.layout(ratios, [0.0], [0.0], 6, [0.0])  # noqa: SLF001
+    study.results._datasets["studies/model_error/dry/b"] = pair_model_error.layout(ratios, [0.0], [0.0], 6, [0.0])  # noqa: SLF001
     found = study.energies("dry")
     assert_allclose(found, 1.5 * energies(dry, 0.0, water_of("b_dry")))
     assert_array_equal(found, study.energies(0))

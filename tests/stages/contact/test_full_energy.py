@@ -33,7 +33,7 @@ def found(ratio, error, power=1.2):
     """Dataset of energies with a ratio and its relative error."""
     strips = {SUMMITS: 64, FINE: 4, 2: 10, 3: 64}
     values = Ratio(ratio, error, power, 0.05, (FINE, 2, 3, SUMMITS), strips, 0.2)
-    return full_energy.layout(values, full_energy.Quantities(2e-3, 1e6))
+    return full_energy.layout(values, full_energy.StripQuantities(2e-3, 1e6))
 
 
 UNKNOWN = full_energy.layout(full_energy.UNKNOWN, full_energy.NOT_FOUND, "it does not settle")
@@ -60,7 +60,7 @@ def test_the_state_from_a_coarse_one_has_the_energy_and_the_force_of_the_whole_s
         nested = strips.energy(FINE, place)
         heights = strips.heights(strips.resisting[place])
         separated = full_contact.separated(
-            level.space, heights, full_contact.InAir(level.adhesion, strips.curves[place], 0.0)
+            level.space, heights, full_contact.StripInAir(level.adhesion, strips.curves[place], 0.0)
         )
         assert nested == pytest.approx(separated.adhesion_energy, rel=4e-3)
         assert strips.pull_off(FINE, place) == pytest.approx(separated.pull_off, rel=0.03)

@@ -112,7 +112,7 @@ def test_moments_without_a_density_leave_the_measured_one(files, estimated, aske
 def test_the_contact_of_a_choice_has_the_samples_of_the_slopes(plan):
     assert settings_of(plan).contact.samples == 20
     assert set(settings_of(plan).sources) == {"Etched"}
-    assert settings_of(plan).sources["Etched"] == choices.Source("moments", "fitted", "cut")
+    assert settings_of(plan).sources["Etched"] == choices.EstimateParts("moments", "fitted", "cut")
 
 
 def test_the_contact_of_a_choice_has_no_more_samples_than_that_of_the_pair_with_which_it_is_compared(files):

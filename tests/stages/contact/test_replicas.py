@@ -85,7 +85,7 @@ def test_a_device_says_how_its_underside_follows_and_otherwise_what_a_copy_would
     for replica in (None, {"coherence": 0.9, "offset_nm": 20}):
         plan = plan_of(replica)
         page = Graph(Plan(plan.config | {"devices": {"S": section}})).job("devices/S.html").settings
-        said.append((page["surfaces"]["surface of the beam"], not_modelled(**page["not_modelled"])))
+        said.append((page["surfaces"]["surface of the device"], not_modelled(**page["not_modelled"])))
     (alone, without), (follows, with_replica) = said
     assert follows.removeprefix(alone) == ", follows the substrate with a coherence of 0.9, 20 nm beside its register"
     assert "conformal films" in without

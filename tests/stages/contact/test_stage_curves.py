@@ -7,7 +7,7 @@ import pytest
 from scipy.special import erfc
 
 from stiction.constants import HAMAKER_CONSTANT
-from stiction.contact.correction import Change, Correction, TipChanges
+from stiction.contact.correction import Correction, ElasticChange, TipChanges
 from stiction.contact.environment import Gaps, Water, flooded_law
 from stiction.contact.pair import DistanceGrid
 from stiction.contact.tilt import Tilt, length_of_edge
@@ -56,9 +56,9 @@ def tips(solid, bearing, grid):
 
 def changed_tips(ratios, power=1.0, error=0.0):
     """Correction of tips with ratios at both slopes, and of nothing else."""
-    change = Change(np.tile(ratios, (2, 1)), np.full(2, power), np.full((2, 2), error))
+    change = ElasticChange(np.tile(ratios, (2, 1)), np.full(2, power), np.full((2, 2), error))
     tilted = TipChanges(np.array([0.05, 0.1]), change)
-    return Correction(np.array([0.5, 0.8]), Change(np.ones(2)), Change(np.ones(2)), tilted)
+    return Correction(np.array([0.5, 0.8]), ElasticChange(np.ones(2)), ElasticChange(np.ones(2)), tilted)
 
 
 def test_the_force_of_a_tip_is_the_largest_attraction_of_each_slope_on_the_strip():

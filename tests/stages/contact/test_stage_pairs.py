@@ -11,7 +11,7 @@ from stiction.constants import HAMAKER_CONSTANT
 from stiction.contact.asperity import HertzAsperity
 from stiction.plan.plan import Plan
 from stiction.stages.contact import contact, pairs
-from stiction.stages.contact.changes.variants import Sides, Surface, surfaces_of
+from stiction.stages.contact.changes.variants import DrawnSurface, Sides, surfaces_of
 from stiction.stages.surfaces import heights, spectrum
 from stiction.stages.surfaces.parameters import spectrum_of
 from stiction.streams import stream
@@ -65,7 +65,7 @@ def test_the_two_surfaces_of_a_sample_are_drawn_from_separate_streams():
 
 def test_surfaces_of_a_pair_are_those_of_their_stages_that_of_the_beam_first():
     moments = {name: (of.rms, of.skewness, of.kurtosis) for name, of in SURFACES.items()}
-    known = {name: Surface(*moments[name], "published", of.spectrum) for name, of in SURFACES.items()}
+    known = {name: DrawnSurface(*moments[name], "published", of.spectrum) for name, of in SURFACES.items()}
     (beam, beam_spectrum), (substrate, _) = surfaces_of(Sides("B1", "Sub1"), known, SPACING, {})
     assert (float(beam.rms), float(substrate.rms)) == (SURFACES["B1"].rms, SURFACES["Sub1"].rms)
     assert spectrum_of(beam_spectrum) == SURFACES["B1"].spectrum

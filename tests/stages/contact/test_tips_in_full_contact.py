@@ -15,7 +15,7 @@ from stiction.contact.meniscus import film
 from stiction.contact.tilt import Tilt, length_of_edge
 from stiction.plan.graph import Results
 from stiction.stages.contact import corrections, full_contact, pair_model_error, tips_in_full_contact
-from stiction.stages.contact.tips_in_full_contact import Tips
+from stiction.stages.contact.tips_in_full_contact import TipsAtSlope
 from stiction.stages.surfaces.rough_surfaces import both
 
 NM, UM = 1e-9, 1e-6
@@ -94,7 +94,7 @@ def test_a_stiff_smooth_tip_on_a_peak_is_held_by_the_water_on_its_wedge_and_its_
     heights[row, ::5] = peak  # beside where the edge begins
     space = HalfSpace(heights.shape, pair.spacing, 1e12)
     water = replace(given.water, gaps=None)
-    found = Tips(pair, space, Adhesion(height, tension), water, 0.9).both_models(heights)
+    found = TipsAtSlope(pair, space, Adhesion(height, tension), water, 0.9).both_models(heights)
     filled = height - peak + pair.drop(slope, len(heights))[row]
     wet = filled / slope - slope * radius / 2 + length_of_edge(radius, filled, slope)
     assert_allclose(found, tension * wet, rtol=0.1)  # of whole rows of points

@@ -25,7 +25,7 @@ from stiction.stages.devices import safe_lengths, stoppers
 from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE
 from stiction.stages.life import beams
 from stiction.stages.life.answers import answers_of
-from stiction.stages.life.inputs import Errors, Liquid, OfBeam, OfStopper
+from stiction.stages.life.inputs import BeamErrors, BeamKeys, Liquid, StopperKeys
 from stiction.stages.life.stoppers import stopper_answers
 
 TIPS = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(400))
@@ -79,8 +79,8 @@ def data_of_beam(device=C1, airs=AIRS, voltage=0.0, touchdowns=1, budgets=(), **
     after = {rh: of_device(device, factor, rare, **more) for rh, factor in airs.items()} if touchdowns > 1 else {}
     biased = {rh: of_device(device, factor, voltage=voltage, **more) for rh, factor in airs.items()} if voltage else {}
     stated = {"voltage": voltage, "dielectric": OXIDE} if voltage else {}
-    errors = Errors(thickness=SIGMA * device.thickness) if budgets else Errors()
-    of = OfBeam(device=device, density=2330.0, liquids=LIQUIDS, uncertainty=errors, touchdowns=touchdowns, **stated)
+    errors = BeamErrors(thickness=SIGMA * device.thickness) if budgets else BeamErrors()
+    of = BeamKeys(device=device, density=2330.0, liquids=LIQUIDS, uncertainty=errors, touchdowns=touchdowns, **stated)
     life = beams.layout(beams.beam_answers(lengths, after, of, biased or None), of)
     names = [rh for rh in airs for _ in budgets]
     data = {"lengths": lengths, "after": after, "biased": biased, "life": life, "budgets": list(budgets) * len(airs)}
@@ -301,7 +301,7 @@ def data_of_stopper(patches=4000, touchdowns=1, voltage=0.0, tilted=False, force
         biased = stoppers.layout(own, forces + added, axis, along + added)
         data["biased"] = biased.assign(freeing_potential=biased.pull_off * 0 + 10.0)
     stated = {"voltage": voltage, "dielectric": OXIDE} if voltage else {}
-    of = OfStopper(restoring_force=force, contact=(3e-6, 3e-6), touchdowns=touchdowns, electrode=None, **stated)
+    of = StopperKeys(restoring_force=force, contact=(3e-6, 3e-6), touchdowns=touchdowns, electrode=None, **stated)
     some = (data.get(name) for name in ("biased", "tilted", "separation"))
     data["life"] = beams.layout(stopper_answers(data["stopper"], of, *some), of)
     return data, answer.Settings(1, "S", "stopper", touchdowns=touchdowns)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from beams import E_BAR, PAPER
-from ground import C1, R1, RMS, UM, VECTORS, WATER, met, settings, smooth_tips
+from ground import C1, R1, RMS, UM, VECTORS, WATER, ground_dataset, settings, smooth_tips
 from numpy.testing import assert_allclose
 
 from stiction import load
@@ -121,7 +121,7 @@ def test_few_sizes_are_all_computed(count):
 def computed(device, thicknesses, gaps, tips=None, shares=(1e-2,)):
     wanted = chart.Settings(2021, WATER, 0.67, device, 200, shares, thicknesses, gaps, 0.0)
     with patch.object(curves, "tip_forces", lambda *_: smooth_tips(tips)):
-        return chart.compute(met(device), wanted, None if tips is None else xr.Dataset()), wanted
+        return chart.compute(ground_dataset(device), wanted, None if tips is None else xr.Dataset()), wanted
 
 
 def alone(device, wanted, tips=None):
@@ -202,7 +202,7 @@ def drawn(asked, power, here, device, ground, wanted):
 def between(power, device=C1, here=1.0):
     """Chart at the humidity between, that of all sizes by finite elements, and the sizes that the first asked for."""
     tips = 2e-3 * np.exp(0.4 * np.random.default_rng(9).standard_normal(WANTED.beams))
-    asked, ground, wanted = [], met(device), replace(WANTED, device=device)
+    asked, ground, wanted = [], ground_dataset(device), replace(WANTED, device=device)
     contact = xr.Dataset() if device.opening.has_tip else None
     with (
         patch.object(curves, "tip_forces", lambda *_: smooth_tips(tips)),

@@ -4,7 +4,7 @@ from functools import partial
 import numpy as np
 import pytest
 import xarray as xr
-from ground import C1, R1, RMS, VECTORS, computed, met, settings
+from ground import C1, R1, RMS, VECTORS, computed, ground_dataset, settings
 from numpy.testing import assert_allclose, assert_array_equal
 
 import stiction
@@ -126,5 +126,5 @@ def test_lengths_of_many_sizes_are_those_by_finite_elements():
 def test_a_device_is_simulated_where_the_power_laws_do_not_hold():
     wanted = settings(beams=12)
     laws = xr.Dataset({"powers": (("of", "device"), np.full((3, 12), np.nan)), "error": 0.03, "excess": 0.0})
-    found = cracks.compute(met(C1), replace(wanted, by_sizes=True), laws)
+    found = cracks.compute(ground_dataset(C1), replace(wanted, by_sizes=True), laws)
     xr.testing.assert_identical(found, computed(wanted, VECTORS))

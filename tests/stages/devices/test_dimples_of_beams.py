@@ -26,7 +26,7 @@ from stiction.stages.devices import stoppers
 from stiction.stages.life.answers import layout
 from stiction.stages.life.beams import beam_answers
 from stiction.stages.life.dimples import dimple_answers
-from stiction.stages.life.inputs import Dimples, Errors, OfBeam
+from stiction.stages.life.inputs import BeamErrors, BeamKeys, Dimples
 
 BEAM = {"kind": "cantilever", "pair": "b", "thickness_um": 2.6, "gap_um": 3, "width_um": 30, "humidities": [0, 0.67]}
 ROW = {"number": 3, "at_um": [80], "height_um": 1, "contact_um": [2, 1]}
@@ -51,7 +51,7 @@ def answers(lengths, of, dimples):
 
 @pytest.mark.parametrize(("number", "rows"), [(1, 1), (3, 1), (7, 1), (2, 3)])
 def test_the_force_of_a_row_is_the_sum_of_other_patches(number, rows):
-    settings = stoppers.Dimples(OF_WATER, 0.67, (1.5e-6, 6e-6), number, (80e-6,) * rows)
+    settings = stoppers.DimpleForces(OF_WATER, 0.67, (1.5e-6, 6e-6), number, (80e-6,) * rows)
     held = stoppers.compute_dimples(small.contact_of_pair(), settings).pull_off.values
     single = 1.5e-6 * 6e-6 * curves.pull_offs(small.contact_of_pair(), 0.67, OF_WATER)
     assert held.shape == (len(single) // (number * rows), rows)
@@ -87,7 +87,7 @@ def test_life_compares_the_row_with_the_force_of_the_beam_there(lengths, kind):
 
 
 def test_errors_of_the_force_follow_thickness_and_gap(lengths):
-    errors = Errors(thickness=0.01 * OF.device.thickness, gap=0.02 * OF.device.gap)
+    errors = BeamErrors(thickness=0.01 * OF.device.thickness, gap=0.02 * OF.device.gap)
     found = answers(lengths, replace(OF, length=200e-6, dimples=AT, uncertainty=errors), {0.67: forces(1e-5)})
     way = OF.device.gap / (OF.device.gap - AT.height)
     pulled = found["dimples_force"]
@@ -143,12 +143,12 @@ def test_a_beam_with_dimples_has_a_job_for_them_at_each_humidity():
     graph = Graph(plan)
     assert list(graph.job("devices/life/C1").inputs["dimples"]) == [0, 0.67]
     assert not graph.job("devices/life/C2").inputs["dimples"]
-    settings = in_si(stoppers.Dimples, job_settings(plan, "devices/dimples/C1_rh067"))
+    settings = in_si(stoppers.DimpleForces, job_settings(plan, "devices/dimples/C1_rh067"))
     assert (settings.number, settings.humidity) == (3, 0.67)
     assert_allclose(settings.contact, (2e-6, 1e-6), rtol=1e-12)
     for case, pair in (("C1_rh067", "b"), ("C1_dry", "b_dry")):
         assert graph.job(f"devices/dimples/{case}").inputs["contact"] == f"devices/contact/{pair}_2000x1000"
-    of = in_si(OfBeam, job_settings(plan, "devices/life/C1")["beam"])
+    of = in_si(BeamKeys, job_settings(plan, "devices/life/C1")["beam"])
     assert_allclose((of.dimples.number, *of.dimples.at, of.dimples.height), (3, 80e-6, 1e-6), rtol=1e-12)
 
 

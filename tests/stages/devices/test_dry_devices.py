@@ -34,7 +34,7 @@ from stiction.stages.contact import contact, curves
 from stiction.stages.devices import stoppers
 from stiction.stages.devices.device_warnings import OfDevices
 from stiction.stages.devices.sticking import flooded_lengths
-from stiction.stages.devices.uncertain_inputs import State, Uncertainty, countable, uncertain
+from stiction.stages.devices.uncertain_inputs import InputState, Uncertainty, countable, uncertain
 
 ACROSS = Water(300.0, gaps=Gaps(HAMAKER_CONSTANT, "water", 100e-9))
 SIDES = (1.5e-6, 6e-6)
@@ -272,7 +272,7 @@ def test_a_budget_in_dry_air_has_no_inputs_of_the_air():
     names = {}
     for humidity in (0.0, 0.67):
         settings = replace(BEAM, water=ACROSS, humidity=humidity, uncertainty=stated)
-        inputs, covariance = uncertain(State(None, humidity, ACROSS, C1), {}, {}, {}, settings)
+        inputs, covariance = uncertain(InputState(None, humidity, ACROSS, C1), {}, {}, {}, settings)
         names[humidity] = [one.name for one in inputs]
         assert covariance.shape == (len(inputs), len(inputs))
         assert ("the humidity" in countable(("thickness",), settings)) == (humidity > 0)

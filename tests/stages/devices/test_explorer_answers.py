@@ -23,7 +23,7 @@ from stiction.stages.devices.chart import largest_error_between
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.life.answers import Name
 from stiction.stages.life.beams import beam_at_voltage, least_safe
-from stiction.stages.life.inputs import Errors, OfBeam
+from stiction.stages.life.inputs import BeamErrors, BeamKeys
 
 BRIDGE = CANTILEVER | {"kind": "bridge", "residual_stress_MPa": 10}
 SPRING = {key: value for key, value in STOPPER.items() if key != "restoring_force_uN"}
@@ -107,6 +107,19 @@ def test_the_controls_begin_with_the_words_of_the_answer(length, touchdowns):
     grid = explorer.views_of_beam("C1", CANTILEVER | {"length_um": 1e6 * length}, lengths, {}, answer)[0].grid
     assert says(grid.stuck(grid.start)) == words.stuck_in_words(answer.stuck)
     assert answer.stuck.none_seen == (length < 280e-6)
+
+
+@pytest.mark.parametrize("touchdowns", [1, 300])
+@pytest.mark.parametrize("name", ["cantilever", "one air", "bridge"])
+def test_at_the_size_to_build_the_controls_say_the_allowed_fraction(name, touchdowns):
+    section, lengths, _ = BEAMS[name]
+    answer = answered.of_beam(lengths, touchdowns=touchdowns)
+    grid = explorer.views_of_beam("C1", section, lengths, {}, answer)[0].grid
+    at, longer = (grid.stuck(grid.start | {"length_um": factor * 1e6 * answer.build}) for factor in (1, 1.02))
+    assert at.beyond == -1
+    assert at.high == pytest.approx(answer.share, rel=1e-6)
+    assert says(at).startswith(f"at most {words.percent(answer.share)}")
+    assert longer.high > 1.01 * answer.share  # control
 
 
 def test_at_other_sizes_the_levels_keep_their_ratio_to_the_simulated_ones():
@@ -204,7 +217,9 @@ def test_a_cantilever_at_a_voltage_has_the_closed_form_of_flats_and_its_bound_of
         )
     with pytest.raises(ValueError, match="beyond 99.5 V the dielectric breaks down"):
         grid.safe_size(grid.start | {"voltage_V": 100.0})
-    of = OfBeam(device=C1, density=2330.0, liquids={}, uncertainty=Errors(), voltage=5.0, offset=-0.5, dielectric=oxide)
+    of = BeamKeys(
+        device=C1, density=2330.0, liquids={}, uncertainty=BeamErrors(), voltage=5.0, offset=-0.5, dielectric=oxide
+    )
     answers = {one.name: one for one in beam_at_voltage(of, min(map(least_of, lengths.values())), None)}
     assert grid.safe_size(grid.start) == pytest.approx(1e6 * answers[Name.AT_VOLTAGE].low, rel=1e-3)
 

@@ -13,12 +13,12 @@ from stiction.analysis.shifts import STEPS
 from stiction.contact.environment import Water
 from stiction.stages.devices import uncertain_inputs as inputs
 from stiction.stages.devices.opening import DesignedBeam
-from stiction.stages.devices.uncertain_inputs import Known, Settings, State, Uncertainty
+from stiction.stages.devices.uncertain_inputs import InputState, QuantityErrors, Settings, Uncertainty
 
 WATER = Water(300.0)
 C1 = DesignedBeam("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PAPER.young_modulus, 1.5e-6)
 R1 = DesignedBeam("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 1.5e-6, residual_stress=50e6)
-BASE = State(1.0, 0.67, WATER, C1, 9e-12)
+BASE = InputState(1.0, 0.67, WATER, C1, 9e-12)
 SETTINGS = Settings(1, WATER, 0.67, Uncertainty(), ("B2", "Sub1"), 164e9)
 
 
@@ -125,7 +125,7 @@ def test_a_stopper_has_no_dimensions_of_a_beam():
 
 
 def test_quantities_of_a_surface_keep_their_covariance_and_their_group():
-    known = Known(("mode2", "corner"), np.array([[4.0, 1], [1, 9]]))
+    known = QuantityErrors(("mode2", "corner"), np.array([[4.0, 1], [1, 9]]))
     differences = {name: 2 * STEPS[name] for name in known.quantities}
     shifted = {
         ("B2", name): tuple(small.contact_of_pair().assign(difference=((), difference)) for _ in range(2))
@@ -143,7 +143,7 @@ def test_quantities_of_a_surface_keep_their_covariance_and_their_group():
 def test_quantities_that_are_shifted_by_a_large_uncertainty_have_a_middle_with_as_many_samples():
     contact = small.contact_of_pair()
     pair = tuple(contact.isel(strip=slice(8)).assign(difference=((), 1.6)) for _ in range(2))
-    known, at = Known(("corner",), np.array([[0.64]])), replace(BASE, contact=contact)
+    known, at = QuantityErrors(("corner",), np.array([[0.64]])), replace(BASE, contact=contact)
     block = inputs.surface_block(at, "B2", {("B2", "corner"): pair}, known)
     (entry,) = block.inputs
     assert entry.middle.contact.sizes["strip"] == 8 < contact.sizes["strip"]
@@ -160,8 +160,8 @@ def test_one_scan_gives_the_covariance_of_its_closed_form():
 
 
 def test_errors_of_several_causes_add_up_where_they_are_of_the_same_quantity():
-    first = Known(("rms", "corner"), [[4.0, 1.0], [1.0, 9.0]])  # lists, as settings have them
-    second = Known(("rms", "skewness"), [[1.0, 0.5], [0.5, 2.0]])
+    first = QuantityErrors(("rms", "corner"), [[4.0, 1.0], [1.0, 9.0]])  # lists, as settings have them
+    second = QuantityErrors(("rms", "skewness"), [[1.0, 0.5], [0.5, 2.0]])
     found = inputs.together([first, second])
     assert found.quantities == ("rms", "skewness", "corner")
     assert_allclose(found.covariance, [[5, 0.5, 1], [0.5, 2, 0], [1, 0, 9]])
@@ -170,7 +170,7 @@ def test_errors_of_several_causes_add_up_where_they_are_of_the_same_quantity():
 def test_what_is_stated_about_a_surface_adds_to_the_error_of_a_scan():
     surfaces, side = {"B2": small.surfaces()[0]}, 10e-6
     of_scan = inputs.errors_of_one_scan(*surfaces["B2"], side).covariance
-    stated = replace(SETTINGS, known={"B2": Known(("kurtosis", "slope"), [[0.04, 0], [0, 0.25]])})
+    stated = replace(SETTINGS, known={"B2": QuantityErrors(("kurtosis", "slope"), [[0.04, 0], [0, 0.25]])})
     alone = inputs.covariances(surfaces, {}, stated)["B2"]
     assert alone.quantities == ("kurtosis", "slope")
     both = inputs.covariances(surfaces, {}, replace(stated, uncertainty=Uncertainty(scan=side)))["B2"]

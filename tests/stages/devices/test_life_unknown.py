@@ -14,7 +14,7 @@ from stiction.devices.risk import samples_for
 from stiction.report.devices import life as report
 from stiction.stages.life.answers import QUESTIONS, answers_of, layout
 from stiction.stages.life.beams import beam_answers, length_of
-from stiction.stages.life.inputs import OfStopper
+from stiction.stages.life.inputs import StopperKeys
 from stiction.stages.life.stoppers import stopper_answers
 
 ON = {"voltage": 5.0, "dielectric": Dielectric(100e-9, 4.0)}
@@ -47,7 +47,7 @@ def answer_all_questions(dataset):
 @pytest.mark.parametrize("stated", all_of(KEYS), ids="-".join)
 @pytest.mark.parametrize("number", [400, 200])
 def test_a_stopper_asks_for_the_keys_that_it_lacks(stated, number):
-    of = OfStopper(**UNSTATED)
+    of = StopperKeys(**UNSTATED)
     for key in stated:
         of = replace(of, **KEYS[key])
     dataset = stopper_dataset().isel(sample=slice(number))

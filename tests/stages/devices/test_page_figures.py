@@ -24,7 +24,7 @@ pytestmark = pytest.mark.slow
 #: Width of a phone without its margins, and least height of text there [pixels].
 PHONE, LEAST = 358, 11
 FIGURES = {
-    "risk": (1, lambda: of_devices.simulated({("C1", rh): safe() for rh in (0.44, 0.67, 0.92)}, {})),
+    "risk": (2, lambda: of_devices.simulated({("C1", rh): safe() for rh in (0.44, 0.67, 0.92)}, {})),
     "chart": (4, lambda: of_devices.chart({("C1", rh): charted(rh) for rh in (0.4, 0.5, 0.6)}, {})),
     "stoppers": (2, lambda: of_budgets.stoppers({"S1": STOPPERS["S1"]}, {})),
     "budget": (4, lambda: of_budgets.budget(BEAMS | {key: one for key, one in BUDGETS.items() if "tip" in key})),

@@ -52,7 +52,7 @@ class Unread(str):
 def _bridge(found):
     """Page of a bridge with some limits."""
     lengths = {0.67: safe("bridge")}
-    return beam_page(BRIDGE, lengths, warnings=silent(lengths, said=found))
+    return beam_page(BRIDGE, lengths, warnings=silent(lengths, limits=found))
 
 
 def decided(folder):

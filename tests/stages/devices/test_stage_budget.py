@@ -23,7 +23,7 @@ from stiction.stages.contact import curves
 from stiction.stages.devices import budget
 from stiction.stages.devices.budget import BeamBudget, PatchBudget, Responses, TipBudget
 from stiction.stages.devices.opening import ARC, FORCE, MIDDLE, S_SHAPE, DesignedBeam, arrests
-from stiction.stages.devices.uncertain_inputs import Input, State, Uncertainty
+from stiction.stages.devices.uncertain_inputs import Input, InputState, Uncertainty
 from stiction.streams import stream
 
 WATER = Water(300.0)
@@ -32,7 +32,7 @@ SLOPES = np.geomspace(0.01, 1, 30)
 C1 = DesignedBeam("cantilever", "b", PAPER.thickness, PAPER.gap, PAPER.width, PAPER.young_modulus, 1.5e-6)
 R1 = DesignedBeam("bridge", "b", 2e-6, 2e-6, 30e-6, 164e9, 0.5e-6, residual_stress=50e6)
 #: Forces and energies are multiplied by what a test passes as contact.
-BASE = State(1.0, 0.67, WATER, C1, 9e-12)
+BASE = InputState(1.0, 0.67, WATER, C1, 9e-12)
 BEAMS = partial(budget.beam_responses, mesh=(PAPER, 1000), number=100, address=lambda k: stream(1, k))
 COMMON = 1, WATER, 0.67, Uncertainty(), ("B2", "Sub1"), 164e9
 SETTINGS = BeamBudget(*COMMON, device=C1, beams=24)
@@ -109,7 +109,7 @@ def test_beams_at_several_states_meet_the_same_samples():
 def test_a_state_is_released_once_if_it_has_the_same_laws_beside_others(monkeypatch):
     released, stronger, weaker = [], replace(BASE, contact=1.2), replace(BASE, contact=0.8)
     monkeypatch.setattr(budget, "arrests", lambda *all_of: released.append(all_of) or arrests(*all_of))
-    remembering = partial(BEAMS, number=20, known={})
+    remembering = partial(BEAMS, number=20, cache={})
     found = [remembering([BASE, other]).values for other in (stronger, weaker, stronger)]
     assert len(released) == 3
     np.testing.assert_array_equal(found[0], found[2])

@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from answers import stopper_dataset
@@ -23,18 +24,19 @@ from stiction.plan.plan import Plan
 from stiction.report import html
 from stiction.report.devices import life as report
 from stiction.report.devices.pages import Page, Section, with_life
+from stiction.report.page import Summary
 from stiction.report.style import save
 from stiction.run import storage
 from stiction.stages.life.answers import QUESTIONS, answers_of, layout
 from stiction.stages.life.beams import beam_answers, length_of
-from stiction.stages.life.inputs import Electrode, Errors, Liquid, OfBeam, OfStopper
+from stiction.stages.life.inputs import BeamErrors, BeamKeys, Electrode, Liquid, StopperKeys
 from stiction.stages.life.stoppers import stopper_answers
 
 LIQUIDS = {"water": Liquid(0.072), "mine": Liquid(0.03, np.pi / 3)}
-OF = OfBeam(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=Errors())
+OF = BeamKeys(device=C1, density=2330.0, liquids=LIQUIDS, uncertainty=BeamErrors())
 AREA = (3e-6, 3e-6)
 UNSTATED = {"restoring_force": 18.99e-6, "contact": AREA}
-STOPPER = OfStopper(
+STOPPER = StopperKeys(
     restoring_force=18.99e-6,
     contact=AREA,
     stiffness=10.0,
@@ -103,7 +105,7 @@ def test_a_beam_held_by_the_energy_that_is_stated_pulls_with_the_stated_force(le
 
 def test_errors_are_those_of_the_powers_of_the_closed_forms(lengths):
     relative = {"thickness": 0.01, "gap": 0.02, "young_modulus": 0.03}
-    errors = Errors(**{name: share * getattr(C1, name) for name, share in relative.items()})
+    errors = BeamErrors(**{name: share * getattr(C1, name) for name, share in relative.items()})
     found = answers(replace(OF, uncertainty=errors, length=300e-6), lengths)
     powers = {"shock": (2, 1, 1), "released_water": (0.75, 0.5, 0.25), "tip": (3, 2, 1)}
     for name, exponents in powers.items():
@@ -117,7 +119,7 @@ def test_errors_are_those_of_the_powers_of_the_closed_forms(lengths):
 
 
 def test_residual_stress_of_a_bridge_has_an_error_and_rigid_clamps_an_upper_bound():
-    of = replace(OF, device=R1, liquids={"water": LIQUIDS["water"]}, uncertainty=Errors(residual_stress=5e6))
+    of = replace(OF, device=R1, liquids={"water": LIQUIDS["water"]}, uncertainty=BeamErrors(residual_stress=5e6))
     found = answers(of, {0.67: safe_without_tips()})
     for name in ("voltage", "shock"):
         assert found[name].low < found[name].high
@@ -269,7 +271,7 @@ def test_the_force_for_many_touchdowns_is_that_of_a_smaller_fraction_if_there_ar
 
 
 def test_what_is_not_stated_has_no_number():
-    found = answers(OfStopper(**UNSTATED))
+    found = answers(StopperKeys(**UNSTATED))
     assert not {"stiffness", "stuck_after", "after"} & set(found)
     assert np.isnan([(found[name].low, found[name].high) for name in ("shock", "voltage", "freeing")]).all()
 
@@ -388,15 +390,15 @@ def test_settings_come_from_the_device_its_material_and_the_liquids():
     one = SECTION | {"length_um": 300, "touchdowns": 9, "uncertainty": {"gap_um": 1}}
     devices = {"devices": {"C1": one, "S1": SPRING, "C2": SECTION | {"pair": "a"}}}
     plan = Plan(load(gold | devices | {"liquids": MINE}))
-    of = in_si(OfBeam, job_settings(plan, "devices/life/C1")["beam"])
-    assert (of.density, of.touchdowns, of.uncertainty) == (19300, 9, Errors(gap=1e-6))
+    of = in_si(BeamKeys, job_settings(plan, "devices/life/C1")["beam"])
+    assert (of.density, of.touchdowns, of.uncertainty) == (19300, 9, BeamErrors(gap=1e-6))
     assert_allclose(of.length, 300e-6)
     assert_allclose([one.adhesion for one in of.liquids.values()], [0.072, 0.0217, 0.015], rtol=1e-12)
-    stopper = in_si(OfStopper, job_settings(plan, "devices/life/S1")["stopper"])
+    stopper = in_si(StopperKeys, job_settings(plan, "devices/life/S1")["stopper"])
     assert_allclose([stopper.restoring_force, stopper.mass, stopper.electrode.area], [18.99e-6, 50e-12, 1e-8])
     shares = job_settings(plan, "devices/touchdowns/C1_rh067")["shares"]
     assert_allclose(shares, [freeing.probability_for(1e-3, 9)])
-    assert in_si(OfBeam, job_settings(plan, "devices/life/C2")["beam"]).density == 2330
+    assert in_si(BeamKeys, job_settings(plan, "devices/life/C2")["beam"]).density == 2330
     assert list(Graph(plan).job("devices/life/C1").inputs["after"]) == [0.67]
     assert not Graph(plan).job("devices/life/C2").inputs["after"]
 
@@ -488,6 +490,8 @@ def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
         expected = [k for k, end in enumerate(ends) if (end < build if is_length else end > build)]
         assert red == expected
         assert bool(red) == (factor > 1)
+        said = " ".join(report.judged_without(dataset, build))
+        assert [k for k, one in enumerate(shown) if one.what.partition(":")[0] in said] == red, "said as it is drawn"
 
 
 def _colours(panel, row):
@@ -502,6 +506,11 @@ def test_a_page_says_the_life_and_shows_all_answers(found):
     assert shown.answer == [*report.sentences(found["C1"], 5e-5), "Build it so.", "Because."]
     assert shown.answer[0].startswith("The length to build, 50 µm, ")
     assert "50 µm" not in with_life(page, "C1", found["C1"], replace(built, forbidden=("x",))).answer[0]
+    first = replace(page, summary=Summary("good", "Length to build", "50 µm.", ["Inside: all."], {}, pd.DataFrame()))
+    for build, is_named in ((5e-5, False), (1e-3, True)):
+        summary = with_life(first, "C1", found["C1"], replace(built, build=build)).summary
+        assert summary.basis[1:] == report.judged_without(found["C1"], build)
+        assert any("collapse while water dries, " in sentence for sentence in summary.basis) == is_named
     assert [section.title for section in shown.sections] == ["First", "From the first contact to the last", "Last"]
     assert list(shown.sections[1].cells)[6:] == ["form", "source"]
     style = (html.TEMPLATES / "style.css").read_text(encoding="utf-8")

@@ -35,7 +35,7 @@ def contacts():
 
 
 def test_every_patch_holds_at_least_as_much_as_slowly(contacts):
-    found = separation.of_stopper(contacts, separation.OfStopper(ACROSS, PATCH)).pull_off
+    found = separation.of_stopper(contacts, separation.StopperSettings(ACROSS, PATCH)).pull_off
     for humidity in contacts:
         slow = curves.pull_offs(small.contact_of_pair(), humidity, ACROSS) * PATCH[0] * PATCH[1]
         ratio = found.sel(humidity=humidity).values / slow
@@ -46,13 +46,13 @@ def test_every_patch_holds_at_least_as_much_as_slowly(contacts):
 def fast_strips(contacts, water):
     """Datasets of fast strips by humidity."""
     return {
-        humidity: separation.of_strips(one, separation.InAir(water, humidity)) for humidity, one in contacts.items()
+        humidity: separation.of_strips(one, separation.FastInAir(water, humidity)) for humidity, one in contacts.items()
     }
 
 
 def fast_tips(contact):
     """Dataset of fast tips at RH 0.67."""
-    return separation.of_tips(contact, separation.InAir(WATER, 0.67))
+    return separation.of_tips(contact, separation.FastInAir(WATER, 0.67))
 
 
 @pytest.mark.parametrize("water", [WATER, ACROSS])
@@ -147,7 +147,7 @@ def test_beams_of_all_sizes_share_their_strips_and_those_of_one_slope_their_tips
 
 
 def test_a_dataset_comes_back_from_its_file(contacts, tmp_path):
-    of_stopper = separation.of_stopper(contacts, separation.OfStopper(WATER, PATCH))
+    of_stopper = separation.of_stopper(contacts, separation.StopperSettings(WATER, PATCH))
     of_beam = {"fast_strips": fast_strips(contacts, WATER)[0.44], "fast_tips": fast_tips(wedges())}
     for stage, found in ({"separation": of_stopper} | of_beam).items():
         storage.save(found, tmp_path / "one.nc", stage, {})

@@ -8,7 +8,7 @@ import small
 from numpy.testing import assert_allclose, assert_array_equal
 
 from stiction.config.files import load
-from stiction.contact.correction import Change, Correction
+from stiction.contact.correction import Correction, ElasticChange
 from stiction.contact.environment import Water
 from stiction.devices.risk import samples_for
 from stiction.plan.graph import Graph
@@ -72,7 +72,7 @@ def test_the_fine_axis_has_its_ends_and_a_point_at_every_percent():
 
 
 def test_the_error_of_the_scatter_in_full_contact_moves_rare_forces_and_no_middle_one():
-    correction = Correction(np.array([0.4, 0.99]), Change(1.0), Change(1.0, 1.2, 0.0, 0.24))
+    correction = Correction(np.array([0.4, 0.99]), ElasticChange(1.0), ElasticChange(1.0, 1.2, 0.0, 0.24))
     wide = replace(SETTINGS, water=replace(WATER, correction=correction))
     forces, axis = np.exp(0.5 * np.random.default_rng(1).normal(size=2000)), np.linspace(0.5, 0.9, 21)
     both = [stoppers.layout(one, np.stack([forces] * 2), axis, np.stack([forces] * 21)) for one in (SETTINGS, wide)]
@@ -92,7 +92,7 @@ def test_the_error_of_the_scatter_in_full_contact_moves_rare_forces_and_no_middl
 @pytest.mark.parametrize("error", [0.0, 0.1])
 def test_the_error_of_few_strips_in_full_contact_is_part_of_all_that_is_stated(error):
     """Margins of independent errors add by their squares; the estimates stay."""
-    correction = Correction(np.array([0.4, 0.99]), Change(1.0), Change(1.0, ratio_error=error))
+    correction = Correction(np.array([0.4, 0.99]), ElasticChange(1.0), ElasticChange(1.0, ratio_error=error))
     plain, changed = SETTINGS, replace(SETTINGS, water=replace(WATER, correction=correction))
     forces, axis = np.arange(1, 401) / 100, np.linspace(0.5, 0.9, 21)
     both = [stoppers.layout(one, np.stack([forces] * 2), axis, np.stack([forces] * 21)) for one in (plain, changed)]

@@ -11,7 +11,7 @@ from stiction.config.files import load
 from stiction.contact.environment import Water
 from stiction.plan.plan import Plan
 from stiction.stages.devices import device_warnings, stoppers
-from stiction.stages.life.inputs import OfStopper
+from stiction.stages.life.inputs import StopperKeys
 from stiction.stages.life.stoppers import stopper_answers
 
 AIRS = [(0.67,), (0.0,), (0.0, 0.67), (0.44, 0.9), (0.0, 0.44, 0.9), (0.4, 0.41)]
@@ -22,7 +22,7 @@ _SAID = re.compile(rf"(?:RH|humidit(?:y|ies) of) (0\.\d+)|(?:humidit(?:y|ies)|ai
 
 def dataset(airs, design):
     """Forces of 400 patches that hold most at RH 0.85, in some airs under section design."""
-    ends = stoppers.sought(design, {"humidities": list(airs)})
+    ends = stoppers.search_ends(design, {"humidities": list(airs)})
     settings = stoppers.Settings(1, Water(300.0), (3e-6, 3e-6), airs, tuple(ends), restoring_force=40e-6)
     axis, scatter = stoppers.axis_of(settings), np.linspace(0.9, 1.1, 400)
     forces = [np.outer(1 - (np.array(at) - 0.85) ** 2, scatter) * 20e-6 for at in (airs, axis)]
@@ -33,7 +33,7 @@ def said_of(airs, design):
     """Page of a stopper and its answers on life, as text."""
     found = dataset(airs, design)
     page = stopper_page(STOPPER | {"humidities": list(airs)}, found)
-    answers = stopper_answers(found, OfStopper(restoring_force=40e-6, contact=(3e-6, 3e-6)))
+    answers = stopper_answers(found, StopperKeys(restoring_force=40e-6, contact=(3e-6, 3e-6)))
     return " ".join([*page.answer, *page.lines, page.html, *(answer.what for answer in answers)])
 
 
@@ -51,7 +51,7 @@ def test_no_humidity_beyond_the_stated_ones_is_said(airs, design):
 
 @pytest.mark.parametrize("airs", AIRS)
 def test_the_worst_air_is_one_of_several(airs):
-    answers = stopper_answers(dataset(airs, {}), OfStopper(restoring_force=40e-6, contact=(3e-6, 3e-6)))
+    answers = stopper_answers(dataset(airs, {}), StopperKeys(restoring_force=40e-6, contact=(3e-6, 3e-6)))
     (force,) = [answer.what for answer in answers if answer.name == "force"]
     assert ("the worst air" in force) == (len(airs) > 1)
     assert ("RH" in force) == any(airs)
@@ -67,7 +67,7 @@ def test_the_meniscus_is_wide_in_a_stated_air_alone(side, air):
     """At RH 0.98 the film is 51 nm high, and the warning forbids to rely on forces on 1 µm that nobody has there."""
     device = {"kind": "stopper", "pair": "b", "contact_um": [side, side], "restoring_force_uN": 20, "humidities": [air]}
     of = device_warnings.in_si(
-        device_warnings.OfStopper,
+        device_warnings.StopperOnPair,
         device_warnings._settings(Plan(load({"devices": {"D": device}, "run": {"pairs": []}})), Of("D"))["stopper"],
     )
     film = -2 * 0.072 * 1.8e-5 / (8.314 * 300 * np.log(air))

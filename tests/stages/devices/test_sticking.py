@@ -2,7 +2,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from ground import C1, R1, VECTORS, WATER, flats, met, settings, wanted
+from ground import C1, R1, VECTORS, WATER, flats, ground_dataset, settings, wanted
 from numpy.testing import assert_allclose, assert_array_equal
 from scipy.special import ndtr
 
@@ -16,7 +16,7 @@ from stiction.contact.vanderwaals import DugdaleAttraction
 from stiction.devices import risk
 from stiction.devices.arcs import arc_length, flat_force, flat_length
 from stiction.devices.bridges import least_length
-from stiction.devices.risk import Known
+from stiction.devices.risk import LengthBounds
 from stiction.stages.devices import ground, opening, sticking
 from stiction.stages.devices.opening import EITHER, MIDDLE, S_SHAPE
 from stiction.streams import stream
@@ -102,7 +102,7 @@ def test_no_safe_length_of_a_bridge_is_below_its_bound_and_a_tip_has_none():
     bound = sticking.lengths_without_samples(*flats(wanted(R1)), np.inf)[MIDDLE].safe
     scattered = bound * np.exp(0.3 + 0.1 * np.random.default_rng(3).standard_normal(200))
     asked = replace(wanted(), shares=(1e-2, 1e-4))
-    free, held = (sticking.safe_lengths(scattered, asked, Known(safe=least)) for least in (0.0, bound))
+    free, held = (sticking.safe_lengths(scattered, asked, LengthBounds(safe=least)) for least in (0.0, bound))
     assert free[1].length < bound
     assert [one.length for one in held] == [max(one.length, bound) for one in free]
     assert [one.estimate for one in held] == [one.estimate for one in free]
@@ -128,7 +128,7 @@ def with_rare_strips(vectors):
 
 
 def test_beams_draw_from_the_samples_where_the_chaos_model_lacks_rare_strips():
-    usual, rare = met(), met(vectors=with_rare_strips(VECTORS))
+    usual, rare = ground_dataset(), ground_dataset(vectors=with_rare_strips(VECTORS))
     assert int(usual.resampled) == 0
     assert int(rare.resampled) == rare.sizes["sample"] == len(VECTORS)
     model, samples = (ground.ground_from(one, settings()).strips for one in (usual, rare))
@@ -138,7 +138,7 @@ def test_beams_draw_from_the_samples_where_the_chaos_model_lacks_rare_strips():
 
 
 def test_rare_strips_stop_cracks_that_the_chaos_model_lets_pass():
-    found = ground.ground_from(met(vectors=with_rare_strips(VECTORS)), settings())
+    found = ground.ground_from(ground_dataset(vectors=with_rare_strips(VECTORS)), settings())
     model = replace(found, strips=replace(found.strips, is_narrow=False))
     lengths, without = (sticking.release_beams(C1, of, settings(beams=100)).arrested for of in (found, model))
     assert np.quantile(lengths, 0.1) < 0.9 * np.quantile(without, 0.1)
@@ -146,7 +146,7 @@ def test_rare_strips_stop_cracks_that_the_chaos_model_lets_pass():
 
 @pytest.mark.parametrize(("corner", "repeats"), [(12e6, False), (6e6, False), (2.0e6, True), (1.0e6, True)])
 def test_strips_in_a_row_repeat_laws_where_their_mean_heights_are_correlated(corner, repeats):
-    dataset = met(corner=corner)
+    dataset = ground_dataset(corner=corner)
     assert (float(dataset.repetition) > 0) == repeats
     laws = ground.ground_from(dataset, settings()).strips.in_row(C1)(4000, stream(2))
     fresh = len(np.unique(laws[:, 0])) / 4000
@@ -170,7 +170,7 @@ def correlated(laws, rho):
 @pytest.mark.parametrize("rho", [0.3, 0.45])
 def test_lengths_on_strips_that_repeat_laws_are_at_most_those_on_correlated_strips(rho):
     """Correlation of neighbours up to that of their distances, where heights are correlated over 5.5 strips."""
-    found, asked = ground.ground_from(met(corner=1.0e6), settings()), settings(beams=300)
+    found, asked = ground.ground_from(ground_dataset(corner=1.0e6), settings()), settings(beams=300)
 
     def short(draw):
         """Length of P(stuck) = 0.1."""

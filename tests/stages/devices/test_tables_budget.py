@@ -316,3 +316,8 @@ def test_a_budget_without_other_choices_of_the_model_has_no_empty_panel():
     alone = figures_budget.budget({key: one.isel(choice=[]) for key, one in BEAMS.items()})
     assert len(alone.axes) == len(whole.axes) / 2
     assert all(panel.patches for panel in (*whole.axes, *alone.axes))
+
+
+def test_the_worst_humidity_in_a_figure_is_by_the_mean():
+    legend = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}).axes[1].get_legend()
+    assert [text.get_text() for text in legend.get_texts()][-1] == "worst humidity 0.70, by the mean"

@@ -137,7 +137,7 @@ def test_tips_that_separate_fast_hold_shorter_beams_least_so_the_strongest(humid
         arcs.longest_free(found.slope.values, forces, BEAM)
         for forces in (curves.tip_forces(found, humidity, WATER)[1], curves.fast_tip_forces(found, humidity, WATER))
     )
-    factor, error = separation.factor_of_tips(separation.of_tips(found, separation.InAir(WATER, humidity)), DEVICE)
+    factor, error = separation.factor_of_tips(separation.of_tips(found, separation.FastInAir(WATER, humidity)), DEVICE)
     assert np.all(fast <= slow)
     assert factor + 4 * error < 1
     # The tips that hold the shortest beams gain least.

@@ -28,13 +28,13 @@ from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import curves
 from stiction.stages.contact.changes import quantities
 from stiction.stages.laws import scan_uncertainty, slopes
-from stiction.stages.laws.scan_uncertainty import GOAL, Errors, scans_needed
+from stiction.stages.laws.scan_uncertainty import GOAL, ScanErrors, scans_needed
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import heights as stage_heights
 from stiction.stages.surfaces import measured_heights, measured_spectrum
 from stiction.stages.surfaces import scan as stage_scan
 from stiction.stages.surfaces import spectrum as stage_spectrum
-from stiction.stages.surfaces.spectrum import Use
+from stiction.stages.surfaces.spectrum import SpectrumUse
 from stiction.streams import stream
 
 HUMIDITIES = (0.44, 0.67, 0.88)
@@ -43,7 +43,7 @@ QUANTITIES = [*MOMENT_QUANTITIES, *SPECTRUM_QUANTITIES, *MODES]
 #: Slopes at the humidities, and those of the modes.
 SLOPES = np.array([[-6.0, -5.0, -1.6], [-6.5, -4.0, -1.0], [-1.5, -1.0, -0.3], [-0.5, -0.3, -0.1], [0.4, 0.2, 0.1]])
 SLOPES = np.vstack([SLOPES, np.outer([1.5, -14, -16, -10, 1.4, 12, 9], [1, 0.5, 0.1])])
-ERRORS = Errors(
+ERRORS = ScanErrors(
     names=MOMENT_QUANTITIES,
     heights=np.array([[2.6e-4, -2.4e-4, 3e-4], [-2.4e-4, 1.9e-3, -5.3e-3], [3e-4, -5.3e-3, 2.0e-2]]),
     modes=np.diag(np.linspace(0.019, 0.009, 7) ** 2),
@@ -219,7 +219,7 @@ def test_one_scan_of_b2_leaves_the_known_errors():
     surface = SURFACES["B2"]
     model = SurfaceModel(surface.density, surface.spectrum, 1e-6, surface.rms, Frame((500, 500), (1e-5, 1e-5)))
     modes = mode_covariance(model.translation, model.overlaps, ORDERS)[1:, 1:]
-    errors = Errors(MOMENT_QUANTITIES, model.covariance, modes, np.diag([0.0145**2, 0.0035**2]), 1)
+    errors = ScanErrors(MOMENT_QUANTITIES, model.covariance, modes, np.diag([0.0145**2, 0.0035**2]), 1)
     choices = {"heights": small.contact_of_pair()}
     found = scan_uncertainty.compute({"B2": slopes_of_b2()}, {"B2": errors}, small.contact_of_pair(), choices, WANTED)
     *_, by_spectrum, total = found.error.sel(surface="B2").values
@@ -248,7 +248,7 @@ def energies_of(beam, settings):
 def test_energies_from_single_scans_are_those_of_the_surface_within_the_known_error():
     settings = small.settings_of(stage_contact, wide("contact/b_NG", 100))
     true, spectrum = small.surfaces()[0][0], SURFACES["B2"].spectrum
-    use = measured_spectrum.Settings("fitted", "cut", 10e-9, Use("Etched", 1.5e-6, 1e-6))
+    use = measured_spectrum.Settings("fitted", "cut", 10e-9, SpectrumUse("Etched", 1.5e-6, 1e-6))
     ratios, by_spectrum = [], []
     for found in estimates():
         end = stage_estimate.reach(found).end

@@ -24,13 +24,13 @@ from stiction.stages.surfaces import heights as stage_heights
 from stiction.stages.surfaces import measured_heights as heights
 from stiction.stages.surfaces import measured_spectrum as spectrum
 from stiction.stages.surfaces import spectrum as stage_spectrum
-from stiction.stages.surfaces.spectrum import Use
+from stiction.stages.surfaces.spectrum import SpectrumUse
 from stiction.streams import stream
 from stiction.surface.spectrum import CutoffSelfAffine, TabulatedSpectrum
 
 B2 = SURFACES["B2"]
 SETTINGS = estimate.Settings(3, evaluation.Settings(), 8)
-USE = Use("Etched", 1.5e-6, 1e-6)
+USE = SpectrumUse("Etched", 1.5e-6, 1e-6)
 
 
 def dataset_of(drawn, notes=()):

@@ -43,7 +43,7 @@ def test_the_radius_is_unknown_only_if_no_strip_has_a_summit():
 
 def test_narrow_strips_without_a_summit_are_drawn_without_a_warning():
     settings = small.settings_of(character, job_settings(small.PLAN, "character/B2_NG"))
-    narrow = replace(settings, beam=replace(settings.beam, width=0.3e-6), character=character.Strips(8, 100e-9))
+    narrow = replace(settings, beam=replace(settings.beam, width=0.3e-6), character=character.StripSample(8, 100e-9))
     found = character.compute(small.heights_of("B2"), small.spectrum_of("B2"), "B2", "NG", narrow)
     assert_array_equal(np.isnan(found.mean_curvature), found.summit_density == 0)
     assert 0 < np.isnan(found.mean_curvature).sum() < 8

@@ -7,7 +7,7 @@ from test_inference_stage import ARRAY, BEAMS, DEVICE, SCATTER, safe_lengths
 
 from stiction.beam.energy import arrest_length
 from stiction.contact.environment import Water
-from stiction.devices.inference import Discrepancy
+from stiction.devices.inference import DiscrepancyOfModel
 from stiction.stages.contact import curves
 from stiction.stages.devices.opening import ARC, S_SHAPE
 from stiction.stages.test_beams import inference
@@ -46,7 +46,7 @@ def inferred(humidities, film):
     of_device = {("C1", humidity): budget(DEVICE, humidity) for humidity in HUMIDITIES}
     of_device |= {("C1", humidity, "tip"): budget(DEVICE, humidity, ARC) for humidity in HUMIDITIES}
     of_array = {("arrayA", humidity): budget(ARRAY, humidity) for humidity in humidities}
-    exact = Discrepancy(1e-3, 1e-3, 1e-3)
+    exact = DiscrepancyOfModel(1e-3, 1e-3, 1e-3)
     settings = Settings(0, exact, {"arrayA": ARRAY}, {"arrayA": lengths}, {}, DEVICE)
     contacts = {("arrayA", is_humid): is_humid for is_humid in (False, True)}
     found = inference.compute(of_device, of_array, safe_lengths(), contacts, contacts, settings)

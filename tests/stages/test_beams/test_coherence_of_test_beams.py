@@ -5,7 +5,7 @@ import pytest
 
 from stiction.config.files import load
 from stiction.contact.materials import COHERENCE
-from stiction.devices.inference import Knowledge, Lengths, given_lengths
+from stiction.devices.inference import CrackData, KnownInputs, given_lengths
 from stiction.plan.graph import Graph, Results
 from stiction.plan.plan import Plan
 from stiction.streams import stream
@@ -41,12 +41,12 @@ def test_the_knowledge_after_lengths_contains_the_coherence_at_its_rate():
     rng = stream(7, "coherence of test beams")
     truth = deviation * rng.standard_normal(DRAWS)
     measured = np.interp(truth, errors, lengths) + SCATTER * rng.standard_normal(DRAWS)
-    prior = Knowledge((COHERENCE.words,), np.zeros(1), stated.covariance.values)
+    prior = KnownInputs((COHERENCE.words,), np.zeros(1), stated.covariance.values)
 
     def inside(lengths):
         """Share of truths within two standard uncertainties, and an uncertainty."""
         differences = lengths - np.log(float(stated.centre))
-        data = (Lengths(stated.slope.values[None], np.array([by]), np.array([SCATTER])) for by in differences)
+        data = (CrackData(stated.slope.values[None], np.array([by]), np.array([SCATTER])) for by in differences)
         found = [given_lengths(prior, one) for one in data]
         away = [abs(one.mean[0] - by) / one.deviations[0] for one, by in zip(found, truth, strict=True)]
         return np.mean(np.less(away, 2)), found[0].deviations[0]

@@ -16,7 +16,7 @@ from stiction.contact import forcelaw
 from stiction.contact.air import KINDS_OF_AIR
 from stiction.contact.environment import Gaps, Water
 from stiction.devices import arcs
-from stiction.devices.inference import FACTOR, SCORES, SLOPE, Discrepancy, expected_share, lognormal
+from stiction.devices.inference import FACTOR, SCORES, SLOPE, DiscrepancyOfModel, expected_share, lognormal
 from stiction.report import style
 from stiction.report.devices import warnings_page
 from stiction.report.limits import pages
@@ -29,7 +29,7 @@ from stiction.stages.contact import curves
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.opening import ARC, EITHER, FORCE, MIDDLE, S_SHAPE, DesignedBeam
 from stiction.stages.test_beams import inference
-from stiction.stages.test_beams.inference import CrackLengths, Settings, Stuck
+from stiction.stages.test_beams.inference import CrackLengths, Settings, StuckCounts
 from stiction.stages.test_beams.rerun import with_reruns
 
 UM = 1e-6
@@ -41,7 +41,7 @@ ENERGY = {0.44: 1.5e-3, 0.67: 7e-3, 0.92: 75e-3}
 DEVIATIONS = {"rms of B2": 0.05, "Young's modulus": 0.03, "thickness": 0.02, "gap": 0.015}
 #: d ln energy / d ln rms.
 POWER = {0.44: -5.6, 0.67: -4.0, 0.92: -1.2}
-STATED = Discrepancy(0.1, 0.3, 0.05)
+STATED = DiscrepancyOfModel(0.1, 0.3, 0.05)
 SCATTER, BEAMS = 0.05, 12
 
 
@@ -153,7 +153,7 @@ def test_tips_follow_the_inputs_and_are_uncertain_as_their_budget_says_and_by_wh
 
 def test_tips_adhere_as_much_more_as_cracks_show_that_no_input_explains():
     exact, adhesion = dict.fromkeys(DEVIATIONS, 0.0), 2.4
-    model = Discrepancy(10.0, 1e-6, 1e-6)
+    model = DiscrepancyOfModel(10.0, 1e-6, 1e-6)
     with pytest.MonkeyPatch.context() as patch:
         for name, value in exact.items():
             patch.setitem(DEVIATIONS, name, value)
@@ -247,7 +247,7 @@ def test_the_true_lengths_of_the_device_are_inside_the_stated_intervals():
 
 @pytest.mark.usefixtures("mean_lengths_alone")
 def test_without_a_discrepancy_of_the_model_they_are_not():
-    found = np.abs(scores(Discrepancy(0.0, 0.0, 0.0), repeats=30))
+    found = np.abs(scores(DiscrepancyOfModel(0.0, 0.0, 0.0), repeats=30))
     assert np.mean(found < 1) < 0.4
     assert np.mean(found < 1.96) < 0.7
 
@@ -350,7 +350,7 @@ def of_other(response, predicted, device, slopes):
     # Longer cracks where the rms matters most: rougher than stated.
     means = [length(ARRAY, rh, rms=0.08) for rh in HUMIDITIES]
     lengths = CrackLengths(1500 * UM, HUMIDITIES, tuple(means), tuple(SCATTER * np.array(means)), (2000,) * 3)
-    settings = Settings(0, Discrepancy(0.0, 0.0, 1e-3), {"arrayA": ARRAY}, {"arrayA": lengths}, {}, device)
+    settings = Settings(0, DiscrepancyOfModel(0.0, 0.0, 1e-3), {"arrayA": ARRAY}, {"arrayA": lengths}, {}, device)
     beams = {("arrayA", rh): budget(ARRAY, rh) for rh in HUMIDITIES}
     found = inference.compute({("R1", 0.67): own}, beams, predicted, {}, {}, settings)
     return with_reruns(found)
@@ -467,7 +467,7 @@ def shapes(monkeypatch):
 
 
 def counts(lengths, stuck, of, humidities=HUMIDITIES):
-    return Stuck(
+    return StuckCounts(
         Water(300.0, gaps=Gaps({}, "water")), tuple(humidities), tuple(lengths), tuple(stuck), (of,) * len(stuck)
     )
 

@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.testing import assert_allclose
 
 from stiction.beam.energy import arrest_length
-from stiction.devices.inference import FACTOR, SLOPE, Discrepancy
+from stiction.devices.inference import FACTOR, SLOPE, DiscrepancyOfModel
 from stiction.report.test_beams import figures as figures_test_beams
 from stiction.report.test_beams import tables as tables_test_beams
 from stiction.stages.devices.opening import FORCE, S_SHAPE, DesignedBeam
@@ -80,7 +80,7 @@ def computed(data, **probe):
     budgets, stopper = of_probe(**probe)
     length = float(arrest_length(ENERGY[0.67], BEAM.beam))
     of_beam = {("C1", 0.67): budget(length, [-POWER[0.67] / 4, -0.5], S_SHAPE, "m")}
-    settings = Settings(0, Discrepancy(0.1, 0.3, 0.05), {}, {}, {}, BEAM, {"Day": data})
+    settings = Settings(0, DiscrepancyOfModel(0.1, 0.3, 0.05), {}, {}, {}, BEAM, {"Day": data})
     axis = np.linspace(200, 900, 351) * UM
     safe = xr.DataArray([[600 * UM]], coords={"shape": [S_SHAPE], "share": [0.001]})
     stuck = xr.DataArray([np.linspace(0, 1, 351)], coords={"shape": [S_SHAPE], "length": axis})
@@ -218,7 +218,7 @@ def test_a_stopper_takes_forces_of_a_probe_without_any_beam_and_no_further_ones_
     predicted = xr.Dataset({"safe_force": safe, "pull_off": places, "restoring_force": 33e-6})
     own = {("S1", 0.67): budget(30e-6, [POWER[0.67], 2.0], FORCE, "N")}
     data = measured({0.45: 1.5 * forces_of(100)})
-    settings = Settings(0, Discrepancy(0.1, 0.3, 0.05), {}, {}, {}, None, {"Day": data})
+    settings = Settings(0, DiscrepancyOfModel(0.1, 0.3, 0.05), {}, {}, {}, None, {"Day": data})
     found = with_reruns(inference.compute(own, budgets, predicted, {}, {}, settings, forces={"Day": stopper}))
     assert float(found.result_shift[0]) > 0
     assert float(found.updated_safe.isel(share=0).squeeze()) > 37e-6

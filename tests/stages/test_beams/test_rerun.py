@@ -15,7 +15,7 @@ from stiction.report.test_beams import tables as tables_test_beams
 from stiction.stages.devices import budget as stage_budget
 from stiction.stages.devices.budget import Responses
 from stiction.stages.devices.opening import S_SHAPE, DesignedBeam
-from stiction.stages.devices.uncertain_inputs import OF_AIR, OF_BEAMS, State, Uncertainty, changed, number_blocks
+from stiction.stages.devices.uncertain_inputs import OF_AIR, OF_BEAMS, InputState, Uncertainty, changed, number_blocks
 from stiction.stages.test_beams import rerun
 from stiction.stages.test_beams.inference import Result
 
@@ -34,7 +34,7 @@ class Analytic:
     exponent: callable
 
     def state(self, contact):
-        return State(contact, 0.6, None, BEAM)
+        return InputState(contact, 0.6, None, BEAM)
 
     def responder(self, _state):
         def lengths(state):
@@ -91,7 +91,7 @@ def test_a_difference_within_its_errors_is_no_warning_and_is_stated():
 
 
 def test_dimensions_air_and_modulus_err_by_what_the_names_of_the_inputs_say():
-    found = changed(State(None, 0.6, None, BEAM), {**ERRORS, "Young's modulus": -0.1})
+    found = changed(InputState(None, 0.6, None, BEAM), {**ERRORS, "Young's modulus": -0.1})
     assert_allclose(found.device.thickness / BEAM.thickness, np.exp(0.1))
     assert_allclose(found.device.gap / BEAM.gap, np.exp(-0.05))
     assert_allclose(found.device.young_modulus / BEAM.young_modulus, np.exp(-0.1))

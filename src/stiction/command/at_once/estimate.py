@@ -1,19 +1,19 @@
-"""Command ``stiction estimate``: the length to build at once, without the libraries for numbers."""
+"""Command ``stiction estimate``: the length or force to build at once, without the libraries for numbers."""
 
 import argparse
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from typing import Any
 
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
-from stiction.estimate.answer import CHOSEN, FRACTIONS, Answer, answer
+from stiction.estimate.answer import CHOSEN, FRACTIONS, Estimate, answer
+from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
-from stiction.estimate.question import of_numbers, questions, surface
+from stiction.estimate.question import Question, of_area, of_numbers, questions, surface
 from stiction.estimate.table import content, known
 
-#: Options of a cantilever on a described surface: key in a file, metavar, help, default.
+#: Options of a device on a described surface: key in a file, metavar, help, default.
 OPTIONS = {
     "rms": ("rms_nm", "NM", "rms of the heights of the underside", None),
     "like": ("like", "SURFACE", "typical surface for what is not known: B1, B2, Sub1 or Sub2", None),
@@ -27,20 +27,23 @@ OPTIONS = {
     "width": ("width_um", "UM", "width of the beam (default: 30)", 30.0),
     "length": ("length_um", "UM", "length of the beam, for the probability that it sticks", None),
     "voltage": ("voltage_V", "V", "voltage in contact; needs --dielectric", None),
+    "force": ("restoring_force_uN", "UN", "restoring force of a stopper, for the probability that it sticks", None),
 }
 _OF_SURFACE = ("rms", "like", "hurst", "corner", "cutoff", "skewness", "kurtosis")
 #: Opposite surface without a file.
 OPPOSITE = "Sub1"
 #: What the command does.
-PURPOSE = "Estimate the length to build at once, from runs on drawn surfaces. A run computes it exactly."
+PURPOSE = "Estimate the length or force to build at once, from runs on drawn surfaces. A run computes it exactly."
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of the command."""
-    parser.add_argument("files", nargs="*", metavar="FILE", help="file with devices; or state a cantilever by options")
+    parser.add_argument("files", nargs="*", metavar="FILE", help="file with devices; or state one by options")
     for name, (_, unit, words, default) in OPTIONS.items():
         kind = str if name == "like" else float
         parser.add_argument(f"--{name}", type=kind, metavar=unit, help=words, default=default)
+    words = "sides of the area of a stopper, in place of a cantilever"
+    parser.add_argument("--contact", type=float, nargs=2, metavar="UM", help=words)
     words = "thickness and relative permittivity of the dielectric"
     parser.add_argument("--dielectric", type=float, nargs=2, metavar=("NM", "PERMITTIVITY"), help=words)
     parser.add_argument("--rh", type=float, nargs="+", metavar="RH", help="relative humidities, such as 0.45")
@@ -62,11 +65,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def in_short(files: Sequence[str]) -> Iterator[str]:
-    """Lines with the length to build of each device of some valid files that the estimate knows."""
+    """Lines with the length or force to build of each device of some valid files that the estimate knows."""
     for name, question in _of_files(files).items():
         with suppress(NotLearnt):
-            length = answer(question, *known()).chosen.length
-            said = f"1 in {1 / CHOSEN:.0f} of {name} sticks at about {_um(length)} µm"
+            size, (_, symbol) = answer(question, *known()).chosen.size, _WORDS[question.unit]
+            said = f"1 in {1 / CHOSEN:.0f} of {name} sticks at about {_number(size, question)} {symbol}"
             yield f"Estimate: {said}; stiction estimate {' '.join(files)} says more."
 
 
@@ -86,9 +89,9 @@ def _questions(arguments):
     if arguments.files:
         return _of_files(arguments.files)
     try:
-        return {"The cantilever": _of_options(arguments, content()["library"])}
+        return {_NAME: _of_options(arguments, content()["library"])}
     except NotLearnt as reason:
-        return {"The cantilever": reason}
+        return {_NAME: reason}
 
 
 def _of_files(files):
@@ -100,7 +103,11 @@ def _of_files(files):
 
 def _of_options(arguments, library):
     """Question by the options alone."""
-    needed = ("rms", "rh", "thickness", "gap") + ("dielectric",) * (arguments.voltage is not None)
+    of_kind, of_other, other = _OF_STOPPER if arguments.contact else _OF_BEAM
+    needed = ("rms", "rh", *of_kind) + ("dielectric",) * (arguments.voltage is not None)
+    for name in of_other:
+        if getattr(arguments, name) is not None:
+            raise NotLearnt(f"--{name} is for {other} alone")
     for name in needed:
         if getattr(arguments, name) is None:
             raise NotLearnt(f"--{name} is missing")
@@ -110,30 +117,48 @@ def _of_options(arguments, library):
     averaged = "like" not in entry
     if arguments.dielectric:
         device["dielectric"] = dict(zip(("thickness_nm", "permittivity"), arguments.dielectric, strict=True))
-    side = surface({"like": "B2"} | entry, library)
-    return of_numbers("The cantilever", device, [side, surface(library[OPPOSITE], library)], averaged=averaged)
+    sides = [surface({"like": "B2"} | entry, library), surface(library[OPPOSITE], library)]
+    if arguments.contact:
+        return of_area(_NAME, device | {"contact_um": arguments.contact}, sides, averaged=averaged)
+    return of_numbers(_NAME, device, sides, averaged=averaged)
 
 
-def shown(found: Answer) -> Iterator[str]:
+#: Options that a device needs, those of other devices, and these.
+_OF_BEAM = ("thickness", "gap"), ("force",), "stoppers"
+_OF_STOPPER = ("contact",), ("thickness", "gap", "length", "voltage", "dielectric"), "cantilevers"
+#: Name of a device without a file.
+_NAME = "The device"
+#: What a size is by its unit, and the symbol of this.
+_WORDS = {"um": ("length", "µm"), "uN": ("force", "µN")}
+
+
+def shown(found: Estimate) -> Iterator[str]:
     """Lines of an answer."""
-    asked = found.question
+    asked, (name, symbol) = found.question, _WORDS[found.question.unit]
     left_open = ", typical surfaces stand for what is not stated" * any(asked.members)
     yield f"{asked.name}: estimate at RH {found.humidity:g}, the worst air; stated inputs count as exact{left_open}"
-    yield "  stuck            length [µm]    90 %            95 %"
+    yield f"  stuck            {f'{name} [{symbol}]':<15}90 %            95 %"
     for row in found.rows:
-        ends = "    ".join(f"{_um(low):>5} to {_um(high):<5}" for low, high in row.intervals.values())
-        yield f"  1 in {1 / row.fraction:<10.0f}  {_um(row.length):>8}     {ends}"
+        both = ([_number(end, asked) for end in ends] for ends in row.intervals.values())
+        ends = "    ".join(f"{low:>5} to {high:<5}" for low, high in both)
+        yield f"  1 in {1 / row.fraction:<10.0f}  {_number(row.size, asked):>8}     {ends}"
     if found.stuck is not None:
-        value, low, high = map(_percent, found.stuck)
-        yield f"  At {_um(asked.length)} µm, {value} % stick (95 %: {low} to {high} %)."
-    yield "  The estimate is no length to build: a run adds what it leaves out."
+        value, low, high = (_percent(part, asked.most) for part in found.stuck)
+        yield f"  At {_number(asked.size, asked)} {symbol}, {value} % stick (95 %: {low} to {high} %)."
+    yield f"  The estimate is no {name} to build: a run adds what it leaves out."
 
 
-def _percent(part):
-    """Fraction in percent, not below the smallest one with a length."""
-    return f"{100 * part:.2g}" if part >= FRACTIONS[-1] else f"less than {100 * FRACTIONS[-1]:.4f}"
+#: Largest fraction that is shown.
+_NEARLY_ALL = 0.99
 
 
-def _um(length: Any) -> str:
-    """Length in µm, with three digits."""
-    return f"{from_si(length, 'um'):.3g}"
+def _percent(part, most):
+    """Fraction in percent, between the smallest one with a length and the largest that is known."""
+    if part < FRACTIONS[-1]:
+        return f"less than {100 * FRACTIONS[-1]:.4f}"
+    return f"{'at least ' * (part >= most)}{float(f'{100 * min(part, _NEARLY_ALL):.2g}'):g}"
+
+
+def _number(size: float, question: Question | Stopper) -> str:
+    """Size in the unit of a question, with three digits."""
+    return f"{from_si(size, question.unit):.3g}"

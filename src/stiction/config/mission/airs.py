@@ -9,110 +9,94 @@ condition, in the worst one. That is the safe side.
 """
 
 import math
+from functools import partial
 from typing import Any
 
 from stiction.config import test_beams
 from stiction.config.cases import in_numbers
 from stiction.config.keys import Keys, Relations
-from stiction.config.meetings import TEMPERATURE, device_meeting
-from stiction.config.messages import ConfigError, Problem, is_number, one_line
+from stiction.config.meetings import ANY, TEMPERATURE, device_meeting
+from stiction.config.merging import section_at
+from stiction.config.messages import ConfigError, Problem, one_line
 from stiction.config.mission.conditions import CONDITIONS, DECIMALS, airs, humidity_of, kelvin
 from stiction.config.mission.stays import with_bounds
-from stiction.contact.air import DRY_AIR, humid, is_humid, is_possible
+from stiction.contact.air import humid, is_humid
 from stiction.contact.meniscus import ZERO_CELSIUS
 
 #: Keys of the air of a condition, of which it has one.
 _AIR = "humidity", "dew_point_C"
-#: Keys of a condition that become keys of the device, with the ends that the schema allows.
-OF_DEVICE = {"touchdowns": (1, 1_000_000_000), "voltage_V": (-100_000, 100_000), "shock_g": (0, 10_000_000)}
-#: Temperatures of conditions that the schema allows [°C].
-COLDEST, HOTTEST = -40, 99
+#: Keys of a condition that become keys of the device.
+OF_DEVICE = "touchdowns", "voltage_V", "shock_g"
 #: Relations between the keys of a condition, and between the conditions of devices.
-relation_of_names, relation = Relations(), Relations()
+relation_of_conditions, relation = Relations(), Relations()
 
 
-def expanded(config: Any) -> Any:
-    """Configuration, valid or not, in which devices have the humidities of their conditions.
+def with_keys_of_airs(config: Any) -> Any:
+    """Configuration, valid or not, with each dew point of a condition in a key of its own, not in its humidity."""
+    return _with_devices(config, _with_dew_points)
+
+
+def with_any_air(config: Any) -> Any:
+    """Configuration, valid or not, with some humidity of each device that has conditions. A schema wants one."""
+    return _with_devices(config, lambda device, _name: {"humidities": [ANY]} | device)
+
+
+def expanded(config: dict[str, Any]) -> dict[str, Any]:
+    """Configuration in which devices have the humidities of their conditions, each of which states its air.
 
     Raises
     ------
     ConfigError
         If water condenses in all conditions of a device.
     """
-    devices = config.get("devices") if isinstance(config, dict) else None
-    if not isinstance(devices, dict):
-        return config
-    return config | {"devices": {name: _with_airs(device, ("devices", name)) for name, device in devices.items()}}
+    return _with_devices(config, _with_airs)
 
 
-def _with_airs(device, path):
-    """Section of a device with all that its conditions give it. The schema refuses wrong ones.
+def _with_devices(config, change):
+    """Configuration, valid or not, with devices with conditions changed by a function of their section and name."""
+    devices = section_at(config, "devices")
+    changed = {name: change(device, name) for name, device in devices.items() if CONDITIONS in section_at(device)}
+    return config | {"devices": devices | changed} if changed else config
 
-    A device with wrong conditions has some humidity, so that nothing but these is refused.
-    """
-    if not isinstance(device, dict) or CONDITIONS not in device:
-        return device
-    conditions, stated = in_numbers(device[CONDITIONS]), device.get("humidities", [])
-    conditions = list(map(_with_dew_point, conditions)) if isinstance(conditions, list) else conditions
-    is_list = conditions and isinstance(conditions, list) and isinstance(stated, list)
-    if not (is_list and all(map(_is_condition, conditions))):
-        return {"humidities": [DRY_AIR.humidity]} | device
-    found = dict.fromkeys(map(humidity_of, conditions))
-    if not stated and {*found} == {None}:
-        words = f"is {one_line(conditions)}, must have a condition above its dew point: in all of these water condenses"
-        raise ConfigError(str(Problem((*path, CONDITIONS), words)))
-    added = [air for air in found if air is not None and air not in stated]
-    kept = [{key: value for key, value in each.items() if key not in OF_DEVICE} for each in conditions]
-    own = _touchdowns(device, conditions) | _voltage(device, conditions) | _shock(device, conditions)
-    return device | own | {"humidities": [*stated, *added], CONDITIONS: kept}
+
+def _with_dew_points(device, _name):
+    """Section of a device with conditions, valid or not, with their dew points in keys of their own."""
+    stated = device[CONDITIONS]
+    return device | {CONDITIONS: list(map(_with_dew_point, stated)) if isinstance(stated, list) else stated}
 
 
 def _with_dew_point(condition):
     """Condition with its dew point in a key of its own, if it has one in place of the humidity."""
-    air = condition.get("humidity") if isinstance(condition, dict) else None
-    if not isinstance(air, dict) or {*air} != {"dew_point_C"}:
+    if {*(air := section_at(condition, "humidity"))} != {"dew_point_C"}:
         return condition
     return {key: value for key, value in condition.items() if key != "humidity"} | air
 
 
-def _is_condition(condition):
-    """Whether a condition has numbers for all that its device gets."""
-    if not isinstance(condition, dict):
-        return False
-    stated = [condition[key] for key in _AIR if key in condition]
-    others = [key for key in OF_DEVICE if key in condition]
-    if {"share", "touchdowns"} <= {*condition}:
-        return False
-    is_air = len(stated) == 1 and is_possible(condition.get("humidity", 0))
-    is_whole = is_air and all(map(is_number, [condition.get("temperature_C"), *stated]))
-    is_whole = is_whole and all(_is_allowed(key, condition[key]) for key in others)
-    return is_whole and COLDEST <= condition["temperature_C"] <= HOTTEST
+def _with_airs(device, name):
+    """Section of a device with all that its conditions give it."""
+    conditions, stated = in_numbers(device[CONDITIONS]), device.get("humidities", [])
+    found = dict.fromkeys(map(humidity_of, conditions))
+    if not stated and {*found} == {None}:
+        words = f"is {one_line(conditions)}, must have a condition above its dew point: in all of these water condenses"
+        raise ConfigError(str(Problem(("devices", name, CONDITIONS), words)))
+    added = [air for air in found if air is not None and air not in stated]
+    kept = [{key: value for key, value in each.items() if key not in OF_DEVICE} for each in conditions]
+    return device | _of_device(device, conditions) | {"humidities": [*stated, *added], CONDITIONS: kept}
 
 
-def _is_allowed(key, value):
-    """Whether the schema allows the value of a key that becomes one of the device."""
-    low, high = OF_DEVICE[key]
-    return is_number(value) and low <= value <= high and (key != "touchdowns" or value == int(value))
+def _of_device(device, conditions):
+    """Keys of a device by what its conditions and itself state.
 
-
-def _touchdowns(device, conditions):
-    """Touchdowns of a device in all conditions together, and those that it has beside them."""
-    counts = [section["touchdowns"] for section in (device, *conditions) if "touchdowns" in section]
-    return {"touchdowns": sum(counts)} if counts and all(map(is_number, counts)) else {}
-
-
-def _voltage(device, conditions):
-    """Voltage of the condition, or of the device, with the largest potential."""
+    These are the touchdowns of all together, the voltage with the largest potential, and the largest shock.
+    """
+    stated = {key: [one[key] for one in (device, *conditions) if key in one] for key in OF_DEVICE}
     offset = device.get("offset_V", 0)
-    volts = [section["voltage_V"] for section in (device, *conditions) if "voltage_V" in section]
-    is_known = volts and all(map(is_number, [offset, *volts]))
-    return {"voltage_V": max(volts, key=lambda volt: (abs(volt + offset), volt))} if is_known else {}
-
-
-def _shock(device, conditions):
-    """Largest shock of a device in all conditions, and beside them."""
-    peaks = [section["shock_g"] for section in (device, *conditions) if "shock_g" in section]
-    return {"shock_g": max(peaks)} if peaks and all(map(is_number, peaks)) else {}
+    of_all = {
+        "touchdowns": sum,
+        "voltage_V": partial(max, key=lambda volt: (abs(volt + offset), volt)),
+        "shock_g": max,
+    }
+    return {key: of_all[key](values) for key, values in stated.items() if values}
 
 
 def bracketed(config: dict[str, Any]) -> dict[str, Any]:
@@ -162,7 +146,7 @@ def _same(temperature, humidity):
     return {"temperature_C": round(temperature - ZERO_CELSIUS, 6), "humidity": humidity}
 
 
-@relation_of_names
+@relation_of_conditions
 def conditions_state_their_air_once(config):
     """Require either the humidity or the dew point of a condition."""
     for name, conditions in config.entries("devices", CONDITIONS):
@@ -171,7 +155,7 @@ def conditions_state_their_air_once(config):
                 yield f"devices.{name}.{CONDITIONS}.{number}", f"must have either {' or '.join(_AIR)}"
 
 
-@relation_of_names
+@relation_of_conditions
 def shares_are_of_all_touchdowns(config):
     """Require shares of either all conditions or none, that add up to one, in place of their touchdowns."""
     for name, conditions in config.entries("devices", CONDITIONS):

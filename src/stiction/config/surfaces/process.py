@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
+from stiction.config.merging import section_at, texts
 from stiction.config.messages import ConfigError, Problem, dotted
 from stiction.config.surfaces.knowledge import slope
 from stiction.surface import self_affine
@@ -74,8 +75,8 @@ def all_names(config: Mapping[str, Any]) -> list[str]:
 
 def has_scans(config: Mapping[str, Any]) -> bool:
     """Whether a configuration, valid or not, describes a setting by scans."""
-    sections = _section(config.get("process")).values()
-    return any("scans" in _section(setting) for section in sections for setting in _settings(section))
+    processes = section_at(config, "process")
+    return any("scans" in section_at(setting) for name in processes for setting in _settings(config, name))
 
 
 def processes_of(config: Mapping[str, Any], device: str) -> list[str]:
@@ -147,35 +148,24 @@ def in_settings(problems: Iterable[Problem], config: Mapping[str, Any]) -> Itera
 def resolve_scan_paths(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
     """Configuration, valid or not, with paths of scans of settings relative to the folder of the file naming them."""
     moved = {}
-    for process, section in _section(named.get("process")).items():
-        settings = _section(section).get("settings")
-        if (
-            isinstance(settings, list)
-            and _section(_section(config.get("process")).get(process)).get("settings") == settings
-        ):
-            moved[process] = config["process"][process] | {
-                "settings": [_in_folder(setting, folder) for setting in settings]
-            }
+    for process in section_at(named, "process"):
+        settings = _settings(named, process)
+        if settings and _settings(config, process) == settings:
+            in_folder = [_in_folder(setting, folder) for setting in settings]
+            moved[process] = config["process"][process] | {"settings": in_folder}
     return config | {"process": config["process"] | moved} if moved else config
 
 
 def _in_folder(setting, folder):
     """Setting with its relative files in a folder."""
-    scans = _section(setting).get("scans")
-    if not (isinstance(scans, list) and all(isinstance(file, str) for file in scans)):
-        return setting
-    return setting | {"scans": [str(Path(folder).absolute() / file) for file in scans]}
+    files = [str(Path(folder).absolute() / file) for file in texts(section_at(setting).get("scans"))]
+    return setting | {"scans": files} if files else setting
 
 
-def _settings(section):
-    """Settings of a process, valid or not, none if they are no list."""
-    settings = _section(section).get("settings")
+def _settings(config, process):
+    """Settings of a process of a configuration, valid or not. None if they are no list."""
+    settings = section_at(config, "process", process).get("settings")
     return settings if isinstance(settings, list) else []
-
-
-def _section(value):
-    """Section of a configuration, valid or not, empty if it is none."""
-    return value if isinstance(value, Mapping) else {}
 
 
 def _surface(base, setting):

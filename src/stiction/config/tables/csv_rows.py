@@ -11,14 +11,14 @@ class WrongFileError(ValueError):
     """Fault of a file, as the end of a sentence."""
 
 
-class Row(NamedTuple):
+class CsvRow(NamedTuple):
     """One row."""
 
     number: int  #: line of the file
     cells: dict[str, str]  #: by column
 
 
-def rows(content: str, columns: Sequence[str], needed: Sequence[str], what: str) -> Iterator[Row]:
+def rows(content: str, columns: Sequence[str], needed: Sequence[str], what: str) -> Iterator[CsvRow]:
     """Yield the rows of a file below the names of its columns. Lines beginning with # are comments.
 
     Parameters
@@ -47,7 +47,7 @@ def rows(content: str, columns: Sequence[str], needed: Sequence[str], what: str)
         if len(cells) != len(names):
             found = f"commas separate {len(cells)} values, must be {len(names)}"
             raise WrongFileError(f"row {number}: {found}, with points in decimal numbers")
-        yield Row(number, dict(zip(names, cells, strict=True)))
+        yield CsvRow(number, dict(zip(names, cells, strict=True)))
 
 
 def _cells(number, line):

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from stiction.config.merging import merged
+from stiction.config.merging import merged, section_at
 from stiction.config.messages import ConfigError, dotted, one_line
 from stiction.config.reading import text
 from stiction.config.tables.csv_rows import WrongFileError, rows
@@ -24,7 +24,7 @@ _KEY = re.compile(r"(?:\.[\w-]+|\[[0-9]+\])*")
 _WHOLE, _REAL = re.compile(r"[-+]?[0-9]{1,18}"), re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?")
 
 
-class Rows(NamedTuple):
+class DeviceRows(NamedTuple):
     """Stands in for the file of devices once it has been read."""
 
     file: str  #: its name
@@ -44,7 +44,7 @@ def in_folder(config: dict[str, Any], named: Mapping[str, Any], folder: str | Pa
 def with_rows(config: dict[str, Any]) -> dict[str, Any]:
     """Configuration, valid or not, with a device for each row of its file.
 
-    `Rows` take the place of the name of the file until `without_file` removes them.
+    `DeviceRows` take the place of the name of the file until `without_file` removes them.
 
     Raises
     ------
@@ -65,19 +65,18 @@ def with_rows(config: dict[str, Any]) -> dict[str, Any]:
     whole = merged({name: merged(shared, device) for name, device in devices.items()}, others)
     own = {name: list(_dotted(section)) for name, section in others.items() if name in numbers}
     cells = {column for device in devices.values() for column in _dotted(device)}
-    return config | {"devices": whole | {"file": Rows(file, numbers, [*{*_dotted(shared)} - cells], own)}}
+    return config | {"devices": whole | {"file": DeviceRows(file, numbers, [*{*_dotted(shared)} - cells], own)}}
 
 
-def without_file(config: Any) -> tuple[Any, Rows]:
-    """Configuration, valid or not, without the `Rows` of its file, and these. Without a file they are empty."""
-    devices = config.get("devices") if isinstance(config, dict) else None
-    of_file = devices.get("file") if isinstance(devices, dict) else None
-    if not isinstance(of_file, Rows):
-        return config, Rows("", {}, [], {})
-    return config | {"devices": {name: device for name, device in devices.items() if name != "file"}}, of_file
+def without_file(config: Any) -> tuple[Any, DeviceRows]:
+    """Configuration, valid or not, without the `DeviceRows` of its file, and these. Without a file they are empty."""
+    devices = dict(section_at(config, "devices"))
+    if not isinstance(of_file := devices.pop("file", None), DeviceRows):
+        return config, DeviceRows("", {}, [], {})
+    return config | {"devices": devices}, of_file
 
 
-def in_rows(sentences: Iterable[str], of_file: Rows) -> list[str]:
+def in_rows(sentences: Iterable[str], of_file: DeviceRows) -> list[str]:
     """Sentences with file and row in place of the names of devices from a file. What rows share is one sentence.
 
     What holds for all rows of a key beside the file is about this key.
@@ -119,7 +118,7 @@ def _is_among(key, stated):
 
 def _dotted(section, above=""):
     """Yield the dotted keys of the values of a section, which may be none."""
-    for key, value in section.items() if isinstance(section, dict) else ():
+    for key, value in section_at(section).items():
         if isinstance(value, dict):
             yield from _dotted(value, f"{above}{key}.")
         else:
@@ -143,8 +142,7 @@ def _shown(file):
 
 def _file(config):
     """File of devices, ``None`` if a configuration names none."""
-    devices = config.get("devices") if isinstance(config, dict) else None
-    file = devices.get("file") if isinstance(devices, dict) else None
+    file = section_at(config, "devices").get("file")
     return file if isinstance(file, str) else None
 
 

@@ -66,10 +66,10 @@ class _Strip:
         ``bounds``: energy [J m⁻²] of which a step must stay below, and slope of the energy along the way [J m⁻²].
         """
         change, (largest, slope) = self.elastic(gap + way) - elastic, bounds
-        for part in 0.5 ** np.arange(HALVINGS):
-            ahead, traction = gap + part * way, elastic + np.float32(part) * change
+        for fraction in 0.5 ** np.arange(HALVINGS):
+            ahead, traction = gap + fraction * way, elastic + np.float32(fraction) * change
             energy = self.energy(ahead, traction)
-            if energy <= largest + DECREASE * part * slope:
+            if energy <= largest + DECREASE * fraction * slope:
                 break
         return ahead, traction, energy
 
@@ -104,24 +104,24 @@ def equilibrium(
     pull, energies = adhesion.traction(gap), [strip.energy(gap, elastic)]
     for number in range(STEPS):
         gradient = elastic + pull
-        force, left = _balance(gap, gradient)
+        force, residual = _balance(gap, gradient)
         size = max(float(pull.mean(dtype=float)), abs(force), 1.0)
-        if left <= coarser * SETTLED * size:
+        if residual <= coarser * SETTLED * size:
             pressure = np.where(gap > 0, np.float32(0), np.maximum(gradient + np.float32(force), 0))
             return State(distance, pressure, pull, gap.astype(np.float32), number)
-        rest = _among_free(gradient, gap, gradient, force)
-        down = _among_free(space.displacement_on_springs(rest), gap, gradient, force)
+        free_gradient = _among_free(gradient, gap, gradient, force)
+        down = _among_free(space.displacement_on_springs(free_gradient), gap, gradient, force)
         if before is not None:
-            step = _step(*before, rest, down)
+            step = _step(*before, free_gradient, down)
         way, slope = _way(gap, down, step, gradient, mean)
         if slope >= 0:
-            way, slope = _way(gap, rest, ALONE * space.unit, gradient, mean)
+            way, slope = _way(gap, free_gradient, ALONE * space.unit, gradient, mean)
         largest = max(energies[-REMEMBERED:]) + ROUNDING * abs(energies[-1])
         after, elastic, energy = strip.moved(gap, elastic, way, (largest, slope))
-        before, gap, pull = (after - gap, rest, down), after, adhesion.traction(after)
+        before, gap, pull = (after - gap, free_gradient, down), after, adhesion.traction(after)
         energies.append(energy)
-    what = "full elastic contact does not settle by descent: rest of the gradient"
-    raise NotConverged(what, left / size, coarser * SETTLED, STEPS)
+    subject = "full elastic contact does not settle by descent: rest of the gradient"
+    raise NotConverged(subject, residual / size, coarser * SETTLED, STEPS)
 
 
 def _complete(space, heights, adhesion):
@@ -136,7 +136,7 @@ def _complete(space, heights, adhesion):
 @kernel
 def _balance(gap, gradient):
     """Force f [Pa], the negative mean gradient at gaps, and the mean size of the rest of the gradient [Pa]."""
-    total, number, left = 0.0, 0, 0.0
+    total, number, residual = 0.0, 0, 0.0
     for i in range(gap.shape[0]):
         for j in range(gap.shape[1]):
             opened = gap[i, j] > 0
@@ -145,9 +145,9 @@ def _balance(gap, gradient):
     force = -total / number
     for i in range(gap.shape[0]):
         for j in range(gap.shape[1]):
-            rest = gradient[i, j] + force
-            left += abs(rest) if gap[i, j] > 0 else max(-rest, 0.0)
-    return force, left / gap.size
+            difference = gradient[i, j] + force
+            residual += abs(difference) if gap[i, j] > 0 else max(-difference, 0.0)
+    return force, residual / gap.size
 
 
 @kernel
@@ -200,12 +200,12 @@ def _product(gap, undeformed, elastic):
 
 
 @kernel
-def _step(moved, rest_before, down_before, rest, down):
+def _step(moved, gradient_before, down_before, gradient, down):
     """Length of Barzilai and Borwein from a way [m] and the gradients before and after it, as they are and smoothed."""
     bend, square = 0.0, 0.0
     for i in range(moved.shape[0]):
         for j in range(moved.shape[1]):
-            change = np.float64(rest[i, j] - rest_before[i, j])
+            change = np.float64(gradient[i, j] - gradient_before[i, j])
             bend += moved[i, j] * change
             square += (down[i, j] - down_before[i, j]) * change
     return min(bend / square, LONGEST) if bend > 0 and square > 0 else FIRST  # where the energy bends down

@@ -204,9 +204,9 @@ def equilibrium(
     """
     undeformed = np.float32(distance) - heights
     if start is None:
-        nothing = np.zeros_like(undeformed)
-        pressure, gap, _ = _supported(space, undeformed, nothing, nothing, hardness, coarser * TOLERANCE)
-        start = State(distance, pressure, nothing, gap, 0, hardness)
+        zeros = np.zeros_like(undeformed)
+        pressure, gap, _ = _supported(space, undeformed, zeros, zeros, hardness, coarser * TOLERANCE)
+        start = State(distance, pressure, zeros, gap, 0, hardness)
         if adhesion is None:
             return start
         attraction = adhesion.traction(gap)
@@ -215,11 +215,11 @@ def equilibrium(
     for turn in range(1, TURNS + 1):
         pressure, gap, before = _supported(space, undeformed, pressure, attraction, hardness, TOLERANCE, SHARE)
         relaxed, change, size = _relaxed(adhesion.traction(gap), attraction, np.float32(RELAXATION))
-        left = change / max(size, 1.0)
-        if left <= coarser * SETTLED and before <= 5 * coarser * TOLERANCE:
+        residual = change / max(size, 1.0)
+        if residual <= coarser * SETTLED and before <= 5 * coarser * TOLERANCE:
             return State(distance, pressure, attraction, gap, turn, hardness)
         attraction = relaxed
-    raise NotConverged(f"{_UNSETTLED}: change of the attraction", left, SETTLED, TURNS)
+    raise NotConverged(f"{_UNSETTLED}: change of the attraction", residual, SETTLED, TURNS)
 
 
 @kernel
@@ -250,14 +250,14 @@ def _add_table(values, gap, table, per_gap):
     Nodes ``per_gap`` [m⁻¹]. The table is that of its first node at overlaps, and zero beyond its last.
     """
     for i in range(gap.size):
-        place = _larger(gap[i] * per_gap, np.float32(0))
-        node = np.int64(place)
+        position = _larger(gap[i] * per_gap, np.float32(0))
+        node = np.int64(position)
         if node < table.size - 1:
-            values[i] += table[node] + (place - np.float32(node)) * (table[node + 1] - table[node])
+            values[i] += table[node] + (position - np.float32(node)) * (table[node + 1] - table[node])
 
 
 @kernel
-def _relaxed(wanted, attraction, factor):
+def _relaxed(target, attraction, factor):
     """Attraction (n1, n2) after a part of the way to the wanted one, mean size of this way and of the attraction.
 
     All in Pa.
@@ -266,7 +266,7 @@ def _relaxed(wanted, attraction, factor):
     changes, sizes = np.zeros(columns), np.zeros(columns)
     for i in range(attraction.shape[0]):
         for j in range(columns):
-            change = wanted[i, j] - attraction[i, j]
+            change = target[i, j] - attraction[i, j]
             changes[j] += abs(change)
             sizes[j] += abs(attraction[i, j])
             relaxed[i, j] = attraction[i, j] + factor * change
@@ -283,16 +283,16 @@ def _supported(space, undeformed, pressure, attraction, hardness, tolerance, sha
     The residual is reduced to a tolerance [m], or to a share of that at the beginning.
     """
     gap, hardness = undeformed + space.displacement(pressure - attraction), np.float32(hardness)
-    first = left = _residual(pressure, gap, hardness)
+    first = residual = _residual(pressure, gap, hardness)
     step = first_step = 0.5 / space.unit
     for _ in range(STEPS):
-        if left <= max(tolerance, share * first):
+        if residual <= max(tolerance, share * first):
             return pressure, gap, first
         descended, traction = _descended(pressure, gap, attraction, np.float32(step), hardness)
         displacement = space.displacement(traction)
-        after, step, left = _moved(pressure, gap, descended, undeformed, displacement, hardness)
+        after, step, residual = _moved(pressure, gap, descended, undeformed, displacement, hardness)
         pressure, gap, step = descended, after, step or first_step
-    raise NotConverged(f"{_UNSETTLED}: gap of an element in contact [m]", left, tolerance, STEPS)
+    raise NotConverged(f"{_UNSETTLED}: gap of an element in contact [m]", residual, tolerance, STEPS)
 
 
 @kernel

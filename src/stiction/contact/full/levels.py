@@ -82,11 +82,11 @@ class Level:
             return self._first(lambda settle: elements.roughly_pulled_off(strip, closed, curve, settle))
         return self._first(lambda settle: elements.pulled_off(strip, closed, curve, settle)[0])
 
-    def _first(self, found):
-        """What the first solver finds that settles, which then comes first on other strips."""
+    def _first(self, solve):
+        """Result of the first solver that settles. It comes first on other strips."""
         for settle in self.solvers:
             try:
-                result = found(settle)
+                result = solve(settle)
             except (NotConverged, ValueError) as failed:
                 reason = failed
                 continue
@@ -115,9 +115,9 @@ def _beginning(settle, start):
 def refined(state: State, times: int, shape: tuple[int, int]) -> State:
     """State on elements that are a number of times as small: each has the values of the one in its place."""
 
-    def of(values):
+    def finer(values):
         """Values on the small elements (n1, n2)."""
         repeated = np.repeat(np.repeat(values, times, axis=0), times, axis=1)
         return np.ascontiguousarray(repeated[: shape[0], : shape[1]])
 
-    return State(state.distance, of(state.pressure), of(state.attraction), of(state.gap), 0)
+    return State(state.distance, finer(state.pressure), finer(state.attraction), finer(state.gap), 0)

@@ -38,7 +38,7 @@ def shortfall(rms: float, humidity: float) -> tuple[float, float]:
     return max(1 - 1 / ratio, 0.0), error / ratio**2
 
 
-def in_wetter_air(ratio: float, computed: float, humidity: float) -> float:
+def in_wetter_air(ratio: float, computed_at: float, humidity: float) -> float:
     """Ratio of full contact to summits of a force in air wetter than where it was computed.
 
     ASSUME: a ratio above 1 grows as that of the pair of the table that has it where it was computed. One below 1 rises
@@ -50,8 +50,8 @@ def in_wetter_air(ratio: float, computed: float, humidity: float) -> float:
     [1.32, 0.935]
     """
     if ratio <= 1:
-        return ratio ** ((1 - humidity) / (1 - computed))
-    drier, wetter = _of_pairs(computed), _of_pairs(humidity)
+        return ratio ** ((1 - humidity) / (1 - computed_at))
+    drier, wetter = _of_pairs(computed_at), _of_pairs(humidity)
     like = float(np.interp(ratio, drier, np.arange(len(drier))))
     return ratio * float(np.interp(like, np.arange(len(drier)), wetter / drier))
 

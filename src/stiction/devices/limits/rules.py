@@ -101,14 +101,14 @@ def strips_move_alone(play: float) -> Limit | None:
     return Limit("strips_move_alone", Side.UNSAFE, False, numbers={"play": play}) if play else None
 
 
-def missed_accuracy(of_beams: float, of_surfaces: float, asked: float) -> Limit | None:
+def missed_accuracy(of_beams: float, of_surfaces: float, accuracy: float) -> Limit | None:
     """Relative errors of a length, by beams and by sampled surfaces, NaN without one, beyond the asked accuracy."""
-    parts = {"design.beams": of_beams, "contact.samples": of_surfaces}
-    known = {key: error for key, error in parts.items() if not math.isnan(error)}
-    reached = math.hypot(*known.values())
-    if reached <= asked:
+    errors = {"design.beams": of_beams, "contact.samples": of_surfaces}
+    finite = {key: error for key, error in errors.items() if not math.isnan(error)}
+    reached = math.hypot(*finite.values())
+    if reached <= accuracy:
         return None
-    numbers = {"reached": reached, "asked": asked, "key": max(known, key=known.get)}
+    numbers = {"reached": reached, "asked": accuracy, "key": max(finite, key=finite.get)}
     return Limit("missed_accuracy", Side.EITHER, True, reached, numbers)
 
 
@@ -132,17 +132,17 @@ def plastic_contact(share: float, pressure: float, is_stopper: bool = False, is_
     return Limit("plastic_contact", Side.UNSAFE, False, numbers=numbers)
 
 
-def default_material(name: str, stated: Sequence[str]) -> Limit | None:
-    """Defaults used for another material than polysilicon. ``stated`` lists given inputs."""
-    missing = [entry.words for entry in PROPERTIES.values() if entry.words not in stated]
+def default_material(name: str, inputs: Sequence[str]) -> Limit | None:
+    """Defaults used for another material than polysilicon. ``inputs`` lists given inputs."""
+    missing = [entry.words for entry in PROPERTIES.values() if entry.words not in inputs]
     if name == "polysilicon" or not missing:
         return None
     return Limit("default_material", Side.EITHER, False, numbers={"name": name, "missing": missing})
 
 
-def spacer(name: str, stated: Sequence[str]) -> Limit | None:
-    """Coating without its own attraction. ``stated`` lists given inputs of its material."""
-    if OF_COATINGS[COATING] not in stated or OF_COATINGS[COATING_ATTRACTION] in stated:
+def spacer(name: str, inputs: Sequence[str]) -> Limit | None:
+    """Coating without its own attraction. ``inputs`` lists given inputs of its material."""
+    if OF_COATINGS[COATING] not in inputs or OF_COATINGS[COATING_ATTRACTION] in inputs:
         return None
     return Limit("spacer", Side.UNSAFE, False, numbers={"name": name})
 
@@ -173,10 +173,10 @@ def smooth_pair(rms: float, humidities: Sequence[float]) -> Limit | None:
     The amount is that of slopes like those of B2. It is not known for gentler ones, whose forces are larger still.
     """
     short = {humidity: shortfall(rms, humidity) for humidity in humidities}
-    large = [[humidity, *of] for humidity, of in short.items() if of[0] > SHORTFALL]
+    large = [[humidity, *deficits] for humidity, deficits in short.items() if deficits[0] > SHORTFALL]
     if not large:
         return None
-    worst = max(of for _, of, _ in large)
+    worst = max(deficit for _, deficit, _ in large)
     return Limit("smooth_pair", Side.UNSAFE, False, 1 / (1 - worst) - 1, {"rms": rms, "short": large})
 
 
@@ -187,13 +187,13 @@ def unknown_full_contact(unknown: Sequence[float]) -> Limit | None:
     return Limit("unknown_full_contact", Side.EITHER, False, numbers={"humidities": list(unknown)})
 
 
-def few_strips(part: float) -> Limit | None:
+def few_strips(fraction: float) -> Limit | None:
     """Part of one strip in the squared error of the change by full elastic contact, NaN without one [-].
 
     Of pair c, one strip of 60 held a fifth of its force on summits, on two peaks 1 nm above all others. Without it, the
     ratio and its stated error were both wrong.
     """
-    return Limit("few_strips", Side.EITHER, False, numbers={"part": part}) if part > OF_ONE_STRIP else None
+    return Limit("few_strips", Side.EITHER, False, numbers={"part": fraction}) if fraction > OF_ONE_STRIP else None
 
 
 def thin_film(film: float) -> Limit | None:
@@ -217,17 +217,17 @@ def beyond_isotherm(measured: float, wettest: float) -> Limit | None:
 
 def condensing(conditions: Sequence[Mapping[str, float]]) -> Limit | None:
     """Conditions of a device at or below their dew points. Both in °C, of those with a ``dew_point_C``."""
-    found = [one for one in conditions if one.get("dew_point_C", -math.inf) >= one["temperature_C"]]
-    if not found:
+    wet = [air for air in conditions if air.get("dew_point_C", -math.inf) >= air["temperature_C"]]
+    if not wet:
         return None
-    numbers = {"airs": [[one["temperature_C"], one["dew_point_C"]] for one in found]}
+    numbers = {"airs": [[air["temperature_C"], air["dew_point_C"]] for air in wet]}
     return Limit("condensing", Side.UNSAFE, False, numbers=numbers)
 
 
 def supercooled(conditions: Sequence[Mapping[str, float]]) -> Limit | None:
     """Conditions of a device in which water is below 0 °C, and does not condense."""
-    airs = [one for one in conditions if one.get("dew_point_C", -math.inf) < one["temperature_C"] < 0]
-    celsius = sorted({one["temperature_C"] for one in airs})
+    airs = [air for air in conditions if air.get("dew_point_C", -math.inf) < air["temperature_C"] < 0]
+    celsius = sorted({air["temperature_C"] for air in airs})
     return Limit("supercooled", Side.EITHER, False, numbers={"celsius": celsius}) if celsius else None
 
 

@@ -70,10 +70,10 @@ def style_of(values: Sequence[str], label: str, *, comma_expected: bool = False)
     if not signed or rival is None or not _fits(rival, filter(_PATTERNS[style].fullmatch, numbers)):
         return style
     # Decimals of which all have three places, and none is below 1, are thousands if others have no places at all.
-    whole = {value for value in numbers if value.strip("+-").isdigit() and value.strip("+-0")}
-    if len(whole) >= _FEWEST:
+    integers = {value for value in numbers if value.strip("+-").isdigit() and value.strip("+-0")}
+    if len(integers) >= _FEWEST:
         return rival
-    if not whole and style[0] == "." and not comma_expected:
+    if not integers and style[0] == "." and not comma_expected:
         return style
     shown = signed[0][:_LONGEST]
     plain = shown.replace(style[0], "")

@@ -46,8 +46,8 @@ def profile(text: str, label: str, units: dict[str, str]) -> tuple[np.ndarray, f
     """
     written = plain(text.replace("μ", "µ"), label, fewest=_COLUMNS)
     rows, head, table = _table(written)
-    if found := misread(table):
-        line, value = len(head) + found[0], found[1][:_LONGEST]
+    if wrong := misread(table):
+        line, value = len(head) + wrong[0], wrong[1][:_LONGEST]
         raise ScanError(label, "files", f"has {value!r} in line {line}, must be a number, or nan for no height")
     places, heights = _columns(rows, label)
     x_unit, height_unit = _units(head, units, label)
@@ -93,13 +93,15 @@ def _columns(rows, label):
 def _units(head, units, label):
     """Units of places and heights: stated ones, or those of a line of the head with two."""
     stated = [units.get("x_unit"), units.get("height_unit")]
-    found = next((units for line in reversed(head) if len(units := _UNIT.findall(line)) == _COLUMNS), [None, None])
-    for key, given, stored in zip(("x_unit", "height_unit"), stated, found, strict=True):
-        if None not in (given, stored) and UNITS[given] != UNITS[stored]:
-            raise ScanError(label, key, f"has {stored} in its head, not {given}: leave out {key}, or correct the file")
-        if given is stored is None:
+    in_head = next((units for line in reversed(head) if len(units := _UNIT.findall(line)) == _COLUMNS), [None, None])
+    for key, stated_unit, stored in zip(("x_unit", "height_unit"), stated, in_head, strict=True):
+        if None not in (stated_unit, stored) and UNITS[stated_unit] != UNITS[stored]:
+            raise ScanError(
+                label, key, f"has {stored} in its head, not {stated_unit}: leave out {key}, or correct the file"
+            )
+        if stated_unit is stored is None:
             raise ScanError(label, key, f"has no units in its head; give {key}, one of {', '.join(STATED)}")
-    return [given or stored for given, stored in zip(stated, found, strict=True)]
+    return [stated_unit or stored for stated_unit, stored in zip(stated, in_head, strict=True)]
 
 
 def _step(places, label):
@@ -126,10 +128,10 @@ def _without_marks(heights, label):
 
 def _filled(heights, label):
     """Heights with few undefined ones filled between their neighbours."""
-    known = np.isfinite(heights)
-    share = 1 - float(known.mean())
+    defined = np.isfinite(heights)
+    share = 1 - float(defined.mean())
     if share > _UNDEFINED or math.isnan(share):
         reason = f"has {100 * share:.3g} % of its points undefined, must be at most {100 * _UNDEFINED:g} %"
         raise ScanError(label, "files", f"{reason}: cut it to a part without gaps")
     number = np.arange(len(heights))
-    return np.interp(number, number[known], heights[known])
+    return np.interp(number, number[defined], heights[defined])

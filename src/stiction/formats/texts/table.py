@@ -84,18 +84,18 @@ def _split(line, separator):
         if not _INVISIBLE.search(line):
             return line.split()
         parts = line.strip(" \t\xa0").replace("\t", " ").split(" ")
-        return [part.strip("\"'\xa0") for part in parts if part]
+        return [word.strip("\"'\xa0") for word in parts if word]
     if not _INVISIBLE.search(line) and " " not in line:
         return line.split(separator)
     outside = _QUOTED.sub(lambda quoted: quoted[0].replace(separator, "\0"), line) if '"' in line else line
-    parts = [part.replace("\0", separator).strip(" \t\"'\xa0") for part in outside.strip(" ").split(separator)]
-    return [part.replace(" ", "\xa0") if separator != "," else part for part in parts]
+    parts = [value.replace("\0", separator).strip(" \t\"'\xa0") for value in outside.strip(" ").split(separator)]
+    return [value.replace(" ", "\xa0") if separator != "," else value for value in parts]
 
 
 def _form(lines: Sequence[str]) -> _Form:
     """Form of a table, from some of its lines."""
-    found = [(_columns([_split(line, separator) for line in lines]), separator) for separator in _SEPARATORS]
-    (columns, _, ended), separator = max(found, key=lambda one: one[0][:2])
+    forms = [(_columns([_split(line, separator) for line in lines]), separator) for separator in _SEPARATORS]
+    (columns, _, ended), separator = max(forms, key=lambda form: form[0][:2])
     return _Form(separator, columns, ended)
 
 
@@ -120,8 +120,8 @@ def _style(rows, form, label, marks):
     inside = [value for row in table[border:] for value in row[border:]]
     axes = [value for row in table[:border] for value in row] + [value for row in table for value in row[:border]]
     values = inside + [value for value in axes if not is_plain(value)]
-    known = [value for value in values if value not in marks] if marks else values
-    return style_of(known, label, comma_expected=form.separator in _COMMA_EXPECTED)
+    numbers = [value for value in values if value not in marks] if marks else values
+    return style_of(numbers, label, comma_expected=form.separator in _COMMA_EXPECTED)
 
 
 def _require_no_pairs(rows, form, label):
@@ -163,8 +163,8 @@ def _with_corner(rows, columns):
     for k, row in enumerate(rows):
         *word, first = [row[:1], row[1:]] if row and len(row) == columns else [row or []]
         if len(first) == columns - 1 and is_even(list(map(_float, first))):
-            known = word and (not word[0][0] or is_number(word[0][0]))
-            return rows if known else [*rows[:k], ["", *first], *rows[k + 1 :]]
+            is_corner = word and (not word[0][0] or is_number(word[0][0]))
+            return rows if is_corner else [*rows[:k], ["", *first], *rows[k + 1 :]]
         if row and all(map(is_number, row)):
             break
     return rows

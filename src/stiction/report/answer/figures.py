@@ -66,12 +66,12 @@ def _steps(panel: Axes, answer):
         panel.axvline(answer.build / scale, color=BUILD, linewidth=1.2, zorder=0)
     panel.margins(x=0.1)
     panel.set(xlabel=label, ylim=(len(steps) - 0.5, -0.8))
-    panel.set_yticks(rows, [_said(answer, row) for row in rows], fontsize=7, linespacing=1)
+    panel.set_yticks(rows, [_label_of_row(answer, row) for row in rows], fontsize=7, linespacing=1)
     panel.tick_params(axis="y", length=0)
     _stated(panel, answer, scale)
 
 
-def _said(answer, row):
+def _label_of_row(answer, row):
     """Cause of a row of the ladder with its size and change."""
     step = answer.known_steps[row]
     change = f" ({100 * (step.factor - 1):+.1f} %)" if row else ""
@@ -84,10 +84,10 @@ def _stated(panel, answer, scale):
     if 0.5 * min(sizes) < answer.size < 2 * max(sizes):
         panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, zorder=0)
     elif np.isfinite(answer.size):
-        said, below = f"yours: {answer.in_words(answer.size)}", answer.size < min(sizes)
-        text, at = (f"← {said}", 0.01) if below else (f"{said} →", 0.99)
-        place = {"xycoords": "axes fraction", "ha": "left" if below else "right", "va": "top", "fontsize": 7}
-        panel.annotate(text, (at, 0.98), **place)
+        text_of_size, below = f"yours: {answer.in_words(answer.size)}", answer.size < min(sizes)
+        text, at = (f"← {text_of_size}", 0.01) if below else (f"{text_of_size} →", 0.99)
+        style = {"xycoords": "axes fraction", "ha": "left" if below else "right", "va": "top", "fontsize": 7}
+        panel.annotate(text, (at, 0.98), **style)
 
 
 def _axis(answer):
@@ -125,8 +125,8 @@ def _stuck(panel: Axes, answer):
             colour = humidity_colour(air.humidity)
             panel.plot(sizes, air.curve[0], "--", color=colour, alpha=0.8, linewidth=1, label=Air(air.humidity).words)
     colour, decides = humidity_colour(answer.together.humidity), Air(answer.together.humidity).words
-    said = f"all airs, {decides} decides" if len(answer.airs) > 1 and np.isfinite(answer.share) else decides
-    panel.plot(sizes, expected, color=colour, linewidth=1.6, label=said)
+    label_of_airs = f"all airs, {decides} decides" if len(answer.airs) > 1 and np.isfinite(answer.share) else decides
+    panel.plot(sizes, expected, color=colour, linewidth=1.6, label=label_of_airs)
     legend_below(panel, panel.get_legend_handles_labels()[0])
     style = {"color": colour, "alpha": 0.2, "linewidth": 0, "label": "95 % band, where the simulation resolves it"}
     panel.fill_between(sizes, *band, where=_resolved(band[1]), **style)
@@ -148,8 +148,8 @@ def _resolved(upper):
 
 def _explain(figure, panels):
     """Legend below a figure of what its panels have in common, without the airs in their own legends."""
-    own = {text.get_text() for panel in panels if (one := panel.get_legend()) for text in one.get_texts()}
-    common = [(handle, label) for handle, label in zip(*handles(*panels), strict=True) if label not in own]
+    in_panels = {text.get_text() for panel in panels if (legend := panel.get_legend()) for text in legend.get_texts()}
+    common = [(handle, label) for handle, label in zip(*handles(*panels), strict=True) if label not in in_panels]
     if common:
         legend_outside(figure, tuple(zip(*common, strict=True)), "lower", 3)
 
@@ -158,13 +158,13 @@ def _size_to_build(panel, answer, scale):
     """Vertical band from the simulated limit to the size to build, with its number, and the stated size."""
     if np.isfinite(answer.build):
         (limit,) = (step.size for step in answer.steps if step.cause is Cause.SIMULATION)
-        said = "from the simulated limit to the size to build"
-        panel.axvspan(limit / scale, answer.build / scale, color=BUILD, alpha=0.15, linewidth=0, label=said)
+        label = "from the simulated limit to the size to build"
+        panel.axvspan(limit / scale, answer.build / scale, color=BUILD, alpha=0.15, linewidth=0, label=label)
         panel.axvline(answer.build / scale, color=BUILD, linewidth=1.5)
         side, end = (3, "left") if answer.sought.more_is_better else (-3, "right")  # clear of the curve
-        place = {"xytext": (side, -3), "textcoords": "offset points", "ha": end, "va": "top", "rotation": 90}
-        said = f"build {answer.in_words(answer.build)}"
-        panel.annotate(said, (answer.build / scale, 1), xycoords=("data", "axes fraction"), color=BUILD, **place)
+        style = {"xytext": (side, -3), "textcoords": "offset points", "ha": end, "va": "top", "rotation": 90}
+        label = f"build {answer.in_words(answer.build)}"
+        panel.annotate(label, (answer.build / scale, 1), xycoords=("data", "axes fraction"), color=BUILD, **style)
     if answer.sizes.min() < answer.size < answer.sizes.max():
         panel.axvline(answer.size / scale, color="0.3", linestyle=":", linewidth=1, label="stated size")
 

@@ -25,5 +25,5 @@ def with_limits(answer: Answer, limits: Iterable[Limit]) -> Answer:
 
 def limits_of(device: str, warnings: OfDevices) -> list[Limit]:
     """Limits of a device itself, not of a chart's other sizes."""
-    own = [some for (name, *_), some in warnings.lengths.items() if name == device]
-    return [limit for some in (*own, warnings.patches.get(device, [])) for limit in some]
+    lengths = [limits for (name, *_), limits in warnings.lengths.items() if name == device]
+    return [limit for limits_of_patch in (*lengths, warnings.patches.get(device, [])) for limit in limits_of_patch]

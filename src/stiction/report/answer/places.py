@@ -26,52 +26,52 @@ def headline(answer: Answer) -> str:
     """Rank of the measured force among places, or what these hold."""
     if answer.verdict is Verdict.PLACES:
         return _distribution(answer.pull_off, len(answer.pull_offs) > 1)
-    one = answer.pull_off
-    measured = f"{with_error(answer.size / NN, one.error / NN)} nN"
+    forces = answer.pull_off
+    measured = f"{with_error(answer.size / NN, forces.error / NN)} nN"
     too_uncertain = f" {_TOO_UNCERTAIN}" * bool(answer.forbidden)
     return (
-        f"Measured {measured}: {in_words(one.less)} of such measurements give this or less, {in_words(one.more)} this "
-        f"or more; two-sided, {in_words(one.two_sided)}.{too_uncertain}"
+        f"Measured {measured}: {in_words(forces.less)} of such measurements give this or less, {in_words(forces.more)} "
+        f"this or more; two-sided, {in_words(forces.two_sided)}.{too_uncertain}"
     )
 
 
 def basis(answer: Answer) -> list[str]:
     """What the answer rests on."""
-    said = [] if answer.verdict is Verdict.PLACES else [_distribution(answer.pull_off)]
-    return [*said, words.contains(answer)]
+    sentences = [] if answer.verdict is Verdict.PLACES else [_distribution(answer.pull_off)]
+    return [*sentences, words.contains(answer)]
 
 
 def points(answer: Answer, _section: Mapping[str, Any]) -> dict[str, str]:
     """What decides, what to change and what to measure."""
-    found = {"What to change": _CHANGE[answer.verdict]}
+    points_in_words = {"What to change": _CHANGE[answer.verdict]}
     if answer.verdict is not Verdict.PLACES:
         decides = (
             f"A force does not fit if its two-sided probability is below {in_percent(UNLIKELY)}, with the whole band"
         )
-        found = {
+        points_in_words = {
             "What decides": f"{decides} of the simulation. Bands of the others contain the errors of the inputs."
-        } | found
-    return found | {"What to measure": words.measure(answer)}
+        } | points_in_words
+    return points_in_words | {"What to measure": words.measure(answer)}
 
 
 def cells(answer: Answer) -> pd.DataFrame:
     """Table of the first screen, a row for each air."""
-    return pd.DataFrame([_row(one) for one in answer.pull_offs])
+    return pd.DataFrame([_row(forces) for forces in answer.pull_offs])
 
 
-def _row(one):
+def _row(forces):
     """Row of one air."""
-    low, median, high = one.quantiles / NN
-    row = {"RH": humidity_text(one.humidity), "median [nN]": with_band(*median)}
+    low, median, high = forces.quantiles / NN
+    row = {"RH": humidity_text(forces.humidity), "median [nN]": with_band(*median)}
     row |= {"5 % [nN]": with_band(*low), "95 % [nN]": with_band(*high)}
-    ranks = {"P(measured or less)": one.less, "P(measured or more)": one.more, "two-sided": one.two_sided}
+    ranks = {"P(measured or less)": forces.less, "P(measured or more)": forces.more, "two-sided": forces.two_sided}
     return row | {title: in_words(rank) for title, rank in ranks.items() if rank}
 
 
-def _distribution(one: PullOff, is_worst: bool = False) -> str:
+def _distribution(forces: PullOff, is_worst: bool = False) -> str:
     """Forces of the places in one air."""
-    where = f"{airs([one.humidity])}{', where they hold most' * is_worst}"
-    low, median, high = (with_band(*force).replace(" (", " nN (") for force in one.quantiles / NN)
+    where = f"{airs([forces.humidity])}{', where they hold most' * is_worst}"
+    low, median, high = (with_band(*force).replace(" (", " nN (") for force in forces.quantiles / NN)
     return f"Half of all places hold more than {median} {where}; nine of ten between {low} and {high}."
 
 
@@ -94,4 +94,4 @@ def with_band(*numbers: float) -> str:
     """
     if np.isnan(numbers).any():
         return MISSING
-    return "{} ({} to {})".format(*(f"{float(f'{one:.3g}'):g}" for one in numbers))
+    return "{} ({} to {})".format(*(f"{float(f'{number:.3g}'):g}" for number in numbers))

@@ -25,11 +25,11 @@ def screen(answer: Answer, section: Mapping[str, Any], forbidding: Sequence[str]
     face = _FACES[answer.sought.name]
     points, cells = face.points(answer, section), face.cells(answer)
     if words.is_forbidden(answer):
-        said = " ".join(forbidding)
+        reason = " ".join(forbidding)
         cells = cells.assign(**dict.fromkeys(cells.columns[1:], MISSING))
         points = {"What to measure": points["What to measure"]}
         missing = "the warning above forbids to rely on one"
-        return Summary("bad", words.NO_NUMBER, said, (), points, cells, missing, is_forbidden=True)
+        return Summary("bad", words.NO_NUMBER, reason, (), points, cells, missing, is_forbidden=True)
     basis = [*face.basis(answer), of_model]
     return Summary(*words.sign_of(answer), face.headline(answer), list(filter(None, basis)), points, cells)
 

@@ -63,18 +63,18 @@ _ENDS, _QUANTILES, _RANKS = (
 
 def _of_places(answer):
     """Numbers of a probe without a spring in the air where places hold most, NaN of other devices."""
-    found = np.full((len(_QUANTILES) + len(_RANKS), len(_ENDS)), np.nan)
+    numbers = np.full((len(_QUANTILES) + len(_RANKS), len(_ENDS)), np.nan)
     if answer.pull_offs and not words.is_forbidden(answer):
-        one = answer.pull_off
+        forces = answer.pull_off
         ranks = [
             (rank.value, rank.low, rank.high) if rank else [np.nan] * len(_ENDS)
-            for rank in (one.less, one.more, one.two_sided)
+            for rank in (forces.less, forces.more, forces.two_sided)
         ]
-        found = np.concatenate([one.quantiles / answer.sought.scale, ranks])
+        numbers = np.concatenate([forces.quantiles / answer.sought.scale, ranks])
     names = (*(f"{name}_percent_nN" for name in _QUANTILES), *_RANKS)
     return {
         f"{name}{end}": float(value)
-        for name, row in zip(names, found, strict=True)
+        for name, row in zip(names, numbers, strict=True)
         for end, value in zip(_ENDS, row, strict=True)
     }
 
@@ -95,7 +95,7 @@ _COLUMNS_OF_PLACES = {
 def _row(answer):
     """Numbers of one device in the unit of its size. Where a limit forbids a number, there is none."""
     scale, unit = answer.sought.scale, answer.sought.shown
-    known = np.nan if words.is_forbidden(answer) else 1.0
+    factor = np.nan if words.is_forbidden(answer) else 1.0
     to_build = np.nan if answer.forbidden else answer.build / scale
     last, stuck = answer.stated_steps[-1], None if answer.pull_offs else answer.stuck
     band = (stuck.value, stuck.low, stuck.high) if stuck else (np.nan,) * 3
@@ -107,19 +107,19 @@ def _row(answer):
         "unit": unit,
         "size": answer.size / scale,
         "to_build": to_build,
-        "exact": known * answer.exact / scale,
+        "exact": factor * answer.exact / scale,
         "share": answer.share,
-        **dict(zip(("stuck_value", "stuck_low", "stuck_high"), known * np.array(band), strict=True)),
+        **dict(zip(("stuck_value", "stuck_low", "stuck_high"), factor * np.array(band), strict=True)),
         "none_seen": bool(stuck and stuck.none_seen),
         "stuck": words.stuck_in_words(stuck) if stuck and not words.is_forbidden(answer) else MISSING,
         **{f"after_{cause}": np.nan for cause in Cause},
-        **{f"after_{step.cause}": known * step.size / scale for step in answer.steps},
+        **{f"after_{step.cause}": factor * step.size / scale for step in answer.steps},
         "relative_humidity": last.humidity,
         "held_by": END_STATES[last.shape].by if last.shape in END_STATES else last.shape,
         "by_tip": answer.is_by_tip,
         "largest_step": str(answer.largest_step.cause) if answer.known_steps else MISSING,
         "measure": answer.measure,
-        "if_measured": known * answer.if_measured / scale,
+        "if_measured": factor * answer.if_measured / scale,
         "included": " ".join(answer.included),
         "left_out": " ".join(answer.left_out),
         "forbidden": " ".join(answer.forbidden),

@@ -86,15 +86,19 @@ def percent(fraction: float, end: str = "") -> str:
 
 
 def stuck_in_words(stuck: Probability) -> str:
-    """P(stuck) with its band. Where no simulated device sticks, its upper end alone.
+    """P(stuck) with its band. Where no simulated device sticks, its upper end alone, or with a larger expectation.
 
     Examples
     --------
     >>> stuck_in_words(Probability(0.18, 1e-9, 0.95)), stuck_in_words(Probability(1e-9, 0.0, 0.0037, none_seen=True))
     ('18 % (0 to 95 %)', 'at most 0.37 %')
+    >>> stuck_in_words(Probability(0.002, 0.0, 0.001, none_seen=True))
+    'at most 0.1 % (95 % confidence; 0.2 % on average)'
     """
     if stuck.none_seen:
-        return "0 to 100 %" if stuck.high > 1 - 1e-3 else f"at most {percent(stuck.high, 'high')}"
+        most, mean = percent(stuck.high, "high"), percent(stuck.value)
+        more = f" (95 % confidence; {mean} on average)" if stuck.value > stuck.high and mean != most else ""
+        return "0 to 100 %" if stuck.high > 1 - 1e-3 else f"at most {most}{more}"
     if stuck.low > 1 - 1e-3:
         return percent(stuck.low)
     low, high = percent(stuck.low, "low").removesuffix(" %"), percent(stuck.high, "high")
@@ -115,8 +119,8 @@ def sign_of(answer: Answer) -> tuple[str, str]:
 
 def headline(answer: Answer) -> str:
     """Size to build, and what happens at the stated size."""
-    if said := reasons(answer):
-        build = " ".join(said).removesuffix(".")
+    if forbidding := reasons(answer):
+        build = " ".join(forbidding).removesuffix(".")
     elif not np.isfinite(answer.build):
         build = "Too few simulated devices bound a size"
     else:
@@ -131,26 +135,26 @@ def promise(answer: Answer) -> str:
     """What the size to build promises."""
     shared = ", shared among its conditions," * bool(answer.stays)
     after = f" after {answer.touchdowns} touchdowns{shared}" * (answer.touchdowns > 1)
-    where = airs([one.humidity for one in answer.airs])
-    said = f"At most {one_in(answer.share)} sticks{after} {where} (95 % confidence)."
+    where = airs([air.humidity for air in answer.airs])
+    sentence = f"At most {one_in(answer.share)} sticks{after} {where} (95 % confidence)."
     if answer.stuck is None or not answer.is_enough or answer.stuck.value <= answer.share:
-        return said
-    return f"{said} In the other 5 % of all cases many can stick, so that more are expected on average."
+        return sentence
+    return f"{sentence} In the other 5 % of all cases many can stick, so that more are expected on average."
 
 
 def contains(answer: Answer) -> str:
     """What the numbers contain, and which stated conditions they leave out."""
     inside = [CAUSES[cause][1] for cause in answer.included]
-    said = f"Inside: {', '.join(inside)}."
+    sentence = f"Inside: {', '.join(inside)}."
     if Cause.INPUTS not in answer.included and Cause.TEST_BEAMS not in answer.included:
-        said += " All inputs count as exact."
+        sentence += " All inputs count as exact."
     if answer.left_out:
-        said += f" Stated, but not inside: {', '.join(map(_LEFT_OUT.get, answer.left_out))}."
+        sentence += f" Stated, but not inside: {', '.join(map(_LEFT_OUT.get, answer.left_out))}."
     if answer.extrapolated:
-        said += (
+        sentence += (
             " The simulation is extrapolated to such rare cases, beyond what was verified: the size can err either way."
         )
-    return said
+    return sentence
 
 
 def decides(answer: Answer) -> str:
@@ -158,12 +162,12 @@ def decides(answer: Answer) -> str:
     last, largest = answer.stated_steps[-1], answer.largest_step
     held = END_STATES[last.shape].by if last.shape in END_STATES else "liquid that dries"
     held = "tip" if answer.is_by_tip else held
-    said = f"{_air(answer, last.humidity)}, stuck by {'the ' if held != 'beam or tip' else ''}{held}."
+    sentence = f"{_air(answer, last.humidity)}, stuck by {'the ' if held != 'beam or tip' else ''}{held}."
     change = largest.factor - 1
     if not np.isfinite(change) or abs(change) < _SAME:
-        return said
+        return sentence
     by = f"{'+' if change > 0 else '−'}{in_percent(abs(change))} of the {answer.sought.name}"
-    return f"{said} Largest step: {CAUSES[largest.cause][1]}, {by}."
+    return f"{sentence} Largest step: {CAUSES[largest.cause][1]}, {by}."
 
 
 def measure(answer: Answer) -> str:
@@ -211,13 +215,13 @@ def of_airs(answer: Answer) -> list[dict[str, str]]:
 def _air(answer, humidity):
     """Air that decides, with its temperature if the device has a mission."""
     air = Air(humidity)
-    at = next((one.temperature for one in answer.airs if one.humidity == humidity), np.nan)
+    at = next((air.temperature for air in answer.airs if air.humidity == humidity), np.nan)
     return air.choose(air.words, "Dry air") + (f" at {at - ZERO_CELSIUS:.3g} °C" if np.isfinite(at) else "")
 
 
 def _celsius(answer, air):
     """Cell with the temperature of an air, any if it has no water; none for a device without conditions."""
-    if not np.isfinite([one.temperature for one in answer.airs]).any():
+    if not np.isfinite([air.temperature for air in answer.airs]).any():
         return {}
     return {"°C": Air(air.humidity).choose(number(air.temperature - ZERO_CELSIUS, ".3g"), "any")}
 

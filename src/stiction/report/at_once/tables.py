@@ -1,7 +1,7 @@
-"""Table of estimates at once beside the lengths of a run, and the section of a page."""
+"""Tables of estimates at once beside the sizes of a run, and the section of a page."""
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -9,73 +9,124 @@ import xarray as xr
 
 from stiction.config.units import from_si
 from stiction.devices.risk import one_in
-from stiction.plan.names import by_name
-from stiction.report.format import MISSING, UM, airs, with_error
+from stiction.report.format import MISSING, airs, with_error
 from stiction.report.page import Page, Section
-from stiction.report.table import DEVICE, HUMIDITY, Table, table_stage, with_list
-from stiction.stages.at_once.beside import CONFIDENCE, estimated, is_estimated
+from stiction.report.table import DEVICE, HUMIDITY, Columns, Table, table_stage, with_list
+from stiction.stages.at_once.beside import CONFIDENCE, FORCES, LENGTHS, estimated, file_of
 
-_CAPTION = (
-    "Lengths at which a fraction sticks, by beam or tip: of the run with its standard error, and of stiction "
-    "estimate. One touchdown, no voltage, exact inputs, surfaces as stated."
-)
+
+@dataclass(frozen=True)
+class Sizes:
+    """Sizes of devices beside which estimates are, in words."""
+
+    stage: str  #: of their datasets
+    file: str  #: of their table
+    name: str  #: of the variable of the run
+    unit: str  #: of the keys
+    symbol: str
+    form: str  #: of a number
+    shows: str  #: end of the title of the table
+    caption: str
+
+    @property
+    def keys(self) -> dict[str, str]:
+        """Keys of the columns of sizes, by variable."""
+        names = {"run": self.name, "run_se": f"{self.name}_error", "estimate": "estimate", "low": "low", "high": "high"}
+        return {f"{name}_{self.unit}": variable for name, variable in names.items()}
+
+    @property
+    def columns(self) -> Columns:
+        """Columns for reading."""
+        run, error, estimate, *ends = self.keys
+        return {
+            "stuck": (one_in, "share"),
+            f"run [{self.symbol}]": (with_error, run, error),
+            f"estimate [{self.symbol}]": (self.form, estimate),
+            f"{CONFIDENCE} % [{self.symbol}]": (self._ends, *ends),
+            "inside": (lambda inside: inside or MISSING, "inside"),
+        }
+
+    def _ends(self, low, high):
+        """Ends of an interval."""
+        return MISSING if np.isnan(low) else f"{low:{self.form}} to {high:{self.form}}"
+
+
+_OF_ALL = "One touchdown, no voltage, exact inputs, surfaces as stated."
+#: Sizes by their variable in datasets.
+SIZES = {
+    "length": Sizes(
+        LENGTHS,
+        "estimate",
+        "length",
+        "um",
+        "µm",
+        ".0f",
+        "estimates at once beside the run",
+        "Lengths at which a fraction sticks, by beam or tip: of the run with its standard error, and of stiction "
+        f"estimate. {_OF_ALL}",
+    ),
+    "force": Sizes(
+        FORCES,
+        "estimate_of_force",
+        "force",
+        "uN",
+        "µN",
+        ".3g",
+        "forces at once beside the run",
+        "Restoring forces at which a fraction sticks: of the run with its standard error, and of stiction estimate. "
+        f"{_OF_ALL}",
+    ),
+}
 #: Title of the section.
 _TITLE = "The estimate at once beside the run"
-_MISSING = "the estimate refuses this air, or too few of the simulated devices stick for a length"
+_MISSING = "the estimate refuses this air, or too few of the simulated devices stick for a size"
 #: Units of the inputs of the estimate, for those that have one.
 _SIZES = dict.fromkeys(("thickness", "gap", "width"), "um")
 _OF_SIDES = {"rms": "nm", "skewness": "", "kurtosis": "", "plateau": "nm4", "floor": "nm4"}
 _OF_SIDES |= dict.fromkeys(("corner", "cutoff"), "rad_per_um")
-#: Words by whether the length of the run is inside the interval of the estimate.
+#: Words by whether the size of the run is inside the interval of the estimate.
 _INSIDE = {True: "yes", False: "no"}
 
 
+def sizes_of(dataset: xr.Dataset) -> Sizes:
+    """Sizes of a dataset."""
+    return next(sizes for name, sizes in SIZES.items() if name in dataset)
+
+
 def is_inside(dataset: xr.Dataset) -> xr.DataArray:
-    """Whether each length of a run is inside the interval of the estimate, 1 or 0, NaN if one of both is not known."""
-    inside = (dataset.low <= dataset.length) & (dataset.length <= dataset.high)
-    return inside.where((dataset.length + dataset.estimate).notnull())
+    """Whether each size of a run is inside the interval of the estimate, 1 or 0, NaN if one of both is not known."""
+    run = dataset[sizes_of(dataset).name]
+    inside = (dataset.low <= run) & (run <= dataset.high)
+    return inside.where((run + dataset.estimate).notnull())
 
 
-def table(estimates: Mapping[str, xr.Dataset]) -> Table:
-    """Lengths of runs beside estimates, with all inputs of the estimate, by device."""
+def table(estimates: Mapping[str, xr.Dataset], sizes: Sizes = SIZES["length"]) -> Table:
+    """Sizes of runs beside estimates, with all inputs of the estimate, by device."""
     rows = [row for name, dataset in estimates.items() for row in _rows(name, dataset)]
     refused = [f"{name}: {sentence}" for name, dataset in estimates.items() for sentence in refusals(dataset)]
-    caption = with_list(" ".join([_CAPTION, counted(list(estimates.values()))]), refused)
-    return Table.of(rows, caption, DEVICE | _COLUMNS)
+    caption = with_list(" ".join([sizes.caption, counted(list(estimates.values()), sizes)]), refused)
+    return Table.of(rows, caption, DEVICE | sizes.columns)
 
 
 def _rows(device, dataset) -> Iterator[dict[str, Any]]:
     """Rows of one device."""
-    inputs, inside = _inputs(dataset), is_inside(dataset)
+    inputs, inside, sizes = _inputs(dataset), is_inside(dataset), sizes_of(dataset)
     for air in dataset.humidity.values:
         of_air, is_in = dataset.sel(humidity=air), inside.sel(humidity=air)
         for share in dataset.share.values:
             one, known = of_air.sel(share=share), float(is_in.sel(share=share))
-            lengths = {f"{name}_um": float(one[key]) / UM for name, key in _LENGTHS.items()}
+            numbers = {key: from_si(float(one[name]), sizes.unit) for key, name in sizes.keys.items()}
             said = {"inside": "" if np.isnan(known) else _INSIDE[bool(known)], "refused": str(of_air.refused.values)}
-            yield {"device": device, "relative_humidity": float(air), "share": float(share)} | lengths | said | inputs
-
-
-#: Columns of lengths, by variable.
-_LENGTHS = {"run": "length", "run_se": "length_error", "estimate": "estimate", "low": "low", "high": "high"}
-_COLUMNS = {
-    "stuck": (one_in, "share"),
-    "run [µm]": (with_error, "run_um", "run_se_um"),
-    "estimate [µm]": (".0f", "estimate_um"),
-    f"{CONFIDENCE} % [µm]": (
-        lambda low, high: MISSING if np.isnan(low) else f"{low:.0f} to {high:.0f}",
-        "low_um",
-        "high_um",
-    ),
-    "inside": (lambda inside: inside or MISSING, "inside"),
-}
+            yield {"device": device, "relative_humidity": float(air), "share": float(share)} | numbers | said | inputs
 
 
 def _inputs(dataset):
     """Inputs of the estimate in the units of a configuration, none where it refuses the configuration."""
     if "side" not in dataset.dims:
         return {}
-    own = {f"{name}_{unit}": (dataset[name], unit) for name, unit in _SIZES.items()}
+    own = {f"{name}_{unit}": (dataset[name], unit) for name, unit in _SIZES.items() if name in dataset}
+    for direction in dataset.direction.values if "contact" in dataset else ():
+        own[f"contact_{direction}_um"] = dataset.contact.sel(direction=direction), "um"
     for side in dataset.side.values:
         of_side = dataset.sel(side=side)
         own |= {f"{side}_{name}_{unit}".rstrip("_"): (of_side[name], unit) for name, unit in _OF_SIDES.items()}
@@ -87,13 +138,13 @@ def _as_stated(value, unit):
     return float(f"{from_si(value, unit) if unit else value:.12g}")
 
 
-def counted(datasets: Sequence[xr.Dataset]) -> str:
-    """How many lengths of runs are outside the intervals of the estimate, in words."""
+def counted(datasets: Sequence[xr.Dataset], sizes: Sizes = SIZES["length"]) -> str:
+    """How many sizes of runs are outside the intervals of the estimate, in words."""
     inside = np.concatenate([is_inside(dataset).values.ravel() for dataset in datasets])
     known = inside[~np.isnan(inside)]
     if not known.size:
-        return "No length of the run stands beside an estimate."
-    return f"{known.size - int(known.sum())} of {known.size} lengths are outside the interval of {CONFIDENCE} %."
+        return f"No {sizes.name} of the run stands beside an estimate."
+    return f"{known.size - int(known.sum())} of {known.size} {sizes.name}s are outside the interval of {CONFIDENCE} %."
 
 
 def refusals(dataset: xr.Dataset) -> list[str]:
@@ -106,13 +157,16 @@ def section(dataset: xr.Dataset) -> Section:
     """Section of the page of a device."""
     if not np.isfinite(dataset.estimate).any():
         return Section(_TITLE, refusals(dataset))
-    cells = Table.of(_rows("", dataset), "", HUMIDITY | _COLUMNS).cells
-    return Section(_TITLE, [" ".join([_CAPTION, counted([dataset])]), *refusals(dataset)], cells, missing=_MISSING)
+    sizes = sizes_of(dataset)
+    cells = Table.of(_rows("", dataset), "", HUMIDITY | sizes.columns).cells
+    said = [" ".join([sizes.caption, counted([dataset], sizes)]), *refusals(dataset)]
+    return Section(_TITLE, said, cells, missing=_MISSING)
 
 
 def inputs(plan: Any, device: str) -> dict[str, str]:
     """Dataset of a device of a kind that the estimate knows, as input of its page."""
-    return {"estimate": f"devices/estimate/{device}"} if is_estimated(plan, device) else {}
+    file = file_of(plan, device)
+    return {"estimate": file} if file else {}
 
 
 def with_estimate(page: Page, data: Mapping[str, Any]) -> Page:
@@ -122,13 +176,16 @@ def with_estimate(page: Page, data: Mapping[str, Any]) -> Page:
     return replace(page, sections=[*page.sections, section(data["estimate"])])
 
 
-STAGES = (
-    table_stage(
-        "estimate",
-        "estimates at once beside the run",
-        inputs=lambda plan, at: {"estimates": by_name("devices/estimate", estimated(plan))},
-        compute=lambda data: table(data["estimates"]),
-        jobs=lambda plan: [{}] if estimated(plan) else [],
+def _stage(sizes):
+    """Stage of the table of some sizes."""
+    return table_stage(
+        sizes.file,
+        sizes.shows,
+        inputs=lambda plan, at: {"estimates": {name: file_of(plan, name) for name in estimated(plan, sizes.stage)}},
+        compute=lambda data: table(data["estimates"], sizes),
+        jobs=lambda plan: [{}] if estimated(plan, sizes.stage) else [],
         targets=("devices",),
-    ),
-)
+    )
+
+
+STAGES = tuple(map(_stage, SIZES.values()))

@@ -1,15 +1,22 @@
 """Figures along an axis: curves of a device with bands, maps of its margin over two axes, and laws of surfaces."""
 
+import textwrap
+
 import numpy as np
 import xarray as xr
+from matplotlib.collections import Collection
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
 from stiction.config.surfaces import process
 from stiction.contact.air import Air
+from stiction.devices.risk import one_in
 from stiction.report.axes.axis import axes_of
+from stiction.report.axes.labels import Label, put
+from stiction.report.axes.roughness import crossings_of
 from stiction.report.format import TO_NM, TO_UM
 from stiction.report.style import (
+    BUILD,
     DOUBLE,
     INTERVAL,
     SINGLE,
@@ -41,6 +48,12 @@ _SHOWN = {
 _POINTS = 101
 #: Numbers along a logarithmic axis of less than a decade.
 _WITHIN_A_DECADE = (1, 1.5, 2, 3, 4, 6, 8)
+#: Width of a figure of curves, for text of 11 pixels where it is 390 pixels wide, and height of a panel [in].
+_WIDE, _HIGH = 3.4, 2.8
+#: Part of a panel of a process that is free of curves at its bottom and its top.
+_FREE = 0.14
+#: Longest line of a label [characters].
+_LONGEST = 36
 
 
 # Curves
@@ -56,50 +69,54 @@ def roughness(dataset: xr.Dataset) -> Figure:
     curve = next(as_given)
     given = axes_of(curve)[0].in_unit(float(curve.given))
 
-    def marks(panel):
-        """The given roughness, and what a dash means at any humidity."""
+    def marks(panel, shape):
+        """The given roughness, what a dash means at any humidity, and the crossings in words."""
         panel.axvline(given, color="0.6", linestyle=":", label="as given")
         panel.plot([], [], "_", color="0.3", markersize=8, label="simulated limit")
+        return _crossings(curve, shape)
 
     return _curves(curve, _simulated, marks)
 
 
 @styled
 def devices(curve: xr.Dataset, recommended: xr.Dataset, device: str) -> Figure:
-    """Estimate of a device over a process variable, with its 95 % band, the required value and the best setting.
+    """Estimate of a device over a process variable, with its 95 % bands, the required value and the best setting.
 
     A panel for each end state. Grey: the settings that suffice at all humidities and against all end states.
     """
     one = recommended.sel(who=device)
-    best, (low, high), required = float(one.best), map(float, one.best_interval), TO_UM * float(curve.required)
-    reach = np.maximum([[best - low], [high - best]], 0)
+    ranges = one.sufficient.values[np.isfinite(one.sufficient.values[:, 0])]
 
-    def marks(panel):
+    def marks(panel, _shape):
         """Settings that suffice, and the best one."""
-        for ends in one.sufficient.values[np.isfinite(one.sufficient.values[:, 0])]:
+        for ends in ranges:
             panel.axvspan(*ends, color="0.9", zorder=0, label="next run suffices, 95 %")
-        label = "best and 95 % interval"
-        panel.errorbar(best, required, xerr=reach, fmt="D", color="black", markersize=4, label=label)
+        if np.isfinite(float(one.best)):
+            _best(panel, one)
+        return []
 
     return _curves(curve, _band, marks)
 
 
 def _curves(curve, draw, mark):
-    """Figure of a curve, ``draw`` its line at a humidity and ``mark`` what is common to a panel."""
+    """Figure of a curve: ``draw`` draws it at a humidity, ``mark`` what is common to a panel, and returns labels."""
     shapes = list(map(str, curve["shape"].values))
-    figure, axes = panels(1, len(shapes), (min(DOUBLE, 1.3 * SINGLE * len(shapes)), 3.0))
-    sought = sought_of(curve)
-    for panel, shape in zip(axes[0], shapes, strict=True):
+    figure, axes = panels(len(shapes), 1, (_WIDE, _HIGH * len(shapes)))
+    sought, level = sought_of(curve), TO_UM * float(curve.required)
+    required = Label(f"{sought.required} {sought.in_words(float(curve.required))}", "black")
+    for panel, shape in zip(axes[:, 0], shapes, strict=True):
         for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
             draw(panel, curve.sel(humidity=humidity, shape=shape), colour)
-        panel.axhline(TO_UM * float(curve.required), color="black", linewidth=0.8, label=sought.required)
-        mark(panel)
+        panel.axhline(level, color="black", linewidth=0.8)
         panel.set_yscale("log")
+        labels = mark(panel, shape)
         _plain(panel.yaxis)
         _show(panel.xaxis, panel.set_xscale, curve, axes_of(curve)[0])
-    axes[0, 0].set_ylabel(f"{sought.response} [{sought.shown}], p = {float(curve.share):g}")
+        panel.set_ylabel(f"{sought.label} at which\n{one_in(float(curve.share))} sticks [{sought.shown}]")
+        put(panel, level, [*labels, required])
     letter(axes, _held_by(shapes))
-    legend_outside(figure, handles(*axes[0]), "lower", 2 * len(shapes))
+    lines_first = sorted(zip(*handles(*axes[:, 0]), strict=True), key=lambda one: isinstance(one[0], Collection))
+    legend_outside(figure, tuple(zip(*lines_first, strict=True)), "lower", 2)
     return figure
 
 
@@ -119,21 +136,69 @@ def _simulated(panel, line, colour):
     if np.isfinite(line.bound.values).any():
         style, label = END_STATES[shape].lines[1], f"flat surfaces, {END_STATES[shape].by}"
         panel.plot(x, TO_UM * line.bound.values, style, color=colour, linewidth=0.8, label=label)
-    own = (line.crossing_humidity.values == float(line.humidity)) & (line.crossing_shape.values == shape)
-    if own.any():
-        places, errors = (axis.in_unit(line[name].values[own]) for name in ("crossing_place", "crossing_error"))
+    crossed = crossings_of(line, float(line.humidity), shape)
+    if crossed.sizes["crossing"]:
+        places, errors = (axis.in_unit(crossed[name].values) for name in ("crossing_place", "crossing_error"))
         height = np.full(len(places), TO_UM * float(line.required))
         panel.errorbar(places, height, xerr=INTERVAL * errors, fmt="o", color=colour, fillstyle="none", zorder=3)
 
 
+def _crossings(curve, shape):
+    """Labels of the places at which the estimate is the required value, and of the humidities without one."""
+    axis, labels, elsewhere = axes_of(curve)[0], [], {}
+    for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
+        air, crossed = Air(humidity).words, crossings_of(curve, humidity, shape)
+        places = list(zip(crossed.crossing_place.values, crossed.crossing_error.values, strict=True))
+        labels += [Label(f"{air}: {axis.at(*place)}", colour, axis.in_unit(place[0])) for place in places]
+        margin = margins_of(curve.sel(humidity=humidity, shape=shape))
+        if not places and np.isfinite(margin).any():
+            nearest = int(np.nanargmin(np.abs(margin)))
+            elsewhere.setdefault((nearest, margin[nearest] > 0), {})[air] = colour
+    for (nearest, is_met), colours in elsewhere.items():
+        where = "in all of this range" if is_met else "not in this range"
+        text = textwrap.fill(f"{', '.join(colours)}: {where}", _LONGEST)
+        colour = next(iter(colours.values())) if len(colours) == 1 else "black"
+        labels.append(Label(text, colour, axis.in_unit(curve.roughness.values[nearest])))
+    return labels
+
+
 def _band(panel, line, colour):
-    """Estimate over a process, with the bands of the mean process and, wider, of the next run."""
+    """Estimate over a process, with the bands of the mean process and, on both sides of it, of the next run."""
     x, estimate = line.value.values, TO_UM * line.estimate.values
-    for names in (PARTS, (*PARTS, "run")):
-        factor = np.exp(INTERVAL * np.sqrt(sum(line[f"{name}_error"].values ** 2 for name in names)))
-        panel.fill_between(x, estimate / factor, estimate * factor, color=colour, alpha=0.15, linewidth=0)
-    label = f"{Air(float(line.humidity)).words}, estimate, 95 % bands of mean and next run"
-    panel.plot(x, estimate, ".-", color=colour, label=label)
+    mean, run = (
+        np.exp(INTERVAL * np.sqrt(sum(line[f"{name}_error"].values ** 2 for name in names)))
+        for names in (PARTS, (*PARTS, "run"))
+    )
+    panel.plot(x, estimate, ".-", color=colour, label=f"{Air(float(line.humidity)).words}, estimate")
+    style = {"color": colour, "linewidth": 0}
+    inner = "inner band: mean process, 95 %"
+    panel.fill_between(x, estimate / mean, estimate * mean, alpha=0.35, label=inner, **style)
+    for near, far in ((1 / mean, 1 / run), (mean, run)):
+        panel.fill_between(x, estimate * near, estimate * far, alpha=0.15, label="outer band: next run, 95 %", **style)
+
+
+def _best(panel, one):
+    """The best setting with its 95 % interval at the bottom of a panel, and whether any setting suffices."""
+    along, best, (low, high) = axes_of(one)[0], float(one.best), map(float, one.best_interval)
+    bottom, top = panel.get_ylim()
+    free = (top / bottom) ** _FREE
+    panel.set_ylim(bottom / free, top * free)
+    reach, across = np.maximum([[best - low], [high - best]], 0), panel.get_xaxis_transform()
+    panel.errorbar(best, _FREE / 4, xerr=reach, fmt="D", color=BUILD, markersize=4, transform=across)
+    said = f"best {along.at(best)}" + (f", 95 %: {along.text(low)} to {along.at(high)}" if low < high else "")
+    part = (best - along.values[0]) / np.ptp(along.values)
+    place = {"ha": ("left", "center", "right")[int(np.clip(3 * part, 0, 2))], "va": "bottom", "fontsize": 7}
+    panel.annotate(said, (best, _FREE / 4), (0, 4), xycoords=across, textcoords="offset points", color=BUILD, **place)
+    if not along.ranges(one.sufficient.values):
+        panel.text(
+            0.5,
+            0.97,
+            "no setting is sure to suffice in the next run",
+            transform=panel.transAxes,
+            ha="center",
+            va="top",
+            fontsize=7,
+        )
 
 
 def _plain(side):
@@ -151,7 +216,8 @@ def _show(side, scale, data, axis):
     if axis.name == "skewness":
         along = data[KURTOSIS].isel({other: 0 for other in data[KURTOSIS].dims if other != axis.dimension})
         pairs = zip(axis.values, along.values, strict=True)
-        side.set_ticks(axis.values, [f"{at:.3g}\n({kurtosis:.3g})" for at, kurtosis in pairs])
+        between = "\n" if side.axis_name == "x" else " "
+        side.set_ticks(axis.values, [f"{at:.3g}{between}({kurtosis:.3g})" for at, kurtosis in pairs])
         side.set_label_text(f"{axis.label} (kurtosis)")
 
 
@@ -165,7 +231,7 @@ def roughness_map(data: xr.Dataset) -> Figure:
     The panels are by humidity and end state.
     """
     humidities, shapes = data.humidity.values, list(map(str, data["shape"].values))
-    size = min(DOUBLE, 1.3 * SINGLE * len(shapes)), 2.8 * len(humidities)
+    size = min(DOUBLE, _WIDE * len(shapes)), _HIGH * len(humidities)
     figure, axes = panels(len(humidities), len(shapes), size)
     along, across = axes_of(data)
     for row, humidity in zip(axes, humidities, strict=True):

@@ -138,6 +138,11 @@ def _stuck_as_given(curve, humidity, shape):
     return f"{where}, at {axis.at(curve.given)}, {fraction_with_band(*stuck, ' %')} stick."
 
 
+def crossings_of(curve: xr.Dataset, humidity: float, shape: str) -> xr.Dataset:
+    """Crossings of a curve with its required value, at a humidity and against one end state."""
+    return _rows(curve, "crossing", humidity, shape)
+
+
 def _rows(curve, dimension, humidity, shape):
     """Crossings or ranges of a humidity and end state."""
     names = [f"{dimension}_humidity", f"{dimension}_shape"]

@@ -121,8 +121,8 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
     figure, axes, rows_of_pairs = _rows_of_panels(pairs, published)
     for (row, below), (pair, (beam, released, bands)) in zip(rows_of_pairs, pairs.items(), strict=True):
         weakest = apparent_adhesion_energy(beam.length, beam)
-        known = rows(published, pair=pair)
-        placed = places([*(humidity for humidity, _ in released), *known.relative_humidity])
+        published_rows = rows(published, pair=pair)
+        placed = places([*(humidity for humidity, _ in released), *published_rows.relative_humidity])
         released = {(placed[humidity], model): beams for (humidity, model), beams in released.items()}
         lowest = min([weakest, *(float(axis.energy_quantile.sel(probability=0.5).min()) for axis in bands.values())])
         highest = max(2 * flat.get(pair, 0.0), 2 * weakest, *map(_reach, released.values()))
@@ -132,13 +132,13 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
             _bounds(panel, flat.get(pair), weakest)
             for surface in sorted(bands.keys() & (SURFACE_MODELS if "G" in models else ("NG",))):
                 _band(panel, bands[surface], surface)
-            _draw_measured(panel, known, beam, models)
+            _draw_measured(panel, published_rows, beam, models)
             for model in models:
                 _draw_simulated(panel, released, model)
                 if below is None:
                     _labels(panel, released, model, TO_MJ * weakest)
         # Markers beside their places are no data to the axis.
-        row[0].update_datalim([(place, TO_MJ * weakest) for place in placed.values()], updatey=False)
+        row[0].update_datalim([(position, TO_MJ * weakest) for position in placed.values()], updatey=False)
         row[0].margins(x=0.06)
         humidity_axis(row[0], placed)
         if below is not None:
@@ -154,21 +154,21 @@ def adhesion_energies(pairs: Mapping[str, tuple], published: pd.DataFrame, flat:
 
 def _legend_above(figure, axes):
     """Legend of all panels, with as many columns as fit across the figure."""
-    entries, place = handles(*axes.flat), {"loc": "outside upper center", "columnspacing": 1.2}
-    legend = figure.legend(*entries, ncols=5, **place)
+    entries, style = handles(*axes.flat), {"loc": "outside upper center", "columnspacing": 1.2}
+    legend = figure.legend(*entries, ncols=5, **style)
     if legend.get_window_extent().width > figure.bbox.width:
         legend.remove()
-        figure.legend(*entries, ncols=4, **place)
+        figure.legend(*entries, ncols=4, **style)
 
 
 def _rows_of_panels(pairs, published):
     """New figure, its axes, and for each pair its row of energies and its row of shares, None without such a row."""
     apart = [_labels_meet(released, rows(published, pair=pair)) for pair, (_, released, _) in pairs.items()]
-    heights = [height for own in apart for height in _HEIGHTS[: 1 + own]]
+    heights = [height for has_shares in apart for height in _HEIGHTS[: 1 + has_shares]]
     size = DOUBLE, sum(heights) + 0.6
     figure, axes = panels(len(heights), 2, size, sharex="row", sharey="row", height_ratios=heights)
     rest = iter(axes)
-    return figure, axes, [(next(rest), next(rest) if own else None) for own in apart]
+    return figure, axes, [(next(rest), next(rest) if has_shares else None) for has_shares in apart]
 
 
 def _kinds(below):

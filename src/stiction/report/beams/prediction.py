@@ -36,16 +36,16 @@ def with_intervals(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
     frame = pd.DataFrame(rows)
     lengths = frame[(frame.model == _LEARNT_BY) & is_humid(frame.relative_humidity) & frame.crack_length_um.notna()]
     measured = {
-        pair: (of.crack_length_um.values, of.experiment_um.values)
-        for pair, of in lengths[lengths.experiment_um.notna()].groupby("pair", sort=False)
-        if of.crack_length_um.nunique() >= LENGTHS
+        pair: (table.crack_length_um.values, table.experiment_um.values)
+        for pair, table in lengths[lengths.experiment_um.notna()].groupby("pair", sort=False)
+        if table.crack_length_um.nunique() >= LENGTHS
     }
     parts = []
-    for pair, of in frame.groupby("pair", sort=False):
+    for pair, table in frame.groupby("pair", sort=False):
         others = [both for other, both in measured.items() if other != pair]
         if len(others) >= PAIRS:
             middle = np.log(lengths.crack_length_um[lengths.pair == pair]).mean()
-            parts.append(_ends(of, Discrepancy.learnt(others), middle))
+            parts.append(_ends(table, Discrepancy.learnt(others), middle))
     if not parts:
         return list(map(dict, rows))
     return frame.join(pd.concat(parts)).to_dict("records")
@@ -53,23 +53,25 @@ def with_intervals(rows: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
 
 def _ends(rows, discrepancy, middle):
     """Ends of the intervals of the rows of a pair."""
-    known = rows[(rows.model != "G") & is_humid(rows.relative_humidity) & rows.crack_length_um.notna()]
-    lengths = known.crack_length_um.values
-    scans = known.get("crack_length_scans_se_um", pd.Series(0.0, known.index)).fillna(0.0)
-    errors = np.hypot(known.crack_length_se_um, scans).values / lengths
-    found = pd.DataFrame(index=rows.index, columns=[name for ends in ENDS.values() for name in ends], dtype=float)
+    computed_rows = rows[(rows.model != "G") & is_humid(rows.relative_humidity) & rows.crack_length_um.notna()]
+    lengths = computed_rows.crack_length_um.values
+    scans = computed_rows.get("crack_length_scans_se_um", pd.Series(0.0, computed_rows.index)).fillna(0.0)
+    errors = np.hypot(computed_rows.crack_length_se_um, scans).values / lengths
+    intervals_of_rows = pd.DataFrame(
+        index=rows.index, columns=[name for ends in ENDS.values() for name in ends], dtype=float
+    )
     for coverage, names in ENDS.items():
         widths = discrepancy.half_widths(np.log(lengths) - middle, errors, coverage)
         for name, sign in zip(names, (-1, 1), strict=True):
-            found.loc[known.index, name] = lengths * np.exp(sign * widths)
-    return found
+            intervals_of_rows.loc[computed_rows.index, name] = lengths * np.exp(sign * widths)
+    return intervals_of_rows
 
 
 def count_contained(table: pd.DataFrame, coverage: float) -> tuple[int, int]:
     """Number of the measured lengths in their intervals of a probability, and of all, model NG."""
-    known = table[(table.model == _LEARNT_BY) & table.experiment_um.notna() & table[ENDS[coverage][0]].notna()]
-    low, high = (known[name] for name in ENDS[coverage])
-    return int(known.experiment_um.between(low, high).sum()), len(known)
+    compared = table[(table.model == _LEARNT_BY) & table.experiment_um.notna() & table[ENDS[coverage][0]].notna()]
+    low, high = (compared[name] for name in ENDS[coverage])
+    return int(compared.experiment_um.between(low, high).sum()), len(compared)
 
 
 def caption(table: pd.DataFrame) -> str:
@@ -104,17 +106,19 @@ def intervals(table: pd.DataFrame) -> Figure:
     If cracks of too few pairs have a length, there is one empty panel.
     """
     ends = table.reindex(columns=[name for names in ENDS.values() for name in names])
-    known = table[(table.model == _LEARNT_BY) & ends.notna().all(axis=1)]
-    parts = dict(list(known.groupby("pair", sort=False)))
+    compared = table[(table.model == _LEARNT_BY) & ends.notna().all(axis=1)]
+    parts = dict(list(compared.groupby("pair", sort=False)))
     figure, columns, _ = columns_of_panels(max(len(parts), 1), 1, lambda across: DOUBLE, 2.6)
-    for panel, part in zip(columns[:, 0], parts.values(), strict=False):
+    for panel, table_of_pair in zip(columns[:, 0], parts.values(), strict=False):
         for coverage, colour in zip(reversed(COVERAGES), _GREYS, strict=True):
-            low, high = (part[name] for name in ENDS[coverage])
-            panel.fill_between(part.relative_humidity, low, high, color=colour, linewidth=0, label=_percent(coverage))
-        panel.plot(part.relative_humidity, part.crack_length_um, label="computed", **_COMPUTED)
-        if part.experiment_um.notna().any():
-            measured = part.experiment_um, part.experiment_std_um
-            panel.errorbar(part.relative_humidity, *measured, label="measured", **_MEASURED)
+            low, high = (table_of_pair[name] for name in ENDS[coverage])
+            panel.fill_between(
+                table_of_pair.relative_humidity, low, high, color=colour, linewidth=0, label=_percent(coverage)
+            )
+        panel.plot(table_of_pair.relative_humidity, table_of_pair.crack_length_um, label="computed", **_COMPUTED)
+        if table_of_pair.experiment_um.notna().any():
+            measured = table_of_pair.experiment_um, table_of_pair.experiment_std_um
+            panel.errorbar(table_of_pair.relative_humidity, *measured, label="measured", **_MEASURED)
         panel.set_yscale("log")
         plain_log(panel.yaxis)
         panel.set(xlabel="relative humidity RH [–]", ylabel="crack length $l_s$ [µm]")

@@ -71,7 +71,7 @@ def table_3(
         caption += f" {prediction.caption(predicted)}"
     if warnings:
         caption = with_list(f"{caption} Warnings:", warnings)
-    columns = {title: of for title, of in _TABLE_3.items() if by_scans or "scans" not in title}
+    columns = {title: column for title, column in _TABLE_3.items() if by_scans or "scans" not in title}
     columns |= (beside.COLUMN if errors else {}) | (prediction.COLUMNS if predicted is not None else {})
     return Table.of(rows, caption, columns)
 
@@ -85,8 +85,8 @@ def _row_3(key, beams, forces, published):
     case = {"pair": pair, "relative_humidity": humidity}
     row = case | {"model": model} | _simulated_numbers(beams, forces)
     for name, columns in (("published", _PUBLISHED.get(model)), ("experiment", ("experiment", "experiment_std"))):
-        known = [value(published, column, **case) for column in columns] if columns else [np.nan, np.nan]
-        row |= dict(zip((f"{name}_um", f"{name}_std_um"), known, strict=True))
+        numbers = [value(published, column, **case) for column in columns] if columns else [np.nan, np.nan]
+        row |= dict(zip((f"{name}_um", f"{name}_std_um"), numbers, strict=True))
     for name, reference in (("deviation", "published_um"), ("experiment_deviation", "experiment_um")):
         row[f"{name}_percent"] = percent(row["crack_length_um"], row[reference])
     # The bias error of the paper: the absolute deviation of its own model NG from experiment.
@@ -131,8 +131,8 @@ def _by_scans(row, relative):
 
 def _by_model(row, errors):
     """Error of the model of one case. For Gaussian heights it was not computed."""
-    known = row["model"] != "G" and row["pair"] in errors
-    return beside.change(errors[row["pair"]].sel(humidity=row["relative_humidity"]) if known else None)
+    is_known = row["model"] != "G" and row["pair"] in errors
+    return beside.change(errors[row["pair"]].sel(humidity=row["relative_humidity"]) if is_known else None)
 
 
 def _share(state):
@@ -254,12 +254,12 @@ def _table_3(data, settings):
     scanned = ((pair, pair_errors(study)) for pair, study in data["by_scans"].items())
     by_scans = {(pair, humidity): error for pair, errors in scanned for humidity, error in errors.items()}
     water = {pair: in_si(Water, section) for pair, section in settings["water"].items()}
-    found = pair_warnings.film_warnings(data["beams"], water)
+    films = pair_warnings.film_warnings(data["beams"], water)
     flags = pair_warnings.surface_notes(data, settings["surfaces"], settings["assumed"])
-    listed = [*found.items(), *((f"Pair {pair}", limits) for pair, limits in flags.items())]
+    listed = [*films.items(), *((f"Pair {pair}", limits) for pair, limits in flags.items())]
     warnings = [f"{subject}: {sentence}" for subject, limits in listed for sentence in texts(limits)]
-    known = published.published_rows(data, settings)
-    return table_3(data["beams"], data["forces"], known, by_scans, warnings, data.get("errors"))
+    paper = published.published_rows(data, settings)
+    return table_3(data["beams"], data["forces"], paper, by_scans, warnings, data.get("errors"))
 
 
 STAGES = (

@@ -67,7 +67,7 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
         line[0, 0].set_ylabel("P(stuck) [–]")
         line[1, 0].set_ylabel(on_own_axes("pull-off force [µN]", line))
     letter_lines(lines, list(datasets))
-    if sentences := [f"{name}: {sentence}" for name, found in warnings.items() for sentence in words.texts(found)]:
+    if sentences := [f"{name}: {sentence}" for name, limits in warnings.items() for sentence in words.texts(limits)]:
         figure.set_label("\n".join(["Warnings:", *sentences]))
         figure.supxlabel("Some results are beyond limits of the model.", fontsize=6, ha="left", x=0.01)
     return figure
@@ -125,7 +125,7 @@ def _force_over_humidity(panel, dataset):
         entries.append(panel.errorbar(at, means[single], reach, **points))
     panel.axhline(TO_UN * float(dataset.restoring_force), color="0.4", linestyle=":", linewidth=0.8)
     if not single.all():
-        label = f"worst {worst.choose(f'humidity {worst.humidity:.2f}', worst.where)}"
+        label = f"worst {worst.choose(f'humidity {worst.humidity:.2f}', worst.where)}, by the mean"
         entries += panel.plot([placed[worst.humidity]], [float(means.max())], "v", color="black", label=label)
     legend_below(panel, entries)
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
@@ -174,8 +174,11 @@ def _in_words(cases):
     """Sentences on total and scatter: standard uncertainties at all humidities."""
     budgets = [budget_of(dataset) for dataset in cases.values()]
     totals = [budget.effect(budget.names) for budget in budgets]
-    for name, found in (("total", totals), ("devices scatter", [float(one.scatter) for one in cases.values()])):
-        yield f"{name} ± {', '.join(number(100 * one, '#.2g').rstrip('.') for one in found)}\u00a0%"
+    for name, numbers in (
+        ("total", totals),
+        ("devices scatter", [float(dataset.scatter) for dataset in cases.values()]),
+    ):
+        yield f"{name} ± {', '.join(number(100 * deviation, '#.2g').rstrip('.') for deviation in numbers)}\u00a0%"
 
 
 def _measurements(cases):
@@ -186,9 +189,9 @@ def _measurements(cases):
     small = [name for name, high in highest.items() if high < _SMALL]
     together = small if len(small) > 1 else []
     largest = sorted(set(groups) - set(together), key=lambda name: (-highest[name], list(groups).index(name)))
-    found = {name.removeprefix("the "): rows[name] for name in largest}
+    bars_by_name = {name.removeprefix("the "): rows[name] for name in largest}
     others = [entry for name in together for entry in groups[name]]
-    return found | ({_OTHERS: _shares(cases, others)} if together else {})
+    return bars_by_name | ({_OTHERS: _shares(cases, others)} if together else {})
 
 
 def _shares(cases, inputs):
@@ -199,11 +202,11 @@ def _shares(cases, inputs):
 
 def _share(budget, slope_errors, inputs, total):
     """Bar of the share of some inputs in the variance, and its error [%]. Zero if a budget has none of them."""
-    own = [name for name in budget.names if name in inputs]
-    if not own or not total > 0:
+    names = [name for name in budget.names if name in inputs]
+    if not names or not total > 0:
         return 0.0, 0.0, 0.0
-    effect = budget.effect(own) / total
-    return 0.0, 100 * effect**2, 200 * effect * budget.error_of_effect(own, slope_errors) / total
+    effect = budget.effect(names) / total
+    return 0.0, 100 * effect**2, 200 * effect * budget.error_of_effect(names, slope_errors) / total
 
 
 def _choices(cases):
@@ -228,7 +231,7 @@ def _rows_of_bars(panel, rows: Mapping[str, Sequence[tuple]], colours: Sequence[
     Bars that are not known are left out. Those ``of_all`` are shares, whose errors end where nothing and all are.
     """
     ends = []
-    for place, bars in enumerate(rows.values()):
+    for row, bars in enumerate(rows.values()):
         height = _FILLED / len(bars)
         for k, ((low, high, error), shade) in enumerate(zip(bars, colours, strict=True)):
             if not np.isfinite(high - low):
@@ -237,7 +240,7 @@ def _rows_of_bars(panel, rows: Mapping[str, Sequence[tuple]], colours: Sequence[
             end = high if high > -low else low
             reach = [min(error, high), max(0.0, min(error, _ALL - high))] if of_all else [error, error]
             ends += [abs(low), abs(high), abs(end) + reach[1]]
-            at = place + (k - (len(bars) - 1) / 2) * height
+            at = row + (k - (len(bars) - 1) / 2) * height
             panel.barh(at, high - low, height, left=low, color=shade, linewidth=0)
             if error > 0:
                 panel.errorbar(end, at, xerr=np.c_[reach], color="black", linewidth=0.6, capsize=1)

@@ -87,9 +87,14 @@ def stoppers(
     if 0 < len(humid) < len(datasets):
         caption += " One in a single air has no such row."
     listed = [f"{device}: {sentence}" for device, of_device in warnings.items() for sentence in words.texts(of_device)]
-    said = [caption, *([column.caption(errors)] if errors else []), not_modelled, *(["Warnings:"] if listed else [])]
+    sentences = [
+        caption,
+        *([column.caption(errors)] if errors else []),
+        not_modelled,
+        *(["Warnings:"] if listed else []),
+    ]
     columns = _columns_of_stoppers(rows) | (_WORST if humid else {}) | (column.COLUMN if errors else {})
-    return Table.of(rows, with_list(" ".join(said), listed), columns)
+    return Table.of(rows, with_list(" ".join(sentences), listed), columns)
 
 
 def _stopper_rows(device, dataset):
@@ -178,16 +183,17 @@ def budget(budgets: Mapping[tuple, xr.Dataset], errors: Mapping[str, xr.Dataset]
     frame = pd.DataFrame(
         [
             row
-            for (device, rh, *_), one in budgets.items()
-            for row in [*_budget_rows(device, rh, one), *_model_rows(device, rh, one, errors)]
+            for (device, rh, *_), dataset in budgets.items()
+            for row in [*_budget_rows(device, rh, dataset), *_model_rows(device, rh, dataset, errors)]
         ]
     )
     sentences = [
-        f"{device}, {Air(humidity).words}: {what_to_measure(one)}" for (device, humidity, *_), one in budgets.items()
+        f"{device}, {Air(humidity).words}: {what_to_measure(dataset)}"
+        for (device, humidity, *_), dataset in budgets.items()
     ]
     devices = dict.fromkeys(device for device, *_ in budgets)
     omitted = [
-        f"{name}: {counted_as_exact(*(one for (device, *_), one in budgets.items() if device == name))}"
+        f"{name}: {counted_as_exact(*(dataset for (device, *_), dataset in budgets.items() if device == name))}"
         for name in devices
     ]
     caption = with_list(
@@ -233,8 +239,8 @@ def _budget_rows(device, humidity, dataset):
     for name, inputs in groups_of(dataset).items():
         left = {"remaining_percent": 100 * uncertainty.remaining(inputs)}
         yield head | {"part": "measurement", "name": name} | _effect(uncertainty, inputs, errors) | left
-    for name, whole in ((TOTAL, uncertainty), (INDEPENDENT, uncertainty.uncorrelated)):
-        yield head | {"part": "total", "name": name} | _effect(whole, uncertainty.names, errors)
+    for name, total in ((TOTAL, uncertainty), (INDEPENDENT, uncertainty.uncorrelated)):
+        yield head | {"part": "total", "name": name} | _effect(total, uncertainty.names, errors)
     yield head | {"part": "scatter", "name": SCATTER, "effect_percent": 100 * float(dataset.scatter)}
     for name in dataset.choice.values:
         effect, error = (100 * float(dataset[key].sel(choice=name)) for key in ("effect", "effect_error"))

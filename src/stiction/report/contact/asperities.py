@@ -37,7 +37,7 @@ _CAPTION = (
     "the deviation from the published length, and from the length under full elastic contact, if computed; "
     "processor time of a strip over that of spheres on summits; ± standard error over strips. Island: a sphere of the "
     "area of every island; fitted: a sphere by least squares; shape: every island with its true shape, solved alone. "
-    "vdW: the medium through which the solids attract, or none."
+    "Van der Waals: the medium through which the solids attract, or none."
 )
 
 
@@ -53,24 +53,24 @@ def _rows(
         humidities, base = study.humidity.values, None
         cases = [{"pair": pair, "relative_humidity": humidity} for humidity in humidities]
         lengths = np.array([stuck_lengths(beams[pair, humidity]).mean() / UM for humidity in humidities])
-        known = np.array([value(published, "ng", **case) for case in cases])
+        published_lengths = np.array([value(published, "ng", **case) for case in cases])
         for labels, energies in energies_of_readings(study):
             base = energies if base is None else base  # the first reading
             others, count = base[: len(energies)], {"strips": len(energies)}
-            whole = {"time_over_summits": cost(study, **labels)}
-            whole |= _rms("published", energies, others, lengths / known)
-            whole |= _rms("full_contact", *_common_energies(energies, humidities, full[pair]))
+            of_reading = {"time_over_summits": cost(study, **labels)}
+            of_reading |= _rms("published", energies, others, lengths / published_lengths)
+            of_reading |= _rms("full_contact", *_common_energies(energies, humidities, full[pair]))
             labels = {
                 "reading": labels["reading"],
                 "spacing_nm": TO_NM * labels["spacing"],
                 "vdw": labels["attraction"],
             }
             factors = length_factors(energies, others, humidities, humidities)
-            for case, length, of_paper, factor, error in zip(cases, lengths, known, *factors, strict=True):
+            for case, length, of_paper, factor, error in zip(cases, lengths, published_lengths, *factors, strict=True):
                 row = {"change_percent": 100 * (factor - 1), "change_se_percent": 100 * error}
                 row |= {"crack_length_um": length * factor, "published_um": of_paper}
                 row |= {"deviation_percent": percent(length * factor, of_paper)}
-                rows.append(case | labels | count | row | whole)
+                rows.append(case | labels | count | row | of_reading)
     return rows
 
 
@@ -98,7 +98,13 @@ def _line(labels, rows):
     """One reading of a pair as text."""
     pair, vdw, reading, spacing = labels
     first, last = rows.iloc[0], rows.iloc[-1]
-    shown = {"pair": pair, "asperity": reading, "grid [nm]": f"{spacing:g}", "vdW": vdw, "strips": str(first.strips)}
+    shown = {
+        "pair": pair,
+        "asperity": reading,
+        "grid [nm]": f"{spacing:g}",
+        "van der Waals": vdw,
+        "strips": str(first.strips),
+    }
     for title, end in (("low RH", first), ("high RH", last)):
         shown[f"Δl_s [%], {title}"] = signed(end.change_percent, end.change_se_percent)
     for title, name in (("published", "published"), ("full contact", "full_contact")):
@@ -136,13 +142,13 @@ def parts(studies: Mapping[str, xr.Dataset], full: Mapping[str, xr.Dataset]) -> 
     for pair, study in studies.items():
         humidities, of_models = _energies_of_models(study, full[pair])
         factors = {
-            part: length_factors(of_models[one], of_models[other], humidities, humidities)
-            for part, (one, other) in _MODELS_OF_PARTS.items()
+            cause: length_factors(of_models[model], of_models[other], humidities, humidities)
+            for cause, (model, other) in _MODELS_OF_PARTS.items()
         }
         for k, humidity in enumerate(humidities):
             row = {"pair": pair, "relative_humidity": humidity, "strips": len(of_models["full"])}
-            for part, (factor, error) in factors.items():
-                row |= {f"{part}_percent": 100 * (factor[k] - 1), f"{part}_se_percent": 100 * error[k]}
+            for cause, (factor, error) in factors.items():
+                row |= {f"{cause}_percent": 100 * (factor[k] - 1), f"{cause}_se_percent": 100 * error[k]}
             rows.append(row)
     return Table.of(rows, _PARTS, PAIR | _COLUMNS_OF_PARTS)
 
@@ -150,12 +156,12 @@ def parts(studies: Mapping[str, xr.Dataset], full: Mapping[str, xr.Dataset]) -> 
 def _energies_of_models(study, of_full):
     """Humidities of full contact, and energies of the strips common to all models, with attraction of the solids."""
     at, full, _ = full_contact.energies(of_full)
-    known, by_model = np.isin(study.humidity.values, at), {"full": full}
+    common, by_model = np.isin(study.humidity.values, at), {"full": full}
     coarse, fine = (float(study.spacing[k]) for k in (0, -1))
     names = {("summit", coarse): "summit", ("summit", fine): "fine", ("shape", coarse): "shape"}
-    for of, energies in energies_of_readings(study):
-        if of["attraction"] == study.attraction[0] and (of["reading"], of["spacing"]) in names:
-            by_model[names[of["reading"], of["spacing"]]] = energies[:, known]
+    for labels, energies in energies_of_readings(study):
+        if labels["attraction"] == study.attraction[0] and (labels["reading"], labels["spacing"]) in names:
+            by_model[names[labels["reading"], labels["spacing"]]] = energies[:, common]
     strips = min(map(len, by_model.values()))
     return at, {name: energies[:strips] for name, energies in by_model.items()}
 
@@ -203,13 +209,13 @@ def changes_drawn(frame: pd.DataFrame, full: Mapping[str, tuple[float, float]], 
     for (panel,), pair in zip(columns, pairs, strict=True):
         of_pair = lowest[lowest.pair == pair]
         base = of_pair.iloc[0]
-        known = rows_of(published, pair=pair, relative_humidity=base.relative_humidity)
+        reference = rows_of(published, pair=pair, relative_humidity=base.relative_humidity)
         length = base.crack_length_um / (1 + base.change_percent / 100)
-        dots.references(panel, length, f"base: {_label(base)}", known)
+        dots.references(panel, length, f"base: {_label(base)}", reference)
         change, error = full[pair]
-        whole = dots.Mark(change, change, "black", dots.signed(change), error, "full elastic contact")
+        of_full_contact = dots.Mark(change, change, "black", dots.signed(change), error, "full elastic contact")
         attraction = choice_label(f"van_der_waals_{base.vdw}").removeprefix("van der Waals ")
-        dots.draw(panel, _readings(of_pair) | {"full contact": [whole]}, column=attraction)
+        dots.draw(panel, _readings(of_pair) | {"full contact": [of_full_contact]}, column=attraction)
         panel.xaxis.set_major_locator(MaxNLocator(3))
         panel.set_xlabel("change of\n$l_s$ [%]")
         titles.append(f"pair {pair}\n{Air(base.relative_humidity).words}")
@@ -233,14 +239,14 @@ def _label(row):
 
 def _readings(rows):
     """Marks of the readings of a pair by their label: with attraction of the solids and its number, and without."""
-    media, found = rows.vdw.unique().tolist(), {}
+    media, marks = rows.vdw.unique().tolist(), {}
     for row in rows.itertuples():
         k, change = media.index(row.vdw), row.change_percent
         label = choice_label(f"van_der_waals_{row.vdw}")
         shown = {"error": row.change_se_percent, "label": label, "filled": k == 0}
         mark = dots.Mark(change, change, _COLOURS[k], dots.signed(change) * (k == 0), **shown)
-        found.setdefault(_label(row), []).append(mark)
-    return found
+        marks.setdefault(_label(row), []).append(mark)
+    return marks
 
 
 def _stage(kind, shows, draw, **declared):

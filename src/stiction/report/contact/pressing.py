@@ -101,8 +101,8 @@ def figure(studies: Mapping[str, xr.Dataset]) -> Figure:
 
 def _pairs(plan):
     """Pairs in the run and in the study of pressing."""
-    known = plan.config["studies"]["pressing"]["distance_nm"]
-    return [pair for pair in plan.humid_pairs if pair in known]
+    distances = plan.config["studies"]["pressing"]["distance_nm"]
+    return [pair for pair in plan.humid_pairs if pair in distances]
 
 
 def _stage(kind, shows, draw, **declared):

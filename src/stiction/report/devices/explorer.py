@@ -15,7 +15,7 @@ from stiction.contact.air import has_dry, is_humid
 from stiction.devices.risk import SCORES, quantiles
 from stiction.report.devices import levels
 from stiction.report.devices.curves import Curves
-from stiction.report.devices.grid import Axis, Grid
+from stiction.report.devices.grid import Grid, GridAxis
 from stiction.report.devices.levels import Simulated
 from stiction.report.format import UM, UN
 from stiction.stages.devices.stoppers import bounded_share
@@ -47,8 +47,12 @@ def beside(view: View, answer: Answer) -> View:
 
 def content(name: str, section: Mapping[str, Any], views: Sequence[View]) -> dict:
     """Content of the controls of the page of a device."""
-    own = {key: value for key, value in section.items() if key in kind_of(section).allowed_keys}
-    return {"name": name, "section": own, "views": [asdict(view) | {"grid": view.grid.json} for view in views]}
+    keys_of_device = {key: value for key, value in section.items() if key in kind_of(section).allowed_keys}
+    return {
+        "name": name,
+        "section": keys_of_device,
+        "views": [asdict(view) | {"grid": view.grid.json} for view in views],
+    }
 
 
 def views_of_beam(
@@ -63,8 +67,8 @@ def views_of_beam(
     It is the one over the chart, or, if the chart has neither the device itself nor its worst air, the device alone.
     """
     view = beam_view(name, section, safe_lengths, charts, answer)
-    own = answer.together.humidity, section["thickness_um"], section["gap_um"]
-    if all(np.isclose(axis.values, value, rtol=1e-9).any() for axis, value in zip(view.grid.axes, own, strict=True)):
+    state = answer.together.humidity, section["thickness_um"], section["gap_um"]
+    if all(np.isclose(axis.values, value, rtol=1e-9).any() for axis, value in zip(view.grid.axes, state, strict=True)):
         return [view]
     return [replace(beam_view(name, section, safe_lengths, {}, answer), title=_ALONE), view]
 
@@ -88,12 +92,14 @@ def beam_view(
         _size_axis("thickness_um", "thickness", joined.thickness.values / UM, section, f"{chart}.thicknesses_um"),
         _size_axis("gap_um", "gap", joined.gap.values / UM, section, f"{chart}.gaps_um"),
     )
-    found = levels.of_answer(answer, joined.humidity.values, _simulated(joined, answer), _own(joined, itself, answer))
-    build, sizes = found.factor * joined.safe_length.values / UM, found.sizes / UM
+    layers = levels.of_answer(
+        answer, joined.humidity.values, _simulated(joined, answer), _of_device_itself(joined, itself, answer)
+    )
+    build, sizes = layers.factor * joined.safe_length.values / UM, layers.sizes / UM
     start = section.get("length_um", _rounded_down(answer.build / UM, float(np.nanmin(joined.safe_length)) / UM))
     size = size_axis("length_um", "length", "µm", (build, sizes[0]), start)
     share = share_axis(joined.share.values, answer.share, "shares")
-    shown = {"scores": found.scores, "first": found.first / UM}
+    shown = {"scores": layers.scores, "first": layers.first / UM}
     grid = Grid(axes, share, size, build, sizes, int(joined.beams), False, **shown)
     words = {"what": "length", "safe": "Length to build", "bound": "to build"}
     words |= {"stick": "Devices of this length that stick"}
@@ -113,29 +119,29 @@ def _simulated(dataset, answer):
     return Simulated(dataset["quantile"].values, dataset.safe_length.sel(share=answer.share).values)
 
 
-def _own(joined, itself, answer):
+def _of_device_itself(joined, itself, answer):
     """Simulation of the device itself in its airs, from the states if they have it. Dry air is beside humid ones."""
-    own = {}
+    simulated = {}
     for humidity in itself.humidity.values:
         at = {"humidity": humidity, "thickness": itself.thickness.values[0], "gap": itself.gap.values[0]}
         try:
-            own[float(humidity)] = _simulated(joined.sel(at, method="nearest", tolerance=1e-12), answer)
+            simulated[float(humidity)] = _simulated(joined.sel(at, method="nearest", tolerance=1e-12), answer)
         except KeyError:
-            own[float(humidity)] = _simulated(itself.isel(thickness=0, gap=0).sel(humidity=humidity), answer)
-    return _as_axis(own, joined.humidity.values)
+            simulated[float(humidity)] = _simulated(itself.isel(thickness=0, gap=0).sel(humidity=humidity), answer)
+    return _as_axis(simulated, joined.humidity.values)
 
 
-def _as_axis(own, humidities):
+def _as_axis(simulated, humidities):
     """Own airs that are humid if those of an axis are, all if none is."""
-    humid = {humidity: one for humidity, one in own.items() if is_humid(humidity)}
-    return humid if humid and not has_dry(humidities) else own
+    humid = {humidity: simulation for humidity, simulation in simulated.items() if is_humid(humidity)}
+    return humid if humid and not has_dry(humidities) else simulated
 
 
 def _chart_views(charts):
     """Charts of all humid airs, for whatever holds the devices, over humidity, thickness, gap and share."""
     parts = [chart.isel(shape=-1).assign_coords(humidity=humidity) for humidity, chart in charts.items()]
     names = ["safe_length", "quantile"]
-    joined = xr.concat([part[names] for part in parts], "humidity", coords="minimal", compat="override", join="exact")
+    joined = xr.concat([chart[names] for chart in parts], "humidity", coords="minimal", compat="override", join="exact")
     return joined.sortby("share").assign(beams=parts[0].beams).transpose("humidity", "thickness", "gap", ...)
 
 
@@ -144,8 +150,13 @@ def alone(section: Mapping[str, Any], safe_lengths: Mapping[float, xr.Dataset]) 
     parts = []
     for humidity, dataset in sorted(safe_lengths.items()):
         held = dataset.isel(shape=-1)
-        found = ("score", _quantiles(held.length.values, held.stuck.values, int(dataset.beams)))
-        parts.append(held[["safe_length"]].drop_vars("shape").assign(quantile=found).assign_coords(humidity=humidity))
+        quantiles_of_lengths = ("score", _quantiles(held.length.values, held.stuck.values, int(dataset.beams)))
+        parts.append(
+            held[["safe_length"]]
+            .drop_vars("shape")
+            .assign(quantile=quantiles_of_lengths)
+            .assign_coords(humidity=humidity)
+        )
     sizes = {"thickness": [section["thickness_um"] * UM], "gap": [section["gap_um"] * UM]}
     joined = xr.concat(parts, "humidity", coords="minimal", compat="override", join="exact").expand_dims(sizes)
     joined = joined.sortby("share").assign(beams=next(iter(safe_lengths.values())).beams)
@@ -167,10 +178,10 @@ def views_of_stopper(section: Mapping[str, Any], stopper: xr.Dataset, answer: An
     view, worst = stopper_view(section, stopper, answer), answer.together.humidity
     if worst in view.grid.axes[0].values:
         return [view]
-    own = stopper.sortby("humidity")
-    axis = humidity_axis(own.humidity.values, worst, "humidities of the device", False)
-    scored = np.array([quantiles(row) for row in own.pull_off.values])
-    alone = (axis,), own.safe_force.sel(part="safe", drop=True), scored
+    sorted_airs = stopper.sortby("humidity")
+    axis = humidity_axis(sorted_airs.humidity.values, worst, "humidities of the device", False)
+    scored = np.array([quantiles(row) for row in sorted_airs.pull_off.values])
+    alone = (axis,), sorted_airs.safe_force.sel(part="safe", drop=True), scored
     return [replace(_to_build(alone, section, stopper, answer), title=_ALONE), view]
 
 
@@ -188,16 +199,16 @@ def _to_build(states, section, stopper, answer):
     """View of forces to build over states, their simulated limits and quantiles, as `beam_view`."""
     view, ((axis,), safe, scored) = _force_view(*states, section, stopper), states
     safe, limits = safe.sel(share=answer.share), stopper.safe_force.sel(part="safe", share=answer.share)
-    own = {
-        float(one.humidity): Simulated(quantiles(one.values)[::-1], float(limits.sel(humidity=one.humidity)))
-        for one in stopper.pull_off.transpose("humidity", ...)
+    simulated_airs = {
+        float(forces.humidity): Simulated(quantiles(forces.values)[::-1], float(limits.sel(humidity=forces.humidity)))
+        for forces in stopper.pull_off.transpose("humidity", ...)
     }
     simulated = Simulated(scored[:, ::-1], safe.values)
-    found = levels.of_answer(answer, axis.values, simulated, _as_axis(own, axis.values))
+    layers = levels.of_answer(answer, axis.values, simulated, _as_axis(simulated_airs, axis.values))
     grid, per = view.grid, answer.size / view.grid.size.start  # of forces, or of stiffnesses
-    build, sizes = found.factor * grid.safe, found.sizes / per
+    build, sizes = layers.factor * grid.safe, layers.sizes / per
     size = size_axis(grid.size.key, grid.size.label, grid.size.unit, (build, sizes[0]), grid.size.start)
-    shown = {"scores": found.scores, "first": found.first / per}
+    shown = {"scores": layers.scores, "first": layers.first / per}
     words = {**view.words, "safe": f"{size.label.capitalize()} to build", "bound": "to build"}
     return replace(view, grid=replace(grid, size=size, safe=build, levels=sizes, **shown), words=words)
 
@@ -210,8 +221,8 @@ def view_of_places(stopper: xr.Dataset, answer: Answer) -> View:
     forces = [stopper.pull_off.sel(humidity=air.humidity).values for air in airs]
     most = np.quantile(forces, 1 - np.array(_FRACTIONS), axis=1).T / sought.scale
     start = answer.size if np.isfinite(answer.size) else answer.pull_off.quantiles[1, 0]
-    known = (sizes[0] / sought.scale,), start / sought.scale
-    size = size_axis(sought.name, sought.label, sought.shown, *known, sought.fraction)
+    numbers = (sizes[0] / sought.scale,), start / sought.scale
+    size = size_axis(sought.name, sought.label, sought.shown, *numbers, sought.fraction)
     size = replace(size, setting="measured_nN" if np.isfinite(answer.size) else "")
     share = share_axis(_FRACTIONS, _FRACTIONS[-1], "", "fraction p of places that hold more")
     shown = {"scores": scores, "first": np.array([[air.first] for air in airs]) / sought.scale}
@@ -223,9 +234,9 @@ def view_of_places(stopper: xr.Dataset, answer: Answer) -> View:
 
 def _along(stopper):
     """Safe forces along the fine axis of a stopper with its own humidities on it, and quantiles of the forces."""
-    own, fine = stopper.humidity.values, stopper.axis.values
-    kept = np.array([not np.isclose(own, value).any() for value in fine])
-    order = np.argsort(np.append(own, fine[kept]))
+    airs, fine = stopper.humidity.values, stopper.axis.values
+    kept = np.array([not np.isclose(airs, value).any() for value in fine])
+    order = np.argsort(np.append(airs, fine[kept]))
     stated = stopper.safe_force.sel(part="safe", drop=True).rename(humidity="axis")
     scored = np.array([quantiles(row) for row in stopper.pull_off.values])
     safe = xr.concat([stated, stopper.safe_force_along.isel(axis=kept)], "axis", coords="minimal", compat="override")
@@ -237,7 +248,7 @@ def tilted_view(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopp
     tilted, key = tilted.sortby("humidity"), f"devices.{name}"
     tilts = tuple(float(f"{from_si(float(tilt), 'deg'):.6g}") for tilt in tilted.tilt)
     reason = f"it is computed at {', '.join(f'{tilt:g}' for tilt in tilts)}° alone; {key}.tilt_deg changes this"
-    tilt = Axis("tilt_deg", "tilt", "°", "linear", tilts, tilts[0], False, reason, "tilt_deg")
+    tilt = GridAxis("tilt_deg", "tilt", "°", "linear", tilts, tilts[0], False, reason, "tilt_deg")
     stuck = tilted.stuck.sel(bound="estimate").max("tilt")
     worst = float(tilted.humidity[int(np.argmax(stuck.values))])
     humidity = humidity_axis(tilted.humidity.values, worst, f"{key}.humidities", False)
@@ -249,14 +260,18 @@ def tilted_view(name: str, section: Mapping[str, Any], tilted: xr.Dataset, stopp
 def _force_view(axes, safe, scored, section, stopper):
     """View of safe forces (axes, shares) and quantiles of forces (axes, scores) [N]."""
     bounded = np.isfinite(safe.values).all(axis=tuple(range(len(axes))))
-    known = safe.isel(share=bounded if bounded.any() else [int(np.argmax(safe.share.values))]).sortby("share")
+    bounded_shares = safe.isel(share=bounded if bounded.any() else [int(np.argmax(safe.share.values))]).sortby("share")
     way = kind_of(section).way(section)
     key, per = way.keys[0], UN * way.per(section)
     label, unit = KEYS[key]
-    numbers = known.values / per, scored / per
+    numbers = bounded_shares.values / per, scored / per
     size = size_axis(key, label, unit, numbers, float(stopper.restoring_force) / per)
     least = bounded_share(stopper)
-    share = share_axis(known.share.values, least if least in known.share.values else float(known.share[-1]), "")
+    share = share_axis(
+        bounded_shares.share.values,
+        least if least in bounded_shares.share.values else float(bounded_shares.share[-1]),
+        "",
+    )
     layers = levels.counted(numbers[1][..., ::-1], stopper.sizes["sample"])
     grid = Grid(axes, share, size, numbers[0], layers, stopper.sizes["sample"], True)
     words = {"what": label, "safe": f"{label.capitalize()} that simulation alone allows", "bound": "limit"}
@@ -264,7 +279,7 @@ def _force_view(axes, safe, scored, section, stopper):
     return View("humidity", grid, words)
 
 
-def humidity_axis(values: Sequence[float], worst: float, key: str, between: bool) -> Axis:
+def humidity_axis(values: Sequence[float], worst: float, key: str, between: bool) -> GridAxis:
     """Axis of relative humidities."""
     values = tuple(map(float, values))
     several = between and len(values) > 1
@@ -272,33 +287,35 @@ def humidity_axis(values: Sequence[float], worst: float, key: str, between: bool
     text = f"computed from {values[0]:g} to {values[-1]:g}" if several else f"computed at {each} alone"
     start = min(max(worst, values[0]), values[-1]) if between else worst
     reason = f"it is {text}; {key} changes this"
-    return Axis("humidity", "relative humidity", "", "linear", values, start, bool(between), reason, "humidities")
+    return GridAxis("humidity", "relative humidity", "", "linear", values, start, bool(between), reason, "humidities")
 
 
-def _size_axis(key, label, values, section, stated):
+def _size_axis(key, label, values, section, key_of_values):
     """Axis of thicknesses or gaps [µm]."""
     values = tuple(float(f"{value:.9g}") for value in values)
     several = len(values) > 1
     text = f"computed from {values[0]:g} to {values[-1]:g} µm" if several else f"computed for {values[0]:g} µm alone"
     start = min(max(float(section[key]), values[0]), values[-1])
-    return Axis(key, label, "µm", "log", values, start, several, f"it is {text}; {stated} changes this", key)
+    return GridAxis(key, label, "µm", "log", values, start, several, f"it is {text}; {key_of_values} changes this", key)
 
 
-def share_axis(values: Sequence[float], start: float, setting: str, label: str = "fraction p that may stick") -> Axis:
+def share_axis(
+    values: Sequence[float], start: float, setting: str, label: str = "fraction p that may stick"
+) -> GridAxis:
     """Axis of the fractions that may stick. Only beams have a key of them."""
     values = tuple(map(float, values))
     several = f"from {values[0]:g} to {values[-1]:g}" if len(values) > 1 else f"= {values[0]:g} alone"
     reason = f"limits are computed for p {several}"
     reason += f"; design.{setting} changes this" if setting else ""
-    return Axis("share", label, "", "score", values, float(start), len(values) > 1, reason, setting)
+    return GridAxis("share", label, "", "score", values, float(start), len(values) > 1, reason, setting)
 
 
 def size_axis(
-    key: str, label: str, unit: str, computed: Sequence[np.ndarray], start: float, fraction: str = "P(stuck)"
-) -> Axis:
+    key: str, label: str, unit: str, sizes: Sequence[np.ndarray], start: float, fraction: str = "P(stuck)"
+) -> GridAxis:
     """Axis of lengths or forces, around all computed ones and the first of a page."""
-    numbers = np.concatenate([np.ravel(part) for part in computed])
+    numbers = np.concatenate([np.ravel(values) for values in sizes])
     numbers = np.append(numbers[np.isfinite(numbers)], start)
     low, high = (float(f"{value:.3g}") for value in (numbers.min() * (1 - _ROOM), numbers.max() * (1 + _ROOM)))
     reason = f"{fraction} is known between {low:g} and {high:g} {unit}"
-    return Axis(key, label, unit, "linear", (low, high), float(f"{start:.4g}"), True, reason, key)
+    return GridAxis(key, label, unit, "linear", (low, high), float(f"{start:.4g}"), True, reason, key)

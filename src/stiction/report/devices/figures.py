@@ -62,20 +62,20 @@ def refer_to_warnings(figure: Figure, warnings: Mapping[Any, list[Limit]]) -> No
 def simulated(
     datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, str], list]
 ) -> Figure:
-    """P(stuck) of beams by simulation alone against their length, one panel for each device.
+    """P(stuck) of beams by simulation alone against their length, one panel for each device and end state.
 
-    It has bands of 95 % and simulated limits.
-
-    A humidity has the same colour in all panels.
+    It has bands of 95 % and simulated limits. A humidity has the same colour in all panels.
     The numbers of the warnings, which are by name, humidity and shape, mark the curves.
     """
     names = list(dict.fromkeys(name for name, _ in datasets))
     numbers = numbered(warnings)
     most = max(sum(device == name for device, _ in datasets) for name in names)
     colours = humidity_colours(humidity for _, humidity in datasets)
-    figure, columns, lines = columns_of_panels(len(names), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
-    for panel, name in zip(columns[:, 0], names, strict=True):
-        cases = {humidity: dataset for (device, humidity), dataset in datasets.items() if device == name}
+    held = {name: dataset["shape"].values.tolist() for (name, _), dataset in datasets.items()}
+    subjects = [(name, shape) for name in names for shape in held[name]]
+    figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL + _ENTRY * most)
+    for panel, (name, shape) in zip(columns[:, 0], subjects, strict=True):
+        cases = {rh: dataset.sel(shape=shape) for (device, rh), dataset in datasets.items() if device == name}
         named = []
         for humidity, dataset in cases.items():
             _shares(panel, dataset, colours[humidity])
@@ -90,9 +90,9 @@ def simulated(
         )
     for line in lines:
         line[0, 0].set_ylabel("P(stuck), simulated [–]")
-    letter_lines(lines, names)
+    letter_lines(lines, [f"{name}, {END_STATES[shape].by}" for name, shape in subjects])
     _explain(columns[0, 0], datasets)
-    legend_outside(figure, handles(columns[0, 0]), "upper", 4 if len(names) > 1 else 3)
+    legend_outside(figure, handles(columns[0, 0]), "upper", 4 if len(subjects) > 1 else 3)
     refer_to_warnings(figure, warnings)
     return figure
 
@@ -101,10 +101,9 @@ def _at_length(dataset):
     """P(stuck) at the length that a device states, for the legend."""
     if "length_of_device" not in dataset:
         return ""
-    held = dataset.isel(shape=-1)
-    stuck, *band = map(float, held.stuck_at_length)
-    said = f"{100 * stuck:.3g} %" if 0 < stuck < 1 else fraction_with_band(stuck, *band, " %")
-    return f": {said} at {TO_UM * float(held.length_of_device):g} µm"
+    stuck, *band = map(float, dataset.stuck_at_length)
+    text = f"{100 * stuck:.3g} %" if 0 < stuck < 1 else fraction_with_band(stuck, *band, " %")
+    return f": {text} at {TO_UM * float(dataset.length_of_device):g} µm"
 
 
 def _marks(numbers: Mapping[tuple, Iterable[int]], *subject) -> str:
@@ -117,17 +116,15 @@ def _marks_of_warnings(numbers):
     return "".join(f" ({k})" for k in sorted(numbers))
 
 
-def _shares(panel: Axes, dataset, colour):
-    """P(stuck) of a device at one humidity, its band and its safe lengths."""
-    length = TO_UM * dataset.length.values
-    for shape in dataset["shape"].values:
-        curve = dataset.sel(shape=shape)
-        known = curve.stuck.values > 0
-        panel.plot(length[known], curve.stuck.values[known], END_STATES[shape].lines[0], color=colour)
-        panel.fill_between(length[known], *curve.stuck_band.values[:, known], color=colour, alpha=0.2, linewidth=0)
-        for share in curve.share.values:
-            safe = curve.sel(share=share)
-            panel.plot(TO_UM * float(safe.safe_length), share, _BASES[str(safe.basis.values)], color=colour)
+def _shares(panel: Axes, curve, colour):
+    """P(stuck) of a device at one humidity in one end state, its band and its safe lengths."""
+    length, drawn = TO_UM * curve.length.values, curve.stuck.values > 0
+    line = END_STATES[str(curve["shape"].values)].lines[0]
+    panel.plot(length[drawn], curve.stuck.values[drawn], line, color=colour)
+    panel.fill_between(length[drawn], *curve.stuck_band.values[:, drawn], color=colour, alpha=0.2, linewidth=0)
+    for share in curve.share.values:
+        safe = curve.sel(share=share)
+        panel.plot(TO_UM * float(safe.safe_length), share, _BASES[str(safe.basis.values)], color=colour)
 
 
 def _explain(panel, datasets):
@@ -158,20 +155,22 @@ def chart(
     """
     numbers = numbered(warnings)
     wholes = axes(datasets)
-    placed = {name: places(whole.relative_humidity.values.tolist()) for name, whole in wholes.items()}
+    placed = {name: places(dataset.relative_humidity.values.tolist()) for name, dataset in wholes.items()}
     subjects = [
-        (name, *at) for name, whole in wholes.items() for at in product(whole.gap.values, whole["shape"].values)
+        (name, *at) for name, dataset in wholes.items() for at in product(dataset.gap.values, dataset["shape"].values)
     ]
     figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
-        whole = wholes[name].sel(gap=gap, shape=shape)
-        _thicknesses(panel, whole, shape, placed[name])
+        curves = wholes[name].sel(gap=gap, shape=shape)
+        _thicknesses(panel, curves, shape, placed[name])
         low, high = panel.dataLim.intervaly
         label = on_own_axes("simulated limit [µm]", columns.T)
         panel.set(xlabel="relative humidity [–]", ylabel=label, ylim=(0.95 * low, high + _ROOM * (high - low)))
         humidity_axis(panel, placed[name])
-        marks = [_marks_of_warnings(numbers.get((name, one, gap, shape), ())) for one in whole.thickness.values]
-        _name_thicknesses(panel, whole, marks)
+        marks = [
+            _marks_of_warnings(numbers.get((name, thickness, gap, shape), ())) for thickness in curves.thickness.values
+        ]
+        _name_thicknesses(panel, curves, marks)
     letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].by}" for name, gap, shape in subjects])
     shown = sorted(zip(*handles(*columns[:, 0]), strict=True), key=lambda entry: isinstance(entry[0], PolyCollection))
     legend_outside(figure, tuple(zip(*shown, strict=True)), "lower", 4)
@@ -179,21 +178,21 @@ def chart(
     return figure
 
 
-def _middle(whole):
+def _middle(curves):
     """Middle one of the shares of a chart."""
-    return float(whole.share.values[len(whole.share) // 2])
+    return float(curves.share.values[len(curves.share) // 2])
 
 
-def _thicknesses(panel, whole, shape, placed):
+def _thicknesses(panel, curves, shape, placed):
     """Curves of all thicknesses of one device, gap and shape, their bounds, and marks of power laws.
 
     Points are at the places of their humidities; no line leads to dry air.
     """
-    share, (line, dotted) = _middle(whole), END_STATES[shape].lines
-    for thickness, shade in zip(whole.thickness.values, shades(whole.sizes["thickness"]), strict=True):
-        for part, styles in _parts(whole.sel(thickness=thickness, share=share), (line, dotted)):
-            at = [placed[humidity] for humidity in part.relative_humidity.values]
-            by_law, lengths = part.by_elements.values == 0, TO_UM * part.safe_length
+    share, (line, dotted) = _middle(curves), END_STATES[shape].lines
+    for thickness, shade in zip(curves.thickness.values, shades(curves.sizes["thickness"]), strict=True):
+        for line_part, styles in _parts(curves.sel(thickness=thickness, share=share), (line, dotted)):
+            at = [placed[humidity] for humidity in line_part.relative_humidity.values]
+            by_law, lengths = line_part.by_elements.values == 0, TO_UM * line_part.safe_length
             fine, curve = _curve(at, lengths.values)
             panel.plot(fine, curve, styles[0], color=shade)
             if np.isfinite(error := error_between(np.array(at), lengths.values)):
@@ -201,30 +200,34 @@ def _thicknesses(panel, whole, shape, placed):
                 panel.fill_between(fine, *ends, color=shade, alpha=0.2, linewidth=0, label="error between the dots")
             panel.plot(np.array(at)[by_law], lengths[by_law], "o", color=shade, fillstyle="none")
             panel.plot(np.array(at)[~by_law], lengths[~by_law], ".", color=shade)
-            panel.plot(*_curve(at, TO_UM * part.flooded_length.values), styles[1], color=shade, linewidth=0.8)
-    _explain_chart(panel, whole.sel(share=share), shape)
+            panel.plot(*_curve(at, TO_UM * line_part.flooded_length.values), styles[1], color=shade, linewidth=0.8)
+    _explain_chart(panel, curves.sel(share=share), shape)
 
 
-def _explain_chart(panel, whole, shape):
+def _explain_chart(panel, curves, shape):
     """Add what lines and markers of one share are to the legend of a panel."""
     (line, dotted), by = END_STATES[shape].lines, END_STATES[shape].by
-    panel.plot([], [], line, color="0.3", marker=".", label=f"{one_in(float(whole.share))} stick by {by}")
+    panel.plot([], [], line, color="0.3", marker=".", label=f"{one_in(float(curves.share))} stick by {by}")
     panel.plot([], [], dotted, color="0.3", linewidth=0.8, label=f"flat surfaces, {by}")
-    if not whole.by_elements.all():
-        label = f"by a power law, ± {in_percent(float(whole.power_law_error.max()))}"
+    if not curves.by_elements.all():
+        label = f"by a power law, ± {in_percent(float(curves.power_law_error.max()))}"
         panel.plot([], [], "o", color="0.3", fillstyle="none", label=label)
 
 
-def _name_thicknesses(panel, whole, marks):
+def _name_thicknesses(panel, chart_curves, marks):
     """Name every known curve of a chart to the right of its panel, at its last point but clear of the names below."""
     (low, high), below = panel.get_ylim(), -np.inf
-    curves = (TO_UM * whole.safe_length.sel(share=_middle(whole))).transpose("thickness", "relative_humidity")
-    known = [curve[np.isfinite(curve)] for curve in curves.values]
-    named = zip(known, whole.thickness.values, shades(len(marks)), marks, strict=True)
-    for curve, thickness, shade, mark in sorted((one for one in named if len(one[0])), key=lambda one: one[0][-1]):
+    curves = (TO_UM * chart_curves.safe_length.sel(share=_middle(chart_curves))).transpose(
+        "thickness", "relative_humidity"
+    )
+    finite = [curve[np.isfinite(curve)] for curve in curves.values]
+    named = zip(finite, chart_curves.thickness.values, shades(len(marks)), marks, strict=True)
+    for curve, thickness, shade, mark in sorted(
+        (entry for entry in named if len(entry[0])), key=lambda entry: entry[0][-1]
+    ):
         below = max((curve[-1] - low) / (high - low), below + _APART)
-        place = {"xycoords": "axes fraction", "color": shade, "fontsize": 7, "va": "center"}
-        panel.annotate(f"{TO_UM * thickness:g} µm thick{mark}", (1.02, below), **place)
+        style = {"xycoords": "axes fraction", "color": shade, "fontsize": 7, "va": "center"}
+        panel.annotate(f"{TO_UM * thickness:g} µm thick{mark}", (1.02, below), **style)
 
 
 def _curve(at, lengths):
@@ -235,11 +238,11 @@ def _curve(at, lengths):
     return fine, between(np.array(at), lengths, fine)
 
 
-def _parts(whole, lines):
+def _parts(curves, lines):
     """Lengths along the axis, as lines, and in dry air, as markers, each with the styles of lengths and bounds."""
-    humid = is_humid(whole.relative_humidity.values)
-    parts = (whole.isel(relative_humidity=humid), lines), (whole.isel(relative_humidity=~humid), ("D", "_"))
-    return [(part, styles) for part, styles in parts if part.sizes["relative_humidity"]]
+    humid = is_humid(curves.relative_humidity.values)
+    parts = (curves.isel(relative_humidity=humid), lines), (curves.isel(relative_humidity=~humid), ("D", "_"))
+    return [(dataset, styles) for dataset, styles in parts if dataset.sizes["relative_humidity"]]
 
 
 STAGES = (

@@ -23,11 +23,11 @@ _SAME = 2e-6
 #: Fractions of layers where they have no levels: nothing is known, or no more than that a fraction is from 0 to 1.
 _UNKNOWN = np.nan, 0.0, 1.0
 #: Coordinate of a value along an axis, by its scale.
-_PLACES = {name: scale.place for name, scale in SCALES.items()} | {"score": ndtri}
+_COORDINATES = {name: scale.coordinate for name, scale in SCALES.items()} | {"score": ndtri}
 
 
 @dataclass(frozen=True)
-class Axis:
+class GridAxis:
     """Computed values of one quantity."""
 
     key: str  #: in states and addresses
@@ -41,11 +41,11 @@ class Axis:
     setting: str = ""  #: key of a device with this quantity
 
     @property
-    def places(self) -> np.ndarray:
+    def coordinates(self) -> np.ndarray:
         """Coordinates of the computed values."""
-        return _PLACES[self.scale](np.array(self.values))
+        return _COORDINATES[self.scale](np.array(self.values))
 
-    def place(self, value: float) -> float:
+    def coordinate(self, value: float) -> float:
         """Coordinate of a value.
 
         Raises
@@ -56,11 +56,11 @@ class Axis:
         inside = self.values[0] <= value <= self.values[-1] if self.between else value in self.values
         if not inside:
             raise ValueError(f"{self.label} {value:g} {self.unit} has no answer: {self.reason}")
-        return float(_PLACES[self.scale](value))
+        return float(_COORDINATES[self.scale](value))
 
 
 @dataclass(frozen=True)
-class Stuck:
+class StuckShares:
     """Fraction of stuck devices."""
 
     share: float  #: [-]; NaN if it is not known
@@ -76,9 +76,9 @@ class Grid:
     The size is the length of a beam, or the force or stiffness of a stopper.
     """
 
-    axes: tuple[Axis, ...]  #: of the device and its air
-    share: Axis  #: fraction p that may stick
-    size: Axis  #: its ends bound the control only
+    axes: tuple[GridAxis, ...]  #: of the device and its air
+    share: GridAxis  #: fraction p that may stick
+    size: GridAxis  #: its ends bound the control only
     safe: np.ndarray  #: over the axes and the shares, 95 % bounds
     levels: np.ndarray  #: layers of `stiction.report.devices.levels`, over the axes and scores; NaN if unknown
     samples: int  #: simulated devices of each state
@@ -89,10 +89,14 @@ class Grid:
     def safe_size(self, state: Mapping[str, float]) -> float:
         """Safe size for the state's share."""
         return float(
-            np.exp(monotone(self.share.places, self._at(self.safe, state, self.axes), self.share.place(state["share"])))
+            np.exp(
+                monotone(
+                    self.share.coordinates, self._at(self.safe, state, self.axes), self.share.coordinate(state["share"])
+                )
+            )
         )
 
-    def stuck(self, state: Mapping[str, float]) -> Stuck:
+    def stuck(self, state: Mapping[str, float]) -> StuckShares:
         """P(stuck) at the state's size. Where no simulated device sticks, its upper end alone is known."""
         sign = -1 if self.falls else 1
         v = sign * np.log(state[self.size.key])
@@ -101,8 +105,8 @@ class Grid:
             for layer, unknown in zip(self.levels, _UNKNOWN, strict=True)
         )
         if self.first is None or v >= sign * self._at(self.first, state, self.axes)[0]:
-            return Stuck(share, low, high, beyond)
-        return Stuck(share, 0.0, high, -1)
+            return StuckShares(share, low, high, beyond)
+        return StuckShares(share, 0.0, high, -1)
 
     def _fraction(self, levels, v, unknown):
         """Fraction of a layer at v, and -1 or 1 below and above all known ones.
@@ -110,10 +114,10 @@ class Grid:
         Below a lower end, and above an upper end, it is the one of an unknown layer, not the nearest known one. Where
         few samples leave levels that fall with the score, a lower end is less and everything else more.
         """
-        known = np.isfinite(levels)
-        if not known.any():
+        finite = np.isfinite(levels)
+        if not finite.any():
             return unknown, 0
-        levels, scores = levels[known], self.scores[known]
+        levels, scores = levels[finite], self.scores[finite]
         rising = np.maximum.accumulate(levels), np.minimum.accumulate(levels[::-1])[::-1]
         levels = rising[unknown != 0]
         below, above = v < levels[0] - _SAME, v > levels[-1] + _SAME
@@ -133,16 +137,20 @@ class Grid:
 
     def noise_at(self, state: Mapping[str, float]) -> float:
         """Relative error of the safe size between computed values of the first axis, at the state's others."""
-        found = self._at(self.noise, state, self.axes[1:])
-        return float(np.exp(monotone(self.share.places, found, self.share.place(state["share"]))))
+        logarithms = self._at(self.noise, state, self.axes[1:])
+        return float(np.exp(monotone(self.share.coordinates, logarithms, self.share.coordinate(state["share"]))))
 
     def _at(self, values, state, axes):
         """Logarithms of values over some axes at a state, over their last dimension."""
-        found = np.log(values)
+        logarithms = np.log(values)
         for axis in axes:
-            place = axis.place(state[axis.key])
-            found = monotone(axis.places, found, place) if axis.between else found[axis.values.index(state[axis.key])]
-        return found
+            coordinate = axis.coordinate(state[axis.key])
+            logarithms = (
+                monotone(axis.coordinates, logarithms, coordinate)
+                if axis.between
+                else logarithms[axis.values.index(state[axis.key])]
+            )
+        return logarithms
 
     @property
     def start(self) -> dict[str, float]:
@@ -156,19 +164,19 @@ class Grid:
         return asdict(self) | {name: nested_lists(getattr(self, name)) for name in names}
 
 
-def monotone(places: Sequence[float], values: np.ndarray, at: float) -> np.ndarray:
+def monotone(coordinates: Sequence[float], values: np.ndarray, at: float) -> np.ndarray:
     """Monotone cubic through values (n, ...) at increasing places (n,) at one place, NaN near an unknown value."""
-    if len(places) == 1:
+    if len(coordinates) == 1:
         return values[0]
-    k = int(np.clip(np.searchsorted(places, at, "right") - 1, 0, len(places) - 2))
+    k = int(np.clip(np.searchsorted(coordinates, at, "right") - 1, 0, len(coordinates) - 2))
     near = slice(max(k - 1, 0), k + 3)  # all that decides the slopes at both ends of the interval
-    cubic = PchipInterpolator(places[near], np.nan_to_num(values[near]))
+    cubic = PchipInterpolator(coordinates[near], np.nan_to_num(values[near]))
     return np.where(np.isfinite(values[near]).all(axis=0), cubic(at), np.nan)[()]
 
 
-def hermite(width: float, part: float, values: Sequence, slopes: Sequence) -> np.ndarray:
+def hermite(width: float, fraction: float, values: Sequence, slopes: Sequence) -> np.ndarray:
     """Cubic with values and slopes at both ends of an interval, at a part of its width, from 0 to 1."""
-    t, s = part, 1 - part
+    t, s = fraction, 1 - fraction
     ends = values[0] * (1 + 2 * t) * s**2 + values[1] * t**2 * (3 - 2 * t)
     return ends + width * (slopes[0] * t * s**2 - slopes[1] * t**2 * s)
 
@@ -176,5 +184,5 @@ def hermite(width: float, part: float, values: Sequence, slopes: Sequence) -> np
 def nested_lists(values: np.ndarray) -> list:
     """Nested lists of numbers with few digits, `None` for NaN."""
     if values.ndim > 1:
-        return [nested_lists(part) for part in values]
+        return [nested_lists(row) for row in values]
     return [float(f"{value:.{_DIGITS}g}") if np.isfinite(value) else None for value in values]

@@ -28,7 +28,7 @@ from stiction.report.style import (
 )
 from stiction.report.table import Table, table_stage
 from stiction.stages.devices import device_warnings
-from stiction.stages.life.answers import QUESTIONS, TOUCH, Answer, Name, answers_of
+from stiction.stages.life.answers import QUESTIONS, TOUCH, LifeRow, Name, answers_of
 
 #: Units of the answers by those in SI: factor and text.
 _UNITS = {
@@ -125,12 +125,12 @@ def sentences(dataset: xr.Dataset, build: float = np.nan, has_shares: bool = Fal
     length = float(dataset.length)
     at = f"At {TO_UM * length:.0f} µm{_limit(answers, length)} it" if np.isfinite(length) else "It"
     potential = float(dataset.potential)
-    said = [*_beside(build, _sought(dataset)), *_touching(answers, at)]
-    said += _asking(one for one in unknown if one.question == TOUCH)
-    said += [*_pulled_in(answers, potential), *_shaken(answers, float(dataset.get("shock", 0.0)))]
-    said += [*_drying(answers, at, length), *_on_dimples(answers), *_at_tilts(answers)]
-    said += [*_at_voltage(answers, potential), *_fast(answers), *_often(answers, int(dataset.touchdowns), has_shares)]
-    return [*said, *_asking(one for one in unknown if one.question != TOUCH)]
+    texts = [*_beside(build, _sought(dataset)), *_touching(answers, at)]
+    texts += _asking(answer for answer in unknown if answer.question == TOUCH)
+    texts += [*_pulled_in(answers, potential), *_shaken(answers, float(dataset.get("shock", 0.0)))]
+    texts += [*_drying(answers, at, length), *_on_dimples(answers), *_at_tilts(answers)]
+    texts += [*_at_voltage(answers, potential), *_fast(answers), *_often(answers, int(dataset.touchdowns), has_shares)]
+    return [*texts, *_asking(answer for answer in unknown if answer.question != TOUCH)]
 
 
 def _sought(dataset):
@@ -143,19 +143,28 @@ def _beside(build, sought):
     if not 0 < build < np.inf:
         return []
     size = f"{sought.name} to build, {sought.in_words(build)}"
-    return [f"The {size}, has everything inside. Simulated limits below have one cause each and exact inputs."]
+    return [f"The {size}, has inside all that is stated. Simulated limits below have one cause each and exact inputs."]
+
+
+def judged_without(dataset: xr.Dataset, build: float) -> list[str]:
+    """Sentence on the limits that do not allow a size to build [m, N], as nothing that is stated asks for them."""
+    sought, short = _sought(dataset), [row for row in _rows(dataset) if _is_short(row, build)]
+    if not short:
+        return []
+    named = "; ".join(f"{_label(row)}, {sought.in_words(_unsafe_end(row))}" for row in short)
+    return [f"The {sought.name} to build is judged without these limits, which do not allow it: {named}."]
 
 
 def _limit(answers, length):
     """Note on a length that is the least simulated limit [m]."""
     return ", its simulated limit," * any(
-        one.low == length for name, one in answers.items() if name.startswith(Name.SAFE)
+        answer.low == length for name, answer in answers.items() if name.startswith(Name.SAFE)
     )
 
 
 def _asking(unknown):
     """Sentences on numbers that nobody knows without further keys, and on these keys."""
-    return [f"The {one.what} is unknown: state {one.needs}." for one in unknown]
+    return [f"The {answer.what} is unknown: state {answer.needs}." for answer in unknown]
 
 
 def _touching(answers, at):
@@ -178,10 +187,10 @@ def _shaken(answers, shock):
     """Sentence on the contact of a device by its own shock [m s⁻²]."""
     if not shock or Name.SHOCK not in answers:
         return []
-    limit, own = answers[Name.SHOCK], f"Its own shock of {significant(_UNITS['m s-2'][0] * shock)} g"
+    limit, own_shock = answers[Name.SHOCK], f"Its own shock of {significant(_UNITS['m s-2'][0] * shock)} g"
     if shock < limit.low:
-        return [f"{own} does not bring it down."]
-    return [f"{own} {'brings' if shock >= limit.high else 'can bring'} it down."]
+        return [f"{own_shock} does not bring it down."]
+    return [f"{own_shock} {'brings' if shock >= limit.high else 'can bring'} it down."]
 
 
 def _on_dimples(answers):
@@ -190,9 +199,10 @@ def _on_dimples(answers):
         return []
     pulls, holds = answers[Name.PULLED], answers[Name.DIMPLES]
     often = max(
-        (one for one in answers.values() if one.name.startswith(f"{Name.ON_DIMPLES}_")), key=lambda one: one.high
+        (answer for answer in answers.values() if answer.name.startswith(f"{Name.ON_DIMPLES}_")),
+        key=lambda answer: answer.high,
     )
-    said = (
+    text = (
         f"The {pulls.what} is at least {_low(pulls)} µN. A row is held by {_low(holds)} µN on average: "
         f"{fraction_between(often.low, often.high, ' %')} of the beams stick on dimples in the worst of their air."
     )
@@ -200,21 +210,22 @@ def _on_dimples(answers):
         tension = from_si(answers[Name.TENSION_BESIDE].low, "mN_per_m")
         volts = f"a slowly raised voltage of {_low(answers[Name.VOLTAGE_BESIDE])} V"
         return [
-            f"{said} Beside them, {_low(answers[Name.BESIDE])} % of the gap is left: it does not touch there below "
+            f"{text} Beside them, {_low(answers[Name.BESIDE])} % of the gap is left: it does not touch there below "
             f"{volts}, or while a liquid of up to {significant(tension)} mN/m dries."
         ]
-    return [f"{said} But it touches beside them, where they do not protect it."]
+    return [f"{text} But it touches beside them, where they do not protect it."]
 
 
 def _at_tilts(answers):
     """Force on a stopper at its tilts, and the tilt that makes it that of a wedge."""
     if Name.TILTED not in answers:
         return []
-    one, wedge = answers[Name.TILTED], answers[Name.WEDGE]
-    ends, limit = (" to ".join(dict.fromkeys((_low(each), _high(each)))) for each in (one, wedge))
-    worst = " (the most with each area at its worst tilt)" * (one.high > one.low)
+    tilted, wedge = answers[Name.TILTED], answers[Name.WEDGE]
+    ends, limit = (" to ".join(dict.fromkeys((_low(each), _high(each)))) for each in (tilted, wedge))
+    worst = " (the most with each area at its worst tilt)" * (tilted.high > tilted.low)
     return [
-        f"Its {one.what}, is {ends} µN{worst}. Beyond a tilt of {limit}°, a longer side of its area hardly holds more."
+        f"Its {tilted.what}, is {ends} µN{worst}. Beyond a tilt of {limit}°, a longer side of its area hardly holds "
+        "more."
     ]
 
 
@@ -224,13 +235,15 @@ def _at_voltage(answers, potential):
         return []
     limit, field = answers[Name.AT_VOLTAGE], answers[Name.FIELD]
     on, ends = f"While {significant(potential)} V are on,", [(_low(limit), limit.low), (_high(limit), limit.high)]
-    known = dict.fromkeys(end for end, value in ends if not np.isnan(value))
-    said = [f"{on} {_SIMULATED[limit.unit][1]} {' to '.join(known)} {_UNITS[limit.unit][1]}."]
+    finite_ends = dict.fromkeys(end for end, value in ends if not np.isnan(value))
+    texts = [f"{on} {_SIMULATED[limit.unit][1]} {' to '.join(finite_ends)} {_UNITS[limit.unit][1]}."]
     if Name.FREEING in answers:
-        said.append(_release_voltage(answers[Name.FREEING]))
+        texts.append(_release_voltage(answers[Name.FREEING]))
     if field.high > BREAKDOWN:
-        said.append(f"The field in its dielectric, {_high(field)} V/nm, is above 1 V/nm, where thin oxides break down.")
-    return [*said, _AFTER_GROUNDING]
+        texts.append(
+            f"The field in its dielectric, {_high(field)} V/nm, is above 1 V/nm, where thin oxides break down."
+        )
+    return [*texts, _AFTER_GROUNDING]
 
 
 #: What is not computed of a device after its voltage; arXiv 2508.17724.
@@ -240,12 +253,12 @@ _AFTER_GROUNDING = (
 )
 
 
-def _release_voltage(one):
+def _release_voltage(answer):
     """Voltage below which the spring of a stopper frees it."""
-    if not max(one.low, one.high) > 0:
-        return f"There is no {one.what}: without voltage it does not free them, either."
-    ends = " to ".join(dict.fromkeys(text for text in (_low(one), _high(one)) if text != MISSING))
-    return f"The {one.what} is {ends} V."
+    if not max(answer.low, answer.high) > 0:
+        return f"There is no {answer.what}: without voltage it does not free them, either."
+    ends = " to ".join(dict.fromkeys(text for text in (_low(answer), _high(answer)) if text != MISSING))
+    return f"The {answer.what} is {ends} V."
 
 
 def _drying(answers, at, length):
@@ -272,7 +285,7 @@ _FATES = ("stands", "may collapse", "collapses")
 
 def _liquids(answers, name):
     """Answers of one kind by the liquid that they are about."""
-    return {key.removeprefix(f"{name}_"): one for key, one in answers.items() if key.startswith(f"{name}_")}
+    return {key.removeprefix(f"{name}_"): answer for key, answer in answers.items() if key.startswith(f"{name}_")}
 
 
 def _fast(answers):
@@ -297,12 +310,12 @@ def _often(answers, touchdowns, has_shares):
     return [f"{number} if each meets other summits, and {same} if all meet the same ones."]
 
 
-def _low(answer: Answer) -> str:
+def _low(answer: LifeRow) -> str:
     """Lower bound of an answer in its unit."""
     return significant(_UNITS[answer.unit][0] * answer.low)
 
 
-def _high(answer: Answer) -> str:
+def _high(answer: LifeRow) -> str:
     """Upper bound of an answer in its unit."""
     return significant(_UNITS[answer.unit][0] * answer.high)
 
@@ -318,10 +331,10 @@ def figure(life: Mapping[str, xr.Dataset], builds: Mapping[str, float]) -> Figur
     """
     answers = {name: _rows(dataset) for name, dataset in life.items()}
     widest = int(_LABELS * page_width(DOUBLE) / _CHARACTER)
-    rows = {name: _marks(some, builds[name], widest) for name, some in answers.items()}
+    rows = {name: _marks(rows_of_device, builds[name], widest) for name, rows_of_device in answers.items()}
     heights = [dots.height(labels) for labels in rows.values()]
     size = DOUBLE, min(sum(heights) + _LEGEND, _TALLEST)
-    made, axes = panels(len(rows), 1, size, height_ratios=heights)
+    figure_of_lives, axes = panels(len(rows), 1, size, height_ratios=heights)
     for panel, (name, marks) in zip(axes[:, 0], rows.items(), strict=True):
         factor, unit = _UNITS[answers[name][0].unit]
         if np.isfinite(builds[name]):
@@ -331,10 +344,12 @@ def figure(life: Mapping[str, xr.Dataset], builds: Mapping[str, float]) -> Figur
     letter(axes[:, 0], list(rows))
     drawn = {mark.color for marks in rows.values() for row in marks.values() for mark in row}
     named = _COLOURS | {"does not allow this size": _SHORT}
-    entries = [Line2D([], [], color=of, linewidth=4, label=name) for name, of in named.items() if of in drawn]
+    entries = [
+        Line2D([], [], color=colour, linewidth=4, label=name) for name, colour in named.items() if colour in drawn
+    ]
     entries.append(Line2D([], [], color=BUILD, label="size to build"))
-    legend_outside(made, (entries, [entry.get_label() for entry in entries]), "upper", 6)
-    return made
+    legend_outside(figure_of_lives, (entries, [entry.get_label() for entry in entries]), "upper", 6)
+    return figure_of_lives
 
 
 def _rows(dataset):
@@ -347,16 +362,29 @@ def _marks(answers, build, widest):
     """One row for each answer from its lower to its upper bound, with both numbers, by its label."""
     rows = {}
     for answer in answers:
-        sought, least = SOUGHT[answer.unit], answer.high if np.isnan(answer.low) else answer.low
-        is_short = answer.high > build * (1 + _ROUNDED) if sought.more_is_better else least < build * (1 - _ROUNDED)
-        colour, low, high = (
-            _SHORT if is_short else _COLOURS[answer.question],
-            least / sought.scale,
-            answer.high / sought.scale,
-        )
+        least, scale = answer.high if np.isnan(answer.low) else answer.low, SOUGHT[answer.unit].scale
+        colour, low, high = _COLOURS[answer.question], least / scale, answer.high / scale
         text = " to ".join(dict.fromkeys([significant(low), significant(high)]))
-        rows[textwrap.fill(answer.what.partition(":")[0], widest)] = [dots.Mark(low, high, colour, text)]
+        mark = dots.Mark(low, high, _SHORT if _is_short(answer, build) else colour, text)
+        rows[textwrap.fill(_label(answer), widest)] = [mark]
     return rows
+
+
+def _label(answer):
+    """What an answer is about, in short."""
+    return answer.what.partition(":")[0]
+
+
+def _unsafe_end(answer):
+    """End of a length or a force that decides about a size: its lower or, of a force, its upper bound."""
+    is_upper = SOUGHT[answer.unit].more_is_better or np.isnan(answer.low)
+    return answer.high if is_upper else answer.low
+
+
+def _is_short(answer, build):
+    """Whether a length or a force does not allow a size to build, beyond rounding."""
+    sign = SOUGHT[answer.unit].sign
+    return sign * np.log(build) > sign * np.log(_unsafe_end(answer)) + _ROUNDED
 
 
 #: What table and figure declare alike.

@@ -71,7 +71,7 @@ def device_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], 
     ``warnings`` are those of `stiction.stages.devices.device_warnings.read`. A ``stopper`` has one dataset. Charts,
     budgets, ``test_beams``, ``errors`` of the model and ``roughness`` may be missing.
     """
-    sections, said, listed, words = _of_question(section).parts(name, section, data, answer)
+    sections, sentences, listed, words = _of_question(section).parts(name, section, data, answer)
     budgets, errors, test_beams, roughness = (data.get(key) for key in ("budgets", "errors", "test_beams", "roughness"))
     of_model, told = model_errors.sentences(name, errors), []
     limits = judged.limits_of(name, data["warnings"])
@@ -81,12 +81,12 @@ def device_page(name: str, section: Mapping[str, Any], data: Mapping[str, Any], 
     forbidding = texts(dict.fromkeys(limit for limit in limits if limit.forbids))
     shown = screen.screen(answer, section, forbidding, (of_model or [_NO_ERROR])[0])
     briefly = [] if roughness is None else sentences_roughness.briefly(roughness)
-    said = [*said, *filter(None, told), *briefly, *of_model[1:]]
+    sentences = [*sentences, *filter(None, told), *briefly, *of_model[1:]]
     sections = [*_steps(answer), *sections, *_sure(name, budgets or {}, errors), *_test_beam_sections(name, test_beams)]
     sections += _how_rough(name, roughness)
     terms = words | _words_of_budgets(budgets)
     title = f"{name}: {kind_of(section).words}"
-    return Page(title, _facts_of(section), said, sections, listed, terms, summary=shown, more=said)
+    return Page(title, _facts_of(section), sentences, sections, listed, terms, summary=shown, more=sentences)
 
 
 def _steps(answer):
@@ -138,15 +138,15 @@ def _requirement(section):
         return {}
     required, over = section["requirement"], section.get("roughness", {})
     length = f"{required['length_um']:g} µm long, " if "length_um" in required else ""
-    met = {"requirement": f"{length}at most {one_in(required['share'])} sticks"}
+    requirement = {"requirement": f"{length}at most {one_in(required['share'])} sticks"}
     if not over:
-        return met
+        return requirement
     ranges = (
         f"{quantity.words} from {over[key][0]:g} to {over[key][1]:g}{quantity.unit}"
         for key, quantity in ROUGHNESSES.items()
         if key in over
     )
-    return met | {f"roughness of {over['surface']} asked for": ", ".join(ranges)}
+    return requirement | {f"roughness of {over['surface']} asked for": ", ".join(ranges)}
 
 
 def _sure(name, budgets, errors):
@@ -154,27 +154,29 @@ def _sure(name, budgets, errors):
     if not budgets:
         return []
     cases = {(name, *key): dataset for key, dataset in budgets.items()}
-    said = [
+    sentences = [
         f"{Air(humidity).choose(f'Relative humidity {humidity:g}', 'Dry air')}: {tables_budget.what_to_measure(budget)}"
         for (humidity, *_), budget in budgets.items()
     ]
-    said.append(tables_budget.counted_as_exact(*budgets.values()))
+    sentences.append(tables_budget.counted_as_exact(*budgets.values()))
     cells, drawn = _side_by_side(tables_budget.budget(cases, errors).cells), figures_budget.budget(cases)
-    return [Section("Uncertainty, and what should be measured better", said, cells, drawn, _MISSING_EFFECTS)]
+    return [Section("Uncertainty, and what should be measured better", sentences, cells, drawn, _MISSING_EFFECTS)]
 
 
 def _test_beam_sections(name, update):
     """Section on the evidence of the test beams of a device, if it has some."""
     if update is None:
         return []
-    said = [
+    sentences = [
         tables_test_beams.agreement(update),
         *tables_test_beams.combinations(update),
         tables_test_beams.beams_to_add(update),
     ]
-    said += [tables_test_beams.again(update), *tables_test_beams.stuck_sentences(update)]
+    sentences += [tables_test_beams.again(update), *tables_test_beams.stuck_sentences(update)]
     cells = tables_test_beams.test_beams({name: update}).cells.drop(columns="device")
-    return [Section("What the test beams say", [*filter(None, said)], cells, figures_test_beams.test_beams(update))]
+    return [
+        Section("What the test beams say", [*filter(None, sentences)], cells, figures_test_beams.test_beams(update))
+    ]
 
 
 def _how_rough(name, roughness):
@@ -183,9 +185,9 @@ def _how_rough(name, roughness):
         return []
     cells = tables_axes.of_roughness({name: roughness}).cells.drop(columns="device")
     of_map = "other" in roughness.dims
-    said = [*sentences_roughness.answers(roughness), sentences_roughness.form(roughness)]
+    sentences = [*sentences_roughness.answers(roughness), sentences_roughness.form(roughness)]
     asked = "How closely may it follow?" if roughness.key in OF_COPIES else "How rough must it be?"
-    sections = [Section(asked, said, cells, figures_axes.roughness(roughness))]
+    sections = [Section(asked, sentences, cells, figures_axes.roughness(roughness))]
     if of_map:
         sections.append(Section("Over two quantities", _OF_MAPS, None, figures_axes.roughness_map(roughness)))
     return sections
@@ -194,10 +196,10 @@ def _how_rough(name, roughness):
 def _side_by_side(cells):
     """Cells of the budget of one device with a pair of columns for every humidity."""
     shown = [
-        part.set_index(["held by", "what"])[["effect [%]", "remaining [%]"]].add_prefix(
+        effects.set_index(["held by", "what"])[["effect [%]", "remaining [%]"]].add_prefix(
             f"{text if text == DRY else f'RH {text}'}: "
         )
-        for text, part in cells.groupby("RH", sort=False)
+        for text, effects in cells.groupby("RH", sort=False)
     ]
     return pd.concat(shown, axis=1).fillna(MISSING).reset_index()
 
@@ -206,39 +208,39 @@ def _inputs(plan, at):
     """Inputs of the page of a device."""
     devices, section = plan.devices, plan.config["devices"][at.device]
     budgets = budgets_of(plan, at.device) if at.device in devices.with_budget else {}
-    own = {"answer": f"devices/answer/{at.device}"}
-    own |= {"life": f"devices/life/{at.device}"} if at.device in devices.with_life else {}
-    own |= {"budgets": {key[1:]: name for key, name in budgets.items()}}
-    own |= {"warnings": device_warnings.files_of(at.device)[at.device]} | model_errors.error_inputs(plan, at.device)
+    inputs = {"answer": f"devices/answer/{at.device}"}
+    inputs |= {"life": f"devices/life/{at.device}"} if at.device in devices.with_life else {}
+    inputs |= {"budgets": {key[1:]: name for key, name in budgets.items()}}
+    inputs |= {"warnings": device_warnings.files_of(at.device)[at.device]} | model_errors.error_inputs(plan, at.device)
     asked = {"test_beams": "devices/test_beams/rerun", "roughness": "devices/roughness"}
-    own |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
-    own |= process_section.inputs(plan, at.device) | tables_at_once.inputs(plan, at.device)
-    own |= {"style": File(STYLE), "templates": [File(GLOSSARY), *html.files(TEMPLATE), *drawings.FILES]}
-    return own | _of_question(section).inputs(plan, at.device)
+    inputs |= {key: f"{folder}/{at.device}" for key, folder in asked.items() if key in section}
+    inputs |= process_section.inputs(plan, at.device) | tables_at_once.inputs(plan, at.device)
+    inputs |= {"style": File(STYLE), "templates": [File(GLOSSARY), *html.files(TEMPLATE), *drawings.FILES]}
+    return inputs | _of_question(section).inputs(plan, at.device)
 
 
 def _settings(plan, at):
     """Section of a device, and its surfaces in words."""
     section = plan.config["devices"][at.device]
     pair = plan.config["pairs"][section["pair"]]
-    names = {f"surface of the {part}": pair[part] for part in ("beam", "substrate")}
+    names = {"surface of the device": pair["beam"], "surface of the substrate": pair["substrate"]}
     materials = list(map(plan.materials.stated, names.values()))
     surfaces = {
-        part: f"{name}: {surface_in_words(plan.config['surfaces'][name], material)}"
-        for (part, name), material in zip(names.items(), materials, strict=True)
+        side: f"{name}: {surface_in_words(plan.config['surfaces'][name], material)}"
+        for (side, name), material in zip(names.items(), materials, strict=True)
     }
     if "replica" in pair:
-        surfaces["surface of the beam"] += f", {replica_in_words(pair['replica'])}"
+        surfaces["surface of the device"] += f", {replica_in_words(pair['replica'])}"
     left_out = {"not_modelled": device_warnings.not_modelled(plan, at.device)}
     assumed = plan.devices.assumed_inputs(at.device)
     measured = [name for name in names.values() if is_measured(plan.config["surfaces"][name])]
     parameters = adhesion_parameters(plan, plan.air_of_devices, section["pair"], section["humidities"])
-    known = {"assumed": assumed, "measured": measured, "adhesion_parameters": list(parameters.values())}
+    further = {"assumed": assumed, "measured": measured, "adhesion_parameters": list(parameters.values())}
     if plan.devices.kind(at.device).has_tip:
-        known["tip_edge"] = plan.devices.edge_in_words
+        further["tip_edge"] = plan.devices.edge_in_words
     if plan.devices.kind(at.device).has_tip and is_biased(plan, at.device):
-        known["young_modulus_GPa"] = section_of_beam(plan, at.device)["young_modulus_GPa"]
-    return section | {"surfaces": surfaces} | left_out | {key: some for key, some in known.items() if some}
+        further["young_modulus_GPa"] = section_of_beam(plan, at.device)["young_modulus_GPa"]
+    return section | {"surfaces": surfaces} | left_out | {key: value for key, value in further.items() if value}
 
 
 @on_a_page()
@@ -260,14 +262,20 @@ def _page(data, at, settings):
 
 
 def with_life(page: Page, name: str, answers: xr.Dataset, answer: Answer) -> Page:
-    """Page with the life of its device: in words, and after the first section as table and figure."""
+    """Page with the life of its device: in words, and after the first section as table and figure.
+
+    The first screen names what does not allow the size to build.
+    """
     first, *others = page.sections
     cells = life.table({name: answers}).cells.drop(columns="device")
     build = np.nan if answer.forbidden else answer.build
     picture = life.figure({name: answers}, {name: build})
     section = Section("From the first contact to the last", (life.CAPTION,), cells, picture)
-    said, sections = life.sentences(answers, build, bool(answer.stays)), [first, section, *others]
-    return replace(page, answer=[*said, *page.answer], more=[*said, *page.more], sections=sections)
+    sentences, sections = life.sentences(answers, build, bool(answer.stays)), [first, section, *others]
+    summary = page.summary and replace(page.summary, basis=[*page.summary.basis, *life.judged_without(answers, build)])
+    return replace(
+        page, answer=[*sentences, *page.answer], more=[*sentences, *page.more], sections=sections, summary=summary
+    )
 
 
 def _save(page, paths):

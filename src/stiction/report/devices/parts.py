@@ -47,11 +47,11 @@ def terms() -> dict[str, Any]:
     return _read(yaml.safe_load(GLOSSARY.read_text(encoding="utf-8")))
 
 
-def _read(part):
+def _read(entry):
     """Section of the glossary, or the text of a term with its parts joined."""
-    if isinstance(part, dict):
-        return {name: _read(inner) for name, inner in part.items()}
-    return part if isinstance(part, str) else " ".join(part)
+    if isinstance(entry, dict):
+        return {name: _read(inner) for name, inner in entry.items()}
+    return entry if isinstance(entry, str) else " ".join(entry)
 
 
 class OfQuestion(NamedTuple):
@@ -91,9 +91,9 @@ def _parts_of_beam(name, section, data, answer):
         axis = _cases(name, data["charts"])
         cells = tables_devices.chart(axis, warnings).cells.drop(columns="device")
         sections.append(Section("Other thicknesses and humidities", (), cells, figures_devices.chart(axis, {})))
-    said = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
+    texts_of_cases = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
     listed = with_numbers(warnings) + texts(sentences.shortest_warnings(section, answer))
-    return sections, said, listed, _words_of_beam(data)
+    return sections, texts_of_cases, listed, _words_of_beam(data)
 
 
 def _words_of_beam(data):
@@ -128,10 +128,10 @@ def _parts_of_stopper(name, section, data, _answer):
     picture = figures_budget.stoppers({name: stopper}, {})
     sections = [Section("By simulation alone", (_SIMULATED,), table, picture)]
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
-    said = [*sentences.safe_force_sentences(stopper), *worst]
+    texts_of_forces = [*sentences.safe_force_sentences(stopper), *worst]
     words = terms()["stoppers"] | (terms()["probes"] if kind_of(section).shape else {})
     words |= terms()["worst_humidity"] if worst else {}
-    return sections, said, texts(data["warnings"].patches[name]), words
+    return sections, texts_of_forces, texts(data["warnings"].patches[name]), words
 
 
 def _views_of_stopper(name, section, data, answer):

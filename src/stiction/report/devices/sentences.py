@@ -36,19 +36,19 @@ def shortest_warnings(section: Mapping[str, Any], answer: Answer) -> list[Limit]
 def prediction_sentences(safe_lengths: Mapping[float, xr.Dataset]) -> list[str]:
     """Prediction interval of the shortest length held by the beam, for the middle fraction, or nothing without one."""
     held = {
-        humidity: one.sel(shape=S_SHAPE, share=chosen_share(one))
-        for humidity, one in safe_lengths.items()
-        if "prediction_low" in one
+        humidity: dataset.sel(shape=S_SHAPE, share=chosen_share(dataset))
+        for humidity, dataset in safe_lengths.items()
+        if "prediction_low" in dataset
     }
-    known = {humidity: one for humidity, one in held.items() if np.isfinite(one.prediction_low)}
-    if not known:
+    with_interval = {humidity: dataset for humidity, dataset in held.items() if np.isfinite(dataset.prediction_low)}
+    if not with_interval:
         return []
-    humidity, one = min(known.items(), key=lambda case: float(case[1].estimate))
-    low, high = (f"{float(end) / UM:.0f}" for end in (one.prediction_low, one.prediction_high))
-    error = np.hypot(one.beams_error, one.surfaces_error.fillna(0))
-    estimate = with_error(float(one.estimate) / UM, float(error) / UM)
+    humidity, dataset = min(with_interval.items(), key=lambda case: float(case[1].estimate))
+    low, high = (f"{float(end) / UM:.0f}" for end in (dataset.prediction_low, dataset.prediction_high))
+    error = np.hypot(dataset.beams_error, dataset.surfaces_error.fillna(0))
+    estimate = with_error(float(dataset.estimate) / UM, float(error) / UM)
     return [
-        f"{_at(humidity)}, {one_in(float(one.share))} sticks along its beam at a length of {estimate} µm (standard "
+        f"{_at(humidity)}, {one_in(float(dataset.share))} sticks along its beam at a length of {estimate} µm (standard "
         "error of the simulation). If this model errs on your pair as it does on the paper's, this length lies between "
         f"{low} and {high} µm (95 %). It is no part of the answer. The paper measured no tips, bridges or stoppers "
         "and nothing in dry air."

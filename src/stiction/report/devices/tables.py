@@ -124,15 +124,15 @@ def safe_lengths(
             rows += [head | _safe_length(dataset.sel(shape=shape, share=p)) | last for p in dataset.share.values]
             marks += [", ".join(map(str, numbers[device, humidity, shape]))] * dataset.sizes["share"]
     frame = pd.DataFrame(rows)
-    own = _COLUMNS_AT_LENGTH if "length_um" in frame else {}
-    said = [
-        *([_AT_LENGTH] if own else []),
+    at_length = _COLUMNS_AT_LENGTH if "length_um" in frame else {}
+    sentences = [
+        *([_AT_LENGTH] if at_length else []),
         _SAFE_LENGTHS,
         _EXACT,
         *_few(datasets),
         about_bounds(datasets, _BOUND, _DRY_BOUND, _WHERE_DRY),
     ]
-    text, columns = " ".join(said), _HELD | own | _LENGTHS
+    text, columns = " ".join(sentences), _HELD | at_length | _LENGTHS
     if "prediction_low_um" in frame:
         text, columns = f"{text} {_PREDICTED}", columns | _PREDICTION
     if errors:
@@ -143,9 +143,9 @@ def safe_lengths(
 def _few(datasets):
     """Basis of lengths with few stuck devices, or nothing if enough of them stick."""
     bases = {str(basis) for dataset in datasets.values() for basis in dataset.basis.values.flat}
-    if not (found := [text for basis, text in _FEW.items() if basis in bases]):
+    if not (bases_in_words := [text for basis, text in _FEW.items() if basis in bases]):
         return []
-    return [f"Where few stick: {'; '.join(found)}; an estimate beyond these is not known."]
+    return [f"Where few stick: {'; '.join(bases_in_words)}; an estimate beyond these is not known."]
 
 
 def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where_dry: str) -> str:
@@ -153,7 +153,7 @@ def about_bounds(datasets: Mapping[Any, xr.Dataset], humid: str, dry: str, where
 
     Cases have datasets with the height of their film, which is zero where no water condenses.
     """
-    without_water = [float(one.film) == 0 for one in datasets.values()]
+    without_water = [float(dataset.film) == 0 for dataset in datasets.values()]
     if all(without_water):
         return dry
     return f"{humid} {where_dry}" if any(without_water) else humid
@@ -211,13 +211,15 @@ def chart(
     """
     numbers = numbered(warnings)
     rows, cells = [], []
-    for device, curve in dict.fromkeys((name, curve) for (name, _), one in datasets.items() for curve in curves(one)):
+    for device, curve in dict.fromkeys(
+        (name, curve) for (name, _), dataset in datasets.items() for curve in curves(dataset)
+    ):
         last = {"warnings": " ".join(texts(warnings[device, *curve]))}
         marks = {"warnings": ", ".join(map(str, numbers[device, *curve]))}
         for humidity in sorted(humidity for name, humidity in datasets if name == device):
-            one = datasets[device, humidity].sel(dict(zip(("thickness", "gap", "shape"), curve, strict=True)))
-            beam = {"device": device, "relative_humidity": humidity} | _beam(one)
-            lengths = dict(zip(one.share.values.tolist(), one.safe_length.values / UM, strict=True))
+            dataset = datasets[device, humidity].sel(dict(zip(("thickness", "gap", "shape"), curve, strict=True)))
+            beam = {"device": device, "relative_humidity": humidity} | _beam(dataset)
+            lengths = dict(zip(dataset.share.values.tolist(), dataset.safe_length.values / UM, strict=True))
             rows += [beam | {"share": share, "safe_length_um": length} | last for share, length in lengths.items()]
             cells.append(_beam_as_text(beam, lengths) | marks)
     bounds = about_bounds(datasets, _CHART_BOUND, _DRY_CHART_BOUND, _WHERE_DRY)

@@ -13,7 +13,7 @@ from stiction.devices.risk import quantiles, sampled_bound, samples_for
 from stiction.life import holding
 from stiction.report.devices import levels
 from stiction.report.devices.explorer import View, alone, humidity_axis, share_axis, size_axis
-from stiction.report.devices.grid import Axis, Grid
+from stiction.report.devices.grid import Grid, GridAxis
 from stiction.report.format import UM
 from stiction.stages.devices.safe_lengths import chosen_share
 
@@ -77,7 +77,7 @@ def beam_view(name: str, section: Mapping[str, Any], safe_lengths: Mapping[float
     volts = [float(f"{value:.9g}") for value in np.linspace(0, limit, _POINTS)]
     sizes = (section[key] * UM for key in ("width_um", "thickness_um"))
     beam = Beam(1.0, *sizes, to_si(section["young_modulus_GPa"], "GPa"), section["gap_um"] * UM, 1)
-    added = [holding.energy_of_voltage(Capacitor(oxide, one, offset), beam.gap) for one in volts]
+    added = [holding.energy_of_voltage(Capacitor(oxide, voltage, offset), beam.gap) for voltage in volts]
     safe, scored = (
         np.array([holding.tip_length_at_voltage(lengths.values, beam, energy) for energy in added]) / UM
         for lengths in (joined.safe_length, joined["quantile"])
@@ -87,7 +87,7 @@ def beam_view(name: str, section: Mapping[str, Any], safe_lengths: Mapping[float
     reason = f"beyond {limit:g} V the dielectric breaks down; {key}.dielectric changes this"
     start = min(abs(section.get("voltage_V", 0.0)), volts[-1])
     axes = (
-        Axis("voltage_V", "voltage", "V", "linear", tuple(volts), start, True, reason, "voltage_V"),
+        GridAxis("voltage_V", "voltage", "V", "linear", tuple(volts), start, True, reason, "voltage_V"),
         humidity_axis(joined.humidity.values, float(joined.humidity[worst]), f"{key}.humidities", False),
     )
     length = section.get("length_um", float(safe[0, worst].min()))

@@ -16,16 +16,16 @@ from stiction.stages.devices import device_warnings
 from stiction.stages.devices.device_warnings import OfDevices, subjects
 
 
-def together(found: OfDevices, test_beams: Mapping[str, xr.Dataset]) -> Limits:
+def together(devices: OfDevices, test_beams: Mapping[str, xr.Dataset]) -> Limits:
     """Limits of devices, and of the evidence of their test beams, by name of the device."""
     of_test_beams = {name: tables_test_beams.warnings(update) for name, update in test_beams.items()}
-    return subjects(found) | {Subject(name, ("test beams",)): limits for name, limits in of_test_beams.items()}
+    return subjects(devices) | {Subject(name, ("test beams",)): limits for name, limits in of_test_beams.items()}
 
 
 def of_lengths(beams: Mapping[str, Any], answers: Mapping[str, xr.Dataset]) -> Limits:
     """Limits of the lengths to build, or the stated ones, from sections of beams and their answers by name."""
-    found = {name: shortest_warnings(section, answer_of(answers[name])) for name, section in beams.items()}
-    return {Subject(name, ("length",)): limits for name, limits in found.items() if limits}
+    limits_of_lengths = {name: shortest_warnings(section, answer_of(answers[name])) for name, section in beams.items()}
+    return {Subject(name, ("length",)): limits for name, limits in limits_of_lengths.items() if limits}
 
 
 def _beams(plan):
@@ -52,7 +52,7 @@ STAGES = (
             settings["not_modelled"],
         ),
         save=pages.save,
-        message="Where the results of devices are beyond the model.",
+        message="Limits of the model that devices exceed.",
         jobs=lambda plan: [{}] if plan.devices.sections else [],
         targets=("devices",),
     ),

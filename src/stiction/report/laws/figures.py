@@ -29,10 +29,10 @@ _DOTTED = {"color": "0.3", "linestyle": ":", "linewidth": 0.8}
 # Figure 5
 
 
-def typical(fit: xr.Dataset, kept: int) -> int:
-    """Number of the sample of median error among the first ``kept``."""
+def typical(fit: xr.Dataset, count: int) -> int:
+    """Number of the sample of median error among the first ``count``."""
     # ASSUME: the paper's typical curve is one of median error.
-    errors = fit.curve_error.sel(strip=slice(0, kept - 1))
+    errors = fit.curve_error.sel(strip=slice(0, count - 1))
     return int(errors.strip[np.argsort(errors.values)[errors.size // 2]])
 
 
@@ -72,10 +72,10 @@ def _components(panel, vector, limit):
     panel.annotate(rf"$\bar d_\mathrm{{limit}}$ = {d_limit:.3g} nm", (d_limit, 0), (-3, -9), ha="right", **note)
     panel.annotate(rf"$\bar d_\mathrm{{max}}$ = {d_max:.3g} nm", (d_max, 0), (-8, 4), **note)
     panel.annotate(rf"$\bar f_\mathrm{{max}}$ = {f_max:.3g} MPa", (right, -f_max), (-3, 3), ha="right", **note)
-    place = d_max + 0.12 * (right - d_max), -0.25 * f_max
+    position = d_max + 0.12 * (right - d_max), -0.25 * f_max
     text = right - 0.02 * (right - left), -0.6 * f_max
     arrow = {"arrowstyle": "-", "linewidth": 0.6}
-    panel.annotate(rf"$\bar e$ = {energy:.3g} mJ/m²", place, text, ha="right", fontsize=7, arrowprops=arrow)
+    panel.annotate(rf"$\bar e$ = {energy:.3g} mJ/m²", position, text, ha="right", fontsize=7, arrowprops=arrow)
 
 
 # Figure 12

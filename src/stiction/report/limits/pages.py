@@ -22,8 +22,8 @@ FILES = {"markdown": "warnings.md", "json": "warnings.json"}
 def by_limit(limits: Limits) -> dict[Limit, list[Subject]]:
     """Subjects of each different limit, in order."""
     subjects: dict[Limit, list[Subject]] = {}
-    for subject, found in limits.items():
-        for limit in dict.fromkeys(found):
+    for subject, of_subject in limits.items():
+        for limit in dict.fromkeys(of_subject):
             subjects.setdefault(limit, []).append(subject)
     return subjects
 
@@ -65,15 +65,15 @@ def save(page: tuple[Limits, Mapping[str, Any]], paths: Mapping[str, str]) -> No
 def _of_pairs(data, settings):
     """Limits of all pairs, and the effects that none of their results has."""
     nominal, is_listed = in_si(OfPairs, settings["pairs"]), settings["plasticity_runs"]
-    found = main_line_warnings(data["beams"], data["plasticity"], settings["materials"], nominal, is_listed)
+    limits = main_line_warnings(data["beams"], data["plasticity"], settings["materials"], nominal, is_listed)
     for pair, flags in surface_notes(data, settings["surfaces"], settings["assumed"]).items():
-        found[Subject(f"pair {pair}")] += flags
-    return found, settings["not_modelled"]
+        limits[Subject(f"pair {pair}")] += flags
+    return limits, settings["not_modelled"]
 
 
 def _replicas(plan):
     """Settings of the replicas of pairs, none without one."""
-    stated = {pair: found["replica"] for pair in plan.pairs if (found := plan.replica(pair))}
+    stated = {pair: replica["replica"] for pair in plan.pairs if (replica := plan.replica(pair))}
     return {"replicas": stated} if stated else {}
 
 
@@ -103,7 +103,7 @@ STAGES = (
         },
         compute=_of_pairs,
         save=save,
-        message="Where the results of pairs are beyond the model.",
+        message="Limits of the model that pairs exceed.",
         targets=("all",),
     ),
 )

@@ -52,8 +52,10 @@ def _arcs_of_elements(share, strip):
 
 
 def _longer_strips(strip, longest, is_bridge):
-    what = "middle of this bridge" if is_bridge else "cracks of this beam"
-    return f"Strips of {TO_UM * strip:.3g} µm are longer than the {TO_UM * longest:.3g} µm that resolve the {what}"
+    part_of_beam = "middle of this bridge" if is_bridge else "cracks of this beam"
+    return (
+        f"Strips of {TO_UM * strip:.3g} µm are longer than the {TO_UM * longest:.3g} µm that resolve the {part_of_beam}"
+    )
 
 
 def _nothing_simulated(is_bridge, **strips):
@@ -195,7 +197,10 @@ def _flat_patches(share):
 
 
 def _smooth_pair(rms, short):
-    by = [f"{100 * of:.0f} ± {max(100 * error, 1):.0f} % at RH {humidity:g}" for humidity, of, error in short]
+    by = [
+        f"{100 * shortfall:.0f} ± {max(100 * error, 1):.0f} % at RH {humidity:g}"
+        for humidity, shortfall, error in short
+    ]
     return (
         f"Surfaces as smooth as these, {TO_NM * rms:.2g} nm rms together, flatten each other in humid air. Forces on "
         f"summits are then too small, the unsafe side: on slopes as gentle as those of B2 by {', '.join(by)}, on "
@@ -275,9 +280,9 @@ def _wide_meniscus(film, share):
 
 
 def _filled_gap(gap, film, rms):
-    what, acts = ("sum of film height and roughness", "water") if film else ("roughness", "attraction across gaps")
+    lengths, acts = ("sum of film height and roughness", "water") if film else ("roughness", "attraction across gaps")
     return (
-        f"The gap of {TO_UM * gap:.3g} µm is less than {FILMS} times the {what}, "
+        f"The gap of {TO_UM * gap:.3g} µm is less than {FILMS} times the {lengths}, "
         f"{TO_NM * (film + rms):.3g} nm: the {acts} acts on the beam ahead of its contact, too."
     )
 
@@ -344,22 +349,23 @@ def _assumption(word, value, scatter):
 
 
 def _assumed_surface(surface, library, listed):
-    said = "; ".join(_assumption(*each) for each in listed)
+    assumptions = "; ".join(_assumption(*each) for each in listed)
     kind = f"any of {len(library)} typical surfaces ({', '.join(library)})"
-    return f"surface {surface}: not measured but assumed, {kind}: {said}"
+    return f"surface {surface}: not measured but assumed, {kind}: {assumptions}"
 
 
 def _assumed_without_scatter(surface, listed, **_):
-    said = "; ".join(_assumption(*each) for each in listed)
-    return f"surface {surface}: not measured but assumed, without an uncertainty, for want of typical surfaces: {said}"
+    assumptions = "; ".join(_assumption(*each) for each in listed)
+    reason = "not measured but assumed, without an uncertainty, for want of typical surfaces"
+    return f"surface {surface}: {reason}: {assumptions}"
 
 
 def _unlike_typical(surface, changed):
-    said = [
+    differences = [
         f"{_UNKNOWN[word][0]} {value:.3g}{_UNKNOWN[word][1]} in place of {typical:.3g}{_UNKNOWN[word][1]} of {other}"
         for word, value, typical, other in changed
     ]
-    return f"surface {surface}: what is stated allows no more than {'; '.join(said)}"
+    return f"surface {surface}: what is stated allows no more than {'; '.join(differences)}"
 
 
 # Test beams
@@ -535,13 +541,13 @@ def not_modelled(
 
 def distinct(limits: Mapping[Any, Iterable[Limit]]) -> list[Limit]:
     """Different limits of all subjects in their order."""
-    return list(dict.fromkeys(limit for found in limits.values() for limit in found))
+    return list(dict.fromkeys(limit for of_subject in limits.values() for limit in of_subject))
 
 
 def numbered(limits: Mapping[Any, Iterable[Limit]]) -> dict[Any, list[int]]:
     """Numbers, from 1, of the limits of each subject among the `distinct` ones."""
     numbers = {limit: number for number, limit in enumerate(distinct(limits), 1)}
-    return {subject: [numbers[limit] for limit in found] for subject, found in limits.items()}
+    return {subject: [numbers[limit] for limit in of_subject] for subject, of_subject in limits.items()}
 
 
 def with_numbers(limits: Mapping[Any, Iterable[Limit]]) -> list[str]:

@@ -52,11 +52,11 @@ def caption(errors: Mapping[Any, xr.Dataset]) -> str:
     by_levels = any("by_levels" in error and error.by_levels.any() for error in errors.values())
     others = ", or would change it where its error is too large" if by_levels else IN_DRY_AIR
     does += others * (len(applied) > 1)
-    own = " Where it has, bounds contain its standard error." * (True in applied)
+    with_bounds = " Where it has, bounds contain its standard error." * (True in applied)
     return (
         f"Model error: by how much full elastic contact of the surfaces {does}, ± standard error over its strips; * "
         "interpolated between the humidities at which it was computed, with the error of the interpolation; – not "
-        f"known. It has one sign and is no random error: it is part of no standard error.{own}"
+        f"known. It has one sign and is no random error: it is part of no standard error.{with_bounds}"
     )
 
 

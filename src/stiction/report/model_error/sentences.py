@@ -20,8 +20,8 @@ def device_change(errors: Mapping[str, xr.Dataset] | None, device: str, humidity
     if not errors:
         return {}
     error = errors.get(device)
-    known = error is not None and shape in error["shape"] and humidity in error.humidity
-    return change(error.sel(shape=shape, humidity=humidity) if known else None, "factor")
+    is_known = error is not None and shape in error["shape"] and humidity in error.humidity
+    return change(error.sel(shape=shape, humidity=humidity) if is_known else None, "factor")
 
 
 def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]:
@@ -31,25 +31,25 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
     error = errors[device]
     shape = str(error["shape"].values[0])
     sought = SOUGHT_BY[shape]
-    what = "pull-off force" if sought.more_is_better else f"lengths held by the {END_STATES[shape].by}"
+    response = "pull-off force" if sought.more_is_better else f"lengths held by the {END_STATES[shape].by}"
     rows = {float(humidity): device_change(errors, device, humidity, shape) for humidity in error.humidity.values}
-    known = {humidity: row for humidity, row in rows.items() if np.isfinite(row["model_error_percent"])}
-    if not known:
-        return [f"The model's error in the {what} is not known {airs(rows)}{_why(error)}."]
+    finite = {humidity: row for humidity, row in rows.items() if np.isfinite(row["model_error_percent"])}
+    if not finite:
+        return [f"The model's error in the {response} is not known {airs(rows)}{_why(error)}."]
     applied = set(error.humidity.values[error.applied.values])
-    said, uncorrected = [], {humidity: row for humidity, row in known.items() if humidity not in applied}
-    for does, of in ("has changed", applied & known.keys()), ("would change", uncorrected):
-        by = [f"{_percent(known[humidity])} {airs([humidity])}" for humidity in sorted(of)]
-        said += [f"Full elastic contact of the surfaces {does} the {what} by {', '.join(by)}."] if by else []
-    if len(known) < len(rows):
-        said.append(f"It is not known {airs([humidity for humidity in rows if humidity not in known])}.")
+    texts, uncorrected = [], {humidity: row for humidity, row in finite.items() if humidity not in applied}
+    for does, humidities in ("has changed", applied & finite.keys()), ("would change", uncorrected):
+        by = [f"{_percent(finite[humidity])} {airs([humidity])}" for humidity in sorted(humidities)]
+        texts += [f"Full elastic contact of the surfaces {does} the {response} by {', '.join(by)}."] if by else []
+    if len(finite) < len(rows):
+        texts.append(f"It is not known {airs([humidity for humidity in rows if humidity not in finite])}.")
     if EITHER in error["shape"]:
-        said += _of_tips(error)
-    said += [_safe_side(uncorrected, sought)] if uncorrected else []
+        texts += _of_tips(error)
+    texts += [_safe_side(uncorrected, sought)] if uncorrected else []
     if error.across_gaps:
-        return [*said, "Attraction across gaps is in both models."]
+        return [*texts, "Attraction across gaps is in both models."]
     gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
-    return [*said, f"Attraction across gaps is in neither model. It acts {gaps}"]
+    return [*texts, f"Attraction across gaps is in neither model. It acts {gaps}"]
 
 
 def _why(error):
@@ -62,13 +62,13 @@ def _why(error):
 def _of_tips(error):
     """Sentences on what full contact does to tips, with and without a correction."""
     applied = np.where(error.by_levels, error.get("tips_applied", False), error.applied)
-    known, others = (list(map(float, error.humidity.values[flags])) for flags in (applied, ~applied))
+    corrected, others = (list(map(float, error.humidity.values[flags])) for flags in (applied, ~applied))
     how = "at the upper end of what these show with 95 % confidence."
-    said = [f"Tips have changed as tilted strips with their edge do, {how}"] if known else []
-    where = f" {airs(others)}" * bool(known)
-    unknown = error.by_levels.any() if known else True
-    said += [f"It is not known for what the tip holds{where}."] if unknown and others else []
-    return said + [_ratio_of_tips(error, rh) for rh in humid(known) if "least_of_tips" in error]
+    texts = [f"Tips have changed as tilted strips with their edge do, {how}"] if corrected else []
+    where = f" {airs(others)}" * bool(corrected)
+    unknown = error.by_levels.any() if corrected else True
+    texts += [f"It is not known for what the tip holds{where}."] if unknown and others else []
+    return texts + [_ratio_of_tips(error, rh) for rh in humid(corrected) if "least_of_tips" in error]
 
 
 def _ratio_of_tips(error, humidity):
@@ -83,11 +83,11 @@ def _percent(row):
     return f"{text} (interpolated)" if row["interpolated"] else text
 
 
-def _safe_side(known, sought):
+def _safe_side(changes, sought):
     """Sentence on the safe side: longer beams and smaller forces stick less under full contact."""
     unsafe = {
         humidity: abs(row["model_error_percent"])
-        for humidity, row in known.items()
+        for humidity, row in changes.items()
         if sought.sign * row["model_error_percent"] < -2 * row["model_error_se_percent"]
     }
     if not unsafe:

@@ -58,7 +58,9 @@ def _rows(
         longer = length * float(error.length_factor)
         if error.applied:  # the beams have the corrected laws
             length, longer = length / float(error.length_factor), length
-        known = {name: value(published, name, **case) for name in ("ng", "ng_std", "experiment", "experiment_std")}
+        lengths_of_paper = {
+            name: value(published, name, **case) for name in ("ng", "ng_std", "experiment", "experiment_std")
+        }
         rows.append(
             case
             | {
@@ -71,14 +73,14 @@ def _rows(
             | {
                 "crack_length_um": length,
                 "full_contact_um": longer,
-                "published_um": known["ng"],
-                "published_std_um": known["ng_std"],
-                "experiment_um": known["experiment"],
-                "experiment_std_um": known["experiment_std"],
-                "deviation_percent": percent(length, known["ng"]),
-                "full_contact_deviation_percent": percent(longer, known["ng"]),
-                "experiment_deviation_percent": percent(length, known["experiment"]),
-                "full_contact_experiment_deviation_percent": percent(longer, known["experiment"]),
+                "published_um": lengths_of_paper["ng"],
+                "published_std_um": lengths_of_paper["ng_std"],
+                "experiment_um": lengths_of_paper["experiment"],
+                "experiment_std_um": lengths_of_paper["experiment_std"],
+                "deviation_percent": percent(length, lengths_of_paper["ng"]),
+                "full_contact_deviation_percent": percent(longer, lengths_of_paper["ng"]),
+                "experiment_deviation_percent": percent(length, lengths_of_paper["experiment"]),
+                "full_contact_experiment_deviation_percent": percent(longer, lengths_of_paper["experiment"]),
             }
         )
     return rows
@@ -136,7 +138,7 @@ def figure(*data) -> Figure:
 
 def _panels(column, rows):
     """Panels of one pair."""
-    computed, known = rows[~rows.interpolated], rows[rows.published_um.notna()]
+    computed, compared = rows[~rows.interpolated], rows[rows.published_um.notna()]
     style = {"color": MODELS["NG"]["color"]}
     column[0].plot(rows.relative_humidity, rows.model_error_percent, linestyle=":", label="interpolated", **style)
     points = computed.relative_humidity, computed.model_error_percent, computed.model_error_se_percent
@@ -146,14 +148,14 @@ def _panels(column, rows):
         column[0].errorbar(*of_beams, fmt="x", color="black", label="beams on corrected laws")
     if len(column) > 1:
         summits = {"linestyle": "--", "marker": "s", "markerfacecolor": "white", "label": "sum over summits"}
-        column[1].plot(known.relative_humidity, known.deviation_percent, **summits, **style)
+        column[1].plot(compared.relative_humidity, compared.deviation_percent, **summits, **style)
         full = {"linestyle": "-", "marker": "o", "label": "full contact"}
-        column[1].plot(known.relative_humidity, known.full_contact_deviation_percent, **full, **style)
+        column[1].plot(compared.relative_humidity, compared.full_contact_deviation_percent, **full, **style)
         measured = (
-            percent(known.experiment_um / known.published_um, 1),
-            100 * known.experiment_std_um / known.published_um,
+            percent(compared.experiment_um / compared.published_um, 1),
+            100 * compared.experiment_std_um / compared.published_um,
         )
-        column[1].errorbar(known.relative_humidity, *measured, fmt="*", color=PUBLISHED, label="measured")
+        column[1].errorbar(compared.relative_humidity, *measured, fmt="*", color=PUBLISHED, label="measured")
     column[-1].set_xlabel("relative humidity [–]")
     for panel in column:
         panel.axhline(0, color="0.6", linewidth=0.6, zorder=0)
@@ -173,7 +175,12 @@ def _stage(kind, shows, draw, **declared):
             "published": published.file("table_3"),
             "variants": by_outcome(
                 "studies/variants",
-                [(case, name) for case, of in plan.variants.cases if of == CORRECTED for name in ("base", of)],
+                [
+                    (case, name)
+                    for case, variant in plan.variants.cases
+                    if variant == CORRECTED
+                    for name in ("base", variant)
+                ],
             ),
         },
         settings=lambda plan, at: {"of_paper": plan.paper.pairs},

@@ -96,7 +96,7 @@ def _rows(pair, study, k):
     key = {"pair": pair, "relative_humidity": float(case.humidity)}
     for name in study.surface.values:
         surface = case.sel(surface=name)
-        parts = {f"{part}_percent": 100 * float(surface.error.sel(part=part)) for part in _PARTS}
+        parts = {f"{cause}_percent": 100 * float(surface.error.sel(part=cause)) for cause in _PARTS}
         parts |= {"total_se_percent": 100 * float(surface.error_sampling)}
         number_of = {"scans": int(surface.scans), "scans_needed": int(surface.scans_needed)}
         yield key | {"surface": str(name)} | parts | _crack_length(float(surface.error.sel(part="total"))) | number_of
@@ -119,7 +119,7 @@ def _crack_length(error):
 _UNCERTAINTY = (
     PAIR
     | {"surface": (str, "surface")}
-    | {f"ē: {title} [%]": (".2g", f"{part}_percent") for part, title in _PARTS.items()}
+    | {f"ē: {title} [%]": (".2g", f"{cause}_percent") for cause, title in _PARTS.items()}
     | {"ē: total [%]": (with_error, "total_percent", "total_se_percent"), "l_s [%]": (".2g", "crack_length_percent")}
     | {"scans": (".0f", "scans"), "needed": (".0f", "scans_needed")}
 )

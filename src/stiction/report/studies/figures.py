@@ -100,8 +100,8 @@ def _slopes_of_pair(axes, datasets, published):
         panel.set(xlabel="relative humidity [–]", ylabel="normalised sensitivity [–]")
     for k, dataset in enumerate(datasets.values()):
         for side, style, slopes in zip((-1, 1), _SIDES.values(), dataset.difference.values, strict=True):
-            place = offset_copy(axes[0].transData, axes[0].figure, side * _ASIDE, 0)
-            axes[0].plot(dataset.humidity, slopes, color=f"C{k}", transform=place, **style)
+            transform = offset_copy(axes[0].transData, axes[0].figure, side * _ASIDE, 0)
+            axes[0].plot(dataset.humidity, slopes, color=f"C{k}", transform=transform, **style)
             axes[0].update_datalim(np.c_[dataset.humidity, slopes])
     axes[0].autoscale_view()
     for (moment, humidity), slope in published.items():
@@ -113,11 +113,11 @@ def _slopes_of_pair(axes, datasets, published):
     axes[1].legend(loc="lower right")
 
 
-def _beside(panel, text, place):
+def _beside(panel, text, point):
     """Note to the right of a point, or to the left of a point in the right half of a panel."""
-    side = -1 if place[0] > np.mean(panel.get_xlim()) else 1
+    side = -1 if point[0] > np.mean(panel.get_xlim()) else 1
     style = {"textcoords": "offset points", "ha": "left" if side > 0 else "right", "va": "center"}
-    panel.annotate(text, place, (5 * side, 0), **style)
+    panel.annotate(text, point, (5 * side, 0), **style)
 
 
 # Figure 16
@@ -138,8 +138,8 @@ def summit_stresses(studies: Mapping[str, xr.Dataset]) -> Figure:
     counts.vmax = max([2, *(count for mesh in cells for count in mesh.get_array())])
     for panel, dataset, onset in zip(axes, studies.values(), onsets, strict=True):
         panel.axhline(onset, color="C3", linestyle="--")
-        place, style = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "path_effects": OUTLINED}
-        panel.annotate(r"$0.6\,\sigma_H$", (0.95, onset), (0, 2), place, "offset points", **style)
+        transform, style = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "path_effects": OUTLINED}
+        panel.annotate(r"$0.6\,\sigma_H$", (0.95, onset), (0, 2), transform, "offset points", **style)
         panel.text(0.95, 0.04, _share(dataset), transform=panel.transAxes, ha="right", path_effects=OUTLINED)
     names = [rf"pair {pair}, $\bar d$ = {TO_NM * float(dataset.separation):g} nm" for pair, dataset in studies.items()]
     letter(axes, names)
@@ -203,15 +203,15 @@ def _densities(panel, sizes):
 def _distances(panel, sizes):
     """Kolmogorov's distances to all samples and those of independent samples."""
     total = int(sizes["size"][-1])
-    part = sizes.isel(size=slice(-1))
+    subsets = sizes.isel(size=slice(-1))
     count = np.geomspace(sizes["size"][0] / 1.5, 0.97 * total, 100)
     law = convergence.KOLMOGOROV_MEAN * np.sqrt(1 / count - 1 / total)
-    own = convergence.sampling_distance(total)
+    error_of_all = convergence.sampling_distance(total)
     panel.plot(count, law, "--", color="0.4", label="independent samples")
-    panel.errorbar(part["size"], part.distance, part.distance_error, fmt="o", label=f"m against {total}")
-    panel.axhline(own, **_BOUND, label=f"error of {total}")
+    panel.errorbar(subsets["size"], subsets.distance, subsets.distance_error, fmt="o", label=f"m against {total}")
+    panel.axhline(error_of_all, **_BOUND, label=f"error of {total}")
     panel.set(xscale="log", yscale="log", xlabel="number of samples m", ylabel="Kolmogorov distance [–]")
-    panel.set_ylim(own / 8, None)
+    panel.set_ylim(error_of_all / 8, None)
     plain_log(panel.xaxis)
     plain_log(panel.yaxis)
     panel.legend(loc="lower left")
@@ -371,10 +371,10 @@ def _sensitivities(data, settings):
 
 def _variants(data, settings):
     """All pairs and variants. A variant without an effect on a pair, left out of the plan, equals the base."""
-    known = by_pair(data["studies"])
-    pairs, names = (dict.fromkeys(parts) for parts in zip(*known, strict=True))
-    whole = {(pair, name): known.get((pair, name), known[pair, "base"]) for pair in pairs for name in names}
-    return variants(whole, published.published_rows(data, settings))
+    studies = by_pair(data["studies"])
+    pairs, names = (dict.fromkeys(parts) for parts in zip(*studies, strict=True))
+    all_studies = {(pair, name): studies.get((pair, name), studies[pair, "base"]) for pair in pairs for name in names}
+    return variants(all_studies, published.published_rows(data, settings))
 
 
 def _study(name, shows, **declared):

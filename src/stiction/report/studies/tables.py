@@ -16,14 +16,14 @@ from stiction.report.table import Table, table_stage
 from stiction.stages.beams.variant_beams import by_pair, cases_of
 
 _LABELS = {
-    "van_der_waals": "vdW: {}",
+    "van_der_waals": "van der Waals: {}",
     "psd": "PSD: {}",
     "asperity": "asperity: {}",
     "every": "grid × {}",
     "spacing_nm": "grid {} nm",
     "poisson_ratio": "ν = {}",
     "strips_per_element": "elements of {} strips",
-    "reach": "vdW: across {} gaps",
+    "reach": "van der Waals: across {} gaps",
     "adsorbed_nm": "{} nm of adsorbed water",
     "contact": "{} elastic contact",
 }
@@ -53,10 +53,11 @@ def sensitivity(datasets: Mapping[tuple[str, str], xr.Dataset], published: pd.Da
         "logarithms, and one-sided differences (|x|/y) Δy/Δx of the mean to less and to more of the moment, which are "
         "the relative change of y over that of x."
     )
-    known = ["" if np.isnan(slope) else f" ({slope:+g})" for slope in frame.published]
+    published_texts = ["" if np.isnan(slope) else f" ({slope:+g})" for slope in frame.published]
     values = [with_error(row.slope, row.slope_se, "+") for row in frame.itertuples()]
     texts = frame.assign(
-        cell=list(map(str.__add__, values, known)), relative_humidity=frame.relative_humidity.map("{:g}".format)
+        cell=list(map(str.__add__, values, published_texts)),
+        relative_humidity=frame.relative_humidity.map("{:g}".format),
     )
     over = ["pair"] * (frame.pair.nunique() > 1) + ["statistic", "relative_humidity"]
     wide = texts.pivot_table("cell", over, "moment", "first", sort=False)
@@ -75,9 +76,9 @@ def _slopes(dataset, pair, moment, published):
             dataset.humidity.values, *(chosen[name].values for name in chosen), strict=True
         ):
             case = {"pair": pair, "relative_humidity": humidity}
-            known = value(published, "slope", moment=moment, **case) if statistic.startswith("mean") else np.nan
+            of_paper = value(published, "slope", moment=moment, **case) if statistic.startswith("mean") else np.nan
             row = case | {"statistic": statistic, "moment": moment, "slope": slope, "slope_se": error}
-            yield row | {"published": known}
+            yield row | {"published": of_paper}
 
 
 # Model choices
@@ -109,24 +110,24 @@ def _rows(key, datasets, published):
     """One variant of a pair at every humidity."""
     pair, name = key
     for (humidity, case), (_, base) in zip(cases_of(datasets[key]), cases_of(datasets[pair, "base"]), strict=True):
-        known = {
+        lengths = {
             column: value(published, column, pair=pair, relative_humidity=humidity) for column in ("ng", "experiment")
         }
         row = {"pair": pair, "variant": name, "relative_humidity": humidity}
-        yield row | _effect(case, base) | _deviations(case, published=known["ng"], experiment=known["experiment"])
+        yield row | _effect(case, base) | _deviations(case, published=lengths["ng"], experiment=lengths["experiment"])
 
 
 def _effect(case, base):
     """Effect of a variant on one case."""
-    length, own, common = comparison.crack_length_with_errors(case)
+    length, by_beams, common = comparison.crack_length_with_errors(case)
     shift, shift_error = comparison.shift(case, base)
     reference, _ = comparison.mean_crack_length(base)
     energy, energy_error = mean_with_error(case.energy)
     energy_shift, energy_shift_error = comparison.energy_shift(case, base)
     return {
         "crack_length_um": length / UM,
-        "crack_length_se_um": np.hypot(own, common) / UM,
-        "crack_length_beams_se_um": own / UM,
+        "crack_length_se_um": np.hypot(by_beams, common) / UM,
+        "crack_length_beams_se_um": by_beams / UM,
         "crack_length_pairs_se_um": common / UM,
         "shift_percent": 100 * shift / reference,
         "shift_se_percent": 100 * shift_error / reference,
@@ -165,23 +166,23 @@ def _summary(key, group):
 
 def _removed_fraction(group, base):
     """Fraction of the mean square deviation from the published length removed by a variant, with its error [-]."""
-    known = (group.published_um.notna() & group.crack_length_um.notna()).values & base.crack_length_um.notna().values
-    if not known.any() or group is base:
+    compared = (group.published_um.notna() & group.crack_length_um.notna()).values & base.crack_length_um.notna().values
+    if not compared.any() or group is base:
         return np.nan, np.nan
-    here, there = group[known], base[known]
-    lengths = [of.crack_length_um.values for of in (here, there)]
+    here, there = group[compared], base[compared]
+    lengths = [group_or_base.crack_length_um.values for group_or_base in (here, there)]
     errors = [here.shift_se_percent.values / 100 * lengths[1]]
-    errors += [there[f"crack_length_{part}_se_um"].values for part in ("beams", "pairs")]
+    errors += [there[f"crack_length_{cause}_se_um"].values for cause in ("beams", "pairs")]
     return comparison.removed_share(*lengths, here.published_um.values, errors)
 
 
 def _rms_deviation(group, column):
     """Root mean square deviation from the references in a column and its standard error, None without references."""
-    known = group[group[column].notna() & group.crack_length_um.notna()]
-    if not len(known):
+    compared = group[group[column].notna() & group.crack_length_um.notna()]
+    if not len(compared):
         return None
-    errors = known.crack_length_beams_se_um, known.crack_length_pairs_se_um
-    return comparison.rms_deviation(known.crack_length_um, *errors, known[column])
+    errors = compared.crack_length_beams_se_um, compared.crack_length_pairs_se_um
+    return comparison.rms_deviation(compared.crack_length_um, *errors, compared[column])
 
 
 STAGES = (

@@ -67,13 +67,13 @@ def _density(panel, heights):
 
 
 @styled
-def surface(drawn: xr.DataArray, heights: xr.Dataset, spectrum: xr.DataArray) -> Figure:
+def surface(strip: xr.DataArray, heights: xr.Dataset, spectrum: xr.DataArray) -> Figure:
     """One surface: a drawn strip, the densities of its heights and its spectrum.
 
     The strip is a map of heights [m] over x and y [m]; the spectrum [m⁴] is over the wave number [rad/m].
     """
     figure, ((above, density, falling),) = panels(1, 3, (DOUBLE, 2.6))
-    square = drawn[:, : drawn.sizes["x"]]
+    square = strip[:, : strip.sizes["x"]]
     sides = [TO_UM * float(square[axis][-1] + square[axis][1]) for axis in ("x", "y")]
     image = above.imshow(TO_NM * square.values.T, origin="lower", extent=[0, sides[0], 0, sides[1]])
     figure.colorbar(image, ax=above, label="height $z$ [nm]", shrink=0.9)
@@ -81,8 +81,8 @@ def surface(drawn: xr.DataArray, heights: xr.Dataset, spectrum: xr.DataArray) ->
     _density(density, heights)
     density.set(xlabel="height $z$ [nm]", ylabel="density $p_Z$ [nm$^{-1}$]")
     figure.legend(*handles(density), loc="outside upper center", ncols=2)
-    known = spectrum[spectrum.values > 0]
-    falling.loglog(known.wavenumber / TO_UM, TO_NM**4 * known, **MODELS["NG"])
+    positive = spectrum[spectrum.values > 0]
+    falling.loglog(positive.wavenumber / TO_UM, TO_NM**4 * positive, **MODELS["NG"])
     falling.set(xlabel="wave number [rad/µm]", ylabel="spectrum $s_Z$ [nm$^4$]")
     return figure
 
@@ -224,8 +224,11 @@ def _mean_radius(panel, radius):
     """Mark one over the mean curvature [µm], the radius of Table I."""
     panel.axhline(radius, color="black", linestyle="--", linewidth=0.8, path_effects=OUTLINED)
     number = f"{radius:#.2g}".rstrip(".")
-    place, style = panel.get_yaxis_transform(), {"ha": "right", "va": "bottom", "fontsize": 7, "path_effects": OUTLINED}
-    panel.annotate(f"{number} µm", (0.96, radius), (0, 3), place, "offset points", **style)
+    transform, style = (
+        panel.get_yaxis_transform(),
+        {"ha": "right", "va": "bottom", "fontsize": 7, "path_effects": OUTLINED},
+    )
+    panel.annotate(f"{number} µm", (0.96, radius), (0, 3), transform, "offset points", **style)
 
 
 def _datasets_by_surface(data):

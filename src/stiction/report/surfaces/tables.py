@@ -72,20 +72,20 @@ def _row_1(surface, model, character, measured, published):
     values, errors = surface_statistics(character)
     row = {"surface": surface, "column": model}
     for name in _STATISTICS:
-        known = value(published, name, surface=surface, column=model)
+        of_paper = value(published, name, surface=surface, column=model)
         row |= {
             name: values[name],
             f"{name}_se": errors[name],
-            f"{name}_published": known,
+            f"{name}_published": of_paper,
             f"{name}_afm": measured.get(name, np.nan),
-            f"{name}_deviation_percent": percent(values[name], known),
+            f"{name}_deviation_percent": percent(values[name], of_paper),
         }
     return row
 
 
-def _beside_published(value, error, known):
+def _beside_published(value, error, of_paper):
     """Value ± standard error (published value) as text."""
-    return with_error(value, error) + (f" ({known:g})" if np.isfinite(known) else "")
+    return with_error(value, error) + (f" ({of_paper:g})" if np.isfinite(of_paper) else "")
 
 
 _TABLE_1 = {"surface": (str, "surface"), "model": (str, "column")} | {
@@ -122,10 +122,12 @@ def _rows_2(surface, fit, published, defects):
     """Published parameters of a surface, if any, and the identified ones, with the defect of those in use."""
     match = rows(published, surface=surface)
     if len(match):
-        known = match[list(_PARAMETERS)].iloc[0].to_dict()
+        of_paper = match[list(_PARAMETERS)].iloc[0].to_dict()
         as_printed = {"plateau_nm4_as_printed": float(match.plateau_nm4_as_printed.iloc[0])}
         yield (
-            {"surface": surface, "psd": "published"} | _shape(known, fit, defects.get("published", np.nan)) | as_printed
+            {"surface": surface, "psd": "published"}
+            | _shape(of_paper, fit, defects.get("published", np.nan))
+            | as_printed
         )
     spectrum = spectrum_of(fit)
     identified = {name: getattr(spectrum, name.split("_")[0]) / unit for name, unit in _PARAMETERS.items()}
@@ -165,7 +167,9 @@ _TABLE_2 = {
 def _table_1(data, settings):
     """Simulated, published and measured statistics."""
     substitutions = {name: substitution(heights) for name, heights in data["heights"].items()}
-    measured = settings["measured"] | {name: estimate.statistics(one) for name, one in data["estimates"].items()}
+    measured = settings["measured"] | {
+        name: estimate.statistics(dataset) for name, dataset in data["estimates"].items()
+    }
     return table_1(data["characters"], measured, published.published_rows(data, settings), substitutions)
 
 

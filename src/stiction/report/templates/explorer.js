@@ -173,7 +173,8 @@ function opened(number) {
 
   function stuckText({share, low, high, beyond}) {
     if (Number.isNaN(share)) return MISSING;
-    if (beyond < 0) return high > 1 - 1e-3 ? "0 to 100 %" : `at most ${percent(high, true)}`;
+    const [most, mean] = [percent(high, true), percent(share)], more = share > high && mean !== most ? ` (95 % confidence; ${mean} on average)` : "";
+    if (beyond < 0) return high > 1 - 1e-3 ? "0 to 100 %" : `at most ${most}${more}`;
     if (low > 1 - 1e-3) return percent(low);
     if (beyond) return `at least ${percent(low, true)}`;
     return `${percent(share)} (${percent(low, true).replace(" %", "")} to ${percent(high, true)})`;
@@ -338,17 +339,6 @@ function opened(number) {
   /** Ends of the axis of P(stuck), and its ticks. */
   const LEAST = -6, DECADES = [[0, "100 %"], [-1, "10 %"], [-2, "1 %"], [-3, "0.1 %"], [-4, "0.01 %"], [-5, "0.001 %"]];
 
-  /** Names of the curve and its band, in the corner where neither is. */
-  function key(chart) {
-    const x = LEFT + 10, top = grid.falls ? HEIGHT - BOTTOM - 46 : TOP;
-    [["curve", 2, "expected"], ["band", 10, "95 % band"]].forEach(([name, height, label], k) => {
-      const y = top + 16 + 20 * k;
-      if (name === "curve") make(chart.svg, "path", {class: name, d: path([[x, y], [x + 22, y]])});
-      else make(chart.svg, "rect", {class: name, x, y: y - height / 2, width: 22, height});
-      make(chart.svg, "text", {x: x + 28, y: y + 5}, label);
-    });
-  }
-
   function stuckChart(parent) {
     const {size} = grid, unit = size.unit, share = data.words.share ?? "P(stuck)", place = make(parent, "div");
     return () => {
@@ -362,12 +352,11 @@ function opened(number) {
       const layers = [0, 1, 2].map(k => points.map(([x, fractions]) => [x, height(fractions[k])]));
       make(chart.svg, "path", {class: "band", d: path([...layers[1], ...layers[2].reverse()])});
       make(chart.svg, "path", {class: "curve", d: path(layers[0])});
-      key(chart);
       if (Number.isFinite(bound)) make(chart.svg, "line", {class: "safe", x1: chart.x(bound), x2: chart.x(bound), y1: TOP, y2: HEIGHT - BOTTOM});
       const here = stuckAt(state[size.key], levels).share;
       if (Number.isFinite(here)) make(chart.svg, "circle", {r: 6, class: "here", cx: chart.x(state[size.key]), cy: height(here)});
       const dashed = Number.isFinite(bound) ? ` Dashed: ${data.words.bound} for ${oneIn(state.share)}.` : "";
-      hover(chart, ends, value => `At ${text(value)} ${unit}: ${stuckText(stuckAt(value, levels))}.${dashed}`, () => state[size.key])();
+      hover(chart, ends, value => `At ${text(value)} ${unit}: ${stuckText(stuckAt(value, levels))}. Line: expected. Band: 95 %.${dashed}`, () => state[size.key])();
     };
   }
 

@@ -68,12 +68,12 @@ def _moved(update):
     return update.isel(input=kept), int(prior.notnull().sum()) - len(kept)
 
 
-def _band(humidity, part, placed):
+def _band(humidity, indices, placed):
     """Places along a band through some humidities, in order, with a width for a single one."""
-    if len(part) == 1:
+    if len(indices) == 1:
         half = min([_ALONE, *(_NEXT * np.diff(sorted(placed.values())))])
-        return humidity[part] + np.array([-half, half]), [part[0], part[0]]
-    order = part[np.argsort(humidity[part])]
+        return humidity[indices] + np.array([-half, half]), [indices[0], indices[0]]
+    order = indices[np.argsort(humidity[indices])]
     return humidity[order], order
 
 
@@ -85,7 +85,7 @@ def _lengths(panel, data, room):
     placed = places([*data.datum_humidity.values.tolist(), *data.humidity_of_count.values.tolist()])
     humidity = np.array([placed[rh] for rh in data.datum_humidity.values])
     dry = ~is_humid(data.datum_humidity.values)
-    bands = [_band(humidity, part, placed) for part in map(np.flatnonzero, (~dry, dry)) if len(part)]
+    bands = [_band(humidity, indices, placed) for indices in map(np.flatnonzero, (~dry, dry)) if len(indices)]
     computed, shift = TO_UM * data.computed.values, data.datum_shift.values
     entries, on_the_left = [], _on_the_left(placed)
     cases = (
@@ -102,10 +102,10 @@ def _lengths(panel, data, room):
         entries.append(panel.errorbar(humidity, TO_UM * data.measured, yerr=error, **_POINT, label="measured, 95 %"))
     for k in range(data.sizes["count"]):
         at = data.isel(count=k)
-        place = placed[float(at.humidity_of_count)], TO_UM * float(at.length_of_count)
-        (mark,) = panel.plot(*place, **_COUNT, label="length of counted beams, number of those that stick")
-        side = _LEFT if place[0] in on_the_left else _RIGHT
-        panel.annotate(f"{int(at.stuck)} of {int(at.counted)}", place, textcoords="offset points", **side)
+        point = placed[float(at.humidity_of_count)], TO_UM * float(at.length_of_count)
+        (mark,) = panel.plot(*point, **_COUNT, label="length of counted beams, number of those that stick")
+        side = _LEFT if point[0] in on_the_left else _RIGHT
+        panel.annotate(f"{int(at.stuck)} of {int(at.counted)}", point, textcoords="offset points", **side)
         entries += [mark] if k == 0 else []
     panel.set(xlabel="relative humidity [–]", ylim=(0, (1 + _HEAD) * panel.dataLim.y1))
     if has_dry(data.humidity_of_count):

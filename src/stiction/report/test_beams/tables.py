@@ -16,7 +16,7 @@ from stiction.report.table import DEVICE, Table, table_stage, with_list
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import ARC, MIDDLE, S_SHAPE, SOUGHT_BY
-from stiction.stages.test_beams.inference import OWN, UNLIKELY, is_reliable, shape_of
+from stiction.stages.test_beams.inference import BEAM_SIZES, UNLIKELY, is_reliable, shape_of
 
 #: Number of standard deviations beyond which an input counts as wrong; ratio of dimensions beyond which a prediction
 #: counts as extrapolated. ASSUME: a factor of two.
@@ -68,7 +68,7 @@ def beams_to_add(update: xr.Dataset) -> str:
     worst = int(np.nanargmax(update.result_after.values))
     left = update.result_after_further.isel(result=worst)
     best = int(np.nanargmin(left.isel(beams=0).values))
-    after = [f"{in_percent(one)} with {int(one.beams)} beams" for one in left.isel(further=best)]
+    after = [f"{in_percent(deviation)} with {int(deviation.beams)} beams" for deviation in left.isel(further=best)]
     return (
         f"Further test beams would help most with the dimensions and in the air of {update.further.values[best]}, at "
         f"least {TO_UM * float(update.further_length[best]):.0f} µm long: the standard uncertainty of the result for "
@@ -111,8 +111,8 @@ def notes(update: xr.Dataset) -> str:
     if not update.sizes["datum"] and _forces_in(update):
         return "The answer contains the error of the model as stated: pull-off forces say nothing about it."
     beyond = ", but not where the middle of a bridge holds" if MIDDLE in responses else ""
-    said = f"The answer contains the error of the model as far as the test beams show it{beyond}."
-    return said + _beyond_cracks(update)
+    sentence = f"The answer contains the error of the model as far as the test beams show it{beyond}."
+    return sentence + _beyond_cracks(update)
 
 
 def _beyond_cracks(update):
@@ -165,7 +165,7 @@ def stuck_sentences(update: xr.Dataset) -> list[str]:
         chosen = chosen.isel(share=update.sizes["share"] // 2)
     sentences, sought = [], SOUGHT_BY[shape]
     every = (chosen.sel(humidity=humidity) for humidity in update.humidity.values)
-    for at in (one for one in every if np.isfinite(one.updated_stuck)):
+    for at in (in_air for in_air in every if np.isfinite(in_air.updated_stuck)):
         stated = f"at its {sought.label}"
         size = stated if sought.more_is_better else f"of {sought.in_words(float(at.safe))}, the simulated limit,"
         sentences.append(
@@ -182,7 +182,7 @@ def stuck_sentences(update: xr.Dataset) -> list[str]:
 def test_beams(datasets: Mapping[str, xr.Dataset]) -> Table:
     """Test beams and the lengths of their devices, by name of the device, before and after the measurement."""
     parts = _data, _force_rows, _results, _safe_sizes, _input_rows
-    rows = [row for device, update in datasets.items() for part in parts for row in part(device, update)]
+    rows = [row for device, update in datasets.items() for rows_of in parts for row in rows_of(device, update)]
     sentences = [
         f"{device}: {sentence}"
         for device, update in datasets.items()
@@ -214,13 +214,13 @@ def _data(device, update):
         computed = TO_UM * float(at.computed)
         numbers = _length_numbers(computed, *(float(at[f"datum_{key}"]) for key in ("before", "shift", "after")))
         error = float(at.measured * at.datum_measured_error)
-        own = {"measured": TO_UM * float(at.measured), "measured_se": TO_UM * error} if error > 0 else {}
+        measured = {"measured": TO_UM * float(at.measured), "measured_se": TO_UM * error} if error > 0 else {}
         head = {"device": device, "relative_humidity": float(at.datum_humidity), "part": "crack length [µm]"}
-        yield head | {"name": str(at.array.values)} | numbers | own
+        yield head | {"name": str(at.array.values)} | numbers | measured
     for k in range(update.sizes["count"]):
         at = update.isel(count=k)
-        part = f"stuck of {int(at.counted)}, {TO_UM * float(at.length_of_count):g} µm long"
-        head = {"device": device, "relative_humidity": float(at.humidity_of_count), "part": part}
+        label = f"stuck of {int(at.counted)}, {TO_UM * float(at.length_of_count):g} µm long"
+        head = {"device": device, "relative_humidity": float(at.humidity_of_count), "part": label}
         shares = {name: float(at.counted * at[f"stuck_{name}"]) for name in ("before", "after")}
         yield (
             head | {"name": str(at.array_of_count.values), "measured": float(at.stuck), "measured_se": np.nan} | shares
@@ -233,10 +233,10 @@ def _force_rows(device, update):
         at = update.isel(force=k)
         computed, measured = (float(at[f"{name}_force"]) / PULL_OFF.scale for name in ("computed", "measured"))
         numbers = _length_numbers(computed, *(float(at[f"force_{key}"]) for key in ("before", "shift", "after")))
-        part = f"mean {PULL_OFF.label} [{PULL_OFF.shown}]"
-        head = {"device": device, "relative_humidity": float(at.humidity_of_force), "part": part}
-        own = {"measured": measured, "measured_se": measured * float(at.force_error)}
-        yield head | {"name": str(at.array_of_force.values)} | numbers | own
+        label = f"mean {PULL_OFF.label} [{PULL_OFF.shown}]"
+        head = {"device": device, "relative_humidity": float(at.humidity_of_force), "part": label}
+        of_measurement = {"measured": measured, "measured_se": measured * float(at.force_error)}
+        yield head | {"name": str(at.array_of_force.values)} | numbers | of_measurement
 
 
 def _results(device, update):
@@ -257,10 +257,10 @@ def _safe_sizes(device, update):
             of_shape, unit = update.sel(humidity=humidity, shape=shape), SOUGHT_BY[shape].shown
             for share in update.share.values:
                 at = of_shape.sel(share=share)
-                part = f"{END_STATES[shape].safe}, p = {share:g}"
-                yield head | {"part": f"{part} [{unit}]"} | _both(at, "safe", "updated_safe", TO_UM)
+                label = f"{END_STATES[shape].safe}, p = {share:g}"
+                yield head | {"part": f"{label} [{unit}]"} | _both(at, "safe", "updated_safe", TO_UM)
                 if "share" in update.expected_stuck.dims:
-                    yield head | {"part": f"stuck at the {part}, of column before [%]"} | _both(at, *_STUCK)
+                    yield head | {"part": f"stuck at the {label}, of column before [%]"} | _both(at, *_STUCK)
             if "share" not in update.expected_stuck.dims:
                 yield head | {"part": "stuck at the restoring force [%]"} | _both(of_shape, *_STUCK)
 
@@ -333,8 +333,10 @@ def contradiction(update: xr.Dataset) -> Limit:
 
 def _moved_inputs(update):
     """Inputs, and rests of the model, with errors beyond their standard deviations."""
-    known = update.isel(input=np.flatnonzero(update.prior_deviation.values > 0))
-    for name, score in zip(known.input.values, (known["shift"] / known.prior_deviation).values, strict=True):
+    uncertain = update.isel(input=np.flatnonzero(update.prior_deviation.values > 0))
+    for name, score in zip(
+        uncertain.input.values, (uncertain["shift"] / uncertain.prior_deviation).values, strict=True
+    ):
         if abs(score) > LARGE:
             yield Limit("moved_input", Side.EITHER, True, numbers={"name": str(name), "score": float(score)})
     for datum, rest in zip(update.datum.values, update.datum_rest.values, strict=True):
@@ -370,7 +372,7 @@ def _beyond_test_beams(update):
     if not update.sizes["datum"]:
         return
     yield from _beyond_in_adhesion(update)
-    for size in OWN if "own_thickness" in update else ():
+    for size in BEAM_SIZES if "own_thickness" in update else ():
         device = float(update[f"own_{size}"][0])
         nearest = min(update[size].values.tolist(), key=lambda value: abs(np.log(device / value)))
         if abs(np.log(device / nearest)) > np.log(SIZES):

@@ -86,10 +86,10 @@ class _Model:
 
     def draw(self, points: int, rng: np.random.Generator) -> np.ndarray:
         """Draw one line of equally spaced heights, (points,) [m]."""
-        known = self._correlation
-        half = fft.next_fast_len(points + len(known))
+        correlation = self._correlation
+        half = fft.next_fast_len(points + len(correlation))
         rho = np.zeros(half + 1)
-        rho[: len(known)] = known
+        rho[: len(correlation)] = correlation
         density = np.maximum(fft.irfft(rho, 2 * half)[: half + 1] * 2 * half, 0)  # of the even continuation
         wave = rng.standard_normal(half + 1) + 1j * rng.standard_normal(half + 1)
         wave[[0, -1]] = np.sqrt(2) * wave[[0, -1]].real
@@ -178,10 +178,10 @@ def _drawn(model, lengths, settings, rng):
 def _evaluated(lines, step, settings, start):
     """Values of lines (5,), as of `LineEstimate`, with their bias, and fit of their spectrum."""
     levelled = [_levelled(line, LEVELS[settings.level]) for line in lines]
-    known = waves(levelled, step, settings.shortest)
-    if len(known.wavenumber) < FEWEST_WAVES:
+    spectrum = waves(levelled, step, settings.shortest)
+    if len(spectrum.wavenumber) < FEWEST_WAVES:
         raise ScanError("", "files", "is measured along lines with too few points for a spectrum: measure longer ones")
-    fitted = fit(known, start)
+    fitted = fit(spectrum, start)
     of_heights, variance = moments(powers(np.concatenate(levelled))), fitted.variance_of_noise(step)
     if not can_be_noise(of_heights, variance):
         fitted, variance = replace(fitted, noise=0.0), 0.0
@@ -190,8 +190,8 @@ def _evaluated(lines, step, settings, start):
 
 def _levelled(line, degree):
     """Heights of a line less their polynomial, (n,) [m]."""
-    place = np.linspace(-1, 1, len(line))
-    return line - np.polynomial.legendre.legval(place, np.polynomial.legendre.legfit(place, line, degree))
+    position = np.linspace(-1, 1, len(line))
+    return line - np.polynomial.legendre.legval(position, np.polynomial.legendre.legfit(position, line, degree))
 
 
 def _model(values, lines, fitted, step, settings):
@@ -212,14 +212,14 @@ def _model(values, lines, fitted, step, settings):
 def _scatter(lines, settings):
     """Covariance of skewness and kurtosis by parts of the lines, as if they were independent, (2, 2)."""
     levelled = (_levelled(line, LEVELS[settings.level]) for line in lines)
-    rows = np.array([powers(part) for line in levelled for part in np.array_split(line, _PARTS)])
+    rows = np.array([powers(section) for line in levelled for section in np.array_split(line, _PARTS)])
     return np.diag(jackknife(moments, rows)[1][1:] ** 2)
 
 
-def _places(lines, step, settings, whole: LineFit, errors):
+def _places(lines, step, settings, joint: LineFit, errors):
     """Growth of the errors by the difference between places, (5,), see `stiction.scans.moments.growth`."""
     if len(lines) == 1:
         return np.ones(5)
     weights = np.array(list(map(len, lines))) / sum(map(len, lines))
-    alone = np.array([_evaluated([line], step, settings, whole.parameters)[0] for line in lines])
+    alone = np.array([_evaluated([line], step, settings, joint.parameters)[0] for line in lines])
     return np.array([growth(alone[:, k], errors[k] ** 2 / weights, weights) for k in range(5)])

@@ -123,23 +123,23 @@ class LineFit:
         return 2 * np.pi / step * self.noise
 
 
-def fit(known: Waves, start: np.ndarray | None = None) -> LineFit:
+def fit(spectrum: Waves, start: np.ndarray | None = None) -> LineFit:
     """Most likely plateau, corner, slope and white noise by the spectrum along lines (Whittle).
 
     The search starts from a logarithm of the corner and a slope (2,), or from the best of a grid. Noise is never left
     out: at half of the Nyquist wave number it can hide in a flatter slope.
     """
-    first, last = np.log(known.wavenumber[[0, -1]])
+    first, last = np.log(spectrum.wavenumber[[0, -1]])
     bounds = [(first - _LONGER, last), _SLOPES, _NOISE]
-    start = _start(known, bounds[0]) if start is None else start
-    least = np.min(_ratio(known, [*start, -np.inf])[1]) / _scale(start)
+    start = _start(spectrum, bounds[0]) if start is None else start
+    least = np.min(_ratio(spectrum, [*start, -np.inf])[1]) / _scale(start)
     guess = np.clip([*start, np.log(least / 2)], *np.transpose(bounds))
     options = {"xatol": 1e-3, "fatol": 1e-8}
-    found = minimize(_deviance, guess, args=(known,), method="Nelder-Mead", bounds=bounds, options=options).x
-    plateau, relative = _ratio(known, found)
-    chi2 = known.weight @ (known.power / (plateau * relative) - 1) ** 2
-    noise, misfit = plateau * _scale(found) * np.exp(found[2]), chi2 / (len(relative) - len(found) - 1)
-    return LineFit(plateau, float(np.exp(found[0])), float(found[1]), float(noise), float(misfit))
+    best = minimize(_deviance, guess, args=(spectrum,), method="Nelder-Mead", bounds=bounds, options=options).x
+    plateau, relative = _ratio(spectrum, best)
+    chi2 = spectrum.weight @ (spectrum.power / (plateau * relative) - 1) ** 2
+    noise, misfit = plateau * _scale(best) * np.exp(best[2]), chi2 / (len(relative) - len(best) - 1)
+    return LineFit(plateau, float(np.exp(best[0])), float(best[1]), float(noise), float(misfit))
 
 
 def _scale(parameters):
@@ -148,21 +148,21 @@ def _scale(parameters):
     return 2 * corner * slope / (1 + slope)
 
 
-def _ratio(known, parameters):
+def _ratio(spectrum, parameters):
     """Best plateau [m⁴], and spectrum along lines with noise over it, (n,) [rad m⁻¹]."""
-    relative = line_spectrum(known.wavenumber, np.exp(parameters[0]), parameters[1])
+    relative = line_spectrum(spectrum.wavenumber, np.exp(parameters[0]), parameters[1])
     relative += _scale(parameters) * np.exp(parameters[2])
-    return float(known.share @ (known.power / relative)), relative
+    return float(spectrum.share @ (spectrum.power / relative)), relative
 
 
-def _deviance(parameters, known):
+def _deviance(parameters, spectrum):
     """Half of the deviance per independent value at the best plateau."""
-    plateau, relative = _ratio(known, parameters)
-    return np.log(plateau) + known.share @ np.log(relative)
+    plateau, relative = _ratio(spectrum, parameters)
+    return np.log(plateau) + spectrum.share @ np.log(relative)
 
 
-def _start(known, ends):
+def _start(spectrum, ends):
     """Logarithm of the corner and slope of the best of a grid."""
     slopes, corners = _START
     grid = [(corner, slope, -np.inf) for corner in np.linspace(*ends, corners) for slope in slopes]
-    return min(grid, key=lambda parameters: _deviance(parameters, known))[:2]
+    return min(grid, key=lambda parameters: _deviance(parameters, spectrum))[:2]

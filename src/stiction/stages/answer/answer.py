@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from stiction.answer import ladder, places, sought
-from stiction.answer.data import INPUTS, Answer, Cause, InAir, Probability, PullOff, Stay, Step
-from stiction.answer.ladder import Question
+from stiction.answer.data import INPUTS, Answer, AnswerInAir, Cause, Probability, PullOff, Stay, Step
+from stiction.answer.ladder import MainQuestion
 from stiction.answer.unknowns import Draws, OfBudgets
 from stiction.answer.worlds import DRAWS
 from stiction.config.mission.conditions import CONDITIONS
@@ -59,42 +59,49 @@ def _of_pull_off(data, settings):
     """Answer about a probe without a spring."""
     stopper, unknowns = data["stopper"], conditions.of_budgets(data["budgets"], settings.budgets)
     forces, errors = stopper.pull_off, stopper.full_contact_error
-    found = {
+    forces_by_air = {
         float(rh): places.Places(forces.sel(humidity=rh).values, float(errors.sel(humidity=rh)))
         for rh in stopper.humidity.values
     }
     numbers = settings.measured, settings.measured_error
     left_out = (
-        ("inputs",) if isinstance(unknowns, OfBudgets) and any(unknowns.of((rh, FORCE)) is None for rh in found) else ()
+        ("inputs",)
+        if isinstance(unknowns, OfBudgets) and any(unknowns.of((rh, FORCE)) is None for rh in forces_by_air)
+        else ()
     )
-    asked = places.Asked(
+    question = places.ProbeQuestion(
         settings.name, settings.kind, FORCE, "stoppers", *numbers, left_out, _forbidden(data, unknowns)
     )
-    return places.answer(asked, found, unknowns, Draws(DRAWS, settings.seed))
+    return places.answer(question, forces_by_air, unknowns, Draws(DRAWS, settings.seed))
 
 
 def _of_size(data, settings):
     """Answer about a beam, or about what a spring pulls off."""
-    found, question = _of_beam(data, settings) if settings.beam else _of_stopper(data)
-    found = [replace(one, stated=settings.shock > 0) if one.cause is Cause.FAST else one for one in found]
+    circumstances, question = _of_beam(data, settings) if settings.beam else _of_stopper(data)
+    circumstances = [
+        replace(condition, is_stated=settings.shock > 0) if condition.cause is Cause.FAST else condition
+        for condition in circumstances
+    ]
     before = conditions.of_budgets(data["budgets"], settings.budgets)
     unknowns = conditions.of_test_beams(data.get("test_beams")) or before
-    left_out = (*settings.left_out, *_left_out(data, found, unknowns, settings.shock))
+    left_out = (*settings.left_out, *_left_out(data, circumstances, unknowns, settings.shock))
     if settings.required < question["share"]:
         left_out = (*left_out, "requirement")
-    stated = {"touchdowns": settings.touchdowns, "stays": tuple(settings.stays.values()), "left_out": left_out}
-    asked = Question(settings.name, settings.kind, forbidden=_forbidden(data, unknowns), **stated, **question)
+    mission = {"touchdowns": settings.touchdowns, "stays": tuple(settings.stays.values()), "left_out": left_out}
+    full_question = MainQuestion(
+        settings.name, settings.kind, forbidden=_forbidden(data, unknowns), **mission, **question
+    )
     draws = Draws(DRAWS, settings.seed)
-    answer = ladder.answer(asked, found, unknowns, draws, None if unknowns is before else before)
-    at = [settings.temperatures.get(Air(one.humidity).name, np.nan) for one in answer.airs]
-    airs = [replace(one, temperature=kelvin) for one, kelvin in zip(answer.airs, at, strict=True)]
+    answer = ladder.answer(full_question, circumstances, unknowns, draws, None if unknowns is before else before)
+    at = [settings.temperatures.get(Air(air.humidity).name, np.nan) for air in answer.airs]
+    airs = [replace(air, temperature=kelvin) for air, kelvin in zip(answer.airs, at, strict=True)]
     return replace(answer, airs=tuple(airs))
 
 
 def _of_beam(data, settings):
     """Conditions of a beam, and its question."""
     slow = list(conditions.of_lengths(data["lengths"], Cause.ESTIMATE, "safe_lengths", data.get("after")))
-    found = [
+    circumstances = [
         *slow,
         *conditions.separated_fast(slow, data.get("fast_strips", {}), data.get("fast_tips", {}), settings.beam),
         *conditions.of_lengths(data["biased"], Cause.VOLTAGE, "at_voltage"),
@@ -102,7 +109,7 @@ def _of_beam(data, settings):
         *conditions.drying(data["life"], settings.liquids, data["lengths"]),
     ]
     share = chosen_share(next(iter(data["lengths"].values())))
-    return found, {"share": share, "unit": sought.LENGTH.unit, "size": settings.length}
+    return circumstances, {"share": share, "unit": sought.LENGTH.unit, "size": settings.length}
 
 
 def _of_stopper(data):
@@ -110,42 +117,42 @@ def _of_stopper(data):
     stopper = data["stopper"]
     share, errors = bounded_share(stopper), stopper.full_contact_error
     parallel = list(conditions.of_forces(stopper.pull_off, share, stopper.safe_force, errors, Cause.ESTIMATE))
-    found = [*parallel, *conditions.at_voltage_on_flat_patches(parallel, data["life"])]
+    circumstances = [*parallel, *conditions.at_voltage_on_flat_patches(parallel, data["life"])]
     if "separation" in data:
-        found += conditions.of_forces(data["separation"].pull_off, share, None, errors, Cause.FAST)
+        circumstances += conditions.of_forces(data["separation"].pull_off, share, None, errors, Cause.FAST)
     if "tilted" in data:
         tilted = data["tilted"]
         most, safe = tilted.pull_off.max("tilt"), tilted.largest_safe_force
-        found += conditions.of_forces(most, share, safe, errors, Cause.TILT)
+        circumstances += conditions.of_forces(most, share, safe, errors, Cause.TILT)
     if "biased" in data:
         biased = data["biased"]
-        found += conditions.of_forces(biased.pull_off, share, biased.safe_force, errors, Cause.VOLTAGE)
+        circumstances += conditions.of_forces(biased.pull_off, share, biased.safe_force, errors, Cause.VOLTAGE)
     size = float(stopper.restoring_force)
-    return found, {"share": share or float(stopper.share.max()), "unit": sought.FORCE.unit, "size": size}
+    return circumstances, {"share": share or float(stopper.share.max()), "unit": sought.FORCE.unit, "size": size}
 
 
-def _left_out(data, found, unknowns, shock):
+def _left_out(data, circumstances, unknowns, shock):
     """Stated conditions and inputs that no dataset bounds.
 
     That is a voltage on a bridge at which its dielectric breaks down, a shock where no summits stop some strips, and
     inputs of end states in which too few devices stick to show what they change.
     """
-    inside = {one.cause for one in found}
-    at = {(one.humidity, one.shape) for one in found} & set(getattr(unknowns, "budgets", ()))
+    inside = {condition.cause for condition in circumstances}
+    at = {(condition.humidity, condition.shape) for condition in circumstances} & set(getattr(unknowns, "budgets", ()))
     left_out = ["voltage"] if float(data["life"].potential) > 0 and Cause.VOLTAGE not in inside else []
     left_out += ["shock"] if shock and data.get("fast_strips") and Cause.FAST not in inside else []
-    return left_out + (["inputs"] if any(unknowns.of(one) is None for one in at) else [])
+    return left_out + (["inputs"] if any(unknowns.of(key) is None for key in at) else [])
 
 
 def _forbidden(data, unknowns):
     """Reasons why no number may be stated: test beams that contradict, and inputs that are too uncertain."""
-    found = []
+    reasons = []
     if data.get("test_beams") is not None and not is_reliable(data["test_beams"]):
-        found.append("test_beams_contradict")
-    margins = [one.margin for one in unknowns.budgets.values()] if isinstance(unknowns, OfBudgets) else []
+        reasons.append("test_beams_contradict")
+    margins = [budget.margin for budget in unknowns.budgets.values()] if isinstance(unknowns, OfBudgets) else []
     if max(filter(np.isfinite, margins), default=0.0) > LARGEST:
-        found.append(INPUTS)
-    return tuple(found)
+        reasons.append(INPUTS)
+    return tuple(reasons)
 
 
 # Dataset
@@ -173,21 +180,21 @@ def layout(answer: Answer) -> xr.Dataset:
         variables[f"step_{name}"] = ("step", np.array(values, dtype=int if name == "stated" else None), note)
     for name, unit in _AIRS.items():
         note = {"units": unit} if unit else size
-        variables[f"air_{name}"] = ("air", [getattr(one, name) for one in answer.airs], note)
+        variables[f"air_{name}"] = ("air", [getattr(air, name) for air in answer.airs], note)
     for name in _STUCK:
         every = [answer.stuck, *(air.stuck for air in answer.airs)]
         at = [np.nan if stuck is None else float(getattr(stuck, name)) for stuck in every]
         variables[f"stuck_{name}"] = ((), at[0], none)
         variables[f"air_stuck_{name}"] = ("air", at[1:], none)
-    curves, note = [one.curve for one in answer.airs], none | {"long_name": "P(stuck) with its 95 % band"}
+    curves, note = [air.curve for air in answer.airs], none | {"long_name": "P(stuck) with its 95 % band"}
     variables |= {"air_curve": (("air", "end", "point"), curves, note), "curve": (("end", "point"), answer.curve, note)}
     variables["curve_size"] = "point", answer.sizes, size
     if answer.stays:
-        inside = [[int(one.humidity in stay.humidities) for one in answer.airs] for stay in answer.stays]
+        inside = [[int(air.humidity in stay.humidities) for air in answer.airs] for stay in answer.stays]
         variables |= {"stay_air": (("stay", "air"), inside, none)}
         variables |= {"stay_touchdowns": ("stay", [stay.touchdowns for stay in answer.stays], none)}
     variables |= _of_places(answer.pull_offs)
-    coords = {"step": [str(step.cause) for step in answer.steps], "air": [one.humidity for one in answer.airs]}
+    coords = {"step": [str(step.cause) for step in answer.steps], "air": [air.humidity for air in answer.airs]}
     coords["end"] = ["value", "low", "high"]
     return xr.Dataset(variables, coords, {name: getattr(answer, name) for name in _TEXTS})
 
@@ -201,11 +208,11 @@ def _of_places(pull_offs):
     if not pull_offs:
         return {}
     newton, none = {"units": "N"}, {"units": "1"}
-    ranks = [[_numbers(getattr(one, name)) for one in pull_offs] for name in _RANKS]
-    found = {name: (("air", "end"), rank, none) for name, rank in zip(_RANKS, ranks, strict=True)}
-    found["place_pull_off"] = (("air", "share_below", "end"), [one.quantiles for one in pull_offs], newton)
-    found["measured_error"] = ("air", [one.error for one in pull_offs], newton)
-    return found | {"share_below": ("share_below", list(places.SHARES), none)}
+    ranks = [[_numbers(getattr(forces, name)) for forces in pull_offs] for name in _RANKS]
+    variables = {name: (("air", "end"), rank, none) for name, rank in zip(_RANKS, ranks, strict=True)}
+    variables["place_pull_off"] = (("air", "share_below", "end"), [forces.quantiles for forces in pull_offs], newton)
+    variables["measured_error"] = ("air", [forces.error for forces in pull_offs], newton)
+    return variables | {"share_below": ("share_below", list(places.SHARES), none)}
 
 
 def _numbers(probability):
@@ -217,8 +224,8 @@ def _pull_offs(dataset):
     """Yield the pull-off forces of a dataset, if it has some."""
     for row in (dataset.isel(air=k) for k in range(dataset.sizes["air"]) if "place_pull_off" in dataset):
         ranks = [row[name].values for name in _RANKS]
-        known = [None if np.isnan(rank).any() else Probability(*map(float, rank)) for rank in ranks]
-        yield PullOff(float(row.air), row.place_pull_off.values, float(row.measured_error), *known)
+        probabilities = [None if np.isnan(rank).any() else Probability(*map(float, rank)) for rank in ranks]
+        yield PullOff(float(row.air), row.place_pull_off.values, float(row.measured_error), *probabilities)
 
 
 def answer_of(dataset: xr.Dataset) -> Answer:
@@ -233,7 +240,7 @@ def answer_of(dataset: xr.Dataset) -> Answer:
         for row in (dataset.isel(step=k) for k in range(dataset.sizes["step"]))
     ]
     airs = [
-        InAir(
+        AnswerInAir(
             float(row.air),
             *(float(row[f"air_{name}"]) for name in ("build", "without_tip")),
             _probability(row, "air_stuck_"),
@@ -279,12 +286,12 @@ def _probability(dataset, start):
 def _inputs(plan, at):
     """All datasets of a device that bear on its size."""
     section, device = plan.config["devices"][at.device], at.device
-    own = {"budgets": list(_budgets(plan, device).values())}
+    inputs = {"budgets": list(_budgets(plan, device).values())}
     if device not in plan.devices.with_life:
-        return own | results_of(plan, device, "stopper")
-    own |= {"life": f"devices/life/{device}"} | separation_inputs(plan, device)
-    own |= {"test_beams": f"devices/test_beams/{device}"} if "test_beams" in section else {}
-    return own | results_of(plan, device, "tilted", "biased", "stopper", "after", "lengths")
+        return inputs | results_of(plan, device, "stopper")
+    inputs |= {"life": f"devices/life/{device}"} | separation_inputs(plan, device)
+    inputs |= {"test_beams": f"devices/test_beams/{device}"} if "test_beams" in section else {}
+    return inputs | results_of(plan, device, "tilted", "biased", "stopper", "after", "lengths")
 
 
 def _budgets(plan, device):
@@ -297,15 +304,16 @@ def _settings(plan, at):
     """Settings of a device."""
     section, beam, name = plan.config["devices"][at.device], own_section(plan, at.device, key="beam"), at.device
     liquids = plan.config.get("liquids", {}) if beam else {}
-    own = {"seed": plan.config["seed"], "name": name, "liquids": sorted(liquids)}
-    own |= {"left_out": ["dimples"] if "dimples" in section else []}
-    own |= {"budgets": [humidity for humidity, *_ in _budgets(plan, name)]}
+    derived = {"seed": plan.config["seed"], "name": name, "liquids": sorted(liquids)}
+    derived |= {"left_out": ["dimples"] if "dimples" in section else []}
+    derived |= {"budgets": [humidity for humidity, *_ in _budgets(plan, name)]}
     at = {Air(air).name: plan.air_of_devices.temperature(section["pair"], air) for air in humid(section["humidities"])}
-    own |= {"temperatures_K": at} if CONDITIONS in section else {}
-    own |= {"stays": found} if (found := stays(section, plan.air_of_devices.wetting(section["pair"]))) else {}
-    own |= {"required": section["requirement"]["share"]} if "requirement" in section else {}
-    own |= {} if name in plan.devices.with_life else {"question": plan.devices.question(name)}
-    return select(Settings, section | own | beam)
+    derived |= {"temperatures_K": at} if CONDITIONS in section else {}
+    mission = stays(section, plan.air_of_devices.wetting(section["pair"]))
+    derived |= {"stays": mission} if mission else {}
+    derived |= {"required": section["requirement"]["share"]} if "requirement" in section else {}
+    derived |= {} if name in plan.devices.with_life else {"question": plan.devices.question(name)}
+    return select(Settings, section | derived | beam)
 
 
 STAGES = (

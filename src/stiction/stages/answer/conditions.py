@@ -9,7 +9,7 @@ import xarray as xr
 
 from stiction.answer.data import Cause
 from stiction.answer.unknowns import Exact, Members, OfBudgets, OfTestBeams, Slopes, Unknowns
-from stiction.answer.worlds import Condition, Sampled, Stated
+from stiction.answer.worlds import Condition, Sampled, StatedSize
 from stiction.devices.risk import sampled_bound
 from stiction.life import holding
 from stiction.stages.devices.budget import members_of, response_of
@@ -31,17 +31,17 @@ def of_lengths(
     """
     for humidity, dataset in lengths.items():
         for shape in map(str, dataset["shape"].values):
-            stated = [dataset.sel(share=chosen_share(dataset)), *([after[humidity].isel(share=0)] if after else [])]
-            sampled = _sampled_lengths(*(one.sel(shape=shape) for one in stated))
+            datasets = [dataset.sel(share=chosen_share(dataset)), *([after[humidity].isel(share=0)] if after else [])]
+            sampled = _sampled_lengths(*(dataset_of_share.sel(shape=shape) for dataset_of_share in datasets))
             yield Condition(humidity, shape, cause, source, sampled)
 
 
 def _sampled_lengths(once, *more):
     """Sticking lengths in one end state, with the safe lengths for one touchdown and more."""
-    stated = tuple(_stated_length(*(float(one[name]) for name in _STATED)) for one in (once, *more))
-    ends = (_log(one) for one in (once.reach, once.floor, once.flooded_length))
+    sizes = tuple(_stated_length(*(float(row[name]) for name in _STATED)) for row in (once, *more))
+    ends = (_log(end) for end in (once.reach, once.floor, once.flooded_length))
     error = float(once.surfaces_error / once.estimate) if np.isfinite(once.estimate) else 0.0
-    return Sampled(_log(once.sticking_length.values), stated, *map(float, ends), float(np.nan_to_num(error)))
+    return Sampled(_log(once.sticking_length.values), sizes, *map(float, ends), float(np.nan_to_num(error)))
 
 
 #: Fraction, estimate and bound of lengths in their datasets.
@@ -51,7 +51,7 @@ _STATED = ("share", "estimate", "safe_length")
 def _stated_length(share, estimate, bound):
     """Safe length as v."""
     estimate, bound = _log(estimate), _log(bound)
-    return Stated(share, float(max(estimate, bound)), float(bound))
+    return StatedSize(share, float(max(estimate, bound)), float(bound))
 
 
 def _log(sizes):
@@ -70,23 +70,23 @@ def separated_fast(
     factors = of_beam(strips, tips, device) if strips else None
     if factors is None or not (factors.factor > 0).all():
         return []
-    wet = [one for one in slow if one.humidity in factors.humidity]
-    found = []
-    for one in wet:
-        of = factors.sel(humidity=one.humidity, shape=one.shape)
-        factor, error = float(of.factor), float(of.factor_error)
-        source = "fast_tips" if one.shape == EITHER else "fast_strips"
-        found.append(replace(one, cause=Cause.FAST, source=source, shift=np.log(factor), error=error / factor))
-    return found
+    conditions = [condition for condition in slow if condition.humidity in factors.humidity]
+    shifted = []
+    for condition in conditions:
+        change = factors.sel(humidity=condition.humidity, shape=condition.shape)
+        factor, error = float(change.factor), float(change.factor_error)
+        source = "fast_tips" if condition.shape == EITHER else "fast_strips"
+        shifted.append(replace(condition, cause=Cause.FAST, source=source, shift=np.log(factor), error=error / factor))
+    return shifted
 
 
 def at_voltage_on_flats(slow: Iterable[Condition], life: xr.Dataset, device: DesignedBeam) -> Iterator[Condition]:
     """Yield conditions of tips at a voltage as if flats were at the distance of the dielectric."""
     added = max((row.high for row in answers_of(life) if row.name == Name.VOLTAGE_ENERGY), default=np.nan)
-    for one in slow:
-        if added > 0 and one.shape == EITHER:
-            at = one.sampled.moved(lambda v: _log(holding.tip_length_at_voltage(np.exp(v), device.beam, added)))
-            yield replace(one, cause=Cause.VOLTAGE, source="life", sampled=at)
+    for condition in slow:
+        if added > 0 and condition.shape == EITHER:
+            at = condition.sampled.moved(lambda v: _log(holding.tip_length_at_voltage(np.exp(v), device.beam, added)))
+            yield replace(condition, cause=Cause.VOLTAGE, source="life", sampled=at)
 
 
 def drying(life: xr.Dataset, liquids: Iterable[str], humidities: Iterable[float]) -> Iterator[Condition]:
@@ -94,8 +94,8 @@ def drying(life: xr.Dataset, liquids: Iterable[str], humidities: Iterable[float]
 
     Their errors are those of the dimensions.
     """
-    named = {f"{Name.COLLAPSE}_{liquid}" for liquid in liquids}
-    rows = [row for row in answers_of(life) if row.name in named and 0 < row.low < np.inf]
+    names = {f"{Name.COLLAPSE}_{liquid}" for liquid in liquids}
+    rows = [row for row in answers_of(life) if row.name in names and 0 < row.low < np.inf]
     for humidity, row in product(humidities, rows):
         error = float(np.nan_to_num(row.error / row.low))
         yield Condition(humidity, row.name, Cause.DRYING, "life", bound=float(np.log(row.low)), error=error)
@@ -114,13 +114,13 @@ def of_forces(
     for humidity in map(float, forces.humidity.values):
         values = np.sort(-_log(forces.sel(humidity=humidity).values))
         error = 0.0 if errors is None else float(errors.sel(humidity=humidity))
-        stated = _stated_force(values, share, None if safe is None else safe.sel(humidity=humidity))
+        sizes = _stated_force(values, share, None if safe is None else safe.sel(humidity=humidity))
         yield Condition(
             humidity,
             FORCE,
             cause,
             "stoppers",
-            Sampled(values, stated, surfaces_error=error, is_bounded=share is not None),
+            Sampled(values, sizes, surfaces_error=error, is_bounded=share is not None),
         )
 
 
@@ -132,16 +132,16 @@ def _stated_force(values, share, safe):
         bound, estimate, _ = sampled_bound(values, share)
     else:
         bound, estimate = -_log(safe.sel(share=share, part=["safe", "estimate"]).values)
-    return (Stated(share, max(float(estimate), float(bound)), float(bound)),)
+    return (StatedSize(share, max(float(estimate), float(bound)), float(bound)),)
 
 
 def at_voltage_on_flat_patches(stopper: Iterable[Condition], life: xr.Dataset) -> Iterator[Condition]:
     """Yield conditions of a stopper at a voltage as if flats were at the distance of the dielectric."""
     added = max((row.high for row in answers_of(life) if row.name == Name.AT_VOLTAGE), default=np.nan)
-    for one in stopper:
+    for condition in stopper:
         if added > 0:
-            at = one.sampled.moved(lambda v: -_log(np.exp(-v) + added))
-            yield replace(one, cause=Cause.VOLTAGE, source="life", sampled=at)
+            at = condition.sampled.moved(lambda v: -_log(np.exp(-v) + added))
+            yield replace(condition, cause=Cause.VOLTAGE, source="life", sampled=at)
 
 
 # Inputs
@@ -149,12 +149,12 @@ def at_voltage_on_flat_patches(stopper: Iterable[Condition], life: xr.Dataset) -
 
 def of_budgets(budgets: Iterable[xr.Dataset], humidities: Iterable[float]) -> Unknowns:
     """Errors of the inputs of a device by its budgets at some humidities."""
-    found = {}
+    slopes = {}
     for humidity, dataset in zip(humidities, budgets, strict=True):
         response, _ = response_of(dataset)
         if dataset.sizes["input"] or "member" in dataset.dims:
-            found[humidity, shape_of(response)] = _slopes(dataset, SOUGHT_BY[response].sign)
-    return OfBudgets(found) if found else Exact()
+            slopes[humidity, shape_of(response)] = _slopes(dataset, SOUGHT_BY[response].sign)
+    return OfBudgets(slopes) if slopes else Exact()
 
 
 def of_test_beams(update: xr.Dataset | None) -> Unknowns | None:
@@ -177,8 +177,8 @@ def _slopes(dataset, sign):
     members = ()
     if "member" in dataset.dims:
         members = tuple(
-            Members(str(name), sign * part.member_shift.values, part.member_error.values)
-            for name, part in members_of(dataset).items()
+            Members(str(name), sign * member.member_shift.values, member.member_error.values)
+            for name, member in members_of(dataset).items()
         )
     limits = dataset.limit.values if "limit" in dataset else None
     return Slopes(names, groups, *numbers, dataset.covariance.values, members, limits)

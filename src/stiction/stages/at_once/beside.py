@@ -1,7 +1,7 @@
-"""Stage device_estimate: the estimate at once of a cantilever beside the lengths of its run.
+"""Stages device_estimate and stopper_estimate: the estimate at once of a device beside the sizes of its run.
 
-Both are lengths at one touchdown, without voltage, for exact inputs and the surfaces as stated. The datasets have all
-inputs of the estimate, so that runs test it, and can teach it.
+Both are lengths or forces at one touchdown, without voltage, for exact inputs and the surfaces as stated. The datasets
+have all inputs of the estimate, so that runs test it, and can teach it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,6 +14,7 @@ import xarray as xr
 from stiction.contact.air import humid
 from stiction.estimate.answer import CONFIDENCES, in_one_air
 from stiction.estimate.complete import question_of
+from stiction.estimate.force import Stopper
 from stiction.estimate.length import NotLearnt
 from stiction.estimate.question import Question
 from stiction.estimate.statistics import Heights, moments_of
@@ -29,7 +30,7 @@ CONFIDENCE = CONFIDENCES[0]
 
 
 @dataclass(frozen=True)
-class Side:
+class AskedSurface:
     """One surface."""
 
     rms: float  #: [m]
@@ -51,19 +52,24 @@ class Side:
 
 
 @dataclass(frozen=True)
-class Asked:
+class AskedCantilever:
     """Cantilever on two surfaces, as the estimate knows it."""
 
-    beam: Side
-    substrate: Side
+    beam: AskedSurface
+    substrate: AskedSurface
     thickness: float  #: [m]
     gap: float  #: [m]
     width: float  #: [m]
 
     @property
-    def sides(self) -> list[Side]:
+    def sides(self) -> list[AskedSurface]:
         """Both surfaces, in the order of `stiction.models.SIDES`."""
         return [getattr(self, side) for side in SIDES]
+
+    @property
+    def sizes(self) -> dict[str, Any]:
+        """Variables of its own numbers."""
+        return {name: ((), getattr(self, name)) for name in ("thickness", "gap", "width")}
 
     def question(self, air: float) -> Question:
         """Question about one air [-]."""
@@ -75,74 +81,152 @@ class Asked:
 class Settings:
     """Numbers of a cantilever, or why the estimate refuses its configuration."""
 
-    asked: Asked | None = None
+    asked: AskedCantilever | None = None
     refused: str = ""
+
+
+@dataclass(frozen=True)
+class AskedStopper:
+    """Stopper on two surfaces, as the estimate knows it."""
+
+    beam: AskedSurface
+    substrate: AskedSurface
+    contact: tuple[float, float]  #: sides of its area [m]
+
+    @property
+    def sides(self) -> list[AskedSurface]:
+        """Both surfaces, in the order of `stiction.models.SIDES`."""
+        return [getattr(self, side) for side in SIDES]
+
+    @property
+    def sizes(self) -> dict[str, Any]:
+        """Variables of its own numbers."""
+        return {"contact": ("direction", list(self.contact)), "direction": ["x", "y"]}
+
+    def question(self, air: float) -> Stopper:
+        """Question about one air [-]."""
+        return Stopper("", tuple(side.heights for side in self.sides), ({}, {}), (air,), self.contact)
+
+
+@dataclass(frozen=True)
+class SettingsOfStopper:
+    """Numbers of a stopper, or why the estimate refuses its configuration."""
+
+    asked: AskedStopper | None = None
+    refused: str = ""
+
+
+#: Sizes of a run and their standard errors for fractions of stuck devices, by air.
+Runs = Mapping[float, tuple[xr.DataArray, xr.DataArray]]
 
 
 def compute(lengths: Mapping[float, xr.Dataset], settings: Settings) -> xr.Dataset:
     """Lengths of a run and of the estimate, by humidity and fraction of stuck devices."""
-    runs = [one.sel(shape=EITHER) for one in lengths.values()]
-    refused, estimates = zip(
-        *(_estimated(settings, air, one.share.values) for air, one in lengths.items()), strict=True
-    )
-    over, metres, none = ("humidity", "share"), {"units": "m"}, {"units": "1"}
-    errors = [np.hypot(one.beams_error, one.surfaces_error.fillna(0)) for one in runs]
-    found = {"length": [one.estimate.where(np.isfinite(one.estimate)) for one in runs], "length_error": errors}
+    runs = {}
+    for air, of_air in lengths.items():
+        one = of_air.sel(shape=EITHER)
+        error = np.hypot(one.beams_error, one.surfaces_error.fillna(0))
+        runs[air] = one.estimate.where(np.isfinite(one.estimate)), error
+    return _beside(runs, settings, "length", "m")
+
+
+def compute_stopper(stopper: xr.Dataset, settings: SettingsOfStopper) -> xr.Dataset:
+    """Forces of a run and of the estimate, by humidity and fraction of stuck devices."""
+    forces = stopper.safe_force
+    runs = {air: tuple(forces.sel(humidity=air, part=["estimate", "error"])) for air in forces.humidity.values}
+    return _beside(runs, settings, "force", "N")
+
+
+def _beside(runs: Runs, settings: Settings | SettingsOfStopper, name: str, unit: str) -> xr.Dataset:
+    """Sizes of a run, with their name and unit, and of the estimate."""
+    shares = next(iter(runs.values()))[0].share.values
+    refused, estimates = zip(*(_estimated(settings, air, shares) for air in runs), strict=True)
+    over, of_size, none = ("humidity", "share"), {"units": unit}, {"units": "1"}
+    sizes, errors = zip(*runs.values(), strict=True)
+    found = {name: sizes, f"{name}_error": errors}
     found |= dict(zip(("estimate", "low", "high"), np.moveaxis(np.array(estimates), 2, 0), strict=True))
     dataset = xr.Dataset(
-        {name: (over, np.array(values), metres) for name, values in found.items()}
+        {name: (over, np.array(values), of_size) for name, values in found.items()}
         | {"refused": ("humidity", list(refused))},
-        {"humidity": ("humidity", list(lengths), none), "share": ("share", runs[0].share.values, none)},
+        {"humidity": ("humidity", list(runs), none), "share": ("share", shares, none)},
     )
     return dataset.assign(_inputs_of(settings.asked) if settings.asked else {})
 
 
 def _estimated(settings, air, shares) -> tuple[str, Sequence]:
-    """Why the estimate refuses an air, if it does, and its lengths with the ends of their intervals (shares, 3) [m]."""
+    """Why the estimate refuses an air, if it does, and its sizes with the ends of their intervals (shares, 3) [SI]."""
     try:
         if settings.asked is None:
             raise NotLearnt(settings.refused)
         rows = in_one_air(settings.asked.question(air), air, shares, *known())
     except NotLearnt as reason:
         return str(reason), np.full((len(shares), 3), np.nan)
-    return "", [(row.length, *row.intervals[CONFIDENCE]) for row in rows]
+    return "", [(row.size, *row.intervals[CONFIDENCE]) for row in rows]
 
 
 def _inputs_of(asked):
     """Variables of all inputs but the humidity."""
-    own, numbers = asdict(asked), [side.numbers for side in asked.sides]
-    sizes = {name: ((), own[name]) for name in ("thickness", "gap", "width")}
-    return sizes | {name: ("side", [side[name] for side in numbers]) for name in numbers[0]} | {"side": list(SIDES)}
+    numbers = [side.numbers for side in asked.sides]
+    return (
+        asked.sizes | {name: ("side", [side[name] for side in numbers]) for name in numbers[0]} | {"side": list(SIDES)}
+    )
 
 
-def estimated(plan: Any) -> list[str]:
-    """Devices of a kind that the estimate knows: with a tip, in humid air."""
-    return [name for name in plan.devices.sections if is_estimated(plan, name)]
+def estimated(plan: Any, stage: str) -> list[str]:
+    """Devices whose estimate is of one of the stages."""
+    return [name for name in plan.devices.sections if stage_of(plan, name) == stage]
 
 
-def is_estimated(plan: Any, device: str) -> bool:
-    """Whether a device is of a kind that the estimate knows."""
-    return plan.devices.kind(device).has_tip and bool(humid(plan.devices.sections[device]["humidities"]))
+def stage_of(plan: Any, device: str) -> str | None:
+    """Stage of the estimate of a device, none of a kind that the estimate does not know, and in dry air alone."""
+    kind = plan.devices.kind(device)
+    if not humid(plan.devices.sections[device]["humidities"]):
+        return None
+    if kind.has_tip:
+        return LENGTHS
+    return FORCES if kind.is_patch else None
 
 
-def _settings(plan, at):
-    """Numbers of a device, or why the estimate refuses it."""
-    section = plan.config["devices"][at.device]
-    question = question_of(plan.config, at.device, section | {"humidities": humid(section["humidities"])})
-    if isinstance(question, NotLearnt):
-        return {"refused": str(question)}
-    pair, surfaces = plan.config["pairs"][section["pair"]], plan.config["surfaces"]
-    return {"asked": select(Asked, section | {side: surfaces[pair[side]] for side in SIDES})}
+def file_of(plan: Any, device: str) -> str | None:
+    """Dataset of the estimate of a device, as `stage_of`."""
+    stage = stage_of(plan, device)
+    return stage and f"{_FOLDERS[stage]}/{device}"
+
+
+#: Names of the stages, and their folders.
+LENGTHS, FORCES = "device_estimate", "stopper_estimate"
+_FOLDERS = {LENGTHS: "devices/estimate", FORCES: "devices/estimate_of_force"}
+
+
+def _settings(of):
+    """Settings of a stage by the class of its numbers: these of a device, or why the estimate refuses it."""
+
+    def settings(plan, at):
+        """Settings of a device."""
+        section = plan.config["devices"][at.device]
+        question = question_of(plan.config, at.device, section | {"humidities": humid(section["humidities"])})
+        if isinstance(question, NotLearnt):
+            return {"refused": str(question)}
+        pair, surfaces = plan.config["pairs"][section["pair"]], plan.config["surfaces"]
+        return {"asked": select(of, section | {side: surfaces[pair[side]] for side in SIDES})}
+
+    return settings
+
+
+def _stage(name, of, kind, result, compute):
+    """Stage of the estimates of some devices beside a result of their runs."""
+    return Stage.writing(
+        name,
+        f"{_FOLDERS[name]}/{{device}}",
+        inputs=lambda plan, at: results_of(plan, at.device, result) | {"table": File(FILE)},
+        settings=_settings(of),
+        kind=kind,
+        compute=compute,
+        message="Estimate at once of {device} beside its run.",
+    )
 
 
 STAGES = (
-    Stage.writing(
-        "device_estimate",
-        "devices/estimate/{device}",
-        inputs=lambda plan, at: results_of(plan, at.device, "lengths") | {"table": File(FILE)},
-        settings=_settings,
-        kind=Settings,
-        compute=compute,
-        message="Estimate at once of {device} beside its run.",
-    ),
+    _stage(LENGTHS, AskedCantilever, Settings, "lengths", compute),
+    _stage(FORCES, AskedStopper, SettingsOfStopper, "stopper", compute_stopper),
 )

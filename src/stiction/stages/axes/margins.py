@@ -1,7 +1,6 @@
 """Stages process_curve, process_map: margins of a device over one process or two, with their errors by source."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -22,34 +21,31 @@ PARTS = ("simulation", "law", "model")
 _DIMENSIONS = ("second", "value")
 
 
-@dataclass(frozen=True)
-class Settings:
-    """Processes behind a curve or a map."""
-
-    variables: tuple[str, ...]  #: of the axes, names with their units
-    processes: tuple[str, ...]  #: one for each of the laws
-    surfaces: tuple[str, ...]  #: that they make
-
-
 def compute(
-    points: Sequence[xr.Dataset], laws: Sequence[xr.Dataset], settings: Settings, model_error: xr.Dataset | None = None
+    points: Sequence[xr.Dataset],
+    laws: Sequence[xr.Dataset],
+    variables: Sequence[str],
+    processes: Sequence[str],
+    surfaces: Sequence[str],
+    model_error: xr.Dataset | None = None,
 ) -> xr.Dataset:
     """Join the points, with the margins to the requirement, their slopes and the parts of their standard errors.
 
-    The error of the model is that of full elastic contact, if it is known.
+    The variables of the axes are names with their units. Each process is that of a law, and makes a surface. The error
+    of the model is that of full elastic contact, if it is known.
     """
     over = [dimension for dimension in _DIMENSIONS if dimension in points[0]]
     curve = joined([point.drop_vars("slopes", errors="ignore") for point in points], *over)
     curve = _with_margins(curve, (*over, "humidity", "shape"), model_error)
-    curve = curve.assign(slopes=_slopes(points, curve, over)).assign_coords(_labels(laws, settings))
-    processes = [law_of(law) for law in laws]
+    curve = curve.assign(slopes=_slopes(points, curve, over)).assign_coords(_labels(laws, processes))
+    fitted = [law_of(law) for law in laws]
     errors = {"law_error": xr.full_like(curve.margin, np.nan), "run_error": xr.full_like(curve.margin, np.nan)}
     for at, margins in known_margins(curve):
         places = at | dict(zip(over, margins.axes, strict=True))
-        errors["law_error"].loc[places] = law_error(margins, processes)
-        errors["run_error"].loc[places] = run_error(margins, processes)
-    variables = dict(zip(("variable", "second_variable"), settings.variables, strict=False))
-    return curve.assign(errors).assign_attrs(variables | {"surface": " and ".join(settings.surfaces)})
+        errors["law_error"].loc[places] = law_error(margins, fitted)
+        errors["run_error"].loc[places] = run_error(margins, fitted)
+    of_axes = dict(zip(("variable", "second_variable"), variables, strict=False))
+    return curve.assign(errors).assign_attrs(of_axes | {"surface": " and ".join(surfaces)})
 
 
 def _with_margins(points, dims, model_error):
@@ -60,9 +56,9 @@ def _with_margins(points, dims, model_error):
     return points.assign({"margin": (dims, margin)} | {f"{name}_error": (dims, part) for name, part in parts.items()})
 
 
-def _labels(laws: Sequence[xr.Dataset], settings: Settings) -> dict[str, Any]:
+def _labels(laws: Sequence[xr.Dataset], processes: Sequence[str]) -> dict[str, Any]:
     """Process and quantity of each slope."""
-    names = [name for name, law in zip(settings.processes, laws, strict=True) for _ in law["quantity"].values]
+    names = [name for name, law in zip(processes, laws, strict=True) for _ in law["quantity"].values]
     quantities = [str(one) for law in laws for one in law["quantity"].values]
     return {"law_process": ("law_quantity", names), "law_quantity": quantities}
 
@@ -143,7 +139,6 @@ def _stage(name, folder, over):
         f"process/{folder}/{{device}}",
         inputs=inputs,
         settings=settings_of,
-        kind=Settings,
         compute=compute,
         message=f"Device {{device}} over {over}.",
     )

@@ -13,7 +13,7 @@ from stiction.devices.risk import VERIFIED, samples_for
 from stiction.devices.tail import FEWEST, TAIL
 from stiction.plan.stage import At
 from stiction.stages.axes import requirement
-from stiction.stages.axes.requirement import OfBeam, OfStopper
+from stiction.stages.axes.requirement import RequiredBeam, RequiredStopper
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
 from stiction.stages.contact.changes.patches import GROUND, TIPS
@@ -40,12 +40,12 @@ class Contacts:
 
 
 @dataclass(frozen=True)
-class Device:
+class DeviceAtPoint:
     """Settings of a device at a point, without the surfaces."""
 
     pair: str  #: part of the addresses of random numbers
-    beam: OfBeam | None = None
-    stopper: OfStopper | None = None
+    beam: RequiredBeam | None = None
+    stopper: RequiredStopper | None = None
     humid: Contacts | None = None  #: contacts in humid air
     dry: Contacts | None = None  #: contacts in dry air
 
@@ -83,7 +83,7 @@ class Device:
         sides = pairs.sides_of_strip(of)
         return [stage_contact.with_correlations(*one, sides) for one in zip(contacts, alternatives, strict=True)]
 
-    def with_samples(self, number: int) -> "Device":
+    def with_samples(self, number: int) -> "DeviceAtPoint":
         """Device with fewer patches, and as many tips."""
 
         def few(of):
@@ -93,7 +93,7 @@ class Device:
 
         return replace(self, **{kind: few(of) for kind, of in self.airs.items()})
 
-    def corrected(self, data: Mapping[str, Any]) -> "Device":
+    def corrected(self, data: Mapping[str, Any]) -> "DeviceAtPoint":
         """Device with the correction to full elastic contact from its input."""
         return replace(
             self, **{name: with_correction(of, data) for name in ("beam", "stopper") if (of := getattr(self, name))}

@@ -17,7 +17,7 @@ from stiction.devices.roughness import LARGEST
 from stiction.plan.stage import Running, Stage
 from stiction.stages.axes import points
 from stiction.stages.axes.law import in_order, law_inputs, on_law, slope_of
-from stiction.stages.axes.points import Device, Surfaces
+from stiction.stages.axes.points import DeviceAtPoint, Surfaces
 from stiction.stages.axes.requirement import flagged, margins_of
 from stiction.stages.surfaces.rough_surfaces import both
 
@@ -29,7 +29,7 @@ SECOND = 4
 class Settings:
     """Settings of a point, without the surfaces and the laws."""
 
-    device: Device
+    device: DeviceAtPoint
     value: float  #: of the variable [its unit]
     second: float | None = None  #: of that of a second process [its unit]
     samples: int = 0  #: patches for the slopes, none at values without slopes

@@ -115,7 +115,7 @@ def layout(advice: Recommendation) -> xr.Dataset:
 
 def _along_one(advice):
     """Variables of the settings of one process."""
-    places = np.reshape([(crossing.place, crossing.error) for crossing in advice.crossings], (-1, 2))
+    places = np.reshape([(crossing.coordinate, crossing.error) for crossing in advice.crossings], (-1, 2))
     return {
         "value": ("place", *advice.axes, {"long_name": "of the variable"}),
         "band": (("end", "place"), advice.band, {"long_name": "95 % band of the margin of the mean process"}),

@@ -47,7 +47,7 @@ Found = tuple[list[Response], list[Limit]]
 
 
 @dataclass(frozen=True, kw_only=True)
-class OfBeam:
+class RequiredBeam:
     """Settings of a beam with a required length, without its contacts."""
 
     seed: int
@@ -104,8 +104,8 @@ class OfBeam:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OfStopper:
-    """Settings as of `OfBeam`, of a stopper with a restoring force."""
+class RequiredStopper:
+    """Settings as of `RequiredBeam`, of a stopper with a restoring force."""
 
     seed: int
     water: Water
@@ -131,11 +131,13 @@ class OfStopper:
 
 
 #: By the name of the release.
-OF_RELEASE = {"beam": OfBeam, "stopper": OfStopper}
+OF_RELEASE = {"beam": RequiredBeam, "stopper": RequiredStopper}
 
 
 def compute(
-    contact: Mapping[str, xr.Dataset], settings: OfBeam | OfStopper, tips: Mapping[str, xr.Dataset] | None = None
+    contact: Mapping[str, xr.Dataset],
+    settings: RequiredBeam | RequiredStopper,
+    tips: Mapping[str, xr.Dataset] | None = None,
 ) -> xr.Dataset:
     """Lengths or forces at all humidities, or the reason against them.
 
@@ -158,7 +160,9 @@ def compute(
     return layout(responses, next(iter(contact.values())).sizes["strip"], settings).assign(texts)
 
 
-def layout(responses: Sequence[Sequence[Response]], samples: int, settings: OfBeam | OfStopper) -> xr.Dataset:
+def layout(
+    responses: Sequence[Sequence[Response]], samples: int, settings: RequiredBeam | RequiredStopper
+) -> xr.Dataset:
     """Dataset of a device: responses by humidity and shape."""
     required, unit = settings.required
     over, note = ("humidity", "shape"), {"units": unit}

@@ -21,7 +21,7 @@ from stiction.devices.roughness import SCALES, crossings, sufficient
 from stiction.plan.stage import Running, Stage
 from stiction.rounding import is_equal
 from stiction.stages.axes import points
-from stiction.stages.axes.points import Device, Surfaces, joined
+from stiction.stages.axes.points import DeviceAtPoint, Surfaces, joined
 from stiction.stages.axes.requirement import flagged, margins_of, relative_errors
 from stiction.stages.contact.pairs import require_feasible
 from stiction.stages.surfaces.rough_surfaces import both
@@ -43,7 +43,7 @@ _TABLES = ("crossing", "range")
 
 
 @dataclass(frozen=True)
-class Quantities:
+class VariedQuantities:
     """Values of quantities of a surface, none as they are given."""
 
     rms: float | None = None  #: [m]
@@ -55,10 +55,10 @@ class Quantities:
 class Settings:
     """Settings of a point, without its surfaces."""
 
-    device: Device
+    device: DeviceAtPoint
     surface: str  #: the one that is changed; on both sides of the pair if both have it
     varied: tuple[str, ...]  #: quantities along a curve and, for a map, from curve to curve
-    values: Quantities
+    values: VariedQuantities
     replica: Coherence | None = None  #: of the pair as it is given, if its quantities are varied
 
 
@@ -166,12 +166,12 @@ def _rows_apart(rows):
 def _with_tables(curves):
     """Curve or map with its crossings of the requirement and its sufficient ranges, one after the other."""
     scale = SCALES[ROUGHNESSES[curves.attrs["key"]].scale]
-    axis = scale.place(curves.roughness.values)
+    axis = scale.coordinate(curves.roughness.values)
     dimensions, crossed, ranges = [name for name in ("other", "humidity", "shape") if name in curves.dims], [], []
     for at in product(*(curves[name].values for name in dimensions)):
         curve = curves.sel(dict(zip(dimensions, at, strict=True)))
         met = crossings(axis, margins_of(curve), relative_errors(curve))
-        crossed += [(*at, crossing.place, crossing.error) for crossing in met]
+        crossed += [(*at, crossing.coordinate, crossing.error) for crossing in met]
         ranges += [(*at, *ends) for ends in sufficient(axis, margins_of(curve, "safe"))]
     columns = _columns("crossing", crossed, [*dimensions, "place", "error"])
     columns |= _columns("range", ranges, [*dimensions, "low", "high"])

@@ -50,18 +50,18 @@ class OfPairs(Cantilevers):
 def beam_warnings(beams: xr.Dataset, nominal: Beam, strip: float) -> list[Limit]:
     """Limits of the beams of a case of the main line: dataset of stage beams, length of the strips [m]."""
     s_shaped = ends_as(beams, "S-shape")
-    found = [rules.arcs_of_elements(float(ends_as(beams, "arc").mean()), strip)]
+    limits = [rules.arcs_of_elements(float(ends_as(beams, "arc").mean()), strip)]
     if "longest_strip" in beams:
-        found.append(rules.long_strips(strip, float(beams.longest_strip)))
+        limits.append(rules.long_strips(strip, float(beams.longest_strip)))
     if s_shaped.any():
         mean = float(stuck_lengths(beams).mean())
-        found += [
+        limits += [
             rules.cut_off_mean(float(s_shaped.mean()), mean, nominal.length),
             rules.large_rotation(nominal.gap, mean),
             rules.stubby_beam(mean, nominal.thickness),
             rules.wide_beam(nominal.gap, nominal.width, nominal.thickness, mean),
         ]
-    return rules.triggered(*found)
+    return rules.triggered(*limits)
 
 
 def contact_warnings(
@@ -90,7 +90,7 @@ def main_line_warnings(
 
     Each pair has the names of its materials, each with the properties that are stated.
     """
-    found = {
+    limits = {
         Subject(f"pair {pair}"): rules.triggered(
             _without_water(pair, beams, settings.water[pair]),
             *contact_warnings(plastic_contact(plasticity, pair), materials[pair], is_listed=plasticity_is_listed),
@@ -102,13 +102,13 @@ def main_line_warnings(
         nominal = cantilever(settings, pair)
         film = rules.triggered(rules.thin_film(settings.water[pair].film(humidity)[0]))
         subject = Subject(f"pair {pair}", (Air(humidity).words, model))
-        found[subject] = film + beam_warnings(dataset, nominal, settings.sampling.strip_length)
-    return found
+        limits[subject] = film + beam_warnings(dataset, nominal, settings.sampling.strip_length)
+    return limits
 
 
 def _without_water(pair, cases, water):
     """Limit, or None, of a pair without water. All cases give pair, humidity and model."""
-    wettest = max((humidity for of, humidity, _ in cases if of == pair), default=0.0)
+    wettest = max((humidity for name, humidity, _ in cases if name == pair), default=0.0)
     return rules.no_water(water.film(wettest)[0], wettest)
 
 

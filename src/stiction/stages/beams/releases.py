@@ -85,12 +85,12 @@ def released_on(
 
 def _on_uniform_ground(beam, energy, scatter, sample, rng):
     """Outcome of one beam by Eq. (13) on ground with one adhesion energy [J m⁻²]."""
-    own = scattered_beam(beam, scatter, rng)
-    crack = min(float(arrest_length(energy, own)), own.length)
-    state = EndState.S_SHAPE if crack < own.length else EndState.FREE
-    depth = own.gap if state is EndState.S_SHAPE else 0.0
+    scattered = scattered_beam(beam, scatter, rng)
+    crack = min(float(arrest_length(energy, scattered)), scattered.length)
+    state = EndState.S_SHAPE if crack < scattered.length else EndState.FREE
+    depth = scattered.gap if state is EndState.S_SHAPE else 0.0
     apparent = apparent_adhesion_energy(crack, beam)
-    return Outcome(sample, state, crack, apparent, s_shape(own, depth, crack)[:, 0], imbalance=0.0, iterations=0)
+    return Outcome(sample, state, crack, apparent, s_shape(scattered, depth, crack)[:, 0], imbalance=0.0, iterations=0)
 
 
 def longest_strip(model: ChaosModel, case: Case, settings: OnStrips) -> float:

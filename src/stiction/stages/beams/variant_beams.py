@@ -60,9 +60,9 @@ def by_pair(cases: Mapping[tuple[str, float, str], xr.Dataset]) -> dict[tuple[st
 def cases_of(dataset: xr.Dataset) -> Iterator[tuple[float, Variant]]:
     """Yield every case of the dataset: relative humidity [-] and the results under the variant."""
     for k, humidity in enumerate(dataset.humidity.values):
-        chosen = dataset.isel(humidity=k)
-        stuck = releases.ends_as(chosen, "S-shape")
-        yield float(humidity), Variant(chosen.adhesion_energy.values, chosen.crack_length.values, stuck)
+        in_air = dataset.isel(humidity=k)
+        stuck = releases.ends_as(in_air, "S-shape")
+        yield float(humidity), Variant(in_air.adhesion_energy.values, in_air.crack_length.values, stuck)
 
 
 def _inputs(plan, at):

@@ -32,7 +32,7 @@ READINGS = (*map(str, Definition), "shape")
 class Settings:
     """Solids, water, humidities and numbers of strips."""
 
-    solids: variants.Solids
+    solids: variants.SolidsOfPair
     water: Water
     humidities: tuple[float, ...]  #: [-]
     strips: int  #: number of pairs of strips: the first samples of stage contact
@@ -84,9 +84,9 @@ class _Medium(NamedTuple):
     @classmethod
     def of(cls, settings, name):
         """Both solids of the settings with a medium between them."""
-        one, other = bodies(settings)
-        both = (between(one, other, name) for between in (solids.asperity_between, solids.attraction_between))
-        return cls(solids.composite_modulus(one, other), *both)
+        upper, lower = bodies(settings)
+        pair = (between(upper, lower, name) for between in (solids.asperity_between, solids.attraction_between))
+        return cls(solids.composite_modulus(upper, lower), *pair)
 
 
 def _pressure(strip, surface, reading, medium):
@@ -167,8 +167,8 @@ def _settings(plan, at):
 
 def _compute(data, pair, settings):
     """Study of the surfaces on both grids."""
-    *known, base, fine, measured = variants.arguments(data, pair, settings["surfaces"])
-    grids = [variants.equivalent_under(*known, base, changed, measured) for changed in (base, fine)]
+    *leading, base, fine, measured = variants.arguments(data, pair, settings["surfaces"])
+    grids = [variants.equivalent_under(*leading, base, changed, measured) for changed in (base, fine)]
     return compute(grids, pair, base.seed, in_si(Settings, settings["study"]))
 
 

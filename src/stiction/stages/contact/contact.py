@@ -67,10 +67,10 @@ def _under_probe(contact, pair):
 
 def _displaced(contact, pair, streams):
     """Contact with the displacements of its strips, if the beam plays above a surface that it follows."""
-    if not (pair.replica and pair.replica.stated.play):
+    if not (pair.replica and pair.replica.of_heights.play):
         return contact
-    found = [pair.replica.displacement(streams(int(k))[0]) for k in contact.strip]
-    return contact.assign(displacement=("strip", found, {"units": "m"}))
+    displacements = [pair.replica.displacement(streams(int(k))[0]) for k in contact.strip]
+    return contact.assign(displacement=("strip", displacements, {"units": "m"}))
 
 
 def from_surfaces(data: Mapping[str, Any], pair: str, settings: Settings) -> xr.Dataset:
@@ -135,11 +135,11 @@ def join_chunks(chunks: Iterable[xr.Dataset], settings: Settings) -> xr.Dataset:
         if grid is None:
             grid = _grid(chunk)
             pressures, areas = (np.empty((samples, n), np.float32) for n in (grid.above, grid.below + grid.above))
-        here = slice(joined_samples, joined_samples + chunk.sizes["strip"])
-        if _grid(chunk) != grid or not np.array_equal(chunk.strip, np.arange(samples)[here]):
+        rows = slice(joined_samples, joined_samples + chunk.sizes["strip"])
+        if _grid(chunk) != grid or not np.array_equal(chunk.strip, np.arange(samples)[rows]):
             raise ValueError(f"the chunk after {joined_samples} of {samples} samples does not continue the contact")
-        pressures[here], areas[here] = chunk.solid_pressure, chunk.bearing_area
-        joined_samples = here.stop
+        pressures[rows], areas[rows] = chunk.solid_pressure, chunk.bearing_area
+        joined_samples = rows.stop
     if joined_samples != samples:
         raise ValueError(f"the chunks contain {joined_samples} of {samples} samples")
     joined = layout(pressures, areas, grid, range(samples))
@@ -166,8 +166,8 @@ def with_correlations(
     """
     described = [(spectrum_of(spectrum), moments(heights).rms) for heights, spectrum in surfaces]
     reach = max(uncorrelated_beyond(spectrum) for spectrum, _ in described) / sides[0]
-    found = [] if is_at_most(reach, 1) else mean_height_correlations(described, sides, math.ceil(reach))
-    return contact.assign(correlations=("lag", found, {"units": "1"}))
+    correlations = [] if is_at_most(reach, 1) else mean_height_correlations(described, sides, math.ceil(reach))
+    return contact.assign(correlations=("lag", correlations, {"units": "1"}))
 
 
 def surface_rms(contact: xr.Dataset) -> float:

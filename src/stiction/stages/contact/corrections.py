@@ -6,7 +6,7 @@ from typing import Any, TypeVar
 
 import xarray as xr
 
-from stiction.contact.correction import Change, Correction, TipChanges
+from stiction.contact.correction import Correction, ElasticChange, TipChanges
 
 S = TypeVar("S")
 #: Variables where no correction is applied, by the flag that says so.
@@ -24,11 +24,11 @@ UNCHANGED = {
 def correction(error: xr.Dataset) -> Correction:
     """Changes of a pair, from its dataset of stage pair_model_error."""
 
-    def change(of):
+    def change(quantity):
         """Change of a quantity, with relative errors."""
-        ratio, power = (error[f"{of}_{name}"].values for name in ("ratio", "power"))
-        errors = error[f"{of}_ratio_error"].values / ratio, error[f"{of}_power_error"].values
-        return Change(ratio, power, *errors)
+        ratio, power = (error[f"{quantity}_{name}"].values for name in ("ratio", "power"))
+        errors = error[f"{quantity}_ratio_error"].values / ratio, error[f"{quantity}_power_error"].values
+        return ElasticChange(ratio, power, *errors)
 
     return Correction(error.humidity.values, change("energy"), change("pull_off"), _of_tips(error))
 
@@ -40,7 +40,7 @@ def _of_tips(error):
     ratio, power, of_largest = (
         error[f"tip_{name}"].transpose("humidity", ...).values for name in ("ratio", "power", "error")
     )
-    return TipChanges(error.slope.values, Change(ratio, power, of_largest))
+    return TipChanges(error.slope.values, ElasticChange(ratio, power, of_largest))
 
 
 def in_all_air(folder: str, pair: str, water: Mapping[str, Any]) -> str:
@@ -76,8 +76,8 @@ def corrections_of_laws(plan: Any, pair: str, humidities: Iterable[float], model
 
 def errors_of_pairs(plan: Any) -> dict[str, str]:
     """Errors of the model of all pairs in the run for which they are stated, by pair."""
-    stated = [pair for pair in plan.pairs if plan.states_model_error(pair, plan.config["pairs"][pair]["humidities"])]
-    return {pair: study_of(plan, "studies/model_error", pair, plan.air.water(pair)) for pair in stated}
+    pairs = [pair for pair in plan.pairs if plan.states_model_error(pair, plan.config["pairs"][pair]["humidities"])]
+    return {pair: study_of(plan, "studies/model_error", pair, plan.air.water(pair)) for pair in pairs}
 
 
 def applied(error: xr.Dataset) -> Correction:
@@ -87,8 +87,12 @@ def applied(error: xr.Dataset) -> Correction:
     """
     if "nearest" not in error:
         return correction(error.isel(humidity=error.applied.values))
-    kept = {name: error[name].where(error[flag], same) for flag, of in UNCHANGED.items() for name, same in of.items()}
-    return replace(correction(error.assign(kept)), nearest=True)
+    variables = {
+        name: error[name].where(error[flag], same)
+        for flag, unchanged in UNCHANGED.items()
+        for name, same in unchanged.items()
+    }
+    return replace(correction(error.assign(variables)), nearest=True)
 
 
 def with_correction(settings: S, data: Mapping[str, Any]) -> S:
@@ -101,8 +105,8 @@ def with_all_corrections(settings: S, data: Mapping[str, Any]) -> S:
     return _corrected(settings, data, correction)
 
 
-def _corrected(settings, data, chosen):
+def _corrected(settings, data, choose):
     """Settings with the correction that is chosen from the error of the model, if there is one."""
     if "model_error" not in data:
         return settings
-    return replace(settings, water=replace(settings.water, correction=chosen(data["model_error"])))
+    return replace(settings, water=replace(settings.water, correction=choose(data["model_error"])))

@@ -33,15 +33,15 @@ def parametrised(sampled: ForceCurves, humidity: float, water: Water) -> tuple[n
     return np.column_stack([*changed, vectors[:, 2:]]), float(changes[1](limit))
 
 
-def displacements(contact: xr.Dataset, kept: np.ndarray) -> np.ndarray | None:
+def displacements(contact: xr.Dataset, samples: np.ndarray) -> np.ndarray | None:
     """Displacements from their register of those samples that are kept [m], none without play."""
-    return contact.displacement.values[kept] if "displacement" in contact else None
+    return contact.displacement.values[samples] if "displacement" in contact else None
 
 
 def energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Adhesion energies e of all samples at a relative humidity (m,) [J m⁻²]."""
-    found = forcelaw.adhesion_energies(*force_curves(contact, humidity, water))
-    return water.changes(humidity)[0].of(found)(found)
+    on_summits = forcelaw.adhesion_energies(*force_curves(contact, humidity, water))
+    return water.changes(humidity)[0].of(on_summits)(on_summits)
 
 
 def tip_forces(contact: xr.Dataset, humidity: float, water: Water) -> tuple[np.ndarray, np.ndarray]:
@@ -117,8 +117,8 @@ def _wedges(contact, humidity, water, endless):
     if water.reaches_across:
         work = partial(water.work_across, height=layer[0])
         pressure, _ = gaps.gap_pressures(bearing, starts[1], contact.distance.values, step, work)
-        rest = work(contact.distance.values + reach) * contact.ends.values[:, None] / float(contact.length)
-        solid = solid + pressure - endless * rest.astype(np.float32)
+        beyond = work(contact.distance.values + reach) * contact.ends.values[:, None] / float(contact.length)
+        solid = solid + pressure - endless * beyond.astype(np.float32)
     return solid, bearing, starts, step, layer
 
 
@@ -153,27 +153,27 @@ def freeing_potentials(contact: xr.Dataset, humidity: float, water: Water, pull:
     if change != NONE:
         on_summits = _pull_offs_of(sampled)
         pulls *= on_summits / change.of(on_summits)(on_summits)
-    found = np.empty(samples)
+    potentials = np.empty(samples)
     for k in range(samples):
         force, more = np.array(curve(k)), pressure[k].astype(float)
 
-        def excess(squared, force=force, more=more, needed=pulls[k]):
+        def excess(squared, force=force, more=more, pull_off=pulls[k]):
             """Largest attraction at a squared potential less the needed pull [Pa]."""
             at = force + squared * more
             largest = extremum(distance, at)[1] if resists(at) else flat[1] + squared * unit.largest_pressure
-            return largest - needed
+            return largest - pull_off
 
         # Between points of the grid, the attraction is larger: a little less than this frees the sample.
         attracting = more < 0
         highest = ((pulls[k] + force[attracting]) / -more[attracting]).min()
-        found[k] = freeing_potential(excess, (1 + 1e-9) * highest) if highest > 0 else 0.0
-    return found
+        potentials[k] = freeing_potential(excess, (1 + 1e-9) * highest) if highest > 0 else 0.0
+    return potentials
 
 
 def fast_pull_offs(contact: xr.Dataset, humidity: float, water: Water) -> np.ndarray:
     """Values of `pull_offs` in a separation faster than water evaporates, infinite without resistance of summits."""
     sampled, fast = _separations(contact, humidity, water)
-    forces = np.array([np.inf if one is None else -one[0].min() for one in fast])
+    forces = np.array([np.inf if separation is None else -separation[0].min() for separation in fast])
     return _fast(forces, water.changes(humidity)[1], lambda: _pull_offs_of(sampled))
 
 
@@ -182,8 +182,10 @@ def fast_energies(contact: xr.Dataset, humidity: float, water: Water) -> np.ndar
     sampled, fast = _separations(contact, humidity, water)
     beyond = np.zeros(sampled.samples) if sampled.beyond is None else sampled.beyond
     energies = [
-        np.inf if one is None else forcelaw.adhesion_energy(sampled.distance, one[0], beyond[k] + one[1])
-        for k, one in enumerate(fast)
+        np.inf
+        if separation is None
+        else forcelaw.adhesion_energy(sampled.distance, separation[0], beyond[k] + separation[1])
+        for k, separation in enumerate(fast)
     ]
     return _fast(np.array(energies), water.changes(humidity)[0], lambda: forcelaw.adhesion_energies(*sampled))
 

@@ -79,12 +79,12 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
     spacing = surface_pair(surfaces, "NG", settings).spacing
     study_of = partial(layout, humidities=settings.humidities, spacing=spacing, more=more)
     rows, most = [], max(settings.most, settings.strips)
-    tried = range(settings.strips, most, max(settings.strips // 2, 1))
+    numbers = range(settings.strips, most, max(settings.strips // 2, 1))
     for space, heights, cases in strips(surfaces, pair, replace(settings, strips=most)):
         if not all(forcelaw.resists(case.curve[1]) for case in cases):
             continue
         rows.append([_both_models((space, heights), case, hardness) for case in cases])
-        if len(rows) in tried and _are_enough(study_of(np.array(rows))):
+        if len(rows) in numbers and _are_enough(study_of(np.array(rows))):
             break
     if len(rows) < min(2, most):
         raise ValueError(
@@ -104,7 +104,7 @@ def _are_enough(study):
     return True
 
 
-class InAir(NamedTuple):
+class StripInAir(NamedTuple):
     """Attraction of a strip at a humidity, and the curve of the sum over its summits."""
 
     adhesion: elements.Adhesion
@@ -119,13 +119,13 @@ class InAir(NamedTuple):
 
 def strips(
     surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings
-) -> Iterator[tuple[HalfSpace, np.ndarray, list[InAir]]]:
+) -> Iterator[tuple[HalfSpace, np.ndarray, list[StripInAir]]]:
     """Strips one after the other: elements, heights z (n1, n2) [m], and what acts on them at each humidity."""
-    drawn = surface_pair(surfaces, "NG", settings)
+    rough_pair = surface_pair(surfaces, "NG", settings)
     streams = streams_of_sides(settings.seed, pair)
     space, airs = _airs(surfaces, pair, settings, settings.strips)
     for k in progress(range(settings.strips), "strips"):
-        yield space, drawn.under_flat(drawn.draw(*streams(k))), [of_strip(k) for of_strip in airs]
+        yield space, rough_pair.under_flat(rough_pair.draw(*streams(k))), [of_strip(k) for of_strip in airs]
 
 
 def _airs(surfaces, pair, settings, number):
@@ -169,21 +169,25 @@ def _on_summits(surfaces, pair, settings):
     """Energies e [J m⁻²] and largest attractions f_max [Pa] of strips whose summits resist (N, n_humidity, 2)."""
     number = max(settings.on_summits, settings.most, settings.strips)
     _, airs = _airs(surfaces, pair, settings, number)
-    drawn = ([of_strip(k) for of_strip in airs] for k in range(number))
+    cases_of_strips = ([of_strip(k) for of_strip in airs] for k in range(number))
     return np.array(
-        [[one.on_summits for one in each] for each in drawn if all(forcelaw.resists(one.curve[1]) for one in each)]
+        [
+            [case.on_summits for case in each]
+            for each in cases_of_strips
+            if all(forcelaw.resists(case.curve[1]) for case in each)
+        ]
     )
 
 
-def _in_air(summits, humidity, water, attraction, space) -> Callable[[int], InAir]:
+def _in_air(summits, humidity, water, attraction, space) -> Callable[[int], StripInAir]:
     """What acts on each strip at a humidity, by its number. ``summits`` is the dataset of their contact."""
     adhesion = elements.Adhesion.of(water.film(humidity), attraction, space, water.gaps)
-    found = force_curves(summits, humidity, water)
-    beyond = np.zeros(found.samples) if found.beyond is None else found.beyond
-    return lambda k: InAir(adhesion, (found.distance, found.curve(k)), float(beyond[k]))
+    curves = force_curves(summits, humidity, water)
+    beyond = np.zeros(curves.samples) if curves.beyond is None else curves.beyond
+    return lambda k: StripInAir(adhesion, (curves.distance, curves.curve(k)), float(beyond[k]))
 
 
-def separated(space: HalfSpace, heights: np.ndarray, case: InAir, end: float = 0.0) -> elements.Separation:
+def separated(space: HalfSpace, heights: np.ndarray, case: StripInAir, end: float = 0.0) -> elements.Separation:
     """Separate a strip of heights z (n1, n2) [m], at least up to a distance [m]: by descent where turns do not settle.
 
     On rough strips, turns are up to ten times as fast.
@@ -203,18 +207,18 @@ def separated(space: HalfSpace, heights: np.ndarray, case: InAir, end: float = 0
 
 def _both_models(strip, case, hardness):
     """Variables of one strip, elements and heights, at one humidity."""
-    found = separated(*strip, case)
-    pressure = found.closed.pressure
+    separation = separated(*strip, case)
+    pressure = separation.closed.pressure
     touching = pressure[pressure > 0] / hardness
     shares = [float((touching > level).sum() / max(touching.size, 1)) for level in (ONSET, 1)]
     return [
-        found.adhesion_energy,
-        found.pull_off,
+        separation.adhesion_energy,
+        separation.pull_off,
         *case.on_summits,
         touching.size / pressure.size,
         *shares,
-        found.closed.residual,
-        found.states,
+        separation.closed.residual,
+        separation.states,
     ]
 
 
@@ -269,10 +273,10 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     They are the lowest, the middle and the highest one at which water condenses, that of its figures among them.
     """
     humid = sorted(plan.air.wet(at.pair, plan.humidities_of_full_contact(at.pair)))
-    chosen = dict.fromkeys(humid[k] for k in (0, (len(humid) - 1) // 2, -1)) if humid else ()
-    study = {"humidities": list(chosen), "strips": plan.config["studies"]["full_contact"]["samples"]}
-    seen = plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None)
-    return select(Settings, seen | study | {"water": plan.air.without_gaps(at.pair)})
+    airs = dict.fromkeys(humid[k] for k in (0, (len(humid) - 1) // 2, -1)) if humid else ()
+    study = {"humidities": list(airs), "strips": plan.config["studies"]["full_contact"]["samples"]}
+    sections = plan.seen_by(at.pair, (*ELASTIC, "hardness_GPa"), samples=None)
+    return select(Settings, sections | study | {"water": plan.air.without_gaps(at.pair)})
 
 
 def settings_across(plan: Any, at: At) -> dict[str, Any]:

@@ -55,14 +55,14 @@ class Settings(full_contact.Settings):
     forces: bool = False  #: whether devices need forces as well
 
 
-class Quantities(NamedTuple):
+class StripQuantities(NamedTuple):
     """Energy e and largest attraction f_max of a strip, NaN if they are not found or not wanted."""
 
     energy: float  #: [J m⁻²]
     pull_off: float  #: [Pa]
 
 
-NOT_FOUND = Quantities(np.nan, np.nan)
+NOT_FOUND = StripQuantities(np.nan, np.nan)
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Strips:
     forces: bool = False  #: whether strips are separated
     resisting: list[int] = field(default_factory=list)  #: numbers of the first strips with summits that resist
     curves: list[tuple] = field(default_factory=list)  #: their distances [m] and forces [Pa] on summits
-    values: dict[tuple[int, int], Quantities] = field(default_factory=dict)  #: by level and place
+    values: dict[tuple[int, int], StripQuantities] = field(default_factory=dict)  #: by level and place
     last: dict[int, np.ndarray] = field(default_factory=dict)  #: heights of the last strip by its number [m]
 
     def heights(self, number: int) -> np.ndarray:
@@ -88,11 +88,11 @@ class Strips:
             self.last[number] = self.pair.draw(*self.streams(number))
         return self.last[number]
 
-    def energy(self, level: int, place: int) -> float:
+    def energy(self, level: int, index: int) -> float:
         """Energy of a strip that resists, by its place among these, NaN if a coarse level finds none [J m⁻²]."""
-        return self._value(level, place).energy
+        return self._value(level, index).energy
 
-    def pull_off(self, level: int, place: int) -> float:
+    def pull_off(self, level: int, index: int) -> float:
         """Largest attraction [Pa], as `energy`.
 
         Raises
@@ -102,18 +102,18 @@ class Strips:
         TooLong
             If there is too much effort.
         """
-        largest = self._value(level, place).pull_off
+        largest = self._value(level, index).pull_off
         if level == FINE and np.isnan(largest):
             raise ValueError("the largest attraction of a strip in full elastic contact was not found")
         return largest
 
-    def _value(self, level, place):
+    def _value(self, level, index):
         """Quantities of a strip that resists."""
-        while len(self.resisting) <= place:
+        while len(self.resisting) <= index:
             self._draw_another()
-        if (level, place) not in self.values:
-            self._compute(level, place)
-        return self.values[level, place]
+        if (level, index) not in self.values:
+            self._compute(level, index)
+        return self.values[level, index]
 
     def _draw_another(self):
         """Draw the next strip, and keep its number and its curve if it resists."""
@@ -128,15 +128,15 @@ class Strips:
                 break
             number += 1
         energy = forcelaw.adhesion_energy(distance, force, 0.0 if beyond is None else float(beyond[0]))
-        self.values[SUMMITS, len(self.resisting)] = Quantities(energy, forcelaw.extremum(distance, force)[1])
+        self.values[SUMMITS, len(self.resisting)] = StripQuantities(energy, forcelaw.extremum(distance, force)[1])
         self.resisting.append(number)
         self.curves.append((distance, force))
 
-    def _compute(self, level, place):
+    def _compute(self, level, index):
         """Quantities of a strip on a grid, on the fine one from the state on the next coarser one."""
         if level == FINE and (FINE, 0) not in self.values:
             self.effort.require(self.effort.spent * (1 + _AFTER_PILOT))
-        heights, curve, start = self.heights(self.resisting[place]), self.curves[place], None
+        heights, curve, start = self.heights(self.resisting[index]), self.curves[index], None
         for every in (2, FINE) if level == FINE and 2 in self.levels else (level,):
             try:
                 on_grid = self.levels[every]
@@ -144,10 +144,10 @@ class Strips:
             except (KeyError, NotConverged, ValueError):
                 if every == FINE:
                     raise
-                self.values[every, place] = NOT_FOUND
+                self.values[every, index] = NOT_FOUND
                 continue
             largest = self._largest(on_grid, heights, curve, state) if self.forces else np.nan
-            self.values[every, place] = Quantities(on_grid.energy(state, heights), largest)
+            self.values[every, index] = StripQuantities(on_grid.energy(state, heights), largest)
             start = refined(state, 2, self.levels[FINE].space.shape) if every == 2 else None
 
     @staticmethod
@@ -169,19 +169,19 @@ def strips_of(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, sett
     """
     (humidity,), materials = settings.humidities, bodies(settings)
     medium = full_contact.medium(settings, humidity)
-    drawn, water = surface_pair(surfaces, "NG", settings), settings.water.at(humidity)
+    rough_pair, water = surface_pair(surfaces, "NG", settings), settings.water.at(humidity)
     adhesion = partial(
         Adhesion.of, water.film(humidity), solids.attraction_between(*materials, medium), across=water.gaps
     )
     effort, grids = Effort(EFFORT), {}
-    fine = CountedHalfSpace.of(full_contact.elements_of(drawn, materials), effort)
+    fine = CountedHalfSpace.of(full_contact.elements_of(rough_pair, materials), effort)
     grids[FINE] = Level.of(FINE, fine, adhesion)
     for every in GRIDS:
         try:
             grids[every] = Level.of(every, fine, adhesion)
         except ValueError:  # no control
             continue
-    return Strips(drawn, streams_of_sides(settings.seed, pair), grids, water, humidity, effort, settings.forces)
+    return Strips(rough_pair, streams_of_sides(settings.seed, pair), grids, water, humidity, effort, settings.forces)
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], case: Case, settings: Settings) -> xr.Dataset:
@@ -191,7 +191,7 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], case: Case, setti
         strips = strips_of(surfaces, case.pair, settings)
         random = stream(settings.seed, "full_energy", case.pair)
         energy = levels.ratio_of_means(strips.energy, GRIDS, ALLOWED, random)
-        means = Quantities(*np.mean([strips.values[SUMMITS, k] for k in range(len(strips.resisting))], axis=0))
+        means = StripQuantities(*np.mean([strips.values[SUMMITS, k] for k in range(len(strips.resisting))], axis=0))
         if settings.forces:
             random = stream(settings.seed, "full_force", case.pair)
             pull_off = levels.ratio_of_means(strips.pull_off, GRIDS, OF_FORCES, random)
@@ -205,41 +205,41 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], case: Case, setti
 UNKNOWN = Ratio(np.nan, np.nan, np.nan, np.nan, (FINE, SUMMITS), {}, np.nan)
 
 
-def layout(found: Ratio, on_summits: Quantities, reason: str = "") -> xr.Dataset:
+def layout(ratio: Ratio, on_summits: StripQuantities, reason: str = "") -> xr.Dataset:
     """Dataset of the ratio of energies, the means on summits, and why it is not known."""
     units = {"energy": "J m-2", "pull_off": "Pa"}
     means = {f"summit_{name}": ((), getattr(on_summits, name), {"units": unit}) for name, unit in units.items()}
     every = [SUMMITS, FINE, *GRIDS]
-    return xr.Dataset(_ratio(found, ALLOWED) | means, coords={"every": every}, attrs={"reason": reason})
+    return xr.Dataset(_ratio(ratio, ALLOWED) | means, coords={"every": every}, attrs={"reason": reason})
 
 
-def _ratio(found, allowed, prefix=""):
+def _ratio(ratio, allowed, prefix=""):
     """Variables of a ratio, which corrects predictions with at most an allowed error."""
     every = [SUMMITS, FINE, *GRIDS]
-    known = {name: getattr(found, name) for name in ("ratio", "power", "power_error")}
-    known |= {"ratio_error": found.ratio * found.error, "largest_residual": found.largest}
-    columns = {name: ((), value, {"units": "1"}) for name, value in known.items()} | {
-        "strips": ("every", [found.strips.get(level, 0) for level in every]),
-        "in_chain": ("every", [level in found.chain for level in every]),
-        "applied": ((), bool(found.error <= allowed)),
+    numbers = {name: getattr(ratio, name) for name in ("ratio", "power", "power_error")}
+    numbers |= {"ratio_error": ratio.ratio * ratio.error, "largest_residual": ratio.largest}
+    columns = {name: ((), value, {"units": "1"}) for name, value in numbers.items()} | {
+        "strips": ("every", [ratio.strips.get(level, 0) for level in every]),
+        "in_chain": ("every", [level in ratio.chain for level in every]),
+        "applied": ((), bool(ratio.error <= allowed)),
     }
     return {f"{prefix}{name}": column for name, column in columns.items()}
 
 
 def settings_of(plan: Any, at: At) -> dict[str, Any]:
     """Settings of the strips of a pair in the air of devices."""
-    seen = plan.seen_by(at.case.pair, ELASTIC, samples=None)
-    seen = merged(seen, {"beam": {"width_um": _width(seen)}})
-    own = {"humidities": [at.case.humidity], "strips": PILOT}
-    own |= {"forces": True} if at.case.humidity in plan.devices.airs_of_forces(at.case.pair) else {}
-    return select(Settings, seen | own | {"water": plan.air_of_devices.water(at.case.pair)})
+    sections = plan.seen_by(at.case.pair, ELASTIC, samples=None)
+    sections = merged(sections, {"beam": {"width_um": _width(sections)}})
+    air = {"humidities": [at.case.humidity], "strips": PILOT}
+    air |= {"forces": True} if at.case.humidity in plan.devices.airs_of_forces(at.case.pair) else {}
+    return select(Settings, sections | air | {"water": plan.air_of_devices.water(at.case.pair)})
 
 
-def _width(seen):
+def _width(sections):
     """Width of strips of about `POINTS` at most [µm], from the settings of a contact: whole, for fast transforms."""
-    point = seen["sampling"]["spacing_nm"] * seen["contact"]["every"] / NM_PER_UM
-    affordable = POINTS * point**2 / seen["sampling"]["strip_length_um"]
-    return min(seen["beam"]["width_um"], max(NARROWEST, float(math.floor(affordable))))
+    point = sections["sampling"]["spacing_nm"] * sections["contact"]["every"] / NM_PER_UM
+    affordable = POINTS * point**2 / sections["sampling"]["strip_length_um"]
+    return min(sections["beam"]["width_um"], max(NARROWEST, float(math.floor(affordable))))
 
 
 STAGES = (

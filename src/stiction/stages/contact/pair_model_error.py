@@ -44,21 +44,21 @@ def compute(study: xr.Dataset, settings: Settings, tips: xr.Dataset | None = Non
 
     Those of tips are among them, if any are on the pair.
     """
-    computed, *energies = full_contact.energies(study)
+    computed_at, *energies = full_contact.energies(study)
     _, *pull_offs = full_contact.pull_offs(study)
     of_energy, of_pull_off = np.moveaxis(full_contact.moved_models(study), -1, 0)
     at = np.sort(settings.humidities)
     airs = at * settings.condenses
-    given = computed, airs
+    humidities = computed_at, airs
     ratios = {
-        "energy_ratio": mean_ratios(*of_energy, *given),
-        "pull_off_ratio": mean_ratios(*of_pull_off, *given),
-        "energy_power": scatter_ratios(*energies, *given),
-        "pull_off_power": scatter_ratios(*pull_offs, *given),
-        "length_factor": length_factors(*of_energy, *given),
+        "energy_ratio": mean_ratios(*of_energy, *humidities),
+        "pull_off_ratio": mean_ratios(*of_pull_off, *humidities),
+        "energy_power": scatter_ratios(*energies, *humidities),
+        "pull_off_power": scatter_ratios(*pull_offs, *humidities),
+        "length_factor": length_factors(*of_energy, *humidities),
     }
-    found = layout(ratios, at, at[np.isin(airs, computed)], study.sizes["strip"], settings.applied)
-    return found if tips is None else found.assign(_of_tips(tips, given)).assign_coords(slope=tips.slope)
+    changes = layout(ratios, at, at[np.isin(airs, computed_at)], study.sizes["strip"], settings.applied)
+    return changes if tips is None else changes.assign(_of_tips(tips, humidities)).assign_coords(slope=tips.slope)
 
 
 def of_devices(
@@ -71,8 +71,8 @@ def of_devices(
 
     ``study`` and ``tips`` have dry air, if a device is in it. Humid air without forces or tips has none changed.
     """
-    humid = _by_levels({rh: one for (_, rh), one in sorted(energies.items(), key=lambda each: each[0][1])})
-    if settled := [one for one in (tips_in_water or {}).values() if one.force.notnull().all()]:
+    humid = _by_levels({rh: energy for (_, rh), energy in sorted(energies.items(), key=lambda each: each[0][1])})
+    if settled := [tip for tip in (tips_in_water or {}).values() if tip.force.notnull().all()]:
         humid = humid.assign(_of_tips_in_water(settled, humid.humidity.values))
     else:
         humid = humid.assign(tip_applied=("humidity", np.full(humid.sizes["humidity"], False)))
@@ -81,7 +81,7 @@ def of_devices(
         return humid
     study, tips = (each if each is None else each.sel(humidity=[0.0]) for each in (study, tips))
     dry = compute(study, Settings((0.0,), (0.0,)), tips).drop_vars("strips")
-    dry = dry.assign({f"{of}_applied": dry.applied for of in ("pull_off", "tip")})
+    dry = dry.assign({f"{quantity}_applied": dry.applied for quantity in ("pull_off", "tip")})
     joined = xr.concat([dry, humid], "humidity", data_vars="all", coords="minimal", compat="override", join="outer")
     joined = joined.fillna({name: same for name, same in _NO_TIPS.items() if name in joined})
     flags = {name: joined[name].astype(bool) for name in ("applied", "pull_off_applied", "tip_applied")}
@@ -98,7 +98,7 @@ def _by_levels(energies):
 
     def columns(*names):
         """Values of some variables, NaN where a dataset has none (n, h)."""
-        return np.array([[float(one.get(name, np.nan)) for one in energies.values()] for name in names])
+        return np.array([[float(dataset.get(name, np.nan)) for dataset in energies.values()] for name in names])
 
     ratio, error, *of_power = columns("ratio", "ratio_error", "power", "power_error")
     length = ratio**CRACK_LENGTH_POWER
@@ -112,9 +112,9 @@ def _by_levels(energies):
         "length_factor": (length, abs(CRACK_LENGTH_POWER) * length * error / ratio),
     }
     laid_out = layout(ratios, at, at, 0, at[columns("applied")[0] > 0]).drop_vars("strips")
-    others = "summit_energy", "summit_pull_off", "largest_residual", "pull_off_largest_residual"
-    own = dict(zip(others, columns(*others), strict=True)) | {"pull_off_applied": of_forces}
-    return laid_out.assign({name: ("humidity", values) for name, values in own.items()})
+    copied = "summit_energy", "summit_pull_off", "largest_residual", "pull_off_largest_residual"
+    variables = dict(zip(copied, columns(*copied), strict=True)) | {"pull_off_applied": of_forces}
+    return laid_out.assign({name: ("humidity", values) for name, values in variables.items()})
 
 
 def _between(forces, applied, at):
@@ -124,29 +124,30 @@ def _between(forces, applied, at):
     error of `_off_nodes`. ASSUME: in drier air the change is that in the driest, and beyond the wettest as in
     `stiction.contact.full.smooth_pairs.in_wetter_air`.
     """
-    used, wanted = applied > 0, np.isfinite(applied)
-    if not used.any():
-        return np.where(wanted, forces, [[1.0], [0.0], [1.0], [0.0]]), used
-    ratio, error, power, power_error = forces[:, used]
-    within = np.maximum(at, at[used][0])
-    others = _from_driest(ratio, at[used], within)
-    rest = [np.interp(within, at[used], each) for each in (error, power, power_error)]
-    filled = np.array([others, np.hypot(rest[0], others * _off_nodes(ratio, at[used], within)), *rest[1:]])
-    return np.where(wanted, forces, filled), np.where(wanted, used, True)
+    applies, finite = applied > 0, np.isfinite(applied)
+    if not applies.any():
+        return np.where(finite, forces, [[1.0], [0.0], [1.0], [0.0]]), applies
+    ratio, error, power, power_error = forces[:, applies]
+    within = np.maximum(at, at[applies][0])
+    filled_ratio = _from_driest(ratio, at[applies], within)
+    error, power, power_error = (np.interp(within, at[applies], row) for row in (error, power, power_error))
+    error = np.hypot(error, filled_ratio * _off_nodes(ratio, at[applies], within))
+    filled = np.array([filled_ratio, error, power, power_error])
+    return np.where(finite, forces, filled), np.where(finite, applies, True)
 
 
-def _from_driest(ratio, computed, at):
+def _from_driest(ratio, computed_at, at):
     """Ratio (k,) of forces at humidities (h,) from the driest computed one on, beyond the wettest as in wetter air."""
-    wettest, most = computed[-1], ratio[-1]
-    beyond = [in_wetter_air(most, wettest, one) if one > wettest else most for one in at]
-    return np.where(at > wettest, beyond, interpolated(ratio, computed, np.minimum(at, wettest)))
+    wettest, most = computed_at[-1], ratio[-1]
+    beyond = [in_wetter_air(most, wettest, humidity) if humidity > wettest else most for humidity in at]
+    return np.where(at > wettest, beyond, interpolated(ratio, computed_at, np.minimum(at, wettest)))
 
 
-def _off_nodes(ratio, computed, at):
+def _off_nodes(ratio, computed_at, at):
     """Relative error of a ratio (k,) between computed humidities (h,), by one of them as large as its change."""
-    if len(computed) > 1:
-        return interpolation_error(np.log(ratio), computed, at)
-    return np.abs(np.log(_from_driest(ratio, computed, at) / ratio[0]))
+    if len(computed_at) > 1:
+        return interpolation_error(np.log(ratio), computed_at, at)
+    return np.abs(np.log(_from_driest(ratio, computed_at, at) / ratio[0]))
 
 
 def _of_tips_in_water(studies, at):
@@ -154,15 +155,15 @@ def _of_tips_in_water(studies, at):
 
     The power is 1 with `POWER_ERROR`.
     """
-    studies = sorted(studies, key=lambda one: float(one.humidity[0]))
-    computed = np.array([float(one.humidity[0]) for one in studies])
+    studies = sorted(studies, key=lambda study: float(study.humidity[0]))
+    computed_at = np.array([float(study.humidity[0]) for study in studies])
     few = tips_in_full_contact.models_of_devices
-    means, errors = np.concatenate([few_tip_ratios(*few(one), POWER_ERROR) for one in studies], axis=1)
-    within = np.maximum(at, computed[0])
-    between = [_off_nodes(each, computed, within) for each in means.T]
-    errors = [np.interp(within, computed, each) for each in errors.T]
+    means, errors = np.concatenate([few_tip_ratios(*few(study), POWER_ERROR) for study in studies], axis=1)
+    within = np.maximum(at, computed_at[0])
+    between = [_off_nodes(each, computed_at, within) for each in means.T]
+    errors = [np.interp(within, computed_at, each) for each in errors.T]
     over = "humidity", "slope"
-    ratios = [_from_driest(each, computed, within) for each in means.T]
+    ratios = [_from_driest(each, computed_at, within) for each in means.T]
     return {
         "tip_ratio": (over, np.transpose(ratios), {"units": "1"}),
         "tip_error": (over, np.hypot(errors, between).T, {"units": "1"}),
@@ -172,35 +173,35 @@ def _of_tips_in_water(studies, at):
     }
 
 
-def _of_tips(tips, given):
+def _of_tips(tips, humidities):
     """Variables of the changes of tips at slopes: ratio, power, and error of what one tip in 1000 exceeds."""
-    found, (computed, airs) = tip_ratios(*tips_in_full_contact.models(tips)), given
-    between = [interpolation_error(np.log(one), *given) for one in found.means.T]
-    errors = [np.interp(airs, computed, one) for one in found.error.T]
-    ratios = [interpolated(one, *given) for one in found.means.T]
+    ratios_of_tips, (computed_at, airs) = tip_ratios(*tips_in_full_contact.models(tips)), humidities
+    between = [interpolation_error(np.log(ratio), *humidities) for ratio in ratios_of_tips.means.T]
+    errors = [np.interp(airs, computed_at, error) for error in ratios_of_tips.error.T]
+    ratios = [interpolated(ratio, *humidities) for ratio in ratios_of_tips.means.T]
     over = "humidity", "slope"
     return {
         "tip_ratio": (over, np.transpose(ratios), {"units": "1"}),
         "tip_error": (over, np.hypot(errors, between).T, {"units": "1"}),
-        "tip_power": ("humidity", interpolated(found.powers, *given), {"units": "1"}),
+        "tip_power": ("humidity", interpolated(ratios_of_tips.powers, *humidities), {"units": "1"}),
     }
 
 
 def layout(
     ratios: Mapping[str, tuple[np.ndarray, np.ndarray]],
     at: np.ndarray,
-    computed: Sequence[float],
+    computed_at: Sequence[float],
     strips: int,
     applied: Sequence[float] = (),
 ) -> xr.Dataset:
     """Dataset of ratios and factors, by name, with their standard errors, (k,) each [-].
 
-    They are at increasing humidities; full contact was ``computed`` at some of them, on a number of strips, and the
-    predictions are corrected at those ``applied``.
+    They are at increasing humidities; full contact was computed at some of them (``computed_at``), on a
+    number of strips, and the predictions are corrected at those ``applied``.
     """
     columns = {name: values for name, (values, _) in ratios.items()}
     columns |= {f"{name}_error": errors for name, (_, errors) in ratios.items()}
-    flags = {"interpolated": ~np.isin(at, computed), "applied": np.isin(at, applied)}
+    flags = {"interpolated": ~np.isin(at, computed_at), "applied": np.isin(at, applied)}
     return xr.Dataset(
         {name: ("humidity", values, {"units": "1"}) for name, values in columns.items()}
         | {name: ("humidity", flags) for name, flags in flags.items()}
@@ -241,8 +242,10 @@ def _stage(name, between, forces):
 def _inputs_of_devices(plan, at):
     """Energies, forces and tips of a pair by humidity, and its studies in dry air if a device is in it."""
     devices, pair, by_levels = plan.devices, at.pair, plan.air_of_devices.by_levels
-    stated = {rh for section in devices.sections.values() if section["pair"] == pair for rh in section["humidities"]}
-    airs = sorted({*plan.airs_of_beams(pair), *devices.airs_of_forces(pair), *stated})
+    device_airs = {
+        rh for section in devices.sections.values() if section["pair"] == pair for rh in section["humidities"]
+    }
+    airs = sorted({*plan.airs_of_beams(pair), *devices.airs_of_forces(pair), *device_airs})
     inputs = {"energies": by_case("studies/full_contact/energy", _cases(pair, by_levels(pair, airs)))}
     if wet := by_levels(pair, devices.airs_of_tips(pair)):
         inputs["tips_in_water"] = by_case("studies/full_contact/tips/devices", _cases(pair, wet))

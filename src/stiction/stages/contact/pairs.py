@@ -99,9 +99,9 @@ def equivalent_surface(
     )
 
 
-def _replica(beam, substrate, stated):
+def _replica(beam, substrate, coherence):
     """Both surfaces drawn together, if the beam's follows the substrate's."""
-    return Replica(beam, substrate, stated) if stated else None
+    return Replica(beam, substrate, coherence) if coherence else None
 
 
 def _discretisation(contact):
@@ -126,9 +126,10 @@ def surface_pairs(
         build = partial(TiltedPair, asperity=solid, tilt=settings.tilt)
     if settings.probe:
         build = partial(ProbedPair, asperity=solid, probe=settings.probe)
-    both = ([built[id(one)] for one in surfaces] for surfaces in alternatives)
+    sides_of_pairs = ([built[id(datasets)] for datasets in surfaces] for surfaces in alternatives)
     return [
-        build(*sides, *_discretisation(settings.contact), replica=_replica(*sides, settings.replica)) for sides in both
+        build(*sides, *_discretisation(settings.contact), replica=_replica(*sides, settings.replica))
+        for sides in sides_of_pairs
     ]
 
 

@@ -57,18 +57,18 @@ def _strip_pressed(space, heights, cases, shares, closest, hardness):
     """Energies (2 + n_steps, n_humidity) and variables of the presses (n_steps, n_variables) of one strip."""
     fresh = [at_rest(space, heights, *each)[0] for each in cases]
     before = [state.energy(heights, adhesion) for state, (adhesion, _) in zip(fresh, cases, strict=True)]
-    own = [
+    flattenings = [
         equilibrium(space, heights, state.distance, adhesion, state, hardness).flattening
         for state, (adhesion, _) in zip(fresh, cases, strict=True)
     ]
-    rest = min(state.distance for state in fresh)
-    pressed = list(_pressed(space, heights, rest + (closest - rest) * shares, hardness))
+    at_rest_distance = min(state.distance for state in fresh)
+    pressed = list(_pressed(space, heights, at_rest_distance + (closest - at_rest_distance) * shares, hardness))
     after = [
         [
             _energy(space, heights - by, *each) if by.any() else e
             for by, each, e in zip(flat, cases, before, strict=True)
         ]
-        for flat in (own, *([state.flattening] * len(cases) for state in pressed))
+        for flat in (flattenings, *([state.flattening] * len(cases) for state in pressed))
     ]
     return -np.array([before, *after]), [_press_variables(state) for state in pressed]
 
@@ -84,10 +84,10 @@ def _pressed(space: HalfSpace, heights: np.ndarray, distances: np.ndarray, hardn
     ASSUME: while surfaces are pressed, their attraction is left out, which is small against the pressure.
     """
     if not np.all(np.diff(distances) < 0):
-        rest, wanted = (from_si(distance, "nm") for distance in distances[[0, -1]])
+        unpressed, requested = (from_si(distance, "nm") for distance in distances[[0, -1]])
         raise ValueError(
-            f"studies.pressing.distance_nm: the surfaces rest {rest:.3g} nm apart without being pressed, which is less "
-            f"than {wanted:.3g} nm"
+            f"studies.pressing.distance_nm: the surfaces rest {unpressed:.3g} nm apart without being pressed, which is "
+            f"less than {requested:.3g} nm"
         )
     state = None
     for distance in distances[1:]:

@@ -43,24 +43,24 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], settings: Setting
 def changes(study: xr.Dataset) -> xr.Dataset:
     """Changes of the forces of a probe by full contact, as a dataset of stage model_error_of_devices."""
     humidities = tuple(study.humidity.values.tolist())
-    found = pair_model_error.compute(study, pair_model_error.Settings(humidities, humidities)).drop_vars("strips")
-    is_known = np.isfinite(found.pull_off_ratio)
+    errors = pair_model_error.compute(study, pair_model_error.Settings(humidities, humidities)).drop_vars("strips")
+    is_known = np.isfinite(errors.pull_off_ratio)
     flags = dict.fromkeys(("applied", "pull_off_applied"), is_known) | {"tip_applied": is_known & False}
-    return found.assign(flags | {"nearest": ((), True)} | _largest_residuals(study, found))
+    return errors.assign(flags | {"nearest": ((), True)} | _largest_residuals(study, errors))
 
 
-def _largest_residuals(study, found):
+def _largest_residuals(study, errors):
     """Largest part of one place in the squared error of the ratio of forces, NaN for energies."""
-    left = study.pull_off - found.pull_off_ratio * study.summit_pull_off
-    part = (left**2).max("strip") / (left**2).sum("strip")
-    return {"pull_off_largest_residual": part, "largest_residual": part.where(np.isnan(part))}
+    residuals = study.pull_off - errors.pull_off_ratio * study.summit_pull_off
+    largest = (residuals**2).max("strip") / (residuals**2).sum("strip")
+    return {"pull_off_largest_residual": largest, "largest_residual": largest.where(np.isnan(largest))}
 
 
 def settings_of(plan: Any, at: At) -> dict[str, Any]:
     """Settings of places of a probe at its humidities."""
     ground, humidities = plan.devices.ground(at.device), plan.config["devices"][at.device]["humidities"]
-    own = {"pair": ground.pair, "water": plan.air_of_devices.water(ground.pair), "humidities": humidities}
-    return select(Settings, GROUND.settings(plan, At(**ground._asdict()), samples=None) | PLACES | own)
+    settings = {"pair": ground.pair, "water": plan.air_of_devices.water(ground.pair), "humidities": humidities}
+    return select(Settings, GROUND.settings(plan, At(**ground._asdict()), samples=None) | PLACES | settings)
 
 
 STAGES = (

@@ -26,7 +26,7 @@ from stiction.errors import NotConverged
 from stiction.plan.stage import At, Running, Stage, select
 from stiction.progress import progress
 from stiction.stages.contact import contact, curves, full_contact
-from stiction.stages.contact.full_contact import InAir, Settings
+from stiction.stages.contact.full_contact import Settings, StripInAir
 from stiction.stages.contact.pairs import bodies, streams_of_sides, surface_pair
 from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
 
@@ -43,7 +43,7 @@ _TOUCHING = np.linspace(-1e-9, 3e-9, 5), np.array([1.0, 0.0, -1.0, -0.5, 0.0])
 
 
 @dataclass(frozen=True)
-class Tips:
+class TipsAtSlope:
     """Tips at one slope and one humidity."""
 
     pair: TiltedPair
@@ -82,23 +82,23 @@ class Tips:
         highest = float(tilted.max())
         if not (curve[1].min() < 0 and forcelaw.resists(curve[1])):
             curve = highest + _TOUCHING[0], _TOUCHING[1]
-        return full_contact.separated(self.space, tilted, InAir(self.adhesion, curve, 0.0), highest)
+        return full_contact.separated(self.space, tilted, StripInAir(self.adhesion, curve, 0.0), highest)
 
 
 def _at_slope(surfaces, settings, slope):
     """Tips at one slope, at each humidity."""
     tilt = replace(settings.tilt, slopes=(slope,))
     sampling = replace(settings.sampling, strip_length=tilt.before + tilt.reach / slope)
-    materials, found = bodies(settings), []
+    materials, tips = bodies(settings), []
     for humidity in settings.humidities:
         water, medium = settings.water.at(humidity), full_contact.medium(settings, humidity)
-        own = replace(settings, tilt=tilt, sampling=sampling, van_der_waals=medium)
-        pair = surface_pair(surfaces, "NG", own)
+        at_slope = replace(settings, tilt=tilt, sampling=sampling, van_der_waals=medium)
+        pair = surface_pair(surfaces, "NG", at_slope)
         space = full_contact.elements_of(pair, materials)
         attraction = solids.attraction_between(*materials, medium)
         adhesion = elements.Adhesion.of(water.film(humidity), attraction, space, water.gaps)
-        found.append(Tips(pair, space, adhesion, water, humidity))
-    return found
+        tips.append(TipsAtSlope(pair, space, adhesion, water, humidity))
+    return tips
 
 
 def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settings: Settings) -> xr.Dataset:
@@ -111,18 +111,20 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], pair: str, settin
     """
     at_slopes = [_at_slope(surfaces, settings, slope) for slope in settings.tilt.slopes]
     streams, rows, most = streams_of_sides(settings.seed, pair), [], max(settings.most, settings.strips)
-    tried = range(settings.strips, most, max(settings.strips // 2, 1))
+    numbers = range(settings.strips, most, max(settings.strips // 2, 1))
 
     def row(k, force):
         """Forces of strip k at every slope and humidity."""
-        drawn = [airs[0].draw(*streams(len(at_slopes) * k + i)) for i, airs in enumerate(at_slopes)]
-        return [[force(tips, heights) for tips in airs] for airs, heights in zip(at_slopes, drawn, strict=True)]
+        heights_of_slopes = [airs[0].draw(*streams(len(at_slopes) * k + i)) for i, airs in enumerate(at_slopes)]
+        return [
+            [force(tips, heights) for tips in airs] for airs, heights in zip(at_slopes, heights_of_slopes, strict=True)
+        ]
 
     for k in progress(range(most), "tips"):
-        rows.append(row(k, Tips.both_models))
-        if len(rows) in tried and np.all(tip_ratios(*models(study := layout(rows, settings))).error <= ACCURACY):
+        rows.append(row(k, TipsAtSlope.both_models))
+        if len(rows) in numbers and np.all(tip_ratios(*models(study := layout(rows, settings))).error <= ACCURACY):
             return study
-    more = [row(k, Tips.on_summits) for k in range(len(rows), settings.on_summits)]
+    more = [row(k, TipsAtSlope.on_summits) for k in range(len(rows), settings.on_summits)]
     return layout(rows, settings).assign(_of_more(rows, more))
 
 
@@ -170,8 +172,8 @@ def models(study: xr.Dataset) -> tuple[np.ndarray, np.ndarray]:
 def settings_of_devices(plan: Any, at: At) -> dict[str, Any]:
     """Settings of the tips of devices on a pair in humid air, at one humidity."""
     pair = at.case.pair
-    own = merged(plan.seen_by(pair, ELASTIC, samples=None), plan.devices.all_tips(pair)) | IN_HUMID_AIR
-    return select(Settings, own | {"humidities": [at.case.humidity], "water": plan.air_of_devices.water(pair)})
+    sections = merged(plan.seen_by(pair, ELASTIC, samples=None), plan.devices.all_tips(pair)) | IN_HUMID_AIR
+    return select(Settings, sections | {"humidities": [at.case.humidity], "water": plan.air_of_devices.water(pair)})
 
 
 def _stage(name, between, of_strips, forces):
@@ -179,9 +181,9 @@ def _stage(name, between, of_strips, forces):
 
     def settings(plan, at):
         """Settings of the strips, with slopes and edge of the tips. A number that is not stated may grow."""
-        own = merged(of_strips(plan, at), plan.devices.all_tips(at.pair))
+        sections = merged(of_strips(plan, at), plan.devices.all_tips(at.pair))
         few = is_stated(plan.config, "studies", "full_contact")
-        return select(Settings, own | {"most": 0 if few else MOST, "on_summits": 0})
+        return select(Settings, sections | {"most": 0 if few else MOST, "on_summits": 0})
 
     return Stage.writing(
         name,

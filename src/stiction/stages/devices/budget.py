@@ -49,7 +49,15 @@ from stiction.stages.devices.opening import (
     ground_of,
     own_section,
 )
-from stiction.stages.devices.uncertain_inputs import Input, Known, Settings, State, countable, covariances, uncertain
+from stiction.stages.devices.uncertain_inputs import (
+    Input,
+    InputState,
+    QuantityErrors,
+    Settings,
+    countable,
+    covariances,
+    uncertain,
+)
 
 
 @dataclass(frozen=True)
@@ -77,7 +85,7 @@ _OF_SLOPES = 0.25
 #: Factor of the lengths of beams where an input changes adhesion many times: cracks on weak ground scatter most.
 _LONGER = 2
 #: Devices at several states.
-Respond = Callable[[Sequence[State]], Responses]
+Respond = Callable[[Sequence[InputState]], Responses]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,9 +99,9 @@ class _OfBeams(Settings):
         """Sizes open to a measurement of the device itself."""
         return self.device.opening.sizes
 
-    def state(self, contact: xr.Dataset) -> State:
+    def state(self, contact: xr.Dataset) -> InputState:
         """State with the stated inputs."""
-        return State(contact, self.humidity, self.water, self.device, alike=self.alike)
+        return InputState(contact, self.humidity, self.water, self.device, alike=self.alike)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,13 +116,13 @@ class BeamBudget(_OfBeams):
         """Quantity changed by the inputs."""
         return self.device.opening.shapes[0]
 
-    def responder(self, *states: State, longer: int = 1) -> Respond:
+    def responder(self, *states: InputState, longer: int = 1) -> Respond:
         """How the devices respond: cracks of beams that are long enough at some states, or longer by a factor."""
         laws = [shared_laws([curves.vectors(state.contact, state.humidity, state.water)])[0] for state in states]
-        part, strips = around([ground_of(self.device, of_state) for of_state in laws])
-        part = replace(part, length=longer * part.length, elements=longer * part.elements)
+        beam, strips = around([ground_of(self.device, of_state) for of_state in laws])
+        beam = replace(beam, length=longer * beam.length, elements=longer * beam.elements)
         return partial(
-            beam_responses, mesh=(part, longer * strips), number=self.beams, address=addresses(self), known={}
+            beam_responses, mesh=(beam, longer * strips), number=self.beams, address=addresses(self), cache={}
         )
 
 
@@ -125,7 +133,7 @@ class TipBudget(_OfBeams):
     share: float  #: p [-]
     response: ClassVar[str] = ARC
 
-    def responder(self, *_states: State, **_longer: int) -> Respond:
+    def responder(self, *_states: InputState, **_longer: int) -> Respond:
         """Response of the devices: arcs of all tips."""
         return partial(tip_responses, share=self.share)
 
@@ -139,11 +147,11 @@ class PatchBudget(Settings):
     response: ClassVar[str] = FORCE
     sizes: ClassVar[tuple[str, ...]] = ("area",)
 
-    def state(self, contact: xr.Dataset) -> State:
+    def state(self, contact: xr.Dataset) -> InputState:
         """State with the stated inputs."""
-        return State(contact, self.humidity, self.water, area=self.contact[0] * self.contact[1], alike=self.alike)
+        return InputState(contact, self.humidity, self.water, area=self.contact[0] * self.contact[1], alike=self.alike)
 
-    def responder(self, *_states: State, **_longer: int) -> Respond:
+    def responder(self, *_states: InputState, **_longer: int) -> Respond:
         """Response of the devices: pull-off forces of all patches."""
         return stopper_responses
 
@@ -162,17 +170,17 @@ def compute(
     shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
     properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
     choices: Mapping[str, xr.Dataset],
-    known: Mapping[str, Known],
+    surface_errors: Mapping[str, QuantityErrors],
     settings: AnyBudget,
 ) -> xr.Dataset:
     """Slopes of all uncertain inputs of a device at a humidity, their covariance, scatter, and other model choices.
 
-    The contact is that of the device, or of its tips; ``shifted``, ``properties`` and ``known`` are as in
+    The contact is that of the device, or of its tips; ``shifted``, ``properties`` and ``surface_errors`` are as in
     `stiction.stages.devices.uncertain_inputs.uncertain`. A contact under a choice of the model that has fewer samples
     is that of the first ones.
     """
     state = settings.state(contact)
-    inputs, covariance = uncertain(state, shifted, properties, known, settings)
+    inputs, covariance = uncertain(state, shifted, properties, surface_errors, settings)
     far = [end for entry in inputs if np.isfinite(entry.limits).any() for end in entry.states]
     respond = settings.responder(state, *far, longer=_LONGER if far else 1)
     slopes_with_errors = slopes(inputs, respond)
@@ -182,8 +190,8 @@ def compute(
         with explain_errors(f"This is the contact under the choice {name}."):
             under = replace(state, contact=changed, water=settings.water_under(name))
             changes[name] = effect_if_known(base, under, respond)
-    found = layout(inputs, slopes_with_errors, covariance, respond([state]), changes, settings)
-    return found.assign(bend=("input", bends(inputs, respond))).assign(limits_of(inputs))
+    budget = layout(inputs, slopes_with_errors, covariance, respond([state]), changes, settings)
+    return budget.assign(bend=("input", bends(inputs, respond))).assign(limits_of(inputs))
 
 
 def with_members(
@@ -208,7 +216,7 @@ def with_members(
     ).assign_coords(member=labels, member_of=("member", surfaces))
 
 
-def shift(state: State, member: xr.Dataset, settings: AnyBudget) -> tuple[float, float]:
+def shift(state: InputState, member: xr.Dataset, settings: AnyBudget) -> tuple[float, float]:
     """Change of the logarithm of the response on the contact of a member, with its standard error [-].
 
     Compared are the lengths that few tips hold: whole surfaces move the lowest quarter of the tips by 0.02 to 0.05 less
@@ -218,13 +226,13 @@ def shift(state: State, member: xr.Dataset, settings: AnyBudget) -> tuple[float,
 
     def respond(states):
         """Responses of devices that are long enough for both."""
-        found = settings.responder(*states)(states)
-        return replace(found, compared=found.end)
+        responses = settings.responder(*states)(states)
+        return replace(responses, compared=responses.end)
 
     return effect_if_known(base, changed, respond)
 
 
-def stopper_responses(states: Sequence[State]) -> Responses:
+def stopper_responses(states: Sequence[InputState]) -> Responses:
     """Pull-off forces of all sampled patches at several states."""
     forces = [
         pull_off_force(curves.pull_offs(state.contact, state.humidity, state.water), state.area) for state in states
@@ -232,7 +240,7 @@ def stopper_responses(states: Sequence[State]) -> Responses:
     return Responses(np.array(forces), np.mean)
 
 
-def tip_responses(states: Sequence[State], share: float) -> Responses:
+def tip_responses(states: Sequence[InputState], share: float) -> Responses:
     """Longest releasing arcs of all sampled tips at several states. Their quantile at p stands for all.
 
     ASSUME: no crack stops on beams that are so short that only a share p of the tips hold them.
@@ -241,40 +249,43 @@ def tip_responses(states: Sequence[State], share: float) -> Responses:
         (curves.tip_forces(state.contact, state.humidity, state.water), state.device.beam) for state in states
     ]
     lengths = [arcs.longest_free(*forces, beam) for forces, beam in forces_and_beams]
-    parts = (max(part, (FEWEST + 0.5) / len(lengths[0])) for part in (_OF_SLOPES, TAIL))  # or as many as a fit needs
-    compared, end = (partial(_stuck_length, share=share, part=part) for part in parts)
+    fewest = (FEWEST + 0.5) / len(lengths[0])  # as many as a fit needs
+    fractions = (max(fraction, fewest) for fraction in (_OF_SLOPES, TAIL))
+    compared, end = (partial(_stuck_length, share=share, fraction=fraction) for fraction in fractions)
     return Responses(np.array(lengths), partial(_stuck_length, share=share), compared=compared, end=end)
 
 
-def _stuck_length(lengths, share, part=TAIL):
+def _stuck_length(lengths, share, fraction=TAIL):
     """Length with a fraction stuck, infinite if too few stick. Small fractions take the fit of the shortest part."""
-    known = np.isfinite(lengths)
+    finite = np.isfinite(lengths)
     if share > TAIL:
-        return float(np.quantile(lengths, share)) if known.all() or known.mean() > share + 1 / len(lengths) else np.inf
-    return fit_tail(lengths, part).length(share) if known.sum() >= FEWEST else np.inf
+        return (
+            float(np.quantile(lengths, share)) if finite.all() or finite.mean() > share + 1 / len(lengths) else np.inf
+        )
+    return fit_tail(lengths, fraction).length(share) if finite.sum() >= FEWEST else np.inf
 
 
 def beam_responses(
-    states: Sequence[State], mesh: tuple[Beam, int], number: int, address: Callable, known: dict | None = None
+    states: Sequence[InputState], mesh: tuple[Beam, int], number: int, address: Callable, cache: dict | None = None
 ) -> Responses:
     """Crack lengths, or lengths of held bridges, of the same beams at several states, on resampled force laws.
 
     Finite elements resolve the ``mesh`` of all beams, a part and its number of strips; ``address(k)`` is the stream of
-    beam k. Lengths that are ``known`` from an earlier call are not computed again.
+    beam k. ``cache`` has the lengths of earlier calls.
 
     ASSUME: for a cantilever, the two foundation lengths that hold its crack are left out, 1 % of the length.
     ASSUME: neighbouring strips are independent, also on ground with blocks (`stiction.devices.strips`).
     """
     laws, lawful = lawful_at_all([curves.vectors(state.contact, state.humidity, state.water) for state in states])
-    (of_mesh, strips), known = mesh, {} if known is None else known
+    (of_mesh, strips), cache = mesh, {} if cache is None else cache
 
     def lengths(state, laws):
         """Crack lengths in a state on force laws [m]."""
-        if (key := (state.device, laws.tobytes())) not in known:
-            part = replace(state.device.beam, length=of_mesh.length, elements=of_mesh.elements)
+        if (key := (state.device, laws.tobytes())) not in cache:
+            beam = replace(state.device.beam, length=of_mesh.length, elements=of_mesh.elements)
             draw = drawn_from(laws, curves.displacements(state.contact, lawful))
-            known[key] = arrests(state.device, (part, strips), draw, number, address)
-        return known[key]
+            cache[key] = arrests(state.device, (beam, strips), draw, number, address)
+        return cache[key]
 
     values = np.array([lengths(state, of_state) for state, of_state in zip(states, laws, strict=True)])
     # Some lengths may not be known. If most are not, the median is infinite, and no slope is known.
@@ -328,19 +339,19 @@ def _bend(entry, respond):
 
 def _slope(responses, step):
     """Slope between two states and its standard error, of the devices and of their common samples."""
-    value, own = log_slope(responses.centre_of_slopes, *responses.values, step)
+    value, error = log_slope(responses.centre_of_slopes, *responses.values, step)
     if responses.shared is None:
-        return value, own
-    return value, np.hypot(own, log_slope(responses.length, *responses.shared, step)[1])
+        return value, error
+    return value, np.hypot(error, log_slope(responses.length, *responses.shared, step)[1])
 
 
-def effect(base: State, changed: State, respond: Respond) -> tuple[float, float]:
+def effect(base: InputState, changed: InputState, respond: Respond) -> tuple[float, float]:
     """Relative change of the response by another choice of the model, with its standard error [-]."""
     responses = respond([base, changed])
     return choice_effect(*map(responses.centre_of_slopes, responses.values)), _slope(responses, 1.0)[1]
 
 
-def effect_if_known(base: State, changed: State, respond: Respond) -> tuple[float, float]:
+def effect_if_known(base: InputState, changed: InputState, respond: Respond) -> tuple[float, float]:
     """As `effect`, NaN where nothing can be computed under the choice.
 
     Without attraction across gaps, patches that do not resist the adhesion have no bound.
@@ -372,7 +383,7 @@ def layout(
     names = [entry.name for entry in inputs]
     groups = [entry.group for entry in inputs]
     (values,) = devices.values
-    known, centre = values[np.isfinite(values)], devices.centre(values)
+    finite, centre = values[np.isfinite(values)], devices.centre(values)
     changes = np.array(list(effects.values())).reshape(len(effects), 2)
     response = {"units": SOUGHT_BY[settings.response].unit, "response": settings.response, "share": settings.share}
     return xr.Dataset(
@@ -383,7 +394,7 @@ def layout(
             "covariance": (("input", "other"), covariance),
             "group": ("input", groups),
             "centre": ((), centre if np.isfinite(centre) else np.nan, response),
-            "scatter": ((), known.std(ddof=1) / known.mean() if len(known) > 1 else np.nan, {"units": "1"}),
+            "scatter": ((), finite.std(ddof=1) / finite.mean() if len(finite) > 1 else np.nan, {"units": "1"}),
             "effect": ("choice", changes[:, 0], {"units": "1"}),
             "effect_error": ("choice", changes[:, 1], {"units": "1"}),
         },
@@ -405,16 +416,16 @@ def members_of(dataset: xr.Dataset) -> dict[str, xr.Dataset]:
 def budget_of(dataset: xr.Dataset) -> Budget:
     """Budget from its dataset. Members are inputs, such as ``B2 like Sub1``, with shifts as slopes."""
     names = tuple(map(str, dataset.input.values))
-    parts = [Budget(names, dataset.slope.values, dataset.covariance.values)]
-    for surface, part in members_of(dataset).items():
-        kind = tuple(like(surface, str(member)) for member in part.member.values)
-        parts.append(Budget(kind, part.member_shift.values, weights_of_kind(len(kind)), (kind,)))
-    return joined(parts)
+    budgets = [Budget(names, dataset.slope.values, dataset.covariance.values)]
+    for surface, members in members_of(dataset).items():
+        kind = tuple(like(surface, str(member)) for member in members.member.values)
+        budgets.append(Budget(kind, members.member_shift.values, weights_of_kind(len(kind)), (kind,)))
+    return joined(budgets)
 
 
 def slope_errors_of(dataset: xr.Dataset) -> np.ndarray:
     """Standard errors of the slopes of all inputs of `budget_of` (k,)."""
-    of_members = [part.member_error.values for part in members_of(dataset).values()]
+    of_members = [members.member_error.values for members in members_of(dataset).values()]
     return np.concatenate([dataset.slope_error.values, *of_members])
 
 
@@ -423,8 +434,8 @@ def groups_of(dataset: xr.Dataset) -> dict[str, list[str]]:
     groups = {}
     for name, group in zip(dataset.input.values, dataset.group.values, strict=True):
         groups.setdefault(str(group), []).append(str(name))
-    for surface, part in members_of(dataset).items():
-        groups[f"the surface {surface}"] = [like(surface, str(member)) for member in part.member.values]
+    for surface, members in members_of(dataset).items():
+        groups[f"the surface {surface}"] = [like(surface, str(member)) for member in members.member.values]
     return groups
 
 
@@ -446,56 +457,56 @@ def settings_of(plan: Any, at: At) -> dict[str, Any]:
     name, devices = at.case.device, plan.devices
     section = plan.config["devices"][name]
     pair = plan.contact_of_device(at.case)
-    stated = {key: value for key, value in section.get("uncertainty", {}).items() if key != EDGE_RADIUS.key}
-    own = {"uncertainty": stated, "humidity": at.case.humidity}
-    own |= plan.materials.modulus(pair)
+    uncertainty = {key: value for key, value in section.get("uncertainty", {}).items() if key != EDGE_RADIUS.key}
+    budget = {"uncertainty": uncertainty, "humidity": at.case.humidity}
+    budget |= plan.materials.modulus(pair)
     properties = devices.uncertain_properties(name)
     replica = plan.replica(pair).get("replica", {})
-    own |= {entry.key: replica.get(entry.key, 0.0) for name, entry in OF_REPLICAS.items() if name in properties}
+    budget |= {entry.key: replica.get(entry.key, 0.0) for name, entry in OF_REPLICAS.items() if name in properties}
     if "hamaker_constant" in properties:
-        own |= {"hamaker_constant_zJ": plan.air.beam_hamaker_constant(pair), "alike": plan.materials.alike(pair)}
+        budget |= {"hamaker_constant_zJ": plan.air.beam_hamaker_constant(pair), "alike": plan.materials.alike(pair)}
     beam = own_section(plan, name, pair)
-    own |= beam | {"beams": plan.config["design"]["budget_beams"]} if beam else subsection(section, ["contact_um"])
-    own |= {"seed": plan.config["seed"], "water": plan.air_of_devices.water(pair), "surfaces": plan.sides(pair)}
-    known = {surface: one.section for surface, one in devices.surface_errors(name).items() if one.quantities}
-    own |= {"known": known} if known else {}
-    settings = {"budget": own, "quantities": list(map(list, devices.quantities(name)))}
+    budget |= beam | {"beams": plan.config["design"]["budget_beams"]} if beam else subsection(section, ["contact_um"])
+    budget |= {"seed": plan.config["seed"], "water": plan.air_of_devices.water(pair), "surfaces": plan.sides(pair)}
+    errors = {surface: error.section for surface, error in devices.surface_errors(name).items() if error.quantities}
+    budget |= {"known": errors} if errors else {}
+    settings = {"budget": budget, "quantities": list(map(list, devices.quantities(name)))}
     if by_surface := devices.members(name):
-        words = {surface: list(next(iter(others.values()))) for surface, others in by_surface.items()}
-        own["assumed"] = {surface: {"quantities": assumed} for surface, assumed in words.items()}
-        settings["members"] = [[surface, member] for surface, others in by_surface.items() for member in others]
+        words = {surface: list(next(iter(members.values()))) for surface, members in by_surface.items()}
+        budget["assumed"] = {surface: {"quantities": assumed} for surface, assumed in words.items()}
+        settings["members"] = [[surface, member] for surface, members in by_surface.items() for member in members]
     return _with_choices(plan, pair, settings, plan.variants.choices_of_device(at.case))
 
 
 def _with_choices(plan, pair, settings, choices):
     """Settings of a budget with its choices of the model, and with the water of choices with another."""
     changed = plan.variants.water_of_choices(pair, choices)
-    own = settings["budget"] | ({"waters": changed} if changed else {})
-    return settings | {"budget": own, "choices": choices}
+    budget = settings["budget"] | ({"waters": changed} if changed else {})
+    return settings | {"budget": budget, "choices": choices}
 
 
 def settings_of_tips(plan: Any, at: At, share: float | None = None) -> dict[str, Any]:
     """Settings of `settings_of`, for the length of a fraction of stuck tips, by default the middle one."""
     settings, shares = settings_of(plan, at), plan.config["design"]["shares"]
-    own = {key: value for key, value in settings["budget"].items() if key not in ("beams", "waters")}
-    own |= {"uncertainty": plan.config["devices"][at.case.device].get("uncertainty", {})}
-    own |= {"edge_radius_um": plan.devices.edge_radius(at.case.device)}
-    settings |= {"budget": own | {"share": share or shares[len(shares) // 2]}}
+    budget = {key: value for key, value in settings["budget"].items() if key not in ("beams", "waters")}
+    budget |= {"uncertainty": plan.config["devices"][at.case.device].get("uncertainty", {})}
+    budget |= {"edge_radius_um": plan.devices.edge_radius(at.case.device)}
+    settings |= {"budget": budget | {"share": share or shares[len(shares) // 2]}}
     pair = plan.contact_of_device(at.case)
     return _with_choices(plan, pair, settings, plan.variants.choices_of_solids(pair))
 
 
 def _budget_of_job(data, settings):
     """Budget from the contacts with less and with more of every input, and those under other choices of the model."""
-    wanted = with_correction(budget_settings(settings["budget"]), data)
+    corrected = with_correction(budget_settings(settings["budget"]), data)
     described = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     shifted = {key: (less, data["more"][key]) for key, less in data["less"].items()}
     properties = {name: (less, data["properties_more"][name]) for name, less in data["properties_less"].items()}
-    known = covariances(described, data["estimates"], wanted)
-    found = compute(data["contact"], shifted, properties, data["choices"], known, wanted)
+    surface_errors = covariances(described, data["estimates"], corrected)
+    budget = compute(data["contact"], shifted, properties, data["choices"], surface_errors, corrected)
     if not (names := list(map(tuple, settings.get("members", ())))):
-        return found
-    return with_members(found, data["contact"], data["members"], names, wanted)
+        return budget
+    return with_members(budget, data["contact"], data["members"], names, corrected)
 
 
 def budgets_of(plan: Any, *devices: str) -> dict[tuple, str]:
@@ -514,7 +525,7 @@ def _memory_of_tips(plan, view, names):
     for name in names:
         contacts = contacts_of_tip_budget(view, case_id(name, view.devices.sections[name]["humidities"][0]))
         left_out = ["contact", "members"] + ["choices"] * (view is not plan)
-        changed = sum(len(some) for kind, some in contacts.items() if kind not in left_out)
+        changed = sum(len(files) for kind, files in contacts.items() if kind not in left_out)
         tips = TIPS.samples(plan, None) + changed * TIPS.fewer(plan, None)
         tips += len(contacts["members"]) * samples_on(TIPS, plan, None)
         slopes.append(tips * len(plan.devices.tilt(view.devices.tips(name))["slopes"]))

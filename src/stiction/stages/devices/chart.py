@@ -96,9 +96,9 @@ def _release(size, below, settings):
 
 def _lengths_of(beams, settings):
     """Safe lengths of beams and their quantiles (shapes, shares and scores) [m]."""
-    known = sticking.lengths_without_samples(beams.device, *settings.flats, beams.reach)
-    safe = sticking.by_shape(beams, settings, known)
-    of_shares = [[one.length for one in of_shape] for of_shape in safe.values()]
+    bounds = sticking.lengths_without_samples(beams.device, *settings.flats, beams.reach)
+    safe = sticking.by_shape(beams, settings, bounds)
+    of_shares = [[bound.length for bound in of_shape] for of_shape in safe.values()]
     return np.hstack([of_shares, [risk.quantiles(values, beams.reach) for values in beams.lengths.values()]])
 
 
@@ -122,12 +122,12 @@ def filled(
     """
     sizes = np.array(list(product(thicknesses, gaps)))
     corner, test = corners_and_tests(len(thicknesses), len(gaps))
-    computed = {k: by_elements(*sizes[k]) for k in np.flatnonzero(corner | test)}
-    if laws := _power_laws(sizes, computed, test):
-        between = np.array([law(*sizes.T) for law, _ in laws]).T.reshape(-1, *computed[0].shape)
-        lengths = [computed.get(k, length) for k, length in enumerate(between)]
+    by_number = {k: by_elements(*sizes[k]) for k in np.flatnonzero(corner | test)}
+    if laws := _power_laws(sizes, by_number, test):
+        between = np.array([law(*sizes.T) for law, _ in laws]).T.reshape(-1, *by_number[0].shape)
+        lengths = [by_number.get(k, length) for k, length in enumerate(between)]
         return Filled(np.array(lengths), corner | test, max(error for _, error in laws))
-    lengths = [computed[k] if k in computed else by_elements(*size) for k, size in enumerate(sizes)]
+    lengths = [by_number[k] if k in by_number else by_elements(*size) for k, size in enumerate(sizes)]
     return Filled(np.array(lengths), np.full(len(sizes), True), 0.0)
 
 
@@ -145,14 +145,14 @@ def between(charts: Sequence[xr.Dataset], below: sticking.Ground, settings: Sett
     error = float(np.expm1(errors.max())) + max(float(chart.power_law_error) for chart in charts)
     if not error <= ALLOWED:
         return None
-    own = _release(sizes[middle], below, settings)
-    alone = next(iter(own.lengths.values()))
-    spread = spread_of(risk.quantiles(alone, own.reach), risk.SCORES)
+    of_middle = _release(sizes[middle], below, settings)
+    alone = next(iter(of_middle.lengths.values()))
+    spread = spread_of(risk.quantiles(alone, of_middle.reach), risk.SCORES)
     if not spread[0] - spread[1] > np.abs(np.diff(ratios)).max():  # too few stick, or all at the same length
         return None
     rescale = [partial(rescaled, spread=spread, ratios=of_size) for of_size in ratios]
-    others = [_resized_beams(own, *one, below) for one in zip(sizes, rescale, strict=True)]
-    lengths = [_lengths_of(own if k == middle else beams, settings) for k, beams in enumerate(others)]
+    resized = [_resized_beams(of_middle, *case, below) for case in zip(sizes, rescale, strict=True)]
+    lengths = [_lengths_of(of_middle if k == middle else beams, settings) for k, beams in enumerate(resized)]
     return Filled(np.array(lengths), np.arange(len(sizes)) == middle, error)
 
 
@@ -168,12 +168,12 @@ def _quantiles_of_beams(chart):
     return quantiles.reshape(-1, quantiles.shape[-1])
 
 
-def _resized_beams(own, size, rescale, below):
+def _resized_beams(beams, size, rescale, below):
     """Released beams of another size [m], from those of one and the function that changes their lengths."""
-    device = replace(own.device, thickness=float(size[0]), gap=float(size[1]))
+    device = replace(beams.device, thickness=float(size[0]), gap=float(size[1]))
     hold = 0.0 if below.tips is None else risk.HOLD * foundation_length(device.beam, below.laws)
-    alone = next(iter(own.lengths.values()))
-    return sticking.released(device, below, rescale(alone) - hold, float(rescale(own.reach)))
+    alone = next(iter(beams.lengths.values()))
+    return sticking.released(device, below, rescale(alone) - hold, float(rescale(beams.reach)))
 
 
 def corners_and_tests(thicknesses: int, gaps: int) -> tuple[np.ndarray, np.ndarray]:
@@ -189,18 +189,18 @@ def corners_and_tests(thicknesses: int, gaps: int) -> tuple[np.ndarray, np.ndarr
     return corner.ravel(), (test & ~corner).ravel()
 
 
-def _power_laws(sizes, computed, test):
+def _power_laws(sizes, by_number, test):
     """Power law of each shape and share with its error. None if no size is left or one of them errs too much.
 
     A quantile that is not known at all sizes is not known between them.
     """
-    known = list(computed)
-    if len(known) == len(sizes):
+    numbers = list(by_number)
+    if len(numbers) == len(sizes):
         return []
-    columns = np.reshape([computed[k] for k in known], (len(known), -1)).T
+    columns = np.reshape([by_number[k] for k in numbers], (len(numbers), -1)).T
     try:
         return [
-            checked_power_law(*sizes[known].T, column, test[known]) if np.isfinite(column).all() else _UNKNOWN
+            checked_power_law(*sizes[numbers].T, column, test[numbers]) if np.isfinite(column).all() else _UNKNOWN
             for column in columns
         ]
     except ValueError:
@@ -250,10 +250,10 @@ def _settings(plan, at):
 def _all_sizes(plan, case):
     """Charts at the humidities with beams of all sizes, for one between them."""
     axis = plan.devices.axis(case.device)
-    computed = of_sizes(axis)
-    if case.humidity in computed or case.humidity not in axis:
+    humidities = of_sizes(axis)
+    if case.humidity in humidities or case.humidity not in axis:
         return {}
-    return {"all_sizes": [f"devices/chart/{case_id(case.device, humidity)}" for humidity in computed]}
+    return {"all_sizes": [f"devices/chart/{case_id(case.device, humidity)}" for humidity in humidities]}
 
 
 def axes(datasets: Mapping[tuple[str, float], xr.Dataset]) -> dict[str, xr.Dataset]:
@@ -262,15 +262,15 @@ def axes(datasets: Mapping[tuple[str, float], xr.Dataset]) -> dict[str, xr.Datas
     for (name, humidity), dataset in sorted(datasets.items()):
         devices.setdefault(name, []).append(dataset.expand_dims(relative_humidity=[humidity]))
     joint = {"data_vars": "minimal", "coords": "minimal", "compat": "equals", "join": "exact"}
-    return {name: xr.concat(parts, "relative_humidity", **joint) for name, parts in devices.items()}
+    return {name: xr.concat(datasets, "relative_humidity", **joint) for name, datasets in devices.items()}
 
 
-def largest_error_between(whole: xr.Dataset) -> float:
+def largest_error_between(chart: xr.Dataset) -> float:
     """Largest error of the cubic between the humidities of a chart, NaN with too few of them [-].
 
     The dataset has all humidities along ``relative_humidity``; dry air is apart.
     """
-    humid = whole.safe_length.isel(relative_humidity=is_humid(whole.relative_humidity.values))
+    humid = chart.safe_length.isel(relative_humidity=is_humid(chart.relative_humidity.values))
     if not humid.size:
         return np.nan
     curves = humid.transpose(..., "relative_humidity").values.reshape(-1, humid.sizes["relative_humidity"])

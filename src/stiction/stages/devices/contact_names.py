@@ -127,12 +127,12 @@ def contacts_of_tip_budget(plan: Any, case: Case) -> dict[str, Any]:
     }
 
 
-def _members(plan, device, patch, place):
+def _members(plan, device, patch, patch_kind):
     """Contacts of a patch with each other member in place of an assumed surface, by surface and member."""
     return {
-        (surface, member): file_of(MEMBER, place, **patch._asdict(), surface=surface, member=member)
-        for surface, others in plan.devices.members(device).items()
-        for member in others
+        (surface, member): file_of(MEMBER, patch_kind, **patch._asdict(), surface=surface, member=member)
+        for surface, members in plan.devices.members(device).items()
+        for member in members
         if not plan.devices.is_itself(surface, member)
     }
 

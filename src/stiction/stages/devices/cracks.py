@@ -88,7 +88,7 @@ def compute_sizes(ground: xr.Dataset, settings: OfSizes) -> xr.Dataset:
     return powers.assign({name: ((), getattr(laws, name), {"units": "1"}) for name in ("error", "excess")})
 
 
-def layout(beams: Released, part: Beam, laws: np.ndarray, rms: float) -> xr.Dataset:
+def layout(beams: Released, beam: Beam, laws: np.ndarray, rms: float) -> xr.Dataset:
     """Dataset of the lengths of arrest of the cracks of a device at a humidity.
 
     Released beams, the part of the device that finite elements resolve, a sample (k, 4) of its force laws [SI], and rms
@@ -97,8 +97,8 @@ def layout(beams: Released, part: Beam, laws: np.ndarray, rms: float) -> xr.Data
     opening, metres = beams.device.opening, {"units": "m"}
     lengths = {
         "foundation_length": beams.foundation,
-        "beam_length": part.length,
-        "element_length": part.element_length,
+        "beam_length": beam.length,
+        "element_length": beam.element_length,
         "rms": rms,
     }
     return xr.Dataset(
@@ -124,10 +124,10 @@ def surfaces_of(cracks: xr.Dataset) -> SampledSurfaces:
     return SampledSurfaces(float(cracks.uniform_length), cracks.surfaces_covariance.values)
 
 
-def beams_of(cracks: xr.Dataset, device: DesignedBeam, held: np.ndarray | None) -> Released:
+def beams_of(cracks: xr.Dataset, device: DesignedBeam, arc_lengths: np.ndarray | None) -> Released:
     """Released beams of a dataset, with the longest arcs that come free of tips (n,) [m], ``None`` without tips."""
     foundation, reach = float(cracks.foundation_length), float(cracks.reach)
-    return Released(device, lengths(cracks), reach, foundation, surfaces_of(cracks), held)
+    return Released(device, lengths(cracks), reach, foundation, surfaces_of(cracks), arc_lengths)
 
 
 def with_lengths(cracks: xr.Dataset, changed: Callable[[np.ndarray], np.ndarray]) -> xr.Dataset:

@@ -68,13 +68,13 @@ def compute(settings: Settings, study: xr.Dataset | None = None, by_levels: xr.D
     if by_levels is None:
         return layout(*of_strips, settings.shapes, settings, study.humidity.values)
     missing = dict.fromkeys(_FLAGS, False)
-    known = by_levels.reindex(humidity=list(settings.airs), fill_value=missing)
-    found = _of_ratios(known, settings)
+    changes = by_levels.reindex(humidity=list(settings.airs), fill_value=missing)
+    numbers = _of_ratios(changes, settings)
     if study is not None:
-        found = [np.where(is_humid(settings.airs), *each) for each in zip(found, of_strips, strict=True)]
-    applied = np.all([known[flag].values for flag in _FLAGS_OF[settings.shapes[0]]], axis=0)
-    own = replace(settings, applied=tuple(np.array(settings.humidities)[applied]))
-    return layout(*found, settings.shapes, own, settings.airs).assign(_of_tips(known))
+        numbers = [np.where(is_humid(settings.airs), *each) for each in zip(numbers, of_strips, strict=True)]
+    applied = np.all([changes[flag].values for flag in _FLAGS_OF[settings.shapes[0]]], axis=0)
+    corrected = replace(settings, applied=tuple(np.array(settings.humidities)[applied]))
+    return layout(*numbers, settings.shapes, corrected, settings.airs).assign(_of_tips(changes))
 
 
 #: Whether changes of energies, of forces and of tips are applied, and those of these on which a response rests.
@@ -82,34 +82,40 @@ _FLAGS = ("applied", "pull_off_applied", "tip_applied")
 _FLAGS_OF = {S_SHAPE: _FLAGS[:1], MIDDLE: _FLAGS[:2], FORCE: _FLAGS[1:2]}
 
 
-def _of_tips(known):
+def _of_tips(changes):
     """Least and largest ratio of tips over the slopes, and whether it is applied, if the pair has tips."""
-    if "tip_ratio" not in known:
+    if "tip_ratio" not in changes:
         return {}
-    ends = known.tip_ratio.where(known.tip_applied)
+    ends = changes.tip_ratio.where(changes.tip_applied)
     unit = {"units": "1"}
     return {
         "least_of_tips": ends.min("slope").assign_attrs(unit),
         "largest_of_tips": ends.max("slope").assign_attrs(unit),
-        "tips_applied": known.tip_applied,
+        "tips_applied": changes.tip_applied,
     }
 
 
 def _of_strips(study, settings):
     """Factors by strips in full contact, and their errors (shapes, humidities) [-]."""
-    computed, models = study.humidity.values, full_contact.moved_models(study)
+    computed_at, models = study.humidity.values, full_contact.moved_models(study)
     of_shapes = [
-        factors(lambda means, of=shape: response(of, means, settings.device), *models, computed, settings.airs)
+        factors(
+            lambda means, end_state=shape: response(end_state, means, settings.device),
+            *models,
+            computed_at,
+            settings.airs,
+        )
         for shape in settings.shapes
     ]
     return np.moveaxis(of_shapes, 1, 0)
 
 
-def _of_ratios(known, settings):
+def _of_ratios(by_humidity, settings):
     """Factors of lengths or of the force by changes by levels, and their errors (shapes, humidities) [-]."""
-    found, at = np.full((2, len(settings.shapes), known.sizes["humidity"]), np.nan), np.isfinite(known.energy_ratio)
+    results = np.full((2, len(settings.shapes), by_humidity.sizes["humidity"]), np.nan)
+    at = np.isfinite(by_humidity.energy_ratio)
     means, ratios, errors = (
-        np.stack([known[f"{prefix}{of}{suffix}"].values[at] for of in ("energy", "pull_off")], axis=1)
+        np.stack([by_humidity[f"{prefix}{quantity}{suffix}"].values[at] for quantity in ("energy", "pull_off")], axis=1)
         for prefix, suffix in (("summit_", ""), ("", "_ratio"), ("", "_ratio_error"))
     )
 
@@ -118,24 +124,24 @@ def _of_ratios(known, settings):
         return np.array([response(shape, means * changes, settings.device) for shape in settings.shapes])
 
     base, changed = responses(np.ones_like(ratios)), responses(ratios)
-    parts = [responses(ratios + errors * one) - changed for one in np.eye(2)]
-    found[:, :, at] = changed / base, np.hypot(*parts) / base
-    return found
+    variations = [responses(ratios + errors * direction) - changed for direction in np.eye(2)]
+    results[:, :, at] = changed / base, np.hypot(*variations) / base
+    return results
 
 
 def layout(
-    values: np.ndarray, errors: np.ndarray, shapes: Sequence[str], settings: Settings, computed: np.ndarray
+    values: np.ndarray, errors: np.ndarray, shapes: Sequence[str], settings: Settings, computed_at: np.ndarray
 ) -> xr.Dataset:
     """Dataset of the factors and their standard errors by end state, (shapes, humidities) each [-].
 
-    Full contact was ``computed`` at these humidities [-].
+    ``computed_at`` are the humidities of full contact [-].
     """
     names = ("shape", "humidity")
     return xr.Dataset(
         {
             "factor": (names, values, {"units": "1"}),
             "factor_error": (names, errors, {"units": "1"}),
-            "interpolated": ("humidity", ~np.isin(settings.airs, computed)),
+            "interpolated": ("humidity", ~np.isin(settings.airs, computed_at)),
             "applied": ("humidity", np.isin(settings.humidities, settings.applied)),
             "by_levels": ("humidity", settings.is_by_levels),
             "across_gaps": ((), settings.across_gaps),
@@ -163,9 +169,9 @@ def _settings(plan, at):
     applied = section["humidities"] if is_changed else plan.variants.corrected(section["pair"], section["humidities"])
     gaps = {"across_gaps": True} if "gaps" in plan.air_of_devices.water(section["pair"]) else {}
     dry = {} if plan.air_of_devices.is_wetted(section["pair"]) else {"condenses": False}
-    said = {"humidities": section["humidities"]} | ({"applied": applied} if applied else {})
+    airs = {"humidities": section["humidities"]} | ({"applied": applied} if applied else {})
     by_levels = {"by_levels": True} if plan.air_of_devices.by_levels(section["pair"], section["humidities"]) else {}
-    return select(Settings, said | own_section(plan, at.device) | gaps | dry | by_levels)
+    return select(Settings, airs | own_section(plan, at.device) | gaps | dry | by_levels)
 
 
 STAGES = (

@@ -31,7 +31,7 @@ from stiction.stages.devices.end_states import END_STATES
 from stiction.stages.devices.opening import ARC, EITHER, FORCE, S_SHAPE, SOUGHT_BY, DesignedBeam, own_section
 from stiction.stages.devices.results import results_of
 from stiction.stages.devices.safe_lengths import chosen_share
-from stiction.stages.devices.stoppers import sought
+from stiction.stages.devices.stoppers import search_ends
 from stiction.stages.surfaces import surface_flags
 
 #: Limits by end state.
@@ -102,7 +102,7 @@ class OfDevice:
 
 
 @dataclass(frozen=True)
-class OfStopper:
+class StopperOnPair:
     """Stopper and its pair."""
 
     pair: str
@@ -119,9 +119,9 @@ class OfStopper:
 
     def limits(self, dataset: xr.Dataset, plastic: Plastic = NOT_STUDIED, _humidity: float = 0.0) -> ByShape:
         """Limits, from the dataset of stage stoppers. Other parameters as of `OfDevice.limits`."""
-        stated = humid(self.humidities)
-        airs = (*stated, *(self.worst_humidities if stated else ()))
-        water = self.water.between(stated, airs)
+        humid_airs = humid(self.humidities)
+        airs = (*humid_airs, *(self.worst_humidities if humid_airs else ()))
+        water = self.water.between(humid_airs, airs)
         films = [water.film(rh)[0] for rh in airs] or [0.0]
         limits = rules.triggered(
             rules.no_water(max(films), max(self.humidities)),
@@ -138,26 +138,26 @@ class OfStopper:
 
 
 #: By the name of the release.
-_OF_RELEASE = {"beam": OfDevice, "stopper": OfStopper}
+_OF_RELEASE = {"beam": OfDevice, "stopper": StopperOnPair}
 
 
-def of_settings(settings: Mapping[str, Any]) -> OfDevice | OfStopper:
+def of_settings(settings: Mapping[str, Any]) -> OfDevice | StopperOnPair:
     """Device and its pair from the settings of a job."""
-    (of,) = (in_si(kind, settings[release]) for release, kind in _OF_RELEASE.items() if release in settings)
-    return of
+    (subject,) = (in_si(kind, settings[release]) for release, kind in _OF_RELEASE.items() if release in settings)
+    return subject
 
 
-def _accuracy_warnings(safe_lengths, of):
+def _accuracy_warnings(safe_lengths, subject):
     """Warning about the error of the length of one shape at the share that pages speak of, if an accuracy is stated."""
-    if of.accuracy is None:
+    if subject.accuracy is None:
         return []
     state = safe_lengths.sel(share=chosen_share(safe_lengths))
-    parts = [float(state[name] / state.estimate) for name in ("beams_error", "surfaces_error")]
-    return rules.triggered(rules.missed_accuracy(*parts, of.accuracy.length))
+    errors = [float(state[name] / state.estimate) for name in ("beams_error", "surfaces_error")]
+    return rules.triggered(rules.missed_accuracy(*errors, subject.accuracy.length))
 
 
 def chart_warnings(
-    charts: Sequence[xr.Dataset], of: OfDevice, plastic: Plastic = NOT_STUDIED
+    charts: Sequence[xr.Dataset], subject: OfDevice, plastic: Plastic = NOT_STUDIED
 ) -> dict[tuple[float, float, str], list[Limit]]:
     """Limits of the chart of a device by thickness [m], gap [m] and shape. A dataset of stage chart per humidity.
 
@@ -169,7 +169,7 @@ def chart_warnings(
         shortest = min(along, key=lambda curve: float(curve.safe_length.min()))
         shortest = shortest.assign(longest_strip=min(curve.longest_strip for curve in along))
         shortest = shortest.assign(resampled=max(curve.resampled for curve in along))
-        of_size = replace(of, device=replace(of.device, thickness=thickness, gap=gap))
+        of_size = replace(subject, device=replace(subject.device, thickness=thickness, gap=gap))
         length = float(shortest.safe_length.min())
         by_curve[thickness, gap, shape] = _length_warnings(
             length, shortest, of_size, plastic, min(filter(None, (float(curve.film) for curve in along)), default=0.0)
@@ -182,21 +182,21 @@ def curves(chart: xr.Dataset) -> list[tuple[float, float, str]]:
     return list(product(*(chart[name].values.tolist() for name in ("thickness", "gap", "shape"))))
 
 
-def _length_warnings(length, dataset, of, plastic, thinnest=None):
+def _length_warnings(length, dataset, subject, plastic, thinnest=None):
     """Warnings about a device of a length [m]. Film, rms and longest strip from a dataset.
 
     The thinnest film [m] is that of the dataset, or along the axis of a chart.
     """
-    device = of.device
+    device = subject.device
     sizes = device.gap, device.width, device.thickness, length / device.opening.arms
     is_bridge = device.opening.arms == 2
     return rules.beam_warnings(*sizes, float(dataset.film), float(dataset.rms)) + rules.triggered(
         rules.long_strips(device.strip, float(dataset.longest_strip), is_bridge),
         rules.resampled_strips(int(dataset.resampled)),
-        rules.repeated_strips(float(dataset.repetition), device.strip, of.learns),
+        rules.repeated_strips(float(dataset.repetition), device.strip, subject.learns),
         rules.thin_film(thinnest or float(dataset.film)),
         rules.stretched_bridge(device.gap, device.thickness) if is_bridge else None,
-        *contact_warnings(plastic, of.materials),
+        *contact_warnings(plastic, subject.materials),
     )
 
 
@@ -244,7 +244,7 @@ def left_out_changes(dataset: xr.Dataset) -> dict[tuple[float, str], tuple[float
 def gap_warnings(changes: Mapping[tuple[float, str], tuple[float, float]], shape: str) -> list[Limit]:
     """Limit by the effect of attraction across gaps on adhesion in a shape, from `left_out_changes`."""
     response = ARC if shape == EITHER else shape
-    of_shape = {humidity: change for (humidity, of), change in changes.items() if of == response}
+    of_shape = {humidity: change for (humidity, end_state), change in changes.items() if end_state == response}
     return rules.triggered(rules.without_gaps(of_shape, shorter=not SOUGHT_BY[shape].more_is_better))
 
 
@@ -273,19 +273,19 @@ def _inputs(plan, at):
 def _settings(plan, at):
     """Device, its pair and the stated properties of its materials."""
     section = plan.config["devices"][at.device]
-    own = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
-    own |= ({"learns": True} if "test_beams" in section else {}) | _on_summits(plan, at.device)
-    own |= section | {"water": plan.air_of_devices.water(section["pair"])} | own_section(plan, at.device)
-    own |= {"worst_humidities": sought(plan.config["design"], section)}
+    values = {"materials": plan.materials.in_words(section["pair"])} | plan.config["design"]
+    values |= ({"learns": True} if "test_beams" in section else {}) | _on_summits(plan, at.device)
+    values |= section | {"water": plan.air_of_devices.water(section["pair"])} | own_section(plan, at.device)
+    values |= {"worst_humidities": search_ends(plan.config["design"], section)}
     assumed = plan.assumptions(section["pair"]).get(section["pair"], []) + _unmeasured(plan, at.device)
     release = plan.devices.kind(at.device).release.name
-    return ({"assumed": assumed} if assumed else {}) | {release: select(_OF_RELEASE[release], own)}
+    return ({"assumed": assumed} if assumed else {}) | {release: select(_OF_RELEASE[release], values)}
 
 
 def _unmeasured(plan, device):
     """Stored limit of a device in wetter air than that of the isotherm, also along its chart or search."""
     section = plan.config["devices"][device]
-    searched = sought(plan.config["design"], section) if plan.devices.kind(device).release.in_any_air else []
+    searched = search_ends(plan.config["design"], section) if plan.devices.kind(device).release.in_any_air else []
     airs = [*section["humidities"], *section.get("chart", {}).get("humidities", []), *searched]
     return plan.unmeasured_films(plan.air_of_devices.wet(section["pair"], airs))
 
@@ -299,15 +299,15 @@ def _on_summits(plan, device):
     return ({"on_summits": alone} if alone else {}) | ({"has_dimples": True} if "dimples" in section else {})
 
 
-def _left_on_summits(of, data):
+def _left_on_summits(subject, data):
     """Device or stopper with those humidities alone at which full contact has not changed all of its forces."""
     if "model_error" not in data or "nearest" not in data["model_error"]:
-        return of
-    error = data["model_error"].sel(humidity=list(of.on_summits))
-    left = ~error[list(of.changes_of_forces)].to_array().all("variable")
-    unknown = left & xr.concat([_is_unknown(error, name) for name in of.ratios_of_forces], "of").any("of")
-    on_summits, unknown = (tuple(error.humidity.values[flags.values].tolist()) for flags in (left, unknown))
-    return replace(of, on_summits=on_summits, unknown=unknown)
+        return subject
+    error = data["model_error"].sel(humidity=list(subject.on_summits))
+    remaining = ~error[list(subject.changes_of_forces)].to_array().all("variable")
+    unknown = remaining & xr.concat([_is_unknown(error, name) for name in subject.ratios_of_forces], "of").any("of")
+    on_summits, unknown = (tuple(error.humidity.values[flags.values].tolist()) for flags in (remaining, unknown))
+    return replace(subject, on_summits=on_summits, unknown=unknown)
 
 
 def _is_unknown(error, ratio):
@@ -318,21 +318,21 @@ def _is_unknown(error, ratio):
     return missing.any([name for name in missing.dims if name != "humidity"])
 
 
-def _few_strips(data, *humidities, of=""):
+def _few_strips(data, *humidities, prefix=""):
     """Limit by the strips in full contact on which a change of energies, or of forces, at some humidities rests."""
     if "model_error" not in data or "nearest" not in data["model_error"]:
         return []
-    known = data["model_error"].reindex(humidity=list(humidities))
-    parts = known[f"{of}largest_residual"].where(known[f"{of}applied"] > 0)
-    return rules.triggered(rules.few_strips(float(parts.max())))
+    errors = data["model_error"].reindex(humidity=list(humidities))
+    residuals = errors[f"{prefix}largest_residual"].where(errors[f"{prefix}applied"] > 0)
+    return rules.triggered(rules.few_strips(float(residuals.max())))
 
 
 def _device_warnings(data, settings):
     """Limits of a device: of its lengths, its curves and its patch, each with a suffix to its name."""
     flags = surface_flags.together(data) + list(map(restored, settings.get("assumed", [])))
     changes = left_out_changes(data["left_out_gaps"]) if "left_out_gaps" in data else {}
-    of, charts = _left_on_summits(of_settings(settings), data), list(data["charts"].values())
-    plastic = plastic_contact(data["plasticity"], of.pair)
+    subject, charts = _left_on_summits(of_settings(settings), data), list(data["charts"].values())
+    plastic = plastic_contact(data["plasticity"], subject.pair)
     few = {humidity: _few_strips(data, humidity) for _, humidity in data["lengths"]}
     lengths = [
         [
@@ -343,20 +343,20 @@ def _device_warnings(data, settings):
             + flags,
         ]
         for (_, humidity), dataset in data["lengths"].items()
-        for shape, limits in of.limits(dataset, plastic, humidity).items()
+        for shape, limits in subject.limits(dataset, plastic, humidity).items()
     ]
     patches = [
-        [[], limits + gap_warnings(changes, shape) + _few_strips(data, *of.humidities, of="pull_off_") + flags]
+        [[], limits + gap_warnings(changes, shape) + _few_strips(data, *subject.humidities, prefix="pull_off_") + flags]
         for dataset in data["stoppers"].values()
-        for shape, limits in of.limits(dataset, plastic).items()
+        for shape, limits in subject.limits(dataset, plastic).items()
     ]
-    of_curves = chart_warnings(charts, of, plastic) if charts else {}
+    of_curves = chart_warnings(charts, subject, plastic) if charts else {}
     return lengths, [[curve, limits + flags] for curve, limits in of_curves.items()], patches
 
 
-def _save(found, paths):
+def _save(groups, paths):
     """Write limits as JSON."""
-    stored = [[[key, [limit.stored() for limit in limits]] for key, limits in part] for part in found]
+    stored = [[[key, [limit.stored() for limit in limits]] for key, limits in group] for group in groups]
     save_text(json.dumps(stored, ensure_ascii=False, indent=1, allow_nan=False), paths["json"])
 
 
@@ -380,6 +380,6 @@ STAGES = (
         settings=_settings,
         compute=_device_warnings,
         save=_save,
-        message="Where the results of device {device} are beyond the model.",
+        message="Limits of the model that device {device} exceeds.",
     ),
 )

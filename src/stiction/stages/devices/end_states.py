@@ -7,7 +7,7 @@ from stiction.stages.devices.opening import ARC, EITHER, FORCE, MIDDLE, S_SHAPE
 
 
 @dataclass(frozen=True, kw_only=True)
-class EndState:
+class StuckState:
     """Final state of a stuck device."""
 
     by: str  #: what holds it, in tables
@@ -21,7 +21,7 @@ class EndState:
 
 #: End states by their name in datasets; of those of one device, the longest devices are in the first.
 END_STATES = {
-    S_SHAPE: EndState(
+    S_SHAPE: StuckState(
         by="beam",
         legend="held by the beam",
         lines=("--", ":"),
@@ -30,7 +30,7 @@ END_STATES = {
         safe="simulated limit, beam",
         terms={"Held by the beam": "The beam touches down behind an open crack and stays flat there (S-shape)."},
     ),
-    EITHER: EndState(
+    EITHER: StuckState(
         by="beam or tip",
         legend="held by beam or tip",
         lines=("-", "-."),
@@ -41,8 +41,8 @@ END_STATES = {
             )
         },
     ),
-    ARC: EndState(by="tip", budget="length that 1 in {} tips hold (arc)", result="length held by few tips [µm]"),
-    MIDDLE: EndState(
+    ARC: StuckState(by="tip", budget="length that 1 in {} tips hold (arc)", result="length held by few tips [µm]"),
+    MIDDLE: StuckState(
         by="middle",
         legend="held by the middle",
         lines=("-", ":"),
@@ -56,7 +56,7 @@ END_STATES = {
             )
         },
     ),
-    FORCE: EndState(
+    FORCE: StuckState(
         by="whole area", budget="mean pull-off force", result="mean pull-off force [µN]", safe="simulated limit"
     ),
 }

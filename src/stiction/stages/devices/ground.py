@@ -11,7 +11,7 @@ import xarray as xr
 
 from stiction.chaos.model import Truncation
 from stiction.config.cases import Case
-from stiction.contact.correction import NONE, Change
+from stiction.contact.correction import NONE, ElasticChange
 from stiction.contact.environment import Water
 from stiction.plan.stage import At, Running, Stage, select
 from stiction.stages.contact import curves
@@ -68,10 +68,10 @@ def layout(laws: Laws, rms: float, share_flat: float) -> xr.Dataset:
 
 def ground_from(dataset: xr.Dataset, settings: BeamSettings) -> Ground:
     """Ground without tips from its dataset."""
-    change = {name: float(dataset[f"change_{name}"]) for name in Change._fields if f"change_{name}" in dataset}
+    change = {name: float(dataset[f"change_{name}"]) for name in ElasticChange._fields if f"change_{name}" in dataset}
     of_strips = dataset.sampled.values, bool(dataset.resampled), float(dataset.repetition)
     displacements = dataset.displacement.values if "displacement" in dataset else None
-    laws = Laws(chaos_model(dataset), *of_strips, Change(**change), displacements)
+    laws = Laws(chaos_model(dataset), *of_strips, ElasticChange(**change), displacements)
     return ground_of_laws(laws, settings)
 
 

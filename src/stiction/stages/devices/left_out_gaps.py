@@ -51,8 +51,11 @@ def _settings(plan, at):
     """Settings of the budgets, with water and attraction across gaps."""
     pair = plan.config["devices"][at.device]["pair"]
     across = plan.air_of_devices.across_gaps(pair)
-    own = [budget for _, budget in _parts(plan, at.device)]
-    return {"budgets": [{key: value for key, value in one.items() if key != "waters"} for one in own], "water": across}
+    budgets = [budget for _, budget in _parts(plan, at.device)]
+    return {
+        "budgets": [{key: value for key, value in budget.items() if key != "waters"} for budget in budgets],
+        "water": across,
+    }
 
 
 def _changes(data: Mapping[str, Any], settings: Mapping[str, Any]) -> xr.Dataset:
@@ -70,6 +73,6 @@ STAGES = (
         ),
         settings=_settings,
         compute=_changes,
-        message="What attraction across gaps would change of device {device}.",
+        message="Effect of attraction across gaps on device {device}.",
     ),
 )

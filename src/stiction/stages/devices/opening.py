@@ -49,7 +49,7 @@ SOUGHT_BY = dict.fromkeys([S_SHAPE, EITHER, MIDDLE, ARC], sought.LENGTH) | {FORC
 #: adhesion is strongest, so that they are shorter than this prediction.
 LONG = 1.3
 #: Strips of one part of a beam, which can be divided into elements of 5, 4, 3, 2 and 1 strips.
-PART = 60
+STRIPS_OF_PART = 60
 #: Strips per element where the force laws allow it, as in the paper.
 PER_ELEMENT = 5
 #: Number of force laws from which length and elements of the beams are chosen.
@@ -78,7 +78,7 @@ class DesignedBeam:
     @property
     def beam(self) -> Beam:
         """One part of the beam in one element, under the tension of a bridge."""
-        beam = Beam(PART * self.strip, self.width, self.thickness, self.young_modulus, self.gap, elements=1)
+        beam = Beam(STRIPS_OF_PART * self.strip, self.width, self.thickness, self.young_modulus, self.gap, elements=1)
         return half_of_bridge(beam, self.residual_stress)
 
 
@@ -101,10 +101,10 @@ def addresses(settings: Seeded) -> Callable:
 
 def _long_beam(device, laws):
     """Long beam with the elements of the paper."""
-    part = device.beam
-    parts = int(np.ceil(LONG * arrest_length(forcelaw.energy(laws).mean(), part) / part.length))
-    points = parts * PART
-    return replace(part, length=parts * part.length, elements=points // PER_ELEMENT), points
+    beam = device.beam
+    number = int(np.ceil(LONG * arrest_length(forcelaw.energy(laws).mean(), beam) / beam.length))
+    points = number * STRIPS_OF_PART
+    return replace(beam, length=number * beam.length, elements=points // PER_ELEMENT), points
 
 
 def long_beam(device: DesignedBeam, laws: np.ndarray) -> tuple[Beam, int]:
@@ -134,11 +134,11 @@ def around(grounds: Sequence[tuple[Beam, int]]) -> tuple[Beam, int]:
 
     It has no strips if one of them has none.
     """
-    part, strips = max(grounds, key=lambda ground: ground[1])
+    beam, strips = max(grounds, key=lambda ground: ground[1])
     if not all(points for _, points in grounds):
-        return part, 0
+        return beam, 0
     finest = max(other.elements / points for other, points in grounds)
-    return replace(part, elements=round(finest * strips)), strips
+    return replace(beam, elements=round(finest * strips)), strips
 
 
 def least_length(device: DesignedBeam, laws: np.ndarray) -> float:
@@ -155,10 +155,10 @@ def arrests(
     The ground is from `ground_of`; ``draw(n, rng)`` gives n force laws (n, 4) [SI], and ``address(k)`` the stream of
     device k. Where the ground has no strips, all have the `least_length`, the safe side.
     """
-    part, strips = ground
+    beam, strips = ground
     if not strips:
         return np.full(number, least_length(device, draw(LAWS, address("mesh"))))
-    return device.opening.arrests(part, strips, draw, number, address)
+    return device.opening.arrests(beam, strips, draw, number, address)
 
 
 def reach(
@@ -221,7 +221,7 @@ BEAMS = {
         tried=lambda beam, *_: beam.length,
         contribution=forcelaw.energy,
         length_on_mean=lambda sample, beam: arrest_length(sample.mean(), beam),
-        uniform=lambda part, laws: float(arrest_length(forcelaw.energy(laws).mean(), part)),
+        uniform=lambda beam, laws: float(arrest_length(forcelaw.energy(laws).mean(), beam)),
         bound=arc_length,
         at_voltage=lambda lengths, without, at, beam: holding.length_at_voltage(
             lengths, beam, float(at[0] - without[0])
@@ -251,9 +251,9 @@ BEAMS = {
 def settings_of_beam(plan: Any, case: Case) -> dict[str, Any]:
     """Device at a humidity: force laws, dimensions and number of beams. More than any one stage needs."""
     pair = plan.contact_of_device(case)
-    own = {"device": section_of_beam(plan, case.device, pair), "humidity": case.humidity}
-    own |= {"edge_radius_um": plan.devices.edge_radius(case.device)}
-    return plan.seen_by(pair) | plan.config["design"] | own | {"water": plan.air_of_devices.water(pair)}
+    values = {"device": section_of_beam(plan, case.device, pair), "humidity": case.humidity}
+    values |= {"edge_radius_um": plan.devices.edge_radius(case.device)}
+    return plan.seen_by(pair) | plan.config["design"] | values | {"water": plan.air_of_devices.water(pair)}
 
 
 def at_voltage(plan: Any, device: str, settings: dict[str, Any]) -> dict[str, Any]:

@@ -64,28 +64,30 @@ def with_intervals(dataset: xr.Dataset, data: Mapping[str, Any], settings: Any) 
         energies = [
             curves.energies(contact, humidity, on_summits).mean(dtype=float) for humidity in (settings.humidity, middle)
         ]
-        place = _OF_ENERGY * float(np.log(np.divide(*energies)))
-    return dataset.assign(intervals(dataset, discrepancy, place))
+        coordinate = _OF_ENERGY * float(np.log(np.divide(*energies)))
+    return dataset.assign(intervals(dataset, discrepancy, coordinate))
 
 
-def learnt(lengths: pd.DataFrame, computed: str) -> tuple[Discrepancy, float]:
+def learnt(lengths: pd.DataFrame, column: str) -> tuple[Discrepancy, float]:
     """Discrepancy of a column of lengths on all pairs of the paper, and the relative humidity in their middle."""
-    pairs = [of for _, of in lengths.groupby("pair", sort=False)]
-    discrepancy = Discrepancy.learnt([(of[computed].values, of[MEASURED].values) for of in pairs])
-    places = [-np.log(of[computed].values) for of in pairs]
-    middles = [np.interp(u.mean(), u, of.relative_humidity) for u, of in zip(places, pairs, strict=True)]
+    pairs = [table for _, table in lengths.groupby("pair", sort=False)]
+    discrepancy = Discrepancy.learnt([(table[column].values, table[MEASURED].values) for table in pairs])
+    coordinates = [-np.log(table[column].values) for table in pairs]
+    middles = [np.interp(u.mean(), u, table.relative_humidity) for u, table in zip(coordinates, pairs, strict=True)]
     return discrepancy, float(np.mean(middles))
 
 
-def intervals(dataset: xr.Dataset, discrepancy: Discrepancy, place: float) -> dict[str, tuple]:
+def intervals(dataset: xr.Dataset, discrepancy: Discrepancy, coordinate: float) -> dict[str, tuple]:
     """Variables with the ends of the intervals of the estimates held by the beam, NaN for tips, by shape and share [m].
 
-    The ``place`` of all lengths is u [-], not finite if surfaces do not adhere: then there are none.
+    The ``coordinate`` of all lengths is u [-], not finite if surfaces do not adhere: then there are none.
     """
     errors = np.hypot(dataset.beams_error, dataset.surfaces_error.fillna(0.0)) / dataset.estimate
-    is_known = np.isfinite(dataset.estimate) & np.isfinite(errors) & np.isfinite(place) & (dataset["shape"] == S_SHAPE)
-    known, widths = is_known.values, np.full(dataset.estimate.shape, np.nan)
-    widths[known] = discrepancy.half_widths(np.full(known.sum(), place), errors.values[known], COVERAGE)
+    is_known = (
+        np.isfinite(dataset.estimate) & np.isfinite(errors) & np.isfinite(coordinate) & (dataset["shape"] == S_SHAPE)
+    )
+    mask, widths = is_known.values, np.full(dataset.estimate.shape, np.nan)
+    widths[mask] = discrepancy.half_widths(np.full(mask.sum(), coordinate), errors.values[mask], COVERAGE)
     about = "of the 95 % prediction interval, with the form of the model as an error"
     return {
         f"prediction_{end}": (

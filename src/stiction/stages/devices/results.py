@@ -57,9 +57,12 @@ _FILES = {"beam": _of_beam, "stopper": _of_stopper}
 
 def stuck_beams(safe_lengths: xr.Dataset) -> xr.Dataset:
     """P(stuck) over the length of a beam, whatever holds it, from the dataset of stage safe_lengths."""
-    held = safe_lengths.isel(shape=-1)
+    in_any_state = safe_lengths.isel(shape=-1)
     return _layout(
-        sought.LENGTH, "length of the device", held.length.values, [held.stuck.values, *held.stuck_band.values]
+        sought.LENGTH,
+        "length of the device",
+        in_any_state.length.values,
+        [in_any_state.stuck.values, *in_any_state.stuck_band.values],
     )
 
 
@@ -73,7 +76,7 @@ def _layout(axis, label, sizes, stuck):
     """Dataset of P(stuck) and of the ends of its band along an axis."""
     words = {"stuck": "P(stuck)", "low": "P(stuck), lower end of the 95 % band", "high": "P(stuck), upper end"}
     variables = {
-        name: (axis.name, part, {"units": "1", "long_name": words[name]})
-        for name, part in zip(words, stuck, strict=True)
+        name: (axis.name, values, {"units": "1", "long_name": words[name]})
+        for name, values in zip(words, stuck, strict=True)
     }
     return xr.Dataset(variables, {axis.name: (axis.name, sizes, {"units": axis.unit, "long_name": label})})

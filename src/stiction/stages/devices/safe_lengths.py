@@ -10,7 +10,7 @@ from stiction.config.cases import case_id
 from stiction.contact.air import humid
 from stiction.contact.environment import Water
 from stiction.devices import arcs, risk
-from stiction.devices.risk import Known, SafeLength, in_order
+from stiction.devices.risk import LengthBounds, SafeLength, in_order
 from stiction.estimates import mean_with_error
 from stiction.life.freeing import probability_for
 from stiction.plan.stage import Running, Stage, select, subsection
@@ -42,10 +42,10 @@ class Settings:
 
 def compute(cracks: xr.Dataset, settings: Settings, tips: xr.Dataset | None = None) -> xr.Dataset:
     """P(stuck) and safe lengths. Each beam has one of the tips, and a bridge has none."""
-    device, held = settings.device, None
+    device, arc_lengths = settings.device, None
     if tips is not None:
-        held = arcs.longest_free(*curves.tip_forces(tips, settings.humidity, settings.water), device.beam)
-    beams = stage_cracks.beams_of(cracks, device, held)
+        arc_lengths = arcs.longest_free(*curves.tip_forces(tips, settings.humidity, settings.water), device.beam)
+    beams = stage_cracks.beams_of(cracks, device, arc_lengths)
     air = settings.water, settings.humidity
     without_samples = lengths_without_samples(device, *air, settings.edge_radius, beams.reach)
     dataset = layout(beams.lengths, by_shape(beams, settings, without_samples), without_samples, settings).assign(
@@ -66,7 +66,7 @@ def _in_register(beams, cracks):
 def _thresholds(sticking, without_samples):
     """Variables of the sticking lengths of all devices, and of lengths that no surfaces hold, by shape."""
     metres = {"units": "m"}
-    ordered, floors = np.sort(list(sticking.values())), [one.safe for one in without_samples.values()]
+    ordered, floors = np.sort(list(sticking.values())), [bounds.safe for bounds in without_samples.values()]
     return {
         "sticking_length": (("shape", "device"), ordered, metres | {"long_name": "sticking lengths, increasing"}),
         "floor": ("shape", floors, metres | {"long_name": "length up to which no surfaces hold a device"}),
@@ -128,19 +128,19 @@ def at_length(beams: Released, length: float) -> dict[str, tuple]:
 def layout(
     sticking: Mapping[str, np.ndarray],
     safe: Mapping[str, Sequence[SafeLength]],
-    without_samples: Mapping[str, Known],
+    without_samples: Mapping[str, LengthBounds],
     settings: Settings,
 ) -> xr.Dataset:
     """Dataset of P(stuck) and of the safe lengths, by shape.
 
     Sticking lengths (n,) [m], safe lengths for every share, and what is known without samples.
     """
-    reach = min(one.reach for one in without_samples.values())
+    reach = min(bounds.reach for bounds in without_samples.values())
     axis = _axis(sticking, reach)
     stuck = np.array([risk.stuck_share(axis, values) for values in sticking.values()])
     shortest = [np.min(values, where=values <= reach, initial=np.inf) for values in sticking.values()]
     metres, none_sticks = {"units": "m"}, "shortest length that sticks; infinite if none does"
-    film, flat = settings.water.film(settings.humidity)[0], [one.flat for one in without_samples.values()]
+    film, flat = settings.water.film(settings.humidity)[0], [bounds.flat for bounds in without_samples.values()]
     most, number = [risk.most_stuck(values, reach) for values in sticking.values()], len(next(iter(sticking.values())))
     return xr.Dataset(
         {

@@ -12,10 +12,10 @@ from stiction.beam.energy import arrest_length
 from stiction.beam.foundation import foundation_length
 from stiction.chaos.model import ChaosModel, Truncation, draw_laws
 from stiction.contact import forcelaw
-from stiction.contact.correction import NONE, Change
+from stiction.contact.correction import NONE, ElasticChange
 from stiction.contact.environment import Water, flooded_parts
 from stiction.devices import arcs, bridges, risk, strips
-from stiction.devices.risk import NOTHING, Basis, Known, SafeLength
+from stiction.devices.risk import NO_BOUNDS, Basis, LengthBounds, SafeLength
 from stiction.devices.sampling import Move, SampledSurfaces, sampled_surfaces
 from stiction.stages.contact import curves
 from stiction.stages.contact.error_notes import on_patch
@@ -57,7 +57,7 @@ class Laws:
     is_narrow: bool  #: whether strips are drawn from the samples: the model lacks their mean, scatter or displacements
     repetition: float  #: probability that a strip repeats the law of its neighbour [-]
     #: Change of the energies by full elastic contact, in these laws, of which the errors matter.
-    change: Change = NONE
+    change: ElasticChange = NONE
     displacements: np.ndarray | None = None  #: of the samples from their register (m,) [m], if beams have play
 
     @property
@@ -89,12 +89,12 @@ class Released:
     reach: float  #: longest simulated length, if not all devices stick [m]
     foundation: float  #: foundation length [m]
     surfaces: SampledSurfaces  #: their errors
-    held: np.ndarray | None  #: longest arcs that come free of their tips (n,) [m]; none without a tip
+    arc_lengths: np.ndarray | None  #: longest arcs that come free of their tips (n,) [m]; none without a tip
 
     @property
     def lengths(self) -> dict[str, np.ndarray]:
         """Sticking lengths by shape, (n,) each [m]."""
-        return sticking_lengths(self.arrested, self.foundation, self.device, self.held)
+        return sticking_lengths(self.arrested, self.foundation, self.device, self.arc_lengths)
 
     def moved(self, move: Move) -> "Released":
         """Beams as on other samples of the same surfaces. ASSUME: their tips are the same, one of each beam."""
@@ -112,8 +112,8 @@ def fitted_laws(contact: xr.Dataset, humidity: float, settings: LawSettings, sid
     lawful = forcelaw.admissible(vectors, limit)
     sampled = forcelaw.coefficients(vectors[lawful], limit)
     displacements = curves.displacements(contact, lawful)
-    drawn = draw_laws(model, strips.DRAWS, stream(0, "narrow"))
-    is_narrow = displacements is not None or strips.is_narrow(forcelaw.energy(drawn), forcelaw.energy(sampled))
+    draws = draw_laws(model, strips.DRAWS, stream(0, "narrow"))
+    is_narrow = displacements is not None or strips.is_narrow(forcelaw.energy(draws), forcelaw.energy(sampled))
     repetition = strips.repetition(contact.correlations.values)
     return Laws(model, sampled, is_narrow, repetition, settings.water.changes(humidity)[0], displacements)
 
@@ -139,20 +139,18 @@ def ground(contact: xr.Dataset, tips: xr.Dataset | None, humidity: float, settin
 
 def release_beams(device: DesignedBeam, ground: Ground, settings: BeamSettings) -> Released:
     """Released beams of a device, or of one of another thickness and gap, on its ground."""
-    part, address, draw = (
-        opening.ground_of(device, ground.laws),
-        opening.addresses(settings),
-        ground.strips.in_row(device),
-    )
-    arrested = opening.arrests(device, part, draw, settings.beams, address)
-    return released(device, ground, arrested, opening.reach(device, part, draw, arrested, address))
+    mesh = opening.ground_of(device, ground.laws)
+    address = opening.addresses(settings)
+    draw = ground.strips.in_row(device)
+    arrested = opening.arrests(device, mesh, draw, settings.beams, address)
+    return released(device, ground, arrested, opening.reach(device, mesh, draw, arrested, address))
 
 
 def released(device: DesignedBeam, ground: Ground, arrested: np.ndarray, reach: float) -> Released:
     """Released beams of a device from their arrested lengths (n,) and the longest simulated one [m]."""
-    sampled, (part, _) = ground.strips.sampled, opening.ground_of(device, ground.laws)
+    sampled, (beam, _) = ground.strips.sampled, opening.ground_of(device, ground.laws)
     on_mean = partial(device.opening.length_on_mean, beam=device.beam)
-    surfaces = sampled_surfaces(sampled, device.opening.contribution, on_mean, device.opening.uniform(part, sampled))
+    surfaces = sampled_surfaces(sampled, device.opening.contribution, on_mean, device.opening.uniform(beam, sampled))
     return Released(
         device,
         arrested,
@@ -183,91 +181,93 @@ def flooded_lengths(device: DesignedBeam, water: Water, humidity: float, edge_ra
     its edge, is no bound: roughness that follows its slope lets it hold harder than a flat one. The radius of a rounded
     edge is in metres.
     """
-    parts = flooded_parts(humidity, water.at(humidity), device.hamaker_constant)
-    energy, largest = parts.sum(axis=0)
+    attractions = flooded_parts(humidity, water.at(humidity), device.hamaker_constant)
+    energy, largest = attractions.sum(axis=0)
     if not device.opening.has_tip:
         return [bridges.least_length(energy, largest, device.beam)]
-    return [float(arrest_length(energy, device.beam)), arcs.flat_length(parts, edge_radius, device.beam)]
+    return [float(arrest_length(energy, device.beam)), arcs.flat_length(attractions, edge_radius, device.beam)]
 
 
 def sticking_lengths(
-    cracks: np.ndarray, foundation: float, device: DesignedBeam, held: np.ndarray | None
+    cracks: np.ndarray, foundation: float, device: DesignedBeam, arc_lengths: np.ndarray | None
 ) -> dict[str, np.ndarray]:
     """Sticking lengths of devices by shape, (n,) each [m].
 
     Crack lengths (n,) are infinite for beams that are not S-shaped, or those of bridges that their middle holds [m];
-    foundation length [m]; ``held`` are the longest arcs that come free (n,) [m], ``None`` without a tip.
+    foundation length [m]; ``arc_lengths`` are the longest arcs that come free (n,) [m], ``None`` without a tip.
     """
-    if held is None:
+    if arc_lengths is None:
         return dict.fromkeys(device.opening.shapes, cracks)
     alone = risk.sticking_lengths(cracks, np.isfinite(cracks), foundation)
-    return dict(zip(device.opening.shapes, (alone, risk.with_arcs(alone, held)), strict=True))
+    return dict(zip(device.opening.shapes, (alone, risk.with_arcs(alone, arc_lengths)), strict=True))
 
 
 def lengths_without_samples(
     device: DesignedBeam, water: Water, humidity: float, edge_radius: float, reach: float
-) -> dict[str, Known]:
+) -> dict[str, LengthBounds]:
     """Known lengths of a device without samples, by shape, with the reach of the simulation [m].
 
     No surfaces hold a bridge up to the length of `flooded_lengths`, but a single tip may hold a shorter beam.
     """
     lengths = flooded_lengths(device, water, humidity, edge_radius)
     safe = 0.0 if device.opening.has_tip else lengths[0]
-    return {shape: Known(reach, flat, safe) for shape, flat in zip(device.opening.shapes, lengths, strict=True)}
+    return {shape: LengthBounds(reach, flat, safe) for shape, flat in zip(device.opening.shapes, lengths, strict=True)}
 
 
-def by_shape(beams: Released, settings: Settings, known: Mapping[str, Known]) -> dict[str, list[SafeLength]]:
+def by_shape(beams: Released, settings: Settings, bounds: Mapping[str, LengthBounds]) -> dict[str, list[SafeLength]]:
     """Safe length for every share, by shape. The error of the sampled surfaces is part of the bound."""
 
-    def found(move):
+    def on_samples(move):
         """Safe lengths given other samples of the surfaces."""
         moved = beams.moved(move)
-        ends = {shape: replace(one, reach=moved.reach) for shape, one in known.items()}
+        ends = {shape: replace(bound, reach=moved.reach) for shape, bound in bounds.items()}
         return _given_surfaces(moved.lengths, settings, ends)
 
     def numbers(move):
         """Safe lengths and estimates (shapes, shares, 2) [m]."""
-        return np.array([[(one.length, one.estimate) for one in row] for row in found(move).values()])
+        return np.array([[(safe.length, safe.estimate) for safe in row] for row in on_samples(move).values()])
 
-    given, errors = found(lambda lengths: lengths), beams.surfaces.error(numbers)
+    unmoved, errors = on_samples(lambda lengths: lengths), beams.surfaces.error(numbers)
     return _in_order(
         {
             shape: [
-                risk.on_sampled_surfaces(safe, *error, known[shape])
+                risk.on_sampled_surfaces(safe, *error, bounds[shape])
                 for safe, error in zip(row, errors_of_row, strict=True)
             ]
-            for (shape, row), errors_of_row in zip(given.items(), errors, strict=True)
+            for (shape, row), errors_of_row in zip(unmoved.items(), errors, strict=True)
         }
     )
 
 
-def _in_order(found):
+def _in_order(by_shape_and_share):
     """Safe lengths for every share, by shape, in the order of `stiction.devices.risk.in_order`."""
-    shares = [one.share for one in next(iter(found.values()))]
-    ordered = risk.in_order([[one.length for one in row] for row in found.values()], shares)
+    shares = [safe.share for safe in next(iter(by_shape_and_share.values()))]
+    ordered = risk.in_order([[safe.length for safe in row] for row in by_shape_and_share.values()], shares)
     return {
-        shape: [replace(one, length=float(length)) for one, length in zip(row, lengths, strict=True)]
-        for (shape, row), lengths in zip(found.items(), ordered, strict=True)
+        shape: [replace(safe, length=float(length)) for safe, length in zip(row, lengths, strict=True)]
+        for (shape, row), lengths in zip(by_shape_and_share.items(), ordered, strict=True)
     }
 
 
-def _given_surfaces(sticking, settings, known):
+def _given_surfaces(sticking, settings, bounds):
     """Safe length for every share, by shape, from sticking lengths (n,) each, given the sampled surfaces [m].
 
     The last shape holds whatever another one holds. What is safe against it is safe against each, which says more than
     flat surfaces do.
     """
-    found = {shape: safe_lengths(values, settings, known[shape]) for shape, values in sticking.items()}
-    *_, of_all = found.values()
+    safe_by_shape = {shape: safe_lengths(values, settings, bounds[shape]) for shape, values in sticking.items()}
+    *_, of_all = safe_by_shape.values()
     return {
         shape: [
-            max(one, last, key=lambda safe: safe.length) if one.basis is Basis.FLAT else one
-            for one, last in zip(lengths, of_all, strict=True)
+            max(bound, last, key=lambda safe: safe.length) if bound.basis is Basis.FLAT else bound
+            for bound, last in zip(lengths, of_all, strict=True)
         ]
-        for shape, lengths in found.items()
+        for shape, lengths in safe_by_shape.items()
     }
 
 
-def safe_lengths(sticking: np.ndarray, settings: Settings, known: Known = NOTHING) -> list[SafeLength]:
+def safe_lengths(sticking: np.ndarray, settings: Settings, bounds: LengthBounds = NO_BOUNDS) -> list[SafeLength]:
     """Safe length for every share, from sticking lengths (n,) [m]."""
-    return [risk.safe_length(sticking, share, stream(settings.seed, "safe length"), known) for share in settings.shares]
+    return [
+        risk.safe_length(sticking, share, stream(settings.seed, "safe length"), bounds) for share in settings.shares
+    ]

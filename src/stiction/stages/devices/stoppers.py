@@ -11,7 +11,7 @@ from scipy.special import ndtri
 
 from stiction.config.cases import case_id
 from stiction.contact.air import DRY_AIR, Air, has_dry, humid, is_humid
-from stiction.contact.correction import NONE, Change
+from stiction.contact.correction import NONE, ElasticChange
 from stiction.contact.environment import Water
 from stiction.contact.meniscus import is_wetted
 from stiction.devices.risk import CONFIDENCE, SCORES, Basis, in_order, quantiles
@@ -69,23 +69,23 @@ def compute(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = No
     axis = axis_of(settings)
     settings = replace(settings, water=settings.water.between(humid(settings.humidities), humid(axis)))
     contacts = {float(h): Air(h).choose(contact, dry) for h in (*settings.humidities, *axis)}
-    at = {h: forces(one, h, settings) for h, one in progress(contacts.items(), "humidities", total=len(contacts))}
-    chosen = np.array([at[h] for h in settings.humidities])
+    at = {h: forces(ground, h, settings) for h, ground in progress(contacts.items(), "humidities", total=len(contacts))}
+    of_device = np.array([at[h] for h in settings.humidities])
     along = np.array([at[float(h)] for h in axis])
-    flat = max(share_flat(one, h, settings.water.at(h)) for h, one in contacts.items())
+    flat = max(share_flat(ground, h, settings.water.at(h)) for h, ground in contacts.items())
     of_surfaces = {"share_flat": ((), flat, {"units": "1"}), "rms": ((), surface_rms(contact), {"units": "m"})}
-    return layout(settings, chosen, axis, along).assign(of_surfaces)
+    return layout(settings, of_device, axis, along).assign(of_surfaces)
 
 
 def compute_at_voltage(contact: xr.Dataset, settings: Settings, dry: xr.Dataset | None = None) -> xr.Dataset:
     """Forces of `compute` at a voltage, and the potentials below which the spring frees each patch."""
-    area, found = settings.contact[0] * settings.contact[1], []
+    area, columns = settings.contact[0] * settings.contact[1], []
     for humidity in settings.humidities:
-        one, water = Air(humidity).choose(contact, dry), settings.water.at(humidity)
+        ground, water = Air(humidity).choose(contact, dry), settings.water.at(humidity)
         with on_patch(*settings.contact):
-            found.append(freeing_potentials(one, humidity, water, settings.restoring_force / area))
+            columns.append(freeing_potentials(ground, humidity, water, settings.restoring_force / area))
     volts = {"units": "V", "long_name": "difference of potential below which the spring frees a patch"}
-    potentials = (("humidity", "sample"), np.array(found), volts)
+    potentials = (("humidity", "sample"), np.array(columns), volts)
     return compute(contact, settings, dry).assign(freeing_potential=potentials)
 
 
@@ -105,7 +105,7 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
     surfaces, whose wedge has few summits, each patch finds a distance of its own and holds more. The data are the
     contacts of parallel and of tilted patches, in the wettest air and in dry air. A patch is the same at all tilts.
     """
-    width, found, wedges = settings.contact[1], [], []
+    width, by_air, wedges = settings.contact[1], [], []
     for humidity in settings.humidities:
         air, water = Air(humidity), settings.water.at(humidity)
         parallel = air.choose(data["contact"], data.get("dry"))
@@ -113,11 +113,11 @@ def compute_tilted(data: Mapping[str, xr.Dataset], settings: Tilted) -> xr.Datas
         flat = forces(parallel, humidity, settings)
         rows = [] if settings.slopes[0] else [flat]
         if tilted is not None:
-            own = tilted.sel(slope=[slope for slope in settings.slopes if slope], method="nearest")
-            rows += list(width * tilted_forces(own, humidity, water).T)
-        found.append(rows)
+            at_slopes = tilted.sel(slope=[slope for slope in settings.slopes if slope], method="nearest")
+            rows += list(width * tilted_forces(at_slopes, humidity, water).T)
+        by_air.append(rows)
         wedges.append(energies(parallel, humidity, water).mean() * width / flat.mean())
-    return layout_tilted(settings, np.swapaxes(found, 0, 1), np.array(wedges))
+    return layout_tilted(settings, np.swapaxes(by_air, 0, 1), np.array(wedges))
 
 
 #: Statistics of a tilted stopper, at each tilt and of the largest force of every patch over all tilts.
@@ -131,9 +131,11 @@ def layout_tilted(settings: Tilted, pull_off: np.ndarray, wedges: np.ndarray) ->
     """
     statistics = _statistics(settings, np.append(pull_off, pull_off.max(axis=0, keepdims=True), axis=0))
     largest = statistics[[*_OVER_TILTS]].isel(tilt=-1)
-    own = statistics.isel(tilt=slice(-1)).assign_coords(tilt=("tilt", np.arctan(settings.slopes), {"units": "rad"}))
+    of_tilts = statistics.isel(tilt=slice(-1)).assign_coords(
+        tilt=("tilt", np.arctan(settings.slopes), {"units": "rad"})
+    )
     long_name = "slope beyond which the force is that of a wedge"
-    return own.assign(
+    return of_tilts.assign(
         {f"largest_{name}": values for name, values in largest.items()}
         | {"pull_off": (("tilt", "humidity", "sample"), pull_off, {"units": "N"})}
         | {"wedge": ("humidity", wedges, {"units": "1", "long_name": long_name})}
@@ -161,7 +163,7 @@ def _statistics(settings, pull_off):
 
 
 @dataclass(frozen=True)
-class Dimples:
+class DimpleForces:
     """Settings of the forces of rows of dimples, without the contact of one."""
 
     water: Water
@@ -171,15 +173,15 @@ class Dimples:
     at: tuple[float, ...]  #: distances of the rows from a clamp [m], of which only the number counts here
 
 
-def compute_dimples(contact: xr.Dataset, settings: Dimples) -> xr.Dataset:
+def compute_dimples(contact: xr.Dataset, settings: DimpleForces) -> xr.Dataset:
     """Pull-off forces of the rows of dimples of beams, each row the sum of other patches."""
     with on_patch(*settings.contact):
         single = pull_offs(contact, settings.humidity, settings.water)
     forces = pull_off_force(single, settings.contact[0] * settings.contact[1])
     shape = -1, len(settings.at), settings.number
-    drawn = len(forces) // (shape[1] * shape[2]) * shape[1] * shape[2]
-    held = forces[:drawn].reshape(shape).sum(axis=2)
-    return xr.Dataset({"pull_off": (("beam", "row"), held, {"units": "N"})})
+    used_patches = len(forces) // (shape[1] * shape[2]) * shape[1] * shape[2]
+    row_forces = forces[:used_patches].reshape(shape).sum(axis=2)
+    return xr.Dataset({"pull_off": (("beam", "row"), row_forces, {"units": "N"})})
 
 
 def axis_of(settings: Settings) -> np.ndarray:
@@ -197,26 +199,28 @@ def fine_axis(low: float, high: float) -> np.ndarray:
     return np.linspace(low, high, max(3, round((high - low) / STEP) + 1) if high > low else 1)
 
 
-def sought(design: Mapping[str, Any], stopper: Mapping[str, Any]) -> list[float]:
+def search_ends(design: Mapping[str, Any], stopper: Mapping[str, Any]) -> list[float]:
     """Ends of the humidities in which the worst one is sought: the stated ones, or those of the stopper [-].
 
     Examples
     --------
-    >>> sought({}, {"humidities": [0.0, 0.44, 0.9]}), sought({"worst_humidities": [0.4, 0.98]}, {"humidities": [0.5]})
-    ([0.44, 0.9], [0.4, 0.98])
+    >>> search_ends({}, {"humidities": [0.0, 0.44, 0.9]})
+    [0.44, 0.9]
+    >>> search_ends({"worst_humidities": [0.4, 0.98]}, {"humidities": [0.5]})
+    [0.4, 0.98]
     """
-    stated = humid(stopper["humidities"])
-    return design.get("worst_humidities") or [min(stated, default=0.0), max(stated, default=0.0)]
+    humid_airs = humid(stopper["humidities"])
+    return design.get("worst_humidities") or [min(humid_airs, default=0.0), max(humid_airs, default=0.0)]
 
 
-def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.ndarray) -> xr.Dataset:
+def layout(settings: Settings, of_device: np.ndarray, axis: np.ndarray, along: np.ndarray) -> xr.Dataset:
     """Dataset of the pull-off forces of a stopper.
 
     Forces at the humidities of the device (n_rh, m), and along (n, m) a fine axis of humidities, which dry air may
     precede (n,) [N], [-].
     """
     newton, none, changes = {"units": "N"}, {"units": "1"}, _changes(settings, settings.humidities)
-    safe, basis = _safe(chosen, settings.seed, changes)
+    safe, basis = _safe(of_device, settings.seed, changes)
     of_force, of_band = (
         none | {"long_name": "relative, of mean forces"},
         none | {"long_name": "P(stuck) and its 95 % band"},
@@ -224,9 +228,9 @@ def layout(settings: Settings, chosen: np.ndarray, axis: np.ndarray, along: np.n
     at = {"humidity": list(settings.humidities), "axis": axis, "share": _COORDS["share"]}
     return xr.Dataset(
         {
-            "pull_off": (("humidity", "sample"), chosen, newton),
+            "pull_off": (("humidity", "sample"), of_device, newton),
             "full_contact_error": ("humidity", _ratio_errors(changes), of_force),
-            "stuck": (("bound", "humidity"), _stuck(chosen, settings, changes), of_band),
+            "stuck": (("bound", "humidity"), _stuck(of_device, settings, changes), of_band),
             "safe_force": (("part", "humidity", "share"), safe, newton),
             "basis": ("share", basis),
             "restoring_force": ((), settings.restoring_force, newton),
@@ -294,7 +298,7 @@ def _error_at(force, pull_off, change):
     return float(np.hypot(change.ratio_error, np.log(force / np.median(pull_off)) * change.power_error / change.power))
 
 
-def stuck_with_band(pull_off: np.ndarray, force: float, change: Change) -> list[float]:
+def stuck_with_band(pull_off: np.ndarray, force: float, change: ElasticChange) -> list[float]:
     """P(stuck) of patches (n,) at one restoring force [N] and the ends of its band, (3,) [-].
 
     The ends are those at forces that are smaller and larger by as much as their common relative error allows.
@@ -305,7 +309,7 @@ def stuck_with_band(pull_off: np.ndarray, force: float, change: Change) -> list[
     estimate, low, high = (
         stuck_patches(pull_off, np.array([force]) * each)[k] for k, each in enumerate((1.0, factor, 1 / factor))
     )
-    return [float(part[0]) for part in (estimate, low, high)]
+    return [float(values[0]) for values in (estimate, low, high)]
 
 
 def numbers_of_fits(seed: int) -> np.random.Generator:
@@ -313,23 +317,23 @@ def numbers_of_fits(seed: int) -> np.random.Generator:
     return stream(seed, "safe force")
 
 
-def safe_forces_of(rows: np.ndarray, share: float, seed: int, changes: Sequence[Change]) -> list[SafeForce]:
+def safe_forces_of(rows: np.ndarray, share: float, seed: int, changes: Sequence[ElasticChange]) -> list[SafeForce]:
     """Safe force for a share from each row of forces (rows, n) [N], with the errors of their changes.
 
     Margins of independent errors add by their squares on a logarithmic scale. Errors as of
     `stiction.devices.stoppers.safe_forces`.
     """
-    found = safe_forces(rows, share, numbers_of_fits(seed))
+    estimates = safe_forces(rows, share, numbers_of_fits(seed))
     return [
         _with_error(safe, _error_at(safe.estimate, row, change))
-        for safe, row, change in zip(found, rows, changes, strict=True)
+        for safe, row, change in zip(estimates, rows, changes, strict=True)
     ]
 
 
 def _with_error(safe, error):
     """Safe force with a further relative error [-]."""
-    own = np.log(safe.force / safe.estimate) if safe.estimate > 0 else 0.0
-    more = np.hypot(own, ndtri(CONFIDENCE) * error) - own
+    margin = np.log(safe.force / safe.estimate) if safe.estimate > 0 else 0.0
+    more = np.hypot(margin, ndtri(CONFIDENCE) * error) - margin
     return replace(safe, force=safe.force * np.exp(more), error=np.hypot(safe.error, error * safe.estimate))
 
 
@@ -339,14 +343,14 @@ def _safe(rows, seed, changes):
     NaN, resting on nothing, for shares for which there are too few patches. No force is smaller than that for a larger
     share: a fit of all forces and an order statistic contradict each other within their errors.
     """
-    parts, bases = np.full((3, len(rows), len(SHARES)), np.nan), [""] * len(SHARES)
+    numbers, bases = np.full((3, len(rows), len(SHARES)), np.nan), [""] * len(SHARES)
     for k, share in enumerate(SHARES):
         with suppress(ValueError):
-            found = safe_forces_of(rows, share, seed, changes)
-            parts[..., k] = np.transpose([(one.force, one.estimate, one.error) for one in found])
-            bases[k] = str(found[0].basis)
-    parts[0] = -in_order(-parts[0, :, None], SHARES)[:, 0]
-    return parts, bases
+            estimates = safe_forces_of(rows, share, seed, changes)
+            numbers[..., k] = np.transpose([(safe.force, safe.estimate, safe.error) for safe in estimates])
+            bases[k] = str(estimates[0].basis)
+    numbers[0] = -in_order(-numbers[0, :, None], SHARES)[:, 0]
+    return numbers, bases
 
 
 def is_at_an_end(dataset: xr.Dataset) -> bool:
@@ -373,8 +377,8 @@ def shares_stuck(dataset: xr.Dataset) -> Sequence[tuple[float, float, float, flo
 
 def bounded_share(stopper: xr.Dataset) -> float | None:
     """Smallest fraction with a bound from the patches of a stopper alone at all its humidities, or none."""
-    stated = stopper.safe_force.sel(part="safe").max("humidity", skipna=False)
-    sampled = stated.where(stopper.basis == Basis.SAMPLED)
+    bounds = stopper.safe_force.sel(part="safe").max("humidity", skipna=False)
+    sampled = bounds.where(stopper.basis == Basis.SAMPLED)
     return min((float(share) for share in stopper.share if np.isfinite(sampled.sel(share=share))), default=None)
 
 
@@ -382,9 +386,9 @@ def _settings(plan, at):
     """Water, patch, restoring force and humidities of a stopper, and its fine axis of humidities."""
     section, air = plan.config["devices"][at.device], plan.air_of_devices
     pair = air.contact(section["pair"], max(section["humidities"]))
-    own = {"seed": plan.config["seed"], "water": air.water(pair)}
-    own |= {"worst_humidities": sought(plan.config["design"], section)}
-    return select(Settings, plan.devices.stated(at.device) | own)
+    values = {"seed": plan.config["seed"], "water": air.water(pair)}
+    values |= {"worst_humidities": search_ends(plan.config["design"], section)}
+    return select(Settings, plan.devices.stated(at.device) | values)
 
 
 def _inputs(plan, at):
@@ -421,7 +425,7 @@ def _settings_of_dimples(plan, at):
     """Water, humidity and dimples of a beam."""
     water = plan.air_of_devices.water(plan.contact_of_device(at.case))
     dimples = plan.devices.sections[at.case.device]["dimples"]
-    return select(Dimples, dimples | {"water": water, "humidity": at.case.humidity})
+    return select(DimpleForces, dimples | {"water": water, "humidity": at.case.humidity})
 
 
 STAGES = (
@@ -433,7 +437,7 @@ STAGES = (
             {"contact": dimples_of(plan, at.case)} | corrections_of(plan, at.case.device, at.case.humidity)
         ),
         settings=_settings_of_dimples,
-        kind=Dimples,
+        kind=DimpleForces,
         complete=with_correction,
         compute=compute_dimples,
         message="Pull-off force of the dimples of {case}.",

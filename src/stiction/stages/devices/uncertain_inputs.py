@@ -17,7 +17,7 @@ from scipy.linalg import block_diag
 
 from stiction.config.units import without_unit
 from stiction.contact.environment import Water
-from stiction.contact.materials import OF_CONTACT, OF_PAIRS, OF_REPLICAS, Step
+from stiction.contact.materials import OF_CONTACT, OF_PAIRS, OF_REPLICAS, InputStep
 from stiction.contact.tilt import EDGE_RADIUS
 from stiction.models import MODE_QUANTITIES, MOMENT_QUANTITIES, SIDES, SPECTRUM_QUANTITIES
 from stiction.scans import moments
@@ -30,11 +30,11 @@ from stiction.surface.empirical import MeasuredDensity
 from stiction.surface.translation import Translation
 
 #: Step of dimensions.
-_OF_DIMENSIONS = Step(0.05)
+_OF_DIMENSIONS = InputStep(0.05)
 
 
 @dataclass(frozen=True)
-class State:
+class InputState:
     """State of devices at one value of each input."""
 
     contact: xr.Dataset
@@ -44,7 +44,7 @@ class State:
     area: float = 0.0  #: of a stopper [m²]
     alike: tuple[str, ...] = SIDES  #: bodies of the material of the beam or stopper
 
-    def attracting(self, factor: float) -> "State":
+    def attracting(self, factor: float) -> "InputState":
         """State with a factor of the Hamaker constants of these bodies across gaps. Its contact stays."""
         gaps = self.water.gaps
         return replace(self, water=replace(self.water, gaps=gaps and gaps.scaled(factor, self.alike)))
@@ -56,15 +56,15 @@ class Input:
 
     name: str  #: for reading
     group: str  #: measurement that would determine this input, shown in tables
-    states: tuple[State, State]  #: with less and with more of the input
+    states: tuple[InputState, InputState]  #: with less and with more of the input
     step: float  #: difference of the input between both
     #: State between both, if they are as far around it as the uncertainty of the input and its curvature counts.
-    middle: State | None = None
+    middle: InputState | None = None
     limits: tuple[float, float] = (-np.inf, np.inf)  #: beyond which errors count as there
 
 
 @dataclass(frozen=True)
-class Known:
+class QuantityErrors:
     """Errors of the quantities of a surface."""
 
     quantities: tuple[str, ...]  #: keys of `stiction.analysis.shifts.STEPS`
@@ -91,13 +91,13 @@ class Varied:
 
     field: str  #: of `Uncertainty`; inputs with the same one err together
     name: str  #: for reading
-    value: Callable[[State], float]
-    changed: Callable[[State, float], State]
-    step: Step | None = None  #: in either direction; by default its standard uncertainty
+    value: Callable[[InputState], float]
+    changed: Callable[[InputState, float], InputState]
+    step: InputStep | None = None  #: in either direction; by default its standard uncertainty
     least: float = -np.inf  #: below which it cannot be
     group: str = ""  #: as of `Input`, by default from its name
 
-    def around(self, state: State, deviation: float) -> tuple[Input, float]:
+    def around(self, state: InputState, deviation: float) -> tuple[Input, float]:
         """Input around its value in a state, and its standard uncertainty, relative if the step is."""
         value = self.value(state)
         ends = self.step.ends(value) if self.step else around(value, deviation, self.least)
@@ -106,7 +106,7 @@ class Varied:
         relative = self.step.error(value, deviation) if self.step else deviation
         return Input(self.name, self.group or f"the {self.name}", states, step), relative
 
-    def moved(self, state: State, by: float) -> State:
+    def moved(self, state: InputState, by: float) -> InputState:
         """State after an error of the input, in its logarithm if its step is relative."""
         value = self.value(state)
         return self.changed(state, self.step.moved(value, by) if self.step else max(value + by, self.least))
@@ -156,14 +156,14 @@ OF_AIR = (
 #: Uncertain properties that change the contact, by the name of this change: of pairs, and of edges.
 _OF_CONTACTS = OF_PAIRS | {without_unit(EDGE_RADIUS.key): EDGE_RADIUS}
 #: Fields of their uncertainties.
-_FIELDS = {name: without_unit(one.key) for name, one in _OF_CONTACTS.items()}
+_FIELDS = {name: without_unit(entry.key) for name, entry in _OF_CONTACTS.items()}
 #: Standard uncertainties of all inputs in SI, zero where not stated; ``scan`` is the side of the scan that gave the
 #: moments of the surfaces that are described by numbers [m].
 Uncertainty = make_dataclass(
     "Uncertainty",
     [
         (key, float, 0.0)
-        for key in dict.fromkeys([*(one.field for one in (*OF_BEAMS, *OF_AIR)), *_FIELDS.values(), "scan"])
+        for key in dict.fromkeys([*(entry.field for entry in (*OF_BEAMS, *OF_AIR)), *_FIELDS.values(), "scan"])
     ],
     frozen=True,
 )
@@ -183,11 +183,13 @@ class Settings:
     coherence: float = 0.0  #: of both surfaces, if it is uncertain [-]
     play: float | None = None  #: of the beam above a surface that it follows, if it is uncertain [m]
     hamaker_constant: float | None = None  #: of two bodies like the beam or stopper [J], if it is uncertain
-    alike: tuple[str, ...] = SIDES  #: as of `State`
+    alike: tuple[str, ...] = SIDES  #: as of `InputState`
     waters: dict[str, Water] = field(
         default_factory=dict
     )  #: by choices of the model that change attraction across gaps
-    known: dict[str, Known] = field(default_factory=dict)  #: what is stated about surfaces without scans, by name
+    known: dict[str, QuantityErrors] = field(
+        default_factory=dict
+    )  #: what is stated about surfaces without scans, by name
     assumed: dict[str, Assumed] = field(default_factory=dict)  #: what is assumed of surfaces with members, by name
 
     def water_under(self, choice: str) -> Water:
@@ -196,30 +198,30 @@ class Settings:
 
 
 def uncertain(
-    state: State,
+    state: InputState,
     shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
     properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]],
-    known: Mapping[str, Known],
+    surface_errors: Mapping[str, QuantityErrors],
     settings: Settings,
 ) -> tuple[list[Input], np.ndarray]:
     """Uncertain inputs and the covariance of their errors. Without condensation, the air has none.
 
     The state has the stated values of all inputs. There are contacts with less and with more of each quantity of a
-    surface, by both, and of each uncertain property of the solids and of edges, by its step; ``known`` is what is known
-    of the quantities of each surface.
+    surface, by both, and of each uncertain property of the solids and of edges, by its step. ``surface_errors`` are
+    those of the quantities of each surface.
     """
-    stated = settings.uncertainty
-    blocks = [surface_block(state, name, shifted, measured) for name, measured in known.items()]
+    uncertainty = settings.uncertainty
+    blocks = [surface_block(state, name, shifted, measured) for name, measured in surface_errors.items()]
     blocks += [
-        *(number_blocks(state, OF_BEAMS, stated) if state.device else ()),
+        *(number_blocks(state, OF_BEAMS, uncertainty) if state.device else ()),
         *property_blocks(state, properties, settings),
     ]
-    blocks += number_blocks(state, OF_AIR, stated) if state.water.film(state.humidity)[0] else ()
+    blocks += number_blocks(state, OF_AIR, uncertainty) if state.water.film(state.humidity)[0] else ()
     inputs = [entry for block in blocks for entry in block.inputs]
     return inputs, block_diag(np.empty((0, 0)), *(block.covariance for block in blocks))
 
 
-def changed(state: State, errors: Mapping[str, float]) -> State:
+def changed(state: InputState, errors: Mapping[str, float]) -> InputState:
     """State after errors of dimensions, air, modulus of the beam and attraction across gaps, by input.
 
     Its contact stays.
@@ -237,10 +239,10 @@ def changed(state: State, errors: Mapping[str, float]) -> State:
 
 def countable(sizes: Sequence[str], settings: Settings) -> list[str]:
     """Names of all possible measurements of a device with these sizes."""
-    surfaces = [part for name in settings.surfaces for part in _parts_of_surface(name, settings)]
-    others = [entry for name, entry in OF_REPLICAS.items() if getattr(settings.uncertainty, name)]
-    others += [EDGE_RADIUS] * bool(settings.edge_radius)
-    bodies = [entry.group for entry in (*OF_CONTACT.values(), *others)]
+    surfaces = [group for name in settings.surfaces for group in _parts_of_surface(name, settings)]
+    further = [entry for name, entry in OF_REPLICAS.items() if getattr(settings.uncertainty, name)]
+    further += [EDGE_RADIUS] * bool(settings.edge_radius)
+    bodies = [entry.group for entry in (*OF_CONTACT.values(), *further)]
     air = [entry.group or f"the {entry.name}" for entry in OF_AIR if settings.water.film(settings.humidity)[0]]
     return [*surfaces, *(f"the {name.replace('_', ' ')}" for name in sizes), *bodies, *dict.fromkeys(air)]
 
@@ -248,38 +250,41 @@ def countable(sizes: Sequence[str], settings: Settings) -> list[str]:
 def _parts_of_surface(name, settings):
     """Names of the parts of a surface that measurements determine. Of a partly assumed one, its rms may be exact."""
     if name not in settings.assumed:
-        return [f"the {part} of {name}" for part in ("heights", "spectrum")]
+        return [f"the {subject} of {name}" for subject in ("heights", "spectrum")]
     errors = settings.known[name].quantities if name in settings.known else ()
     is_exact = "rms" not in (*settings.assumed[name].quantities, *errors) and not settings.uncertainty.scan
     return [f"the rms of {name}"] * is_exact
 
 
 def surface_block(
-    state: State, surface: str, shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]], known: Known
+    state: InputState,
+    surface: str,
+    shifted: Mapping[tuple[str, str], tuple[xr.Dataset, xr.Dataset]],
+    errors: QuantityErrors,
 ) -> Block:
     """Quantities of a surface, of its heights and of its spectrum."""
     inputs = []
-    for quantity in known.quantities:
+    for quantity in errors.quantities:
         kind = "spectrum" if quantity in SPECTRUM_QUANTITIES else "heights"
         contacts = shifted[surface, quantity]
         states = tuple(replace(state, contact=contact) for contact in contacts)
-        middle, of = None, contacts[0]
-        if is_large(of, quantity):
-            middle = replace(state, contact=first(state.contact, of.sizes["strip"]))
-        inputs.append(Input(f"{quantity} of {surface}", f"the {kind} of {surface}", states, difference(of), middle))
-    return Block(inputs, known.covariance)
+        middle, less = None, contacts[0]
+        if is_large(less, quantity):
+            middle = replace(state, contact=first(state.contact, less.sizes["strip"]))
+        inputs.append(Input(f"{quantity} of {surface}", f"the {kind} of {surface}", states, difference(less), middle))
+    return Block(inputs, errors.covariance)
 
 
-def number_blocks(state: State, varied: Sequence[Varied], stated: Uncertainty) -> Iterator[Block]:
+def number_blocks(state: InputState, varied: Sequence[Varied], uncertainty: Uncertainty) -> Iterator[Block]:
     """Yield blocks of the uncertain ones among some inputs."""
     for key, together in groupby(varied, lambda number: number.field):
-        if deviation := getattr(stated, key):
+        if deviation := getattr(uncertainty, key):
             inputs, deviations = zip(*(number.around(state, deviation) for number in together), strict=True)
             yield Block(list(inputs), np.full((len(inputs), len(inputs)), deviations[0] ** 2))
 
 
 def property_blocks(
-    state: State, properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings
+    state: InputState, properties: Mapping[str, tuple[xr.Dataset, xr.Dataset]], settings: Settings
 ) -> Iterator[Block]:
     """Uncertain properties of pairs and of edges. The slopes of those with a relative step are in their logarithms.
 
@@ -293,16 +298,16 @@ def property_blocks(
         if name == "modulus" and state.device:
             moduli = step.ends(settings.young_modulus)
             beams = [replace(state.device, young_modulus=modulus) for modulus in moduli]
-            states = [replace(of, device=beam) for of, beam in zip(states, beams, strict=True)]
+            states = [replace(end, device=beam) for end, beam in zip(states, beams, strict=True)]
         if name == "hamaker_constant":
-            states = [of.attracting(end) for of, end in zip(states, step.ends(1.0), strict=True)]
+            states = [shifted_state.attracting(end) for shifted_state, end in zip(states, step.ends(1.0), strict=True)]
         value = getattr(settings, _FIELDS[name], np.nan)
         relative, limits = step.error(value, deviation), step.limits(value)
         middle = None
         if -np.inf < limits[0] <= -1:  # as far from both ends
             middle = replace(state, contact=first(state.contact, states[0].contact.sizes["strip"]))
-        found = Input(entry.words, entry.group, tuple(states), step.around(value), middle, limits)
-        yield Block([found], np.array([[relative**2]]))
+        shifted_input = Input(entry.words, entry.group, tuple(states), step.around(value), middle, limits)
+        yield Block([shifted_input], np.array([[relative**2]]))
 
 
 def around(value: float, deviation: float, least: float = -np.inf) -> tuple[float, float]:
@@ -320,7 +325,7 @@ def around(value: float, deviation: float, least: float = -np.inf) -> tuple[floa
 
 def covariances(
     surfaces: Mapping[str, tuple[xr.Dataset, xr.Dataset]], estimates: Mapping[str, xr.Dataset], settings: Settings
-) -> dict[str, Known]:
+) -> dict[str, QuantityErrors]:
     """Errors of the quantities of every uncertain surface."""
     return {
         name: scan_errors(estimates[name], described[0])
@@ -330,37 +335,37 @@ def covariances(
     }
 
 
-def number_errors(name: str, described: tuple[xr.Dataset, xr.Dataset], settings: Settings) -> Known:
+def number_errors(name: str, described: tuple[xr.Dataset, xr.Dataset], settings: Settings) -> QuantityErrors:
     """Errors of a surface by numbers: as given, and from the scan behind its moments."""
-    stated = [settings.known[name]] if name in settings.known else []
+    causes = [settings.known[name]] if name in settings.known else []
     side = settings.uncertainty.scan
-    return together([*stated, *([errors_of_one_scan(*described, side)] if side else [])])
+    return together([*causes, *([errors_of_one_scan(*described, side)] if side else [])])
 
 
-def together(causes: Sequence[Known]) -> Known:
+def together(causes: Sequence[QuantityErrors]) -> QuantityErrors:
     """Quantities with several independent causes of their errors."""
-    used = {quantity for cause in causes for quantity in cause.quantities}
-    quantities = tuple(name for name in MOMENT_QUANTITIES + SPECTRUM_QUANTITIES if name in used)
+    affected = {quantity for cause in causes for quantity in cause.quantities}
+    quantities = tuple(name for name in MOMENT_QUANTITIES + SPECTRUM_QUANTITIES if name in affected)
     covariance = np.zeros((len(quantities), len(quantities)))
     for cause in causes:
-        places = [quantities.index(name) for name in cause.quantities]
-        covariance[np.ix_(places, places)] += cause.covariance
-    return Known(quantities, covariance)
+        positions = [quantities.index(name) for name in cause.quantities]
+        covariance[np.ix_(positions, positions)] += cause.covariance
+    return QuantityErrors(quantities, covariance)
 
 
-def scan_errors(estimate: xr.Dataset, heights_of: xr.Dataset) -> Known:
+def scan_errors(estimate: xr.Dataset, heights_of: xr.Dataset) -> QuantityErrors:
     """Covariance of the quantities of a surface described by scans.
 
     ASSUME: the errors of heights and spectrum are independent.
     """
     measured = isinstance(heights.density(heights_of, "NG"), MeasuredDensity)
     errors = errors_of(estimate, MODE_QUANTITIES if measured else MOMENT_QUANTITIES)
-    return Known(errors.names + SPECTRUM_QUANTITIES, block_diag(errors.heights, errors.spectrum))
+    return QuantityErrors(errors.names + SPECTRUM_QUANTITIES, block_diag(errors.heights, errors.spectrum))
 
 
-def errors_of_one_scan(heights_of: xr.Dataset, spectrum_of: xr.Dataset, side: float) -> Known:
+def errors_of_one_scan(heights_of: xr.Dataset, spectrum_of: xr.Dataset, side: float) -> QuantityErrors:
     """Covariance of rms, skewness and kurtosis of a surface, measured on one square scan of this side [m]."""
     translation = Translation(heights.density(heights_of, "NG"))
     underlying = spectrum.underlying(spectrum_of, "NG")
     reach = np.pi / float(spectrum_of.wavenumber[1] - spectrum_of.wavenumber[0])  # half of the period of its field
-    return Known(MOMENT_QUANTITIES, moments.covariance(translation, underlying, (side, side), reach))
+    return QuantityErrors(MOMENT_QUANTITIES, moments.covariance(translation, underlying, (side, side), reach))

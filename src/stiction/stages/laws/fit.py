@@ -29,7 +29,10 @@ def layout(samples: np.ndarray, errors: tuple[np.ndarray, np.ndarray], total: in
     names = {"curve_error": "of the curve for d >= d_limit, root mean square", "energy_error": "of the adhesion energy"}
     columns = zip(names.items(), errors, strict=True)
     return xr.Dataset(
-        {name: ("strip", error, {"units": "1", "long_name": f"relative error {of}"}) for (name, of), error in columns}
+        {
+            name: ("strip", error, {"units": "1", "long_name": f"relative error {subject}"})
+            for (name, subject), error in columns
+        }
         | {
             "without_law": ((), 1 - len(samples) / total, {"units": "1", "long_name": "share of samples without a law"})
         },

@@ -38,12 +38,12 @@ def compute(contact: xr.Dataset, settings: Settings) -> xr.Dataset:
     """
     sampled = force_curves(contact, settings.humidity, settings.water)
     vectors, limit = parametrised(sampled, settings.humidity, settings.water)
-    kept = [sampled.curve(k).copy() for k in range(min(_KEPT, sampled.samples))]
-    dataset = layout(vectors, limit, sampled.distance, kept)
+    shown = [sampled.curve(k).copy() for k in range(min(_KEPT, sampled.samples))]
+    dataset = layout(vectors, limit, sampled.distance, shown)
     if settings.water.correction is None:
         return dataset
     on_summits = replace(settings.water, correction=None)
-    plain = layout(*parametrised(sampled, settings.humidity, on_summits), sampled.distance, kept)
+    plain = layout(*parametrised(sampled, settings.humidity, on_summits), sampled.distance, shown)
     return dataset.assign({key: plain[name] for name, key in _ON_SUMMITS.items()})
 
 
@@ -66,8 +66,8 @@ def vectors(forces: xr.Dataset) -> tuple[np.ndarray, float]:
 
 def vectors_of_curves(forces: xr.Dataset) -> tuple[np.ndarray, float]:
     """Vectors of the curves themselves: of the sum over summits, without a correction to full elastic contact."""
-    kept = {name: forces[key] for name, key in _ON_SUMMITS.items() if key in forces}
-    return vectors(forces.assign(kept))
+    on_summits = {name: forces[key] for name, key in _ON_SUMMITS.items() if key in forces}
+    return vectors(forces.assign(on_summits))
 
 
 def energies(forces: xr.Dataset) -> np.ndarray:

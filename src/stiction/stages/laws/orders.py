@@ -1,7 +1,6 @@
 """Study orders (App. B, Fig. 18): order of the polynomials for a converged chaos model."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -10,7 +9,7 @@ import xarray as xr
 from stiction.analysis import convergence
 from stiction.chaos import density
 from stiction.chaos.model import truncated
-from stiction.plan.stage import Running, Stage, select
+from stiction.plan.stage import Running, Stage
 from stiction.progress import progress
 from stiction.stages.laws.forces import vectors
 from stiction.stages.laws.stored_model import chaos_model
@@ -20,16 +19,7 @@ from stiction.streams import stream
 _EDGES = np.linspace(-4, 4, 65)
 
 
-@dataclass(frozen=True)
-class Settings:
-    """Settings of the study, without forces and chaos model."""
-
-    seed: int
-    draws: int
-    case: str
-
-
-def compute(forces: xr.Dataset, chaos: xr.Dataset, settings: Settings) -> xr.Dataset:
+def compute(forces: xr.Dataset, chaos: xr.Dataset, seed: int, draws: int, case: str) -> xr.Dataset:
     """Draw from the model truncated at each order. Compare the marginals with the kernel density and the samples.
 
     Returns
@@ -44,13 +34,13 @@ def compute(forces: xr.Dataset, chaos: xr.Dataset, settings: Settings) -> xr.Dat
     histogram = partial(np.histogram, bins=_EDGES, density=True)
     orders, densities, distances = range(1, fitted.order + 1), [], []
     for order in progress(orders, "orders"):
-        xi = stream(settings.seed, "orders", settings.case).random((settings.draws, fitted.dimension))
-        drawn = truncated(fitted, order)(xi)
-        densities.append([histogram(column)[0] for column in drawn.T])
-        to_kernels = [convergence.distance_to(column, target) for column, target in zip(drawn.T, targets, strict=True)]
-        distances.append((to_kernels, list(map(convergence.distance_between, drawn.T, eta.T))))
+        xi = stream(seed, "orders", case).random((draws, fitted.dimension))
+        sample = truncated(fitted, order)(xi)
+        densities.append([histogram(column)[0] for column in sample.T])
+        to_kernels = [convergence.distance_to(column, target) for column, target in zip(sample.T, targets, strict=True)]
+        distances.append((to_kernels, list(map(convergence.distance_between, sample.T, eta.T))))
     distances = np.swapaxes(distances, 0, 1)
-    sizes = len(eta), settings.draws
+    sizes = len(eta), draws
     converged = [convergence.converged_order(orders, column, *sizes) for column in distances[0].T]
     of_input = [histogram(column)[0] for column in eta.T]
     return layout(_EDGES, of_input, densities, distances, sizes, converged)
@@ -95,10 +85,11 @@ STAGES = (
         "orders",
         "studies/orders",
         inputs=lambda plan, at: {stage: f"{stage}/{plan.figure_case}_NG" for stage in ("forces", "chaos")},
-        settings=lambda plan, at: select(
-            Settings, plan.config, draws=plan.config["studies"]["orders"]["draws"], case=plan.figure_case
-        ),
-        kind=Settings,
+        settings=lambda plan, at: {
+            "seed": plan.config["seed"],
+            "draws": plan.config["studies"]["orders"]["draws"],
+            "case": plan.figure_case,
+        },
         compute=compute,
         message="Convergence of the chaos model in the order of its polynomials (App. B).",
         running=Running(minutes=10),

@@ -1,7 +1,6 @@
 """Study sample_sizes (App. B, Fig. 17a): convergence of the density of the adhesion energy in the number of samples."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -14,19 +13,11 @@ from stiction.stages.laws import forces as stage_forces
 _POINTS = 200
 
 
-@dataclass(frozen=True)
-class Settings:
-    """Settings of the study, without the forces."""
-
-    shares: tuple[float, ...]  #: shares of the samples that are compared with all samples [-]
-    case: str
-
-
-def compute(forces: xr.Dataset, settings: Settings) -> xr.Dataset:
-    """Compare the first samples with all samples: densities of ē and Kolmogorov distances."""
+def compute(forces: xr.Dataset, shares: Sequence[float]) -> xr.Dataset:
+    """Compare the first samples, shares of all, with all samples: densities of ē and Kolmogorov distances."""
     energies = stage_forces.energies(forces)
     at = np.linspace(0, 1.2 * energies.max(), _POINTS)
-    sizes = sorted({max(2, round(share * len(energies))) for share in settings.shares} | {len(energies)})
+    sizes = sorted({max(2, round(share * len(energies))) for share in shares} | {len(energies)})
     density = [convergence.kernel_estimate(energies[:size], at) for size in sizes]
     distances = [convergence.distance_of_parts(energies, size) for size in sizes]
     return layout(at, density, sizes, distances)
@@ -55,7 +46,6 @@ STAGES = (
         "studies/sample_sizes",
         inputs=lambda plan, at: {"forces": f"forces/{plan.figure_case}_NG"},
         settings=lambda plan, at: {"shares": plan.config["studies"]["sample_shares"], "case": plan.figure_case},
-        kind=Settings,
         compute=compute,
         message="Convergence of the adhesion energy in the number of samples (App. B).",
     ),

@@ -34,7 +34,7 @@ _ROUNDING = 16 * np.finfo(float).eps
 
 
 @dataclass(frozen=True)
-class Errors:
+class ScanErrors:
     """Errors of the estimate of a surface from its scans."""
 
     names: tuple[str, ...]  #: quantities of the heights, ``rms`` first, see `stiction.analysis.shifts`
@@ -52,23 +52,23 @@ class Uncertainty(NamedTuple):
     form: np.ndarray  #: of the measured form, whatever the heights of the surface are, (n_surfaces, n_rh)
 
 
-def errors_of(estimate: xr.Dataset, quantities: Sequence[str]) -> Errors:
+def errors_of(estimate: xr.Dataset, quantities: Sequence[str]) -> ScanErrors:
     """Errors of a surface from its dataset of stage estimate. Its heights have the moments if these have slopes."""
     names = MOMENT_QUANTITIES if set(MOMENT_QUANTITIES) <= set(quantities) else MODE_QUANTITIES
     modes = estimate.mode_covariance.values
     heights = estimate.covariance.values if names == MOMENT_QUANTITIES else modes
     scans = len(stage_estimate.files(estimate))
-    return Errors(names, heights, modes[1:, 1:], estimate.fit_covariance.values[1:, 1:], scans)
+    return ScanErrors(names, heights, modes[1:, 1:], estimate.fit_covariance.values[1:, 1:], scans)
 
 
-def errors_by_surface(slopes: Mapping[str, xr.Dataset], estimates: Mapping[str, xr.Dataset]) -> dict[str, Errors]:
+def errors_by_surface(slopes: Mapping[str, xr.Dataset], estimates: Mapping[str, xr.Dataset]) -> dict[str, ScanErrors]:
     """Surface to the errors of its estimate in the quantities of its slopes. Datasets of these names by surface."""
     return {name: errors_of(estimate, study_slopes.quantities(slopes[name])) for name, estimate in estimates.items()}
 
 
 def compute(
     slopes: Mapping[str, xr.Dataset],
-    errors: Mapping[str, Errors],
+    errors: Mapping[str, ScanErrors],
     base: xr.Dataset,
     choices: Mapping[str, xr.Dataset],
     settings: Settings,
@@ -79,9 +79,9 @@ def compute(
     as those of the choices, keys of `stiction.models.ALTERNATIVES_OF_SCANS` with the contact under the other value.
     """
 
-    def by_surface(part):
+    def by_surface(function):
         """Values of one function for every surface."""
-        return np.array([part(dataset, errors[name]) for name, dataset in slopes.items()])
+        return np.array([function(dataset, errors[name]) for name, dataset in slopes.items()])
 
     uncertainty = Uncertainty(*map(by_surface, (_parts, _sampling, _form)))
     changes = {name: _changes(contact, base, settings) for name, contact in choices.items()}
@@ -91,7 +91,7 @@ def compute(
 def _budgets(slopes, errors):
     """Budget of ln ē and the standard errors of its slopes, one after the other for every humidity."""
     names = (*errors.names, *SPECTRUM_QUANTITIES)
-    of_slopes = zip(study_slopes.of(slopes, names), study_slopes.errors_of(slopes, names), strict=True)
+    of_slopes = zip(study_slopes.by_quantity(slopes, names), study_slopes.errors_of(slopes, names), strict=True)
     count = len(errors.names)
     for values, uncertain in of_slopes:
         heights = Budget(errors.names, values[:count], errors.heights)
@@ -112,13 +112,13 @@ def _sampling(slopes, errors):
 def _form(slopes, errors):
     """Relative error of ē by the measured form of one surface, (n_rh,) [-]."""
     modes = MODE_QUANTITIES[1:]
-    return [Budget(modes, values, errors.modes).total for values in study_slopes.of(slopes, modes)]
+    return [Budget(modes, values, errors.modes).total for values in study_slopes.by_quantity(slopes, modes)]
 
 
 def _changes(contact, base, settings):
     """Relative change of ē by a choice and its standard error, (n_rh, 2) [-]."""
     same = first(base, contact.sizes["strip"])
-    pairs = ([energies(of, h, settings.water) for of in (contact, same)] for h in settings.humidities)
+    pairs = ([energies(dataset, h, settings.water) for dataset in (contact, same)] for h in settings.humidities)
     return [relative_shift(*pair) for pair in pairs]
 
 

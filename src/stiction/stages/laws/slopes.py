@@ -57,7 +57,7 @@ def quantities(dataset: xr.Dataset) -> tuple[str, ...]:
     return tuple(dataset["quantity"].values.tolist())
 
 
-def of(dataset: xr.Dataset, quantities: Sequence[str]) -> np.ndarray:
+def by_quantity(dataset: xr.Dataset, quantities: Sequence[str]) -> np.ndarray:
     """Slopes of ln ē with respect to some quantities at every humidity, (n_rh, n_quantities) [-]."""
     return dataset.slope.sel(quantity=list(quantities)).values.T
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from stiction.stages.life.inputs import Stated
+from stiction.stages.life.inputs import DeviceKeys
 
 #: Questions of a designer, in their order.
 QUESTIONS = TOUCH, STICK, HOLD, FREE = "touch", "stick", "hold", "free"
@@ -45,7 +45,7 @@ class Name(StrEnum):
 _TEXTS = ("name", "question", "what", "unit", "form", "source", "needs")
 
 
-class Answer(NamedTuple):
+class LifeRow(NamedTuple):
     """One answer to a question, with numbers in SI."""
 
     name: str
@@ -60,32 +60,32 @@ class Answer(NamedTuple):
     needs: str = ""  #: keys that give the number; empty if it is there
 
 
-def in_order(answers: Sequence[Answer]) -> list[Answer]:
+def in_order(answers: Sequence[LifeRow]) -> list[LifeRow]:
     """Answers in the order of the questions."""
     return sorted(answers, key=lambda answer: QUESTIONS.index(answer.question))
 
 
-def layout(answers: Sequence[Answer], of: Stated, length: float = np.nan) -> xr.Dataset:
+def layout(answers: Sequence[LifeRow], keys: DeviceKeys, length: float = np.nan) -> xr.Dataset:
     """Dataset of the answers about a device; ``length`` is that at which a beam is asked for voltage and shock [m]."""
-    columns = dict(zip(Answer._fields, zip(*answers, strict=True), strict=True))
+    columns = dict(zip(LifeRow._fields, zip(*answers, strict=True), strict=True))
     numbers = {"low": "at least", "high": "at most", "error": "standard uncertainty"}
-    shock = {"shock": ((), of.shock, {"units": "m s-2"})} if of.shock else {}
+    shock = {"shock": ((), keys.shock, {"units": "m s-2"})} if keys.shock else {}
     return xr.Dataset(
         {name: ("answer", list(columns[name])) for name in _TEXTS[1:]}
         | {name: ("answer", list(columns[name]), {"long_name": text}) for name, text in numbers.items()}
-        | {"length": ((), length, {"units": "m"}), "touchdowns": ((), of.touchdowns, {"units": "1"})}
-        | {"potential": ((), of.potential, {"units": "V"})}
+        | {"length": ((), length, {"units": "m"}), "touchdowns": ((), keys.touchdowns, {"units": "1"})}
+        | {"potential": ((), keys.potential, {"units": "V"})}
         | shock,
         coords={"answer": list(columns["name"])},
     )
 
 
-def answers_of(dataset: xr.Dataset) -> list[Answer]:
+def answers_of(dataset: xr.Dataset) -> list[LifeRow]:
     """Answers about a device from its dataset."""
-    rows = zip(*(dataset["answer" if name == "name" else name].values for name in Answer._fields), strict=True)
+    rows = zip(*(dataset["answer" if name == "name" else name].values for name in LifeRow._fields), strict=True)
     return [
-        Answer(
-            *(str(value) if name in _TEXTS else float(value) for name, value in zip(Answer._fields, row, strict=True))
+        LifeRow(
+            *(str(value) if name in _TEXTS else float(value) for name, value in zip(LifeRow._fields, row, strict=True))
         )
         for row in rows
     ]
@@ -97,21 +97,23 @@ def answers_of(dataset: xr.Dataset) -> list[Answer]:
 BY_VOLTAGE, HELD_BY = "voltage_V and dielectric", "stage at_voltage, stiction.life.holding"
 
 
-def missing(answers: Sequence[Answer], rows: Iterable[tuple[str, str, str, str, str]]) -> list[Answer]:
+def missing(answers: Sequence[LifeRow], rows: Iterable[tuple[str, str, str, str, str]]) -> list[LifeRow]:
     """Answers without a number for those rows (name, question, what, unit, keys) that no answer has."""
-    known = {answer.name for answer in answers}
-    nothing = np.nan, np.nan, np.nan
+    names = {answer.name for answer in answers}
+    no_numbers = np.nan, np.nan, np.nan
     return [
-        Answer(name, question, what, *nothing, unit, "–", "–", keys)
-        for name, question, what, unit, keys in rows
-        if name not in known
+        LifeRow(name, question, subject, *no_numbers, unit, "–", "–", keys)
+        for name, question, subject, unit, keys in rows
+        if name not in names
     ]
 
 
-def field_in_dielectric(of: Stated) -> Answer:
+def field_in_dielectric(keys: DeviceKeys) -> LifeRow:
     """Field in the dielectric of a device whose surfaces touch."""
-    what, form = "field in the dielectric in contact", "V / t; thin oxides break down near 1 V/nm"
-    return Answer(Name.FIELD, HOLD, what, np.nan, of.capacitor.field, np.nan, "V m-1", form, "stiction.contact.voltage")
+    subject, form = "field in the dielectric in contact", "V / t; thin oxides break down near 1 V/nm"
+    return LifeRow(
+        Name.FIELD, HOLD, subject, np.nan, keys.capacitor.field, np.nan, "V m-1", form, "stiction.contact.voltage"
+    )
 
 
 def pulses(sine: float, rectangle: float) -> str:

@@ -16,9 +16,9 @@ from stiction.devices.risk import one_in
 from stiction.life import drying, freeing, holding, touch
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.life import answers as shared
-from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, Answer, Name, in_order, layout
+from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, LifeRow, Name, in_order, layout
 from stiction.stages.life.dimples import dimple_answers
-from stiction.stages.life.inputs import Liquid, OfBeam
+from stiction.stages.life.inputs import BeamKeys, Liquid
 from stiction.stages.life.separation import of_beam
 
 #: Forms of the rows of a beam with play.
@@ -36,31 +36,31 @@ _BEAM = (
 )
 
 
-def dataset(data: Mapping[str, Any], of: OfBeam) -> xr.Dataset:
+def dataset(data: Mapping[str, Any], keys: BeamKeys) -> xr.Dataset:
     """Dataset of the answers about a beam, from its safe lengths."""
     strips, tips = (data.get(name, {}) for name in ("fast_strips", "fast_tips"))
-    fast = of_beam(strips, tips, of.device) if strips else None
-    answers = beam_answers(data["lengths"], data.get("after", {}), of, data.get("biased"), fast)
-    answers += dimple_answers(of, data.get("dimples", {}))
-    return layout(in_order(answers), of, length_of(data["lengths"], of))
+    fast = of_beam(strips, tips, keys.device) if strips else None
+    answers = beam_answers(data["lengths"], data.get("after", {}), keys, data.get("biased"), fast)
+    answers += dimple_answers(keys, data.get("dimples", {}))
+    return layout(in_order(answers), keys, length_of(data["lengths"], keys))
 
 
 def beam_answers(
     lengths: Mapping[float, xr.Dataset],
     after: Mapping[float, xr.Dataset],
-    of: OfBeam,
+    keys: BeamKeys,
     biased: Mapping[float, xr.Dataset] | None = None,
     separation: xr.Dataset | None = None,
-) -> list[Answer]:
+) -> list[LifeRow]:
     """Answers about a beam from its safe lengths by humidity: for one touchdown, after all, and at its voltage.
 
     The dataset of its fast separation is needed where water condenses.
     """
     share = chosen_share(next(iter(lengths.values())))
     safe = {humidity: least_safe(dataset, share) for humidity, dataset in lengths.items()}
-    length = length_of(lengths, of)
+    length = length_of(lengths, keys)
     answers = [
-        Answer(
+        LifeRow(
             f"{Name.SAFE}{humidity:g}",
             STICK,
             f"simulated limit {Air(humidity).where}: at most {one_in(share)} sticks after one touchdown",
@@ -69,18 +69,18 @@ def beam_answers(
         )
         for humidity, (value, error, basis) in safe.items()
     ]
-    answers += beam_touched(of, length) + beam_held(of, length) if 0 < length < np.inf else []
-    answers += [answer for name, liquid in of.liquids.items() for answer in lengths_after_drying(of, name, liquid)]
-    answers += beam_after_touchdowns(of, share, min(safe.values()), after) if after else []
-    answers += beam_at_registers(of, length, lengths)
+    answers += beam_touched(keys, length) + beam_held(keys, length) if 0 < length < np.inf else []
+    answers += [answer for name, liquid in keys.liquids.items() for answer in lengths_after_drying(keys, name, liquid)]
+    answers += beam_after_touchdowns(keys, share, min(safe.values()), after) if after else []
+    answers += beam_at_registers(keys, length, lengths)
     answers += separated_fast(lengths, separation) if separation is not None else []
-    answers += beam_at_voltage(of, min(safe.values()), biased)
+    answers += beam_at_voltage(keys, min(safe.values()), biased)
     return in_order(answers + shared.missing(answers, _BEAM))
 
 
-def length_of(lengths: Mapping[float, xr.Dataset], of: OfBeam) -> float:
+def length_of(lengths: Mapping[float, xr.Dataset], keys: BeamKeys) -> float:
     """Length of a beam for voltage and shock [m]: the given one, or its least safe length."""
-    return of.length or min(least_safe(dataset, chosen_share(dataset))[0] for dataset in lengths.values())
+    return keys.length or min(least_safe(dataset, chosen_share(dataset))[0] for dataset in lengths.values())
 
 
 def least_safe(dataset: xr.Dataset, share: float) -> tuple[float, float, str]:
@@ -96,44 +96,46 @@ def length_and_error(state: xr.Dataset) -> tuple[float, float]:
     return float(state.safe_length), float(np.sqrt(np.nansum(np.square(errors)))) or np.nan
 
 
-def beam_touched(of: OfBeam, length: float) -> list[Answer]:
+def beam_touched(keys: BeamKeys, length: float) -> list[LifeRow]:
     """Voltage and shock for contact of a beam of a length [m]."""
-    return [_pulled_in(of, length), _shaken(of, length)]
+    return [_pulled_in(keys, length), _shaken(keys, length)]
 
 
 #: Ends of beams that touch, by the number of clamps, and what is said of the upper bounds of bridges.
 _ENDS, _RIGID = {1: "tip", 2: "middle"}, {1: "", 2: ", rigid clamps"}
 
 
-def _pulled_in(of, length):
+def _pulled_in(keys, length):
     """Voltage that pulls in a beam of a length [m]."""
-    clamps, beam = of.clamps, of.beam(length)
-    low, error = of.number(lambda beam: touch.pull_in_voltage_at_once(beam, clamps), length)
-    high = touch.pull_in_voltage(beam, clamps, rigid=True, dielectric=of.dielectric.distance if of.dielectric else 0.0)
+    clamps, beam = keys.clamps, keys.beam(length)
+    low, error = keys.number(lambda beam: touch.pull_in_voltage_at_once(beam, clamps), length)
+    high = touch.pull_in_voltage(
+        beam, clamps, rigid=True, dielectric=keys.dielectric.distance if keys.dielectric else 0.0
+    )
     form = {1: "V² = 0.2801 E t³ h³ / (ε₀ L⁴)", 2: "V² = λ E t³ h³ / (6 ε₀ L⁴), λ = 70.095 without tension"}[clamps]
     form += f"; at least: switched on at once, with fringes; at most: raised slowly, without fringes{_RIGID[clamps]}"
-    what = f"voltage that pulls the {_ENDS[clamps]} in"
-    return Answer(Name.VOLTAGE, TOUCH, what, low, high, error, "V", form, "stiction.life.touch")
+    subject = f"voltage that pulls the {_ENDS[clamps]} in"
+    return LifeRow(Name.VOLTAGE, TOUCH, subject, low, high, error, "V", form, "stiction.life.touch")
 
 
-def _shaken(of, length):
+def _shaken(keys, length):
     """Peak of a shock that brings down a beam of a length [m]."""
-    clamps, beam = of.clamps, of.beam(length)
-    slow, error = of.number(lambda beam: touch.touching_acceleration(beam, clamps, of.density), length)
+    clamps, beam = keys.clamps, keys.beam(length)
+    slow, error = keys.number(lambda beam: touch.touching_acceleration(beam, clamps, keys.density), length)
     sine, rectangle = (touch.shock_factor(beam, clamps, pulse) for pulse in (touch.HALF_SINE, touch.RECTANGLE))
-    high = touch.touching_acceleration(beam, clamps, of.density, rigid=True)
+    high = touch.touching_acceleration(beam, clamps, keys.density, rigid=True)
     form = {1: "a = 2 E t² h / (3 ρ L⁴)", 2: "a = 32 E t² h / (ρ L⁴) without tension"}[clamps]
-    form += f", ρ = {of.density:g} kg/m³; {shared.pulses(sine, rectangle)}; at most: a slow shock{_RIGID[clamps]}"
-    what = f"peak of a shock that brings the {_ENDS[clamps]} down"
-    return Answer(Name.SHOCK, TOUCH, what, slow / sine, high, error / sine, "m s-2", form, "stiction.life.touch")
+    form += f", ρ = {keys.density:g} kg/m³; {shared.pulses(sine, rectangle)}; at most: a slow shock{_RIGID[clamps]}"
+    subject = f"peak of a shock that brings the {_ENDS[clamps]} down"
+    return LifeRow(Name.SHOCK, TOUCH, subject, slow / sine, high, error / sine, "m s-2", form, "stiction.life.touch")
 
 
-def lengths_after_drying(of: OfBeam, name: str, liquid: Liquid) -> list[Answer]:
+def lengths_after_drying(keys: BeamKeys, name: str, liquid: Liquid) -> list[LifeRow]:
     """Lengths of beams standing while a liquid dries, and releasing afterwards."""
-    clamps, adhesion, wetting = of.clamps, liquid.adhesion, (liquid.surface_tension, liquid.contact_angle)
-    each, error = of.number(lambda beam: drying.longest_standing_each(beam, clamps, *wetting), 1.0)
-    free, free_error = of.number(lambda beam: drying.longest_free(beam, clamps, adhesion), 1.0)
-    connected = drying.longest_standing(of.beam(1.0), clamps, adhesion)
+    clamps, adhesion, wetting = keys.clamps, liquid.adhesion, (liquid.surface_tension, liquid.contact_angle)
+    each, error = keys.number(lambda beam: drying.longest_standing_each(beam, clamps, *wetting), 1.0)
+    free, free_error = keys.number(lambda beam: drying.longest_free(beam, clamps, adhesion), 1.0)
+    connected = drying.longest_standing(keys.beam(1.0), clamps, adhesion)
     standing, released = {
         1: ("L⁴ = N E t³ h² / (γ cos θ), N = 0.2295 (connected, at most)", "L⁴ = 3 E t³ h² / (16 γ cos θ)"),
         2: (
@@ -144,14 +146,14 @@ def lengths_after_drying(of: OfBeam, name: str, liquid: Liquid) -> list[Answer]:
     standing += "; liquid everywhere, pinned at the edges (at least)"
     source = f"stiction.life.drying, γ cos θ = {from_si(adhesion, 'mN_per_m'):.3g} mN/m"
     return [
-        Answer(
+        LifeRow(
             f"{Name.COLLAPSE}_{name}",
             TOUCH,
             f"longest beam that does not collapse while {name} dries",
             *(each, connected, error),
             *("m", standing, source),
         ),
-        Answer(
+        LifeRow(
             f"{Name.RELEASED}_{name}",
             STICK,
             f"longest beam that comes free after {name} dried",
@@ -161,11 +163,11 @@ def lengths_after_drying(of: OfBeam, name: str, liquid: Liquid) -> list[Answer]:
     ]
 
 
-def beam_held(of: OfBeam, length: float) -> list[Answer]:
+def beam_held(keys: BeamKeys, length: float) -> list[LifeRow]:
     """Adhesion of a stuck beam of a length [m], and its pulling force."""
-    clamps = of.clamps
-    along, error = of.number(lambda beam: float(apparent_adhesion_energy(length / clamps, beam)), length)
-    force, force_error = of.number(lambda beam: freeing.force_at_contact(beam, clamps), length)
+    clamps = keys.clamps
+    along, error = keys.number(lambda beam: float(apparent_adhesion_energy(length / clamps, beam)), length)
+    force, force_error = keys.number(lambda beam: freeing.force_at_contact(beam, clamps), length)
     forms = {
         1: ("Γ = 3 E t³ h² / (2 L⁴), Eq. (13)", "F = 3 E I h / L³"),
         2: ("energy at which two cracks meet; more if rigid clamps stretch it",)
@@ -173,13 +175,13 @@ def beam_held(of: OfBeam, length: float) -> list[Answer]:
     }[clamps]
     most, most_force = (along, force) if clamps == 1 else (np.nan, np.nan)
     answers = [
-        Answer(
+        LifeRow(
             Name.HELD,
             HOLD,
             "adhesion energy that holds it along the beam" if clamps == 1 else "adhesion energy that holds both cracks",
             *(along, most, error, "J m-2", forms[0], "stiction.beam.energy"),
         ),
-        Answer(
+        LifeRow(
             Name.PULL,
             FREE,
             f"force with which it pulls at its {'tip' if clamps == 1 else 'middle'}",
@@ -188,23 +190,23 @@ def beam_held(of: OfBeam, length: float) -> list[Answer]:
     ]
     if clamps == 1:
         tip, form = along / 4, "Γ = 3 E t³ h² / (8 L⁴)"
-        what = "adhesion energy that holds its tip, on uniform surfaces"
-        answers.append(Answer("tip", HOLD, what, tip, tip, error / 4, "J m-2", form, "stiction.devices.arcs"))
+        subject = "adhesion energy that holds its tip, on uniform surfaces"
+        answers.append(LifeRow("tip", HOLD, subject, tip, tip, error / 4, "J m-2", form, "stiction.devices.arcs"))
     return answers
 
 
 def beam_after_touchdowns(
-    of: OfBeam, share: float, once: tuple[float, float, str], after: Mapping[float, xr.Dataset]
-) -> list[Answer]:
+    keys: BeamKeys, share: float, once: tuple[float, float, str], after: Mapping[float, xr.Dataset]
+) -> list[LifeRow]:
     """Safe length and P(stuck) after all touchdowns, from the safe length of one, and its standard error [m].
 
     Both bounds have errors of the simulation. More touchdowns never allow a longer beam.
     """
     independent = min(once, *(least_safe(dataset, chosen_share(dataset)) for dataset in after.values()))
-    stuck = freeing.stuck_after(share, of.touchdowns)
-    numbers = f"{of.touchdowns} touchdowns"
+    stuck = freeing.stuck_after(share, keys.touchdowns)
+    numbers = f"{keys.touchdowns} touchdowns"
     return [
-        Answer(
+        LifeRow(
             Name.AFTER,
             FREE,
             f"simulated limit for {numbers}: at most {one_in(share)} sticks after all of them",
@@ -212,7 +214,7 @@ def beam_after_touchdowns(
             "P of one = 1 - (1 - p)^(1/n) (at least); the same summits each time (at most)",
             "stage touchdowns",
         ),
-        Answer(
+        LifeRow(
             "stuck_after",
             FREE,
             f"probability of sticking after {numbers} at the limit of one",
@@ -221,7 +223,7 @@ def beam_after_touchdowns(
     ]
 
 
-def beam_at_registers(of: OfBeam, length: float, lengths: Mapping[float, xr.Dataset]) -> list[Answer]:
+def beam_at_registers(keys: BeamKeys, length: float, lengths: Mapping[float, xr.Dataset]) -> list[LifeRow]:
     """P(stuck) along a beam of a length [m] with play: in register, at a random offset, and after all touchdowns.
 
     The worst of all airs counts. ASSUME: each touchdown has an offset of its own, and is then another meeting. Of ten
@@ -231,17 +233,19 @@ def beam_at_registers(of: OfBeam, length: float, lengths: Mapping[float, xr.Data
     if not with_play:
         return []
     shares = [[each.register_sticking_length, each.sticking_length[0]] for each in with_play]
-    (register, once), number = np.max(np.mean(np.less(shares, length), axis=-1), axis=0), of.touchdowns
+    (register, once), number = np.max(np.mean(np.less(shares, length), axis=-1), axis=0), keys.touchdowns
     stuck, many = freeing.stuck_after(once, number), f"{number} touchdowns" if number > 1 else "one touchdown"
     errors = [float(np.sqrt(p * (1 - p) / with_play[0].sizes["device"])) for p in (register, once)]
-    what = "probability of sticking along the beam"
+    subject = "probability of sticking along the beam"
     return [
-        Answer("register", FREE, f"{what} in register", register, register, errors[0], "1", _NEAREST, "stage cracks"),
-        Answer("offsets", FREE, f"{what} after {many}", once, stuck, errors[1], "1", _OFFSETS, "stage cracks"),
+        LifeRow(
+            "register", FREE, f"{subject} in register", register, register, errors[0], "1", _NEAREST, "stage cracks"
+        ),
+        LifeRow("offsets", FREE, f"{subject} after {many}", once, stuck, errors[1], "1", _OFFSETS, "stage cracks"),
     ]
 
 
-def separated_fast(lengths: Mapping[float, xr.Dataset], separation: xr.Dataset) -> list[Answer]:
+def separated_fast(lengths: Mapping[float, xr.Dataset], separation: xr.Dataset) -> list[LifeRow]:
     """Safe length of a beam that separates faster than water evaporates, by humidity and end state, in the worst one.
 
     It is at most that of slow separation.
@@ -260,39 +264,39 @@ def separated_fast(lengths: Mapping[float, xr.Dataset], separation: xr.Dataset) 
             fast.append((shorter, float(np.hypot(spread * factor, length * error)), factor, Air(humidity).where))
     shorter, error, factor, air = min(fast)
     form = f"L x {factor:.3g} {air}, by (e / e_V)^(1/4) of strips or lengths of tips (at least); slow (at most)"
-    what = "simulated limit if it separates faster than water evaporates"
+    subject = "simulated limit if it separates faster than water evaporates"
     numbers = (shorter, min(slow), error) if 0 < shorter < np.inf else (np.nan, min(slow), np.nan)
-    return [Answer(Name.FAST, FREE, what, *numbers, "m", form, "stage separation")]
+    return [LifeRow(Name.FAST, FREE, subject, *numbers, "m", form, "stage separation")]
 
 
 def beam_at_voltage(
-    of: OfBeam, safe: tuple[float, float, str], biased: Mapping[float, xr.Dataset] | None
-) -> list[Answer]:
+    keys: BeamKeys, safe: tuple[float, float, str], biased: Mapping[float, xr.Dataset] | None
+) -> list[LifeRow]:
     """Effect of a voltage, and the length safe with it, from the safe length without it and its error [m].
 
     On flats in contact, and on rough surfaces from the safe lengths at the voltage by humidity, if there are any.
     """
-    if not of.capacitor:
+    if not keys.capacitor:
         return []
-    added = holding.energy_of_voltage(of.capacitor, of.device.gap)
-    distance = from_si(of.dielectric.distance, "nm")
+    added = holding.energy_of_voltage(keys.capacitor, keys.device.gap)
+    distance = from_si(keys.dielectric.distance, "nm")
     form = f"mean over samples (at least); Γ_V = ε₀ V² / 2 (1 / D - 1 / (D + h)), D = {distance:.3g} nm (at most)"
     at_voltage = list((biased or {}).values())
     gained = [(float(dataset.voltage_energy), float(dataset.voltage_error)) for dataset in at_voltage]
     low, error = max(gained, default=(np.nan, np.nan))
-    what = f"adhesion energy that {of.potential:g} V add"
+    subject = f"adhesion energy that {keys.potential:g} V add"
     numbers = min(low, added), added, error
-    added_energy = Answer(Name.VOLTAGE_ENERGY, HOLD, what, *numbers, "J m-2", form, shared.HELD_BY)
-    answers = [added_energy, shared.field_in_dielectric(of)]
-    numbers = _shorter(of, added, safe, [least_safe(dataset, chosen_share(dataset)) for dataset in at_voltage])
+    added_energy = LifeRow(Name.VOLTAGE_ENERGY, HOLD, subject, *numbers, "J m-2", form, shared.HELD_BY)
+    answers = [added_energy, shared.field_in_dielectric(keys)]
+    numbers = _shorter(keys, added, safe, [least_safe(dataset, chosen_share(dataset)) for dataset in at_voltage])
     if np.isnan(numbers).all():
         return answers
-    what = f"simulated limit while {of.potential:g} V are on"
+    subject = f"simulated limit while {keys.potential:g} V are on"
     form = "(L / L_V)³ = 1 + 8 Γ_V L_V L³ / (3 E t³ h²), flats (at least); gaps of rough surfaces, L (at most)"
-    return [*answers, Answer(Name.AT_VOLTAGE, HOLD, what, *numbers, "m", form, shared.HELD_BY)]
+    return [*answers, LifeRow(Name.AT_VOLTAGE, HOLD, subject, *numbers, "m", form, shared.HELD_BY)]
 
 
-def _shorter(of, added, safe, rough):
+def _shorter(keys, added, safe, rough):
     """Safe length at a voltage [m]: on flats, on rough surfaces, and an error of the first, or of the latter alone.
 
     NaN for bridges on flats, and on rough surfaces that were not computed. Tips are held at steeper slopes by more of
@@ -301,8 +305,8 @@ def _shorter(of, added, safe, rough):
     """
     length, flat, error = safe[0], np.nan, np.nan
     high, high_error, _ = min(safe, *rough) if rough else (np.nan, np.nan, "")
-    if of.device.opening.has_tip and 0 < length < np.inf:
-        flat, longer = (holding.tip_length_at_voltage(by * length, of.beam(1.0), added) for by in (1, 1 + _STEP))
+    if keys.device.opening.has_tip and 0 < length < np.inf:
+        flat, longer = (holding.tip_length_at_voltage(by * length, keys.beam(1.0), added) for by in (1, 1 + _STEP))
         error = safe[1] * (longer - flat) / (_STEP * length)
     if high < flat:
         return high, high, high_error

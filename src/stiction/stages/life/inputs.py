@@ -25,7 +25,7 @@ class Liquid:
 
 
 @dataclass(frozen=True)
-class Errors:
+class BeamErrors:
     """Standard uncertainties of the inputs of a beam."""
 
     thickness: float = 0.0  #: [m]
@@ -35,7 +35,7 @@ class Errors:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stated:
+class DeviceKeys:
     """Keys of any device beside its dimensions."""
 
     touchdowns: int = 1
@@ -65,13 +65,13 @@ class Dimples:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OfBeam(Stated):
+class BeamKeys(DeviceKeys):
     """Beam and its surroundings beside its ground."""
 
     device: DesignedBeam
     density: float  #: ρ [kg m⁻³]
     liquids: dict[str, Liquid]
-    uncertainty: Errors
+    uncertainty: BeamErrors
     length: float = 0.0  #: as stated [m]; otherwise the least safe length counts
     dimples: Dimples | None = None
 
@@ -86,14 +86,14 @@ class OfBeam(Stated):
         sizes = length, device.width, device.thickness, device.young_modulus, device.gap
         return half_of_bridge(Beam(*sizes, elements=1), device.residual_stress)
 
-    def number(self, of: Callable[[Beam], float], length: float) -> tuple[float, float]:
+    def number(self, quantity: Callable[[Beam], float], length: float) -> tuple[float, float]:
         """Number of the beam, and its standard uncertainty to first order, NaN if no input has any."""
-        squares, value = 0.0, of(self.beam(length))
+        squares, value = 0.0, quantity(self.beam(length))
         for field in fields(self.uncertainty):
             mean, error = getattr(self.device, field.name), getattr(self.uncertainty, field.name)
             if error and np.isfinite(value):
                 ends = max(mean - error, 0.0), mean + error
-                low, high = (of(self.beam(length, **{field.name: end})) for end in ends)
+                low, high = (quantity(self.beam(length, **{field.name: end})) for end in ends)
                 squares += ((high - low) / 2) ** 2
         return value, squares**0.5 or np.nan
 
@@ -107,7 +107,7 @@ class Electrode:
 
 
 @dataclass(frozen=True, kw_only=True)
-class OfStopper(Stated):
+class StopperKeys(DeviceKeys):
     """Stopper and its surroundings beside its ground, zero if not given."""
 
     restoring_force: float  #: [N]

@@ -32,7 +32,7 @@ from stiction.stages.devices.opening import DesignedBeam
 
 
 @dataclass(frozen=True)
-class OfStopper:
+class StopperSettings:
     """Settings of the fast separation of a stopper, without its contacts."""
 
     water: Water
@@ -40,37 +40,39 @@ class OfStopper:
 
 
 @dataclass(frozen=True)
-class InAir:
+class FastInAir:
     """Settings of the fast separation of strips or tips, without their contact."""
 
     water: Water
     humidity: float  #: [-]
 
 
-def of_stopper(contacts: Mapping[float, xr.Dataset], settings: OfStopper) -> xr.Dataset:
+def of_stopper(contacts: Mapping[float, xr.Dataset], settings: StopperSettings) -> xr.Dataset:
     """Pull-off forces of all patches of a stopper, from its contacts by humidity."""
     area, water = settings.contact[0] * settings.contact[1], settings.water
     largest = [
-        np.maximum(curves.fast_pull_offs(one, at, water), curves.pull_offs(one, at, water))
-        for at, one in contacts.items()
+        np.maximum(curves.fast_pull_offs(contact, at, water), curves.pull_offs(contact, at, water))
+        for at, contact in contacts.items()
     ]
     forces = (("humidity", "sample"), pull_off_force(np.array(largest), area), {"units": "N"})
     return xr.Dataset({"pull_off": forces}, coords={"humidity": list(contacts)})
 
 
-def of_strips(contact: xr.Dataset, settings: InAir) -> xr.Dataset:
+def of_strips(contact: xr.Dataset, settings: FastInAir) -> xr.Dataset:
     """Factor of the length of a crack by the mean energies of strips, and its standard error."""
-    fast, slow = (of(contact, settings.humidity, settings.water) for of in (curves.fast_energies, curves.energies))
-    found = _ratio(np.maximum(fast, slow), slow, lambda means: (means[..., 1] / means[..., 0]) ** 0.25)
+    fast, slow = (
+        statistic(contact, settings.humidity, settings.water) for statistic in (curves.fast_energies, curves.energies)
+    )
+    factors = _ratio(np.maximum(fast, slow), slow, lambda means: (means[..., 1] / means[..., 0]) ** 0.25)
     none = {"units": "1", "long_name": "length of fast separation over that of slow separation"}
-    return xr.Dataset(dict(zip(("factor", "factor_error"), (((), one, none) for one in found), strict=True)))
+    return xr.Dataset(dict(zip(("factor", "factor_error"), (((), factor, none) for factor in factors), strict=True)))
 
 
-def of_tips(contact: xr.Dataset, settings: InAir) -> xr.Dataset:
+def of_tips(contact: xr.Dataset, settings: FastInAir) -> xr.Dataset:
     """Largest attractions P/w of tips over their slopes, in slow and in fast separation."""
     slopes, slow = curves.tip_forces(contact, settings.humidity, settings.water)
     fast = curves.fast_tip_forces(contact, settings.humidity, settings.water)
-    forces = {name: (("tip", "slope"), of, {"units": "N m-1"}) for name, of in (("slow", slow), ("fast", fast))}
+    forces = {name: (("tip", "slope"), values, {"units": "N m-1"}) for name, values in (("slow", slow), ("fast", fast))}
     return xr.Dataset(forces, coords={"slope": slopes})
 
 
@@ -78,10 +80,10 @@ def of_beam(strips: Mapping[float, xr.Dataset], tips: Mapping[float, xr.Dataset]
     """Factors of the lengths of a beam by end state with their errors, from its strips and tips by humidity."""
     rows = [
         [
-            (float(one.factor), float(one.factor_error)),
+            (float(dataset.factor), float(dataset.factor_error)),
             *([factor_of_tips(tips[humidity], device)] if humidity in tips else []),
         ]
-        for humidity, one in strips.items()
+        for humidity, dataset in strips.items()
     ]
     values, errors = np.moveaxis(np.array(rows), -1, 0)
     over, coords = ("humidity", "shape"), {"humidity": list(strips), "shape": [*device.opening.shapes]}
@@ -96,8 +98,8 @@ def factor_of_tips(forces: xr.Dataset, device: DesignedBeam) -> tuple[float, flo
     slow, fast = forces.slow.values, forces.fast.values
     stopped = np.isfinite(fast).all(axis=1)
     inverse = [
-        1 / arcs.longest_free(forces.slope.values, np.where(stopped[:, None], one, slow), device.beam)
-        for one in (fast, slow)
+        1 / arcs.longest_free(forces.slope.values, np.where(stopped[:, None], forces_of_tips, slow), device.beam)
+        for forces_of_tips in (fast, slow)
     ]
     return _ratio(np.where(stopped, inverse[0], np.inf), inverse[1], lambda means: means[..., 1] / means[..., 0])
 
@@ -152,7 +154,7 @@ def _contacts_of_stopper(plan, at):
 def _settings_of_stopper(plan, at):
     """Water around a stopper, and its patch."""
     section = plan.config["devices"][at.device]
-    return select(OfStopper, section | {"water": plan.air_of_devices.water(section["pair"])})
+    return select(StopperSettings, section | {"water": plan.air_of_devices.water(section["pair"])})
 
 
 def _in_air(plan, at):
@@ -178,7 +180,7 @@ STAGES = (
         "devices/separation/{device}",
         inputs=_contacts_of_stopper,
         settings=_settings_of_stopper,
-        kind=OfStopper,
+        kind=StopperSettings,
         complete=with_correction,
         compute=of_stopper,
         message="Fast separation of stopper {device}.",
@@ -188,7 +190,7 @@ STAGES = (
         "devices/fast_strips/{case}_{length}x{width}",
         inputs=_contact_of_strips,
         settings=_in_air,
-        kind=InAir,
+        kind=FastInAir,
         complete=with_correction,
         compute=of_strips,
         message="Fast separation of {case}, strips of {length} x {width} nm.",
@@ -198,7 +200,7 @@ STAGES = (
         "devices/fast_tips/{case}_{length}x{width}",
         inputs=_contact_of_tips,
         settings=_in_air,
-        kind=InAir,
+        kind=FastInAir,
         complete=with_correction,
         compute=of_tips,
         message="Fast separation of tips of {case}, {length} x {width} nm.",

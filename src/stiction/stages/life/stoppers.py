@@ -13,29 +13,29 @@ from stiction.devices.stoppers import safe_force
 from stiction.estimates import mean_with_error
 from stiction.life import freeing, touch
 from stiction.stages.life import answers as shared
-from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, Answer, Name, in_order, layout
-from stiction.stages.life.inputs import OfStopper
+from stiction.stages.life.answers import FREE, HOLD, STICK, TOUCH, LifeRow, Name, in_order, layout
+from stiction.stages.life.inputs import StopperKeys
 
 
-def dataset(data: Mapping[str, Any], of: OfStopper) -> xr.Dataset:
+def dataset(data: Mapping[str, Any], keys: StopperKeys) -> xr.Dataset:
     """Dataset of the answers about a stopper, from its forces."""
     more = (data.get(name) for name in ("biased", "tilted", "separation"))
-    return layout(stopper_answers(data["stopper"], of, *more), of)
+    return layout(stopper_answers(data["stopper"], keys, *more), keys)
 
 
 def stopper_answers(
     stopper: xr.Dataset,
-    of: OfStopper,
+    keys: StopperKeys,
     biased: xr.Dataset | None = None,
     tilted: xr.Dataset | None = None,
     separation: xr.Dataset | None = None,
-) -> list[Answer]:
+) -> list[LifeRow]:
     """Answers about a stopper from the datasets of its pull-off forces: as it is, at its voltage, tilted, and fast."""
     worst = int(stopper.mean_along.argmax("axis"))
     mean, error = (float(stopper[name][worst]) for name in ("mean_along", "mean_along_error"))
     where = Air(round(float(stopper.worst_humidity), 2)).where
     answers = [
-        Answer(
+        LifeRow(
             f"stuck_{float(humidity):g}",
             STICK,
             f"probability of sticking {Air(float(humidity)).where}",
@@ -44,47 +44,49 @@ def stopper_answers(
         )
         for humidity in stopper.humidity.values
     ]
-    what = f"mean pull-off force {where}{', the worst air' * (stopper.sizes['axis'] > 1)}"
-    answers.append(Answer("force", HOLD, what, mean, mean, error, "N", "largest attraction x area", "stage stoppers"))
-    answers += stopper_moved(of) + stopper_freed(stopper, of, separation) + stopper_after_touchdowns(stopper, of)
+    subject = f"mean pull-off force {where}{', the worst air' * (stopper.sizes['axis'] > 1)}"
+    answers.append(
+        LifeRow("force", HOLD, subject, mean, mean, error, "N", "largest attraction x area", "stage stoppers")
+    )
+    answers += stopper_moved(keys) + stopper_freed(stopper, keys, separation) + stopper_after_touchdowns(stopper, keys)
     answers += [] if tilted is None else tilted_answers(tilted)
-    answers += stopper_at_voltage(stopper, of, biased) if of.capacitor else []
-    return in_order(answers + stopper_unknown(answers, of, float(stopper.share.max())))
+    answers += stopper_at_voltage(stopper, keys, biased) if keys.capacitor else []
+    return in_order(answers + stopper_unknown(answers, keys, float(stopper.share.max())))
 
 
-def stopper_unknown(answers: Sequence[Answer], of: OfStopper, share: float) -> list[Answer]:
+def stopper_unknown(answers: Sequence[LifeRow], keys: StopperKeys, share: float) -> list[LifeRow]:
     """Rows for everything that a stopper does not say, with the keys that say it, first the one of it alone.
 
     ``share`` is the largest fraction of stuck stoppers that its forces are asked for.
     """
     samples = f"contact.samples of {samples_for(share)} or more"
-    spring = "" if of.stiffness else ", stiffness_N_per_m and gap_um"
+    spring = "" if keys.stiffness else ", stiffness_N_per_m and gap_um"
     rows = (
         (Name.SHOCK, TOUCH, "peak of a shock that brings it into contact", "m s-2", "mass_ng"),
         (Name.VOLTAGE, TOUCH, "voltage on its electrode that brings it into contact", "V", f"electrode{spring}"),
         (Name.AT_VOLTAGE, HOLD, "force that a voltage adds", "N", shared.BY_VOLTAGE),
         (Name.RESTORING, FREE, "restoring force that frees nearly all", "N", samples),
-        (Name.FREED, FREE, "shock that frees nearly all", "m s-2", samples if of.mass else "mass_ng"),
+        (Name.FREED, FREE, "shock that frees nearly all", "m s-2", samples if keys.mass else "mass_ng"),
     )
-    return shared.missing(answers, [row for row in rows if not row[-1].startswith(of.unasked)])
+    return shared.missing(answers, [row for row in rows if not row[-1].startswith(keys.unasked)])
 
 
-def stopper_moved(of: OfStopper) -> list[Answer]:
+def stopper_moved(keys: StopperKeys) -> list[LifeRow]:
     """Shock and voltage for contact of a stopper, as far as mass and electrode are given."""
     answers = []
-    if of.mass:
-        slow = of.restoring_force / of.mass
+    if keys.mass:
+        slow = keys.restoring_force / keys.mass
         form = f"a = F / m; {shared.pulses(touch.HALF_SINE, touch.RECTANGLE)}; at most: a slow shock"
         numbers = slow / touch.HALF_SINE, slow, np.nan
-        what = "peak of a shock that brings it into contact"
-        answers.append(Answer(Name.SHOCK, TOUCH, what, *numbers, "m s-2", form, "stiction.life.touch"))
-    if of.electrode:
-        electrode = of.stiffness, of.gap, of.electrode.area, of.electrode.gap
+        subject = "peak of a shock that brings it into contact"
+        answers.append(LifeRow(Name.SHOCK, TOUCH, subject, *numbers, "m s-2", form, "stiction.life.touch"))
+    if keys.electrode:
+        electrode = keys.stiffness, keys.gap, keys.electrode.area, keys.electrode.gap
         numbers = touch.stopper_voltage_at_once(*electrode), touch.stopper_voltage(*electrode), np.nan
         form = "V² = k u g (g - u) / (ε₀ A), at g / 2 or its way, less by fringes of a square (at least: at once); "
         form += "V² = 2 k u (g - u)² / (ε₀ A), at g / 3 or its way (at most: slowly)"
-        what = "voltage on its electrode that brings it into contact"
-        answers.append(Answer(Name.VOLTAGE, TOUCH, what, *numbers, "V", form, "stiction.life.touch"))
+        subject = "voltage on its electrode that brings it into contact"
+        answers.append(LifeRow(Name.VOLTAGE, TOUCH, subject, *numbers, "V", form, "stiction.life.touch"))
     return answers
 
 
@@ -100,7 +102,7 @@ def _worst_force(stopper, share):
     return float(at.sel(part="safe")), float(at.sel(part="error")), float(at.humidity)
 
 
-def stopper_freed(stopper: xr.Dataset, of: OfStopper, separation: xr.Dataset | None) -> list[Answer]:
+def stopper_freed(stopper: xr.Dataset, keys: StopperKeys, separation: xr.Dataset | None) -> list[LifeRow]:
     """Restoring force, stiffness and shock that free all but a small fraction of the stoppers, slowly and fast."""
     if (share := _fewest_bounded(stopper)) is None:
         return []
@@ -110,42 +112,44 @@ def stopper_freed(stopper: xr.Dataset, of: OfStopper, separation: xr.Dataset | N
     but = f"all but {one_in(share)}, {Air(humidity).where}"
     source, bound = "stages stoppers and separation", "faster than water evaporates, in any of its air (at most)"
     form = f"quantile of the pull-off force, 95 %; {bound}"
-    answers = [Answer(Name.RESTORING, FREE, f"restoring force that frees {but}", force, most, error, "N", form, source)]
-    if of.gap:
-        what, form = f"stiffness of the spring that frees {but}", f"k = F / gap; {bound}"
-        numbers = (number / of.gap for number in (force, most, error))
-        answers.append(Answer("stiffness", FREE, what, *numbers, "N m-1", form, source))
-    if of.mass:
-        shocks = (freeing.freeing_acceleration(hold, of.restoring_force, of.mass) for hold in (force, most))
-        what, form = f"shock that frees {but}", f"a = (F_hold - F) / m; {bound}"
-        numbers = *shocks, error / of.mass
-        answers.append(Answer(Name.FREED, FREE, what, *numbers, "m s-2", form, "stiction.life.freeing"))
+    answers = [
+        LifeRow(Name.RESTORING, FREE, f"restoring force that frees {but}", force, most, error, "N", form, source)
+    ]
+    if keys.gap:
+        subject, form = f"stiffness of the spring that frees {but}", f"k = F / gap; {bound}"
+        numbers = (number / keys.gap for number in (force, most, error))
+        answers.append(LifeRow("stiffness", FREE, subject, *numbers, "N m-1", form, source))
+    if keys.mass:
+        shocks = (freeing.freeing_acceleration(hold, keys.restoring_force, keys.mass) for hold in (force, most))
+        subject, form = f"shock that frees {but}", f"a = (F_hold - F) / m; {bound}"
+        numbers = *shocks, error / keys.mass
+        answers.append(LifeRow(Name.FREED, FREE, subject, *numbers, "m s-2", form, "stiction.life.freeing"))
     return answers
 
 
-def stopper_after_touchdowns(stopper: xr.Dataset, of: OfStopper) -> list[Answer]:
+def stopper_after_touchdowns(stopper: xr.Dataset, keys: StopperKeys) -> list[LifeRow]:
     """P(stuck) after all touchdowns in the worst given air, and the force for a small fraction stuck.
 
     The bounds are those of the 95 % band of P: what none of the patches do bounds it from above alone.
     """
-    if of.touchdowns == 1:
+    if keys.touchdowns == 1:
         return []
     once, most = (float(stopper.stuck.sel(bound=bound).max()) for bound in ("low", "high"))
     form = "P (at least) and 1 - (1 - P)^n (at most), of the 95 % band of P"
-    numbers, after = f"{of.touchdowns} touchdowns", freeing.stuck_after(most, of.touchdowns)
-    what = f"probability of sticking after {numbers}"
-    answers = [Answer("stuck_after", FREE, what, once, after, np.nan, "1", form, "stiction.life.freeing")]
+    numbers, after = f"{keys.touchdowns} touchdowns", freeing.stuck_after(most, keys.touchdowns)
+    subject = f"probability of sticking after {numbers}"
+    answers = [LifeRow("stuck_after", FREE, subject, once, after, np.nan, "1", form, "stiction.life.freeing")]
     share = float(stopper.share.max())
-    rare = freeing.probability_for(share, of.touchdowns)
+    rare = freeing.probability_for(share, keys.touchdowns)
     if stopper.sizes["sample"] >= samples_for(rare):
         few, many = (max(safe_force(row, p)[::2] for row in stopper.pull_off.values) for p in (share, rare))
-        what = f"restoring force that frees all but {one_in(share)} after {numbers}"
+        subject = f"restoring force that frees all but {one_in(share)} after {numbers}"
         form = "the same summits each time (at least); P of one = 1 - (1 - p)^(1/n) (at most)"
-        answers.append(Answer(Name.AFTER, FREE, what, few[0], many[0], few[1], "N", form, "stage stoppers"))
+        answers.append(LifeRow(Name.AFTER, FREE, subject, few[0], many[0], few[1], "N", form, "stage stoppers"))
     return answers
 
 
-def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
+def tilted_answers(tilted: xr.Dataset) -> list[LifeRow]:
     """Fraction of stoppers stuck at their tilts, the force on them, and the tilt at the transition to a wedge.
 
     At most counts every patch at the tilt at which it holds most, as if it landed at all of them.
@@ -154,7 +158,7 @@ def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
     by = f"tilted by {' to '.join(dict.fromkeys((tilts[0], tilts[-1])))}°"
     each = f"least of {len(tilts)} tilts, and each patch at its worst; " if len(tilts) > 1 else ""
     answers = [
-        Answer(
+        LifeRow(
             f"stuck_tilted_{float(humidity):g}",
             STICK,
             f"probability of sticking {by}, {Air(float(humidity)).where}",
@@ -169,11 +173,11 @@ def tilted_answers(tilted: xr.Dataset) -> list[Answer]:
     numbers = float(most["mean"][low]), float(most.largest_mean), float(most.mean_error[low])
     form = f"{each}random patches; w e / s on smooth surfaces beyond the tilt of a wedge"
     answers.append(
-        Answer(Name.TILTED, HOLD, f"mean pull-off force {by}, {air}", *numbers, "N", form, "stage tilted_stoppers")
+        LifeRow(Name.TILTED, HOLD, f"mean pull-off force {by}, {air}", *numbers, "N", form, "stage tilted_stoppers")
     )
-    what, form = "tilt beyond which a longer first side hardly holds more", "e / (f_max a), parallel patches"
+    subject, form = "tilt beyond which a longer first side hardly holds more", "e / (f_max a), parallel patches"
     numbers = float(tilted.wedge.min()), float(tilted.wedge.max()), np.nan
-    answers.append(Answer(Name.WEDGE, HOLD, what, *numbers, "rad", form, "stage tilted_stoppers"))
+    answers.append(LifeRow(Name.WEDGE, HOLD, subject, *numbers, "rad", form, "stage tilted_stoppers"))
     return answers + _freed_tilted(tilted, by, f"{each}quantile of the force, 95 %")
 
 
@@ -184,50 +188,51 @@ def _freed_tilted(tilted, by, form):
     force, most = (tilted[name].sel(share=share).max("humidity") for name in ("safe_force", "largest_safe_force"))
     low = int(force.sel(part="safe").argmin("tilt"))
     numbers = float(force.sel(part="safe")[low]), float(most.sel(part="safe")), float(force.sel(part="error")[low])
-    what = f"restoring force that frees all but {one_in(share)}, {by}"
-    return [Answer("restoring_force_tilted", FREE, what, *numbers, "N", form, "stage tilted_stoppers")]
+    subject = f"restoring force that frees all but {one_in(share)}, {by}"
+    return [LifeRow("restoring_force_tilted", FREE, subject, *numbers, "N", form, "stage tilted_stoppers")]
 
 
-def stopper_at_voltage(stopper: xr.Dataset, of: OfStopper, biased: xr.Dataset | None) -> list[Answer]:
+def stopper_at_voltage(stopper: xr.Dataset, keys: StopperKeys, biased: xr.Dataset | None) -> list[LifeRow]:
     """Force of a voltage in addition to that on a stopper, and the fraction stuck while it is on."""
-    flat = of.capacitor.largest_pressure * of.contact[0] * of.contact[1]
+    flat = keys.capacitor.largest_pressure * keys.contact[0] * keys.contact[1]
     low, error, sticking = np.nan, np.nan, []
     if biased is not None:
         gained = [mean_with_error(row) for row in (biased.pull_off - stopper.pull_off).values]
         low, error = max(gained)
         stuck = np.maximum(biased.stuck, stopper.stuck)
         worst = stuck.isel(humidity=int(stuck.sel(bound="estimate").argmax("humidity")))
-        what = f"probability of sticking while {of.potential:g} V are on, {Air(float(worst.humidity)).where}"
+        subject = f"probability of sticking while {keys.potential:g} V are on, {Air(float(worst.humidity)).where}"
         numbers = *map(float, worst.sel(bound=["low", "high"])), np.nan
         sticking = [
-            Answer(
+            LifeRow(
                 "stuck_at_voltage",
                 HOLD,
-                what,
+                subject,
                 *numbers,
                 "1",
                 "as without voltage",
                 shared.HELD_BY,
             )
         ]
-    what, form = f"force that {of.potential:g} V add", "mean of rough patches (at least); ε₀ V² A / (2 D²) (at most)"
-    added = Answer(Name.AT_VOLTAGE, HOLD, what, min(low, flat), flat, error, "N", form, shared.HELD_BY)
-    return [added, *sticking, shared.field_in_dielectric(of), *_freeing_voltage(stopper, of, biased)]
+    subject = f"force that {keys.potential:g} V add"
+    form = "mean of rough patches (at least); ε₀ V² A / (2 D²) (at most)"
+    added = LifeRow(Name.AT_VOLTAGE, HOLD, subject, min(low, flat), flat, error, "N", form, shared.HELD_BY)
+    return [added, *sticking, shared.field_in_dielectric(keys), *_freeing_voltage(stopper, keys, biased)]
 
 
-def _freeing_voltage(stopper, of, biased):
+def _freeing_voltage(stopper, keys, biased):
     """Voltage below which the spring frees all but a small fraction: of flats, and of rough patches if there are any.
 
     An offset adds to the voltage, so that the voltage is lower by as much.
     """
     if (share := _fewest_bounded(stopper)) is None:
         return []
-    area, (held, error, _) = of.contact[0] * of.contact[1], _worst_force(stopper, share)
-    low, high = freeing.freeing_potential_of_flats(of.restoring_force - held, of.capacitor, area), np.nan
+    area, (holding_force, error, _) = keys.contact[0] * keys.contact[1], _worst_force(stopper, share)
+    low, high = freeing.freeing_potential_of_flats(keys.restoring_force - holding_force, keys.capacitor, area), np.nan
     if biased is not None:
         high = min(sampled_bound(row, share)[0] for row in biased.freeing_potential.values)
-    spread = error / (2 * low * area * of.capacitor.per_volt.largest_pressure) if low else np.nan
-    numbers = *(max(potential - abs(of.offset), 0.0) for potential in (low, high)), spread
-    what = f"voltage below which its spring frees all but {one_in(share)}"
+    spread = error / (2 * low * area * keys.capacitor.per_volt.largest_pressure) if low else np.nan
+    numbers = *(max(potential - abs(keys.offset), 0.0) for potential in (low, high)), spread
+    subject = f"voltage below which its spring frees all but {one_in(share)}"
     form = "V² = (F - F_hold) 2 D² / (ε₀ A), flats (at least); V² = min (p - f) / g of rough patches (at most)"
-    return [Answer(Name.FREEING, FREE, what, *numbers, "V", form, shared.HELD_BY)]
+    return [LifeRow(Name.FREEING, FREE, subject, *numbers, "V", form, shared.HELD_BY)]

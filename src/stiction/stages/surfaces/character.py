@@ -23,7 +23,7 @@ _KEPT = 20_000
 
 
 @dataclass(frozen=True)
-class Strips:
+class StripSample:
     """Sample for the surface statistics."""
 
     strips: int  #: number of strips
@@ -36,15 +36,15 @@ class Settings:
 
     seed: int
     sampling: Sampling
-    character: Strips
+    character: StripSample
     beam: Width
 
 
 def compute(heights: xr.Dataset, spectrum: xr.Dataset, surface: str, model: str, settings: Settings) -> xr.Dataset:
     """Draw strips and store their moments and summits. Draw periodic fields and store their spectra and a patch."""
     grid = settings.sampling.strips(settings.beam.width)
-    drawn = rough_surface(heights, spectrum, model, grid)
-    strips, summits = _strips(drawn, surface, settings)
+    rough = rough_surface(heights, spectrum, model, grid)
+    strips, summits = _strips(rough, surface, settings)
     field = rough_surface(heights, spectrum, model, StripGrid.periodic(FIELD, grid.spacing))
     fields = [field.draw(stream(settings.seed, "character", surface, "field", k)) for k in range(_FIELDS)]
     wavenumbers, densities = zip(*(radial_periodogram(z, grid.spacing) for z in fields), strict=True)

@@ -1,7 +1,6 @@
 """Study correlation (App. C, Fig. 19c): autocorrelation of the surfaces and their correlation lengths."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -14,19 +13,12 @@ from stiction.surface.spectrum import autocovariance, correlation_length
 _LAG = np.linspace(0, 1e-6, 401)
 
 
-@dataclass(frozen=True)
-class Settings:
-    """Settings of the study, without the spectra."""
-
-    surfaces: tuple[str, ...]  #: names
-
-
-def compute(spectra: Mapping[str, xr.Dataset], settings: Settings) -> xr.Dataset:
-    """Transform the spectra of all surfaces, Eq. (7)."""
-    targets = [parameters.spectrum_of(spectra[name]) for name in settings.surfaces]
+def compute(spectra: Mapping[str, xr.Dataset], surfaces: Sequence[str]) -> xr.Dataset:
+    """Transform the spectra of surfaces, by name, Eq. (7)."""
+    targets = [parameters.spectrum_of(spectra[name]) for name in surfaces]
     covariances = [autocovariance(target, _LAG) for target in targets]
     lengths = [correlation_length(target) for target in targets]
-    return layout(settings.surfaces, _LAG, [c / c[0] for c in covariances], lengths)
+    return layout(surfaces, _LAG, [c / c[0] for c in covariances], lengths)
 
 
 def layout(surfaces: Sequence[str], lag: np.ndarray, correlations: Sequence, lengths: Sequence[float]) -> xr.Dataset:
@@ -46,7 +38,6 @@ STAGES = (
         "studies/correlation",
         inputs=lambda plan, at: {"spectra": {name: f"spectrum/{name}" for name in plan.surfaces}},
         settings=lambda plan, at: {"surfaces": plan.surfaces},
-        kind=Settings,
         compute=compute,
         message="Autocorrelation of the surfaces (App. C).",
     ),

@@ -194,7 +194,7 @@ def _scans(estimate, notes):
 def _mode_covariance(estimate):
     """Covariance of the quantities of a measured density, `stiction.models.MODE_QUANTITIES`."""
     inspection = estimate.inspection
-    models = [(evaluation.seen(inspection, estimate.model, maps), len(maps.names)) for maps in inspection.counted]
+    models = [(evaluation.model_in(inspection, estimate.model, maps), len(maps.names)) for maps in inspection.counted]
     covariance = inspection.propagated(
         [mode_covariance(model.translation, model.overlaps, ORDERS) / count for model, count in models]
     )

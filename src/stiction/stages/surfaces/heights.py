@@ -35,9 +35,9 @@ def compute(settings: Settings) -> xr.Dataset:
         As `stiction.surface.feasible.nearest_feasible`.
     """
     feasible = nearest_feasible(settings.skewness, settings.kurtosis)
-    used = replace(settings, skewness=feasible.skewness, kurtosis=feasible.kurtosis)
+    feasible_settings = replace(settings, skewness=feasible.skewness, kurtosis=feasible.kurtosis)
     measured = Moments(settings.skewness, settings.kurtosis, feasible.distance) if feasible.distance else None
-    dataset = layout(maxent.solve(feasible.skewness, feasible.kurtosis), used, measured)
+    dataset = layout(maxent.solve(feasible.skewness, feasible.kurtosis), feasible_settings, measured)
     if measured:
         warnings.warn(substitution(dataset), stacklevel=2)
     return dataset
@@ -127,7 +127,7 @@ STAGES = (
     Stage.writing(
         "heights",
         "heights/{surface}",
-        surfaces=lambda plan: plan.scans.others,
+        surfaces=lambda plan: plan.scans.described_by_numbers,
         settings=lambda plan, at: select(Settings, plan.config["surfaces"][at.surface]),
         kind=Settings,
         compute=compute,

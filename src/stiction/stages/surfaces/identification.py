@@ -22,7 +22,7 @@ class Patches:
 
 
 @dataclass(frozen=True)
-class Summits:
+class SummitTargets:
     """Measured summit statistics."""
 
     mean_summit_radius: float  #: [m]
@@ -35,7 +35,7 @@ class Settings:
 
     seed: int
     identification: Patches
-    target: Summits
+    target: SummitTargets
     spacing: float  #: of the patches [m]
     target_spacing: float  #: at which the summits were measured [m]
 
@@ -49,14 +49,14 @@ def compute(heights: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset
         If a patch is no longer than the correlation length of the identified spectrum.
     """
     patch, summits = settings.identification.patch, settings.target
-    wanted = summits.mean_summit_radius, summits.summit_density
-    target = SummitTarget(moments(heights).rms, *wanted, settings.target_spacing)
+    statistics = summits.mean_summit_radius, summits.summit_density
+    target = SummitTarget(moments(heights).rms, *statistics, settings.target_spacing)
     grid = StripGrid(patch, patch, settings.spacing, margin=0.0)
 
-    def patches(*part):
+    def patches(*address):
         """Streams of the random numbers of all patches, the same at every call."""
         numbers = range(settings.identification.patches)
-        return lambda: (stream(settings.seed, "identification", surface, *part, k) for k in numbers)
+        return lambda: (stream(settings.seed, "identification", surface, *address, k) for k in numbers)
 
     identified = identify(target, Translation(density(heights, "NG")), grid, patches(), patches("control"))
     parameters.refuse_long_correlation(surface, identified.spectrum, {"identification.patch_um": patch})
@@ -87,7 +87,7 @@ STAGES = (
             plan.config,
             spacing_nm=plan.config["sampling"]["spacing_nm"],
             target_spacing_nm=plan.config["character"]["spacing_nm"],
-            target=select(Summits, plan.config["surfaces"][at.surface]),
+            target=select(SummitTargets, plan.config["surfaces"][at.surface]),
         ),
         kind=Settings,
         compute=compute,

@@ -37,12 +37,12 @@ class Settings:
 
 def compute(heights: xr.Dataset, spectrum: xr.Dataset, surface: str, settings: Settings) -> xr.Dataset:
     """Run the number of iterations of the settings. Store all spectra, of unit variance, and their misfits."""
-    target, wanted = parameters.spectrum_of(spectrum), settings.iteration
+    target, numbers = parameters.spectrum_of(spectrum), settings.iteration
     translation = Translation(density(heights, "NG"))
     grid = StripGrid.periodic(FIELD, settings.spacing)
-    steps = iterate(target, translation, grid, wanted.fields, stream(settings.seed, "iteration", surface))
-    kept = list(progress(islice(steps, wanted.iterations), "iterations", total=wanted.iterations))
-    underlying, periodograms = (np.array(column) for column in zip(*kept, strict=True))
+    steps = iterate(target, translation, grid, numbers.fields, stream(settings.seed, "iteration", surface))
+    iterations = list(progress(islice(steps, numbers.iterations), "iterations", total=numbers.iterations))
+    underlying, periodograms = (np.array(column) for column in zip(*iterations, strict=True))
     zeta, rings = target_rings(target, grid)
     misfits = {
         "misfit": misfit(periodograms.mean(axis=1), rings),

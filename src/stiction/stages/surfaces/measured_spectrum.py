@@ -14,7 +14,7 @@ from stiction.plan.stage import Stage, select
 from stiction.rounding import is_at_most
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import spectrum as stage_spectrum
-from stiction.stages.surfaces.spectrum import Use
+from stiction.stages.surfaces.spectrum import SpectrumUse
 from stiction.stages.surfaces.surface_flags import flagged
 from stiction.surface.neighbours import mean_height_correlations
 from stiction.surface.spectrum import uncorrelated_beyond
@@ -27,7 +27,7 @@ class Settings:
     psd: str  #: ``fitted`` (Eq. (7)) or ``tabulated``
     beyond: str  #: ``cut`` at the end of the measured spectrum, or ``continued`` to the Nyquist wave number of the grid
     spacing: float  #: of the grid on which the surface will be drawn [m]
-    use: Use
+    use: SpectrumUse
 
 
 def compute(estimate: xr.Dataset, heights: xr.Dataset, settings: Settings) -> xr.Dataset:
@@ -96,7 +96,7 @@ def cutoff_and_clipping(end: float, settings: Settings) -> tuple[float, str]:
 def _settings(plan, at):
     """Source of the spectrum of a measured surface, the strips it is used for, and the grid."""
     entry, sampling = plan.config["surfaces"][at.surface], plan.config["sampling"]
-    use = select(Use, sampling, surface=at.surface)
+    use = select(SpectrumUse, sampling, surface=at.surface)
     return select(Settings, entry, spacing_nm=sampling["spacing_nm"], use=use)
 
 

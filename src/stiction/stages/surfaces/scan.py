@@ -30,10 +30,10 @@ def compute(file: str | Path, settings: Settings) -> xr.Dataset:
     ScanError
         If the file has no usable map of heights.
     """
-    found = reading.read(file, settings.source)
-    for note in found.notes:
+    heights = reading.read(file, settings.source)
+    for note in heights.notes:
         warnings.warn(note, stacklevel=2)
-    return layout(found)
+    return layout(heights)
 
 
 def layout(file: ScanFile) -> xr.Dataset:

@@ -17,7 +17,7 @@ RESEMBLES = 2.0
 
 
 @dataclass(frozen=True)
-class Use:
+class SpectrumUse:
     """Surface and strips as users of an identified spectrum."""
 
     surface: str  #: its name
@@ -31,7 +31,7 @@ class Settings:
 
     spacing: float  #: of the grid on which the surface will be drawn [m]
     psd: CutoffSelfAffine | str  #: spectrum of the heights, used up to a factor, or ``identified``
-    identified: Use | None = None  #: what an identified spectrum is used for
+    identified: SpectrumUse | None = None  #: what an identified spectrum is used for
 
 
 def compute(heights: xr.Dataset, settings: Settings, identification: xr.Dataset | None = None) -> xr.Dataset:
@@ -67,7 +67,7 @@ def on_grid(target: Spectrum, heights: xr.Dataset, spacing: float) -> xr.Dataset
     return layout(target, underlying, spectrum_of_heights(underlying, translation, spacing), defect)
 
 
-def refuse_misuse(identification: xr.Dataset, use: Use) -> None:
+def refuse_misuse(identification: xr.Dataset, use: SpectrumUse) -> None:
     """Check an identified spectrum before anything is drawn from it.
 
     Raises
@@ -130,7 +130,7 @@ def _settings(plan, at):
     entry, sampling = plan.config["surfaces"][at.surface], plan.config["sampling"]
     if entry["psd"] == "published":
         return {"spacing_nm": sampling["spacing_nm"], "psd": entry["published_psd"]}
-    use = select(Use, sampling, surface=at.surface)
+    use = select(SpectrumUse, sampling, surface=at.surface)
     return {"spacing_nm": sampling["spacing_nm"], "psd": "identified", "identified": use}
 
 
@@ -146,7 +146,7 @@ STAGES = (
     Stage.writing(
         "spectrum",
         "spectrum/{surface}",
-        surfaces=lambda plan: plan.scans.others,
+        surfaces=lambda plan: plan.scans.described_by_numbers,
         inputs=_inputs,
         settings=_settings,
         kind=Settings,

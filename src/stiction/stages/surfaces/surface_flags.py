@@ -70,7 +70,7 @@ def limits_of(data: Mapping[str, Mapping[str, xr.Dataset]]) -> dict[str, list[Li
 
 def together(data: Mapping[str, Mapping[str, xr.Dataset]]) -> list[Limit]:
     """Flags of all measured surfaces."""
-    return [limit for found in limits_of(data).values() for limit in found]
+    return [limit for limits in limits_of(data).values() for limit in limits]
 
 
 def _limits(surface, *datasets):

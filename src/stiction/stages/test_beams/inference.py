@@ -21,7 +21,7 @@ from stiction.config.test_beams import PULL_OFFS, humidities, pulled
 from stiction.contact.air import Air
 from stiction.contact.environment import Water
 from stiction.devices import arcs, inference, risk
-from stiction.devices.inference import Counts, Discrepancy, Knowledge, Lengths
+from stiction.devices.inference import Counts, CrackData, DiscrepancyOfModel, KnownInputs
 from stiction.estimates import mean_with_error
 from stiction.plan.stage import Stage
 from stiction.stages.contact import curves
@@ -49,7 +49,7 @@ from stiction.stages.devices.uncertain_inputs import OF_BEAMS
 from stiction.streams import stream
 
 #: Inputs that are those of one device or array alone: its dimensions.
-OWN = tuple(one.name for one in OF_BEAMS if one.step)
+BEAM_SIZES = tuple(entry.name for entry in OF_BEAMS if entry.step)
 #: p value below which data count as not explained.
 UNLIKELY = 0.05
 #: Numbers of further test beams for which the gain is stated.
@@ -77,7 +77,7 @@ class CrackLengths:
 
 
 @dataclass(frozen=True)
-class Stuck:
+class StuckCounts:
     """Numbers of stuck beams of an array, one for every humidity and length."""
 
     water: Water
@@ -103,10 +103,10 @@ class Settings:
     """Settings of the update, without budgets and safe lengths."""
 
     seed: int
-    discrepancy: Discrepancy
+    discrepancy: DiscrepancyOfModel
     arrays: dict[str, DesignedBeam]  #: test beams by the name of their array
     crack_lengths: dict[str, CrackLengths]  #: by array
-    stuck: dict[str, Stuck]  #: by array
+    stuck: dict[str, StuckCounts]  #: by array
     device: DesignedBeam | None = None  #: none of a stopper
     pull_offs: dict[str, PullOffs] = field(default_factory=dict)  #: by the name of their test beams
 
@@ -149,7 +149,9 @@ class Result(NamedTuple):
     @property
     def names(self) -> list[str]:
         """Names of its inputs among those of all results."""
-        return [f"{name} of {self.owner}" if name in OWN else name for name in map(str, self.budget.input.values)]
+        return [
+            f"{name} of {self.owner}" if name in BEAM_SIZES else name for name in map(str, self.budget.input.values)
+        ]
 
     @property
     def scatter(self) -> float:
@@ -157,9 +159,9 @@ class Result(NamedTuple):
         return float(self.budget.scatter)
 
     @property
-    def own(self) -> list[str]:
+    def own_inputs(self) -> list[str]:
         """Names of the inputs of this result alone, and of the rest of the model."""
-        return [*(f"{name} of {self.owner}" for name in OWN), inference.rest(self.condition)]
+        return [*(f"{name} of {self.owner}" for name in BEAM_SIZES), inference.rest(self.condition)]
 
     @property
     def condition(self) -> str:
@@ -202,21 +204,22 @@ def compute(
     lengths = with_pull_offs(length_data(beams, responses, settings.crack_lengths), of_probes, pull_offs)
     counts = count_data([*beams, *of_tips], responses, stuck, grounds, tips)
     posterior = inference.update(prior, lengths, counts, stream(settings.seed, "test beams", "counts"))
-    device, own = responses[len(of_arrays) :], len(inputs.names)
+    device, number = responses[len(of_arrays) :], len(inputs.names)
     shown = [
-        shown_at_tips(of_device, device, own, state) for state in (inference.given_lengths(prior, lengths), posterior)
+        shown_at_tips(of_device, device, number, state)
+        for state in (inference.given_lengths(prior, lengths), posterior)
     ]
-    parts = [
-        input_dataset(prior, posterior, own + 2),
+    datasets = [
+        input_dataset(prior, posterior, number + 2),
         length_dataset(beams, responses, prior, posterior, settings),
         count_dataset(counts, posterior, stuck),
-        without_lengthening(result_dataset(of_device, device, own, prior, posterior), *shown),
+        without_lengthening(result_dataset(of_device, device, number, prior, posterior), *shown),
         further_dataset(beams, responses, of_device, device, posterior),
-        agreement_dataset(prior, lengths, counts, own),
+        agreement_dataset(prior, lengths, counts, number),
         force_dataset(probes, of_probes, pull_offs, prior, posterior),
     ]
     left_out = "; ".join(result.condition for result in every if not result.is_known)
-    merged = xr.merge(parts, combine_attrs="no_conflicts").assign_attrs(left_out=left_out)
+    merged = xr.merge(datasets, combine_attrs="no_conflicts").assign_attrs(left_out=left_out)
     return with_forces(merged, predicted) if settings.device is None else with_lengths(merged, predicted)
 
 
@@ -226,19 +229,19 @@ def middle_of(beams: Sequence[Result], of_device: Sequence[Result]) -> float:
     return float(np.mean(cracks)) if cracks else 0.0
 
 
-def common_inputs(results: Sequence[Result]) -> Knowledge:
+def common_inputs(results: Sequence[Result]) -> KnownInputs:
     """Inputs of all results and the covariance of their errors, as their budgets state it."""
     names = list(dict.fromkeys(name for result in results for name in result.names))
     covariance = np.zeros((len(names), len(names)))
     for result in results:
         at = [names.index(name) for name in result.names]
         covariance[np.ix_(at, at)] = result.budget.covariance.values
-    return Knowledge(tuple(names), np.zeros(len(names)), covariance)
+    return KnownInputs(tuple(names), np.zeros(len(names)), covariance)
 
 
 def with_discrepancy(
-    inputs: Knowledge, results: Sequence[Result], middle: float, stated: Discrepancy
-) -> tuple[Knowledge, np.ndarray]:
+    inputs: KnownInputs, results: Sequence[Result], middle: float, discrepancy: DiscrepancyOfModel
+) -> tuple[KnownInputs, np.ndarray]:
     """Prior of inputs and model, and responses of all results, with the discrepancy of `stiction.devices.inference`.
 
     The slope of the model is about a ``middle`` of u [-], that of all test beams, counted or measured.
@@ -252,50 +255,50 @@ def with_discrepancy(
         row[[inputs.names.index(name) for name in result.names]] = result.budget.slope.values
     reduced = np.array([result.reduced for result in results]) - middle
     conditions = [result.condition if result.response == S_SHAPE else None for result in results]
-    prior, responses = inference.with_discrepancy(inputs, responses, reduced, conditions, stated)
+    prior, responses = inference.with_discrepancy(inputs, responses, reduced, conditions, discrepancy)
     return prior, with_errors_of_cracks(results, responses, len(inputs.names))
 
 
-def with_errors_of_cracks(results: Sequence[Result], responses: np.ndarray, own: int) -> np.ndarray:
+def with_errors_of_cracks(results: Sequence[Result], responses: np.ndarray, number: int) -> np.ndarray:
     """Responses (n, k) with tips under the model error of the cracks of the same beams in the same air.
 
-    The first ``own`` responses are to inputs, the others to the discrepancy of the model.
+    The first ``number`` responses are to inputs, the others to the discrepancy of the model.
 
     ASSUME: an error of the model in the adhesion is that of the surfaces, and acts on tips as well, of test beams and
     of devices, measured or not.
     """
     pairs = list(zip(results, responses, strict=True))
-    cracks = {(result.owner, result.humidity): row[own:] for result, row in pairs if result.response == S_SHAPE}
+    cracks = {(result.owner, result.humidity): row[number:] for result, row in pairs if result.response == S_SHAPE}
     shared = responses.copy()
     for result, row in zip(results, shared, strict=True):
         # Tips of test beams whose cracks are not known take no part.
         if result.response == ARC and (result.owner, result.humidity) in cracks:
-            row[own:] = arcs.LENGTH_POWER / CRACK_LENGTH_POWER * cracks[result.owner, result.humidity]
+            row[number:] = arcs.LENGTH_POWER / CRACK_LENGTH_POWER * cracks[result.owner, result.humidity]
     return shared
 
 
-def shown_at_tips(of_device: Sequence[Result], responses: np.ndarray, own: int, state: Knowledge) -> np.ndarray:
+def shown_at_tips(of_device: Sequence[Result], responses: np.ndarray, number: int, state: KnownInputs) -> np.ndarray:
     """Change of ln l of tips by the expected error of the model, zero of other results (n,) [-]."""
     is_tip = np.array([result.response == ARC for result in of_device])
-    return np.where(is_tip, responses[:, own:] @ state.mean[own:], 0.0)
+    return np.where(is_tip, responses[:, number:] @ state.mean[number:], 0.0)
 
 
-def length_data(beams: Sequence[Result], responses: np.ndarray, crack_lengths: Mapping[str, CrackLengths]) -> Lengths:
+def length_data(beams: Sequence[Result], responses: np.ndarray, crack_lengths: Mapping[str, CrackLengths]) -> CrackData:
     """Measured mean crack lengths beside the computed ones.
 
     ASSUME: the crack lengths of single beams are independent; the error of a computed mean is negligible.
     """
     differences, errors, rows = [], [], []
     for beam, row in zip(beams, responses, strict=False):
-        if (at := _place(beam, crack_lengths)) is not None:
+        if (at := _number_of_humidity(beam, crack_lengths)) is not None:
             mean, std, number = (getattr(crack_lengths[beam.owner], key)[at] for key in ("mean", "std", "beams"))
             differences.append(np.log(mean / float(beam.budget.centre)))
             errors.append(std / mean / np.sqrt(number))
             rows.append(row)
-    return Lengths(np.reshape(rows, (-1, responses.shape[1])), np.array(differences), np.array(errors))
+    return CrackData(np.reshape(rows, (-1, responses.shape[1])), np.array(differences), np.array(errors))
 
 
-class PullOff(NamedTuple):
+class PullOffData(NamedTuple):
     """Mean measured pull-off force of a probe at a humidity, beside the computed one."""
 
     measured: float  #: [N]
@@ -303,7 +306,7 @@ class PullOff(NamedTuple):
     error: float  #: standard error of ln(measured / computed) by anything but inputs [-]
 
 
-def pull_off(result: Result, measured: PullOffs, stopper: xr.Dataset) -> PullOff:
+def pull_off(result: Result, measured: PullOffs, stopper: xr.Dataset) -> PullOffData:
     r"""Pull-off force of a probe at one of m humidities, with the error of the logarithm of measured over computed.
 
     From the relative scatter s of n forces and s₀ of the sampled places, the uncertainty σ by the calibration, and σ₀
@@ -322,40 +325,44 @@ def pull_off(result: Result, measured: PullOffs, stopper: xr.Dataset) -> PullOff
     ASSUME: this and the calibration may be common to all humidities: m independent errors with m times the variance are
     no smaller in any combination, by the inequality of Cauchy and Schwarz, which is the safe side.
     """
-    at, computed = measured.humidity.index(result.humidity), stopper.sel(humidity=result.humidity)
-    mean, std, places = measured.mean[at], measured.std[at], computed.pull_off.values
-    expected, error = map(float, mean_with_error(places))
-    rest = max(places.var(ddof=1) / expected**2 - (std / max(mean, expected)) ** 2, 0.0)
-    common = len(measured.humidity) * (rest + (measured.error[at] / mean) ** 2)
-    simulation = (error / expected) ** 2 + float(computed.full_contact_error) ** 2
+    at, computed_forces = measured.humidity.index(result.humidity), stopper.sel(humidity=result.humidity)
+    mean, std, forces = measured.mean[at], measured.std[at], computed_forces.pull_off.values
+    expected, error = map(float, mean_with_error(forces))
+    unexplained = max(forces.var(ddof=1) / expected**2 - (std / max(mean, expected)) ** 2, 0.0)
+    common = len(measured.humidity) * (unexplained + (measured.error[at] / mean) ** 2)
+    simulation = (error / expected) ** 2 + float(computed_forces.full_contact_error) ** 2
     variance = (std / mean) ** 2 / measured.number[at] + common + simulation
-    return PullOff(mean, expected, float(np.sqrt(variance)))
+    return PullOffData(mean, expected, float(np.sqrt(variance)))
 
 
-def with_pull_offs(lengths: Lengths, responses: np.ndarray, pull_offs: Sequence[PullOff]) -> Lengths:
+def with_pull_offs(lengths: CrackData, responses: np.ndarray, pull_offs: Sequence[PullOffData]) -> CrackData:
     """Data of crack lengths and of pull-off forces (n), with the responses of the latter (n, k)."""
-    return Lengths(
+    return CrackData(
         np.concatenate([lengths.responses, responses]),
-        np.append(lengths.differences, [np.log(one.measured / one.computed) for one in pull_offs]),
-        np.append(lengths.errors, [one.error for one in pull_offs]),
+        np.append(lengths.differences, [np.log(pull.measured / pull.computed) for pull in pull_offs]),
+        np.append(lengths.errors, [pull.error for pull in pull_offs]),
     )
 
 
-def _place(result, crack_lengths):
+def _number_of_humidity(result, crack_lengths):
     """Place of a result of test beams among the humidities with measured crack lengths of its array."""
     measured_at = crack_lengths[result.owner].humidity if result.owner in crack_lengths else ()
     return measured_at.index(result.humidity) if result.humidity in measured_at else None
 
 
-def known_counts(stuck: Mapping[str, Stuck], results: Sequence[Result]) -> dict[str, Stuck]:
+def known_counts(stuck: Mapping[str, StuckCounts], results: Sequence[Result]) -> dict[str, StuckCounts]:
     """Counts at humidities with results for every shape."""
-    known = {(result.owner, result.humidity, result.response) for result in results}
-    kept = {}
+    results_with_shape = {(result.owner, result.humidity, result.response) for result in results}
+    counts = {}
     for name, data in stuck.items():
-        at = [k for k, humidity in enumerate(data.humidity) if known >= {(name, humidity, shape) for shape in _COUNTED}]
+        at = [
+            k
+            for k, humidity in enumerate(data.humidity)
+            if results_with_shape >= {(name, humidity, shape) for shape in _COUNTED}
+        ]
         columns = ("humidity", "length", "stuck", "of")
-        kept[name] = replace(data, **{key: tuple(getattr(data, key)[k] for k in at) for key in columns})
-    return kept
+        counts[name] = replace(data, **{key: tuple(getattr(data, key)[k] for k in at) for key in columns})
+    return counts
 
 
 def _with_changes(stuck, changes):
@@ -367,7 +374,7 @@ def _with_changes(stuck, changes):
 def count_data(
     results: Sequence[Result],
     responses: np.ndarray,
-    stuck: Mapping[str, Stuck],
+    stuck: Mapping[str, StuckCounts],
     grounds: Mapping[tuple[str, str], xr.Dataset],
     tips: Mapping[tuple[str, str], xr.Dataset],
 ) -> Counts:
@@ -379,16 +386,16 @@ def count_data(
     The results (n) are those of beams and tips of test beams, the first ones with responses (n or more, k); counts are
     by array, and contacts as in `compute`.
     """
-    places = {(result.owner, result.humidity, result.response): place for place, result in enumerate(results)}
+    positions = {(result.owner, result.humidity, result.response): position for position, result in enumerate(results)}
     rows, lengths, scores = [], [], []
     for name, data in stuck.items():
         shapes = {}
         for humidity in set(data.humidity):
-            on, cracks = (name, Air(humidity).kind), results[places[name, humidity, S_SHAPE]]
+            on, cracks = (name, Air(humidity).kind), results[positions[name, humidity, S_SHAPE]]
             shapes[humidity] = lengths_and_scores(cracks, grounds[on], tips[on], data.water.at(humidity))
         for humidity, length in zip(data.humidity, data.length, strict=True):
             behind, of_humidity = shapes[humidity]
-            rows.append(responses[[places[name, humidity, shape] for shape in _COUNTED]])
+            rows.append(responses[[positions[name, humidity, shape] for shape in _COUNTED]])
             lengths.append(length - behind)
             scores.append(of_humidity)
     numbers = (np.concatenate([getattr(counted, key) for counted in stuck.values()] or [[]]) for key in ("stuck", "of"))
@@ -402,15 +409,15 @@ def lengths_and_scores(
     """Lengths of beams for an S-shaped crack and an arc (2,) [m], and the normal scores of both."""
     beam, humidity = cracks.beam.beam, cracks.humidity
     laws = shared_laws([curves.vectors(ground, humidity, water)])[0]
-    held = arcs.longest_free(*curves.tip_forces(tips, humidity, water), beam)
-    scores = [inference.lognormal(float(cracks.budget.centre), cracks.scatter), inference.score(held)]
+    longest_arcs = arcs.longest_free(*curves.tip_forces(tips, humidity, water), beam)
+    scores = [inference.lognormal(float(cracks.budget.centre), cracks.scatter), inference.score(longest_arcs)]
     return np.array([risk.HOLD * foundation_length(beam, laws), 0.0]), scores
 
 
 # Datasets
 
 
-def input_dataset(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Dataset:
+def input_dataset(prior: KnownInputs, posterior: KnownInputs, count: int) -> xr.Dataset:
     """First inputs before and after the measurement, and their combinations with or without evidence."""
     before, after = (first_inputs(state, count) for state in (prior, posterior))
     combinations = inference.combinations(before, after)
@@ -427,17 +434,19 @@ def input_dataset(prior: Knowledge, posterior: Knowledge, count: int) -> xr.Data
 
 
 def length_dataset(
-    beams: Sequence[Result], responses: np.ndarray, prior: Knowledge, posterior: Knowledge, settings: Settings
+    beams: Sequence[Result], responses: np.ndarray, prior: KnownInputs, posterior: KnownInputs, settings: Settings
 ) -> xr.Dataset:
     """Measured and computed crack lengths, and expected ones before and after the measurement.
 
     Those that were not measured, where beams were only counted, are not a number.
     """
-    own = [_measured_length(beam, settings.crack_lengths) for beam in beams]
+    measured = [_measured_length(beam, settings.crack_lengths) for beam in beams]
     lengths = {"computed": [float(beam.budget.centre) for beam in beams]}
-    lengths |= {key: [data[key] for data in own] for key in ("measured", "beam_length")}
-    numbers = {"measured_error": [data["error"] for data in own]} | _both(prior, posterior, responses[: len(beams)])
-    lengths |= {size: [getattr(beam.beam, size) for beam in beams] for size in OWN}
+    lengths |= {key: [data[key] for data in measured] for key in ("measured", "beam_length")}
+    numbers = {"measured_error": [data["error"] for data in measured]} | _both(
+        prior, posterior, responses[: len(beams)]
+    )
+    lengths |= {size: [getattr(beam.beam, size) for beam in beams] for size in BEAM_SIZES}
     numbers |= {"reduced": [beam.reduced for beam in beams]}
     numbers |= {"rest": posterior.mean[[posterior.names.index(inference.rest(beam.condition)) for beam in beams]]}
     return xr.Dataset(
@@ -455,7 +464,7 @@ def length_dataset(
 
 def _measured_length(result, crack_lengths):
     """Measured mean length, its relative standard error and the length of the beams [m], or no numbers."""
-    at = _place(result, crack_lengths)
+    at = _number_of_humidity(result, crack_lengths)
     if at is None:
         return dict.fromkeys(("measured", "error", "beam_length"), np.nan)
     data = crack_lengths[result.owner]
@@ -466,20 +475,20 @@ def _measured_length(result, crack_lengths):
 def force_dataset(
     probes: Sequence[Result],
     responses: np.ndarray,
-    pull_offs: Sequence[PullOff],
-    prior: Knowledge,
-    posterior: Knowledge,
+    pull_offs: Sequence[PullOffData],
+    prior: KnownInputs,
+    posterior: KnownInputs,
 ) -> xr.Dataset:
     """Measured and computed pull-off forces, and expected ones before and after; empty without any."""
     if not probes:
         return xr.Dataset()
-    measured, computed, errors = np.transpose(pull_offs)
+    measured, computed_forces, errors = np.transpose(pull_offs)
     numbers = {"error": errors} | _both(prior, posterior, responses)
     return xr.Dataset(
         {f"force_{name}": ("force", value, {"units": "1"}) for name, value in numbers.items()}
         | {
             "measured_force": ("force", measured, {"units": "N"}),
-            "computed_force": ("force", computed, {"units": "N"}),
+            "computed_force": ("force", computed_forces, {"units": "N"}),
         },
         coords={
             "force": [probe.condition for probe in probes],
@@ -489,7 +498,7 @@ def force_dataset(
     )
 
 
-def count_dataset(counts: Counts, posterior: Knowledge, stuck: Mapping[str, Stuck]) -> xr.Dataset:
+def count_dataset(counts: Counts, posterior: KnownInputs, stuck: Mapping[str, StuckCounts]) -> xr.Dataset:
     """Counted beams and their P(stuck) before and after the measurement, for the expected inputs."""
     rows = [(name, *row) for name, data in stuck.items() for row in zip(data.humidity, data.length, strict=True)]
     names, humidities, lengths = zip(*rows, strict=True) if rows else ((), (), ())
@@ -508,15 +517,15 @@ def count_dataset(counts: Counts, posterior: Knowledge, stuck: Mapping[str, Stuc
     )
 
 
-def first_inputs(knowledge: Knowledge, count: int) -> Knowledge:
+def first_inputs(knowledge: KnownInputs, count: int) -> KnownInputs:
     """Knowledge of the first inputs alone."""
-    return Knowledge(knowledge.names[:count], knowledge.mean[:count], knowledge.covariance[:count, :count])
+    return KnownInputs(knowledge.names[:count], knowledge.mean[:count], knowledge.covariance[:count, :count])
 
 
-def agreement_dataset(prior: Knowledge, lengths: Lengths, counts: Counts, own: int) -> xr.Dataset:
-    """Agreement of the data with inputs and model, and with the first ``own`` inputs alone."""
-    inputs = first_inputs(prior, own)
-    alone = [replace(data, responses=data.responses[..., :own]) for data in (lengths, counts)]
+def agreement_dataset(prior: KnownInputs, lengths: CrackData, counts: Counts, number: int) -> xr.Dataset:
+    """Agreement of the data with inputs and model, and with the first ``number`` inputs alone."""
+    inputs = first_inputs(prior, number)
+    alone = [replace(data, responses=data.responses[..., :number]) for data in (lengths, counts)]
     p_values = {
         "p_value": inference.p_value(prior, lengths, counts),
         "p_value_of_inputs": inference.p_value(inputs, *alone),
@@ -526,27 +535,32 @@ def agreement_dataset(prior: Knowledge, lengths: Lengths, counts: Counts, own: i
 
 def _both(prior, posterior, responses):
     """Standard deviations before, shifts and standard deviations after the measurement, of ln l."""
-    shift, after = posterior.of(responses)
-    return {"before": prior.of(responses)[1], "shift": shift, "after": after}
+    shift, after = posterior.response_moments(responses)
+    return {"before": prior.response_moments(responses)[1], "shift": shift, "after": after}
 
 
-def _quantiles(of, posterior, responses):
+def _quantiles(dimension, posterior, responses):
     """Quantiles of ln l after the measurement, less ln l as computed, by their normal scores."""
     quantiles = posterior.quantiles(responses)
-    return {f"{of}_quantile": ((of, "score"), quantiles, {"units": "1"}), "score": ("score", inference.SCORES)}
+    return {
+        f"{dimension}_quantile": ((dimension, "score"), quantiles, {"units": "1"}),
+        "score": ("score", inference.SCORES),
+    }
 
 
 def result_dataset(
-    of_device: Sequence[Result], responses: np.ndarray, own: int, prior: Knowledge, posterior: Knowledge
+    of_device: Sequence[Result], responses: np.ndarray, number: int, prior: KnownInputs, posterior: KnownInputs
 ) -> xr.Dataset:
     """Results of a device before and after the measurement: mean crack lengths, lengths of few stuck tips, forces.
 
-    The first ``own`` responses are to inputs.
+    The first ``number`` responses are to inputs.
     """
-    numbers = {"of_inputs": first_inputs(prior, own).of(responses[:, :own])[1]} | _both(prior, posterior, responses)
+    numbers = {"of_inputs": first_inputs(prior, number).response_moments(responses[:, :number])[1]} | _both(
+        prior, posterior, responses
+    )
     numbers |= {"reduced": [result.reduced for result in of_device]}
     centre = [float(result.budget.centre) for result in of_device], {"units": of_device[0].budget.centre.attrs["units"]}
-    sizes = {size: [getattr(result.beam, size) for result in of_device] for size in OWN if of_device[0].beam}
+    sizes = {size: [getattr(result.beam, size) for result in of_device] for size in BEAM_SIZES if of_device[0].beam}
     return xr.Dataset(
         {"centre": ("result", *centre)}
         | {f"own_{size}": ("result", values, {"units": "m"}) for size, values in sizes.items()}
@@ -580,7 +594,7 @@ def further_dataset(
     responses: np.ndarray,
     of_device: Sequence[Result],
     device: np.ndarray,
-    posterior: Knowledge,
+    posterior: KnownInputs,
 ) -> xr.Dataset:
     """Standard deviations of the lengths of a device if further test beams were measured.
 
@@ -590,9 +604,11 @@ def further_dataset(
     further = [(beam, row, 0.0) for beam, row in zip(beams, responses, strict=False)]
     for beam, row in zip(of_device, device, strict=True):
         if beam.response == S_SHAPE:
-            own = np.isin(posterior.names, beam.own)
-            further.append((beam, np.where(own, 0, row), float(np.linalg.norm((row * posterior.deviations)[own]))))
-    left = [
+            own_inputs = np.isin(posterior.names, beam.own_inputs)
+            further.append(
+                (beam, np.where(own_inputs, 0, row), float(np.linalg.norm((row * posterior.deviations)[own_inputs])))
+            )
+    remaining = [
         [
             [
                 inference.further_beams(posterior, target, row, np.hypot(beam.scatter / np.sqrt(n), apart))
@@ -605,7 +621,7 @@ def further_dataset(
     shape = len(of_device), len(further), len(FURTHER)
     return xr.Dataset(
         {
-            "result_after_further": (("result", "further", "beams"), np.reshape(left, shape), {"units": "1"}),
+            "result_after_further": (("result", "further", "beams"), np.reshape(remaining, shape), {"units": "1"}),
             "further_length": ("further", [LONG * float(beam.budget.centre) for beam, *_ in further], {"units": "m"}),
         },
         coords={"further": [beam.condition for beam, *_ in further], "beams": list(FURTHER)},
@@ -652,14 +668,16 @@ def with_forces(update: xr.Dataset, stopper: xr.Dataset) -> xr.Dataset:
     ASSUME: the forces of all patches shift as their mean.
     """
     safe = stopper.safe_force.sel(part="safe", drop=True).expand_dims(shape=[FORCE])
-    stated = xr.full_like(safe.isel(share=0, drop=True), float(stopper.restoring_force))
+    at_spring = xr.full_like(safe.isel(share=0, drop=True), float(stopper.restoring_force))
 
     def share(humidity, _, force, quantiles):
         """P(stuck) of a restoring force [N] at a humidity, after a shift with these quantiles."""
-        held = np.maximum(stopper.pull_off.sel(humidity=humidity).values, np.finfo(float).tiny)
-        return inference.expected_share(np.log(held / force), np.full(len(held), 1 / len(held)), -quantiles[::-1])
+        pull_offs = np.maximum(stopper.pull_off.sel(humidity=humidity).values, np.finfo(float).tiny)
+        return inference.expected_share(
+            np.log(pull_offs / force), np.full(len(pull_offs), 1 / len(pull_offs)), -quantiles[::-1]
+        )
 
-    return update.assign(_before_and_after(update, safe) | _shares(update, stated, share))
+    return update.assign(_before_and_after(update, safe) | _shares(update, at_spring, share))
 
 
 def _before_and_after(update, safe):
@@ -725,7 +743,7 @@ def _settings(plan, at):
         data["stuck"][name]["water"] = plan.air_of_devices.water(contact)
     common = {"seed": plan.config["seed"], "discrepancy": plan.config["design"]["discrepancy"]}
     common["arrays"] = {name: section_of_beam(plan.with_test_beams, name) for name in names}
-    common |= {PULL_OFFS: {name: _of_forces(one) for name, one in with_forces.items()}} if with_forces else {}
+    common |= {PULL_OFFS: {name: _of_forces(section) for name, section in with_forces.items()}} if with_forces else {}
     return data | own_section(plan, at.device) | common
 
 
@@ -735,7 +753,7 @@ def _of_forces(section):
     return {
         "humidity": [datum["humidity"] for datum in section[PULL_OFFS]],
         "mean_nN": list(map(fmean, forces)),
-        "std_nN": [stdev(some) if len(some) > 1 else 0.0 for some in forces],
+        "std_nN": [stdev(values) if len(values) > 1 else 0.0 for values in forces],
         "number": list(map(len, forces)),
         "error_nN": [datum["error_nN"] for datum in section[PULL_OFFS]],
     }
@@ -743,7 +761,7 @@ def _of_forces(section):
 
 def _forces(plan, device):
     """Forces of the probes with pull-off forces, none without any."""
-    forces = {name: f"devices/stoppers/{one['probe']}" for name, one in pulled(plan.config, device).items()}
+    forces = {name: f"devices/stoppers/{section['probe']}" for name, section in pulled(plan.config, device).items()}
     return {"forces": forces} if forces else {}
 
 
@@ -763,8 +781,8 @@ def _contacts(plan, device):
 
 def _changes(of_arrays, names):
     """Corrections to full elastic contact of some arrays, none where there are none."""
-    found = {name: corrections_of(of_arrays, name) for name in sorted(names)}
-    changes = {name: one["model_error"] for name, one in found.items() if one}
+    corrections = {name: corrections_of(of_arrays, name) for name in sorted(names)}
+    changes = {name: correction["model_error"] for name, correction in corrections.items() if correction}
     return {"changes": changes} if changes else {}
 
 

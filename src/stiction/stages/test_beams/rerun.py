@@ -56,10 +56,10 @@ def compute(
     contact with the stated inputs and that of its first samples with the errors of the update.
     """
     errors, names, rows = errors_of(update), [], []
-    for (key, budget), patch, own in zip(budgets.items(), patches, settings, strict=True):
+    for (key, budget), patch, budget_of in zip(budgets.items(), patches, settings, strict=True):
         result = Result(*key, budget, None)
         names.append(result.condition)
-        rows.append(change_of_response(result, *contacts[patch], errors, own))
+        rows.append(change_of_response(result, *contacts[patch], errors, budget_of))
     return with_reruns(update, names, rows)
 
 
@@ -76,11 +76,11 @@ def change_of_response(
     ASSUME: slopes err independently.
     """
     budget = result.budget
-    own = dict(zip(map(str, budget.input.values), (errors[name] for name in result.names), strict=True))
-    shifts = np.array(list(own.values()))
+    by_input = dict(zip(map(str, budget.input.values), (errors[name] for name in result.names), strict=True))
+    shifts = np.array(list(by_input.values()))
     linear = float(budget.slope.values @ shifts), float(np.linalg.norm(budget.slope_error.values * shifts))
     state = settings.state(first(contact, moved_contact.sizes["strip"]))
-    return *linear, *effect(state, changed(replace(state, contact=moved_contact), own), settings.responder(state))
+    return *linear, *effect(state, changed(replace(state, contact=moved_contact), by_input), settings.responder(state))
 
 
 def at_mean(
@@ -100,12 +100,14 @@ def at_mean(
         if entry.words in errors:
             step = entry.step.by(uncertainty.get(entry.key, 0.0))
             base = with_property(base, name, partial(step.moved, by=errors[entry.words]))
-    settings, drawn = in_si(Settings, base), {}
+    settings, shifted = in_si(Settings, base), {}
     for name in settings.surfaces:
         surface = description(*surfaces[name])
-        own = {key: errors[f"{key} of {name}"] for key in surface.quantities if f"{key} of {name}" in errors}
-        drawn[name] = drawn_as(moved(surface, own), settings.sampling.spacing) if own else surfaces[name]
-    return stage_contact.compute([drawn[name] for name in settings.surfaces], pair, "NG", settings)
+        surface_errors = {key: errors[f"{key} of {name}"] for key in surface.quantities if f"{key} of {name}" in errors}
+        shifted[name] = (
+            drawn_as(moved(surface, surface_errors), settings.sampling.spacing) if surface_errors else surfaces[name]
+        )
+    return stage_contact.compute([shifted[name] for name in settings.surfaces], pair, "NG", settings)
 
 
 def with_reruns(
@@ -125,8 +127,8 @@ def _cases(plan, device):
     of_devices = budgets_of(plan, device) | budgets_of_pull_offs(plan, device)
     plans = (plan, of_devices), (plan.with_test_beams, budgets_of_arrays(plan, device))
     return {
-        key: (of, Case(name.rpartition("/")[2]), name)
-        for of, budgets in plans
+        key: (plan_of_budget, Case(name.rpartition("/")[2]), name)
+        for plan_of_budget, budgets in plans
         for key, name in budgets.items()
         if len(key) == 2
     }
@@ -135,17 +137,17 @@ def _cases(plan, device):
 def _inputs(plan, at):
     """Update, the budgets, and the surfaces and contacts with the stated inputs."""
     cases = _cases(plan, at.device)
-    patches = {patch_of(of, case): (of, case) for of, case, _ in cases.values()}
+    patches = {patch_of(case_plan, case): (case_plan, case) for case_plan, case, _ in cases.values()}
     sides = dict.fromkeys(side for patch in patches for side in plan.sides(patch.pair))
     ratios = {
-        patch_of(of, case).name: ratio
-        for of, case, _ in cases.values()
-        for ratio in corrections_of(of, case.device, case.humidity).values()
+        patch_of(case_plan, case).name: ratio
+        for case_plan, case, _ in cases.values()
+        for ratio in corrections_of(case_plan, case.device, case.humidity).values()
     }
     return {
         "updated": f"devices/test_beams/{at.device}",
         "budgets": {key: name for key, (*_, name) in cases.items()},
-        "contacts": {patch.name: contact_of(of, case) for patch, (of, case) in patches.items()},
+        "contacts": {patch.name: contact_of(case_plan, case) for patch, (case_plan, case) in patches.items()},
         "by_levels": {patch: ratio for patch, ratio in ratios.items() if "/devices/" in ratio},  # of another stage
         "model_errors": {patch: ratio for patch, ratio in ratios.items() if "/devices/" not in ratio},
         "heights": {side: f"heights/{side}" for side in sides},
@@ -156,10 +158,10 @@ def _inputs(plan, at):
 def _settings(plan, at):
     """Settings of every budget with the name of its patch, and those of every contact."""
     cases = _cases(plan, at.device).values()
-    patches = [patch_of(of, case) for of, case, _ in cases]
+    patches = [patch_of(case_plan, case) for case_plan, case, _ in cases]
     at = {patch: At(**patch._asdict()) for patch in patches}  # samples as in a comparison with the first of a patch
     return {
-        "budgets": [stage_budget.settings_of(of, At(case=case))["budget"] for of, case, _ in cases],
+        "budgets": [stage_budget.settings_of(case_plan, At(case=case))["budget"] for case_plan, case, _ in cases],
         "patches": [patch.name for patch in patches],
         "contacts": {
             patch.name: [str(patch.pair), GROUND.settings(plan, at[patch], GROUND.fewer(plan, at[patch]))]
@@ -173,14 +175,14 @@ def _rerun(data, settings):
     surfaces = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
     update, uncertainty = data["updated"], settings["budgets"][0]["uncertainty"]
     errors, contacts, model_errors = errors_of(update), {}, data["by_levels"] | data["model_errors"]
-    wanted = [
-        with_correction(budget_settings(own), {"model_error": model_errors[patch]} if patch in model_errors else {})
-        for own, patch in zip(settings["budgets"], settings["patches"], strict=True)
+    budgets = [
+        with_correction(budget_settings(section), {"model_error": model_errors[patch]} if patch in model_errors else {})
+        for section, patch in zip(settings["budgets"], settings["patches"], strict=True)
     ]
     try:
-        for name, (pair, own) in settings["contacts"].items():
-            contacts[name] = data["contacts"][name], at_mean(surfaces, pair, own, errors, uncertainty)
-        return compute(update, data["budgets"], settings["patches"], contacts, wanted)
+        for name, (pair, section) in settings["contacts"].items():
+            contacts[name] = data["contacts"][name], at_mean(surfaces, pair, section, errors, uncertainty)
+        return compute(update, data["budgets"], settings["patches"], contacts, budgets)
     except (ValueError, NotConverged) as reason:
         traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code
         return with_reruns(update, refused=str(reason))

@@ -11,12 +11,12 @@ from stiction.config.merging import merged
 from stiction.config.units import NM_PER_UM
 from stiction.contact.tilt import EDGE_RADIUS, length_of_edge
 from stiction.models import SHIFTS
-from stiction.stages.contact.changes.patches import Change
+from stiction.stages.contact.changes.patches import PatchChange
 
 
-def _with_radius(plan: Any, at: Any, place: Any) -> dict[str, Any]:
+def _with_radius(plan: Any, at: Any, patch_kind: Any) -> dict[str, Any]:
     """Settings of a contact of tips with less or more of the radius of their edge."""
-    settings = place.settings(plan, at, place.fewer(plan, at))
+    settings = patch_kind.settings(plan, at, patch_kind.fewer(plan, at))
     tilt, sampling = settings["tilt"], settings["sampling"]
     ends, reach = EDGE_RADIUS.step.ends(tilt["radius_um"]), tilt["reach_nm"] / NM_PER_UM
     now, room = (length_of_edge(radius, reach, tilt["slopes"][-1]) for radius in (tilt["radius_um"], ends[1]))
@@ -27,4 +27,4 @@ def _with_radius(plan: Any, at: Any, place: Any) -> dict[str, Any]:
 
 
 #: The radius of a rounded edge.
-EDGE = Change(words="with {side} round edges", end="_{side}", settings=_with_radius)
+EDGE = PatchChange(words="with {side} round edges", end="_{side}", settings=_with_radius)

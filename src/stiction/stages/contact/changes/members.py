@@ -14,7 +14,7 @@ import xarray as xr
 from stiction.analysis.shifts import like
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
-from stiction.stages.contact.changes.patches import TIPS, Change, Place
+from stiction.stages.contact.changes.patches import TIPS, PatchChange, PatchKind
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import both
 
@@ -24,7 +24,7 @@ _TIPS = 3
 
 
 @dataclass(frozen=True)
-class Whole:
+class AssumedQuantities:
     """Assumed quantities of a member."""
 
     rms: float | None = None  #: [m]
@@ -35,7 +35,7 @@ class Whole:
     cutoff: float | None = None  #: [rad m⁻¹]
 
     @property
-    def stated(self) -> dict[str, float]:
+    def values(self) -> dict[str, float]:
         """Quantities with a value, by name."""
         return {name: value for name, value in vars(self).items() if value is not None}
 
@@ -44,7 +44,7 @@ class Whole:
 class Settings(pairs.Settings):
     """Settings of the contact, and the member."""
 
-    whole: Whole = Whole()
+    whole: AssumedQuantities = AssumedQuantities()
 
 
 def compute(
@@ -54,8 +54,8 @@ def compute(
 
     The two surfaces and the pair are as in stage contact.
     """
-    own = description(*surfaces[settings.surfaces.index(surface)])
-    member = drawn_as(like(own, settings.whole.stated), settings.sampling.spacing)
+    original = description(*surfaces[settings.surfaces.index(surface)])
+    member = drawn_as(like(original, settings.whole.values), settings.sampling.spacing)
     sides = [member if name == surface else same for name, same in zip(settings.surfaces, surfaces, strict=True)]
     return stage_contact.compute(sides, pair, "NG", settings)
 
@@ -76,22 +76,22 @@ _KEYS = {
 }
 
 
-def samples_on(place: Place, plan: Any, at: Any) -> int:
+def samples_on(patch_kind: PatchKind, plan: Any, at: Any) -> int:
     """Number of samples on a member: of tips more than on changed surfaces, but no more than on the unchanged one."""
-    fewer = place.fewer(plan, at)
-    return min(_TIPS * fewer, place.samples(plan, at)) if place is TIPS else fewer
+    fewer = patch_kind.fewer(plan, at)
+    return min(_TIPS * fewer, patch_kind.samples(plan, at)) if patch_kind is TIPS else fewer
 
 
-def _settings(plan, at, place):
+def _settings(plan, at, patch_kind):
     """Settings of a patch, and the numbers of the member with as many digits as those of surfaces in normal form."""
     member = plan.devices.members_of(at.surface)[at.member]
-    whole = {_KEYS[word]: float(f"{value:.9g}") for word, value in member.items()}
-    return place.settings(plan, at, samples_on(place, plan, at)) | {"whole": whole}
+    quantities = {_KEYS[word]: float(f"{value:.9g}") for word, value in member.items()}
+    return patch_kind.settings(plan, at, samples_on(patch_kind, plan, at)) | {"whole": quantities}
 
 
 #: A whole typical surface in place of one surface.
-MEMBER = Change(
-    words="with {member} in place of what is assumed of {surface}",
+MEMBER = PatchChange(
+    words="with {member} in place of the partly assumed {surface}",
     end="_{surface}_like_{member}",
     settings=_settings,
     kind=Settings,

@@ -14,7 +14,7 @@ from stiction.models import SHIFTS
 from stiction.plan.stage import Running
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
-from stiction.stages.contact.changes.patches import Change
+from stiction.stages.contact.changes.patches import PatchChange
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import both
 
@@ -48,14 +48,14 @@ def moment(dataset: xr.Dataset) -> float:
     return float(dataset.moment)
 
 
-def _with_moments(plan, at, place):
+def _with_moments(plan, at, patch_kind):
     """Settings with the number of samples, the moments and their step of Fig. 13."""
     study = plan.config["studies"]["sensitivity"]
-    return place.settings(plan, at, study["samples"]) | {"moments": plan.shifted_moments, "step": study["step"]}
+    return patch_kind.settings(plan, at, study["samples"]) | {"moments": plan.shifted_moments, "step": study["step"]}
 
 
 #: Each moment of the surface of the beam. The longest job begins early, so that no core waits for it at the end.
-MOMENTS = Change(
+MOMENTS = PatchChange(
     words="with less and more of each moment (Fig. 13)",
     end="_{each}",
     each=lambda plan: [f"{moment}_{shift}" for moment in plan.shifted_moments for shift in SHIFTS],

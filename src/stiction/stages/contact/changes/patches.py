@@ -14,7 +14,7 @@ from stiction.stages.surfaces.rough_surfaces import surface_inputs
 
 
 @dataclass(frozen=True, eq=False)
-class Place:
+class PatchKind:
     """Kind of patch for the contact of the two surfaces of a pair."""
 
     file: str  #: patch in the names of files
@@ -71,28 +71,30 @@ def _size_of_tilted(plan, at):
 
 
 #: Strips along the beam, as in the paper.
-STRIPS = Place("{pair}", "", lambda plan, at: {}, changed=_changed_strips)
+STRIPS = PatchKind("{pair}", "", lambda plan, at: {}, changed=_changed_strips)
 #: Patch on which a device sticks: strips of another size, or the whole area of a stopper.
-GROUND = Place("{pair}_{length}x{width}", ", {length} x {width} nm,", _size_of_ground, _samples)
+GROUND = PatchKind("{pair}_{length}x{width}", ", {length} x {width} nm,", _size_of_ground, _samples)
 #: Tilted strips that hold the tips of cantilevers, one for each beam.
-TIPS = Place(
+TIPS = PatchKind(
     GROUND.file,
     f"{GROUND.words} at the tips of beams,",
     _size_of_tips,
     lambda plan, _at: plan.config["design"]["beams"],
 )
 #: Area in which a tilted stopper touches.
-TILTED = Place(GROUND.file, f"{GROUND.words} of tilted stoppers,", _size_of_tilted)
+TILTED = PatchKind(GROUND.file, f"{GROUND.words} of tilted stoppers,", _size_of_tilted)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class Change:
+class PatchChange:
     """Change of the contact of a patch."""
 
-    settings: Callable[[Any, Any, Place], dict]  #: by the plan, the wildcards and the kind of patch
+    settings: Callable[[Any, Any, PatchKind], dict]  #: by the plan, the wildcards and the kind of patch
     kind: type | None = Settings  #: dataclass of the settings
     #: By the plan, the wildcards, and a function that names the contact of the patch with another change.
-    inputs: Callable[[Any, Any, Callable], Mapping[str, Names]] = lambda plan, at, named: surface_inputs(plan, at.pair)
+    inputs: Callable[[Any, Any, Callable], Mapping[str, Names]] = lambda plan, at, name_of: surface_inputs(
+        plan, at.pair
+    )
     compute: Callable[..., Any] = contact.from_surfaces
     each: Callable[[Any], Sequence[str]] | None = None  #: ends of the names of files that one job writes, by the plan
     end: str = ""  #: of the names of files

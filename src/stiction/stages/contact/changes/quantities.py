@@ -14,7 +14,7 @@ from stiction.analysis.shifts import STEPS, bracketed
 from stiction.models import MODE_QUANTITIES, SHIFTS
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
-from stiction.stages.contact.changes.patches import Change
+from stiction.stages.contact.changes.patches import PatchChange
 from stiction.stages.surfaces import measured_heights
 from stiction.stages.surfaces.descriptions import description, drawn_as
 from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
@@ -45,7 +45,7 @@ def compute(
     if estimate is not None:
         heights = measured_heights.compute(estimate, measured_heights.Settings(surface, "measured"))
     shifted, difference = bracketed(description(heights, spectrum), quantity, settings.deviation)
-    changed = [drawn_as(one, settings.sampling.spacing) for one in shifted]
+    changed = [drawn_as(surface, settings.sampling.spacing) for surface in shifted]
     alternatives = [
         [other if name == surface else same for name, same in zip(settings.surfaces, surfaces, strict=True)]
         for other in changed
@@ -71,7 +71,7 @@ def is_large(contact: xr.Dataset, quantity: str) -> bool:
     return difference(contact) > 2 * STEPS[quantity] * (1 + 1e-9)
 
 
-def _with_estimate(plan, at, _named):
+def _with_estimate(plan, at, _name_of):
     """Two surfaces, and the estimate of the surface if one of its modes is shifted.
 
     Modes are those of the measured heights, which the surface may not have.
@@ -80,15 +80,15 @@ def _with_estimate(plan, at, _named):
     return surface_inputs(plan, at.pair) | estimate
 
 
-def _settings(plan, at, place):
+def _settings(plan, at, patch_kind):
     """Settings of a patch, with an uncertainty that is larger than the step of the quantity."""
     deviation = plan.deviation(at.surface, at.quantity)
-    own = {"deviation": deviation} if deviation > STEPS[at.quantity] else {}
-    return place.settings(plan, at, place.changed(plan, at)) | own
+    larger_step = {"deviation": deviation} if deviation > STEPS[at.quantity] else {}
+    return patch_kind.settings(plan, at, patch_kind.changed(plan, at)) | larger_step
 
 
 #: A quantity of one surface.
-QUANTITY = Change(
+QUANTITY = PatchChange(
     words="with less and more {quantity} of {surface}",
     end="_{surface}_{quantity}_{each}",
     each=lambda plan: SHIFTS,

@@ -11,15 +11,15 @@ from stiction.models import ALTERNATIVES_OF_SCANS
 from stiction.plan.stage import select
 from stiction.stages.contact import contact as stage_contact
 from stiction.stages.contact import pairs
-from stiction.stages.contact.changes.patches import Change
+from stiction.stages.contact.changes.patches import PatchChange
 from stiction.stages.surfaces import estimate as stage_estimate
 from stiction.stages.surfaces import measured_heights, measured_spectrum
 from stiction.stages.surfaces.rough_surfaces import both, surface_inputs
-from stiction.stages.surfaces.spectrum import Use
+from stiction.stages.surfaces.spectrum import SpectrumUse
 
 
 @dataclass(frozen=True)
-class Source:
+class EstimateParts:
     """Parts taken from an estimate."""
 
     heights: str  #: ``moments`` or ``measured``
@@ -31,7 +31,7 @@ class Source:
 class Settings(pairs.Settings):
     """Settings of the contact, and the sources of the measured surfaces."""
 
-    sources: dict[str, Source]  #: of the measured surfaces, by name
+    sources: dict[str, EstimateParts]  #: of the measured surfaces, by name
 
 
 def compute(
@@ -67,12 +67,12 @@ def _otherwise(name, estimate, choice, settings):
         source = replace(source, beyond="cut")  # as is no power law that could go on
     heights = measured_heights.compute(estimate, measured_heights.Settings(name, source.heights))
     sampling = settings.sampling
-    use = Use(name, sampling.strip_length, sampling.margin)
-    wanted = measured_spectrum.Settings(source.psd, source.beyond, sampling.spacing, use)
-    return heights, measured_spectrum.compute(estimate, heights, wanted)
+    use = SpectrumUse(name, sampling.strip_length, sampling.margin)
+    spectrum = measured_spectrum.Settings(source.psd, source.beyond, sampling.spacing, use)
+    return heights, measured_spectrum.compute(estimate, heights, spectrum)
 
 
-def other(source: Source, choice: str) -> Source:
+def other(source: EstimateParts, choice: str) -> EstimateParts:
     """Source with the other value of a choice.
 
     Examples
@@ -84,14 +84,14 @@ def other(source: Source, choice: str) -> Source:
     return replace(source, **{choice: second if getattr(source, choice) == first else first})
 
 
-def _with_sources(plan, at, place):
+def _with_sources(plan, at, patch_kind):
     """Settings with the sources of the measured surfaces."""
     entries = {name: plan.config["surfaces"][name] for name in plan.scans.sides(at.pair)}
-    sources = {name: select(Source, entry) for name, entry in entries.items()}
-    return place.settings(plan, at, place.fewer(plan, at)) | {"sources": sources}
+    sources = {name: select(EstimateParts, entry) for name, entry in entries.items()}
+    return patch_kind.settings(plan, at, patch_kind.fewer(plan, at)) | {"sources": sources}
 
 
-def _with_estimates(plan, at, _named):
+def _with_estimates(plan, at, _name_of):
     """Two surfaces, and the estimates of the measured ones."""
     return surface_inputs(plan, at.pair) | {
         "estimates": {name: f"estimate/{name}" for name in plan.scans.sides(at.pair)}
@@ -99,7 +99,7 @@ def _with_estimates(plan, at, _named):
 
 
 #: An option for the evaluation of scans.
-SCAN_OPTION = Change(
+SCAN_OPTION = PatchChange(
     words="with the other value of {choice}",
     end="_{choice}",
     inputs=_with_estimates,

@@ -7,14 +7,14 @@ from collections.abc import Callable
 from typing import Any
 
 from stiction.config.materials import hamaker_constants
-from stiction.contact.materials import OF_CONTACT, OF_REPLICAS, Step
+from stiction.contact.materials import OF_CONTACT, OF_REPLICAS, InputStep
 from stiction.models import SHIFTS, SIDES
 from stiction.stages.contact import contact
-from stiction.stages.contact.changes.patches import Change
+from stiction.stages.contact.changes.patches import PatchChange
 from stiction.stages.surfaces.rough_surfaces import both
 
 
-def less_or_more(settings: dict[str, Any], name: str, shift: str, step: Step) -> dict[str, Any]:
+def less_or_more(settings: dict[str, Any], name: str, shift: str, step: InputStep) -> dict[str, Any]:
     """Settings of a contact with less or more of a property, a key of ``OF_PAIRS`` in ``contact.materials``."""
     return with_property(settings, name, lambda value: step.ends(value)[SHIFTS.index(shift)])
 
@@ -48,22 +48,22 @@ def _changed(data, at, settings):
 
 
 #: A property of the material of the beam, or of surfaces that follow each other.
-SOLID = Change(
+SOLID = PatchChange(
     words="with {side} {solid_property}",
     end="_{side}",
     compute=_changed,
-    settings=lambda plan, at, place: less_or_more(
-        place.settings(plan, at, place.fewer(plan, at)),
+    settings=lambda plan, at, patch_kind: less_or_more(
+        patch_kind.settings(plan, at, patch_kind.fewer(plan, at)),
         at.solid_property,
         at.side,
         plan.devices.step(at.pair, at.solid_property),
     ),
 )
 #: The solids of a variant of the model, on surfaces drawn for it.
-VARIANT_OF_SOLIDS = Change(
+VARIANT_OF_SOLIDS = PatchChange(
     words="under variant {variant}",
     end="_{variant}",
-    settings=lambda plan, at, place: (
-        place.settings(plan, at, place.fewer(plan, at)) | plan.variants.solids(at.pair, at.variant)
+    settings=lambda plan, at, patch_kind: (
+        patch_kind.settings(plan, at, patch_kind.fewer(plan, at)) | plan.variants.solids(at.pair, at.variant)
     ),
 )

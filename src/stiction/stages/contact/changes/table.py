@@ -12,7 +12,7 @@ from stiction.stages.contact import contact
 from stiction.stages.contact.changes.edges import EDGE
 from stiction.stages.contact.changes.members import MEMBER
 from stiction.stages.contact.changes.moments import MOMENTS
-from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS, Change, Place
+from stiction.stages.contact.changes.patches import GROUND, STRIPS, TILTED, TIPS, PatchChange, PatchKind
 from stiction.stages.contact.changes.quantities import QUANTITY
 from stiction.stages.contact.changes.scan_options import SCAN_OPTION
 from stiction.stages.contact.changes.solids import SOLID, VARIANT_OF_SOLIDS
@@ -21,8 +21,8 @@ from stiction.stages.contact.pairs import Settings
 from stiction.stages.surfaces.rough_surfaces import surface_inputs
 
 #: No change.
-AS_IT_IS = Change(
-    settings=lambda plan, at, place: place.settings(plan, at, place.samples(plan, at)),
+AS_IT_IS = PatchChange(
+    settings=lambda plan, at, patch_kind: patch_kind.settings(plan, at, patch_kind.samples(plan, at)),
     running=Running(minutes=10, priority=1),
 )
 #: Rule and folder of each contact, by change and kind of patch. Strips as they are follow below.
@@ -71,33 +71,33 @@ TABLE = {
 }
 
 
-def file_of(change: Change, place: Place, **wildcards: str) -> str:
+def file_of(change: PatchChange, patch_kind: PatchKind, **wildcards: str) -> str:
     """Name of a contact."""
-    return _pattern(change, place).format(**wildcards)
+    return _pattern(change, patch_kind).format(**wildcards)
 
 
-def _pattern(change, place):
+def _pattern(change, patch_kind):
     """Name of a contact with its wildcards."""
-    _, folder = TABLE[change][place]
-    return f"{folder}/{place.file}{change.end}"
+    _, folder = TABLE[change][patch_kind]
+    return f"{folder}/{patch_kind.file}{change.end}"
 
 
-def _stage(change, place):
+def _stage(change, patch_kind):
     """Stage of a cell of the table."""
 
     def inputs(plan, at):
         """Inputs of a change, with names of contacts on this patch."""
-        return change.inputs(plan, at, lambda other, **different: file_of(other, place, **vars(at) | different))
+        return change.inputs(plan, at, lambda other, **different: file_of(other, patch_kind, **vars(at) | different))
 
-    rule, _ = TABLE[change][place]
-    takes_longer = place is not STRIPS and change.running.minutes
+    rule, _ = TABLE[change][patch_kind]
+    takes_longer = patch_kind is not STRIPS and change.running.minutes
     running = replace(change.running, minutes=120) if takes_longer else change.running
-    message = f"{change.subject} of pair {{pair}}{place.words} {change.words}"
+    message = f"{change.subject} of pair {{pair}}{patch_kind.words} {change.words}"
     return Stage.writing(
         rule,
-        _pattern(change, place),
+        _pattern(change, patch_kind),
         inputs=inputs,
-        settings=lambda plan, at: change.settings(plan, at, place),
+        settings=lambda plan, at: change.settings(plan, at, patch_kind),
         kind=change.kind,
         compute=change.compute,
         each=change.each,
@@ -137,4 +137,4 @@ OF_PAIR = (
         message="Join the contact of {model} surfaces of pair {pair} (Sec. III-A).",
     ),
 )
-STAGES = (*OF_PAIR, *(_stage(change, place) for change, row in TABLE.items() for place in row))
+STAGES = (*OF_PAIR, *(_stage(change, patch_kind) for change, row in TABLE.items() for patch_kind in row))

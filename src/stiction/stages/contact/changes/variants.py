@@ -25,7 +25,7 @@ from stiction.contact.pair import (
 from stiction.plan.stage import Running
 from stiction.progress import progress
 from stiction.stages.contact import contact as stage_contact
-from stiction.stages.contact.changes.patches import Change
+from stiction.stages.contact.changes.patches import PatchChange
 from stiction.stages.contact.pairs import Contact, SolidBySide, asperity_of, equivalent_surface, streams_of_sides
 from stiction.stages.surfaces import heights as stage_heights
 from stiction.stages.surfaces import spectrum as stage_spectrum
@@ -35,7 +35,7 @@ from stiction.surface.spectrum import CutoffSelfAffine
 
 
 @dataclass(frozen=True)
-class Surface:
+class DrawnSurface:
     """Description of one surface, for drawing it."""
 
     rms: float  #: [m]
@@ -62,12 +62,12 @@ class Settings:
     contact: Contact
     beam: Width
     pairs: dict[str, Sides]
-    surfaces: dict[str, Surface]
+    surfaces: dict[str, DrawnSurface]
     replica: Coherence | None = None  #: of the two surfaces
 
 
 @dataclass(frozen=True)
-class Solids:
+class SolidsOfPair:
     """Solids of a pair. Everything else about the contact is determined by the summits."""
 
     solid: Solid
@@ -97,7 +97,7 @@ def equivalent_under(
     """
     for name, identification in identifications.items():
         stage_spectrum.refuse_misuse(
-            identification, stage_spectrum.Use(name, changed.sampling.strip_length, changed.sampling.margin)
+            identification, stage_spectrum.SpectrumUse(name, changed.sampling.strip_length, changed.sampling.margin)
         )
     surfaces = surfaces_of(base.pairs[pair], base.surfaces, base.sampling.spacing, identifications, measured)
     return equivalent_surface(surfaces, "NG", changed)
@@ -105,7 +105,7 @@ def equivalent_under(
 
 def surfaces_of(
     sides: Sides,
-    surfaces: Mapping[str, Surface],
+    surfaces: Mapping[str, DrawnSurface],
     spacing: float,
     identifications: Mapping[str, xr.Dataset],
     measured: Mapping[str, tuple[xr.Dataset, xr.Dataset]] | None = None,
@@ -114,9 +114,9 @@ def surfaces_of(
 
     ``surfaces`` describes those without scans by name; spacing of the grid [m]; the others as in `equivalent_under`.
     """
-    known = measured or {}
+    datasets = measured or {}
     return [
-        known[name] if name in known else _datasets(surfaces[name], spacing, identifications.get(name))
+        datasets[name] if name in datasets else _datasets(surfaces[name], spacing, identifications.get(name))
         for name in (sides.beam, sides.substrate)
     ]
 
@@ -143,9 +143,9 @@ def summits_under(
     streams = streams_of_sides(changed.seed, pair)
     summits, areas = [], []
     for k in progress(range(changed.contact.samples), "surface pairs"):
-        drawn = equivalent.draw(*streams(k))
-        summits.append(equivalent.summits(drawn))
-        areas.append(equivalent.bearing_area(drawn))
+        heights = equivalent.draw(*streams(k))
+        summits.append(equivalent.summits(heights))
+        areas.append(equivalent.bearing_area(heights))
     return layout(summits, areas, equivalent.distances)
 
 
@@ -153,14 +153,14 @@ def layout(summits: Sequence[Summits], bearing_areas: Sequence[np.ndarray], grid
     """Dataset of the summits of all samples above the mean plane, found in equal areas, and of their bearing areas."""
     above = [of_sample.tops > 0 for of_sample in summits]
     tops, curvatures = (
-        np.concatenate([values[kept] for values, kept in zip(column, above, strict=True)])
+        np.concatenate([values[above_mean] for values, above_mean in zip(column, above, strict=True)])
         for column in ([of_sample.tops for of_sample in summits], [of_sample.curvatures for of_sample in summits])
     )
     return xr.Dataset(
         {
             "top": ("summit", tops.astype(np.float32), {"units": "m"}),  # drawn in single precision
             "curvature": ("summit", curvatures, {"units": "m-1"}),
-            "count": ("strip", np.array([kept.sum() for kept in above]), {"units": "1"}),
+            "count": ("strip", np.array([above_mean.sum() for above_mean in above]), {"units": "1"}),
             "area": ((), summits[0].area, {"units": "m2", "long_name": "area in which a point can be a summit"}),
             "bearing_area": (("strip", "height"), np.array(bearing_areas, np.float32), {"units": "1"}),
             "step": ((), grid.step, {"units": "m"}),
@@ -201,14 +201,16 @@ def summits_of_job(data: Mapping[str, Any], pair: str, settings: dict[str, Any])
 def arguments(data: Mapping[str, Any], pair: str, settings: dict[str, Any]) -> tuple:
     """Arguments of `equivalent_under` from the inputs and plain settings of a job."""
     measured = {name: (heights, data["spectrum"][name]) for name, heights in data["heights"].items()}
-    wanted = (in_si(Settings, part) for part in (settings["base"], merged(settings["base"], settings["changes"])))
-    return data["identifications"], pair, *wanted, measured
+    both_settings = (
+        in_si(Settings, section) for section in (settings["base"], merged(settings["base"], settings["changes"]))
+    )
+    return data["identifications"], pair, *both_settings, measured
 
 
 # Contact
 
 
-def contact_of(summits: xr.Dataset, settings: Solids) -> xr.Dataset:
+def contact_of(summits: xr.Dataset, settings: SolidsOfPair) -> xr.Dataset:
     """Contact of solids on the summits of a pair, as in stage contact."""
     model, grid = asperity_of(settings), distances(summits)
     pressures = [solid_pressure(model, sample, grid) for sample in samples_of(summits)]
@@ -218,7 +220,7 @@ def contact_of(summits: xr.Dataset, settings: Solids) -> xr.Dataset:
 
 def contact_of_islands(data: Mapping[str, Any], pair: str, settings: dict[str, Any]) -> xr.Dataset:
     """Contact of all samples with islands as asperities, from the inputs and plain settings of a job."""
-    surfaces, solids = arguments(data, pair, settings), in_si(Solids, settings["solids"])
+    surfaces, solids = arguments(data, pair, settings), in_si(SolidsOfPair, settings["solids"])
     _, _, _, changed, _ = surfaces
     islands = SurfacePair(**vars(equivalent_under(*surfaces)), asperity=asperity_of(solids))
     samples = range(changed.contact.samples)
@@ -227,20 +229,20 @@ def contact_of_islands(data: Mapping[str, Any], pair: str, settings: dict[str, A
     return stage_contact.layout(*curves, islands.distances, samples)
 
 
-def _summit_settings(plan, at, place):
+def _summit_settings(plan, at, patch_kind):
     """Settings of the summits without the variant, and its changes. Patches of devices have the samples of budgets."""
-    settings, size = plan.variants.summits(at.pair, at.variant), place.size(plan, at)
+    settings, size = plan.variants.summits(at.pair, at.variant), patch_kind.size(plan, at)
     if size:
-        size |= {"contact": {"samples": place.fewer(plan, at)}}
+        size |= {"contact": {"samples": patch_kind.fewer(plan, at)}}
     return settings | {"base": merged(settings["base"], size)}
 
 
 #: The summits under a variant of the model, which variants of the solids share.
-SUMMITS = Change(
+SUMMITS = PatchChange(
     subject="Summits",
     words="under variant {variant}",
     end="_{variant}",
-    inputs=lambda plan, at, named: inputs(plan, at),
+    inputs=lambda plan, at, name_of: inputs(plan, at),
     settings=_summit_settings,
     kind=None,
     compute=summits_of_job,
@@ -249,29 +251,29 @@ SUMMITS = Change(
 )
 
 
-def _on_summits(plan, at, named):
+def _on_summits(plan, at, name_of):
     """Summits of the first variant with the same."""
-    return {"summits": named(SUMMITS, pair=at.pair.pair, variant=plan.variants.with_summits_of(at.pair, at.variant))}
+    return {"summits": name_of(SUMMITS, pair=at.pair.pair, variant=plan.variants.with_summits_of(at.pair, at.variant))}
 
 
 #: A variant of the model: its solids on its summits.
-VARIANT = Change(
+VARIANT = PatchChange(
     words="under variant {variant}",
     end="_{variant}",
     inputs=_on_summits,
-    settings=lambda plan, at, place: plan.variants.solids(at.pair, at.variant),
-    kind=Solids,
+    settings=lambda plan, at, patch_kind: plan.variants.solids(at.pair, at.variant),
+    kind=SolidsOfPair,
     compute=contact_of,
     running=Running(),
 )
 #: A variant of the model whose asperities are islands.
-VARIANT_OF_ISLANDS = Change(
+VARIANT_OF_ISLANDS = PatchChange(
     subject="Contact of islands",
     words="under variant {variant}",
     end="_{variant}",
-    inputs=lambda plan, at, named: inputs(plan, at),
-    settings=lambda plan, at, place: (
-        _summit_settings(plan, at, place) | {"solids": plan.variants.solids(at.pair, at.variant)}
+    inputs=lambda plan, at, name_of: inputs(plan, at),
+    settings=lambda plan, at, patch_kind: (
+        _summit_settings(plan, at, patch_kind) | {"solids": plan.variants.solids(at.pair, at.variant)}
     ),
     kind=None,
     compute=contact_of_islands,

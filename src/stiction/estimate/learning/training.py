@@ -2,10 +2,11 @@
 
 Every point is a file, so that a stopped run goes on where it was:
 
-    python -m stiction.estimate.training FOLDER [SET [FIRST LAST]]
+    python -m stiction.estimate.learning.training FOLDER [SET [FIRST LAST]]
 """
 
 import sys
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -18,10 +19,10 @@ from stiction.config.cases import Case, case_id
 from stiction.config.files import load
 from stiction.config.units import from_si, in_si, to_si
 from stiction.contact import meniscus
-from stiction.contact.correction import NONE, Change, Correction, TipChanges
+from stiction.contact.correction import NONE, Correction, ElasticChange, TipChanges
 from stiction.contact.environment import Water
 from stiction.devices.arcs import longest_free, tip_slope
-from stiction.estimate.design import Law, Point, points, states
+from stiction.estimate.learning.design import Point, SurfaceLaw, points, states
 from stiction.pilot import surface
 from stiction.plan.plan import Plan
 from stiction.plan.stage import At
@@ -39,22 +40,23 @@ PAIR, DEVICE = "p", "D"
 #: Thickness of the beams [µm]: the estimate knows E t³ / h² alone.
 _THICKNESS = 2.6
 #: Humidities of which the wettest decides how long tips are.
-_HUMIDITIES = [0.5, 0.92]
+HUMIDITIES = [0.5, 0.92]
 #: Stiffnesses of the beams of a point, over its own.
 FACTORS = (0.5, 1.0, 2.0)
 
 
 @dataclass(frozen=True)
-class Effort:
+class TrainingEffort:
     """Points of a set, and numbers that decide their errors."""
 
     points: int
     seed: int
-    law: Law
+    law: SurfaceLaw
     tips: int  #: at least
     tips_by_width: float  #: width of more tips together [m]
     states: int
     every: int  #: one of so many points has full contact, in its first air
+    patches: int  #: of a stopper
     strips: tuple[int, int] = (8, 64)  #: in full contact and on summits, by default those of a run
 
     @property
@@ -66,14 +68,14 @@ class Effort:
 #: Sets of points by name: to learn from, to decide intervals, to check these, and for control numbers. Seeds of sets
 #: that check are in no other set.
 SETS = {
-    "learn_any": Effort(80, 1, Law.ANY, 20, to_si(800, "um"), 8, 2),
-    "learn_typical": Effort(96, 3, Law.TYPICAL, 20, to_si(800, "um"), 8, 1),
-    "decide_typical": Effort(50, 4, Law.TYPICAL, 40, to_si(1600, "um"), 1, 1),
-    "decide_any": Effort(50, 2, Law.ANY, 40, to_si(1600, "um"), 1, 1),
-    "check_paper": Effort(6, 5, Law.PAPER, 400, 0.0, 1, 1),
-    "check_typical": Effort(20, 11, Law.TYPICAL, 40, to_si(1600, "um"), 1, 1),
-    "check_any": Effort(20, 12, Law.ANY, 40, to_si(1600, "um"), 1, 1),
-    "control": Effort(1, 1, Law.ANY, 3, 0.0, 1, 1, (1, 1)),
+    "learn_any": TrainingEffort(80, 1, SurfaceLaw.ANY, 20, to_si(800, "um"), 8, 2, 100),
+    "learn_typical": TrainingEffort(96, 3, SurfaceLaw.TYPICAL, 20, to_si(800, "um"), 8, 1, 100),
+    "decide_typical": TrainingEffort(50, 4, SurfaceLaw.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
+    "decide_any": TrainingEffort(50, 2, SurfaceLaw.ANY, 40, to_si(1600, "um"), 1, 1, 400),
+    "check_paper": TrainingEffort(6, 5, SurfaceLaw.PAPER, 400, 0.0, 1, 1, 400),
+    "check_typical": TrainingEffort(80, 11, SurfaceLaw.TYPICAL, 40, to_si(1600, "um"), 1, 1, 400),
+    "check_any": TrainingEffort(48, 12, SurfaceLaw.ANY, 40, to_si(1600, "um"), 1, 1, 400),
+    "control": TrainingEffort(1, 1, SurfaceLaw.ANY, 3, 0.0, 1, 1, 3, (1, 1)),
 }
 #: Width of strips in full contact [m]. On B2 and Sub1 at RH 0.44, strips of 2, 4, 10 and 30 µm have ratios of 0.36,
 #: 0.35, 0.31 and 0.25 (± 0.06), and scatter alike.
@@ -93,19 +95,19 @@ def plan_of(point: Point, base: dict[str, Any]) -> Plan:
 def base() -> dict[str, Any]:
     """Configuration of the points: all that devices have by default."""
     device = {"kind": "cantilever", "pair": PAIR, "thickness_um": _THICKNESS, "gap_um": 20, "width_um": 30}
-    pair = {"beam": "S", "substrate": "T", "gap_um": 20, "humidities": _HUMIDITIES}
+    pair = {"beam": "S", "substrate": "T", "gap_um": 20, "humidities": HUMIDITIES}
     return load(
         {
             "run": {"pairs": [], "studies": []},
             "surfaces": {"S": {"rms_nm": 3, "like": "B2"}, "T": {"rms_nm": 0.2, "like": "Sub1"}},
             "pairs": {PAIR: pair},
-            "devices": {DEVICE: device | {"humidities": _HUMIDITIES}},
+            "devices": {DEVICE: device | {"humidities": HUMIDITIES}},
         }
     )
 
 
 @dataclass(frozen=True)
-class Tips:
+class TrainingTips:
     """Tips of a point on its strips."""
 
     contact: xr.Dataset
@@ -113,13 +115,13 @@ class Tips:
     device: DesignedBeam
 
     @classmethod
-    def of(cls, point: Point, plan: Plan, tips: int, seed: int) -> "Tips":
+    def of(cls, point: Point, plan: Plan, tips: int, seed: int) -> "TrainingTips":
         """Draw a number of tips."""
-        case = Case(case_id(DEVICE, _HUMIDITIES[0]))
+        case = Case(case_id(DEVICE, HUMIDITIES[0]))
         at = At(**{name: str(value) for name, value in patch_of_tips(plan, case)._asdict().items()})
         settings = replace(in_si(Settings, TIPS.settings(plan, at, tips)), seed=seed)
-        found = contact.compute(_surfaces(plan), f"estimate{point.number}", "NG", settings)
-        return cls(found, _water(plan), in_si(DesignedBeam, section_of_beam(plan, DEVICE)))
+        found = contact.compute(surfaces_of(plan), f"estimate{point.number}", "NG", settings)
+        return cls(found, water_of(plan), in_si(DesignedBeam, section_of_beam(plan, DEVICE)))
 
     def slopes(self, height: float, wetting: float, changes: TipChanges | None = None) -> np.ndarray:
         """Slopes up to which tips stick, by `FACTORS` (stiffnesses, tips) [-].
@@ -136,12 +138,12 @@ class Tips:
 
 def full_contact_of(point: Point, plan: Plan, height: float, name: str) -> dict[str, np.ndarray]:
     """Largest attractions of few tips in full contact and of more on summits, at three slopes, wetting perfectly."""
-    effort, (humidity, _) = SETS[name], air_of(height, 1.0, _water(plan).temperature)
+    effort, (humidity, _) = SETS[name], air_of(height, 1.0, water_of(plan).temperature)
     stated = tips_in_full_contact.settings_of_devices(plan, At(case=Case(case_id(PAIR, round(humidity, 4)))))
     settings = in_si(tips_in_full_contact.Settings, stated)
     own = replace(settings, strips=effort.strips[0], on_summits=effort.strips[1], seed=effort.seed)
     own = replace(own, beam=replace(own.beam, width=min(own.beam.width, _NARROW)))
-    study = tips_in_full_contact.compute_for_devices(_surfaces(plan), f"estimate{point.number}", own)
+    study = tips_in_full_contact.compute_for_devices(surfaces_of(plan), f"estimate{point.number}", own)
     full, summits = tips_in_full_contact.models_of_devices(study)
     return {"slope": study.slope.values, "full": full[:, 0], "summits": summits[:, 0]}
 
@@ -149,7 +151,7 @@ def full_contact_of(point: Point, plan: Plan, height: float, name: str) -> dict[
 def changes_of(slope: np.ndarray, full: np.ndarray, summits: np.ndarray) -> TipChanges:
     """Changes of tips that a run applies, from slopes (s,) and attractions (n, s) and (N, s)."""
     ratio, error = few_tip_ratios(full[:, None], summits[:, None], POWER_ERROR)
-    return TipChanges(slope, Change(ratio, np.ones(1), error))
+    return TipChanges(slope, ElasticChange(ratio, np.ones(1), error))
 
 
 def air_of(height: float, wetting: float, temperature: float) -> tuple[float, float]:
@@ -158,12 +160,12 @@ def air_of(height: float, wetting: float, temperature: float) -> tuple[float, fl
     return float(np.exp(-wetting * perfect / height)), float(np.arccos(wetting))
 
 
-def _water(plan):
+def water_of(plan: Plan) -> Water:
     """Water between the surfaces of the pair."""
     return in_si(Water, plan.air_of_devices.water(PAIR))
 
 
-def _surfaces(plan):
+def surfaces_of(plan: Plan) -> list[tuple[xr.Dataset, xr.Dataset]]:
     """Datasets of both surfaces."""
     return [surface(plan, name) for name in "ST"]
 
@@ -173,7 +175,7 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     effort, plan = SETS[name], plan_of(point, valid)
     airs = states(effort.states, point.number, effort.seed)
     number = effort.tips + round(effort.tips_by_width / to_si(point.width, "um"))
-    tips = Tips.of(point, plan, number, effort.seed)
+    tips = TrainingTips.of(point, plan, number, effort.seed)
     found = {"airs": airs, "slopes": np.array([tips.slopes(*air) for air in airs], np.float32)}
     if point.number % effort.every == 0:
         of_full = full_contact_of(point, plan, airs[0, 0], name)
@@ -182,14 +184,17 @@ def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:
     return found
 
 
-def train(folder: Path, name: str, chosen: range) -> None:
+#: Numbers of one point of a set, from a valid configuration.
+Computed = Callable[[Point, str, dict[str, Any]], dict[str, Any]]
+
+
+def train(folder: Path, name: str, chosen: range, valid: dict[str, Any], compute: Computed) -> None:
     """Compute all missing points of a set among the chosen ones."""
-    valid = base()
     for point in SETS[name].all:
         target = folder / name / f"{point.number:04}.npz"
         if point.number in chosen and not target.exists():
             with without_progress():
-                save(computed(point, name, valid), target)
+                save(compute(point, name, valid), target)
 
 
 def save(numbers: dict[str, Any], target: Path) -> None:
@@ -198,11 +203,11 @@ def save(numbers: dict[str, Any], target: Path) -> None:
         np.savez(file, **numbers)
 
 
-def main(folder: str, name: str = "", *ends: str) -> None:
+def main(valid: dict[str, Any], compute: Computed, folder: Path, name: str = "", *ends: str) -> None:
     """Compute all sets, or some points of one."""
     for each in [name] if name else SETS:
-        train(Path(folder), each, range(*map(int, ends)) if ends else range(SETS[each].points))
+        train(folder, each, range(*map(int, ends)) if ends else range(SETS[each].points), valid, compute)
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main(base(), computed, Path(sys.argv[1]), *sys.argv[2:])

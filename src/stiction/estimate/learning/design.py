@@ -30,6 +30,8 @@ RANGES = {
     "ln_stiffness": (1500.0, 300_000.0),
     "ln_width": (8.0, 40.0),
 }
+#: Least and largest side of the patch of a stopper [µm].
+SIDES = (1.0, 6.0)
 #: Heights of the film of water [nm]. At 300 K and perfect wetting, these are relative humidities of 0.34 and 0.92.
 FILMS = (0.96, 12.4)
 #: Slopes of spectra between corner and cut-off.
@@ -52,7 +54,7 @@ class Point:
     width: float  #: [µm]
 
 
-class Law(StrEnum):
+class SurfaceLaw(StrEnum):
     """Law of the surfaces of a set."""
 
     ANY = "any"  #: all surfaces of the ranges
@@ -60,13 +62,13 @@ class Law(StrEnum):
     PAPER = "paper"  #: those of the paper
 
 
-def points(number: int, seed: int, law: Law) -> list[Point]:
+def points(number: int, seed: int, law: SurfaceLaw) -> list[Point]:
     """First feasible points of a Sobol sequence, or those of the paper."""
-    if law is Law.PAPER:
+    if law is SurfaceLaw.PAPER:
         return _of_paper()[:number]
     found: list[Point] = []
     for row in _sobol(_COLUMNS, seed).random(1 << (3 * number).bit_length()):
-        if (point := _point(len(found), row, law is Law.TYPICAL)) is not None:
+        if (point := _point(len(found), row, law is SurfaceLaw.TYPICAL)) is not None:
             found.append(point)
         if len(found) == number:
             return found

@@ -29,7 +29,7 @@ _JITTER, _RIDGE = 1e-6, 1e-6
 
 
 @dataclass(frozen=True)
-class Rows:
+class DesignRows:
     """Rows of a design."""
 
     coordinates: np.ndarray  #: (n, c)
@@ -42,10 +42,10 @@ class Rows:
         """Weights of the rows by their noise in units of its median, which is no less than a third (n,)."""
         return 1 / np.maximum(self.noise / np.median(self.noise), 1 / 3)
 
-    def of(self, chosen: np.ndarray) -> "Rows":
+    def of(self, chosen: np.ndarray) -> "DesignRows":
         """Some of the rows (n,) bool or numbers."""
         values = {name: y[chosen] for name, y in self.values.items()}
-        return Rows(self.coordinates[chosen], values, self.surface[chosen], self.noise[chosen])
+        return DesignRows(self.coordinates[chosen], values, self.surface[chosen], self.noise[chosen])
 
 
 @dataclass(frozen=True)
@@ -76,7 +76,7 @@ def terms(standard: np.ndarray) -> np.ndarray:
     return np.column_stack([np.ones(len(standard)), standard])
 
 
-def kernel_of(rows: Rows, name: str) -> Kernel:
+def kernel_of(rows: DesignRows, name: str) -> Kernel:
     """Kernel of greatest likelihood for one quantity on one row of each surface."""
     centre, scale = rows.coordinates.mean(axis=0), rows.coordinates.std(axis=0)
     _, first = np.unique(rows.surface, return_index=True)
@@ -113,7 +113,7 @@ def nodes_of(kernel: Kernel, standard: np.ndarray, number: int) -> np.ndarray:
     return np.array(chosen)
 
 
-def coefficients(kernel: Kernel, rows: Rows, nodes: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+def coefficients(kernel: Kernel, rows: DesignRows, nodes: np.ndarray) -> dict[str, tuple[np.ndarray, np.ndarray]]:
     """Coefficients of the trend and weights of nodes (m, c) for all quantities."""
     z = kernel.standard(rows.coordinates)
     b, k = terms(z), kernel.between(z, nodes)
@@ -146,7 +146,7 @@ def group(surface: Any) -> Any:
     return surface % FOLDS
 
 
-def content_of(kernel: Kernel, rows: Rows, columns: Sequence[int], number: int) -> dict[str, Any]:
+def content_of(kernel: Kernel, rows: DesignRows, columns: Sequence[int], number: int) -> dict[str, Any]:
     """Content of a process over rows of some columns of the coordinates, that is trusted at every distance."""
     z = kernel.standard(rows.coordinates)
     nodes = z[nodes_of(kernel, z, number)]
@@ -173,7 +173,7 @@ def predicted(kernel: Kernel, content: Mapping[str, Any], at: np.ndarray) -> tup
     return values, np.sqrt(np.maximum(kernel.squares(z, nodes), 0).min(axis=1))
 
 
-def left_out(kernel: Kernel, rows: Rows, columns: Sequence[int], number: int) -> Fitted:
+def left_out(kernel: Kernel, rows: DesignRows, columns: Sequence[int], number: int) -> Fitted:
     """Process that is trusted up to the farthest row when its surface is left out."""
     errors = {name: np.empty(len(rows.surface)) for name in rows.values}
     without, farthest = [], 0.0
@@ -188,7 +188,7 @@ def left_out(kernel: Kernel, rows: Rows, columns: Sequence[int], number: int) ->
     return Fitted(rounded(content), tuple(without), errors)
 
 
-def fitted(rows: Rows, name: str, columns: Sequence[int], number: int = NODES) -> Fitted:
+def fitted(rows: DesignRows, name: str, columns: Sequence[int], number: int = NODES) -> Fitted:
     """Process over some columns of the coordinates. The quantity with this name decides the kernel."""
     rows = replace(rows, coordinates=rows.coordinates[:, columns])
     start = kernel_of(rows, name)

@@ -1,0 +1,108 @@
+r"""Force that holds a fraction of stoppers, as the estimate knows it. Plain Python, SI units.
+
+Pull-off forces F have the scores of lengths 1/F: the larger the force, the fewer stick. Full contact changes them as in
+`stiction.contact.correction`: their mean by a ratio r, and their scatter s by a power b. With the median m on summits,
+
+.. math:: \ln F = \ln m + b \ln \frac F m + \ln r + \frac{(1 - b^2) s^2}{2} .
+
+ASSUME: forces are lognormal for the mean of the powers, with the scatter from the median to the last score.
+"""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+from stiction.config.units import to_si
+from stiction.estimate.length import LengthRow, Lengths, NotLearnt, falling, known_at, most_after
+from stiction.estimate.state import OF_PATCHES, Film, PatchState
+from stiction.estimate.statistics import Heights
+from stiction.estimate.table import Surrogate
+
+
+@dataclass(frozen=True)
+class ForceRow:
+    """Restoring force below which a fraction sticks."""
+
+    fraction: float
+    force: float  #: [N]
+    intervals: dict[str, tuple[float, float]]  #: by confidence [N]
+
+    @property
+    def size(self) -> float:
+        """What a device is built to, in SI."""
+        return self.force
+
+
+def reciprocals(patch: PatchState, forces: Surrogate, full: Surrogate) -> Lengths:
+    """Reciprocals of the pull-off forces of a patch [1/N].
+
+    Raises
+    ------
+    NotLearnt
+        If the patch is beyond what was learnt.
+    """
+    change, values = (known_at(process, patch.coordinates, OF_PATCHES) for process in (full, forces))
+    return _changed(falling(values, -math.log(patch.flooded_force)), change["ratio"], max(1.0, change["power"]))
+
+
+def _changed(summits, ratio, power):
+    """Reciprocals by full contact, from the logarithm of its ratio and its power."""
+    median = summits.logarithms[0]
+    shift = median - ratio - (1 - power**2) * summits.fall**2 / 2
+    return Lengths(tuple(shift + power * (each - median) for each in summits.logarithms), power * summits.slope)
+
+
+@dataclass(frozen=True)
+class Stopper:
+    """Question about one stopper."""
+
+    name: str
+    surfaces: tuple[Heights, Heights]  #: as stated
+    members: tuple[dict[str, Heights], dict[str, Heights]]  #: as of `stiction.estimate.question.Question`
+    humidities: tuple[float, ...]  #: [-]
+    sides: tuple[float, float]  #: of its area [m]
+    force: float | None = None  #: that restores it [N]
+    touchdowns: int = 1
+    left_out: tuple[str, ...] = ()  #: keys that a run would read as well
+    averaged: bool = False
+    unit: ClassVar[str] = "uN"  #: of its size, a force
+
+    @property
+    def size(self) -> float | None:
+        """Its restoring force [N]."""
+        return self.force
+
+    @property
+    def most(self) -> float:
+        """Largest fraction that is known after all touchdowns [-]."""
+        return most_after(self.touchdowns)
+
+    @property
+    def stated(self) -> float | None:
+        """Reciprocal of its force [1/N]."""
+        return None if self.force is None else 1 / self.force
+
+    def drive(self, _modulus: float) -> float:
+        """Drive of a voltage, which it has not."""
+        return 0.0
+
+    def errors(self, table: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Part of the table with the errors of its forces."""
+        return table["stoppers"]
+
+    def lengths(self, heights: Heights, water: Film, table: Mapping[str, Any], *_tips: Surrogate | None) -> Lengths:
+        """Reciprocals of its pull-off forces on the sum of two surfaces [1/N]."""
+        learnt = table["stoppers"]
+        if self.force is not None and not self.force > 0:
+            raise ValueError(f"a restoring force must be positive, got {self.force}")
+        low, high = (to_si(end, "um") for end in learnt["sides"])
+        if not all(low <= side <= high for side in self.sides):
+            raise NotLearnt(f"sides of a stopper must be from {learnt['sides'][0]:g} to {learnt['sides'][1]:g} µm")
+        patch = PatchState(heights, water, math.prod(self.sides), table["modulus"])
+        return reciprocals(patch, *(Surrogate(**learnt[name]) for name in ("forces", "full")))
+
+    def row(self, row: LengthRow) -> ForceRow:
+        """Force by its reciprocal."""
+        ends = {name: (1 / high, 1 / low) for name, (low, high) in row.intervals.items()}
+        return ForceRow(row.fraction, 1 / row.length, ends)

@@ -1,0 +1,167 @@
+"""Errors of the estimate on surfaces that were not learnt, and the intervals that follow from them."""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+from scipy.special import betaincinv
+
+from stiction.devices.risk import CONFIDENCE
+from stiction.estimate.answer import difficulty
+from stiction.estimate.force import reciprocals
+from stiction.estimate.learning.design import Point
+from stiction.estimate.learning.patches import FOLDER
+from stiction.estimate.learning.rows import change_of, of_forces, of_tips, patches_of, states_of, stored
+from stiction.estimate.learning.training import FACTORS, changes_of
+from stiction.estimate.length import NAMES, Lengths, NotLearnt, lengths
+from stiction.estimate.table import Surrogate
+from stiction.streams import stream
+
+#: Numbers between which the rest of `stiction.estimate.answer.difficulty` is found.
+_RESTS = 1e-3, 1.0
+
+
+@dataclass(frozen=True)
+class Tested:
+    """Length of a surface that was not learnt, by its tips in full contact as of a run and by the estimate."""
+
+    surface: int
+    slope: float  #: of the estimate, NaN where it refuses
+    true: float  #: [m]
+    estimate: float  #: NaN where the estimate refuses [m]
+
+    @property
+    def is_known(self) -> bool:
+        """Whether the estimate does not refuse."""
+        return not math.isnan(self.estimate)
+
+    @property
+    def error(self) -> float:
+        """Logarithm of the true length over the estimate."""
+        return math.log(self.true / self.estimate)
+
+    def score(self, rest: float) -> float:
+        """Size of the error over its difficulty."""
+        return abs(self.error) / difficulty(self.slope, rest)
+
+
+#: Processes of tips on summits and in full contact that have not learnt a point.
+Processes = Callable[[Point], tuple[Surrogate, Surrogate]]
+
+
+def tested(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
+    """Lengths of some sets at a normal score up to -2, in the first air, by the full contact that settles."""
+    for point, numbers in stored(folder, sets):
+        if "changed" not in numbers or not np.isfinite(numbers["changed"]).all():
+            continue
+        state = states_of(point, numbers["airs"][:1], modulus)[0][FACTORS.index(1.0)]
+        true = _lengths_of(of_tips(numbers["changed"]), math.log(1.5))
+        yield _beside(point, true, score, lambda of=state, at=point: lengths(of, 1.0, *processes(at)))
+
+
+def tested_forces(folder: Path, sets: str, modulus: float, score: float, processes: Processes) -> Iterator[Tested]:
+    """Reciprocals of forces of some sets, as `tested`."""
+    for point, numbers in stored(folder / FOLDER, sets):
+        if not np.isfinite(numbers.get("ratio", np.nan)):
+            continue
+        patch, pressures = patches_of(point, numbers, modulus)[0], numbers["forces"][0].astype(float)
+        changed = change_of(numbers).of(pressures)(pressures)
+        true = _lengths_of(of_forces(changed, patch), -math.log(patch.flooded_force))
+        yield _beside(point, true, score, lambda of=patch, at=point: reciprocals(of, *processes(at)))
+
+
+def _beside(point, true, score, estimate):
+    """Tested length of a point at a score."""
+    try:
+        found = estimate()
+    except NotLearnt:
+        return Tested(point.number, math.nan, true.at(score), math.nan)
+    return Tested(point.number, found.slope, true.at(score), found.at(score))
+
+
+def _lengths_of(quantities, shift):
+    """Lengths by the quantities of tips or patches, whose logarithms are shifted."""
+    return Lengths(tuple(quantities[name] + shift for name in NAMES[:3]), quantities["slope"])
+
+
+def rest_of(found: Sequence[Tested]) -> float:
+    r"""Rest r of the difficulty, of greatest likelihood where errors are normal with a scatter in proportion to it.
+
+    It minimises :math:`\frac 1 2 \ln \overline{(\epsilon / d)^2} + \overline{\ln d}`, with :math:`d^2 = s^2 + r^2`.
+    """
+    slopes, errors = np.array([(one.slope, one.error) for one in found if one.is_known]).T
+
+    def cost(logarithm):
+        """Negative logarithm of the likelihood of one error, the scatter at its best."""
+        of_all = np.hypot(slopes, math.exp(logarithm))
+        return 0.5 * np.log(np.mean((errors / of_all) ** 2)) + np.log(of_all).mean()
+
+    ends = tuple(map(math.log, _RESTS))
+    return math.exp(minimize_scalar(cost, bounds=ends, method="bounded").x)
+
+
+def conformal(errors: np.ndarray, confidence: float) -> float:
+    """Half of a split conformal interval, from errors on surfaces (n,), infinite where they are too few."""
+    rank = math.ceil(confidence * (len(errors) + 1))
+    return float(np.sort(np.abs(errors))[rank - 1]) if rank <= len(errors) else math.inf
+
+
+def scores(found: Sequence[Tested], rest: float) -> np.ndarray:
+    """Sizes of errors over their difficulties on the surfaces that the estimate does not refuse."""
+    return np.array([one.score(rest) for one in found if one.is_known])
+
+
+def coverage(inside: int, number: int, confidence: float = 0.95) -> tuple[float, float]:
+    """Ends of the share inside, from the number of surfaces inside: C. J. Clopper, E. S. Pearson, Biometrika 26, 404.
+
+    Examples
+    --------
+    >>> [round(end, 3) for end in coverage(9, 10)]
+    [0.555, 0.997]
+    """
+    tail, out = (1 - confidence) / 2, number - inside
+    low = float(betaincinv(inside, out + 1, tail)) if inside else 0.0
+    return low, float(betaincinv(inside + 1, out, 1 - tail)) if out else 1.0
+
+
+#: Draws of a bootstrap.
+_DRAWS = 200
+
+
+def noise_of(folder: Path, sets: str, score: float) -> np.ndarray:
+    """Standard errors of the logarithm of a length as of a run, by its strips in full contact and by its tips (n, 2).
+
+    Of all points of some sets whose full contact settles. By the bootstrap: B. Efron, Ann. Stat. 7, 1 (1979).
+    """
+    found, rng = [], stream(0, "estimate", "bootstrap")
+    for _, numbers in stored(folder, sets):
+        if "changed" in numbers and np.isfinite(numbers["changed"]).all():
+            found.append((_noise_of_strips(numbers, score, rng), _noise_of_tips(numbers["changed"], score, rng)))
+    return np.array(found)
+
+
+def _noise_of_tips(slopes, score, rng):
+    """Noise of the length of tips (n,)."""
+    drawn = rng.choice(slopes, (_DRAWS, len(slopes)))
+    return float(np.std([math.log(_lengths_of(of_tips(each), 0.0).at(score)) for each in drawn]))
+
+
+def _noise_of_strips(numbers, score, rng):
+    """Noise of the length by the upper end of the change that a run applies at the slope of its tips."""
+    slope = 1 / _lengths_of(of_tips(numbers["changed"]), 0.0).at(score)
+    near = int(np.argmin(np.abs(np.log(numbers["slope"] / slope))))
+    forces = [numbers[name][:, near] for name in ("full", "summits")]
+    ratios = []
+    for _ in range(_DRAWS):
+        drawn = (rng.choice(each, len(each))[:, None] for each in forces)
+        ratios.append(changes_of(np.ones(1), *drawn).change.at_most(CONFIDENCE).ratio.item())
+    return float(np.std(np.log(ratios))) * _power(numbers["slopes"][0])
+
+
+def _power(slopes):
+    """Power with which lengths fall with attractions, from slopes of tips (FACTORS, n)."""
+    ends = [FACTORS.index(end(FACTORS)) for end in (min, max)]
+    return float(np.log(np.divide(*(np.median(slopes[k]) for k in ends))) / math.log(max(FACTORS) / min(FACTORS)))

@@ -1,0 +1,149 @@
+"""Table of the errors of the estimate: on drawn surfaces that were not learnt, and beside runs of devices.
+
+python -m stiction.estimate.learning.held_out FOLDER SAFE_LENGTHS.csv STOPPERS.csv DEVICES.yaml
+"""
+
+import csv
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import chain
+from pathlib import Path
+
+import numpy as np
+
+from stiction.config.reading import read
+from stiction.config.units import from_si
+from stiction.estimate.answer import CONFIDENCES, answer, difficulty
+from stiction.estimate.learning.design import SurfaceLaw
+from stiction.estimate.learning.errors import coverage, noise_of, scores, tested, tested_forces
+from stiction.estimate.length import NotLearnt
+from stiction.estimate.question import questions
+from stiction.estimate.table import Surrogate, content, known
+from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.devices.opening import EITHER
+
+#: Sets of drawn surfaces in words.
+SETS = {
+    "decide_typical": "like a typical surface, they decide the intervals",
+    "decide_any": "any surface, they decide the intervals",
+    "check_paper": "of the paper, in no decision",
+    "check_typical": "like a typical surface, in no decision",
+    "check_any": "any surface, in no decision",
+}
+
+
+#: Head of the tables of drawn surfaces.
+_HEAD = "| surfaces | number | refused | mean [%] | rms [%] | largest [%] | half [%] | inside 90 % | inside 95 % |"
+#: Words before both tables of drawn surfaces.
+_OF_LENGTHS = (
+    "`stiction estimate` knows cantilevers and stoppers of polysilicon in humid air at 300 K, and refuses all else. "
+    "A bridge needs energies and finite elements of its middle as well. Dry air has no film, and full contact of its "
+    "own. Below are lengths for 1 in 1000 beside those of drawn surfaces that it has not learnt, with tips changed by "
+    "full contact as in a run, on strips of at most 12 µm. The error is the logarithm of the latter over the estimate, "
+    "negative on the unsafe side. Half: median of half of the interval of 90 %. In brackets: 95 % range of the share "
+    "inside."
+)
+_OF_FORCES = (
+    "The same for forces of stoppers, of the logarithm of 1/force, so that it is negative on the unsafe side here too:"
+)
+
+
+def lines(folder: Path) -> Iterator[str]:
+    """Lines of the tables of drawn surfaces."""
+    table, *tips = known()
+    stoppers = table["stoppers"]
+    of_forces = [Surrogate(**stoppers[name]) for name in ("forces", "full")]
+    for words, test, errors, processes in (
+        (_OF_LENGTHS, tested, table, tips),
+        (_OF_FORCES, tested_forces, stoppers, of_forces),
+    ):
+        yield from (words, "", _HEAD, "|---|---|---|---|---|---|---|---|---|")
+        for name, of_set in SETS.items():
+            learnt = table["modulus"], errors["tested_score"], lambda _, of=processes: of
+            if found := list(test(folder, name, *learnt)):
+                yield _row(of_set, found, errors)
+        yield ""
+    yield from _of_noise(folder, table["tested_score"])
+
+
+def _of_noise(folder, score):
+    """Lines about the parts of the errors of lengths that are noise of the run."""
+    if len(noise := noise_of(folder, f"decide_{SurfaceLaw.TYPICAL}", score)):
+        rms, exact = 100 * np.sqrt((noise**2).mean(axis=0)), 100 * _HALF * np.median(noise[:, 0])
+        yield (
+            f"Of the errors of lengths in the first row, {rms[0]:.1f} % rms are noise of the eight strips in full "
+            f"contact of a run, and {rms[1]:.1f} % of the drawn tips, by the bootstrap. An exact estimate would still "
+            f"have half an interval of {exact:.0f} %, for it errs beside a run that errs. Intervals are in proportion "
+            "to the scatter of the tips: they are narrow in wet air and on smooth surfaces."
+        )
+        yield ""
+
+
+#: Half of an interval of 90 % of a normal value, in standard errors.
+_HALF = 1.645
+
+
+def of_runs(lengths: str, forces: str, devices: str) -> Iterator[str]:
+    """Lines of the table beside runs, whose safe lengths and forces and devices are in files. They touch down once."""
+    asked = {name: one for name, one in questions(read(devices), content()).items() if not isinstance(one, NotLearnt)}
+    yield "Beside the run of [examples/devices.yaml](../../examples/devices.yaml): lengths by beam or tip, and of"
+    yield "stoppers the simulated limit with 95 % confidence, which is above the estimate of the run:"
+    yield ""
+    yield "| run | RH | 1 in | size of the run | estimate | 90 % |"
+    yield "|---|---|---|---|---|---|"
+    for row in _read(lengths):
+        if row["device"] in asked and row["held_by"] == END_STATES[EITHER].by:
+            yield _beside(row, float(row["share"]), float(row["estimate_um"]), asked[row["device"]])
+    for row in _read(forces):
+        for share in _SHARES if row["device"] in asked and row["relative_humidity"] else ():
+            safe = float(row[f"safe_force_uN_{share:g}"])
+            yield _beside(row, share, safe, asked[row["device"]])
+
+
+#: Fractions of stoppers in the table, and units in words.
+_SHARES = (1e-2, 1e-3)
+_WORDS = {"um": "µm", "uN": "µN"}
+
+
+def _read(path):
+    """Rows of a file."""
+    with Path(path).open(encoding="utf-8", newline="") as file:
+        yield from csv.DictReader(file)
+
+
+def _beside(row, share, of_run, question):
+    """Row of one length or force of a run."""
+    once = replace(question, touchdowns=1, humidities=(float(row["relative_humidity"]),))
+    found = next(one for one in answer(once, *known()).rows if np.isclose(one.fraction, share))
+    shown, low, high = (f"{from_si(number, question.unit):.3g}" for number in (found.size, *found.intervals["90"]))
+    cells = [
+        row["device"],
+        row["relative_humidity"],
+        f"{1 / share:.0f}",
+        f"{of_run:.3g} {_WORDS[question.unit]}",
+        shown,
+    ]
+    return f"| {' | '.join([*cells, f'{low} to {high}'])} |"
+
+
+def _row(words, found, of_part):
+    """Row of one set, with the errors of a part of the table."""
+    known, rest, margins = [one for one in found if one.is_known], of_part["rest"], of_part["margins"]
+    errors = np.array([one.error for one in known])
+    halves = [margins["90"] * difficulty(one.slope, rest) for one in known]
+    numbers = [np.mean(errors), np.sqrt(np.mean(errors**2)), np.abs(errors).max(), np.median(halves)]
+    cells = [words, len(found), len(found) - len(known), *(f"{100 * number:.1f}" for number in numbers)]
+    cells += [_inside(scores(known, rest) <= margins[name]) for name in CONFIDENCES]
+    return f"| {' | '.join(map(str, cells))} |"
+
+
+def _inside(is_inside):
+    """Share of surfaces whose errors are within a margin (n,), with its range."""
+    low, high = coverage(int(is_inside.sum()), len(is_inside))
+    return f"{is_inside.sum()} of {len(is_inside)} ({100 * low:.0f} to {100 * high:.0f} %)"
+
+
+if __name__ == "__main__":
+    folder, *files = sys.argv[1:]
+    sys.stdout.writelines(f"{line}\n" for line in chain(lines(Path(folder)), of_runs(*files)))

@@ -1,0 +1,142 @@
+"""Table of the estimate from a trained design, and its errors on surfaces that were not learnt.
+
+python -m stiction.estimate.learning.make FOLDER
+"""
+
+import json
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from stiction.config.reading import paper
+from stiction.config.units import to_si
+from stiction.constants import WATER_MOLAR_VOLUME, WATER_SURFACE_ENERGY
+from stiction.estimate.answer import CHOSEN, CONFIDENCES
+from stiction.estimate.learning import patches
+from stiction.estimate.learning.design import FILMS, SurfaceLaw
+from stiction.estimate.learning.design import SIDES as SIDES_OF_PATCHES
+from stiction.estimate.learning.errors import Tested, conformal, rest_of, scores, tested, tested_forces
+from stiction.estimate.learning.fit import Fitted, fitted, group, rounded
+from stiction.estimate.learning.rows import (
+    OF_FULL,
+    OF_RATIO,
+    rows_of_full,
+    rows_of_patches,
+    rows_of_ratios,
+    rows_of_tips,
+)
+from stiction.estimate.learning.training import SETS, TrainingTips, base, full_contact_of, plan_of
+from stiction.estimate.length import normal_score
+from stiction.estimate.state import COORDINATES, OF_PATCHES
+from stiction.estimate.table import FILE, Surrogate
+from stiction.models import SIDES
+from stiction.progress import without_progress
+from stiction.run.atomic import save_text
+
+#: Temperature of the design [K].
+_TEMPERATURE = 300.0
+#: Normal score at which errors are known.
+TESTED = round(normal_score(CHOSEN), 6)
+#: Keys of the library that the estimate reads.
+_OF_LIBRARY = ("rms_nm", "skewness", "kurtosis", "psd", "published_psd")
+
+
+def table_of(folder: Path) -> dict[str, Any]:
+    """Content of the table."""
+    modulus = to_si(paper()["solid"]["young_modulus_GPa"], "GPa")
+    tips = fitted(rows_of_tips(folder, "learn", modulus), "at_2", range(len(COORDINATES)))
+    full = fitted(rows_of_full(folder, "learn", modulus), "ratio", OF_FULL, 90)
+    library = {name: {key: entry[key] for key in _OF_LIBRARY} for name, entry in paper()["surfaces"].items()}
+    table = {
+        "modulus": modulus,
+        "temperature": _TEMPERATURE,
+        "water": [WATER_SURFACE_ENERGY, WATER_MOLAR_VOLUME],
+        "library": library,
+        "pairs": {name: {side: pair[side] for side in SIDES} for name, pair in paper()["pairs"].items()},
+        "sets": {name: vars(effort) for name, effort in SETS.items()},
+        "coordinates": COORDINATES,
+        "tips": tips.content,
+        "full": full.content,
+        "stoppers": stoppers_of(folder, modulus),
+    }
+    table |= errors_of(tested, folder, modulus, tips, full)
+    control = {"slopes": control_of_slopes(), "forces": control_of_forces(), "patches": control_of_patches()}
+    return table | {"control": control}
+
+
+def stoppers_of(folder: Path, modulus: float) -> dict[str, Any]:
+    """Part of the table about stoppers."""
+    forces = fitted(rows_of_patches(folder, "learn", modulus), "at_2", range(len(OF_PATCHES)))
+    full = fitted(rows_of_ratios(folder, "learn", modulus), "ratio", OF_RATIO, 90)
+    own = {"sides": SIDES_OF_PATCHES, "coordinates": OF_PATCHES, "forces": forces.content, "full": full.content}
+    return own | errors_of(tested_forces, folder, modulus, forces, full)
+
+
+def _control_point():
+    """Point of the control numbers, its plan, and its film."""
+    (point,) = SETS["control"].all
+    return point, plan_of(point, base()), to_si(FILMS[0], "nm")
+
+
+def control_of_slopes() -> list[float]:
+    """Slopes of a few tips, by which a test sees that contacts are still those that were learnt."""
+    point, plan, height = _control_point()
+    return TrainingTips.of(point, plan, SETS["control"].tips, SETS["control"].seed).slopes(height, 1.0).ravel().tolist()
+
+
+def control_of_forces() -> list[float]:
+    """Forces of one tip in full contact at three slopes, as `control_of_slopes`."""
+    point, plan, height = _control_point()
+    return full_contact_of(point, plan, height, "control")["full"].ravel().tolist()
+
+
+def control_of_patches() -> list[float]:
+    """Pull-off pressures of a few patches, as `control_of_slopes`."""
+    point, _, height = _control_point()
+    effort = SETS["control"]
+    sides = patches.sides_of(point, effort.seed, effort.law)
+    plan = patches.plan_of(point, sides, patches.base())
+    return patches.forces_of(point, plan, np.array([height]), effort.patches, effort.seed)[0].tolist()
+
+
+#: Errors of all surfaces of some sets, as `stiction.estimate.learning.errors.tested`.
+Test = Callable[..., Iterator[Tested]]
+
+
+def errors_of(test: Test, folder: Path, modulus: float, first: Fitted, full: Fitted) -> dict[str, Any]:
+    """Numbers of the table about the errors of two processes: on summits and in full contact."""
+    of_rest = rest(test, folder, modulus, first, full)
+    of_margins = margins(test, folder, modulus, of_rest, *(Surrogate(**each.content) for each in (first, full)))
+    own = {"tested_score": TESTED, "left_out": first.scatter | full.scatter}
+    return own | {"rest": of_rest, "margins": of_margins}
+
+
+def rest(test: Test, folder: Path, modulus: float, first: Fitted, full: Fitted) -> float:
+    """Rest of the difficulty from surfaces to learn from, each with the processes that have not learnt it."""
+
+    def without(point):
+        """Processes without a point."""
+        return tuple(Surrogate(**each.without[group(point.number)]) for each in (first, full))
+
+    return round(rest_of(list(test(folder, "learn", modulus, TESTED, without))), 4)
+
+
+def margins(test: Test, folder: Path, modulus: float, of_rest: float, *processes: Surrogate) -> dict[str, float]:
+    """Half of the intervals of the logarithm of a length over its difficulty, by confidence.
+
+    The widest of those of each law, so that an interval holds for surfaces of either.
+    """
+    found = [
+        scores(list(test(folder, f"decide_{law}", modulus, TESTED, lambda _: processes)), of_rest)
+        for law in (SurfaceLaw.TYPICAL, SurfaceLaw.ANY)
+    ]
+    return {name: round(max(conformal(errors, int(name) / 100) for errors in found), 4) for name in CONFIDENCES}
+
+
+if __name__ == "__main__":
+    with without_progress():
+        content = table_of(Path(sys.argv[1]))
+    save_text(json.dumps(rounded(content), separators=(",", ":")) + "\n", FILE)

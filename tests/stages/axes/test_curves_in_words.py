@@ -1,0 +1,123 @@
+"""What curves over a roughness or a process say in the picture itself: labels, clear of the curves, and bands."""
+
+import numpy as np
+import pytest
+from drawn_curves import etched, rough
+from legends import covering
+from matplotlib.colors import to_hex
+from matplotlib.text import Text
+
+from stiction.report.axes import figures
+from stiction.report.axes.labels import Label, put
+from stiction.report.style import BUILD, panels, png
+
+
+def texts(figure):
+    """Texts inside of panels."""
+    return [text.get_text() for panel in figure.axes for text in panel.texts]
+
+
+def names(figure):
+    """Names in the legend."""
+    return [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def placed(y, *labels, level=1.0):
+    """Texts beside a line in a panel from 0 to 10 on both axes, with a curve of heights at 0, 5 and 10."""
+    figure, ((panel,),) = panels(1, 1, (3.4, 2.8))
+    panel.plot([0, 5, 10], y)
+    panel.set(xlim=(0, 10), ylim=(0, 10))
+    put(panel, level, list(labels))
+    png(figure)
+    return panel.texts
+
+
+@pytest.mark.parametrize(
+    ("y", "place"),
+    [
+        ([6, 6, 6], ("left", "top")),
+        ([4, 4, 4], ("left", "bottom")),
+        ([5.5, 1, 4], ("right", "bottom")),
+        ([4.5, 9, 6], ("right", "top")),
+    ],
+)
+def test_a_label_is_where_the_curve_is_far(y, place):
+    (text,) = placed(y, Label("required", "black"), level=5.0)
+    assert (text.get_ha(), text.get_va()) == place
+    box = text.get_window_extent().transformed(text.axes.transData.inverted())
+    height = np.interp(np.linspace(box.x0, box.x1), [0, 5, 10], y)
+    assert np.all((height < box.y0) | (height > box.y1))
+
+
+def test_labels_do_not_cover_each_other_and_one_of_a_place_is_beside_it():
+    labels = [Label("RH 0.6: 4.0 nm", "red", 4.0), Label("RH 0.9: not here", "blue"), Label("required", "black")]
+    found = placed([9, 9, 9], *labels, level=5.0)
+    boxes = [text.get_window_extent().transformed(found[0].axes.transData.inverted()) for text in found]
+    assert not any(one.overlaps(other) for k, one in enumerate(boxes) for other in boxes[:k])
+    assert 0 < min(abs(boxes[0].x0 - 4), abs(boxes[0].x1 - 4)) < 0.5
+    assert [box.y0 >= 5 or box.y1 <= 5 for box in boxes] == [True] * 3
+    assert all(0 <= box.x0 < box.x1 <= 10 for box in boxes)
+
+
+def test_a_label_stays_inside_its_panel_at_a_place_near_its_side():
+    for place in (0.3, 9.7):
+        (text,) = placed([9, 9, 9], Label("RH 0.6: 4.00 ± 0.33 nm", "red", place), level=5.0)
+        box = text.get_window_extent().transformed(text.axes.transData.inverted())
+        assert 0 <= box.x0 < box.x1 <= 10
+
+
+def test_crossings_have_their_values_and_humidities_without_one_are_named():
+    found = rough()
+    figure = figures.roughness(found)
+    assert {"RH 0.6: 4.00 ± 0.33 nm", "RH 0.8: 4.00 ± 0.40 nm", "restoring force 28 µN"} == set(texts(figure))
+    weak = figures.roughness(found.assign(required=found.required / 10).isel(crossing=[]))
+    assert set(texts(weak)) == {"RH 0.6, RH 0.8: not in this range", "restoring force 2.8 µN"}
+    strong = figures.roughness(found.assign(required=found.required * 10).isel(crossing=[]))
+    assert set(texts(strong)) == {"RH 0.6, RH 0.8: in all of this range", "restoring force 280 µN"}
+    assert covering(figure) == covering(weak) == covering(strong) == []
+    absent = next(text for text in weak.axes[0].texts if "not in" in text.get_text())
+    assert absent.get_ha() == "right", "where the curves are nearest to the required force"
+
+
+@pytest.mark.parametrize("is_beam", [False, True])
+def test_bands_of_a_process_are_named_and_do_not_overlap(is_beam):
+    figure = figures.devices(*etched(is_beam), "D")
+    assert names(figure)[-2:] == ["inner band: mean process, 95 %", "outer band: next run, 95 %"]
+    inner, below, above = (band.get_paths()[0].get_extents() for band in figure.axes[0].collections[:3])
+    assert below.y0 < inner.y0 < inner.y1 < above.y1
+    assert covering(figure) == []
+
+
+def test_the_best_setting_is_at_the_bottom_in_the_colour_of_what_to_build():
+    curve, settings = etched()
+    panel = figures.devices(curve, settings, "D").axes[0]
+    (bar,) = (one for one in panel.containers if to_hex(one[0].get_color()) == BUILD.lower())
+    (segment,) = bar[2][0].get_segments()
+    np.testing.assert_allclose(segment[:, 0], settings.best_interval.sel(who="D"))
+    ends = panel.transAxes.inverted().transform(bar[2][0].get_transform().transform(segment))
+    assert np.all((ends[:, 1] > 0) & (ends[:, 1] < 0.1)), "at the bottom axis"
+    (said,) = (text for text in texts(panel.figure) if text.startswith("best "))
+    assert said == "best 80.1 s, 95 %: 78.9 to 81 s"
+    bands = min(band.get_paths()[0].get_extents().y0 for band in panel.collections[:3])
+    above = panel.texts[[text.get_text() for text in panel.texts].index(said)]
+    png(panel.figure)
+    assert above.get_window_extent().y1 < panel.transData.transform((0, bands))[1], "clear of the bands"
+
+
+def test_that_no_setting_suffices_is_said_and_only_then():
+    curve, settings = etched()
+    said = "no setting is sure to suffice in the next run"
+    assert said not in texts(figures.devices(curve, settings, "D"))
+    none = settings.assign(sufficient=settings.sufficient * np.nan)
+    figure = figures.devices(curve, none, "D")
+    assert said in texts(figure)
+    assert "next run suffices, 95 %" not in names(figure)
+    unknown = none.assign(best=none.best * np.nan)
+    assert not {text for text in texts(figures.devices(curve, unknown, "D")) if "best" in text or text == said}
+
+
+@pytest.mark.parametrize("draw", [lambda: figures.roughness(rough(True)), lambda: figures.devices(*etched(), "D")])
+def test_text_of_curves_can_be_read_on_a_phone(draw):
+    figure = draw()
+    shown = [text for text in figure.findobj(Text) if text.get_visible() and text.get_text()]
+    assert min(text.get_fontsize() for text in shown) / 72 * 390 / figure.get_figwidth() >= 11  # pixels
