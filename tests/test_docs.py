@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import json
 import re
 import subprocess
 import sys
@@ -261,7 +262,7 @@ def test_the_readme_states_how_far_experiments_differ():
         "{} of {} lie".format(*of),
     ):
         assert text in said
-        assert re.sub(r"\d+", lambda digits: str(int(digits[0]) + 1), text) not in said, "another number is found"
+        assert re.sub(r"\d+", lambda found: f"{int(found[0]) + 1}", text) not in said, "another number is found"
 
 
 def test_the_steps_of_the_page_lead_from_the_estimate_to_the_length_to_build():

@@ -36,7 +36,9 @@ def test_the_headline_of_a_stopper_names_a_larger_force_between_its_airs_as_its_
     answer = stopper_answer(stopper, {(0.44,): BUDGETS["S1", 0.67]})
     assert answer.between.humidity == pytest.approx(0.55)
     assert answer.between.size > 1.002 * 60e-6 > answer.build, "the uncertainty of the inputs is inside"
-    grid = explorer.stopper_view(STOPPER, stopper, answer).grid
+    view = explorer.stopper_view(STOPPER, stopper, answer)
+    grid, all_airs = view.grid, float(view.words["all_airs"])
+    assert all_airs == answer.together.humidity, "where the controls have the answer for all airs"
     forces, airs = grid.safe[:, grid.share.values.index(answer.share)], np.array(grid.axes[0].values)
     inside = (airs > 0.44) & (airs < 0.67)
     assert 1e6 * answer.between.size == pytest.approx(forces[inside].max())
@@ -51,6 +53,8 @@ def test_the_headline_of_a_stopper_names_a_larger_force_between_its_airs_as_its_
 def test_no_force_is_named_of_airs_that_are_not_between_the_stated_ones(at):
     answer = stopper_answer(peaked(at))
     assert answer.between is None
+    one = stopper_answer(peaked(at).sel(humidity=[0.44]))
+    assert "all_airs" not in explorer.stopper_view(STOPPER, peaked(at).sel(humidity=[0.44]), one).words
     assert "between" not in screen.headline(answer)
 
 

@@ -96,11 +96,15 @@ def stuck_in_words(stuck: Probability) -> str:
     >>> stuck_in_words(Probability(0.18, 1e-9, 0.95)), stuck_in_words(Probability(1e-9, 0.0, 0.0037, none_seen=True))
     ('18 % (0 to 95 %)', 'at most 0.37 %')
     >>> stuck_in_words(Probability(0.002, 0.0, 0.001, none_seen=True))
-    'at most 0.1 % (95 % confidence; 0.2 % on average)'
+    'at most 0.1 % (95 % confidence; many can in the other 5 % of all cases, 0.2 % on average)'
     """
     if stuck.none_seen:
         most, mean = percent(stuck.high, "high"), percent(stuck.value)
-        more = f" (95 % confidence; {mean} on average)" if stuck.value > stuck.high and mean != most else ""
+        more = (
+            f" (95 % confidence; many can in the other 5 % of all cases, {mean} on average)"
+            if stuck.value > stuck.high and mean != most
+            else ""
+        )
         return "0 to 100 %" if stuck.high > 1 - 1e-3 else f"at most {most}{more}"
     if stuck.low > 1 - 1e-3:
         return percent(stuck.low)
