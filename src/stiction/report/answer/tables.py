@@ -35,11 +35,11 @@ def devices(answers: Mapping[str, Answer]) -> Table:
         "to build": (_size, "to_build", "unit"),
         "but": (str, "stricter"),
         "P(stuck) at the stated size": (str, "stuck"),
-        "1 in": (lambda share: number(1 / share, "g"), "share"),
+        "at most 1 in": (lambda share: number(1 / share, "g"), "share"),
         "largest step": (str, "largest_step"),
-        "measure": (str, "measure"),
-        "then": (_size, "if_measured", "unit"),
-        "no number": (str, "forbidden"),
+        "measure first": (str, "measure"),
+        "then to build": (_size, "if_measured", "unit"),
+        "no number because of": (str, "forbidden"),
     }
     rows, caption = [_row(answer) for answer in answers.values()], _CAPTION
     if any(answer.pull_offs for answer in answers.values()):
