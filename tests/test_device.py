@@ -194,7 +194,7 @@ def test_stuck_devices_have_one_layout_and_the_numbers_of_their_stages(device):
 def test_a_device_draws_the_figure_of_its_kind_and_is_described_in_one_line_and_in_a_table(device):
     stopper = stiction.Device(name="S1", results=Results.of(CONFIG))
     for one, words in ((device, "length of the device [µm]"), (stopper, "restoring force [µN]")):
-        assert words in {panel.get_xlabel() for panel in one.plot().axes}
+        assert any(panel.get_xlabel().startswith(words) for panel in one.plot().axes)
     assert repr(device) == (
         "Device C1, beam clamped at one end: thickness 2.6 µm, gap 10 µm, width 20 µm, "
         "surfaces B2 on Sub1, pair b, relative humidity 0.88"

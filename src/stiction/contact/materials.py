@@ -68,7 +68,7 @@ class InputStep:
 
         Examples
         --------
-        >>> Step(0.05).moved(2.0, np.log(1.5)), Step(0.05, relative=False).moved(2.0, 0.5)
+        >>> InputStep(0.05).moved(2.0, np.log(1.5)), InputStep(0.05, relative=False).moved(2.0, 0.5)
         (3.0, 2.5)
         """
         return float(value * np.exp(by)) if self.relative else value + by

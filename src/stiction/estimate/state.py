@@ -97,7 +97,7 @@ class TipState:
 
     @property
     def coordinates(self) -> tuple[float, ...]:
-        """Numbers on which the slope of a stuck tip depends, by `COORDINATES`, logarithms but for heights' form."""
+        """Numbers on which the slope of a stuck tip depends, by ``COORDINATES``, logarithms but for heights' form."""
         summits = _curvature(self.heights)
         return (
             *_of_contact(self.heights, self.film, self.modulus),
@@ -124,7 +124,7 @@ class PatchState:
 
     @property
     def coordinates(self) -> tuple[float, ...]:
-        """Numbers on which the pull-off force depends, by `OF_PATCHES`, as those of `TipState`."""
+        """Numbers on which the pull-off force depends, by ``OF_PATCHES``, as those of `TipState`."""
         summits = _curvature(self.heights)
         return (
             *_of_contact(self.heights, self.film, self.modulus),

@@ -215,7 +215,7 @@ def shown(found: Estimate) -> Iterator[str]:
 
 
 def chosen(found: Estimate, of: str = "") -> str:
-    """Interval of the size for `CHOSEN`, and the end to use."""
+    """Interval of the size for 1 in 1000, and the end to use."""
     (low, high), asked = found.chosen.intervals["90"], found.question
     least, most = _number(low, asked), _number(high, asked)
     safe = f"at least {most}" if isinstance(asked, Stopper) else f"at most {least}"

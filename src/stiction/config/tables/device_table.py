@@ -85,7 +85,7 @@ def in_rows(sentences: Iterable[str], of_file: DeviceRows) -> list[str]:
 
     Examples
     --------
-    >>> of_file = Rows("range.csv", {"L1": 2, "L2": 3, "L3": 4}, ["width_um"], {})
+    >>> of_file = DeviceRows("range.csv", {"L1": 2, "L2": 3, "L3": 4}, ["width_um"], {})
     >>> in_rows([f"devices.{name}.gap_um is 0, must be a number above 0" for name in of_file.numbers], of_file)
     ["devices.file is 'range.csv', rows 2 to 4: gap_um is 0, must be a number above 0"]
     >>> in_rows([f"devices.{name}.width_um is 0, must be a number above 0" for name in of_file.numbers], of_file)

@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from stiction.analysis.levels import ratio_of_means
 from stiction.config.cases import Case, case_id
 from stiction.config.files import load
 from stiction.config.units import in_si, to_si
@@ -86,10 +85,10 @@ def change_of(point: Point, plan: Plan, height: float, seed: int) -> dict[str, f
     settings = replace(settings, beam=replace(settings.beam, width=_WIDTH))
     try:
         strips = full_energy.strips_of(surfaces_of(plan), f"estimate{point.number}", settings)
-        found = ratio_of_means(strips.pull_off, full_energy.GRIDS, _ERROR, stream(seed, "full_force", point.number))
+        ratio = full_energy.ratio_of_forces(strips, _ERROR, seed, point.number)
     except (NotConverged, TooLong, ValueError):
-        found = full_energy.UNKNOWN
-    return {"ratio": found.ratio, "ratio_error": found.error, "power": found.power}
+        ratio = full_energy.UNKNOWN
+    return {"ratio": ratio.ratio, "ratio_error": ratio.error, "power": ratio.power}
 
 
 def computed(point: Point, name: str, valid: dict[str, Any]) -> dict[str, Any]:

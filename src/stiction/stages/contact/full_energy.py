@@ -193,12 +193,16 @@ def compute(surfaces: Sequence[tuple[xr.Dataset, xr.Dataset]], case: Case, setti
         energy = levels.ratio_of_means(strips.energy, GRIDS, ALLOWED, random)
         means = StripQuantities(*np.mean([strips.values[SUMMITS, k] for k in range(len(strips.resisting))], axis=0))
         if settings.forces:
-            random = stream(settings.seed, "full_force", case.pair)
-            pull_off = levels.ratio_of_means(strips.pull_off, GRIDS, OF_FORCES, random)
+            pull_off = ratio_of_forces(strips, OF_FORCES, settings.seed, case.pair)
     except (NotConverged, TooLong, ValueError) as failed:
         reason = str(failed)
     of_forces = _ratio(pull_off, ALLOWED_OF_FORCES, "pull_off_") if settings.forces else {}
     return layout(energy, means, reason).assign(of_forces)
+
+
+def ratio_of_forces(strips: Strips, error: float, seed: int, pair: str | int) -> Ratio:
+    """Ratio of the mean pull-off in full contact to that on summits, within an error, by name or number of a pair."""
+    return levels.ratio_of_means(strips.pull_off, GRIDS, error, stream(seed, "full_force", pair))
 
 
 #: Ratio that is not found.

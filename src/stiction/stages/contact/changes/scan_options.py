@@ -77,7 +77,7 @@ def other(source: EstimateParts, choice: str) -> EstimateParts:
 
     Examples
     --------
-    >>> other(Source("moments", "fitted", "cut"), "beyond")
+    >>> other(ComparedPart("moments", "fitted", "cut"), "beyond")
     Source(heights='moments', psd='fitted', beyond='continued')
     """
     first, second = ALTERNATIVES_OF_SCANS[choice]
