@@ -116,11 +116,11 @@ def _views_of_beam(name, section, data, answer):
 # Stoppers
 
 
-def _parts_of_stopper(name, section, data, _answer):
+def _parts_of_stopper(name, section, data, answer):
     """Parts of the page of a stopper."""
     stopper = data["stopper"]
     table = tables_budget.stoppers({name: stopper}, {name: []}, data.get("errors")).cells.drop(columns=["device"])
-    picture = figures_budget.stoppers({name: stopper}, {})
+    picture = figures_budget.stoppers({name: stopper}, {}, {name: answer})
     sections = [Section("By simulation alone", (_SIMULATED,), table, picture)]
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
     texts_of_forces = [*sentences.safe_force_sentences(stopper), *worst]
