@@ -28,6 +28,14 @@ def test_a_device_is_drawn_in_the_state_that_decides(tmp_path, config, by_tip, d
     assert drawn in page
 
 
+@pytest.mark.parametrize("tone", ["bad", "open"])
+def test_a_card_has_the_tone_of_its_verdict(tmp_path, config, tone):  # noqa: ARG001
+    card = f'<section class="card {tone}">'
+    assert card not in index.index(tmp_path, []), "the control: without a verdict"
+    (tmp_path / "tables" / "devices.csv").write_text(f"device,tone\nC1,{tone}\n")
+    assert card in index.index(tmp_path, [])
+
+
 def test_surfaces_of_pairs_that_were_not_computed_are_not_listed(tmp_path, config):
     own, others = ({config["pairs"][pair][side] for side in SIDES} for pair in ("b", "c"))
     assert others - own, "pair c has a surface that the device has not"

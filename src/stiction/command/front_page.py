@@ -122,11 +122,11 @@ def _first_results(results, config):
                 yield f"{stage.shown.category} › {title.format(device=device)}"
 
 
-def warnings(results: Present, config: Mapping[str, Any]) -> Iterator[str]:
+def warnings(results: Present, config: Mapping[str, Any]) -> list[str]:
     """Sentences about results beyond the limits of the model."""
-    from stiction.report.limits.pages import sentence  # imports the physics
+    from stiction.report.limits.pages import sentences  # imports the physics
 
-    return (sentence(*limit) for limit in limits(results, config))
+    return sentences(dict(limits(results, config)))
 
 
 def limits(results: Present, config: Mapping[str, Any]) -> Iterator["tuple[Limit, list[Subject]]"]:

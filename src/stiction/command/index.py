@@ -189,14 +189,15 @@ def _devices(results: Present, config: Mapping, all_items: Sequence[Item]) -> It
     warned = Counter(chain.from_iterable(named))
     verdicts = {row["device"]: row for row in csv.DictReader(results.text("tables/devices.csv").splitlines())}
     for name, section in sections.items():
-        is_at_tip = verdicts.get(name, {}).get("by_tip") == "True"
+        verdict = verdicts.get(name, {})
         page, (answer, *_) = f"devices/{name}.html", [*results.text(f"devices/{name}.txt").splitlines(), ""]
         yield {
             "name": name,
             "kind": kind_of(section).words,
-            "drawing": device_drawing(section, is_at_tip) if len(sections) <= _CARDS else "",
+            "drawing": device_drawing(section, verdict.get("by_tip") == "True") if len(sections) <= _CARDS else "",
             "page": page if page in pages else "",
             "answer": answer,
+            "tone": verdict.get("tone", ""),
             "warnings": warned[name],
         }
 

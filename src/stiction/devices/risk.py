@@ -261,13 +261,19 @@ def in_order(lengths: np.ndarray, shares: Sequence[float]) -> np.ndarray:
     return np.where(np.isnan(lengths), np.nan, ordered)
 
 
+#: Least number of which the thousands are grouped.
+_GROUPED = 9999.5
+
+
 def one_in(share: float) -> str:
     """Fraction of devices in words.
 
     Examples
     --------
     >>> one_in(1e-3), one_in(1e-6), one_in(0.03)
-    ('1 in 1000', '1 in 1000000', '1 in 33.3333')
+    ('1 in 1000', '1 in 1 000 000', '1 in 33.3333')
     """
     number = 1 / share
-    return f"1 in {number:.0f}" if abs(number - round(number)) < 1e-6 * number else f"1 in {number:g}"
+    if abs(number - round(number)) >= 1e-6 * number:
+        return f"1 in {number:g}"
+    return f"1 in {number:,.0f}".replace(",", " ") if number >= _GROUPED else f"1 in {number:.0f}"

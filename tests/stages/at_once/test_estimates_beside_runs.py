@@ -133,7 +133,7 @@ def test_rows_of_the_table_have_all_inputs_from_which_the_estimate_follows():
         stated = [float(row[f"{name}_um"]) for name in ("estimate", "low", "high", "run")]
         np.testing.assert_allclose([1e6 * float(at[name]) for name in ("estimate", "low", "high", "length")], stated)
         assert row["inside"] == {1: "yes", 0: "no"}[int(tables.is_inside(at))]
-    assert {cell for cell in table.cells["stuck"]} == {"1 in 100", "1 in 1000", "1 in 10000"}
+    assert {cell for cell in table.cells["stuck"]} == {"1 in 100", "1 in 1000", "1 in 10 000"}
 
 
 def test_only_cantilevers_and_stoppers_in_humid_air_have_it():
@@ -189,7 +189,7 @@ def test_a_page_ends_with_the_estimate_beside_the_run():
     page = beam_page(CANTILEVER, {0.67: safe()})
     (section,) = tables.with_estimate(page, {"estimate": found}).sections[len(page.sections) :]
     assert section.cells["RH"].tolist() == ["0.6"] * 3
-    assert section.cells["stuck"].tolist() == ["1 in 100", "1 in 1000", "1 in 10000"]
+    assert section.cells["stuck"].tolist() == ["1 in 100", "1 in 1000", "1 in 10 000"]
     assert tables.counted([found]) in section.paragraphs[0]
     assert tables.with_estimate(page, {}) is page
 

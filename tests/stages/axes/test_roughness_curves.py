@@ -453,7 +453,7 @@ def test_a_stopper_of_30_micronewton_sticks_at_3_4_nm_and_not_at_5_nm():
 def test_a_share_beyond_samples_and_verification_is_called_extrapolated(share, samples):
     found = xr.Dataset({"share": share, "samples": samples})
     (said,) = sentences.note_on_extrapolation(found) or [""]
-    assert said.startswith("The result for 1 in 1000000 is extrapolated from 29956") == (samples == 29_956)
+    assert said.startswith("The result for 1 in 1 000 000 is extrapolated from 29956") == (samples == 29_956)
     assert bool(said) == (samples == 29_956)
 
 

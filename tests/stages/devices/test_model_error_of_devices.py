@@ -93,7 +93,7 @@ def test_a_page_says_by_how_much_and_which_side_is_safe():
     assert "It is not known for what the tip holds." in page
     applied = {"C1": ERRORS["C1"].assign(applied=("humidity", [True, True]))}
     corrected = beam_page(given["C1"], {0.44: dry, 0.67: wet}, errors=applied).html
-    assert "Tips have changed as tilted strips with their edge do" in corrected
+    assert "Forces of tips are those of summits times the upper end" in corrected
     assert "It is not known for what the tip holds." not in corrected
     assert "What is stated is on the safe side" in page
     stopper = stopper_page(STOPPER, STOPPERS["S1"], {(0.67,): BUDGETS["S1", 0.67]}, errors=ERRORS).html
@@ -130,7 +130,7 @@ def test_sentences_say_what_full_contact_leaves_out_and_whether_it_has_been_appl
         for changed in ({}, {"across_gaps": True}, {"applied": (0.44, 0.67)})
     )
     assert "is in neither model" in plain
-    assert "Attraction across gaps is in both models." in across
+    assert "Contact of summits alone and full contact both have attraction across gaps." in across
     assert "It is not known at a relative humidity of 0.67." in plain
     assert "has changed the lengths" in applied
     assert "safe side" not in applied
@@ -222,7 +222,7 @@ def test_a_device_in_dry_and_in_humid_air_says_what_full_contact_has_changed_and
     said = " ".join(model_errors.sentences("C1", {"C1": found}))
     assert "has changed the lengths held by the beam by -15.9" in said, "2 ** (-1/4) - 1"
     assert "It is not known at a relative humidity of 0.6." in said
-    assert "Tips have changed" in said
+    assert "Forces of tips are" in said
     assert "It is not known for what the tip holds at a relative humidity of 0.6." in said
     assert "would change" not in said
 

@@ -484,6 +484,20 @@ def test_the_page_has_each_sentence_once_with_its_subjects_and_what_is_not_model
     assert page.endswith(f"{not_modelled()}\n")
 
 
+def test_steep_lengths_of_one_device_have_one_line_about_the_steepest():
+    lengths = {("C1", ()): 250, ("C1", ("chart",)): 200, ("C1", ("length",)): 220, ("C2", ()): 210}
+    found = {
+        pair_warnings.Subject(*subject): [limits.large_rotation(20 * UM, length * UM), SPACERS[0]]
+        for subject, length in lengths.items()
+    }
+    steep = [one for one in pages.sentences(pages.by_limit(found)) if "a slope of" in one]
+    assert [one.partition(": ")[0] for one in steep] == ["C1, chart", "C2"]
+    assert "length of 200 µm" in steep[0]
+    assert steep[0].endswith("; 2 more results are beyond the same limit.")
+    assert "more results" not in steep[1], "the control: one alone"
+    assert len(pages.by_limit(found)) == 5, "files for programs keep all"
+
+
 def test_subjects_are_named_in_words():
     one, two, three, four = ([limit] for limit in SPACERS)
     devices = {("C1", 0.67, S_SHAPE): one, ("C1", 0.67, EITHER): two}

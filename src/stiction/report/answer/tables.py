@@ -105,6 +105,7 @@ def _row(answer):
         "device": answer.device,
         "kind": answer.kind,
         "verdict": str(answer.verdict),
+        "tone": words.sign_of(answer)[0],
         "sign": words.sign_of(answer)[1],
         "unit": unit,
         "size": answer.size / scale,

@@ -195,7 +195,7 @@ def decides(answer: Answer) -> str:
     change = largest.factor - 1
     if not np.isfinite(change) or abs(change) < _SAME:
         return sentence
-    by = f"{'+' if change > 0 else '−'}{in_percent(abs(change))} of the {answer.sought.name}"
+    by = f"{'+' if change > 0 else '-'}{in_percent(abs(change))} of the {answer.sought.name}"
     return f"{sentence} Largest step: {CAUSES[largest.cause][1]}, {by}."
 
 

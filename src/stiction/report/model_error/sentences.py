@@ -47,7 +47,7 @@ def sentences(device: str, errors: Mapping[str, xr.Dataset] | None) -> list[str]
         texts += _of_tips(error)
     texts += [_safe_side(uncorrected, sought)] if uncorrected else []
     if error.across_gaps:
-        return [*texts, "Attraction across gaps is in both models."]
+        return [*texts, "Contact of summits alone and full contact both have attraction across gaps."]
     gaps = "the other way in drier air: build no longer and rely on no smaller force because of it."
     return [*texts, f"Attraction across gaps is in neither model. It acts {gaps}"]
 
@@ -63,8 +63,10 @@ def _of_tips(error):
     """Sentences on what full contact does to tips, with and without a correction."""
     applied = np.where(error.by_levels, error.get("tips_applied", False), error.applied)
     corrected, others = (list(map(float, error.humidity.values[flags])) for flags in (applied, ~applied))
-    how = "at the upper end of what these show with 95 % confidence."
-    texts = [f"Tips have changed as tilted strips with their edge do, {how}"] if corrected else []
+    how = (
+        "Forces of tips are those of summits times the upper end, with 95 % confidence, of what full contact of tilted"
+    )
+    texts = [f"{how} strips with the edge of the tip shows."] if corrected else []
     where = f" {airs(others)}" * bool(corrected)
     unknown = error.by_levels.any() if corrected else True
     texts += [f"It is not known for what the tip holds{where}."] if unknown and others else []
@@ -74,7 +76,8 @@ def _of_tips(error):
 def _ratio_of_tips(error, humidity):
     """Sentence on what tips hold over what summits hold, by their slope."""
     least, largest = (float(error[f"{end}_of_tips"].sel(humidity=humidity)) for end in ("least", "largest"))
-    return f"They hold {least:.2f} to {largest:.2f} times what summits do {airs([humidity])}, depending on their slope."
+    where = airs([humidity]).capitalize()
+    return f"{where} tips hold {least:.2f} to {largest:.2f} times what summits alone would, depending on their slope."
 
 
 def _percent(row):

@@ -161,7 +161,8 @@ function opened(number) {
     const rounded = Number(value.toPrecision(digits)), size = Math.abs(rounded);
     return size >= 1e-4 && size < 1e6 || !size ? String(rounded) : value.toExponential(digits - 1);
   }
-  const oneIn = share => `1 in ${text(1 / share)}`;
+  const grouped = number => /^\d{5,}$/.test(number) ? number.replace(/\B(?=(\d{3})+$)/g, " ") : number;
+  const oneIn = share => `1 in ${grouped(text(1 / share))}`;
 
   /** Fraction in percent with two digits, near all of them of the rest, as in report/answer/words.py. */
   function percent(share, isEnd) {
