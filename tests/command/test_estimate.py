@@ -42,7 +42,7 @@ def measured(*words):
 
 def lengths(lines):
     """Lengths [µm] of the table with the ends of both intervals, by the fraction 1 in n."""
-    rows = [re.findall(r"[\d.]+", line) for line in lines if line.startswith("  1 in ")]
+    rows = [re.findall(r"[\d.]+", line) for line in lines if line.startswith("  1 in ") and "sticks" not in line]
     return {int(float(row[1])): [float(value) for value in row[2:]] for row in rows}
 
 
@@ -85,7 +85,7 @@ def test_lengths_fall_with_the_fraction_and_are_within_their_intervals(capsys):
 
 
 def test_assumed_numbers_widen_an_interval_and_the_worst_air_decides(capsys):
-    surface = [f"--{word}={value}" for word, value in {"hurst": 1.3, "corner": 12, "cutoff": 125}.items()]
+    surface = [f"--{word}={value}" for word, value in {"hurst": 1, "corner": 12, "cutoff": 125}.items()]
     known = lengths(said(capsys, *OPTIONS, *surface, "--skewness=-0.76", "--kurtosis=3.9")[1])[1000]
     assumed = lengths(said(capsys, *OPTIONS)[1])[1000]
     assert known[2] / known[1] < 0.9 * assumed[2] / assumed[1]
@@ -115,7 +115,6 @@ def test_more_touchdowns_need_shorter_beams_and_a_stated_length_has_a_probabilit
         ("humidities: [0.6]}\n", "humidities: [0.999]}\n", "beyond what was learnt"),
         ("humidities: [0.6]}\n", "humidities: [dry]}\n", "dry"),
         ("rms_nm: 3", "rms_nm: 60", "beyond what was learnt"),
-        ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 0, humidities: [0.6]}\n", "impossible"),
         ("rms_nm: 3", "rms_nm: three", "stiction check says what is wrong"),
         ("thickness_um: 2.6, ", "", "thickness_um"),
         ("rms_nm: 3}", "rms_nm: 3, material: gold}", "material"),
@@ -192,13 +191,118 @@ def test_a_stopper_by_options_is_that_of_a_file(tmp_path, capsys):
     options = ["--rms=3", "--like=B2", "--rh=0.6", "--contact", "3", "2", "--force=40"]
     of_file, (status, of_options) = said(capsys, str(tmp_path / "mine.yaml"))[1], said(capsys, *options)
     assert status == 0
-    assert of_file[1:-1] == of_options[1:-1]
+    assert of_file[1:-1] == of_options[1 : len(of_file) - 1]
     assert "force [µN]" in of_options[1]
     forces = [row[0] for row in lengths(of_options).values()]
     assert forces == sorted(forces)
     assert [line for line in of_options if line.startswith("  At 40 µN, ")]
     assert "--rms is missing" in said(capsys, "--rh=0.6", "--contact", "3", "2")[1][0]
-    assert any(f"{forces[2]:.3g} µN" in line for line in estimate.in_short([str(tmp_path / "mine.yaml")]))
+    _, least, most, *_ = lengths(of_options)[1000]
+    (short,) = estimate.in_short([str(tmp_path / "mine.yaml")])
+    assert f"1 in 1000 of Bump sticks between {least:g} and {most:g} µN (90 %): use at least {most:g};" in short
+    assert f"  1 in 1000 sticks between {least:g} and {most:g} µN (90 %): use at least {most:g}." in of_file
+
+
+OF_STOPPER = ["--rms=3", "--like=B2", "--rh=0.6", "--contact", "3", "2", "--force=40"]
+WITH_VOLTAGE = [*OPTIONS, "--voltage=5", "--dielectric", "100", "3.9", "--skewness=-0.5", "--kurtosis=4"]
+
+
+@pytest.mark.parametrize("words", [OPTIONS, OF_STOPPER, WITH_VOLTAGE])
+def test_the_printed_file_is_valid_and_has_the_same_estimate(tmp_path, capsys, words):
+    lines = said(capsys, *words)[1]
+    (tmp_path / "mine.yaml").write_text("\n".join(lines[lines.index("run: {pairs: [mine], studies: []}") :]))
+    assert main(["check", str(tmp_path / "mine.yaml"), "-d", str(tmp_path)]) == 0
+    capsys.readouterr()
+    assert lengths(said(capsys, str(tmp_path / "mine.yaml"))[1]) == lengths(lines)
+
+
+def test_no_file_is_printed_for_a_stopper_without_a_force_which_a_run_would_refuse(capsys):
+    assert said(capsys, *OF_STOPPER[:-1])[1][-1] == "With --force, the lines of mine.yaml follow."
+
+
+def test_large_sizes_have_no_exponent(capsys):
+    lines = said(capsys, "--rms=3", "--rh=0.45", "--thickness=2.6", "--gap=20")[1]
+    assert "1030" in lines[2]
+    assert not any("e+" in line for line in lines)
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        (["--rh", "45"], "--rh must be above 0 and below 1, got 45.0"),
+        (["--rh", "0.5", "nan"], "--rh must be above 0 and below 1, got nan"),
+        (["--rms=-3"], "--rms must be above 0, got -3.0"),
+        (["--gap=0"], "--gap must be above 0, got 0.0"),
+        (["--touchdowns=0"], "--touchdowns must be above 0, got 0"),
+        (["--length=250e-6"], "--length must be above --thickness, in the same unit, got 0.00025, 2.6"),
+        (["--length=15"], "--length must be above --gap, in the same unit, got 15.0, 20.0"),
+        (["--corner=200", "--cutoff=100"], "--cutoff must be above --corner, in the same unit, got 100.0, 200.0"),
+        (["--kurtosis=4"], "--skewness and --kurtosis must come together"),
+        (["--hurst=1.3"], "--hurst must be at most 1, got 1.3"),
+        (["--voltage=5", "--dielectric", "0", "3.9"], "--dielectric must be above 0, got 0.0"),
+    ],
+)
+def test_an_impossible_number_has_a_sentence_and_no_run(capsys, words, reason):
+    assert said(capsys, *OPTIONS, *words) == (2, [f"The device has no estimate: {reason}."])
+
+
+@pytest.mark.parametrize("air", [["0"], ["dry"], ["0.5", "0"]])
+def test_dry_air_is_named(capsys, air):
+    status, lines = said(capsys, *OPTIONS, "--rh", *air)
+    assert (status, lines[0]) == (
+        2,
+        "The device is not known at once: dry air was not learnt. Run: stiction devices mine.yaml",
+    )
+
+
+@pytest.mark.parametrize(
+    ("words", "start"),
+    [
+        (["--rms=3000"], "rms of the heights over the film of water (from rms and humidity) is too large"),
+        (
+            ["--thickness=2.6e-6"],
+            "softness of the beam over slopes of the surface (from thickness, gap and rms) is too large",
+        ),
+        (["--kurtosis=2", "--skewness=-0.5"], "kurtosis is too small"),
+        (["--rh=0.05"], "humidity is too small"),
+    ],
+)
+def test_what_is_beyond_has_its_side_and_its_inputs(capsys, words, start):
+    line = said(capsys, *OPTIONS, *words)[1][0]
+    assert line.startswith(f"The device is not known at once: {start}, beyond what was learnt.")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "reason"),
+    [
+        ("gap_um: 20, humidities: [0.6]}\n", "gap_um: 0, humidities: [0.6]}\n", "gap_um must be above 0, got 0"),
+        ("humidities: [0.6]}\n", "humidities: [60]}\n", "humidities must be above 0 and below 1, got 60"),
+        ("rms_nm: 3", "rms_nm: -3", "rms_nm must be above 0, got -3"),
+    ],
+)
+def test_an_impossible_number_of_a_file_has_its_key(tmp_path, capsys, old, new, reason):
+    (tmp_path / "mine.yaml").write_text(FILE.replace(old, new))
+    assert said(capsys, str(tmp_path / "mine.yaml")) == (2, [f"Lever has no estimate: {reason}."])
+
+
+def test_a_file_of_a_stopper_needs_no_force(tmp_path, capsys):
+    bump = "Bump: {kind: stopper, pair: mine, contact_um: [3, 2], humidities: [0.6]}\n"
+    (tmp_path / "mine.yaml").write_text(FILE.rpartition("Lever")[0] + bump)
+    assert lengths(said(capsys, str(tmp_path / "mine.yaml"))[1]) == lengths(said(capsys, *OF_STOPPER)[1])
+
+
+def test_a_file_takes_no_options_and_must_have_devices(tmp_path, capsys):
+    name = tmp_path / "mine.yaml"
+    name.write_text(FILE)
+    for words in (["--rms=3"], ["--touchdowns=2"], ["--contact", "3", "3"]):
+        assert estimate.main([str(name), *words]) == 2
+        option = words[0].partition("=")[0]
+        assert capsys.readouterr().err == f"{option} is for a device without a file: state it in {name}\n"
+    name.write_text(FILE.partition("devices:")[0])
+    assert estimate.main([str(name)]) == 2
+    assert capsys.readouterr().err == f"{name} has no devices to estimate\n"
+    name.write_text(FILE.partition("devices:")[0] + "devices: {file: range.csv}\n")
+    assert "devices of a table were not learnt" in said(capsys, str(name))[1][0]
 
 
 @pytest.mark.parametrize(
@@ -222,7 +326,7 @@ def test_more_than_half_is_at_least_half(capsys):
         line for line in said(capsys, *OPTIONS, "--length=2000", "--touchdowns=1000")[1] if "% stick (95 %:" in line
     ]
     assert "at least 99 % stick" in line
-    (line,) = [line for line in said(capsys, *OPTIONS, "--length=20")[1] if "% stick (95 %:" in line]
+    (line,) = [line for line in said(capsys, *OPTIONS, "--length=21")[1] if "% stick (95 %:" in line]
     assert "less than 0.0001 % stick" in line
 
 
@@ -254,5 +358,5 @@ def test_a_check_ends_with_the_estimate(tmp_path, capsys):
     (tmp_path / "mine.yaml").write_text(FILE)
     assert main(["check", str(tmp_path / "mine.yaml"), "-d", str(tmp_path)]) == 0
     last = capsys.readouterr().out.splitlines()[-1]
-    length = lengths(said(capsys, str(tmp_path / "mine.yaml"))[1])[1000][0]
-    assert f"1 in 1000 of Lever sticks at about {length:.3g} µm" in last
+    _, least, most, *_ = lengths(said(capsys, str(tmp_path / "mine.yaml"))[1])[1000]
+    assert f"1 in 1000 of Lever sticks between {least:g} and {most:g} µm (90 %): use at most {least:g}" in last

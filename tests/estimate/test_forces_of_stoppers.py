@@ -26,6 +26,7 @@ from stiction.life.freeing import stuck_after
 STOPPER = {"kind": "stopper", "pair": "b", "contact_um": [3, 3], "humidities": [0.67], "restoring_force_uN": 60}
 WATER = film(0.67, 300.0, 2.0, (0.072, 1.8e-5))
 (POINT,) = SETS["control"].all
+AREA = "area in contact in summits"
 
 
 def asked(**keys):
@@ -62,8 +63,8 @@ def test_flooded_flats_hold_with_the_tension_of_the_water():
 def test_an_area_moves_its_own_coordinate_alone():
     small, large = (patch_on(POINT.sides, area).coordinates for area in (9e-12, 36e-12))
     moved = np.subtract(large, small)
-    assert moved[OF_PATCHES.index("area in contact")] == pytest.approx(math.log(4))
-    np.testing.assert_allclose(np.delete(moved, OF_PATCHES.index("area in contact")), 0, atol=1e-12)
+    assert moved[OF_PATCHES.index(AREA)] == pytest.approx(math.log(4))
+    np.testing.assert_allclose(np.delete(moved, OF_PATCHES.index(AREA)), 0, atol=1e-12)
 
 
 @pytest.mark.parametrize("ratio", [0.5, 1.0, 1.3])
@@ -150,7 +151,7 @@ def test_a_spring_has_the_force_of_its_gap():
     [
         ({"contact_um": [3, 30]}, "from 1 to 6 µm"),
         ({"contact_um": [0.5, 3]}, "from 1 to 6 µm"),
-        ({"restoring_force_uN": 0}, "impossible"),
+        ({"restoring_force_uN": 0}, "restoring_force_uN must be above 0, got 0"),
         ({"tilt_deg": [0.1]}, "tilt_deg"),
         ({"voltage_V": 3}, "voltage_V"),
         ({"humidities": [0.0]}, "dry"),

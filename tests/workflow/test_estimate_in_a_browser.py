@@ -5,6 +5,8 @@ import math
 import pytest
 from browser import Browser, missing
 
+from stiction.command.at_once import estimate
+from stiction.command.main import main
 from stiction.estimate.page import page
 
 pytestmark = [pytest.mark.slow, pytest.mark.browser, pytest.mark.skipif(bool(missing()), reason=missing())]
@@ -42,6 +44,8 @@ def test_every_slider_moves_without_an_error_and_each_state_has_a_sentence(opene
 def test_the_page_fits_a_phone(opened):
     opened.resize(390, 844)
     assert opened.run("return document.documentElement.scrollWidth") <= 390
+    assert opened.run("const pre = document.getElementById('yaml'); return pre.scrollWidth - pre.clientWidth") == 0
+    assert opened.run("return document.getElementById('said').offsetHeight") <= 844 / 10
     opened.resize(1500, 1000)
 
 
@@ -59,8 +63,30 @@ def test_the_file_of_the_page_is_that_of_its_sliders(opened):
     text = opened.run("return document.getElementById('yaml').textContent")
     assert "like: B2" in text
     opened.run("const box = document.getElementById('known_skewness'); box.click(); return 1")
-    assert "skewness:" in opened.run("return document.getElementById('yaml').textContent")
+    text = opened.run("return document.getElementById('yaml').textContent")
+    assert "skewness:" in text
+    assert "kurtosis:" in text, "a run refuses one without the other"
     assert math.isfinite(float(opened.run("return document.getElementById('of_skewness').textContent")))
+
+
+@pytest.mark.parametrize("kind", ["cantilever", "stopper"])
+@pytest.mark.parametrize("known", ["[]", "['hurst', 'corner_rad_per_um', 'kurtosis']"])
+def test_the_command_says_of_the_file_of_the_page_what_the_page_says(opened, tmp_path, capsys, kind, known):
+    moved = f"""
+    document.getElementById('kind').value = '{kind}';
+    for (const box of document.querySelectorAll('input[type=checkbox]')) box.checked = false;
+    for (const key of {known}) document.getElementById('known_' + key).click();
+    document.getElementById('form').dispatchEvent(new Event('input', {{bubbles: true}}));
+    return ['said', 'stuck', 'yaml'].map((id) => document.getElementById(id).textContent);
+    """
+    said, stuck, text = opened.run(moved)
+    (tmp_path / "mine.yaml").write_text(text, encoding="utf-8")
+    assert main(["check", str(tmp_path / "mine.yaml"), "-d", str(tmp_path)]) == 0
+    capsys.readouterr()
+    assert estimate.main([str(tmp_path / "mine.yaml")]) == 0
+    lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+    assert said in lines
+    assert stuck in lines
 
 
 def test_a_stopper_has_its_own_sliders_forces_and_file(opened):

@@ -15,7 +15,7 @@ from typing import Any
 
 from stiction.contact.air import is_humid
 from stiction.estimate.force import ForceRow, Stopper
-from stiction.estimate.length import LengthRow, Lengths, NotLearnt, after, normal_score
+from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, after, normal_score
 from stiction.estimate.question import IN_DRY_AIR, Question
 from stiction.estimate.state import film
 from stiction.estimate.table import Surrogate
@@ -178,4 +178,4 @@ def _lengths(question, heights, air, table, tips, full):
         water = film(air, table["temperature"], 2.0, table["water"])
         return question.lengths(heights, water, table, tips, full)
     except (ArithmeticError, ValueError) as impossible:  # such as the logarithm of a negative number
-        raise NotLearnt("one of its numbers is impossible") from impossible
+        raise Impossible("its numbers contradict each other") from impossible

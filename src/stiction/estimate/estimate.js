@@ -62,7 +62,10 @@ function at(process, all) {
 class NotLearnt extends Error {}
 function known(process, place, names) {
   const values = at(process, place);
-  if (values.outside.length) throw new NotLearnt(values.outside.map((k) => names[k]).join(" and ") + " beyond what was learnt");
+  if (values.outside.length) {
+    const [first] = values.outside, side = place[first] > process.centre[process.columns.indexOf(first)] ? "large" : "small";
+    throw new NotLearnt(`${names[first]} is too ${side}, beyond what was learnt`);
+  }
   if (values.distance > process.farthest) throw new NotLearnt("unlike all surfaces and devices that were learnt");
   return values.of;
 }

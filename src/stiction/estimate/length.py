@@ -70,6 +70,10 @@ class NotLearnt(Exception):
     """Refusal to estimate, in words."""
 
 
+class Impossible(NotLearnt):
+    """Refusal of numbers that no device has. A run refuses them, too."""
+
+
 def lengths(state: TipState, gap: float, tips: Surrogate, full: Surrogate | None) -> Lengths:
     """Lengths of beams over a gap [m] in a state.
 
@@ -114,7 +118,8 @@ def known_at(process: Surrogate, coordinates: Sequence[float], names: Sequence[s
     """
     values = process.at(coordinates)
     if values.outside:
-        raise NotLearnt(f"{' and '.join(names[k] for k in values.outside)} beyond what was learnt")
+        first = values.outside[0]
+        raise NotLearnt(f"{names[first]} is too {process.side(first, coordinates[first])}, beyond what was learnt")
     if values.distance > process.farthest:
         raise NotLearnt("unlike all surfaces and devices that were learnt")
     return values.of

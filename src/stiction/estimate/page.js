@@ -5,7 +5,7 @@ const INPUTS = [
   ["kind", "Device", [CANTILEVER, STOPPER], CANTILEVER],
   ["like", "Typical surface for what you do not know", Object.keys(TABLE.library), "B2"],
   ["rms_nm", "rms of the underside [nm]", 1, 8, 0.1, 3],
-  ["hurst", "Hurst exponent", 0.3, 2.5, 0.05, null],
+  ["hurst", "Hurst exponent", 0.3, 1, 0.05, null],
   ["corner_rad_per_um", "corner of the spectrum [rad/µm]", 8, 60, 1, null],
   ["cutoff_rad_per_um", "cut-off of the spectrum [rad/µm]", 100, 290, 5, null],
   ["skewness", "skewness", -1.2, 0, 0.02, null],
@@ -24,6 +24,7 @@ const INPUTS = [
   ["dielectric_nm", "dielectric, thickness over permittivity [nm]", 10, 1000, 10, 100],
 ];
 const OWN = {[CANTILEVER]: ["thickness_um", "gap_um", "width_um", "length_um", "voltage_V", "dielectric_nm"], [STOPPER]: ["side_um", "other_um", "force_uN"]};
+const PAIR = ["known_skewness", "known_kurtosis"]; // a file states both or neither
 const OPEN = ["hurst", "corner_rad_per_um", "cutoff_rad_per_um", "skewness", "kurtosis"], byId = (id) => document.getElementById(id);
 
 function slider([key, words, low, high, step, start]) {
@@ -57,14 +58,17 @@ const RAREST = 1e-6, NEARLY_ALL = 0.99; // fractions that are shown
 const WORDS = {[CANTILEVER]: ["length", "µm", "length_um"], [STOPPER]: ["force", "µN", "force_uN"]};
 const micro = (size) => Number((size * 1e6).toPrecision(3)).toString();
 function percent(part, touchdowns) {
-  if (part < RAREST) return `less than ${(100 * RAREST).toFixed(4)}`;
-  return (part >= after(SCORES[0], touchdowns) ? "at least " : "") + Number((100 * Math.min(part, NEARLY_ALL)).toPrecision(2)).toString();
+  if (part < RAREST) return `less than ${(100 * RAREST).toFixed(4)} %`;
+  return `${part >= after(SCORES[0], touchdowns) ? "at least " : ""}${Number((100 * Math.min(part, NEARLY_ALL)).toPrecision(2))} %`;
 }
 function show() {
   for (const [key, , low] of INPUTS) if (!Array.isArray(low)) byId("of_" + key).textContent = byId(key).value;
   const given = stated();
   for (const kind in OWN) for (const key of OWN[kind]) byId(key).closest("label").hidden = kind !== given.kind;
-  for (const key of OPEN) byId(key).disabled = !(key in given.own);
+  for (const key of OPEN) {
+    byId(key).disabled = !(key in given.own);
+    if (byId(key).disabled) byId("of_" + key).textContent = `as ${given.like}`;
+  }
   byId("yaml").textContent = yamlOf(given);
   try { write(answer(questionOf(given), TABLE), given); }
   catch (reason) { if (!(reason instanceof NotLearnt)) throw reason; refuse(reason); }
@@ -78,9 +82,10 @@ function write(found, {kind, value}) {
   byId("table").innerHTML = `${caption}<thead><tr><th scope="col">stuck</th><th scope="col">${name}</th><th scope="col">90 %</th>` +
     `<th scope="col">95 %</th></tr></thead><tbody>${found.rows.map(row).join("")}</tbody>`;
   byId("said").className = "said";
-  byId("said").textContent = `1 in 1000 sticks at about ${micro(found.rows[2].size)} ${symbol}. The estimate is no ${name} to build: a run adds what it leaves out.`;
+  const [least, most] = found.rows[2].intervals["90"].map(micro), safe = kind === STOPPER ? `at least ${most}` : `at most ${least}`;
+  byId("said").textContent = `1 in 1000 sticks between ${least} and ${most} ${symbol} (90 %): use ${safe}.`;
   const [middle, low, high] = found.stuck.map((part) => percent(part, value("touchdowns")));
-  byId("stuck").textContent = `At ${value(key)} ${symbol}, ${middle} % stick (95 %: ${low} to ${high} %).`;
+  byId("stuck").textContent = `At ${value(key)} ${symbol}, ${middle} stick (95 %: ${low} to ${high}).`;
 }
 function refuse(reason) {
   byId("said").className = "said refused";
@@ -111,12 +116,15 @@ function bump(value) {
   return `<rect x="40" y="35" width="220" height="20" fill="#57606a"/><rect x="${150 - width / 2}" y="55" width="${width}" height="20" fill="#0969da"/>`;
 }
 function beam(value) {
-  const gap = 10 + 1.3 * value("gap_um"), thickness = 2 + 2 * value("thickness_um"), y = 75 - gap;
-  const curve = `M30 ${y} C 120 ${y} 200 ${y + 0.35 * gap} 285 75`;
-  return `<rect x="0" y="${y - thickness}" width="30" height="${75 - y + thickness}" fill="#57606a"/>` +
-    `<path d="${curve}" fill="none" stroke="#0969da" stroke-width="${thickness}"/>`;
+  const gap = 10 + 1.3 * value("gap_um"), thickness = 2 + 2 * value("thickness_um"), top = 75 - gap - thickness;
+  const tip = 75 - thickness, middle = top + 0.35 * gap; // the lower side is the upper one, lower by the thickness
+  const outline = `M30 ${top} C 120 ${top} 200 ${middle} 285 ${tip} V 75 C 200 ${middle + thickness} 120 ${top + thickness} 30 ${top + thickness} Z`;
+  return `<rect x="0" y="${top}" width="30" height="${75 - top}" fill="#57606a"/><path d="${outline}" fill="#0969da"/>`;
 }
 byId("form").innerHTML = INPUTS.map(slider).join("");
-byId("form").addEventListener("input", show);
+byId("form").addEventListener("input", ({target}) => {
+  if (PAIR.includes(target.id)) for (const id of PAIR) byId(id).checked = target.checked;
+  show();
+});
 byId("copy").addEventListener("click", () => navigator.clipboard.writeText(byId("yaml").textContent));
 show();

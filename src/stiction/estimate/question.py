@@ -1,14 +1,15 @@
 """Question to the estimate: a device on two described surfaces, from a file or from options. Plain Python."""
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from stiction.config.kinds import KINDS
 from stiction.config.units import to_si
-from stiction.contact.air import is_humid, is_possible
+from stiction.contact.air import DRY, is_humid, is_possible
 from stiction.estimate.force import Stopper
-from stiction.estimate.length import LengthRow, Lengths, NotLearnt, lengths, most_after
+from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, lengths, most_after
 from stiction.estimate.state import Film, TipState, stiffness_of
 from stiction.estimate.statistics import Heights, moments_of, slope_of
 from stiction.estimate.table import Surrogate
@@ -37,6 +38,11 @@ OF_SAMPLES = {
     + ("worst_humidities",),
     "contact": ("samples", "chunks"),
 }
+#: Keys of numbers that must be positive.
+POSITIVE = ("rms_nm", "hurst", "corner_rad_per_um", "cutoff_rad_per_um", "kurtosis", "thickness_um", "gap_um")
+POSITIVE += ("width_um", "length_um", "contact_um", "restoring_force_uN", "thickness_nm", "permittivity", "touchdowns")
+#: Keys of which the second number must be above the first. A length in metres is not.
+_IN_ORDER = ("thickness_um", "length_um"), ("gap_um", "length_um"), ("corner_rad_per_um", "cutoff_rad_per_um")
 #: Why the estimate refuses air without water.
 IN_DRY_AIR = "dry air was not learnt"
 #: Numbers that a surface may leave open.
@@ -107,6 +113,7 @@ def surface(entry: Mapping[str, Any], library: Library) -> tuple[Heights, dict[s
 
     As `stiction.config.surfaces.described.complete` and `stiction.config.surfaces.members.members`.
     """
+    refuse_impossible(entry)
     if unknown := [key for key in entry if key not in OF_SURFACES]:
         raise NotLearnt(f"{unknown[0]} of a surface is not among what was learnt")
     if "psd" in entry and entry["psd"] != "published":
@@ -149,18 +156,46 @@ def _statistics(numbers):
     return Heights(to_si(numbers["rms_nm"], "nm"), numbers["skewness"], numbers["kurtosis"], moments)
 
 
+def refuse_impossible(numbers: Mapping[str, Any], names: Mapping[str, str] | None = None) -> None:
+    """Refuse numbers that no surface or device has, by their keys or by other names of these.
+
+    Raises
+    ------
+    Impossible
+        If a number is impossible.
+    NotLearnt
+        If the air is dry.
+    """
+    names = {key: key for key in numbers} | (names or {})
+    for air in numbers.get("humidities", ()):
+        if air == DRY or (is_possible(air) and not is_humid(air)):
+            raise NotLearnt(IN_DRY_AIR)
+        if not is_possible(air):
+            raise Impossible(f"{names['humidities']} must be above 0 and below 1, got {air}")
+    for key in [key for key in POSITIVE if key in numbers]:
+        value = numbers[key]
+        if not all(0 < each < math.inf for each in (value if isinstance(value, Sequence) else [value])):
+            raise Impossible(f"{names[key]} must be above 0, got {value}")
+    for less, more in [pair for pair in _IN_ORDER if numbers.keys() >= set(pair)]:
+        if numbers[more] <= numbers[less]:
+            got = f"got {numbers[more]}, {numbers[less]}"
+            raise Impossible(f"{names[more]} must be above {names[less]}, in the same unit, {got}")
+
+
 def questions(content: Mapping[str, Any], table: Mapping[str, Any]) -> dict[str, Question | Stopper | NotLearnt]:
     """Questions of the devices of a file as it is written, or why the estimate does not know them.
 
     The table has the typical surfaces, and the pairs of the paper.
     """
-    found = {}
-    for name, device in content.get("devices", {}).items():
+    found, devices = {}, content.get("devices", {})
+    if "file" in devices:
+        return {"Table": NotLearnt("devices of a table were not learnt")}
+    for name, device in devices.items():
         try:
             found[name] = _question(name, device, content, table)
         except NotLearnt as reason:
             found[name] = reason
-        except (KeyError, TypeError, AttributeError) as wrong:
+        except (KeyError, TypeError, AttributeError, ArithmeticError, ValueError) as wrong:
             found[name] = NotLearnt(f"its file is not complete, at {wrong}; stiction check says what is wrong")
     return found
 
@@ -177,8 +212,7 @@ def _question(name, device, content, table):
     pair, library = (table["pairs"] | content.get("pairs", {}))[device["pair"]], table["library"]
     if others := [key for key in pair if key not in OF_PAIRS]:
         raise NotLearnt(f"{others[0]} of a pair was not learnt")
-    if not all(is_possible(air) and is_humid(air) for air in device["humidities"]):
-        raise NotLearnt(IN_DRY_AIR)
+    refuse_impossible(device | device.get("dielectric", {}))
     surfaces = library | content.get("surfaces", {})
     sides = [surface(surfaces[pair[side]], library) for side in ("beam", "substrate")]
     return of(name, device, sides, left_out=left_out)
@@ -196,7 +230,8 @@ def of_area(name: str, device: Mapping[str, Any], sides: Sequence, **more: Any) 
     """Question about a stopper, as of `of_numbers`."""
     surfaces, members = zip(*sides, strict=True)
     area = tuple(to_si(side, "um") for side in device["contact_um"])
-    stated = KINDS[device["kind"]].stated(device) if "kind" in device else device
+    kind = KINDS.get(device.get("kind"))
+    stated = kind.stated(device) if kind and any(set(way.keys) <= device.keys() for way in kind.ways) else device
     force = to_si(stated["restoring_force_uN"], "uN") if "restoring_force_uN" in stated else None
     airs, touchdowns = tuple(device["humidities"]), device.get("touchdowns", 1)
     return Stopper(name, surfaces, members, airs, area, force, touchdowns, **more)

@@ -17,21 +17,26 @@ from stiction.estimate.statistics import Heights
 
 #: Names of the coordinates, for messages: of both, of a beam and of a stopper.
 _OF_CONTACT = (
-    "rms of the heights over the film of water",
-    "tension of the water",
-    "breadth of the spectrum",
-    "correlation length",
+    "rms of the heights over the film of water (from rms and humidity)",
+    "tension of the water over slopes of the surface (from humidity, rms and spectrum)",
+    "breadth of the spectrum (from Hurst exponent, corner and cut-off)",
+    "correlation length (from corner and Hurst exponent)",
     "skewness",
     "kurtosis",
 )
 COORDINATES = (
     *_OF_CONTACT,
-    "stiffness of the beam",
-    "width of the beam",
+    "softness of the beam over slopes of the surface (from thickness, gap and rms)",
+    "width of the beam in summits",
     "humidity",
-    "curvature of the summits",
+    "curvature of the summits (from Hurst exponent, corner and cut-off)",
 )
-OF_PATCHES = (*_OF_CONTACT, "area in contact", "humidity", "curvature of the summits")
+OF_PATCHES = (
+    *_OF_CONTACT,
+    "area in contact in summits",
+    "humidity",
+    "curvature of the summits (from Hurst exponent, corner and cut-off)",
+)
 
 
 @dataclass(frozen=True)

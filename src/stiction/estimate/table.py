@@ -42,6 +42,10 @@ class Surrogate:
         found = {name: _dot(self.trend[name], terms) + _dot(self.weights[name], near) for name in self.trend}
         return Values(found, min(distances), self._outside(known))
 
+    def side(self, number: int, coordinate: float) -> str:
+        """Side of the design on which a coordinate of a number is, in a word."""
+        return "large" if coordinate > self.centre[self.columns.index(number)] else "small"
+
     def _outside(self, known):
         """Numbers of the coordinates beyond the design."""
         ends = zip(self.columns, known, self.low, self.high, strict=True)

@@ -1,16 +1,18 @@
 """Command ``stiction estimate``: the length or force to build at once, without the libraries for numbers."""
 
 import argparse
+import json
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 
 from stiction.command.output_streams import say
 from stiction.config.units import from_si
+from stiction.contact.air import DRY
 from stiction.estimate.answer import CHOSEN, FRACTIONS, Estimate, answer
 from stiction.estimate.force import Stopper
-from stiction.estimate.length import NotLearnt
-from stiction.estimate.question import Question, of_area, of_numbers, questions, surface
+from stiction.estimate.length import Impossible, NotLearnt
+from stiction.estimate.question import Question, of_area, of_numbers, questions, refuse_impossible, surface
 from stiction.estimate.table import content, known
 
 #: Options of a device on a described surface: key in a file, metavar, help, default.
@@ -33,7 +35,7 @@ _OF_SURFACE = ("rms", "like", "hurst", "corner", "cutoff", "skewness", "kurtosis
 #: Opposite surface without a file.
 OPPOSITE = "Sub1"
 #: What the command does.
-PURPOSE = "Estimate the length or force to build at once, from runs on drawn surfaces. A run computes it exactly."
+PURPOSE = "Estimate the length or force to build at once, from runs on drawn surfaces. A run simulates your own device."
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -46,30 +48,40 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--contact", type=float, nargs=2, metavar="UM", help=words)
     words = "thickness and relative permittivity of the dielectric"
     parser.add_argument("--dielectric", type=float, nargs=2, metavar=("NM", "PERMITTIVITY"), help=words)
-    parser.add_argument("--rh", type=float, nargs="+", metavar="RH", help="relative humidities, such as 0.45")
+    parser.add_argument("--rh", type=_humidity, nargs="+", metavar="RH", help="relative humidities, such as 0.45")
     parser.add_argument("--touchdowns", type=int, default=1, metavar="N", help="number of touchdowns (default: 1)")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Print the estimates that are asked for, and return the exit status: 2 if one of them is not known."""
-    status, name_of_file = 0, " ".join(arguments.files) or "mine.yaml"
+    status, to_run = 0, f"stiction devices {' '.join(arguments.files) or 'mine.yaml'}"
     for name, question in _questions(arguments).items():
         try:
             for line in shown(answer(question, *known())):
                 say(line)
-            say(f"  Computed exactly by: stiction devices {name_of_file}")
+            say(f"  A run adds what the estimate leaves out: {to_run}")
+        except Impossible as reason:
+            return _refused(f"{name} has no estimate: {reason}.")
         except NotLearnt as reason:
-            status = 2
-            say(f"{name} is not known at once: {reason}. Run: stiction devices {name_of_file}")
+            status = _refused(f"{name} is not known at once: {reason}. Run: {to_run}")
+    if arguments.contact and arguments.force is None:
+        say("With --force, the lines of mine.yaml follow.")
+    elif not arguments.files:
+        say(f"Lines of mine.yaml, with {LIKE} for all that is not stated:\n{file_of(arguments)}")
     return status
+
+
+def _refused(sentence):
+    """Say a refusal, and return its exit status."""
+    say(sentence)
+    return 2
 
 
 def in_short(files: Sequence[str]) -> Iterator[str]:
     """Lines with the length or force to build of each device of some valid files that the estimate knows."""
     for name, question in _of_files(files).items():
         with suppress(NotLearnt):
-            size, (_, symbol) = answer(question, *known()).chosen.size, _WORDS[question.unit]
-            said = f"1 in {1 / CHOSEN:.0f} of {name} sticks at about {_number(size, question)} {symbol}"
+            said = chosen(answer(question, *known()), f" of {name}")
             yield f"Estimate: {said}; stiction estimate {' '.join(files)} says more."
 
 
@@ -87,11 +99,20 @@ def main(words: Sequence[str]) -> int:
 def _questions(arguments):
     """Questions by the name of the device."""
     if arguments.files:
-        return _of_files(arguments.files)
+        return _of_files_alone(arguments)
     try:
         return {_NAME: _of_options(arguments, content()["library"])}
     except NotLearnt as reason:
         return {_NAME: reason}
+
+
+def _of_files_alone(arguments):
+    """Questions of files without options of a device."""
+    if stated := [name for name in (*OPTIONS, *_MORE) if getattr(arguments, name) not in (None, _DEFAULTS.get(name))]:
+        raise ValueError(f"--{stated[0]} is for a device without a file: state it in {arguments.files[0]}")
+    if not (found := _of_files(arguments.files)):
+        raise ValueError(f"{' '.join(arguments.files)} has no devices to estimate")
+    return found
 
 
 def _of_files(files):
@@ -107,25 +128,70 @@ def _of_options(arguments, library):
     needed = ("rms", "rh", *of_kind) + ("dielectric",) * (arguments.voltage is not None)
     for name in of_other:
         if getattr(arguments, name) is not None:
-            raise NotLearnt(f"--{name} is for {other} alone")
+            raise Impossible(f"--{name} is for {other} alone")
     for name in needed:
         if getattr(arguments, name) is None:
-            raise NotLearnt(f"--{name} is missing")
+            raise Impossible(f"--{name} is missing{_HINT}")
+    entry, device = _stated(arguments)
+    refuse_impossible(entry | device | device.get("dielectric", {}), _NAMES)
+    if (arguments.skewness is None) != (arguments.kurtosis is None):
+        raise Impossible("--skewness and --kurtosis must come together")
+    if arguments.hurst is not None and arguments.hurst > 1:
+        raise Impossible(f"--hurst must be at most 1, got {arguments.hurst}")
+    sides = [surface({"like": LIKE} | entry, library), surface(library[OPPOSITE], library)]
+    of = of_area if arguments.contact else of_numbers
+    return of(_NAME, device, sides, averaged=arguments.like is None)
+
+
+def _stated(arguments):
+    """Entries of the surface and of the device that options state, by the keys of files."""
     stated = {OPTIONS[name][0]: getattr(arguments, name) for name in OPTIONS if getattr(arguments, name) is not None}
     entry = {key: stated.pop(key) for key in [OPTIONS[name][0] for name in _OF_SURFACE] if key in stated}
     device = stated | {"humidities": arguments.rh, "touchdowns": arguments.touchdowns}
-    averaged = "like" not in entry
+    if arguments.contact:
+        del device["width_um"]
+        device["contact_um"] = arguments.contact
     if arguments.dielectric:
         device["dielectric"] = dict(zip(("thickness_nm", "permittivity"), arguments.dielectric, strict=True))
-    sides = [surface({"like": "B2"} | entry, library), surface(library[OPPOSITE], library)]
-    if arguments.contact:
-        return of_area(_NAME, device | {"contact_um": arguments.contact}, sides, averaged=averaged)
-    return of_numbers(_NAME, device, sides, averaged=averaged)
+    return entry, device
+
+
+def file_of(arguments: argparse.Namespace) -> str:
+    """File with the device of some options, for a run."""
+    entry, device = _stated(arguments)
+    air, kind = {"humidities": arguments.rh}, "stopper" if arguments.contact else "cantilever"
+    pair = {"beam": "Mine", "substrate": OPPOSITE, "gap_um": arguments.gap or _GAP} | air
+    return "\n".join(
+        (
+            "run: {pairs: [mine], studies: []}",
+            f"surfaces:\n  Mine: {_in_yaml({'like': LIKE} | entry)}",
+            f"pairs:\n  mine: {_in_yaml(pair)}",
+            f"devices:\n  Mine: {_in_yaml({'kind': kind, 'pair': 'mine'} | device)}",
+        )
+    )
+
+
+def _in_yaml(entry):
+    """Entry in one line, which is JSON without quotes."""
+    return json.dumps(entry).replace('"', "")
+
+
+def _humidity(word):
+    """Relative humidity of a word, which can be that for dry air."""
+    return 0.0 if word == DRY else float(word)
 
 
 #: Options that a device needs, those of other devices, and these.
 _OF_BEAM = ("thickness", "gap"), ("force",), "stoppers"
 _OF_STOPPER = ("contact",), ("thickness", "gap", "length", "voltage", "dielectric"), "cantilevers"
+#: Options beside `OPTIONS`, and what they are without being stated. Keys of all by their options.
+_MORE = {"contact": "contact_um", "dielectric": "dielectric", "rh": "humidities", "touchdowns": "touchdowns"}
+_DEFAULTS = {"width": 30.0, "touchdowns": 1}
+_NAMES = {key: f"--{name}" for name, key in [*((name, each[0]) for name, each in OPTIONS.items()), *_MORE.items()]}
+_NAMES |= dict.fromkeys(("thickness_nm", "permittivity"), "--dielectric")
+#: What a file needs that options do not state: the typical surface, and a gap beside that of a stopper [µm].
+LIKE, _GAP = "B2", 2.0
+_HINT = "; a cantilever needs --rms --rh --thickness --gap, a stopper --rms --rh --contact"
 #: Name of a device without a file.
 _NAME = "The device"
 #: What a size is by its unit, and the symbol of this.
@@ -144,8 +210,16 @@ def shown(found: Estimate) -> Iterator[str]:
         yield f"  1 in {1 / row.fraction:<10.0f}  {_number(row.size, asked):>8}     {ends}"
     if found.stuck is not None:
         value, low, high = (_percent(part, asked.most) for part in found.stuck)
-        yield f"  At {_number(asked.size, asked)} {symbol}, {value} % stick (95 %: {low} to {high} %)."
-    yield f"  The estimate is no {name} to build: a run adds what it leaves out."
+        yield f"  At {_number(asked.size, asked)} {symbol}, {value} stick (95 %: {low} to {high})."
+    yield f"  {chosen(found)}."
+
+
+def chosen(found: Estimate, of: str = "") -> str:
+    """Interval of the size for `CHOSEN`, and the end to use."""
+    (low, high), asked = found.chosen.intervals["90"], found.question
+    least, most = _number(low, asked), _number(high, asked)
+    safe = f"at least {most}" if isinstance(asked, Stopper) else f"at most {least}"
+    return f"1 in {1 / CHOSEN:.0f}{of} sticks between {least} and {most} {_WORDS[asked.unit][1]} (90 %): use {safe}"
 
 
 #: Largest fraction that is shown.
@@ -155,10 +229,10 @@ _NEARLY_ALL = 0.99
 def _percent(part, most):
     """Fraction in percent, between the smallest one with a length and the largest that is known."""
     if part < FRACTIONS[-1]:
-        return f"less than {100 * FRACTIONS[-1]:.4f}"
-    return f"{'at least ' * (part >= most)}{float(f'{100 * min(part, _NEARLY_ALL):.2g}'):g}"
+        return f"less than {100 * FRACTIONS[-1]:.4f} %"
+    return f"{'at least ' * (part >= most)}{float(f'{100 * min(part, _NEARLY_ALL):.2g}'):g} %"
 
 
 def _number(size: float, question: Question | Stopper) -> str:
     """Size in the unit of a question, with three digits."""
-    return f"{from_si(size, question.unit):.3g}"
+    return f"{float(f'{from_si(size, question.unit):.3g}'):g}"
