@@ -83,7 +83,7 @@ EXAMPLE_TABLES = {
     "example_scan_uncertainty": "results/tables/scan_uncertainty",
     "example_prediction": "prediction",
 }
-EXAMPLE_PICTURES = {"results/figures/surface_sheet_Etched": 1400, "prediction": 700}
+EXAMPLE_PICTURES = {"results/figures/surface_sheet_Etched": 1380, "prediction": 700}
 #: Table and picture of ``make example-beams``.
 DRAWN_BEAMS = "drawn_beams"
 #: Numbers and table of ``make measured-beams``.

@@ -108,7 +108,8 @@ def test_equal_estimates_give_equal_sheets(tmp_path):
 def test_flags_with_signs_of_formulas_are_shown_as_they_are(tmp_path):
     figure = surface_sheet("Etched", changed(flags=HOSTILE), spectrum(HOSTILE_FILE))
     shown = [text for text in figure.findobj(Text) if "alert" in text.get_text()]
-    assert [" ".join(text.get_text().split()) for text in shown] == [f"– {HOSTILE} – {HOSTILE_FILE}"]
+    (said,) = (" ".join(text.get_text().split()) for text in shown)
+    assert said.startswith(f"– {HOSTILE} – {HOSTILE_FILE} Errors between parts")
     assert not shown[0].get_parse_math()
     save(figure, tmp_path / "sheet.png")
 
@@ -122,7 +123,8 @@ def test_the_title_shows_the_moments_with_their_errors_and_the_scans():
     assert f"kurtosis {float(estimated().moments[2]):.2f} ± {errors[2]:.2f}" in title
     sectors, error = estimated().sectors.values, estimated().sector_errors.values.max()
     ratio = sectors.max() / sectors.min()
-    assert f"largest over smallest sector {ratio:.3f} ± {np.sqrt(2) * ratio * error:.3f}" in title
+    below = sheet("plain")._supxlabel.get_text()
+    assert f"largest over smallest direction: {ratio:.3f} ± {np.sqrt(2) * ratio * error:.3f}." in below
 
 
 def test_the_map_is_levelled_and_white_at_its_mean():
@@ -213,7 +215,7 @@ def test_every_flag_is_shown_in_full():
     shown = " ".join(sheet("long flags")._supxlabel.get_text().split())
     for flag in LONG.splitlines():
         assert " ".join(flag.split()) in shown
-    assert sheet("no flags")._supxlabel.get_text() == "No flags."
+    assert sheet("no flags")._supxlabel.get_text().splitlines()[:-1] == ["No flags."]
     clipped = surface_sheet("Etched", changed(flags=""), spectrum(CLIPPED))._supxlabel.get_text()
     assert clipped.startswith("– the spectrum ends at the Nyquist wave number")
 

@@ -289,7 +289,8 @@ FLAGS = {
         lambda: changed(tile_errors=of_b2().closed_form_errors * [1, 1, 2.5]),
     "the scans differ in rms, kurtosis by more than their errors":
         lambda: changed(homogeneity=(np.ones(3), np.array([0.001, 0.2, 0.009]))),
-    "places may differ: errors hold for another one, times those of one homogeneous surface rms 3, slope 1.6":
+    "places may differ: the scans vary more than one homogeneous surface would, errors are those of another place "
+    "(rms × 3, slope × 1.6)":
         lambda: changed(places=np.array([3, 1.1, 1.4, 1, 1.6])),
     "the spectrum is not of the form of Eq. (7) (chi²/dof 4); the measured spectrum is used instead, as with "
     "psd: tabulated":

@@ -151,7 +151,7 @@ define("table_pressing")
 define("figure_pressing")
 
 # Chart: simulated limit against relative humidity.
-#   chart, device_warnings -> results/figures/chart.{pdf,png,txt}
+#   chart, answer, device_warnings -> results/figures/chart.{pdf,png,txt}
 define("figure_chart")
 
 # Life: what brings devices into contact, holds and frees them.

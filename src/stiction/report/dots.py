@@ -29,6 +29,7 @@ class Mark:
     error: float = 0.0  #: standard error of a single number
     label: str = ""  #: in the legend
     filled: bool = True
+    text_color: str = "black"
 
 
 def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, column: str | None = None) -> None:
@@ -42,9 +43,9 @@ def draw(panel: Axes, rows: Mapping[str, Sequence[Mark]], *, column: str | None 
         for mark in marks:
             _draw(panel, row, mark)
             if column is not None:
-                panel.annotate(mark.text, (1, row), **in_column)
+                panel.annotate(mark.text, (1, row), **in_column, color=mark.text_color)
             else:
-                panel.annotate(mark.text, (mark.high + mark.error, row), (6, 0), **_NUMBER)
+                panel.annotate(mark.text, (mark.high + mark.error, row), (6, 0), **_NUMBER, color=mark.text_color)
     panel.set_yticks(range(len(rows)), list(rows))
     panel.tick_params(axis="y", length=0)
     panel.set_ylim(len(rows) - 0.4, -0.6 - bool(column))

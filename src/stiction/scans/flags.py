@@ -103,11 +103,12 @@ def _scans_differ(estimate):
 
 def _places_differ(estimate):
     grown = [
-        f"{name} {ratio:.2g}" for name, ratio in zip(_QUANTITIES, estimate.places, strict=True) if ratio > _ELSEWHERE
+        f"{name} × {ratio:.2g}" for name, ratio in zip(_QUANTITIES, estimate.places, strict=True) if ratio > _ELSEWHERE
     ]
     if not grown:
         return ""
-    return f"places may differ: errors hold for another one, times those of one homogeneous surface {', '.join(grown)}"
+    vary = "the scans vary more than one homogeneous surface would"
+    return f"places may differ: {vary}, errors are those of another place ({', '.join(grown)})"
 
 
 def _sizes_differ(estimate):

@@ -49,14 +49,18 @@ def test_what_decides_is_in_full_colour_and_the_other_airs_are_dashed():
     assert panel.get_title(loc="left") == "C1, cantilever"
 
 
-def test_a_band_leads_from_the_simulated_limit_to_the_size_to_build_which_is_stated():
+def test_the_simulated_limit_and_the_size_to_build_are_lines_and_the_latter_is_stated():
     (panel,) = risk({"C1": answered()}).axes
-    (band,) = panel.patches
-    assert (band.get_x(), band.get_x() + band.get_width()) == pytest.approx((155, 140))
+    assert not panel.patches, "no colour mixes with that of the band"
+    lines = {line.get_label(): line for line in panel.lines}
+    names = "limit by simulation, exact inputs", "to build: allowed share, 95 % confidence"
+    limit, build = (lines[name] for name in names)
+    assert [limit.get_xdata()[0], build.get_xdata()[0]] == pytest.approx([155, 140])
+    assert [limit.get_linestyle(), build.get_linestyle()] == ["--", "-"]
     (said,) = (text for text in panel.texts if text.get_text() == "build 140 µm")
     assert said.get_ha() == "right", "a shorter beam sticks less: the curve is on the other side"
     upright = [line.get_xdata()[0] for line in panel.lines if len(set(line.get_xdata())) == 1]
-    assert sorted(upright) == pytest.approx([140, 250]), "to build, and stated"
+    assert sorted(upright) == pytest.approx([140, 155, 250]), "to build, by simulation, and stated"
 
 
 def test_the_band_ends_where_the_simulation_no_longer_resolves_it():
@@ -65,7 +69,7 @@ def test_the_band_ends_where_the_simulation_no_longer_resolves_it():
     last = SIZES[np.argmax(high > 1e-3) - 1]  # next to the first size with a resolved end
     for drawn, first in ((replace(answered(), curve=floored), last), (answered(), SIZES[0])):
         (panel,) = risk({"C1": drawn}).axes
-        (band,) = panel.collections
+        band, _of_legend = panel.collections
         assert band.get_paths()[0].vertices[:, 0].min() == pytest.approx(1e6 * first)
 
 
@@ -73,8 +77,10 @@ def test_legends_are_below_all_panels_and_name_what_is_drawn_once():
     figure = risk({"C1": answered(), "C2": answered(build=np.nan, size=np.nan)})
     (common,) = figure.legends
     assert [text.get_text() for text in common.get_texts()] == [
+        "mean over all that is unknown",
         "95 % band, where the simulation resolves it",
-        "from the simulated limit to the size to build",
+        "limit by simulation, exact inputs",
+        "to build: allowed share, 95 % confidence",
         "stated size",
     ]
     for panel in figure.axes:

@@ -10,6 +10,7 @@ from ground import exactly, safe_with_tips, safe_without_tips
 from legends import covering
 from noted import noted
 
+from stiction.answer.data import Answer, AnswerInAir, Cause, Step
 from stiction.devices.chart import error_between
 from stiction.report.devices import figures as figures_devices
 from stiction.report.devices import tables as tables_devices
@@ -166,21 +167,34 @@ def test_a_line_of_a_chart_has_all_shares_and_its_warnings():
 def charts():
     """Figure of the charts and its panels by gap [µm] and shape."""
     figure = figures_devices.chart(CHARTS, STEEP)
-    return figure, dict(zip(product((10, 20), (S_SHAPE, EITHER)), figure.axes, strict=True))
+    return figure, dict(zip(product((10, 20), (EITHER, S_SHAPE)), figure.axes, strict=True))
 
 
 def test_the_chart_shows_the_middle_share_of_every_thickness_gap_and_shape():
     figure, panels = charts()
     assert [axes.get_title(loc="left") for axes in figure.axes] == [
-        "(a) C1, gap 10 µm, beam",
-        "(b) C1, gap 10 µm, beam or tip",
-        "(c) C1, gap 20 µm, beam",
-        "(d) C1, gap 20 µm, beam or tip",
+        "(a) C1, gap 10 µm, beam or tip",
+        "(b) C1, gap 10 µm, beam",
+        "(c) C1, gap 20 µm, beam or tip",
+        "(d) C1, gap 20 µm, beam",
     ]
     for shape, length in ((S_SHAPE, 105), (EITHER, 107)):  # p = 0.001, thin, wide gap
         curve = next(line for line in panels[20, shape].lines if len(line.get_xdata()) == 3)
         np.testing.assert_allclose(curve.get_xdata(), [0.4, 0.5, 0.6])
         np.testing.assert_allclose(curve.get_ydata(), np.array([2, 1, 0.5]) * length)
+
+
+@pytest.mark.parametrize(("gap", "forbidden"), [(20e-6, ()), (20e-6, ("gap",)), (15e-6, ())])
+def test_the_size_to_build_is_in_the_panel_of_the_own_gap_and_of_all_that_holds_the_device(gap, forbidden):
+    known = {"share": 1e-3, "unit": "m", "build": 80e-6, "exact": 80e-6, "size": 80e-6, "forbidden": forbidden}
+    steps = (Step(Cause.ESTIMATE, 80e-6, 1.0, 0.5, "S-shape", "safe_lengths"),)
+    answer = Answer("C1", "cantilever", steps=steps, airs=(AnswerInAir(0.5, 80e-6, np.nan, None),), **known)
+    marked = []
+    for panel in figures_devices.chart(CHARTS, STEEP, {"C1": (gap, answer)}).axes:
+        marks = [line for line in panel.lines if line.get_label() == "to build C1 as it is stated: 80 µm"]
+        marked += [(panel.get_title(loc="left"), *mark.get_xydata()[0]) for mark in marks]
+    shown = gap == 20e-6 and not forbidden
+    assert marked == [("(c) C1, gap 20 µm, beam or tip", 0.5, pytest.approx(80))] * shown
 
 
 NINE = {("C1", round(rh, 2)): charted(round(rh, 2), 2 - rh**2) for rh in np.linspace(0.4, 0.8, 9)}
@@ -222,7 +236,7 @@ def test_a_ragged_curve_of_a_chart_has_a_band_as_wide_as_its_noise():
 def test_the_axis_of_a_chart_is_that_of_its_own_lengths():
     found = {("C1", 0.5): charted(0.5).assign_coords(shape=[S_SHAPE, EITHER])}
     found["C1", 0.5]["safe_length"] = found["C1", 0.5].safe_length * xr.DataArray([10, 1], dims="shape")
-    alone, tip, *_ = figures_devices.chart(found, STEEP).axes
+    tip, alone, *_ = figures_devices.chart(found, STEEP).axes
     for panel, low, high in ((alone, 50, 1090), (tip, 51, 111)):  # limits of saturated air and longest curves
         bottom, top = panel.get_ylim()
         assert 0.9 * low < bottom < low
@@ -294,10 +308,10 @@ def test_the_chart_marks_what_a_power_law_gave_and_how_far_it_errs():
 def test_a_chart_explains_its_lines_once_below_all_panels():
     figure, panels = charts()
     assert named(figure) == [
-        "1 in 1000 stick by beam",
-        "flat surfaces, beam",
         "1 in 1000 stick by beam or tip",
         "flat surfaces, beam or tip",
+        "1 in 1000 stick by beam",
+        "flat surfaces, beam",
         "by a power law, ± 0.4 %",
     ]
     assert all(panel.get_legend() is None for panel in panels.values())

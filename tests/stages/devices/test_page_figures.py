@@ -61,9 +61,11 @@ def test_the_legend_of_a_life_names_what_is_drawn_alone(build, short):
     answers = layout(beam_answers({0.67: safe()}, {}, OF), OF, length=250e-6)
     figure = life.figure({"C1": answers}, {"C1": build})
     names = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert "hold" not in names, "no row of a beam that is a length is about what holds it"
-    assert ("does not allow this size" in names) == short
-    assert ("stick" in names) == (not short)
+    assert not any("hold" in name for name in names), "no row of a beam that is a length is about what holds it"
+    assert ("red number: does not allow this size" in names) == short
+    assert "stick: whether it then sticks" in names, "a limit that is too short keeps the colour of its question"
+    red = [text for panel in figure.axes for text in panel.texts if text.get_color() == life._SHORT]
+    assert bool(red) == short
 
 
 @styled

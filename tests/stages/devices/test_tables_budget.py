@@ -165,11 +165,12 @@ def test_bars_of_a_budget_are_shares_of_the_variance_and_total_and_scatter_are_a
     assert {bar.get_x() for bar in bars} == {0}
     middles = [bar.get_y() + bar.get_height() / 2 for bar in bars]
     assert_allclose(np.reshape(middles, (2, 2)).mean(axis=1), range(2), atol=1e-12)
-    totals = ", ".join(f"{100 * scale * np.sqrt(heights + thickness):.2g}" for scale in (2, 1))
-    assert measured.get_title(loc="left").split("\n")[-2:] == [
-        f"total ± {totals}\u00a0%",
-        "devices scatter ± 1.4, 1.4\u00a0%",
-    ]
+    totals = [f"{100 * scale * np.sqrt(heights + thickness):.2g}" for scale in (2, 1)]
+    title = " ".join(measured.get_title(loc="left").replace("\u00a0", " ").split())
+    stated = f"total RH 0.44 ± {totals[0]} %, RH 0.67 ± {totals[1]} %"
+    assert title.endswith(f"{stated} devices scatter RH 0.44 ± 1.4 %, RH 0.67 ± 1.4 %")
+    (alone,) = (panel for panel in figures_budget.budget({("C1", 0.67): BEAMS["C1", 0.67]}).axes[:1])
+    assert f"total ± {totals[1]} %" in alone.get_title(loc="left").replace("\u00a0", " "), "a single air has no name"
     names, bars = drawn(chosen)
     assert names == ["van der Waals in dry gaps"]
     assert_allclose([bars[0].get_x(), bars[0].get_x() + bars[0].get_width()], [-4.2, 0], atol=1e-12)

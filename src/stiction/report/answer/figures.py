@@ -128,8 +128,10 @@ def _stuck(panel: Axes, answer):
     label_of_airs = f"all airs, {decides} decides" if len(answer.airs) > 1 and np.isfinite(answer.share) else decides
     panel.plot(sizes, expected, color=colour, linewidth=1.6, label=label_of_airs)
     legend_below(panel, panel.get_legend_handles_labels()[0])
-    style = {"color": colour, "alpha": 0.2, "linewidth": 0, "label": "95 % band, where the simulation resolves it"}
-    panel.fill_between(sizes, *band, where=_resolved(band[1]), **style)
+    style = {"alpha": 0.2, "linewidth": 0}
+    panel.fill_between(sizes, *band, where=_resolved(band[1]), color=colour, **style)
+    panel.plot([], [], color="0.3", linewidth=1.6, label="mean over all that is unknown")
+    panel.fill_between([], [], [], color="0.3", **style, label="95 % band, where the simulation resolves it")
     if np.isfinite(answer.share):
         panel.axhline(answer.share, color="0.4", linestyle=":", linewidth=0.8)
         panel.annotate("allowed", (0.99, answer.share), ha="right", **_LABEL)
@@ -155,12 +157,15 @@ def _explain(figure, panels):
 
 
 def _size_to_build(panel, answer, scale):
-    """Vertical band from the simulated limit to the size to build, with its number, and the stated size."""
+    """Vertical lines of the simulated limit, of the size to build, with its number, and of the stated size."""
     if np.isfinite(answer.build):
         (limit,) = (step.size for step in answer.steps if step.cause is Cause.SIMULATION)
-        label = "from the simulated limit to the size to build"
-        panel.axvspan(limit / scale, answer.build / scale, color=BUILD, alpha=0.15, linewidth=0, label=label)
-        panel.axvline(answer.build / scale, color=BUILD, linewidth=1.5)
+        panel.axvline(
+            limit / scale, color=BUILD, linestyle="--", linewidth=1, label="limit by simulation, exact inputs"
+        )
+        panel.axvline(
+            answer.build / scale, color=BUILD, linewidth=1.5, label="to build: allowed share, 95 % confidence"
+        )
         side, end = (3, "left") if answer.sought.more_is_better else (-3, "right")  # clear of the curve
         style = {"xytext": (side, -3), "textcoords": "offset points", "ha": end, "va": "top", "rotation": 90}
         label = f"build {answer.in_words(answer.build)}"

@@ -230,14 +230,16 @@ def _contents(text, cases):
 
 
 def _in_words(cases):
-    """Sentences on total and scatter: standard uncertainties at all humidities."""
+    """Sentences on total and scatter: standard uncertainties at all humidities, with their airs."""
     budgets = [budget_of(dataset) for dataset in cases.values()]
     totals = [budget.effect(budget.names) for budget in budgets]
     for name, numbers in (
         ("total", totals),
         ("devices scatter", [float(dataset.scatter) for dataset in cases.values()]),
     ):
-        yield f"{name} ± {', '.join(number(100 * deviation, '#.2g').rstrip('.') for deviation in numbers)}\u00a0%"
+        texts = [f"±\u00a0{number(100 * deviation, '#.2g').rstrip('.')}\u00a0%" for deviation in numbers]
+        airs = [f"{Air(humidity).words} ".replace(" ", "\u00a0") * (len(cases) > 1) for humidity in cases]
+        yield f"{name} {', '.join(air + text for air, text in zip(airs, texts, strict=True))}"
 
 
 def _measurements(cases):

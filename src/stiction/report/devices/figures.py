@@ -11,13 +11,18 @@ from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from stiction.answer.data import Answer
 from stiction.contact.air import Air, is_humid
 from stiction.devices.chart import FEWEST_HUMIDITIES, between, error_between
 from stiction.devices.limits.limit import Limit
 from stiction.devices.risk import one_in
-from stiction.report.format import TO_UM, fraction_with_band
+from stiction.plan.names import by_name
+from stiction.report.answer.tables import of_datasets
+from stiction.report.answer.words import is_forbidden
+from stiction.report.format import TO_UM, UM, fraction_with_band
 from stiction.report.limits.words import numbered, with_numbers
 from stiction.report.style import (
+    BUILD,
     SINGLE,
     at_most_double,
     columns_of_panels,
@@ -145,11 +150,14 @@ def _explain(panel, datasets):
 
 @styled
 def chart(
-    datasets: Mapping[tuple[str, float], xr.Dataset], warnings: Mapping[tuple[str, float, float, str], list]
+    datasets: Mapping[tuple[str, float], xr.Dataset],
+    warnings: Mapping[tuple[str, float, float, str], list],
+    answers: Mapping[str, tuple[float, Answer]] | None = None,
 ) -> Figure:
     """Safe length over the relative humidity for the middle one of the shares.
 
     Each device, gap and shape has a panel: a tip holds beams that are so much shorter that one axis would hide them.
+    The panel of all that can hold a device is first, and has its size to build, from the gap [m] and answer by device.
     Dry air is beside the axis. The numbers of the warnings, by name, thickness [m], gap [m] and shape, mark the curves;
     there may be none.
     """
@@ -157,12 +165,17 @@ def chart(
     wholes = axes(datasets)
     placed = {name: places(dataset.relative_humidity.values.tolist()) for name, dataset in wholes.items()}
     subjects = [
-        (name, *at) for name, dataset in wholes.items() for at in product(dataset.gap.values, dataset["shape"].values)
+        (name, *at)
+        for name, dataset in wholes.items()
+        for at in product(dataset.gap.values, dataset["shape"].values[::-1])
     ]
     figure, columns, lines = columns_of_panels(len(subjects), 1, at_most_double(1.5 * SINGLE), _PANEL)
     for panel, (name, gap, shape) in zip(columns[:, 0], subjects, strict=True):
         curves = wholes[name].sel(gap=gap, shape=shape)
         _thicknesses(panel, curves, shape, placed[name])
+        own_gap, answer = (answers or {}).get(name, (np.nan, None))
+        if shape == wholes[name]["shape"].values[-1] and np.isclose(gap, own_gap, rtol=1e-6, atol=0):
+            _mark_size_to_build(panel, name, answer, placed[name])
         low, high = panel.dataLim.intervaly
         label = on_own_axes("simulated limit [µm]", columns.T)
         panel.set(xlabel="relative humidity [–]", ylabel=label, ylim=(0.95 * low, high + _ROOM * (high - low)))
@@ -173,9 +186,17 @@ def chart(
         _name_thicknesses(panel, curves, marks)
     letter_lines(lines, [f"{name}, gap {TO_UM * gap:g} µm, {END_STATES[shape].by}" for name, gap, shape in subjects])
     shown = sorted(zip(*handles(*columns[:, 0]), strict=True), key=lambda entry: isinstance(entry[0], PolyCollection))
-    legend_outside(figure, tuple(zip(*shown, strict=True)), "lower", 4)
+    legend_outside(figure, tuple(zip(*shown, strict=True)), "lower", 2)
     refer_to_warnings(figure, warnings)
     return figure
+
+
+def _mark_size_to_build(panel, name, answer, placed):
+    """Mark the size to build of a device, with all that it states, in the air that decides; none that is forbidden."""
+    if np.isfinite(answer.build) and not is_forbidden(answer):
+        air = answer.together.humidity
+        at, label = placed.get(air, air), f"to build {name} as it is stated: {answer.in_words(answer.build)}"
+        panel.plot(at, TO_UM * answer.build, "D", color=BUILD, markersize=5, zorder=4, label=label)
 
 
 def _middle(curves):
@@ -245,13 +266,32 @@ def _parts(curves, lines):
     return [(dataset, styles) for dataset, styles in parts if dataset.sizes["relative_humidity"]]
 
 
+def gap_of(section: Mapping[str, Any]) -> float:
+    """Gap of a device [m]."""
+    return section["gap_um"] * UM
+
+
+def _chart(data, settings):
+    """Figure of charts from their datasets, answers and limits."""
+    answers = of_datasets(data["answers"], data["warnings"])
+    own = {name: (settings["gaps"][name], answer) for name, answer in answers.items()}
+    return chart(data["charts"], device_warnings.read(data["warnings"]).curves, own)
+
+
 STAGES = (
     figure_stage(
         "chart",
         "simulated limit against relative humidity",
         "Devices",
-        inputs=lambda plan, at: charts(plan) | {"warnings": device_warnings.files_of(*plan.devices.with_chart)},
-        compute=lambda data: chart(data["charts"], device_warnings.read(data["warnings"]).curves),
+        inputs=lambda plan, at: (
+            charts(plan)
+            | {"answers": by_name("devices/answer", plan.devices.with_chart)}
+            | {"warnings": device_warnings.files_of(*plan.devices.with_chart)}
+        ),
+        settings=lambda plan, at: {
+            "gaps": {name: gap_of(plan.devices.sections[name]) for name in plan.devices.with_chart}
+        },
+        compute=_chart,
         jobs=lambda plan: [{}] if plan.devices.with_chart else [],
         targets=("devices",),
     ),

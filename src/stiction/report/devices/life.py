@@ -30,7 +30,7 @@ from stiction.report.style import (
 from stiction.report.table import Table, table_stage
 from stiction.stages.answer.beside import is_short
 from stiction.stages.devices import device_warnings
-from stiction.stages.life.answers import QUESTIONS, TOUCH, LifeRow, Name, answers_of
+from stiction.stages.life.answers import FREE, HOLD, QUESTIONS, STICK, TOUCH, LifeRow, Name, answers_of
 
 #: Units of the answers by those in SI: factor and text.
 _UNITS = {
@@ -56,6 +56,13 @@ CAPTION = (
     "has everything inside."
 )
 _COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#C98500", "#CC79A7", "#009E73"), strict=True))
+#: What each question asks.
+_QUESTIONS = {
+    TOUCH: "touch: what brings it into contact",
+    STICK: "stick: whether it then sticks",
+    HOLD: "hold: what holds it",
+    FREE: "free: what frees it",
+}
 #: Colour of a limit below the size to build.
 _SHORT = "#B00020"
 #: Height of the legend, and largest height of the figure [in]. Share of its width for labels, and mean width of their
@@ -331,7 +338,7 @@ def _high(answer: LifeRow) -> str:
 def figure(life: Mapping[str, xr.Dataset], builds: Mapping[str, float]) -> Figure:
     """Limits of the lives of devices as dot plots: lengths of beams, or forces of stoppers, a panel for each device.
 
-    Sizes to build are by device [m or N]. Red: less than that.
+    Sizes to build are by device [m or N]. Red numbers: less than that.
     """
     answers = {name: _rows(dataset) for name, dataset in life.items()}
     widest = int(_LABELS * page_width(DOUBLE) / _CHARACTER)
@@ -346,14 +353,21 @@ def figure(life: Mapping[str, xr.Dataset], builds: Mapping[str, float]) -> Figur
         dots.draw(panel, marks)
         panel.set(xlabel=f"{'length' if unit == 'µm' else 'force'} [{unit}]")
     letter(axes[:, 0], list(rows))
-    drawn = {mark.color for marks in rows.values() for row in marks.values() for mark in row}
-    named = _COLOURS | {"does not allow this size": _SHORT}
-    entries = [
-        Line2D([], [], color=colour, linewidth=4, label=name) for name, colour in named.items() if colour in drawn
-    ]
-    entries.append(Line2D([], [], color=BUILD, label="size to build"))
-    legend_outside(figure_of_lives, (entries, [entry.get_label() for entry in entries]), "upper", 6)
+    marks = [mark for rows_of_device in rows.values() for row in rows_of_device.values() for mark in row]
+    entries = list(_entries({mark.color for mark in marks}, {mark.text_color for mark in marks}))
+    legend_outside(figure_of_lives, (entries, [entry.get_label() for entry in entries]), "upper", 2)
     return figure_of_lives
+
+
+def _entries(colours, of_numbers):
+    """Yield entries of the legend: the questions whose colours are drawn, the size to build, and what is too short."""
+    for question, colour in _COLOURS.items():
+        if colour in colours:
+            yield Line2D([], [], color=colour, linewidth=4, label=_QUESTIONS[question])
+    yield Line2D([], [], color=BUILD, label="size to build, all stated inside")
+    if _SHORT in of_numbers:
+        style = {"linestyle": "", "marker": "$12$", "markersize": 9, "color": _SHORT}
+        yield Line2D([], [], label="red number: does not allow this size", **style)
 
 
 def _rows(dataset):
@@ -369,7 +383,7 @@ def _marks(answers, build, widest):
         least, scale = answer.high if np.isnan(answer.low) else answer.low, SOUGHT[answer.unit].scale
         colour, low, high = _COLOURS[answer.question], least / scale, answer.high / scale
         text = " to ".join(dict.fromkeys([significant(low), significant(high)]))
-        mark = dots.Mark(low, high, _SHORT if is_short(answer, build) else colour, text)
+        mark = dots.Mark(low, high, colour, text, text_color=_SHORT if is_short(answer, build) else "black")
         rows[textwrap.fill(_label(answer), widest)] = [mark]
     return rows
 

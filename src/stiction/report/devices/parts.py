@@ -85,7 +85,8 @@ def _parts_of_beam(name, section, data, answer):
     if data.get("charts"):
         axis = _cases(name, data["charts"])
         cells = tables_devices.chart(axis, warnings).cells.drop(columns="device")
-        sections.append(Section("Other thicknesses and humidities", (), cells, figures_devices.chart(axis, {})))
+        picture = figures_devices.chart(axis, {}, {name: (figures_devices.gap_of(section), answer)})
+        sections.append(Section("Other thicknesses and humidities", (), cells, picture))
     texts_of_cases = [*sentences.few_sentences(lengths), *sentences.prediction_sentences(lengths)]
     listed = with_numbers(warnings) + texts(sentences.shortest_warnings(section, answer))
     return sections, texts_of_cases, listed, _words_of_beam(data)

@@ -34,6 +34,7 @@ def surface_sheet(surface: str, estimate: xr.Dataset, spectrum: xr.Dataset | Non
     The spectrum, of which the flags are shown, is that of a surface that is simulated.
     """
     lines = _lines(surface_flags.flags(*(data for data in (estimate, spectrum) if data is not None)))
+    lines = [*lines, _minus(_of_errors(estimate))]
     figure, axes = panels(2, 2, (DOUBLE, _PANELS + _LINE_HEIGHT * len(lines)))
     _map(figure, axes[0, 0], estimate)
     _density(axes[0, 1], estimate)
@@ -72,17 +73,23 @@ def _title(name, estimate):
     """Scans and numbers with their errors."""
     rms, errors = TO_NM * stage_estimate.rms(estimate), np.sqrt(np.diag(estimate.covariance))
     skewness, kurtosis = stage_estimate.shape(estimate)
-    tiles = np.max(estimate.tile_errors.values / estimate.closed_form_errors.values)
-    sectors = float(estimate.sectors.max() / estimate.sectors.min())
-    sector_error = np.sqrt(2) * sectors * float(estimate.sector_errors.max())
     numbers = (
         f"rms {with_error(rms, rms * errors[0])} nm, skewness {with_error(skewness, errors[1])}, "
-        f"kurtosis {with_error(kurtosis, errors[2])}\n"
-        f"errors by tiles over closed form {tiles:.2g}, "
-        f"largest over smallest sector {with_error(sectors, sector_error)}"
+        f"kurtosis {with_error(kurtosis, errors[2])}"
     )
     scans = " and ".join(_scans(*each) for each in stage_estimate.frames(estimate))
     return f"{name}: {scans}\n{_minus(numbers)}"
+
+
+def _of_errors(estimate):
+    """Errors by two routes, and whether the surface is the same in all directions."""
+    tiles = np.max(estimate.tile_errors.values / estimate.closed_form_errors.values)
+    sectors = float(estimate.sectors.max() / estimate.sectors.min())
+    sector_error = np.sqrt(2) * sectors * float(estimate.sector_errors.max())
+    return (
+        f"Errors between parts of the scans over those computed from the spectrum: at most {tiles:.2g}. "
+        f"Spectrum, largest over smallest direction: {with_error(sectors, sector_error)}."
+    )
 
 
 def _scans(count, frame):

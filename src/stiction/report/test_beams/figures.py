@@ -3,6 +3,7 @@
 import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
 from stiction.contact.air import has_dry, is_humid
 from stiction.report.format import TO_UM
@@ -11,6 +12,7 @@ from stiction.report.style import (
     INTERVAL,
     figure_stage,
     humidity_axis,
+    legend_below,
     legend_outside,
     letter,
     panels,
@@ -54,6 +56,7 @@ def test_beams(update: xr.Dataset) -> Figure:
     if arrays:
         axes[0, 0].set_ylabel("crack length [µm]")
     _inputs(axes[0, -1], moved)
+    legend_below(axes[0, -1], _explained())
     letter(axes, [*arrays, f"inputs; {others} others hardly move" if others else "inputs"])
     legend_outside(figure, (list(shared.values()), list(shared)), "lower", 3)
     return figure
@@ -119,6 +122,12 @@ def _on_the_left(placed):
     """Places with numbers of counts on the left: dry air, and the last of several humidities, at the frame."""
     dry, wet = ([placed[rh] for rh in placed if is_humid(rh) == humid] for humid in (False, True))
     return dry + sorted(wet)[1:][-1:]
+
+
+def _explained():
+    """Entries of the legend of inputs: their bars are no 95 % bands."""
+    bars = (("before", _BEFORE), ("after", _AFTER))
+    return [Patch(color=colour, alpha=0.6, label=f"{name}, ± 1 standard uncertainty") for name, colour in bars]
 
 
 def _inputs(panel, uncertain):
