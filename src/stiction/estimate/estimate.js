@@ -125,7 +125,10 @@ function ofCantilever({thickness, gap, width, length, added}, table) {
   return {
     lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus: table.modulus}, gap, table),
     drive: 8 * (added || 0) / (3 * stiffness * gap ** 4), errors: table, stated: length,
-    row: ({length, intervals}) => ({size: length, intervals}),
+    row: ({length, intervals}) => {
+      if (length <= Math.max(thickness, gap)) throw new NotLearnt("it sticks even at a length below its gap or thickness: change voltage or dielectric");
+      return {size: length, intervals};
+    },
   };
 }
 
