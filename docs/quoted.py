@@ -630,10 +630,14 @@ def safe_lengths(table):
 
 
 def stoppers(table):
-    """``worst_S1``: worst humidity; ``stuck_S1_067``: P(stuck) [%]; ``force_S1_067_1e02``: safe force [µN]."""
+    """``worst_S1``: worst humidity; ``stuck_S1_067``: P(stuck) [%]; ``force_S1_067_1e02``: safe force [µN].
+
+    In the worst of all computed airs they are called ``force_S1_any_1e02`` and so on.
+    """
     texts = {}
-    for row in table.dropna(subset=["relative_humidity"]).to_dict("records"):
-        name = f"{row['device']}_{_digits(row['relative_humidity'])}"
+    for row in table.to_dict("records"):
+        air = row["relative_humidity"]
+        name = f"{row['device']}_{_digits(air) if air >= 0 else 'any'}"
         texts[f"worst_{row['device']}"] = f"{row['worst_humidity']:.2f}"
         texts[f"stuck_{name}"] = f"{100 * row['share_stuck']:.2g}"
         shares = [key.rpartition("_")[2] for key in row if key.startswith("safe_force_uN")]

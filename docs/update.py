@@ -129,7 +129,7 @@ SUPPLEMENT = {
 SUPPLEMENT_PICTURE = "supplement"
 #: Tables of ``make validation`` by their files in its folder, and its picture with its width [pixels].
 VALIDATION = {"validation.csv": "validation.csv", "validation.md": "validation.md", "validation_misses.md": "misses.md"}
-VALIDATION_PICTURE = ("validation", 1432)
+VALIDATION_PICTURE = ("validation", 720)
 #: Statements of the paper one by one: a table with a template.
 BESIDE = "beside_the_paper"
 #: Table of ``make tails``, in Markdown alone.

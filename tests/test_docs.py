@@ -2,6 +2,7 @@
 
 import importlib
 import importlib.util
+import json
 import re
 import subprocess
 import sys
@@ -249,6 +250,19 @@ def test_steps_of_answers_are_those_of_their_table_and_one_that_is_not_stated_st
     found = quoted.answers(pd.DataFrame([row]))
     assert found["build_C1"] == "170"
     assert [found[f"change_C1_{cause}"] for cause in ("simulation", "fast", "inputs")] == ["−5.0", "−21.1", "−10.0"]
+
+
+def test_the_readme_states_how_far_experiments_differ():
+    numbers = json.loads((DOCS / "results.json").read_text(encoding="utf-8"))["numbers"]
+    said = " ".join((ROOT / "README.md").read_text(encoding="utf-8").split())
+    of = (int(numbers[f"valid_levels{end}"]) for end in ("_inside", ""))
+    for text in (
+        f"off by {numbers['valid_off']} % in",
+        f"factor of {numbers['valid_factor']}:",
+        "{} of {} lie".format(*of),
+    ):
+        assert text in said
+        assert re.sub(r"\d+", lambda found: f"{int(found[0]) + 1}", text) not in said, "another number is found"
 
 
 def test_the_steps_of_the_page_lead_from_the_estimate_to_the_length_to_build():

@@ -289,17 +289,37 @@ def test_assumed_inputs_are_evenly_spread(film):
     assert_allclose(humidities, 0.4 + 0.1 * (np.arange(64) + 0.5) / 64, atol=0.1 / 32)
 
 
-def test_the_figure_counts_what_the_table_counts_and_its_rows_fall_from_above_the_prediction_to_below():
+def test_the_figure_counts_what_the_table_counts_and_its_misses_are_first():
     frame = pd.read_csv(ROOT / "docs" / "tables" / "validation.csv", comment="#")
     panels = figure.drawn(frame).axes
-    titles = [panel.get_title(loc="left").split("\n")[1] for panel in panels]
+    titles = [panel.get_title(loc="left").rpartition(": ")[2] for panel in panels]
     known = frame[frame.predicted.notna()]
     found = [[int(number) for number in re.findall(r"\d+", title)] for title in titles]
     measured, bounds = known[known.value.notna()], known[known.value.isna()]
     assert [sum(one[k] for one in found) for k in (0, 1)] == [measured.inside.sum(), len(measured)]
     assert [sum(one[k] for one in found if len(one) > 2) for k in (2, 3)] == [bounds.inside.sum(), len(bounds)]
     for panel in panels:
-        marks = [line.get_xdata()[0] for line in panel.lines if len(line.get_xdata()) == 1]
-        names = [name.get_text() for name in panel.get_yticklabels()]
+        marks = [line for line in panel.lines if len(line.get_xdata()) == 1]
+        names = [name.get_text() for name in panel.texts]
         assert len(marks) == len(names) == len(set(names))
-        assert marks == sorted(marks, reverse=True)
+        assert not any("…" in name for name in names)
+        missed = [line.get_color() == figure.OUTSIDE[0] for line in marks]
+        assert missed == sorted(missed, reverse=True)
+        assert any(missed)
+        assert not all(missed)
+        for is_missed in (True, False):
+            along = [line.get_xdata()[0] for line, one in zip(marks, missed, strict=True) if one == is_missed]
+            assert along == sorted(along, reverse=True), "from above the prediction to below"
+
+
+def test_names_of_the_figure_are_whole_beside_their_bars_and_inside_of_their_panel():
+    frame = pd.read_csv(ROOT / "docs" / "tables" / "validation.csv", comment="#")
+    drawn = figure.drawn(frame)
+    drawn.draw_without_rendering()
+    for panel in drawn.axes:
+        frame_of_panel, marks = panel.bbox, [line for line in panel.lines if len(line.get_xdata()) == 1]
+        for name, mark, following in zip(panel.texts, marks, [*panel.texts[1:], None], strict=True):
+            box, height = name.get_window_extent(), panel.transData.transform((0, mark.get_ydata()[0]))[1]
+            assert frame_of_panel.x0 <= box.x0 < box.x1 <= frame_of_panel.x1
+            assert box.y0 > height, "above its bar"
+            assert following is None or following.get_window_extent().y1 < height

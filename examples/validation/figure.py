@@ -1,4 +1,4 @@
-"""Figure of the benchmark: measured values over their median predictions, the largest first."""
+"""Figure of the benchmark: measured values over their median predictions, those outside of their intervals first."""
 
 import textwrap
 from functools import partial
@@ -9,20 +9,22 @@ from experiment import LINEAR
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from stiction.report.style import DOUBLE, legend_outside, letter, panels, plain_log, styled
+from stiction.report.style import OUTLINED, legend_outside, letter, panels, plain_log, styled
 
 #: Colour and marker of a measured value inside and outside of its interval.
 INSIDE, OUTSIDE = ("#0072B2", "o"), ("#D55E00", "D")
-#: Height of a line of a panel, what its axis takes [in], and height of the lower panels over that of the upper ones.
-LINE, AROUND, LOWER = 0.19, 0.7, 0.6
-#: Most characters of a line of a name, and of that of a level, which its value follows.
-NAME, NAME_OF_LEVEL = 48, 46
+#: Width, of which a phone shows 7 points as 10 pixels, and height of a line of a name, of a bar and of an axis [in].
+WIDTH, LINE, BAR_HEIGHT, AROUND = 3.6, 0.1, 0.11, 0.55
+#: Most characters of a line of a name.
+NAME = 68
 #: Ratio of the ends of an axis below which it has plain numbers.
 DECADE = 10
 #: Start of the names of experiments on crack lengths.
 CRACKS = "crack_lengths_"
 #: Predicted interval.
 BAR = {"color": "0.6", "linewidth": 3, "solid_capstyle": "butt"}
+#: Text of a name.
+NAMED = {"fontsize": 7, "linespacing": 1, "path_effects": OUTLINED}
 
 
 @styled
@@ -37,13 +39,13 @@ def drawn(frame: pd.DataFrame) -> Figure:
         "Crack lengths": known[cracks],
         "Laws: exponents, maxima": known[linear],
     }
-    most = max(len(groups["Levels"]), len(groups["Laws: ratios, thresholds"]), 1)
-    size = DOUBLE, 2 * AROUND + (1 + LOWER) * LINE * most
-    figure, axes = panels(2, 2, size, height_ratios=(1, LOWER))
+    groups = {name: in_order(rows) for name, rows in groups.items()}
+    heights = [AROUND + sum(map(height, rows.itertuples())) for rows in groups.values()]
+    figure, axes = panels(len(groups), 1, (WIDTH, AROUND + sum(heights)), height_ratios=heights)
     for panel, rows in zip(axes.flat, groups.values(), strict=True):
         draw(panel, rows)
-    letter(axes, [f"{name}\n{counted(rows)}" for name, rows in groups.items()])
-    legend_outside(figure, (entries := list(legend()), [entry.get_label() for entry in entries]), "lower", 4)
+    letter(axes, [f"{name}: {counted(rows)}" for name, rows in groups.items()])
+    legend_outside(figure, (entries := list(legend()), [entry.get_label() for entry in entries]), "upper", 2)
     return figure
 
 
@@ -56,13 +58,30 @@ def counted(rows):
     return ", ".join(parts)
 
 
-def draw(panel, rows):
-    """One line for each row, the furthest above its prediction first: factors, or differences if all are linear."""
-    linear = len(rows) > 0 and rows.kind.isin(LINEAR).all()
+def all_linear(rows):
+    """Whether a panel shows differences."""
+    return len(rows) > 0 and bool(rows.kind.isin(LINEAR).all())
+
+
+def in_order(rows):
+    """Rows outside of their intervals first, then those inside, each the furthest above its prediction first."""
     stated = rows.value.fillna(rows.at_least).fillna(rows.at_most)
-    order = np.argsort(-on_axis(rows, stated, linear=linear).to_numpy(), kind="stable")
-    rows = rows.iloc[order]
-    for place, row in enumerate(rows.itertuples()):
+    above = on_axis(rows, stated, linear=all_linear(rows)).to_numpy(float)
+    return rows.iloc[np.lexsort([-above, rows.inside.to_numpy(bool)])]
+
+
+def height(row):
+    """Height of a row: its bar below its name [in]."""
+    return BAR_HEIGHT + LINE * (1 + label(row).count("\n"))
+
+
+def draw(panel, rows):
+    """Bar and measured value of each row below its name, in order: factors, or differences if all are linear."""
+    linear, bottom = all_linear(rows), 0.0
+    for row in rows.itertuples():
+        panel.text(0.01, bottom + 0.01, label(row), va="top", **NAMED, transform=panel.get_yaxis_transform())
+        bottom += height(row)
+        place = bottom - BAR_HEIGHT / 2
         panel.plot(on_axis(row, np.array([row.low, row.high]), linear=linear), [place, place], **BAR)
         mark(panel, row, place, partial(on_axis, row, linear=linear))
     panel.axvline(0 if linear else 1, color="0.8", linewidth=0.6, zorder=0)
@@ -72,19 +91,12 @@ def draw(panel, rows):
         panel.set(xscale="log", xlabel="value / median prediction [–]")
         if np.divide(*panel.get_xlim()[::-1]) < DECADE:
             plain_log(panel.xaxis)
-    name_lines(panel, [label(row) for row in rows.itertuples()])
+    panel.set(yticks=[], ylim=(bottom + 0.06, -0.04))
 
 
 def on_axis(row, values, *, linear):
     """Values beside the median prediction of a row, or of rows."""
     return values - row.predicted if linear else values / row.predicted
-
-
-def name_lines(panel, names):
-    """Names at the left of their lines, from top to bottom."""
-    panel.set_yticks(range(len(names)), names, fontsize=5.5, linespacing=1)
-    panel.tick_params(axis="y", length=0)
-    panel.set_ylim(len(names) - 0.4, -0.6)
 
 
 def mark(panel, row, place, on_axis):
@@ -102,7 +114,7 @@ def legend():
     yield Line2D([], [], **BAR, label="predicted, 90 %")
     for (colour, marker), name in ((INSIDE, "measured, inside"), (OUTSIDE, "measured, outside")):
         yield Line2D([], [], color=colour, marker=marker, linestyle="", label=name)
-    yield Line2D([], [], color="0.3", marker=">", linestyle="", label="measured bound, allowed side")
+    yield Line2D([], [], color="0.3", marker=">", linestyle="", label="measured limit, pointing to allowed values")
 
 
 def stated(row):
@@ -114,11 +126,9 @@ def stated(row):
 
 
 def label(row):
-    """Name of a row: pair and air of a crack length, what was tested otherwise; a law has its quantity below."""
+    """Name of a row: pair and air of a crack length, what was tested otherwise; a law with its quantity."""
     if row.experiment.startswith(CRACKS):
         return f"pair {row.experiment.removeprefix(CRACKS)}, {row.quantity.rpartition(', ')[2]}"
     name = row.title.rpartition(", ")[0] or row.title
-    if row.kind == "level":
-        return f"{textwrap.shorten(name, NAME_OF_LEVEL, placeholder=' …')}: {stated(row)}"
-    quantity = textwrap.shorten(row.quantity, NAME, placeholder=" …").replace("₄", "$_4$")
-    return f"{textwrap.shorten(name, NAME, placeholder=' …')}\n{quantity}: {stated(row)}"
+    quantity = "" if row.kind == "level" else f", {row.quantity}"
+    return textwrap.fill(f"{name}{quantity}: {stated(row)}", NAME).replace("₄", "$_4$")

@@ -38,11 +38,10 @@ FEW = {"contact": {"samples": 500}, "chaos": {"order": 6}, "design": {"beams": 3
 MORE = {"run": {"pairs": []}, "devices": {"C1": BEAM | {"humidities": [0.67, 0.8]}}}
 
 
-def of_many(number):
-    """Study of cantilevers of as many thicknesses, at four humidities each."""
+def of_many(number, humidities=(0.44, 0.6, 0.75, 0.9)):
+    """Study of cantilevers of as many thicknesses, by default at four humidities each."""
     beams = {
-        f"D{k}": BEAM | {"thickness_um": round(2 + 0.001 * k, 3), "humidities": [0.44, 0.6, 0.75, 0.9]}
-        for k in range(number)
+        f"D{k}": BEAM | {"thickness_um": round(2 + 0.001 * k, 3), "humidities": [*humidities]} for k in range(number)
     }
     return {"run": {"pairs": []}, "devices": beams}
 
@@ -85,6 +84,7 @@ RUNS = {
     "one more humidity": ([ONE, MORE], [LENGTHS]),
     "plan of 250 devices at 4 humidities": ([of_many(250)], ["-n"]),
     "plan of 2500 devices at 4 humidities": ([of_many(2500)], ["-n"]),
+    "plan of 5000 devices at one humidity": ([of_many(5000, [0.67])], ["-n"]),
     "2 pairs with their budgets": ([of_pairs(2)], []),
     "2 pairs of scans with their budgets": ([of_scans(2)], []),
     "plan of 100 pairs": ([of_pairs(100)], ["-n"]),

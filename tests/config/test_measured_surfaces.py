@@ -522,19 +522,19 @@ def test_a_configuration_without_scans_imports_nothing_of_them(tmp_path):
 
 def test_numbers_that_cannot_be_kept_are_used_all_the_same(folder, tmp_path, monkeypatch):
     (tmp_path / "kept").touch()  # no folder
-    monkeypatch.setattr(scans, "_KNOWN", {})
+    monkeypatch.setattr(scans, "_NUMBERS", {})
     assert validation.checked(configured(both(folder)[0]), tmp_path / "kept").estimates
 
 
 def test_another_version_of_the_library_reads_the_files_again(folder, monkeypatch):
     config = configured(both(folder)[0])
     validation.checked(config)
-    known = set(scans._KNOWN)
+    known = set(scans._NUMBERS)
     monkeypatch.setattr(scans, "version_of", lambda library: f"another {library}")
     scans._code.cache_clear()
     validation.checked(config)
     scans._code.cache_clear()
-    assert len(set(scans._KNOWN) - known) == 1
+    assert len(set(scans._NUMBERS) - known) == 1
 
 
 @pytest.mark.parametrize("changed", ["config/scans.py", "scans/estimate.py", "scans/reading.py"])
@@ -547,7 +547,7 @@ def test_another_evaluation_reads_the_files_again(folder, monkeypatch, changed):
         monkeypatch.setattr(scans, "fingerprint", code)
         scans._code.cache_clear()
         validation.checked(config)
-        sizes.append(len(scans._KNOWN))
+        sizes.append(len(scans._NUMBERS))
     scans._code.cache_clear()
     assert sizes[1] == sizes[0] + 1
 

@@ -136,7 +136,7 @@ def test_a_key_that_is_not_given_is_unknown():
     assert config.names("pairs") == ["a", "b"]
     assert list(config.entries("pairs", "gap_um")) == [("a", 20)]
     assert list(config.items("pairs.b.gaps_um")) == [("pairs.b.gaps_um.0", 1), ("pairs.b.gaps_um.1", 2)]
-    assert list(config.given("seed", "sead")) == [("seed", 1)]
+    assert list(config.given_items("seed", "sead")) == [("seed", 1)]
 
 
 def test_numbers_of_measured_surfaces_are_named_by_their_files():

@@ -240,7 +240,22 @@ def test_markdown_and_html_show_the_same_text_even_if_it_looks_like_a_number():
     for text in ("+1.0", "-0.50"):
         assert f" {text} |" in table.markdown
         assert f"<td>{text}</td>" in table.page("T")
-    assert table.page("T").count("<td>") == 4
+    assert '<td class="word">a|b</td>' in table.page("T"), "words from the left, numbers from the right"
+    assert table.page("T").count("<td") == 4
+
+
+def test_a_page_of_a_table_explains_its_terms_below_it_and_leads_back():
+    table = tables.Table(
+        pd.DataFrame(),
+        tables.with_list("All rows. Limit: the least. Warnings:", ["(1) Too steep: 0.1."]),
+        pd.DataFrame({"x": ["1"]}),
+    )
+    shown = Reading(table.page("T"))
+    assert shown.text["dt"] == ["Limit"]
+    assert shown.text["dd"] == ["All rows.", "the least.", "Warnings:", "(1) Too steep: 0.1."]
+    assert table.page("T").index("</table>") < table.page("T").index("<details>")
+    assert 'href="../index.html"' in table.page("T")
+    assert "<details>" not in tables.Table(pd.DataFrame(), "", table.cells).page("T")
 
 
 def variant(*states):
@@ -302,7 +317,7 @@ def test_text_of_users_in_a_table_is_shown_as_it_is():
         shown = Reading(html)
         assert [code for code in shown.code if code != "meta"] == []
         assert shown.text["td"] == [HOSTILE_FILE, HOSTILE] * 2
-        assert f"Scans {HOSTILE}." in "".join(shown.text["p"])
+        assert f"Scans {HOSTILE}." in "".join(shown.text["p"] + shown.text.get("dd", []))
     assert shown.text["li"] == [HOSTILE]
     assert "eq" not in shown.text, "a formula"
     two_lines = tables.Table.of([row | {"channel": "x\ny"}], "", columns)

@@ -112,7 +112,7 @@ define("test_beams")
 define("test_beams_rerun")
 
 # Answer about device {device}.
-#   budget, tip_budget, life, fast_strips, fast_tips, test_beams, safe_lengths, at_voltage,
+#   budget, tip_budget, life, fast_strips, fast_tips, test_beams, safe_lengths, chart, at_voltage,
 #     stoppers_at_voltage, touchdowns, separation, stoppers, tilted_stoppers ->
 #     results/devices/answer/{device}.nc
 define("answer")

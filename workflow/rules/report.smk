@@ -83,7 +83,7 @@ define("fit_quality")
 define("table_resampling")
 
 # Stoppers: pull-off force of stoppers.
-#   stoppers, device_warnings -> results/figures/stoppers.{pdf,png,txt}
+#   stoppers, answer, device_warnings -> results/figures/stoppers.{pdf,png,txt}
 define("figure_stoppers")
 
 # Budget {device}: uncertainty of {device}.

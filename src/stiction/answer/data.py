@@ -116,6 +116,23 @@ class Stay:
 
 
 @dataclass(frozen=True)
+class Between:
+    """Strictest size to build of the computed airs between the stated ones."""
+
+    humidity: float  #: [-]
+    size: float  #: [m, N]
+
+
+@dataclass(frozen=True)
+class Unasked:
+    """Simulated limit that is stricter than the size to build, of what nothing that is stated asks for."""
+
+    name: str  #: of its row in the life of the device
+    what: str
+    size: float  #: [m, N]
+
+
+@dataclass(frozen=True)
 class Answer:
     """Size to build of a device and what leads to it: the source of pages, tables and pictures."""
 
@@ -144,6 +161,8 @@ class Answer:
     #: Pull-off forces by air, of a device that is asked for them. Its size is the measured force, none is to build, and
     #: what sticks are places that hold more.
     pull_offs: tuple[PullOff, ...] = ()
+    between: Between | None = None  #: if it is stricter than the size to build, which holds in the stated airs
+    unasked: tuple[Unasked, ...] = ()
 
     @property
     def sought(self) -> Sought:
@@ -163,6 +182,12 @@ class Answer:
     def is_enough(self) -> bool:
         """Whether the stated size is within the size to build."""
         return self.sought.sign * self.size <= self.sought.sign * self.build
+
+    @property
+    def is_enough_between(self) -> bool:
+        """Whether the stated size is also within that of all computed airs between the stated ones."""
+        sign = self.sought.sign
+        return self.is_enough and (self.between is None or sign * self.size <= sign * self.between.size)
 
     @property
     def verdict(self) -> Verdict:

@@ -39,8 +39,8 @@ def load(*overlays: str | Path | Mapping) -> dict:
 def joined(*overlays: str | Path | Mapping) -> dict:
     """Configuration of the paper, changed by overlays as in `load`, as it is stated: not checked."""
     changes = [_in_memory(overlay) if isinstance(overlay, Mapping) else read_located(overlay) for overlay in overlays]
-    whole = functools.reduce(merged, changes, read(PAPER))
-    return device_table.with_rows(without_inherited(whole, paper(), changes))
+    config = functools.reduce(merged, changes, read(PAPER))
+    return device_table.with_rows(without_inherited(config, paper(), changes))
 
 
 def _in_memory(overlay):

@@ -31,9 +31,9 @@ class Relations(list):
         """Yield violated relations."""
         for relation in self:
             with suppress(Unknown):
-                for key, refusal, *given in relation(config):
+                for key, refusal, *others in relation(config):
                     if refusal:
-                        yield config.problem(key, refusal, *given)
+                        yield config.problem(key, refusal, *others)
 
 
 @dataclass(frozen=True)
@@ -65,7 +65,7 @@ class Keys:
         value = self[section]
         return list(value) if isinstance(value, dict) else [*map(str, range(len(value)))]
 
-    def given(self, *keys: str) -> Iterator[tuple[str, Any]]:
+    def given_items(self, *keys: str) -> Iterator[tuple[str, Any]]:
         """Yield (key, value) for every given key."""
         for key in keys:
             with suppress(Unknown):
@@ -74,12 +74,12 @@ class Keys:
     def items(self, listed: str) -> Iterator[tuple[str, Any]]:
         """Keys of the items of a list, with their values."""
         with suppress(Unknown):
-            yield from self.given(*(f"{listed}.{index}" for index in self.names(listed)))
+            yield from self.given_items(*(f"{listed}.{index}" for index in self.names(listed)))
 
     def entries(self, section: str, *keys: str) -> Iterator[tuple]:
         """Yield the name of every entry of a section with all these keys, and their values."""
         for name in self.names(section):
-            values = dict(self.given(*(f"{section}.{name}.{key}" for key in keys)))
+            values = dict(self.given_items(*(f"{section}.{name}.{key}" for key in keys)))
             if len(values) == len(keys):
                 yield name, *values.values()
 
@@ -87,12 +87,14 @@ class Keys:
         """Keys of measured surfaces. A problem with them names the files of their scans."""
         return [f"surfaces.{name}.rms_nm" for name in self.files if name in surfaces]
 
-    def problem(self, key: str, message: str, *given: str) -> Problem:
+    def problem(self, key: str, message: str, *other_keys: str) -> Problem:
         """Problem with a key, and the other keys behind it."""
         path, value = self._origin(key)
         follows = path[0] == "surfaces" and path != _path(key) and value != self[key]
         number = f", which gives {_path(key)[-1]} = {self[key]:.4g}" if follows else ""
-        others = dict.fromkeys(f"{dotted(other)} = {one_line(given)}" for other, given in map(self._origin, given))
+        others = dict.fromkeys(
+            f"{dotted(other)} = {one_line(content)}" for other, content in map(self._origin, other_keys)
+        )
         more = f" (given {', '.join(others)})" if others else ""
         return Problem(path, f"is {one_line(value)}{number}, {message}{more}")
 
@@ -108,4 +110,4 @@ class Keys:
 
 def _path(key):
     """Names and indices of a dotted key."""
-    return tuple(int(part) if part.isdecimal() else part for part in key.split("."))
+    return tuple(int(name) if name.isdecimal() else name for name in key.split("."))

@@ -33,7 +33,10 @@ def with_named(config: dict[str, Any]) -> dict[str, Any]:
 
     Own materials of the same name remain.
     """
-    named = {name: {key: entry["value"] for key, entry in of.items()} for name, of in sourced_properties().items()}
+    named = {
+        name: {key: entry["value"] for key, entry in properties.items()}
+        for name, properties in sourced_properties().items()
+    }
     stated = config.get("materials", {})
     used = dict.fromkeys(surface.get("material") for surface in config["surfaces"].values())
     materials = {name: named[name] for name in used if name in named} | {

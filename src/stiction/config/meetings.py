@@ -125,7 +125,7 @@ def pair_meetings(config: Keys) -> Iterator[Meeting]:
     for pair, *surfaces in config.entries("pairs", *SIDES):
         if pair in config["run.pairs"]:
             section = f"pairs.{pair}"
-            listed, shown = (dict(config.given(key)).get(key) for key in (f"{section}.humidities", _SHOWN))
+            listed, shown = (dict(config.given_items(key)).get(key) for key in (f"{section}.humidities", _SHOWN))
             airs = [f"{section}.humidities", *([_SHOWN] if shown not in (listed or ()) else [])]
             stated = [*(f"{section}.{side}" for side in SIDES), *config.scanned(*surfaces)]
             yield Meeting(config, pair, airs, [(f"{section}.gap_um", air) for air in airs], stated, ("run.pairs",))
@@ -136,7 +136,7 @@ def device_meeting(name: str, config: Keys) -> Meeting:
     section = f"devices.{name}"
     pair, humidities = config[f"{section}.pair"], f"{section}.humidities"
     airs, gaps = [humidities], [(f"{section}.gap_um", humidities)]
-    for _, chart in config.given(f"{section}.chart"):
+    for _, chart in config.given_items(f"{section}.chart"):
         airs.append(f"{section}.chart.humidities")
         gaps.append((f"{section}.{'chart.gaps_um' if 'gaps_um' in chart else 'gap_um'}", airs[-1]))
     if KINDS[config[f"{section}.kind"]].release.in_any_air and humid(config[humidities]):
@@ -225,9 +225,9 @@ def gaps_are_far_above_the_film(config):
     for meeting in meetings(config):
         refused = {}
         for gap, air in meeting.gaps:
-            values = dict(config.given(gap, air))
+            values = dict(config.given_items(gap, air))
             if len(values) == 2:
-                adsorbed = dict(config.given(ADSORBED))
+                adsorbed = dict(config.given_items(ADSORBED))
                 least, refusal = least_gap(values[air], meeting)
                 refusal_at_air = least, gap, refusal, air, *meeting.keys_behind(TEMPERATURE, *adsorbed)
                 if np.min(values[gap]) < least:
@@ -253,7 +253,7 @@ def least_gap(humidities: float | list, meeting: Meeting) -> tuple[float, str]:
 
 def films(humidities: float | list, meeting: Meeting) -> list[float]:
     """Heights of the water at those of some humidities at which it condenses, with what adsorbs [m]."""
-    adsorbed = to_si(sum(value for _, value in meeting.config.given(ADSORBED)), "nm")
+    adsorbed = to_si(sum(value for _, value in meeting.config.given_items(ADSORBED)), "nm")
     angles, wet = meeting.wetting(), humid(humidities) if meeting.wetting() else []
     grown = adsorbed_heights(meeting.config["water"], wet)
     heights = (meniscus_height(air, meeting.temperature(air), angles) for air in wet)
@@ -265,7 +265,7 @@ def coatings_leave_a_gap(config):
     """Require both coatings together to be thinner than the gap."""
     for meeting in meetings(config):
         coatings = sum(material.get(COATING, 0) for material in meeting.materials)
-        for key, gap in config.given(*dict.fromkeys(gap for gap, _ in meeting.gaps)):
+        for key, gap in config.given_items(*dict.fromkeys(gap for gap, _ in meeting.gaps)):
             if np.min(gap) * NM_PER_UM <= coatings:
                 message = f"must be above the thickness of the coatings of both surfaces, {coatings:g} nm"
                 yield key, message, *meeting.keys_behind()
@@ -276,7 +276,7 @@ def water_is_a_liquid(config):
     """Require air humid enough for a film of liquid water. The humidity of the figures is refused once."""
     refused = {}
     for meeting in meetings(config):
-        for key, humidities in config.given(*meeting.airs):
+        for key, humidities in config.given_items(*meeting.airs):
             if refusal := meeting.too_dry(humidities, molecules=meeting.molecules(key)):
                 refused.setdefault(key, (key, refusal, *meeting.keys_behind(TEMPERATURE)))
     yield from refused.values()
@@ -293,12 +293,12 @@ _TOO_SHORT = {
 def attraction_reaches_across_dry_gaps(config):
     """Require attraction across gaps in dry air. There surfaces attract each other mostly out of contact."""
     for meeting in meetings(config):
-        dry = [key for key, humidities in config.given(*meeting.airs) if has_dry(humidities)]
+        dry = [key for key, humidities in config.given_items(*meeting.airs) if has_dry(humidities)]
         if meeting.is_wetted and not dry:
             continue
         angles = " and ".join(f"{material.get('contact_angle_deg', 0):g}" for material in meeting.materials)
         why = "in dry air" if meeting.is_wetted else f"where no water condenses at contact angles of {angles} degrees"
-        for key, value in config.given(*_TOO_SHORT):
+        for key, value in config.given_items(*_TOO_SHORT):
             refused, allowed = _TOO_SHORT[key]
             if value == refused:
                 yield (
@@ -318,8 +318,8 @@ def corrections_are_not_extrapolated(config):
         meeting = device_meeting(name, config)
         of_pair, (stated, *others) = f"pairs.{meeting.pair}.humidities", meeting.airs
         shown = [config["figures.humidity"]] * (meeting.pair in config["run.pairs"])
-        covered, uncertain = [*config[of_pair], *shown], dict(config.given(meeting.deviation))
-        for key, humidities in config.given(stated, *others):
+        covered, uncertain = [*config[of_pair], *shown], dict(config.given_items(meeting.deviation))
+        for key, humidities in config.given_items(stated, *others):
             more = sum(uncertain.values()) if key == stated else 0
             if not meeting.is_wetted or _is_within(humidities, more, covered):
                 continue

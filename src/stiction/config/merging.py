@@ -140,7 +140,7 @@ def expanded(config: dict[str, Any]) -> dict[str, Any]:
 
 def _changed_entries(before, after):
     """Yield dotted names of entries different in two configurations, also below studies."""
-    for path in _places(before):
+    for path in _paths(before):
         entries, now = reduce(getitem, path, before), reduce(getitem, path, after)
         yield from (".".join((*path, name)) for name in now if name in entries and entries[name] != now[name])
 
@@ -170,15 +170,15 @@ def _parts_of_path(config, path):
     raise ConfigError(f"compare.{path} is no key of an entry that exists, must be {listed}")
 
 
-def _only_at(value, *place):
-    """Configuration with nothing but a value at a place."""
-    for name in reversed(place):
+def _only_at(value, *path):
+    """Configuration with nothing but a value at a path."""
+    for name in reversed(path):
         value = {name: value}
     return value
 
 
-def _places(config):
-    """Yield places of sections with entries to copy, and of sections keyed by the name of a pair."""
+def _paths(config):
+    """Yield paths of sections with entries to copy, and of sections keyed by the name of a pair."""
     yield from ((section,) for section in _NAMED if section in config)
     for study in config["studies"]:
         by_key = section_at(config, "studies", study).items()
@@ -218,7 +218,7 @@ def _with_copies(config, copied, end):
         if names
     }
     config = merged(config, added)
-    for path in _places(config):
+    for path in _paths(config):
         stated = reduce(getitem, path, config) if path[0] == "studies" else {}
         if of_copies := {name + end: stated[name] for name in copied["pairs"] if name in stated}:
             config = merged(config, _only_at(of_copies, *path))

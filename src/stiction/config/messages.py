@@ -169,17 +169,17 @@ _NEVER = {
 }
 
 
-def _unknown(key, value, known):
+def _unknown(key, value, keys):
     """Message about a key not in the schema."""
-    with_unit = [name for name in known if name.startswith(f"{key}_")]
-    question = _question(with_unit) or did_you_mean(key, known)
+    with_unit = [name for name in keys if name.startswith(f"{key}_")]
+    question = _question(with_unit) or did_you_mean(key, keys)
     unit = " Keys carry their unit." if with_unit else ""
-    return f"is unknown (value {one_line(value)}), must be one of {', '.join(known)}{question}{unit}"
+    return f"is unknown (value {one_line(value)}), must be one of {', '.join(keys)}{question}{unit}"
 
 
-def did_you_mean(word: object, known: Iterable[str]) -> str:
+def did_you_mean(word: object, names: Iterable[str]) -> str:
     """Suggest the known name most similar to ``word``, or nothing."""
-    return _question(difflib.get_close_matches(str(word), known, n=1))
+    return _question(difflib.get_close_matches(str(word), names, n=1))
 
 
 def _question(meant):
@@ -284,8 +284,8 @@ def _in_yaml(mantissa, exponent, entry):
 
 def _grouped_hint(text, entry):
     """Advice on a number such as 5,000: without separators, or with a decimal point if both can be meant."""
-    whole, decimal = re.sub(r"[,' ]", "", text), text.replace(",", ".")
-    readings = [whole] if decimal.count(".") != 1 else [whole, decimal]
+    digits, decimal = re.sub(r"[,' ]", "", text), text.replace(",", ".")
+    readings = [digits] if decimal.count(".") != 1 else [digits, decimal]
     allowed = [reading for reading in readings if _accepts(entry, yaml.safe_load(reading))]
     return f"; write {' or '.join(allowed)} without a separator of thousands" if allowed else ""
 

@@ -132,9 +132,9 @@ def _number_of_values(node, counted):
     """Number of values of a node, with those of its aliases. A node in itself is refused when it is constructed."""
     if id(node) not in counted:
         counted[id(node)] = 0
-        parts = node.value if isinstance(node, yaml.CollectionNode) else ()
-        parts = chain.from_iterable(parts) if isinstance(node, yaml.MappingNode) else parts
-        counted[id(node)] = 1 + sum(_number_of_values(part, counted) for part in parts)
+        children = node.value if isinstance(node, yaml.CollectionNode) else ()
+        children = chain.from_iterable(children) if isinstance(node, yaml.MappingNode) else children
+        counted[id(node)] = 1 + sum(_number_of_values(child, counted) for child in children)
     return counted[id(node)]
 
 

@@ -51,7 +51,7 @@ relation = Relations()
 def lists_have_no_duplicates(config):
     """Require each pair, study, scan and fraction once in its list."""
     scans = [f"surfaces.{name}.scans.files" for name, _ in config.entries("surfaces", "scans.files")]
-    for key, values in config.given("design.shares", *scans, "run.studies", "run.pairs"):
+    for key, values in config.given_items("design.shares", *scans, "run.studies", "run.pairs"):
         if repeated := duplicates(values):
             yield key, f"must list each value once; {one_line(repeated[0])} is listed twice"
 
@@ -77,7 +77,7 @@ def something_is_computed(config):
 @relation_of_names
 def isotherms_grow(config):
     """Require a thickness for each humidity of an isotherm, both increasing: wetter air thins no film."""
-    for key, water in config.given("water.isotherm"):
+    for key, water in config.given_items("water.isotherm"):
         humidities, thickness = water["humidities"], water["thickness_nm"]
         if np.any(np.diff(humidities) <= 0):
             yield f"{key}.humidities", "must be in increasing order, each value once"
@@ -95,7 +95,7 @@ def isotherms_grow(config):
 def selected_pairs_exist(config):
     """Require pairs in the run to be defined."""
     pairs = config.names("pairs")
-    for key, names in config.given(
+    for key, names in config.given_items(
         *(f"studies.{name}.distance_nm" for name in ("plasticity", "pressing")), "run.pairs"
     ):
         if strange := [name for name in names if name not in pairs]:
@@ -331,7 +331,7 @@ def lengths_exceed_the_correlation(config):
     lengths = {"sampling.margin_um": ("published_psd",)}
     if spectra_are_identified(config):
         lengths["identification.patch_um"] = ("published_psd", "summit_density_per_um2")
-    for key, length in config.given(*lengths):
+    for key, length in config.given_items(*lengths):
         for name, psd, *_ in _drawn_surfaces(config, *lengths[key]):
             yield key, correlated(length, psd), *(f"surfaces.{name}.{stated}" for stated in lengths[key])
 
@@ -359,11 +359,11 @@ def lengths_can_exceed_the_correlation(config):
     """Require lengths above the estimated correlation of an identified spectrum. The jobs check the spectrum itself."""
     keys = "psd", "rms_nm", "mean_summit_radius_um", "summit_density_per_um2"
     spacing = config["character.spacing_nm"]
-    for key, length in config.given("sampling.margin_um", "identification.patch_um"):
+    for key, length in config.given_items("sampling.margin_um", "identification.patch_um"):
         for name, psd, *summits in _drawn_surfaces(config, *keys):
             if psd == "identified" and (refusal := correlated_as_estimated(length, *summits, spacing)):
-                given = [f"surfaces.{name}.{stated}" for stated in keys]
-                yield key, refusal, *given, "character.spacing_nm"
+                keys_of_surface = [f"surfaces.{name}.{stated}" for stated in keys]
+                yield key, refusal, *keys_of_surface, "character.spacing_nm"
 
 
 #: The correlation length estimated from summits exceeds that of the identified spectrum by this factor at most.
@@ -393,8 +393,8 @@ def _estimated_correlation_length(rms, radius, density, spacing):
 def off_grid(side: float, spacing: float, every: int) -> str | None:
     """Refusal of a side [µm] other than a multiple of the distance between contact points."""
     step = spacing * every
-    whole = is_multiple(side * NM_PER_UM, step)
-    return None if whole else f"must be a whole number of contact points {step:g} nm apart"
+    is_whole = is_multiple(side * NM_PER_UM, step)
+    return None if is_whole else f"must be a whole number of contact points {step:g} nm apart"
 
 
 @relation
@@ -403,7 +403,7 @@ def strips_are_whole_under_a_variant(config):
     """Require whole strips for the step in grid points times the grid spacing, with either changed by a variant."""
     sides = "sampling.strip_length_um", *(["beam.width_um"] * pairs_run(config))
     variants = {"sampling.spacing_nm": "studies.variants.every", "contact.every": "studies.variants.spacing_nm"}
-    for other, step in config.given(*variants):
+    for other, step in config.given_items(*variants):
         for key, changed in config.items(variants[other]):
             if any(off_grid(config[side], changed, step) for side in sides):
                 yield key, "must divide both sides of a strip into whole contact points", other, *sides
@@ -435,7 +435,7 @@ def strips_can_hold_a_summit(config):
     """Require strips with room for a summit and its eight neighbours."""
     coarse = config["character.spacing_nm"]
     width = ["beam.width_um"] * pairs_run(config)
-    for key, side in config.given(*width, "sampling.strip_length_um", "identification.patch_um"):
+    for key, side in config.given_items(*width, "sampling.strip_length_um", "identification.patch_um"):
         if not is_at_most(3 * coarse, side * NM_PER_UM):
             yield "character.spacing_nm", f"must be at most a third of a side of {side} µm", key
 
@@ -464,11 +464,11 @@ def samples_carry_the_chaos(config):
 @only_if(pairs_run)
 def strips_fill_the_elements(config):
     """Require the same whole number of strips in every element, its integration points (Fig. 6)."""
-    given = "sampling.strip_length_um", "beam.elements"
-    least = config[given[0]] * config[given[1]]
+    keys = "sampling.strip_length_um", "beam.elements"
+    least = config[keys[0]] * config[keys[1]]
     if not is_multiple(config["beam.length_um"], least):
         message = f"must be a multiple of strip_length x elements = {least:.6g} µm: whole strips on each element"
-        yield "beam.length_um", message, *given
+        yield "beam.length_um", message, *keys
 
 
 @relation
@@ -476,23 +476,23 @@ def strips_fill_the_elements(config):
 @only_if(variants_run)
 def strips_fill_finer_elements(config):
     """Require the same for a variant, with at least two elements."""
-    given = "beam.length_um", "sampling.strip_length_um"
-    length, strip = (config[key] for key in given)
+    keys = "beam.length_um", "sampling.strip_length_um"
+    length, strip = (config[key] for key in keys)
     for key, strips in config.items("studies.variants.strips_per_element"):
         if not (is_multiple(length, strip * strips) and length > 1.5 * strip * strips):
             message = "must divide the strips along the beam into whole elements, at least two"
-            yield key, message, *given
+            yield key, message, *keys
 
 
 @relation
 @only_if(pairs_run)
 def a_mesh_is_whole(config):
     """Require one possible mesh of Figure 19. Lengths not filling each other and the beam are left out."""
-    key, *given = "studies.mesh.elements_um", "studies.mesh.strips_um", "beam.length_um"
-    elements, strips, length = (config[each] for each in (key, *given))
+    key, *others = "studies.mesh.elements_um", "studies.mesh.strips_um", "beam.length_um"
+    elements, strips, length = (config[each] for each in (key, *others))
     fitting = (is_multiple(length, element) and is_multiple(element, strip) for element in elements for strip in strips)
     if "mesh" in config["run"].get("studies", ["mesh"]) and not any(fitting):
-        yield key, "must include a divisor of the beam that is a multiple of one of the strips", *given
+        yield key, "must include a divisor of the beam that is a multiple of one of the strips", *others
 
 
 @relation
@@ -560,7 +560,7 @@ def _without(study, why):
 def beam_is_slender(config):
     """Require a beam longer than its width, thickness and deflection (Euler-Bernoulli)."""
     gaps = [f"pairs.{pair}.gap_um" for pair, _ in config.entries("pairs", "gap_um")]
-    for key, size in config.given("beam.thickness_um", "beam.width_um", *gaps):
+    for key, size in config.given_items("beam.thickness_um", "beam.width_um", *gaps):
         if size >= config["beam.length_um"]:
             yield key, "must be below the length of the beam", "beam.length_um"
 
@@ -569,11 +569,11 @@ def beam_is_slender(config):
 @only_if(pairs_run)
 def strips_fit_into_memory(config):
     """Require the field around a strip to fit into the memory of a job."""
-    given = "sampling.strip_length_um", "sampling.margin_um", "beam.width_um"
-    length, margin, width = (config[key] for key in given)
+    keys = "sampling.strip_length_um", "sampling.margin_um", "beam.width_um"
+    length, margin, width = (config[key] for key in keys)
     grids = [key for key, _ in config.items("studies.variants.spacing_nm") if variants_of_pairs_run(config)]
-    for key, spacing in config.given(*grids, "sampling.spacing_nm"):
-        yield from fields_too_large(config, key, (length + margin, width + margin), spacing, *given)
+    for key, spacing in config.given_items(*grids, "sampling.spacing_nm"):
+        yield from fields_too_large(config, key, (length + margin, width + margin), spacing, *keys)
 
 
 @relation
@@ -592,7 +592,7 @@ def patches_fit_into_memory(config):
 
 
 def fields_too_large(
-    config: Keys, key: str, sides: tuple[float, float], spacing: float, *given: str
+    config: Keys, key: str, sides: tuple[float, float], spacing: float, *others: str
 ) -> Iterator[tuple[str, ...]]:
     """Yield refusals of the field around a patch, margin included [µm, nm], if its memory exceeds the largest job's.
 
@@ -610,7 +610,7 @@ def fields_too_large(
     for of_surface, length in long.items():
         yield of_surface, _TOO_LONG.format(length)
     if not long:
-        yield key, refusal, *given
+        yield key, refusal, *others
 
 
 def _correlations(config):

@@ -78,7 +78,7 @@ def strips_and_patches_are_whole_on_the_grid(config):
     """Require sides of strips and stoppers to be multiples of the distance between contact points."""
     sides = ("strip_um", "width_um", "contact_um")
     of_devices = [f"devices.{name}.{key}" for key in sides for name, _ in config.entries("devices", key)]
-    for key, stated in config.given(*["beam.width_um"] * pairs_run(config), _STRIP, *of_devices):
+    for key, stated in config.given_items(*["beam.width_um"] * pairs_run(config), _STRIP, *of_devices):
         refusals = (off_grid(float(side), *(config[step] for step in _GRID)) for side in np.ravel(stated))
         yield key, next(filter(None, refusals), None), *_GRID
 
@@ -106,8 +106,8 @@ def lengths_of_devices_are_those_that_are_required(config):
     """Require the same length of a device and of its requirement, if both are given."""
     for name, length, required in config.entries("devices", "length_um", "requirement.length_um"):
         if length != required:
-            message, given = "must be the length that is required", f"devices.{name}.requirement.length_um"
-            yield f"devices.{name}.length_um", message, given
+            message, other = "must be the length that is required", f"devices.{name}.requirement.length_um"
+            yield f"devices.{name}.length_um", message, other
 
 
 @relation
@@ -233,7 +233,7 @@ def axes_increase(config):
     charts = [f"devices.{name}.{axis}" for axis in axes for name, _ in config.entries("devices", axis)]
     tilts = [f"devices.{name}.tilt_deg" for name, _ in config.entries("devices", "tilt_deg")]
     rows = [f"devices.{name}.dimples.at_um" for name, _ in config.entries("devices", "dimples.at_um")]
-    for key, values in config.given(*charts, *tilts, *rows, "design.worst_humidities"):
+    for key, values in config.given_items(*charts, *tilts, *rows, "design.worst_humidities"):
         if any(low >= high for low, high in zip(values, values[1:], strict=False)):
             yield key, "must be in increasing order, each value once"
 
@@ -249,15 +249,15 @@ def uncertain_water_of_devices_is_a_liquid(config):
                 (deviation * (key == wrong) for wrong in keys),
             )
             driest = min(humid(humidities), default=0) - drier
-            given = f"devices.{name}.humidities"
-            molecules = meeting.molecules(given) if meeting.too_dry(humidities) else MOLECULES
+            other = f"devices.{name}.humidities"
+            molecules = meeting.molecules(other) if meeting.too_dry(humidities) else MOLECULES
             if not is_humid(driest) or _freezes_or_boils(warmer, config[TEMPERATURE]):
                 continue  # other relations report it
             if meeting.too_dry(humidities, molecules=molecules):
                 continue
             if refusal := meeting.too_dry(driest, more, warmer, molecules):
                 message = f"must leave water that is a liquid: the humidity, {driest:g}, {refusal}"
-                yield f"devices.{name}.uncertainty.{key}", message, given, *meeting.keys_behind(TEMPERATURE)
+                yield f"devices.{name}.uncertainty.{key}", message, other, *meeting.keys_behind(TEMPERATURE)
 
 
 @relation
@@ -267,8 +267,8 @@ def devices_fit_into_memory(config):
     for name, device in config["devices"].items():
         refused = {}
         for key, sides, spacing in memory.fields_of(device, config["sampling"], config[others]):
-            given = [] if "dimples" in key else [others]
-            for refused_key, *refusal in fields_too_large(config, f"devices.{name}.{key}", sides, spacing, *given):
+            other_keys = [] if "dimples" in key else [others]
+            for refused_key, *refusal in fields_too_large(config, f"devices.{name}.{key}", sides, spacing, *other_keys):
                 refused.setdefault(refused_key, refusal)
         yield from ((key, *refusal) for key, refusal in refused.items())
 
@@ -279,8 +279,8 @@ def dimensions_stay_positive(config):
     for key in ("gap_um", "thickness_um"):
         for name, deviation, value in config.entries("devices", f"uncertainty.{key}", key):
             if deviation >= value:
-                message, given = "must be below the dimension itself", f"devices.{name}.{key}"
-                yield f"devices.{name}.uncertainty.{key}", message, given
+                message, other = "must be below the dimension itself", f"devices.{name}.{key}"
+                yield f"devices.{name}.uncertainty.{key}", message, other
 
 
 @relation
@@ -377,30 +377,30 @@ def uncertain_edges_are_those_of_round_tips(config):
     """Require a tip with a rounded edge for an uncertain radius, which stays positive below its value."""
     key, edge, radius = "uncertainty.edge_radius_um", "design.tip_edge", "design.edge_radius_um"
     for name, deviation, kind in config.entries("devices", key, "kind"):
-        message, given = None, radius
+        message, other = None, radius
         if not KINDS[kind].has_tip:
-            message, given = "must be left out, because a device of this kind has no tip", f"devices.{name}.kind"
+            message, other = "must be left out, because a device of this kind has no tip", f"devices.{name}.kind"
         elif config[edge] == Edge.SQUARE:
-            message, given = "must be left out, because a square edge has no radius", edge
+            message, other = "must be left out, because a square edge has no radius", edge
         elif config[radius] == 0:
             message = "must be left out, because an edge with the radius 0 is sharp"
         elif deviation >= config[radius]:
             message = "must be below the radius itself"
         if deviation and message:
-            yield f"devices.{name}.{key}", message, given
+            yield f"devices.{name}.{key}", message, other
 
 
 @relation
 def uncertain_humidities_stay_within_their_limits(config):
     """Require humidities above 0 and below 1 one standard uncertainty around their values."""
     for name, deviation, humidities in config.entries("devices", "uncertainty.humidity", "humidities"):
-        message, given = None, f"devices.{name}.humidities"
+        message, other = None, f"devices.{name}.humidities"
         if deviation and not humid(humidities):
             message = "must be left out, because dry air has no humidity that could be uncertain"
         elif not (is_humid(min(humid(humidities), default=1) - deviation) and max(humidities) + deviation < 1):
             message = "must leave the humidities above 0 and below 1"
         if message:
-            yield f"devices.{name}.uncertainty.humidity", message, given
+            yield f"devices.{name}.uncertainty.humidity", message, other
 
 
 @relation
@@ -438,8 +438,8 @@ def uncertainties_are_those_of_the_kind(config):
     """Require uncertain dimensions to be dimensions of the device."""
     for name, uncertainty, kind in config.entries("devices", "uncertainty", "kind"):
         if strange := set(KEYS) & set(uncertainty) - set(KINDS[kind].keys):
-            message, given = f"must come without {', '.join(sorted(strange))}", f"devices.{name}.kind"
-            yield f"devices.{name}.uncertainty", message, given
+            message, other = f"must come without {', '.join(sorted(strange))}", f"devices.{name}.kind"
+            yield f"devices.{name}.uncertainty", message, other
 
 
 def _material(config, name):
@@ -776,8 +776,9 @@ def _varied_surfaces(config):
         yield name, "roughness.rms_nm", surface, ends[1]
     for key in ("process", "second_process"):
         for name, process in config.entries("devices", key):
-            made = process_surfaces.names(config.config, process)
-            yield name, key, config["process"][process]["surface"], max(config["surfaces"][at]["rms_nm"] for at in made)
+            surfaces = process_surfaces.names(config.config, process)
+            largest = max(config["surfaces"][at]["rms_nm"] for at in surfaces)
+            yield name, key, config["process"][process]["surface"], largest
 
 
 @relation_of_tips

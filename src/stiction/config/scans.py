@@ -189,12 +189,12 @@ def _preliminary_numbers(entry, section, kept):
     contents, settings = digests(files), (source(entry), evaluation(entry, section))
     text = json.dumps([contents, settings, _code()], sort_keys=True)
     key = hashlib.sha256(text.encode()).hexdigest()
-    if key not in _KNOWN:
-        _KNOWN[key] = known(key, kept, lambda: _preliminary(files, *settings))
-    return _KNOWN[key]
+    if key not in _NUMBERS:
+        _NUMBERS[key] = kept_numbers(key, kept, lambda: _preliminary(files, *settings))
+    return _NUMBERS[key]
 
 
-def known(key: str, folder: str | Path | None, compute: Callable[[], dict]) -> dict:
+def kept_numbers(key: str, folder: str | Path | None, compute: Callable[[], dict]) -> dict:
     """Numbers kept in a folder under a key, or computed now."""
     if folder is None:
         return compute()
@@ -219,8 +219,8 @@ def digests(files: Mapping[str, str]) -> list[list[str]]:
     """Name and SHA-256 of every file, by label. Refuses equal contents, because scans are independent samples."""
     seen = {}
     for label, path in files.items():
-        if found := next((words for signs, words in _MISREAD.items() if re.search(signs, str(path))), None):
-            raise ScanError(label, "files", f"has {found} ({str(path)!r}): rename it")
+        if obstacle := next((words for signs, words in _MISREAD.items() if re.search(signs, str(path))), None):
+            raise ScanError(label, "files", f"has {obstacle} ({str(path)!r}): rename it")
         try:
             content = digest(path)
         except OSError as reason:
@@ -232,7 +232,7 @@ def digests(files: Mapping[str, str]) -> list[list[str]]:
 
 
 #: Preliminary numbers that this process knows, by content, settings and code.
-_KNOWN = {}
+_NUMBERS = {}
 
 
 @cache
@@ -333,8 +333,8 @@ def _problem(name, entry, refusal):
         index = (labels.index(refusal.file),) if refusal.file in labels else ()
         return Problem(("surfaces", name, "scans", "files", *index), f"is {refusal.file!r}, which {refusal.reason}")
     path, section = ("surfaces", name, "scans", refusal.key), entry["scans"]
-    given = f"is {section[refusal.key]!r}" if refusal.key in section else "is missing"
-    return Problem(path, f"{given}: {refusal.file} {refusal.reason}")
+    content = f"is {section[refusal.key]!r}" if refusal.key in section else "is missing"
+    return Problem(path, f"{content}: {refusal.file} {refusal.reason}")
 
 
 def with_preliminary_estimates(config: dict[str, Any], estimates: Mapping[str, dict]) -> dict[str, Any]:

@@ -85,7 +85,7 @@ def as_cantilevers(config: Mapping) -> dict[str, dict]:
     """Sections of all arrays with data as if they were devices."""
     arrays = config.get("test_beams", {})
     measured_at = {name: humidities(array) for name, array in arrays.items()}
-    return {name: _cantilever(config, name, some) for name, some in measured_at.items() if some}
+    return {name: _cantilever(config, name, values) for name, values in measured_at.items() if values}
 
 
 def at_single_humidities(config: Mapping) -> list[dict[str, dict]]:

@@ -65,28 +65,28 @@ def checked(stated: Any, kept: Path | None = None) -> Checked:
     """
     stated, of_file = device_table.without_file(device_table.with_rows(stated))
     try:
-        found = _checked(stated, kept)
+        valid = _checked(stated, kept)
     except ConfigError as error:
         raise ConfigError(*device_table.in_rows(error.problems, of_file)) from error
     if not of_file.numbers:
-        return found
-    return found._replace(config=merged(found.config, {"design": {"order": list(of_file.numbers)}}))
+        return valid
+    return valid._replace(config=merged(valid.config, {"design": {"order": list(of_file.numbers)}}))
 
 
 def _checked(stated, kept):
     """Checked configuration without a file of devices. Raises the errors of `checked`."""
-    stated, whole = _typed(stated, kept)
+    stated, plain = _typed(stated, kept)
     library = paper()["surfaces"]
-    _refuse(_broken(NAMES, _NAMES_OF_DEVICES, Keys(_OPTIONAL | whole)), stated, whole)
-    _refuse(described.problems(whole, library), stated, whole)
-    whole = airs.bracketed(whole)
-    estimates, unusable = scans.preliminary_estimates(whole, kept)
-    _refuse(unusable, stated, whole)
-    config = grid.completed(described.completed(whole, library), estimates)
-    by_numbers = _by_numbers(config, estimates, described.origins(whole))
+    _refuse(_broken(NAMES, _NAMES_OF_DEVICES, Keys(_OPTIONAL | plain)), stated, plain)
+    _refuse(described.problems(plain, library), stated, plain)
+    plain = airs.bracketed(plain)
+    estimates, unusable = scans.preliminary_estimates(plain, kept)
+    _refuse(unusable, stated, plain)
+    config = grid.completed(described.completed(plain, library), estimates)
+    by_numbers = _by_numbers(config, estimates, described.origins(plain))
     shown = {"figures": {"humidity": meetings.shown_humidity(by_numbers)}}
     config, by_numbers = merged(config, shown), replace(by_numbers, config=merged(by_numbers.config, shown))
-    _refuse(_broken(RELATIONS, _OF_DEVICES, by_numbers), stated, whole)
+    _refuse(_broken(RELATIONS, _OF_DEVICES, by_numbers), stated, plain)
     return Checked(normalised(config), estimates)
 
 
@@ -99,9 +99,9 @@ def _typed(stated, kept):
     stated, unreadable = profiles.with_numbers(airs.expanded(meetings.at_dew_points(stated)), kept)
     _refuse(unreadable, stated, {})
     stated = process.with_surfaces(expanded(materials.with_named(stated)))
-    if (whole := _plain(stated)) != sections:  # with airs, copies and surfaces of settings
-        _refuse(schema_problems(whole, schema()), stated, whole)
-    return stated, whole
+    if (plain := _plain(stated)) != sections:  # with airs, copies and surfaces of settings
+        _refuse(schema_problems(plain, schema()), stated, plain)
+    return stated, plain
 
 
 def _plain(stated):
@@ -109,10 +109,10 @@ def _plain(stated):
     return in_numbers(test_beams.without_files(stated))
 
 
-def _refuse(problems: Iterable[Problem], stated: Any, whole: dict[str, Any]) -> None:
+def _refuse(problems: Iterable[Problem], stated: Any, plain: dict[str, Any]) -> None:
     """Raise problems with the keys and files of the user, each once."""
     if problems := list(problems):
-        lines = process.in_settings(problems, whole)
+        lines = process.in_settings(problems, plain)
         raise ConfigError(*dict.fromkeys(test_beams.in_files(line, stated) for line in lines))
 
 

@@ -19,6 +19,8 @@ TEMPLATES = Path(__file__).with_name("templates")
 _LONG = 24
 #: Comments on lines of their own, and indentation.
 _FOR_READERS = re.compile(r"^ *(?://.*|/\*\*.*\*/)\n|^ +", re.MULTILINE)
+#: Space between two sentences, and most characters of a term that one explains.
+_SENTENCE, _LONGEST_TERM = re.compile(r"(?<=\.) (?=[A-Z])"), 60
 #: Space between the thousands of a number.
 _THOUSANDS = re.compile(r"(?<=\d) (?=\d{3}\b)")
 
@@ -36,9 +38,25 @@ _ENVIRONMENT = Environment(
 )
 
 
-def _texts(cells):
-    """Whether each column has cells so long that they are broken and read from the left."""
-    return [bool((column.astype(str).str.len() > _LONG).any()) for _, column in cells.items()]
+def _kinds(cells):
+    """Class of each column: long texts, which are broken, and words read from the left; numbers have none."""
+    columns = [column.astype(str).str for _, column in cells.items()]
+    return ["text" if (one.len() > _LONG).any() else "" if one.contains(r"\d").any() else "word" for one in columns]
+
+
+def _explained(caption):
+    """Sentences of a caption, each with the term before its colon, or none, and lines of a list without their mark.
+
+    Examples
+    --------
+    >>> list(_explained("All rows. Limit: the least: one.")), list(_explained("- (1) Too steep: 0.1."))
+    ([('', 'All rows.'), ('Limit', 'the least: one.')], [('', '(1) Too steep: 0.1.')])
+    """
+    for line in filter(None, caption.split("\n")):
+        for sentence in [line.removeprefix("- ")] if line.startswith("- ") else _SENTENCE.split(line):
+            term, _, text = sentence.partition(": ")
+            is_term = text and len(term) <= _LONGEST_TERM and not line.startswith("- ")
+            yield (term, text) if is_term else ("", sentence)
 
 
 def _unbroken(text):
@@ -46,7 +64,7 @@ def _unbroken(text):
     return _THOUSANDS.sub("\N{NO-BREAK SPACE}", str(text))
 
 
-_ENVIRONMENT.filters |= {"texts": _texts, "unbroken": _unbroken}
+_ENVIRONMENT.filters |= {"kinds": _kinds, "explained": _explained, "unbroken": _unbroken}
 _ENVIRONMENT.policies["json.dumps_kwargs"] = {"sort_keys": True, "separators": (",", ":")}
 
 

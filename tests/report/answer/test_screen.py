@@ -61,7 +61,7 @@ def test_without_a_length_the_answer_is_the_length_to_build_in_the_worst_air():
     assert (shown.tone, shown.sign) == ("good", "Length to build")
     assert shown.answer == f"No longer than {1e6 * answer.build:.0f} µm."
     assert shown.points["What decides"].startswith("RH 0.67, stuck by the tip.")
-    assert "at relative humidities of 0.44, 0.67 (95 % confidence)." in shown.basis[0]
+    assert "at relative humidities of 0.44, 0.67 (95 % confidence, if the model holds)." in shown.basis[0]
     assert "All inputs count as exact." in shown.basis[1]
     assert shown.cells["RH"].tolist() == ["0.44", "0.67"]
     alone = [1e6 * least(one) for one in lengths.values()]
@@ -92,7 +92,7 @@ def test_dry_air_is_in_words():
     for shown in (stopped, released):
         assert shown.points["What decides"].startswith("Dry air, ")
         assert shown.cells.RH[0] == "dry"
-    assert " in dry air (95 % confidence)." in beam_page(CANTILEVER, {0.0: safe()}).summary.basis[0]
+    assert " in dry air (95 % confidence, if the model holds)." in beam_page(CANTILEVER, {0.0: safe()}).summary.basis[0]
 
 
 def test_the_uncertainty_of_the_inputs_shortens_the_answer_and_names_what_to_measure():

@@ -4,11 +4,13 @@ import numpy as np
 import pytest
 from drawn_curves import etched, rough
 from legends import covering
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_hex
 from matplotlib.text import Text
 
 from stiction.report.axes import figures
 from stiction.report.axes.labels import Label, put
+from stiction.report.axes.roughness import crossings_of, ranges_of, sure_in_short
 from stiction.report.style import BUILD, panels, png
 
 
@@ -69,14 +71,48 @@ def test_a_label_stays_inside_its_panel_at_a_place_near_its_side():
 def test_crossings_have_their_values_and_humidities_without_one_are_named():
     found = rough()
     figure = figures.roughness(found)
-    assert {"RH 0.6: 4.00 ± 0.33 nm", "RH 0.8: 4.00 ± 0.40 nm", "restoring force 28 µN"} == set(texts(figure))
+    at_lower = "RH 0.6: sure from 4.57 nm\nestimate 4, 95 %: 3.35 to 4.65 nm"
+    at_upper = "RH 0.8: sure from 4.69 nm\nestimate 4, 95 %: 3.22 to 4.78 nm"
+    assert {at_lower, at_upper, "restoring force 28 µN"} == set(texts(figure))
     weak = figures.roughness(found.assign(required=found.required / 10).isel(crossing=[]))
     assert set(texts(weak)) == {"RH 0.6, RH 0.8: not in this range", "restoring force 2.8 µN"}
-    strong = figures.roughness(found.assign(required=found.required * 10).isel(crossing=[]))
-    assert set(texts(strong)) == {"RH 0.6, RH 0.8: in all of this range", "restoring force 280 µN"}
+    whole = found.assign(range_low=found.range_low * 0 + 1e-9, required=found.required * 10)
+    strong = figures.roughness(whole.isel(crossing=[]))
+    assert set(texts(strong)) == {"RH 0.6, RH 0.8: sure everywhere", "restoring force 280 µN"}
+    unsure = figures.roughness(whole.isel(crossing=[], range=[]))
+    assert set(texts(unsure)) == {"RH 0.6, RH 0.8: nowhere sure", "restoring force 280 µN"}
     assert covering(figure) == covering(weak) == covering(strong) == []
     absent = next(text for text in weak.axes[0].texts if "not in" in text.get_text())
     assert absent.get_ha() == "right", "where the curves are nearest to the required force"
+
+
+def test_the_thick_line_and_the_words_begin_where_the_simulated_limit_meets_the_requirement():
+    found = rough()
+    panel = figures.roughness(found).axes[0]
+    thick = [line for line in panel.collections if isinstance(line, LineCollection) and line.get_linewidth()[0] > 3]
+    for humidity, line in zip((0.6, 0.8), thick, strict=True):
+        (segment,) = line.get_segments()
+        ((low, high),) = 1e9 * ranges_of(found, humidity, "force")
+        np.testing.assert_allclose(segment, [[low, 28], [high, 28]])
+        (said,) = (text for text in texts(panel.figure) if text.startswith(f"RH {humidity}"))
+        assert said.startswith(f"RH {humidity}: sure from {low:.3g} nm\n")
+        (crossed,) = crossings_of(found, humidity, "force").crossing_place.values
+        assert low > 1e9 * crossed, "what is sure is not the place of the estimate"
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "words"),
+    [
+        (1e-9, 8e-9, "sure everywhere"),
+        (2e-9, 8e-9, "sure from 2 nm"),
+        (1e-9, 5e-9, "sure up to 5 nm"),
+        (2e-9, 5e-9, "sure from 2 to 5 nm"),
+    ],
+)
+def test_an_end_of_what_is_sure_is_named_unless_the_computed_values_end_there(low, high, words):
+    found = rough()
+    ranges = found.assign(range_low=found.range_low * 0 + low, range_high=found.range_high * 0 + high)
+    assert sure_in_short(ranges, 0.6, "force") == words
 
 
 @pytest.mark.parametrize("is_beam", [False, True])

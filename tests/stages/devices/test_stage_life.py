@@ -27,6 +27,7 @@ from stiction.report.devices.pages import Page, Section, with_life
 from stiction.report.page import Summary
 from stiction.report.style import save
 from stiction.run import storage
+from stiction.stages.answer.beside import unasked
 from stiction.stages.life.answers import QUESTIONS, answers_of, layout
 from stiction.stages.life.beams import beam_answers, length_of
 from stiction.stages.life.inputs import BeamErrors, BeamKeys, Electrode, Liquid, StopperKeys
@@ -490,7 +491,9 @@ def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
         expected = [k for k, end in enumerate(ends) if (end < build if is_length else end > build)]
         assert red == expected
         assert bool(red) == (factor > 1)
-        said = " ".join(report.judged_without(dataset, build))
+        unit = "mN"[not is_length]
+        built = Answer(name, "", 1e-3, unit, build, build, (), ())
+        said = " ".join(report.judged_without(replace(built, unasked=unasked(dataset, built))))
         assert [k for k, one in enumerate(shown) if one.what.partition(":")[0] in said] == red, "said as it is drawn"
 
 
@@ -508,8 +511,10 @@ def test_a_page_says_the_life_and_shows_all_answers(found):
     assert "50 µm" not in with_life(page, "C1", found["C1"], replace(built, forbidden=("x",))).answer[0]
     first = replace(page, summary=Summary("good", "Length to build", "50 µm.", ["Inside: all."], {}, pd.DataFrame()))
     for build, is_named in ((5e-5, False), (1e-3, True)):
-        summary = with_life(first, "C1", found["C1"], replace(built, build=build)).summary
-        assert summary.basis[1:] == report.judged_without(found["C1"], build)
+        answer = replace(built, build=build)
+        answer = replace(answer, unasked=unasked(found["C1"], answer))
+        summary = with_life(first, "C1", found["C1"], answer).summary
+        assert summary.basis[1:] == report.judged_without(answer)
         assert any("collapse while water dries, " in sentence for sentence in summary.basis) == is_named
     assert [section.title for section in shown.sections] == ["First", "From the first contact to the last", "Last"]
     assert list(shown.sections[1].cells)[6:] == ["form", "source"]

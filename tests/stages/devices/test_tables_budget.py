@@ -1,18 +1,24 @@
 """Tables and figures of stoppers and budgets show the numbers of their datasets."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from answers import BEAMS, BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_dataset
+from answers import BEAMS, BUDGETS, STOPPERS, TIPS, budget_dataset, stopper_answer, stopper_dataset
 from legends import covering
 from matplotlib.lines import Line2D
 from noted import noted
 from numpy.testing import assert_allclose
 
 from stiction.config.files import load
+from stiction.contact.correction import Correction, ElasticChange
+from stiction.contact.environment import Water
+from stiction.devices.stoppers import stuck_patches
 from stiction.plan.plan import Plan
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
 from stiction.report.style import DOUBLE, humidity_colours, legend_below, panels, save, styled
+from stiction.stages.devices.stoppers import Settings, layout, stuck_over
 
 WARNINGS = {"S1": [], "S2": [noted("Beware.")]}
 
@@ -278,7 +284,7 @@ def test_every_legend_of_stoppers_explains_its_own_panel_and_humidities_have_one
     assert figure.legends == []
     assert [text.get_text() for text in below.get_legend().get_texts()][:2] == ["mean", "5 to 95 % of the patches"]
     colours = humidity_colours(STOPPERS["S1"].humidity.values.tolist())
-    drawn = [line.get_color() for line in above.get_legend().get_lines()]
+    drawn = [line.get_color() for line in above.get_legend().get_lines()[:2]]
     np.testing.assert_array_equal(drawn, list(colours.values()))
     bars = figures_budget.budget(BEAMS).legends[0].get_patches()
     of_bars = humidity_colours(humidity for _, humidity, *_ in BEAMS)
@@ -292,6 +298,74 @@ def test_a_stopper_shows_the_share_of_patches_over_the_restoring_force():
     force, share = line.get_data()
     assert_allclose(share, 1 - np.arange(1, 401) / 400, atol=1e-12)
     assert_allclose(force, 0.05 * np.arange(1, 401), rtol=1e-12)
+
+
+def with_errors(ratio=0.04, power=0.1, restoring=18.99e-6):
+    """Stopper with errors of its forces by full elastic contact."""
+    change = ElasticChange(ratio_error=ratio, power_error=power)
+    of_all = ElasticChange(*(np.full(3, value) for value in change))
+    correction = Correction(np.array([0.3, 0.6, 0.99]), of_all, of_all)
+    water = Water(300.0, correction=correction)
+    settings = Settings(1, water, (3e-6, 3e-6), (0.44, 0.67), (0.4, 0.9), restoring_force=restoring)
+    forces = np.exp(np.random.default_rng(4).normal(np.log(10e-6), 0.5, 4000))
+    return layout(settings, np.stack([forces, 0.5 * forces]), np.array([0.4, 0.9]), np.stack([forces, 0.5 * forces]))
+
+
+def ends_of_band(collection, at):
+    """Lower and upper end of a filled band at one of its places."""
+    corners = collection.get_paths()[0].vertices
+    there = corners[np.isclose(corners[:, 0], at, rtol=1e-9), 1]
+    return [there.min(), there.max()]
+
+
+@pytest.mark.parametrize("restoring", [12e-6, 18.99e-6])
+def test_the_band_of_a_stopper_is_that_of_its_table_and_not_of_the_patches_alone(restoring):
+    dataset = with_errors(restoring=restoring)
+    panel = figures_budget.stoppers({"S1": dataset}, {}).axes[0]
+    rows = tables_budget.stoppers({"S1": dataset}, {"S1": []}).frame
+    forces = dataset.pull_off.values
+    for k, band in enumerate(panel.collections):
+        drawn = ends_of_band(band, 1e6 * restoring)
+        assert_allclose(drawn, rows.loc[k, ["share_stuck_low", "share_stuck_high"]].to_list(), rtol=1e-12)
+        _, *alone = (float(values[0]) for values in stuck_patches(forces[k], np.array([restoring])))
+        assert drawn[0] < 0.98 * alone[0]
+        assert drawn[1] > 1.02 * alone[1]
+
+
+def test_marks_of_a_stopper_are_the_limits_of_its_table_inside_its_band():
+    dataset = with_errors()
+    panel = figures_budget.stoppers({"S1": dataset}, {}).axes[0]
+    marks = [line.get_data() for line in panel.lines if line.get_marker() == "|" and len(line.get_xdata())]
+    for humidity, (force, share), band in zip((0.44, 0.67), marks, panel.collections, strict=True):
+        limits = dataset.safe_force.sel(humidity=humidity, part="safe", share=share)
+        assert_allclose(share, [1e-2, 1e-3])
+        assert_allclose(force, 1e6 * limits)
+        assert band.get_paths()[0].vertices[:, 0].max() >= max(force)
+        _, _, upper = stuck_over(dataset, humidity, limits.values)
+        assert np.all(upper >= share), "the upper end of two sides is above the limit of one side"
+
+
+@pytest.mark.parametrize("is_allowed", [True, False])
+def test_a_stopper_shows_the_force_to_build_unless_a_limit_forbids_it(is_allowed):
+    known = stopper_answer(STOPPERS["S1"], BUDGETS)
+    answer = replace(known, forbidden=() if is_allowed else ("gap",))
+    force = f"{1e6 * known.build:.3g} µN"
+    above, below = figures_budget.stoppers({"S1": STOPPERS["S1"]}, {}, {"S1": answer}).axes
+    texts = [[text.get_text() for text in panel.get_legend().get_texts()] for panel in (above, below)]
+    assert (f"to build, {force}" in texts[0]) == (f"to build in the stated airs, {force}" in texts[1]) == is_allowed
+
+
+def test_the_largest_limit_of_a_stopper_is_marked_where_the_table_has_it():
+    dataset = STOPPERS["S1"]
+    moved = dataset.assign(safe_force_along=dataset.safe_force_along * (1 - (dataset.axis - 0.5) ** 2))
+    places = []
+    for one in (dataset, moved):
+        panel = figures_budget.stoppers({"S1": one}, {}).axes[1]
+        (mark,) = (line for line in panel.lines if line.get_marker() == "^")
+        limit = one.safe_force_along.sel(share=0.01)
+        assert_allclose([mark.get_xdata()[0], mark.get_ydata()[0]], [limit.idxmax("axis"), 1e6 * limit.max()])
+        places.append(mark.get_xdata()[0])
+    assert places[0] > places[1]
 
 
 @pytest.mark.parametrize("restoring", [1e-6, 19e-6, 60e-6])

@@ -75,11 +75,11 @@ def _with_dew_point(condition):
 def _with_airs(device, name):
     """Section of a device with all that its conditions give it."""
     conditions, stated = in_numbers(device[CONDITIONS]), device.get("humidities", [])
-    found = dict.fromkeys(map(humidity_of, conditions))
-    if not stated and {*found} == {None}:
+    humidities = dict.fromkeys(map(humidity_of, conditions))
+    if not stated and {*humidities} == {None}:
         words = f"is {one_line(conditions)}, must have a condition above its dew point: in all of these water condenses"
         raise ConfigError(str(Problem(("devices", name, CONDITIONS), words)))
-    added = [air for air in found if air is not None and air not in stated]
+    added = [air for air in humidities if air is not None and air not in stated]
     kept = [{key: value for key, value in each.items() if key not in OF_DEVICE} for each in conditions]
     return device | _of_device(device, conditions) | {"humidities": [*stated, *added], CONDITIONS: kept}
 
@@ -89,7 +89,7 @@ def _of_device(device, conditions):
 
     These are the touchdowns of all together, the voltage with the largest potential, and the largest shock.
     """
-    stated = {key: [one[key] for one in (device, *conditions) if key in one] for key in OF_DEVICE}
+    stated = {key: [section[key] for section in (device, *conditions) if key in section] for key in OF_DEVICE}
     offset = device.get("offset_V", 0)
     of_all = {
         "touchdowns": sum,
@@ -127,17 +127,21 @@ def bracketed(config: dict[str, Any]) -> dict[str, Any]:
 def _bracketed(device, angles, temperature):
     """Section of a device with the airs that bound those of thin films, between surfaces with contact angles [rad]."""
     conditions, stated, bounds = device.get(CONDITIONS, []), [], []
-    own = {humidity_of(condition): kelvin(condition) for condition in conditions}
+    temperatures = {humidity_of(condition): kelvin(condition) for condition in conditions}
     shared = {"share": 0} if any("share" in condition for condition in conditions) else {}
     for air in device["humidities"]:
-        at = own.get(air, temperature)
+        at = temperatures.get(air, temperature)
         first, *others = with_bounds(air, at, angles)
-        stated.append(first if air in own else air)  # a relation refuses that of a stated humidity
+        stated.append(first if air in temperatures else air)  # a relation refuses that of a stated humidity
         bounds += others
-        new = [humidity for humidity in others if is_humid(humidity) and air in own and humidity not in own]
+        new = [
+            humidity
+            for humidity in others
+            if is_humid(humidity) and air in temperatures and humidity not in temperatures
+        ]
         conditions = conditions + [_same(at, humidity) | shared for humidity in new]
     airs = [*stated, *(air for air in dict.fromkeys(bounds) if air not in stated)]
-    airs = [*dict.fromkeys(airs)] if own else airs  # several conditions may be dry
+    airs = [*dict.fromkeys(airs)] if temperatures else airs  # several conditions may be dry
     return device | {"humidities": airs} | ({CONDITIONS: conditions} if conditions else {})
 
 
@@ -184,9 +188,9 @@ def _too_few_touchdowns(key, conditions, touchdowns):
 def air_has_one_temperature_at_a_humidity(config):
     """Require one temperature of the water between two surfaces at a humidity, which names its results."""
     for pair in dict.fromkeys(pair for _, pair in config.entries("devices", "pair")):
-        found = {}
+        temperatures = {}
         for key, humidity, temperature in [*_other_airs(config, pair), *airs(config.config, pair)]:
-            before, other = found.setdefault(humidity, (temperature, key))
+            before, other = temperatures.setdefault(humidity, (temperature, key))
             if before != temperature:
                 another = f"{humidity + 10**-DECIMALS:.4g}"
                 yield (
@@ -202,6 +206,6 @@ def _other_airs(config, pair):
         for humidity in humid(test_beams.humidities(config["test_beams"][name])) if on == pair else ():
             yield f"test_beams.{name}.pair", humidity, config[TEMPERATURE]
     for name, on, humidities in config.entries("devices", "pair", "humidities"):
-        own = {humidity_of(condition) for condition in config["devices"][name].get(CONDITIONS, ())}
-        for humidity in humid([air for air in humidities if air not in own]) if on == pair else ():
+        airs_of_conditions = {humidity_of(condition) for condition in config["devices"][name].get(CONDITIONS, ())}
+        for humidity in humid([air for air in humidities if air not in airs_of_conditions]) if on == pair else ():
             yield f"devices.{name}.humidities", humidity, config[TEMPERATURE]

@@ -15,14 +15,18 @@ def stays(device: Mapping[str, Any], angles: tuple[float, ...]) -> dict[str, dic
     Between surfaces with contact angles [rad], none without water. All touchdowns of a condition happen in the worst of
     its own air, of those that bound its film, and of the humidities beside the conditions.
     """
-    conditions = [one for one in device.get(CONDITIONS, ()) if "share" in one and humidity_of(one) is not None]
-    found = [with_bounds(humidity_of(one), kelvin(one), angles) for one in conditions]
-    inside = {air for own in found for air in own}
+    conditions = [
+        condition
+        for condition in device.get(CONDITIONS, ())
+        if "share" in condition and humidity_of(condition) is not None
+    ]
+    brackets = [with_bounds(humidity_of(condition), kelvin(condition), angles) for condition in conditions]
+    inside = {air for bracket in brackets for air in bracket}
     others = [air for air in device["humidities"] if air not in inside]
-    shares = [one["share"] for one in conditions]
+    shares = [condition["share"] for condition in conditions]
     return {
-        str(k): {"humidities": [*own, *others], "touchdowns": share / sum(shares) * device.get("touchdowns", 1)}
-        for k, (own, share) in enumerate(zip(found, shares, strict=True))
+        str(k): {"humidities": [*bracket, *others], "touchdowns": share / sum(shares) * device.get("touchdowns", 1)}
+        for k, (bracket, share) in enumerate(zip(brackets, shares, strict=True))
         if share
     }
 

@@ -142,8 +142,8 @@ def _problem(name, entry, key, message):
 
 
 def _value(entry, key):
-    for part in key.split("."):
-        entry = entry[part]
+    for name in key.split("."):
+        entry = entry[name]
     return entry
 
 
@@ -210,14 +210,14 @@ def _impossible_uncertainties(entry, library):
     Any distribution has a kurtosis above its skewness² + 1, so that the mean of kurtoses is above the mean skewness²,
     its variance and 1 together.
     """
-    whole = complete(entry, library)
-    stated, psd = entry.get("uncertainty", {}), whole.get("published_psd", {})
-    sizes = {key: whole.get(key, entry.get(key, psd.get(key))) for key in _POSITIVE}
+    surface = complete(entry, library)
+    stated, psd = entry.get("uncertainty", {}), surface.get("published_psd", {})
+    sizes = {key: surface.get(key, entry.get(key, psd.get(key))) for key in _POSITIVE}
     for key, value in sizes.items():
         if key in stated and value is not None and stated[key] >= value:
             yield f"uncertainty.{key}", f"must be below {key} itself, {value:g}"
-    if set(_FORM) <= set(whole):
-        skewness, kurtosis = (whole[key] for key in _FORM)
+    if set(_FORM) <= set(surface):
+        skewness, kurtosis = (surface[key] for key in _FORM)
         if kurtosis - stated.get("kurtosis", 0) < 1:
             yield "uncertainty.kurtosis", f"must be at most {kurtosis - 1:g}: the kurtosis, {kurtosis:g}, is above 1"
         room = kurtosis - 1 - skewness**2

@@ -85,9 +85,9 @@ def _with_whole_strips(config):
     if config["run"]["pairs"]:
         config = _with_filled_elements(_with_whole(config, "beam", "width_um", step), step)
     short = {name: _bridge_strip(device, config, step) for name, device in config.get("devices", {}).items()}
-    whole = {name: {"strip_um": length} for name, length in short.items() if length}
-    whole |= {name: {"contact_um": sides} for name, sides in _areas_under_shapes(config, step).items()}
-    return merged(config, {"devices": whole}) if whole else config
+    changes = {name: {"strip_um": length} for name, length in short.items() if length}
+    changes |= {name: {"contact_um": sides} for name, sides in _areas_under_shapes(config, step).items()}
+    return merged(config, {"devices": changes}) if changes else config
 
 
 def _with_whole(config, section, key, step):
@@ -111,10 +111,10 @@ def _with_filled_elements(config, step):
         longer = math.ceil(beam["length_um"] / element) * element
         return merged(config, {"beam": {"length_um": round(longer, _PICOMETRES)}})
     most = 0 if strip_is_stated else math.ceil(2 * beam["length_um"] / element)
-    parts = (beam["length_um"] / beam["elements"] / n for n in range(1, most + 1))
-    if not (fitting := [part for part in parts if is_multiple(part, step)]):
+    strips = (beam["length_um"] / beam["elements"] / n for n in range(1, most + 1))
+    if not (fitting := [length for length in strips if is_multiple(length, step)]):
         return config
-    nearest = min(fitting, key=lambda part: abs(math.log(part / strip)))
+    nearest = min(fitting, key=lambda length: abs(math.log(length / strip)))
     return merged(config, {"sampling": {"strip_length_um": round(nearest, _PICOMETRES)}})
 
 
@@ -130,7 +130,11 @@ def _bridge_strip(device, config, step):
 def _areas_under_shapes(config, step):
     """Sides of the patches under devices that are not flat [µm], whole on the grid, where they are not stated."""
     devices = config.get("devices", {}).items()
-    areas = {name: kind_of(one).area(one) for name, one in devices if kind_of(one).shape and "contact_um" not in one}
+    areas = {
+        name: kind_of(device).area(device)
+        for name, device in devices
+        if kind_of(device).shape and "contact_um" not in device
+    }
     return {
         name: [round(math.ceil(side / step) * step, _PICOMETRES) for side in sides] for name, sides in areas.items()
     }

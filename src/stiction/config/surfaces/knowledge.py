@@ -60,12 +60,12 @@ def knowledge(entry: Mapping[str, Any], library: Library) -> Knowledge:
     """
     variances = {quantity: deviation**2 for quantity, deviation in _deviations(entry).items()}
     names = uncertain(entry)
-    places = [_ALL.index(name) for name in names]
-    covariance = scatter(library)[np.ix_(places, places)]
-    for place, name in enumerate(names):
+    indices = [_ALL.index(name) for name in names]
+    covariance = scatter(library)[np.ix_(indices, indices)]
+    for index, name in enumerate(names):
         if name in variances:
-            covariance[place], covariance[:, place] = 0.0, 0.0
-            covariance[place, place] = variances[name]
+            covariance[index], covariance[:, index] = 0.0, 0.0
+            covariance[index, index] = variances[name]
     return Knowledge(names, covariance)
 
 

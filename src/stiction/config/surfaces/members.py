@@ -102,7 +102,7 @@ def limits(name: str, entry: Mapping[str, Any], library: Library, end: float = n
     numbers = {"surface": name, "library": list(library), "listed": listed}
     if not others:
         return [Limit("assumed_without_scatter", Side.EITHER, False, numbers=numbers)]
-    found = [Limit("assumed_surface", Side.EITHER, True, numbers=numbers)]
+    limits_of_members = [Limit("assumed_surface", Side.EITHER, True, numbers=numbers)]
     typical = {other: _shown(quantities(library[other])) for other in others}
     changed = [
         [word, _rounded(value), _rounded(typical[other][word]), other]
@@ -111,7 +111,7 @@ def limits(name: str, entry: Mapping[str, Any], library: Library, end: float = n
         if not np.isclose(value, typical[other][word], rtol=_ROUNDING)
     ]
     numbers = {"surface": name, "changed": changed}
-    return [*found, *([Limit("unlike_typical", Side.EITHER, True, numbers=numbers)] if changed else [])]
+    return [*limits_of_members, *([Limit("unlike_typical", Side.EITHER, True, numbers=numbers)] if changed else [])]
 
 
 #: Quantities whose scatter is that of their logarithm.

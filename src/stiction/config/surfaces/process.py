@@ -123,8 +123,8 @@ def with_surfaces(config: dict[str, Any]) -> dict[str, Any]:
     surfaces, added = config["surfaces"], {}
     for process, section in config.get("process", {}).items():
         if section["surface"] in surfaces:
-            made = (_surface(surfaces[section["surface"]], setting) for setting in section["settings"])
-            added |= dict(zip(names(config, process), made, strict=True))
+            sections = (_surface(surfaces[section["surface"]], setting) for setting in section["settings"])
+            added |= dict(zip(names(config, process), sections, strict=True))
     for name in added:
         if surfaces.get(name, added[name]) != added[name]:
             raise ConfigError(f"surfaces.{name} must have another name: process makes a surface of this name")
@@ -133,13 +133,13 @@ def with_surfaces(config: dict[str, Any]) -> dict[str, Any]:
 
 def in_settings(problems: Iterable[Problem], config: Mapping[str, Any]) -> Iterator[str]:
     """Yield problems in words, those of the surface of a setting as problems of the setting."""
-    made = {
+    settings_by_surface = {
         dotted(("surfaces", name)): dotted(("process", process, "settings", number))
         for process in config.get("process", {})
         for number, name in enumerate(names(config, process))
     }
     for text in map(str, problems):
-        for surface, setting in made.items():
+        for surface, setting in settings_by_surface.items():
             text = text.replace(f"{surface}.scans.files", f"{setting}.scans").replace(f"{surface}.", f"{setting}.")
             text = text.replace(f"{surface} ", f"{setting} ")
         yield text

@@ -20,8 +20,8 @@ relation = Relations()
 @relation
 def surfaces_of_processes_are_defined(config):
     """Require an existing surface, and none at a setting."""
-    made = all_names(config.config)
-    defined = [name for name in config.names("surfaces") if name not in made]
+    names_of_settings = all_names(config.config)
+    defined = [name for name in config.names("surfaces") if name not in names_of_settings]
     for name, surface in config.entries("process", "surface"):
         yield f"process.{name}.surface", undefined(surface, defined)
 
@@ -109,11 +109,11 @@ def _files_of_scans(config: Keys) -> Iterator[tuple[str, str, str]]:
         for name, settings, surface in config.entries("process", "settings", "surface")
         for number, setting in enumerate(settings)
     }
-    made = all_names(config.config)
+    names_of_settings = all_names(config.config)
     surfaces = {
         f"surfaces.{name}.scans.files": (name, files)
         for name, files in config.entries("surfaces", "scans.files")
-        if name not in made and settings
+        if name not in names_of_settings and settings
     }
     for key, (surface, files) in chain(surfaces.items(), settings.items()):
         for number, file in enumerate(files):
@@ -151,7 +151,10 @@ def processes_at_the_same_time_have_one_variable(config):
         elif processes[other]["surface"] == surface or "together_with" in processes[other]:
             yield key, "must be a process that makes another surface, and is together with none itself"
         else:
-            ranges = [[setting["value"] for setting in some] for some in (settings, processes[other]["settings"])]
+            ranges = [
+                [setting["value"] for setting in settings_of_process]
+                for settings_of_process in (settings, processes[other]["settings"])
+            ]
             if max(map(min, ranges)) >= min(map(max, ranges)):
                 yield key, "must be a process with settings in a common range", f"process.{name}.settings"
 
@@ -179,7 +182,7 @@ def second_processes_make_the_other_surface(config):
         key, sides = f"devices.{name}.second_process", dict.fromkeys(surfaces_of(pair, config))
         if first not in processes:
             continue
-        made = processes[first]["surface"]
+        surface = processes[first]["surface"]
         beside = [
             other
             for other, process in processes.items()
@@ -187,8 +190,8 @@ def second_processes_make_the_other_surface(config):
         ]
         if refusal := undefined(second, [process for process in processes if process != first]):
             yield key, refusal
-        elif processes[second]["surface"] not in sides or processes[second]["surface"] == made:
-            yield key, f"must make the other surface of pair {pair}, beside {made}", f"process.{second}.surface"
+        elif processes[second]["surface"] not in sides or processes[second]["surface"] == surface:
+            yield key, f"must make the other surface of pair {pair}, beside {surface}", f"process.{second}.surface"
         elif processes[second]["variable"] == processes[first]["variable"]:
             message = f"must have another variable; with the same one, state together_with: {first} in process.{second}"
             yield key, message, f"process.{second}.variable"

@@ -31,21 +31,21 @@ _LARGEST = {"rms": 0.7, "corner": 1.0, "Hurst exponent": 0.5}
 
 def with_numbers(config: dict[str, Any], kept: Path | None = None) -> tuple[dict[str, Any], list[Problem]]:
     """Configuration with numbers in place of lines, kept in a folder between processes, and problems of the files."""
-    found, problems = evaluated(config, kept)
-    numbers = {name: _beside(config["surfaces"][name]) | of_lines["section"] for name, of_lines in found.items()}
+    surfaces, problems = evaluated(config, kept)
+    numbers = {name: _beside(config["surfaces"][name]) | of_lines["section"] for name, of_lines in surfaces.items()}
     return config | {"surfaces": config["surfaces"] | numbers}, problems
 
 
 def evaluated(config: dict[str, Any], kept: Path | None = None) -> tuple[dict[str, dict], list[Problem]]:
     """Surfaces measured along lines by name, each its ``section`` by numbers and ``notes``, and problems of others."""
-    found, problems = {}, []
+    surfaces, problems = {}, []
     for name, entry in config["surfaces"].items():
         if "profiles" in entry:
             try:
-                found[name] = _numbers(name, entry, config["seed"], kept)
+                surfaces[name] = _numbers(name, entry, config["seed"], kept)
             except ScanError as refusal:
                 problems.append(_problem(name, entry["profiles"], refusal))
-    return found, problems
+    return surfaces, problems
 
 
 def in_words(name: str, of_lines: Mapping[str, Any]) -> str:
@@ -75,13 +75,13 @@ def _numbers(name, entry, seed, kept):
         raise ScanError("", "files", "must name each file once; a line counts once")
     determined_by = [scans.digests(files), {**section, "files": None}, name, seed, _code()]
     key = hashlib.sha256(json.dumps(determined_by, sort_keys=True).encode()).hexdigest()
-    if key not in _KNOWN:
-        _KNOWN[key] = scans.known(key, kept, lambda: _evaluated(files, section, seed, name))
-    return _KNOWN[key]
+    if key not in _NUMBERS:
+        _NUMBERS[key] = scans.kept_numbers(key, kept, lambda: _evaluated(files, section, seed, name))
+    return _NUMBERS[key]
 
 
 #: Evaluated surfaces that this process knows, by content, settings and code.
-_KNOWN = {}
+_NUMBERS = {}
 
 
 @cache
@@ -135,7 +135,7 @@ def _require_known(estimate, files):
     relative = dict(zip(_LARGEST, (estimate.errors[0], estimate.errors[3], estimate.errors[4] / 2), strict=True))
     _, skewness, kurtosis = estimate.values[:3]
     room = kurtosis - 1 - skewness**2
-    vague = [what for what, error in relative.items() if error >= _LARGEST[what]]
+    vague = [quantity for quantity, error in relative.items() if error >= _LARGEST[quantity]]
     vague += ["kurtosis"] if estimate.errors[2] >= kurtosis - 1 else []
     vague += ["skewness"] if estimate.errors[1] ** 2 >= room else []
     if vague:
@@ -182,5 +182,5 @@ def _problem(name, section, refusal):
         return Problem((*path, "files", labels.index(refusal.file)), f"is {refusal.file!r}, which {refusal.reason}")
     if refusal.key == "files":
         return Problem(path, f"{refusal.file} {refusal.reason}".strip())
-    given = f"is {section[refusal.key]!r}" if refusal.key in section else "is missing"
-    return Problem((*path, refusal.key), f"{given}: {refusal.file} {refusal.reason}")
+    content = f"is {section[refusal.key]!r}" if refusal.key in section else "is missing"
+    return Problem((*path, refusal.key), f"{content}: {refusal.file} {refusal.reason}")

@@ -18,7 +18,7 @@ class CsvRow(NamedTuple):
     cells: dict[str, str]  #: by column
 
 
-def rows(content: str, columns: Sequence[str], needed: Sequence[str], what: str) -> Iterator[CsvRow]:
+def rows(content: str, columns: Sequence[str], needed: Sequence[str], subject: str) -> Iterator[CsvRow]:
     """Yield the rows of a file below the names of its columns. Lines beginning with # are comments.
 
     Parameters
@@ -27,7 +27,7 @@ def rows(content: str, columns: Sequence[str], needed: Sequence[str], what: str)
         Text of the file.
     columns, needed : sequence of str
         Names of all columns, and of those that it must have.
-    what : str
+    subject : str
         What a row is about.
 
     Raises
@@ -42,11 +42,11 @@ def rows(content: str, columns: Sequence[str], needed: Sequence[str], what: str)
     (first, names), *others = listed
     _check_columns(first, names, columns, needed)
     if not others:
-        raise WrongFileError(f"which holds no {what}, must have a row for every {what}")
+        raise WrongFileError(f"which holds no {subject}, must have a row for every {subject}")
     for number, cells in others:
         if len(cells) != len(names):
-            found = f"commas separate {len(cells)} values, must be {len(names)}"
-            raise WrongFileError(f"row {number}: {found}, with points in decimal numbers")
+            message = f"commas separate {len(cells)} values, must be {len(names)}"
+            raise WrongFileError(f"row {number}: {message}, with points in decimal numbers")
         yield CsvRow(number, dict(zip(names, cells, strict=True)))
 
 

@@ -21,7 +21,7 @@ _NAME = "name"
 _DEVICE = re.compile(r"devices\.(?:[\w-]+|'[^']*'|\"[^\"]*\")")
 #: Key of a device after its name.
 _KEY = re.compile(r"(?:\.[\w-]+|\[[0-9]+\])*")
-_WHOLE, _REAL = re.compile(r"[-+]?[0-9]{1,18}"), re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?")
+_INTEGER, _REAL = re.compile(r"[-+]?[0-9]{1,18}"), re.compile(r"[-+]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][-+]?[0-9]+)?")
 
 
 class DeviceRows(NamedTuple):
@@ -30,7 +30,7 @@ class DeviceRows(NamedTuple):
     file: str  #: its name
     numbers: dict[str, int]  #: line of the file of each device, in the order of the file
     shared: list[str]  #: keys beside the file whose values hold for all its devices
-    own: dict[str, list[str]]  #: keys of devices that have values in entries of their own beside the file
+    entry_keys: dict[str, list[str]]  #: keys of devices that have values in entries of their own beside the file
 
 
 def in_folder(config: dict[str, Any], named: Mapping[str, Any], folder: str | Path) -> dict[str, Any]:
@@ -62,10 +62,12 @@ def with_rows(config: dict[str, Any]) -> dict[str, Any]:
         raise ConfigError(f"devices.file is {_shown(file)}, which cannot be read: {why}") from reason
     shared = {key: value for key, value in config["devices"].items() if key in _section_of_a_device()["properties"]}
     others = {key: value for key, value in config["devices"].items() if key not in shared}
-    whole = merged({name: merged(shared, device) for name, device in devices.items()}, others)
-    own = {name: list(_dotted(section)) for name, section in others.items() if name in numbers}
+    sections = merged({name: merged(shared, device) for name, device in devices.items()}, others)
+    entry_keys = {name: list(_dotted(section)) for name, section in others.items() if name in numbers}
     cells = {column for device in devices.values() for column in _dotted(device)}
-    return config | {"devices": whole | {"file": DeviceRows(file, numbers, [*{*_dotted(shared)} - cells], own)}}
+    return config | {
+        "devices": sections | {"file": DeviceRows(file, numbers, [*{*_dotted(shared)} - cells], entry_keys)}
+    }
 
 
 def without_file(config: Any) -> tuple[Any, DeviceRows]:
@@ -95,7 +97,7 @@ def in_rows(sentences: Iterable[str], of_file: DeviceRows) -> list[str]:
         prefix = _DEVICE.match(sentence)
         name = prefixes.get(prefix[0]) if prefix else None
         key = _KEY.match(sentence, prefix.end())[0] if prefix else ""
-        if name is None or name in of_file.own and (not key or _is_among(key, of_file.own[name])):
+        if name is None or name in of_file.entry_keys and (not key or _is_among(key, of_file.entry_keys[name])):
             numbers.setdefault(sentence, [])
             continue
         about_cell = sentence.replace(f"{prefix[0]}.", "")
@@ -113,7 +115,7 @@ def in_rows(sentences: Iterable[str], of_file: DeviceRows) -> list[str]:
 
 def _is_among(key, stated):
     """Whether a key of a sentence, such as ``.humidities[0]``, is one of the stated ones or in it."""
-    return any(re.match(rf"\.{re.escape(one)}(?![\w])", key) for one in stated)
+    return any(re.match(rf"\.{re.escape(other)}(?![\w])", key) for other in stated)
 
 
 def _dotted(section, above=""):
@@ -155,11 +157,11 @@ def _section_of_a_device():
 
 def _columns(section, above=""):
     """Parts of the schema about the values of a device by their column."""
-    found = {}
+    columns = {}
     for key, entry in section["properties"].items():
         is_section = entry["type"] == "object"
-        found |= _columns(entry, f"{above}{key}.") if is_section else {above + key: entry}
-    return found
+        columns |= _columns(entry, f"{above}{key}.") if is_section else {above + key: entry}
+    return columns
 
 
 def _devices(content, section):
@@ -194,4 +196,4 @@ def _value(cell, entry):
         return [_value(item, entry["items"]) for item in re.split(r"[\s;]+", cell)]
     if entry["type"] == "string" or not _REAL.fullmatch(cell):
         return cell
-    return int(cell) if _WHOLE.fullmatch(cell) else float(cell)
+    return int(cell) if _INTEGER.fullmatch(cell) else float(cell)

@@ -19,9 +19,10 @@ from stiction.stages.devices.end_states import END_STATES
 _CAPTION = (
     "One row for each device. To build: the largest length, or the smallest restoring force, with at most this "
     "fraction stuck in all stated airs, after all stated touchdowns, at the stated voltage and tilts, with 95 % "
-    "confidence; the simulation and all stated or assumed uncertainties are inside. P(stuck): expected fraction at the "
-    "stated size, with a band of 95 % that contains the same. Measure: what would change the size most, and the size "
-    "if it were known exactly. No number: what forbids one."
+    "confidence if the model holds; the simulation and all stated or assumed uncertainties are inside. But: stricter "
+    "sizes, between the stated airs, or by simulation alone where nothing that is stated asks for them. P(stuck): "
+    "expected fraction at the stated size, with a band of 95 % that contains the same. Measure: what would "
+    "change the size most, and the size if it were known exactly. No number: what forbids one."
 )
 
 
@@ -32,12 +33,13 @@ def devices(answers: Mapping[str, Answer]) -> Table:
         "verdict": (str, "sign"),
         "stated": (_size, "size", "unit"),
         "to build": (_size, "to_build", "unit"),
+        "but": (str, "stricter"),
         "P(stuck) at the stated size": (str, "stuck"),
-        "1 in": (lambda share: number(1 / share, "g"), "share"),
+        "at most 1 in": (lambda share: number(1 / share, "g"), "share"),
         "largest step": (str, "largest_step"),
-        "measure": (str, "measure"),
-        "then": (_size, "if_measured", "unit"),
-        "no number": (str, "forbidden"),
+        "measure first": (str, "measure"),
+        "then to build": (_size, "if_measured", "unit"),
+        "no number because of": (str, "forbidden"),
     }
     rows, caption = [_row(answer) for answer in answers.values()], _CAPTION
     if any(answer.pull_offs for answer in answers.values()):
@@ -107,6 +109,8 @@ def _row(answer):
         "unit": unit,
         "size": answer.size / scale,
         "to_build": to_build,
+        "between": np.nan if answer.forbidden or not answer.between else answer.between.size / scale,
+        "stricter": MISSING if answer.forbidden else "; ".join(words.stricter(answer)) or MISSING,
         "exact": factor * answer.exact / scale,
         "share": answer.share,
         **dict(zip(("stuck_value", "stuck_low", "stuck_high"), factor * np.array(band), strict=True)),

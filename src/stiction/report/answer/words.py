@@ -9,9 +9,10 @@ from stiction.answer.sought import FORCE, LENGTH, PULL_OFF
 from stiction.contact.air import Air
 from stiction.contact.meniscus import ZERO_CELSIUS
 from stiction.devices.risk import one_in
-from stiction.report.format import airs, humidity_text, number
+from stiction.report.format import airs, humidity_text, listed, number
 from stiction.rounding import in_percent
 from stiction.stages.devices.end_states import END_STATES
+from stiction.stages.life.answers import Name
 
 #: Causes in words: as the row of a ladder, and inside a sentence.
 CAUSES: Mapping[Cause, tuple[str, str]] = {
@@ -33,6 +34,8 @@ _LEFT_OUT = {
     "shock": "the fast separation in its shock, which nothing bounds",
     "voltage": "its voltage, at which the dielectric breaks down",
 }
+#: Limits that nothing stated asks for, in words.
+_UNLESS = dict.fromkeys([Name.FAST, Name.RESTORING], "if it separates fast")
 #: Relative change of a size that is not worth a word.
 _SAME = 0.01
 #: Signs of verdicts with the tone of their box, by the number that is sought.
@@ -93,11 +96,15 @@ def stuck_in_words(stuck: Probability) -> str:
     >>> stuck_in_words(Probability(0.18, 1e-9, 0.95)), stuck_in_words(Probability(1e-9, 0.0, 0.0037, none_seen=True))
     ('18 % (0 to 95 %)', 'at most 0.37 %')
     >>> stuck_in_words(Probability(0.002, 0.0, 0.001, none_seen=True))
-    'at most 0.1 % (95 % confidence; 0.2 % on average)'
+    'at most 0.1 % (95 % confidence; many can in the other 5 % of all cases, 0.2 % on average)'
     """
     if stuck.none_seen:
         most, mean = percent(stuck.high, "high"), percent(stuck.value)
-        more = f" (95 % confidence; {mean} on average)" if stuck.value > stuck.high and mean != most else ""
+        more = (
+            f" (95 % confidence; many can in the other 5 % of all cases, {mean} on average)"
+            if stuck.value > stuck.high and mean != most
+            else ""
+        )
         return "0 to 100 %" if stuck.high > 1 - 1e-3 else f"at most {most}{more}"
     if stuck.low > 1 - 1e-3:
         return percent(stuck.low)
@@ -114,6 +121,8 @@ def sign_of(answer: Answer) -> tuple[str, str]:
     """Tone and sign of the verdict."""
     if answer.verdict is Verdict.NONE:
         return ("bad", NO_NUMBER) if is_forbidden(answer) else ("open", "Not known")
+    if answer.verdict is Verdict.SAFE and not answer.is_enough_between:
+        return "open", f"{_SIGNS[answer.sought.name][Verdict.SAFE][1]} in these airs, not between them"
     return _SIGNS[answer.sought.name][answer.verdict]
 
 
@@ -124,11 +133,31 @@ def headline(answer: Answer) -> str:
     elif not np.isfinite(answer.build):
         build = "Too few simulated devices bound a size"
     else:
-        build = f"{answer.sought.bound} {answer.in_words(answer.build)}"
+        build = f"{answer.sought.bound} {to_build(answer)}"
     if answer.stuck is None:
         return f"{build}."
     size = f"{answer.size / answer.sought.scale:.4g} {answer.sought.shown}"
     return f"{build}; with your {size}, {stuck_in_words(answer.stuck)} stick."
+
+
+def to_build(answer: Answer) -> str:
+    """Size to build, and the stricter ones beside it."""
+    size, beside = answer.in_words(answer.build), stricter(answer)
+    return f"{size}, but {listed(beside)}" if beside else size
+
+
+def stricter(answer: Answer) -> list[str]:
+    """Stricter sizes of airs between the stated ones, and of what nothing that is stated asks for."""
+    at = answer.between
+    sizes = [f"{answer.in_words(at.size)} between these airs (RH {at.humidity:.2g})"] if at else []
+    return sizes + [f"{answer.in_words(one.size)} {_unless(one)}" for one in answer.unasked]
+
+
+def _unless(one):
+    """What a limit that nothing stated asks for is about, after its size."""
+    if one.name.startswith(Name.COLLAPSE):
+        return f"if {one.name.removeprefix(f'{Name.COLLAPSE}_')} dries on it"
+    return _UNLESS.get(one.name, f"by its {one.what.partition(':')[0]}")
 
 
 def promise(answer: Answer) -> str:
@@ -136,7 +165,7 @@ def promise(answer: Answer) -> str:
     shared = ", shared among its conditions," * bool(answer.stays)
     after = f" after {answer.touchdowns} touchdowns{shared}" * (answer.touchdowns > 1)
     where = airs([air.humidity for air in answer.airs])
-    sentence = f"At most {one_in(answer.share)} sticks{after} {where} (95 % confidence)."
+    sentence = f"At most {one_in(answer.share)} sticks{after} {where} (95 % confidence, if the model holds)."
     if answer.stuck is None or not answer.is_enough or answer.stuck.value <= answer.share:
         return sentence
     return f"{sentence} In the other 5 % of all cases many can stick, so that more are expected on average."

@@ -13,7 +13,7 @@ from stiction.contact.air import Air
 from stiction.devices.risk import one_in
 from stiction.report.axes.axis import axes_of
 from stiction.report.axes.labels import Label, put
-from stiction.report.axes.roughness import crossings_of
+from stiction.report.axes.roughness import crossings_of, ranges_of, sure_in_short
 from stiction.report.format import TO_NM, TO_UM
 from stiction.report.style import (
     BUILD,
@@ -50,6 +50,8 @@ _POINTS = 101
 _WITHIN_A_DECADE = (1, 1.5, 2, 3, 4, 6, 8)
 #: Width of a figure of curves, for text of 11 pixels where it is 390 pixels wide, and height of a panel [in].
 _WIDE, _HIGH = 3.4, 2.8
+#: Line along the required value where it is sure.
+_SURE = {"linewidth": 3.5, "alpha": 0.6}
 #: Part of a panel of a process that is free of curves at its bottom and its top.
 _FREE = 0.14
 #: Longest line of a label [characters].
@@ -73,6 +75,8 @@ def roughness(dataset: xr.Dataset) -> Figure:
         """The given roughness, what a dash means at any humidity, and the crossings in words."""
         panel.axvline(given, color="0.6", linestyle=":", label="as given")
         panel.plot([], [], "_", color="0.3", markersize=8, label="simulated limit")
+        panel.plot([], [], color="0.3", **_SURE, solid_capstyle="butt", label="sure: simulated limit meets it, 95 %")
+        panel.plot([], [], "o", color="0.3", fillstyle="none", label="estimate meets it, bar 95 %")
         return _crossings(curve, shape)
 
     return _curves(curve, _simulated, marks)
@@ -126,7 +130,7 @@ def _held_by(shapes, end=""):
 
 
 def _simulated(panel, line, colour):
-    """Estimate along a roughness with its band, simulated limits, and crossings with their 95 % intervals."""
+    """Estimate along a roughness with its band, simulated limits, and where both meet the required value."""
     axis, shape = axes_of(line)[0], str(line["shape"].values)
     x, estimate = axis.in_unit(line.roughness.values), TO_UM * line.estimate.values
     reach = INTERVAL * TO_UM * line.error.values
@@ -136,6 +140,8 @@ def _simulated(panel, line, colour):
     if np.isfinite(line.bound.values).any():
         style, label = END_STATES[shape].lines[1], f"flat surfaces, {END_STATES[shape].by}"
         panel.plot(x, TO_UM * line.bound.values, style, color=colour, linewidth=0.8, label=label)
+    for ends in axis.in_unit(ranges_of(line, float(line.humidity), shape)):
+        panel.hlines(TO_UM * float(line.required), *ends, color=colour, **_SURE)
     crossed = crossings_of(line, float(line.humidity), shape)
     if crossed.sizes["crossing"]:
         places, errors = (axis.in_unit(crossed[name].values) for name in ("crossing_place", "crossing_error"))
@@ -144,18 +150,24 @@ def _simulated(panel, line, colour):
 
 
 def _crossings(curve, shape):
-    """Labels of the places at which the estimate is the required value, and of the humidities without one."""
+    """Labels of where the limit and the estimate meet the required value, and of the humidities where neither does.
+
+    A place of the estimate has its 95 % interval, as its bar.
+    """
     axis, labels, elsewhere = axes_of(curve)[0], [], {}
     for humidity, colour in humidity_colours(curve.humidity.values.tolist()).items():
         air, crossed = Air(humidity).words, crossings_of(curve, humidity, shape)
-        places = list(zip(crossed.crossing_place.values, crossed.crossing_error.values, strict=True))
-        labels += [Label(f"{air}: {axis.at(*place)}", colour, axis.in_unit(place[0])) for place in places]
+        places, sure = crossed.crossing_place.values, sure_in_short(curve, humidity, shape)
+        for k, (place, reach) in enumerate(zip(places, INTERVAL * crossed.crossing_error.values, strict=True)):
+            said = f"estimate {axis.text(place)}, 95 %: {axis.text(place - reach)} to {axis.at(place + reach)}"
+            text = f"{air}: {said}" if k else f"{air}: {sure}\n{said}"
+            labels.append(Label(text, colour, axis.in_unit(place)))
         margin = margins_of(curve.sel(humidity=humidity, shape=shape))
-        if not places and np.isfinite(margin).any():
+        if not len(places) and np.isfinite(margin).any():
             nearest = int(np.nanargmin(np.abs(margin)))
-            elsewhere.setdefault((nearest, margin[nearest] > 0), {})[air] = colour
-    for (nearest, is_met), colours in elsewhere.items():
-        where = "in all of this range" if is_met else "not in this range"
+            where = sure if margin[nearest] > 0 else "not in this range"
+            elsewhere.setdefault((nearest, where), {})[air] = colour
+    for (nearest, where), colours in elsewhere.items():
         text = textwrap.fill(f"{', '.join(colours)}: {where}", _LONGEST)
         colour = next(iter(colours.values())) if len(colours) == 1 else "black"
         labels.append(Label(text, colour, axis.in_unit(curve.roughness.values[nearest])))

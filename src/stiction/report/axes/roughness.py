@@ -92,8 +92,7 @@ def _enough(curve, humidity, shape):
     required = f"{float(curve.required) / UM:g} {sought.shown}"
     by_beam = f"a {sought.name} of {required} ({END_STATES[shape].by})"
     wanted = f"a {sought.required} of {required}" if sought.more_is_better else by_beam
-    rows = _rows(curve, "range", humidity, shape)
-    ranges = axes_of(curve)[0].ranges(np.stack([rows.range_low, rows.range_high], axis=-1))
+    ranges = axes_of(curve)[0].ranges(ranges_of(curve, humidity, shape))
     where = _where(curve.sel(humidity=humidity, shape=shape), axes_of(curve)[0], ranges)
     return f"For {wanted}, {airs([humidity])}, {where}"
 
@@ -141,6 +140,30 @@ def _stuck_as_given(curve, humidity, shape):
 def crossings_of(curve: xr.Dataset, humidity: float, shape: str) -> xr.Dataset:
     """Crossings of a curve with its required value, at a humidity and against one end state."""
     return _rows(curve, "crossing", humidity, shape)
+
+
+def ranges_of(curve: xr.Dataset, humidity: float, shape: str) -> np.ndarray:
+    """Ranges of a curve in which its simulated limit meets the requirement, as `crossings_of`, (n, 2)."""
+    rows = _rows(curve, "range", humidity, shape)
+    return np.stack([rows.range_low, rows.range_high], axis=-1)
+
+
+def sure_in_short(curve: xr.Dataset, humidity: float, shape: str) -> str:
+    """Where the simulated limit of a curve meets the requirement, in a few words for a picture."""
+    axis, ranges = axes_of(curve)[0], ranges_of(curve, humidity, shape)
+    known = axis.values[curve.safe.sel(humidity=humidity, shape=shape).notnull().values]
+    parts = [_part(axis, ends, known) for ends in ranges]
+    return f"sure {' or '.join(parts)}" if parts else "nowhere sure"
+
+
+def _part(axis: Axis, ends, known):
+    """Range in words, without an end that is one of all known values."""
+    (low, high), is_open = ends, np.isclose(ends, known[[0, -1]], rtol=1e-9, atol=0)
+    if is_open.all():
+        return "everywhere"
+    if is_open[1]:
+        return f"from {axis.at(low)}"
+    return f"up to {axis.at(high)}" if is_open[0] else f"from {axis.text(low)} to {axis.at(high)}"
 
 
 def _rows(curve, dimension, humidity, shape):

@@ -8,14 +8,19 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
+from stiction.answer.data import Answer
 from stiction.contact.air import Air, is_humid
 from stiction.devices.limits.limit import Limit
-from stiction.devices.risk import stuck_share
+from stiction.devices.risk import one_in
+from stiction.devices.stoppers import stuck_patches
 from stiction.plan.names import by_name
+from stiction.report.answer.tables import of_datasets
+from stiction.report.answer.words import is_forbidden
 from stiction.report.budget.tables import choice_label, response_text
 from stiction.report.format import TO_UN, number
 from stiction.report.limits import words
 from stiction.report.style import (
+    BUILD,
     OUTLINED,
     SINGLE,
     at_most_double,
@@ -36,8 +41,12 @@ from stiction.report.style import (
 )
 from stiction.stages.devices import device_warnings
 from stiction.stages.devices.budget import budget_of, budgets_of, groups_of, slope_errors_of
+from stiction.stages.devices.stoppers import bounded_share, stuck_over
 
-_COLOUR = "#0072B2"
+#: Colours of pull-off forces and of their limit.
+_COLOUR, _LIMIT = "#0072B2", "#AA3377"
+#: Number of quantiles, and of forces between the ends, at which the band of a stopper is computed.
+_BAND = 101
 #: Heights of a row of a budget, of everything else in its panel, and of the legend [in]; share of a row with bars.
 _ROW, _AROUND, _LEGEND, _FILLED = 0.17, 0.62, 0.3, 0.8
 #: All of the variance, and the share [%] below which measurements are in one row.
@@ -53,16 +62,21 @@ _LINE = 0.15
 
 
 @styled
-def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence[Limit]]) -> Figure:
+def stoppers(
+    datasets: Mapping[str, xr.Dataset],
+    warnings: Mapping[str, Sequence[Limit]],
+    answers: Mapping[str, Answer] | None = None,
+) -> Figure:
     """Stoppers: P(stuck) against restoring force, and pull-off force against humidity, a column for each.
 
-    Datasets and limits, which the table of stoppers contains, are by device.
+    Datasets and limits, which the table of stoppers contains, are by device, as are answers with the forces to build.
     """
-    figure, columns, lines = columns_of_panels(len(datasets), 2, at_most_double(SINGLE), 5.0)
-    for column, dataset in zip(columns, datasets.values(), strict=True):
-        _stuck_over_force(column[0], dataset)
+    figure, columns, lines = columns_of_panels(len(datasets), 2, at_most_double(SINGLE), 5.6)
+    for column, (name, dataset) in zip(columns, datasets.items(), strict=True):
+        build = _to_build((answers or {}).get(name))
+        _stuck_over_force(column[0], dataset, build)
         column[0].set_xlabel(on_own_axes("restoring force [µN]", columns.T))
-        _force_over_humidity(column[1], dataset)
+        _force_over_humidity(column[1], dataset, build)
     for line in lines:
         line[0, 0].set_ylabel("P(stuck) [–]")
         line[1, 0].set_ylabel(on_own_axes("pull-off force [µN]", line))
@@ -73,21 +87,40 @@ def stoppers(datasets: Mapping[str, xr.Dataset], warnings: Mapping[str, Sequence
     return figure
 
 
-def _stuck_over_force(panel, dataset):
-    """Fraction of the patches with a larger pull-off force, at every humidity of the device, with its band."""
-    restoring = TO_UN * float(dataset.restoring_force)
+def _to_build(answer):
+    """Force to build of an answer [µN], NaN without one or where a limit forbids it."""
+    return np.nan if answer is None or is_forbidden(answer) else TO_UN * answer.build
+
+
+def _stuck_over_force(panel, dataset, build):
+    """P(stuck) over the force, at every humidity of the device, with the band and the limits of its table."""
+    restoring, lowest = TO_UN * float(dataset.restoring_force), 0.5 / dataset.sizes["sample"]
     colours = humidity_colours(dataset.humidity.values.tolist())
+    limits = dataset.safe_force.sel(part="safe", share=dataset.share > lowest)
     for k, (humidity, colour) in enumerate(colours.items()):
-        forces = TO_UN * dataset.pull_off.sel(humidity=humidity).values
-        at = np.sort(forces)
-        share, low, high = stuck_share(-at, -forces)
-        panel.plot(at, share, color=colour, linestyle=dashes(k), label=Air(humidity).words)
-        panel.fill_between(at, low, high, color=colour, alpha=0.2, linewidth=0)
+        forces, of_air = np.sort(dataset.pull_off.sel(humidity=humidity).values), limits.sel(humidity=humidity)
+        style = {"color": colour, "linestyle": dashes(k), "label": Air(humidity).words}
+        panel.plot(TO_UN * forces, stuck_patches(forces, forces)[0], **style)
+        at = _forces_of_band(dataset, forces, of_air)
+        _, *band = stuck_over(dataset, humidity, at)
+        panel.fill_between(TO_UN * at, *band, color=colour, alpha=0.2, linewidth=0)
+        panel.plot(TO_UN * of_air, of_air.share, "|", color=colour, markersize=9, markeredgewidth=1.5)
+    if limits.notnull().any():
+        panel.plot([], [], "|", color="0.3", markersize=9, markeredgewidth=1.5, label="simulated limit, 95 %")
+    if np.isfinite(build):
+        panel.axvline(build, color=BUILD, linewidth=1.2, label=f"to build, {build:.3g} µN")
     panel.axvline(restoring, color="0.4", linestyle=":", linewidth=0.8)
-    panel.set(yscale="log", xlim=(0, None), ylim=(0.5 / dataset.sizes["sample"], 1.3))
+    panel.set(yscale="log", xlim=(0, None), ylim=(lowest, 1.3))
     if np.isfinite(restoring):
         _name_restoring_force(panel, restoring)
     legend_below(panel, handles(panel)[0])
+
+
+def _forces_of_band(dataset, forces, limits):
+    """Forces at which a band is drawn: up to the largest of the patches and of the limits, with that of the spring."""
+    end, restoring = np.nanmax([forces[-1], *limits.values]), float(dataset.restoring_force)
+    spring = [restoring] if forces[0] < restoring < end else []
+    return np.unique([*np.quantile(forces, np.linspace(0, 1, _BAND)), *np.linspace(forces[0], end, _BAND), *spring])
 
 
 def _name_restoring_force(panel, restoring):
@@ -105,8 +138,8 @@ def _name_restoring_force(panel, restoring):
     )
 
 
-def _force_over_humidity(panel, dataset):
-    """Mean and 5 to 95 % of the pull-off force along the fine axis, and the worst humidity unless all air is dry."""
+def _force_over_humidity(panel, dataset, build):
+    """Mean and 5 to 95 % of the pull-off force along the fine axis, its limit, and the worst humid air."""
     low, high = (TO_UN * dataset.quantile_along.sel(probability=p) for p in dataset.probability.values[[0, -1]])
     light = {"color": _COLOUR, "alpha": 0.2, "linewidth": 0}
     worst, humid = Air(float(dataset.worst_humidity)), is_humid(dataset.axis.values)
@@ -123,13 +156,39 @@ def _force_over_humidity(panel, dataset):
         at = [placed[float(value)] for value in dataset.axis.values[single]]
         points = {"fmt": "o", "color": _COLOUR, "markersize": 3, "alpha": 0.6, "label": label}
         entries.append(panel.errorbar(at, means[single], reach, **points))
-    panel.axhline(TO_UN * float(dataset.restoring_force), color="0.4", linestyle=":", linewidth=0.8)
+    entries += _limit_over_humidity(panel, dataset, placed, single)
+    if np.isfinite(restoring := TO_UN * float(dataset.restoring_force)):
+        entries.append(panel.axhline(restoring, color="0.4", linestyle=":", linewidth=0.8, label="restoring force"))
+    if np.isfinite(build):
+        label, at = f"to build in the stated airs, {build:.3g} µN", [placed.get(h, h) for h in dataset.humidity.values]
+        entries += panel.plot(at, np.full(len(at), build), "D", color=BUILD, markersize=4, label=label)
     if not single.all():
         label = f"worst {worst.choose(f'humidity {worst.humidity:.2f}', worst.where)}, by the mean"
         entries += panel.plot([placed[worst.humidity]], [float(means.max())], "v", color="black", label=label)
     legend_below(panel, entries)
     panel.set(xlabel="relative humidity [–]", ylim=(0, None))
     humidity_axis(panel, placed)
+
+
+def _limit_over_humidity(panel, dataset, placed, single):
+    """Simulated limit of the smallest fraction that the patches bound, and its largest value, as entries of a legend.
+
+    It is a line along the fine axis, and a dash in single airs.
+    """
+    if (share := bounded_share(dataset)) is None:
+        return []
+    limit, axis = TO_UN * dataset.safe_force_along.sel(share=share).values, dataset.axis.values
+    text, style = f"simulated limit, {one_in(share)}", {"color": _LIMIT, "markersize": 8}
+    entries = []
+    if single.any():
+        at = [placed[float(value)] for value in axis[single]]
+        entries = panel.plot(at, limit[single], "_", label=text, **style)
+    if not single.all():
+        largest = int(np.argmax(np.where(single, -np.inf, limit)))
+        entries = panel.plot(axis[~single], limit[~single], "--", label=text, **style)
+        label = f"its largest, RH {axis[largest]:.2f}: {limit[largest]:.3g} µN"
+        entries += panel.plot(axis[largest], limit[largest], "^", color=_LIMIT, markersize=5, label=label)
+    return entries
 
 
 # Budget
@@ -252,6 +311,12 @@ def _rows_of_bars(panel, rows: Mapping[str, Sequence[tuple]], colours: Sequence[
     panel.set(ylim=(len(rows) - 0.4, -0.6), xlim=xlim)
 
 
+def _stoppers(data):
+    """Figure of stoppers from their datasets, answers and limits."""
+    limits = device_warnings.read(data["warnings"]).patches
+    return stoppers(data["stoppers"], limits, of_datasets(data["answers"], data["warnings"]))
+
+
 STAGES = (
     figure_stage(
         "stoppers",
@@ -259,9 +324,10 @@ STAGES = (
         "Devices",
         inputs=lambda plan, at: {
             "stoppers": by_name("devices/stoppers", plan.devices.stoppers),
+            "answers": by_name("devices/answer", plan.devices.stoppers),
             "warnings": device_warnings.files_of(*plan.devices.stoppers),
         },
-        compute=lambda data: stoppers(data["stoppers"], device_warnings.read(data["warnings"]).patches),
+        compute=_stoppers,
         jobs=lambda plan: [{}] if plan.devices.stoppers else [],
         targets=("devices",),
     ),

@@ -101,9 +101,14 @@ def beam_view(
     share = share_axis(joined.share.values, answer.share, "shares")
     shown = {"scores": layers.scores, "first": layers.first / UM}
     grid = Grid(axes, share, size, build, sizes, int(joined.beams), False, **shown)
-    words = {"what": "length", "safe": "Length to build", "bound": "to build"}
+    words = {"what": "length", "safe": "Length to build", "bound": "to build"} | _all_airs(answer)
     words |= {"stick": "Devices of this length that stick"}
     return View("sizes and air", grid, words)
+
+
+def _all_airs(answer):
+    """Humidity at which the answer is that for all airs together, nothing for a single one."""
+    return {"all_airs": f"{answer.together.humidity:g}"} if len(answer.airs) > 1 else {}
 
 
 def _rounded_down(build, otherwise):
@@ -210,6 +215,7 @@ def _to_build(states, section, stopper, answer):
     size = size_axis(grid.size.key, grid.size.label, grid.size.unit, (build, sizes[0]), grid.size.start)
     shown = {"scores": layers.scores, "first": layers.first / per}
     words = {**view.words, "safe": f"{size.label.capitalize()} to build", "bound": "to build"}
+    words |= _all_airs(answer)
     return replace(view, grid=replace(grid, size=size, safe=build, levels=sizes, **shown), words=words)
 
 

@@ -8,6 +8,7 @@ import xarray as xr
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from stiction.answer.data import Answer
 from stiction.answer.sought import FORCE, LENGTH, SOUGHT
 from stiction.config.units import from_si
 from stiction.constants import FREE_FALL
@@ -27,6 +28,7 @@ from stiction.report.style import (
     styled,
 )
 from stiction.report.table import Table, table_stage
+from stiction.stages.answer.beside import is_short
 from stiction.stages.devices import device_warnings
 from stiction.stages.life.answers import QUESTIONS, TOUCH, LifeRow, Name, answers_of
 
@@ -54,8 +56,8 @@ CAPTION = (
     "has everything inside."
 )
 _COLOURS = dict(zip(QUESTIONS, ("#0072B2", "#C98500", "#CC79A7", "#009E73"), strict=True))
-#: Colour of a limit below the size to build, and the difference that rounding makes.
-_SHORT, _ROUNDED = "#B00020", 1e-3
+#: Colour of a limit below the size to build.
+_SHORT = "#B00020"
 #: Height of the legend, and largest height of the figure [in]. Share of its width for labels, and mean width of their
 #: characters [in].
 _LEGEND, _TALLEST, _LABELS, _CHARACTER = 0.3, 100.0, 0.4, 0.045
@@ -146,13 +148,15 @@ def _beside(build, sought):
     return [f"The {size}, has inside all that is stated. Simulated limits below have one cause each and exact inputs."]
 
 
-def judged_without(dataset: xr.Dataset, build: float) -> list[str]:
-    """Sentence on the limits that do not allow a size to build [m, N], as nothing that is stated asks for them."""
-    sought, short = _sought(dataset), [row for row in _rows(dataset) if _is_short(row, build)]
-    if not short:
+def judged_without(answer: Answer) -> list[str]:
+    """Sentence on the stricter limits that nothing stated asks for."""
+    if not answer.unasked or answer.forbidden:
         return []
-    named = "; ".join(f"{_label(row)}, {sought.in_words(_unsafe_end(row))}" for row in short)
-    return [f"The {sought.name} to build is judged without these limits, which do not allow it: {named}."]
+    named = "; ".join(f"{_label(one)}, {answer.in_words(one.size)}" for one in answer.unasked)
+    return [
+        f"The {answer.sought.name} to build does not contain these stricter simulated limits, as nothing that you "
+        f"stated asks for them: {named}."
+    ]
 
 
 def _limit(answers, length):
@@ -365,7 +369,7 @@ def _marks(answers, build, widest):
         least, scale = answer.high if np.isnan(answer.low) else answer.low, SOUGHT[answer.unit].scale
         colour, low, high = _COLOURS[answer.question], least / scale, answer.high / scale
         text = " to ".join(dict.fromkeys([significant(low), significant(high)]))
-        mark = dots.Mark(low, high, _SHORT if _is_short(answer, build) else colour, text)
+        mark = dots.Mark(low, high, _SHORT if is_short(answer, build) else colour, text)
         rows[textwrap.fill(_label(answer), widest)] = [mark]
     return rows
 
@@ -373,18 +377,6 @@ def _marks(answers, build, widest):
 def _label(answer):
     """What an answer is about, in short."""
     return answer.what.partition(":")[0]
-
-
-def _unsafe_end(answer):
-    """End of a length or a force that decides about a size: its lower or, of a force, its upper bound."""
-    is_upper = SOUGHT[answer.unit].more_is_better or np.isnan(answer.low)
-    return answer.high if is_upper else answer.low
-
-
-def _is_short(answer, build):
-    """Whether a length or a force does not allow a size to build, beyond rounding."""
-    sign = SOUGHT[answer.unit].sign
-    return sign * np.log(build) > sign * np.log(_unsafe_end(answer)) + _ROUNDED
 
 
 #: What table and figure declare alike.

@@ -272,7 +272,7 @@ def with_life(page: Page, name: str, answers: xr.Dataset, answer: Answer) -> Pag
     picture = life.figure({name: answers}, {name: build})
     section = Section("From the first contact to the last", (life.CAPTION,), cells, picture)
     sentences, sections = life.sentences(answers, build, bool(answer.stays)), [first, section, *others]
-    summary = page.summary and replace(page.summary, basis=[*page.summary.basis, *life.judged_without(answers, build)])
+    summary = page.summary and replace(page.summary, basis=[*page.summary.basis, *life.judged_without(answer)])
     return replace(
         page, answer=[*sentences, *page.answer], more=[*sentences, *page.more], sections=sections, summary=summary
     )

@@ -10,7 +10,6 @@ from matplotlib.figure import Figure
 
 from stiction.answer.data import Answer
 from stiction.config.kinds import PULL_OFF, kind_of
-from stiction.plan.names import by_case
 from stiction.report.answer import figures as figures_answer
 from stiction.report.budget import figures as figures_budget
 from stiction.report.budget import tables as tables_budget
@@ -20,7 +19,7 @@ from stiction.report.devices import tables as tables_devices
 from stiction.report.limits.words import texts, with_numbers
 from stiction.report.page import Section
 from stiction.stages.devices.end_states import END_STATES
-from stiction.stages.devices.results import results_of
+from stiction.stages.devices.results import charts_of, results_of
 from stiction.stages.devices.stoppers import ends
 
 #: Why a table of safe lengths has cells without a number.
@@ -69,11 +68,7 @@ class OfQuestion(NamedTuple):
 
 def _inputs_of_beam(plan, device):
     """Safe lengths and charts by humidity."""
-    charts = plan.devices.chart_cases(device) if device in plan.devices.with_chart else []
-    return {
-        "safe_lengths": results_of(plan, device, "lengths")["lengths"],
-        "charts": {humidity: name for (_, humidity), name in by_case("devices/chart", charts).items()},
-    }
+    return {"safe_lengths": results_of(plan, device, "lengths")["lengths"], "charts": charts_of(plan, device)}
 
 
 def _cases(name, datasets):
@@ -121,11 +116,11 @@ def _views_of_beam(name, section, data, answer):
 # Stoppers
 
 
-def _parts_of_stopper(name, section, data, _answer):
+def _parts_of_stopper(name, section, data, answer):
     """Parts of the page of a stopper."""
     stopper = data["stopper"]
     table = tables_budget.stoppers({name: stopper}, {name: []}, data.get("errors")).cells.drop(columns=["device"])
-    picture = figures_budget.stoppers({name: stopper}, {})
+    picture = figures_budget.stoppers({name: stopper}, {}, {name: answer})
     sections = [Section("By simulation alone", (_SIMULATED,), table, picture)]
     worst = [sentences.worst_sentence(stopper)] if ends(stopper) else []
     texts_of_forces = [*sentences.safe_force_sentences(stopper), *worst]

@@ -54,10 +54,11 @@ def adhesion_in_words(parameters: Collection[float]) -> str:
     Examples
     --------
     >>> adhesion_in_words([81.2, 112.8])
-    '81.2 to 113 (wafers bond below 1, and do not adhere above 12)'
+    '81.2 to 113 (of dry wafers without menisci, which bond below 1, and do not adhere above 12)'
     """
     ends = dict.fromkeys(f"{end:.3g}" for end in (min(parameters), max(parameters)))
-    return f"{' to '.join(ends)} (wafers bond below {BOND}, and do not adhere above {ADHERE})"
+    of_wafers = f"of dry wafers without menisci, which bond below {BOND}, and do not adhere above {ADHERE}"
+    return f"{' to '.join(ends)} ({of_wafers})"
 
 
 def _numbers_in_words(section, words):

@@ -173,7 +173,7 @@ function opened(number) {
 
   function stuckText({share, low, high, beyond}) {
     if (Number.isNaN(share)) return MISSING;
-    const [most, mean] = [percent(high, true), percent(share)], more = share > high && mean !== most ? ` (95 % confidence; ${mean} on average)` : "";
+    const [most, mean] = [percent(high, true), percent(share)], more = share > high && mean !== most ? ` (95 % confidence; many can in the other 5 % of all cases, ${mean} on average)` : "";
     if (beyond < 0) return high > 1 - 1e-3 ? "0 to 100 %" : `at most ${most}${more}`;
     if (low > 1 - 1e-3) return percent(low);
     if (beyond) return `at least ${percent(low, true)}`;
@@ -287,7 +287,7 @@ function opened(number) {
     const safe = safeSize(state);
     return {
       stuck: `${words.stick}: ${stuckText(stuckAt(state[grid.size.key], levels))}`,
-      safe: `${words.safe} for ${oneIn(state.share)}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : words.none ?? `not known from ${grid.samples} devices`}`,
+      safe: `${words.safe} for ${oneIn(state.share)}${Number(words.all_airs) === state.humidity ? ", all airs together" : ""}: ${Number.isFinite(safe) ? `${text(safe, DIGITS)} ${unit}` : words.none ?? `not known from ${grid.samples} devices`}`,
     };
   }
 

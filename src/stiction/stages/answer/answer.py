@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from stiction.answer import ladder, places, sought
-from stiction.answer.data import INPUTS, Answer, AnswerInAir, Cause, Probability, PullOff, Stay, Step
+from stiction.answer.data import INPUTS, Answer, AnswerInAir, Between, Cause, Probability, PullOff, Stay, Step, Unasked
 from stiction.answer.ladder import MainQuestion
 from stiction.answer.unknowns import Draws, OfBudgets
 from stiction.answer.worlds import DRAWS
@@ -18,10 +18,10 @@ from stiction.config.units import in_si
 from stiction.contact.air import Air, humid
 from stiction.devices.budget import LARGEST
 from stiction.plan.stage import Stage, select
-from stiction.stages.answer import conditions
+from stiction.stages.answer import beside, conditions
 from stiction.stages.devices.budget import budgets_of
 from stiction.stages.devices.opening import FORCE, DesignedBeam, own_section
-from stiction.stages.devices.results import results_of
+from stiction.stages.devices.results import charts_of, results_of
 from stiction.stages.devices.safe_lengths import chosen_share
 from stiction.stages.devices.stoppers import bounded_share
 from stiction.stages.life.separation import separation_inputs
@@ -95,7 +95,17 @@ def _of_size(data, settings):
     answer = ladder.answer(full_question, circumstances, unknowns, draws, None if unknowns is before else before)
     at = [settings.temperatures.get(Air(air.humidity).name, np.nan) for air in answer.airs]
     airs = [replace(air, temperature=kelvin) for air, kelvin in zip(answer.airs, at, strict=True)]
-    return replace(answer, airs=tuple(airs))
+    unasked = beside.unasked(data["life"], answer)
+    return replace(
+        answer, airs=tuple(airs), between=beside.between(answer, _limits(data, settings, answer.share)), unasked=unasked
+    )
+
+
+def _limits(data, settings, share):
+    """Simulated limits in all computed airs."""
+    if settings.beam:
+        return beside.of_lengths(data["lengths"], data.get("charts", {}), settings.beam, share)
+    return beside.of_forces(data["stopper"], share)
 
 
 def _of_beam(data, settings):
@@ -193,10 +203,32 @@ def layout(answer: Answer) -> xr.Dataset:
         inside = [[int(air.humidity in stay.humidities) for air in answer.airs] for stay in answer.stays]
         variables |= {"stay_air": (("stay", "air"), inside, none)}
         variables |= {"stay_touchdowns": ("stay", [stay.touchdowns for stay in answer.stays], none)}
-    variables |= _of_places(answer.pull_offs)
+    variables |= _of_places(answer.pull_offs) | _beside(answer, size)
     coords = {"step": [str(step.cause) for step in answer.steps], "air": [air.humidity for air in answer.airs]}
     coords["end"] = ["value", "low", "high"]
     return xr.Dataset(variables, coords, {name: getattr(answer, name) for name in _TEXTS})
+
+
+def _beside(answer, size):
+    """Variables of the stricter sizes beside the size to build, none where there is none."""
+    variables = {}
+    if answer.between:
+        variables |= {"between_humidity": ((), answer.between.humidity, {"units": "1"})}
+        variables |= {"between_size": ((), answer.between.size, size)}
+    if answer.unasked:
+        variables |= {f"unasked_{name}": ("unasked", [getattr(one, name) for one in answer.unasked]) for name in _NAMED}
+        variables |= {"unasked_size": ("unasked", [one.size for one in answer.unasked], size)}
+    return variables
+
+
+#: Texts of a limit that nothing stated asks for.
+_NAMED = ("name", "what")
+
+
+def _stricter(dataset):
+    """Yield the limits of a dataset that nothing stated asks for, if it has some."""
+    for row in (dataset.isel(unasked=k) for k in range(dataset.sizes.get("unasked", 0))):
+        yield Unasked(*(str(row[f"unasked_{name}"].values) for name in _NAMED), float(row.unasked_size))
 
 
 #: Probabilities of a measured force.
@@ -264,7 +296,14 @@ def answer_of(dataset: xr.Dataset) -> Answer:
         sizes=dataset["curve_size"].values,
         curve=dataset["curve"].values,
         pull_offs=tuple(_pull_offs(dataset)),
+        between=_between(dataset),
+        unasked=tuple(_stricter(dataset)),
     )
+
+
+def _between(dataset):
+    """Stricter size of an air between the stated ones of a dataset, none where it has none."""
+    return Between(float(dataset.between_humidity), float(dataset.between_size)) if "between_size" in dataset else None
 
 
 def _stays(dataset):
@@ -291,6 +330,7 @@ def _inputs(plan, at):
         return inputs | results_of(plan, device, "stopper")
     inputs |= {"life": f"devices/life/{device}"} | separation_inputs(plan, device)
     inputs |= {"test_beams": f"devices/test_beams/{device}"} if "test_beams" in section else {}
+    inputs |= {"charts": charts_of(plan, device)} if device in plan.devices.with_chart else {}
     return inputs | results_of(plan, device, "tilted", "biased", "stopper", "after", "lengths")
 
 

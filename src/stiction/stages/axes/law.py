@@ -79,7 +79,7 @@ def _measured_quantities(estimate):
 def layout(law: Law, measured: np.ndarray, errors: np.ndarray, settings: Settings) -> xr.Dataset:
     """Dataset of a law, with the scaled quantities of its settings (n, q) and the covariance of their errors."""
     over, other = ("quantity", "coefficient"), ("other_quantity", "other_coefficient")
-    part = "degree", "tried_scatter"
+    trial = "degree", "tried_scatter"
     scale = {"long_name": "ln rms [m], skewness, ln(kurtosis - 1 - skewness²), ln corner [rad/m], ln(-slope)"}
     return xr.Dataset(
         {
@@ -90,9 +90,9 @@ def layout(law: Law, measured: np.ndarray, errors: np.ndarray, settings: Setting
             "degrees": ("quantity", law.degrees, {"long_name": "degree that predicts left-out settings best"}),
             "scatter": ("quantity", law.scatter, {"long_name": "of the settings, beyond their errors"}),
             "surprise": (("setting", "quantity"), law.surprise, {"long_name": "from the law of the others [errors]"}),
-            "likely": (("quantity", *part), law.parts.likely, {"long_name": "of each degree and scatter"}),
-            "part_coefficients": (("quantity", *part, "coefficient"), law.parts.coefficients),
-            "part_weights": (("quantity", *part, "coefficient", "setting"), law.parts.weights),
+            "likely": (("quantity", *trial), law.parts.likely, {"long_name": "of each degree and scatter"}),
+            "part_coefficients": (("quantity", *trial, "coefficient"), law.parts.coefficients),
+            "part_weights": (("quantity", *trial, "coefficient", "setting"), law.parts.weights),
             "flags": ((), "\n".join(sentences(law, settings))),
         },
         coords={
@@ -159,21 +159,21 @@ def plain(values: np.ndarray, covariances: np.ndarray, names: Sequence[str]) -> 
     return quantities[:, places], np.sqrt(variances)
 
 
-def on_law(given: Description, dataset: xr.Dataset, value: float) -> Description:
+def on_law(base: Description, dataset: xr.Dataset, value: float) -> Description:
     """Surface at a value of the variable: as given, with the quantities of the law.
 
     ASSUME: the cut-off of the spectrum is the given one at all values, with which surfaces have the same random
     numbers, and the heights are of maximum entropy. In place of a kurtosis or corner that no surface has, it has the
     nearest one.
     """
-    cutoff = given.spectrum.cutoff
+    cutoff = base.spectrum.cutoff
     quantities = np.array(
-        [np.log(given.rms), given.skewness, given.kurtosis, np.log(given.spectrum.corner), slope_of(given)]
+        [np.log(base.rms), base.skewness, base.kurtosis, np.log(base.spectrum.corner), slope_of(base)]
     )
     changed, names = scaled(quantities), list(map(str, dataset["quantity"].values))
     changed[[QUANTITIES.index(name) for name in names]] = law_of(dataset).at(value)[0]
     ln_rms, skewness, kurtosis, ln_corner, slope = unscaled(changed)
-    surface = replace(given, form=None)
+    surface = replace(base, form=None)
     if "rms" in names:
         surface = replace(surface, rms=to_si(_rounded(from_si(np.exp(ln_rms), "nm")), "nm"))
     if "skewness" in names:
@@ -181,7 +181,7 @@ def on_law(given: Description, dataset: xr.Dataset, value: float) -> Description
         surface = replace(surface, skewness=_rounded(skewness), kurtosis=_rounded(kurtosis))
     if "corner" in names or "slope" in names:
         corner = min(to_si(_rounded(from_si(np.exp(ln_corner), "rad_per_um")), "rad_per_um"), 0.95 * cutoff)
-        plateau = getattr(given.spectrum, "plateau", 1.0)
+        plateau = getattr(base.spectrum, "plateau", 1.0)
         floor = plateau * (cutoff / corner) ** _rounded(slope)
         surface = replace(surface, spectrum=CutoffSelfAffine(plateau, floor, corner, cutoff))
     return surface
@@ -217,10 +217,10 @@ def _numbers(entry, quantities):
     psd = entry.get("published_psd")
     spectrum = (np.log(to_si(psd["corner_rad_per_um"], "rad_per_um")), slope(psd)) if psd else _ANY
     values = [np.log(to_si(entry["rms_nm"], "nm")), entry["skewness"], entry["kurtosis"], *spectrum]
-    known, covariance = knowledge(entry, paper()["surfaces"]), np.diag(np.square(list(STEPS.values())[:5]))
+    errors, covariance = knowledge(entry, paper()["surfaces"]), np.diag(np.square(list(STEPS.values())[:5]))
     places = [QUANTITIES.index(name) for name in quantities]
-    places_of_known = [known.quantities.index(name) for name in quantities]
-    covariance[np.ix_(places, places)] = known.covariance[np.ix_(places_of_known, places_of_known)]
+    places_in_errors = [errors.quantities.index(name) for name in quantities]
+    covariance[np.ix_(places, places)] = errors.covariance[np.ix_(places_in_errors, places_in_errors)]
     rounded = [[_rounded(number) for number in row] for row in covariance]
     return {"values": [_exactly(number) for number in values], "covariance": rounded}
 

@@ -52,14 +52,16 @@ def _with_margins(points, dims, model_error):
     """Points with their margins and the errors of simulation and model."""
     margin, safe = (requirement.margins_of(points, name) for name in ("estimate", "safe"))
     # The bound of a safe value is one-sided: the errors of simulation alone leave it as it is.
-    parts = {"simulation": (margin - safe) / ndtri(CONFIDENCE), "model": _model_error(points, model_error)}
-    return points.assign({"margin": (dims, margin)} | {f"{name}_error": (dims, part) for name, part in parts.items()})
+    errors = {"simulation": (margin - safe) / ndtri(CONFIDENCE), "model": _model_error(points, model_error)}
+    return points.assign(
+        {"margin": (dims, margin)} | {f"{name}_error": (dims, error) for name, error in errors.items()}
+    )
 
 
 def _labels(laws: Sequence[xr.Dataset], processes: Sequence[str]) -> dict[str, Any]:
     """Process and quantity of each slope."""
     names = [name for name, law in zip(processes, laws, strict=True) for _ in law["quantity"].values]
-    quantities = [str(one) for law in laws for one in law["quantity"].values]
+    quantities = [str(quantity) for law in laws for quantity in law["quantity"].values]
     return {"law_process": ("law_quantity", names), "law_quantity": quantities}
 
 

@@ -52,7 +52,7 @@ class DeviceAtPoint:
     @property
     def airs(self) -> dict[str, Contacts]:
         """Contacts by the kind of air."""
-        return {kind: found for kind in KINDS_OF_AIR if (found := getattr(self, kind))}
+        return {kind: contacts for kind in KINDS_OF_AIR if (contacts := getattr(self, kind))}
 
     @property
     def patch(self) -> pairs.Settings:
@@ -61,42 +61,50 @@ class DeviceAtPoint:
 
     def described(self, surfaces: Surfaces) -> dict[str, Description]:
         """Surfaces of the pair by name."""
-        return {name: description(*one) for name, one in zip(self.patch.surfaces, surfaces, strict=True)}
+        return {name: description(*surface) for name, surface in zip(self.patch.surfaces, surfaces, strict=True)}
 
     def on(self, surfaces: Surfaces, changed: Sequence[Mapping[str, Description]]) -> Iterator[xr.Dataset]:
         """Yield the device on the surfaces of the pair, with changed ones by name."""
         names, spacing = self.patch.surfaces, self.patch.sampling.spacing
-        drawn = {id(one): drawn_as(one, spacing) for some in changed for one in some.values()}
+        drawn = {id(surface): drawn_as(surface, spacing) for change in changed for surface in change.values()}
         alternatives = [
-            [drawn[id(some[name])] if name in some else same for name, same in zip(names, surfaces, strict=True)]
-            for some in changed
+            [drawn[id(change[name])] if name in change else same for name, same in zip(names, surfaces, strict=True)]
+            for change in changed
         ]
-        patches = {kind: self._contacts(alternatives, of.contact) for kind, of in self.airs.items()}
-        tips = {kind: self._contacts(alternatives, of.tips) for kind, of in self.airs.items() if of.tips}
+        patches = {kind: self._contacts(alternatives, contacts.contact) for kind, contacts in self.airs.items()}
+        tips = {
+            kind: self._contacts(alternatives, contacts.tips) for kind, contacts in self.airs.items() if contacts.tips
+        }
         for number in range(len(changed)):
-            at, tip = ({kind: some[number] for kind, some in of.items()} for of in (patches, tips))
+            at, tip = ({kind: datasets[number] for kind, datasets in by_kind.items()} for by_kind in (patches, tips))
             yield requirement.compute(at, self.beam or self.stopper, tip)
 
-    def _contacts(self, alternatives, of):
+    def _contacts(self, alternatives, settings):
         """Contacts of one kind on alternative surfaces."""
-        contacts = stage_contact.compute_each(alternatives, self.pair, "NG", of)
-        sides = pairs.sides_of_strip(of)
-        return [stage_contact.with_correlations(*one, sides) for one in zip(contacts, alternatives, strict=True)]
+        contacts = stage_contact.compute_each(alternatives, self.pair, "NG", settings)
+        sides = pairs.sides_of_strip(settings)
+        return [stage_contact.with_correlations(*each, sides) for each in zip(contacts, alternatives, strict=True)]
 
     def with_samples(self, number: int) -> "DeviceAtPoint":
         """Device with fewer patches, and as many tips."""
 
-        def few(of):
+        def few(contacts):
             """Contacts with fewer patches."""
-            samples = min(max(number, FEWEST_OF_FIT), of.contact.contact.samples)
-            return replace(of, contact=replace(of.contact, contact=replace(of.contact.contact, samples=samples)))
+            patch = contacts.contact
+            samples = min(max(number, FEWEST_OF_FIT), patch.contact.samples)
+            return replace(contacts, contact=replace(patch, contact=replace(patch.contact, samples=samples)))
 
-        return replace(self, **{kind: few(of) for kind, of in self.airs.items()})
+        return replace(self, **{kind: few(contacts) for kind, contacts in self.airs.items()})
 
     def corrected(self, data: Mapping[str, Any]) -> "DeviceAtPoint":
         """Device with the correction to full elastic contact from its input."""
         return replace(
-            self, **{name: with_correction(of, data) for name in ("beam", "stopper") if (of := getattr(self, name))}
+            self,
+            **{
+                name: with_correction(settings, data)
+                for name in ("beam", "stopper")
+                if (settings := getattr(self, name))
+            },
         )
 
 
@@ -110,8 +118,8 @@ def joined(points: Sequence[xr.Dataset], *dimensions: str) -> xr.Dataset:
     of_each = [[point.drop_vars(rows) for point in points if float(point[rows[0]]) == value] for value in values]
     curves = [joined(each, along) for each in of_each]
     varied = [name for name in curves[0].data_vars if along in curves[0][name].dims]
-    found = xr.concat(curves, rows[0], data_vars=varied, coords="minimal", compat="equals", join="exact")
-    return found.assign_coords({rows[0]: values})
+    points_in_rows = xr.concat(curves, rows[0], data_vars=varied, coords="minimal", compat="equals", join="exact")
+    return points_in_rows.assign_coords({rows[0]: values})
 
 
 # Plan
@@ -129,7 +137,7 @@ def places(number: str, axes: Sequence[Sequence]) -> list[int]:
 
 def values_at(number: str, axes: Sequence[Sequence]) -> list:
     """Value of a point along each axis, see `names`."""
-    return [axis[place] for axis, place in zip(axes, places(number, axes), strict=True)]
+    return [axis[index] for axis, index in zip(axes, places(number, axes), strict=True)]
 
 
 def inputs(plan: Any, device: str) -> dict[str, Any]:

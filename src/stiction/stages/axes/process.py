@@ -37,27 +37,29 @@ class Settings:
 
 def compute(surfaces: Surfaces, laws: Sequence[xr.Dataset], settings: Settings) -> xr.Dataset:
     """Device at a point, with slopes of the margin by the scaled quantities of the laws."""
-    given = settings.device.described(surfaces)
+    descriptions = settings.device.described(surfaces)
     second = settings.value if settings.second is None else settings.second
     values = {str(law.surface): (law, value) for law, value in zip(laws, (settings.value, second), strict=False)}
-    made = {surface: on_law(given[surface], *at) for surface, at in values.items()}
-    (point,) = settings.device.on(surfaces, [made])
-    rms, rms_given = (np.hypot(*(surface.rms for surface in each.values())) for each in (given | made, given))
+    change = {surface: on_law(descriptions[surface], *at) for surface, at in values.items()}
+    (point,) = settings.device.on(surfaces, [change])
+    rms, rms_given = (
+        np.hypot(*(surface.rms for surface in each.values())) for each in (descriptions | change, descriptions)
+    )
     point = flagged(point, bool(rms < rms_given)).assign(value=settings.value)
     point = point if settings.second is None else point.assign(second=second)
     if not settings.samples:
         return point
     few = settings.device.with_samples(settings.samples)
-    slopes = [_slopes(surfaces, made, law, few) for law in laws]
+    slopes = [_slopes(surfaces, change, law, few) for law in laws]
     # ASSUME: slopes are linear between these values: both ends and the middle.
     return point.assign(slopes=(("humidity", "shape", "law_quantity"), np.concatenate(slopes, axis=-1)))
 
 
-def _slopes(surfaces, made, law, device):
+def _slopes(surfaces, change, law, device):
     """Slopes of the margins by the scaled quantities of one law, (n_rh, shapes, q)."""
-    surface, names = made[str(law.surface)], list(map(str, law["quantity"].values))
+    surface, names = change[str(law.surface)], list(map(str, law["quantity"].values))
     pairs_of, differences = zip(*(bracketed(surface, name) for name in names), strict=True)
-    sides = [made | {str(law.surface): side} for both_sides in pairs_of for side in both_sides]
+    sides = [change | {str(law.surface): side} for both_sides in pairs_of for side in both_sides]
     margins = np.array([margins_of(point) for point in device.on(surfaces, sides)])
     margins[np.abs(margins) >= LARGEST] = np.nan
     by_plain = (margins[1::2] - margins[::2]) / np.reshape(differences, (-1, 1, 1))
@@ -74,8 +76,8 @@ def values_of(plan: Any, device: str) -> list[float]:
     processes = plan.config["process"]
     named = process.processes_of(plan.config, device)
     settings = [sorted(setting["value"] for setting in processes[name]["settings"]) for name in named]
-    low, high = max(one[0] for one in settings), min(one[-1] for one in settings)
-    inside = {value for one in settings for value in one if low <= value <= high}
+    low, high = max(values[0] for values in settings), min(values[-1] for values in settings)
+    inside = {value for values in settings for value in values if low <= value <= high}
     return grid(sorted(inside | {low, high})).tolist()
 
 
@@ -97,7 +99,7 @@ def _settings(plan, at):
     settings = {"device": points.settings_of(plan, at.device, _as_rough(plan, at.device, values[0], values[-1]))}
     settings |= dict(zip(("value", "second"), values, strict=False))
     pairs = zip(axes, points.places(at.number, axes), strict=True)
-    has_slopes = all(place in (0, (len(axis) - 1) // 2, len(axis) - 1) for axis, place in pairs)
+    has_slopes = all(index in (0, (len(axis) - 1) // 2, len(axis) - 1) for axis, index in pairs)
     return settings | ({"samples": plan.config["design"]["budget_samples"]} if has_slopes else {})
 
 
@@ -109,9 +111,9 @@ def _as_rough(plan, device, *at):
     for name, value in zip(process.processes_of(plan.config, device), at, strict=False):
         section, surfaces = plan.config["process"][name], plan.config["surfaces"]
         values = sorted(setting["value"] for setting in section["settings"])
-        known = np.log([plan.devices.rms(one) for one in in_order(plan, name)])
+        log_rms = np.log([plan.devices.rms(surface) for surface in in_order(plan, name)])
         entry = {key: kept for key, kept in surfaces[section["surface"]].items() if key != "scans"}
-        entry["rms_nm"] = float(np.exp(np.interp(value, values, known)).round(9))
+        entry["rms_nm"] = float(np.exp(np.interp(value, values, log_rms)).round(9))
         plan = replace(plan, config=plan.config | {"surfaces": surfaces | {section["surface"]: entry}})
     return plan
 

@@ -143,14 +143,14 @@ def settings_of_processes(pairs: xr.Dataset) -> list[xr.Dataset]:
     return [_settings_of_process(pairs, number, *names) for number, names in enumerate(axes)]
 
 
-def _settings_of_process(pairs, number, own, other, variable):
+def _settings_of_process(pairs, number, axis, other, variable):
     """Settings of one process."""
     ranges = (
-        sufficient(pairs[own].values, pairs[name].max(other, skipna=False).values) for name in ("safe", "safe_mean")
+        sufficient(pairs[axis].values, pairs[name].max(other, skipna=False).values) for name in ("safe", "safe_mean")
     )
     best = {name: pairs[name].isel(process=number).variable for name in _NUMBERS}
     best |= {"next_before": best["best_error"], "next_subject": ((), "best")}
-    places = {"value": ("place", pairs[own].values)}
+    places = {"value": ("place", pairs[axis].values)}
     return xr.Dataset(places | _ranges(*ranges) | best, attrs={"variable": pairs.attrs[variable]})
 
 

@@ -43,7 +43,7 @@ class Response(NamedTuple):
 
 
 #: Responses at a humidity by shape, and limits of all of them.
-Found = tuple[list[Response], list[Limit]]
+ResponsesAndLimits = tuple[list[Response], list[Limit]]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,26 +80,26 @@ class RequiredBeam:
         """End states of a stuck device."""
         return self.device.opening.shapes
 
-    def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> Found:
+    def responses(self, contact: xr.Dataset, tips: xr.Dataset | None, humidity: float) -> ResponsesAndLimits:
         """Safe lengths at a humidity by shape, and the limit of strips that are too long."""
         ground = sticking.ground(contact, tips, humidity, self)
         beams = sticking.release_beams(self.device, ground, self)
-        known = sticking.lengths_without_samples(self.device, self.water, humidity, self.edge_radius, beams.reach)
-        safe = sticking.by_shape(beams, self, known)
+        bounds = sticking.lengths_without_samples(self.device, self.water, humidity, self.edge_radius, beams.reach)
+        safe = sticking.by_shape(beams, self, bounds)
         limit = long_strips(
             self.device.strip,
             self.device.opening.longest_strip(self.device, ground.laws),
             self.device.opening.arms == 2,
         )
-        responses = [self._response(held, *safe[shape], known[shape]) for shape, held in beams.lengths.items()]
+        responses = [self._response(held, *safe[shape], bounds[shape]) for shape, held in beams.lengths.items()]
         return responses, triggered(limit)
 
-    def _response(self, lengths, safe, known):
-        """Response from stuck lengths (n,) [m], their safe length and other known lengths."""
-        shares = risk.stuck_share(np.array([self.length]), lengths, known.reach)
+    def _response(self, lengths, safe, bounds):
+        """Response from stuck lengths (n,) [m], their safe length and its bounds without samples."""
+        shares = risk.stuck_share(np.array([self.length]), lengths, bounds.reach)
         error = np.sqrt(np.nansum(np.square([safe.error, safe.surfaces_error])))
         return Response(
-            safe.length, safe.estimate, float(error), known.flat, tuple(float(fraction[0]) for fraction in shares)
+            safe.length, safe.estimate, float(error), bounds.flat, tuple(float(fraction[0]) for fraction in shares)
         )
 
 
@@ -121,7 +121,7 @@ class RequiredStopper:
         """Required number, with its unit."""
         return self.restoring_force, "N"
 
-    def responses(self, contact: xr.Dataset, _tips: None, humidity: float) -> Found:
+    def responses(self, contact: xr.Dataset, _tips: None, humidity: float) -> ResponsesAndLimits:
         """Safe force at a humidity, without limits of strips."""
         forces = stoppers.forces(contact, humidity, self)
         change = self.water.changes(humidity)[1]
@@ -147,13 +147,13 @@ def compute(
     for humidity in settings.humidities:
         kind, water = Air(humidity).kind, settings.water.at(humidity)
         try:
-            found, limits = replace(settings, water=water).responses(contact[kind], (tips or {}).get(kind), humidity)
+            row, limits = replace(settings, water=water).responses(contact[kind], (tips or {}).get(kind), humidity)
             reason = ""
         except (ValueError, NotConverged) as error:
             traceback.print_exc()  # the log keeps where the reason arose, should it be an error of the code
-            found, limits = [Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes), []
+            row, limits = [Response(np.nan, np.nan, np.nan, np.nan, (np.nan,) * 3)] * len(settings.shapes), []
             reason = str(error)
-        responses.append(found)
+        responses.append(row)
         flagged.append(as_text(limits))
         refused.append(reason)
     texts = {"flagged": ("humidity", flagged), "refused": ("humidity", refused)}
@@ -166,7 +166,7 @@ def layout(
     """Dataset of a device: responses by humidity and shape."""
     required, unit = settings.required
     over, note = ("humidity", "shape"), {"units": unit}
-    columns = {name: [[getattr(one, name) for one in row] for row in responses] for name in Response._fields}
+    columns = {name: [[getattr(response, name) for response in row] for row in responses] for name in Response._fields}
     return xr.Dataset(
         {name: (over, columns[name], note) for name in ("safe", "estimate", "error", "bound")}
         | {
@@ -207,7 +207,7 @@ def settings_of(plan: Any, device: str) -> dict[str, Any]:
     section = plan.config["devices"][device]
     air = plan.air_of_devices
     wettest = air.contact(section["pair"], max(section["humidities"]))
-    own = plan.config["design"] | plan.devices.stated(device) | section["requirement"] | {"water": air.water(wettest)}
-    own |= {key: plan.config[key] for key in ("seed", "chaos")} | own_section(plan, device)
-    own |= {"edge_radius_um": plan.devices.edge_radius(device)}
-    return select(OF_RELEASE[plan.devices.kind(device).release.name], own)
+    keys = plan.config["design"] | plan.devices.stated(device) | section["requirement"] | {"water": air.water(wettest)}
+    keys |= {key: plan.config[key] for key in ("seed", "chaos")} | own_section(plan, device)
+    keys |= {"edge_radius_um": plan.devices.edge_radius(device)}
+    return select(OF_RELEASE[plan.devices.kind(device).release.name], keys)

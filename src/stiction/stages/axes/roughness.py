@@ -67,17 +67,17 @@ def compute(surfaces: Surfaces, settings: Settings) -> xr.Dataset:
 
     So is the kurtosis, which may change with the skewness, see `stiction.analysis.shifts.with_value`.
     """
-    given = changed = settings.device.described(surfaces)[settings.surface]
+    original = changed = settings.device.described(surfaces)[settings.surface]
     replica = settings.device.patch.replica
     if settings.replica:
         require_feasible(surfaces, "NG", settings.device.patch)
     for quantity, value in vars(settings.values).items():
         changed = changed if value is None else with_value(changed, quantity, value)
-    (point,) = settings.device.on(surfaces, [{} if changed is given else {settings.surface: changed}])
+    (point,) = settings.device.on(surfaces, [{} if changed is original else {settings.surface: changed}])
     along, *others = settings.varied
     values = {"roughness": _value(along, changed, replica), KURTOSIS: changed.kurtosis}
     for other in others:
-        values |= {"other": _value(other, changed, replica), "other_given": _value(other, given, settings.replica)}
+        values |= {"other": _value(other, changed, replica), "other_given": _value(other, original, settings.replica)}
     return point.assign({name: float(value) for name, value in values.items()})
 
 
@@ -108,13 +108,13 @@ def _settings(plan, at):
     surface, pair = section["roughness"]["surface"], section["pair"]
     values = zip(axes, points.values_at(at.number, list(axes.values())), strict=True)
     values = {key: value for key, value in values if value is not None}
-    own = {key: value for key, value in values.items() if key in plan.config["surfaces"][surface]}
+    quantities = {key: value for key, value in values.items() if key in plan.config["surfaces"][surface]}
     copy = {key: values.pop(key) for key in OF_COPIES if key in values}
-    given = plan.replica(pair) if OF_COPIES & axes.keys() else {}
+    replica = plan.replica(pair) if OF_COPIES & axes.keys() else {}
     plan = replace(plan, config=merged(plan.config, {"pairs": {pair: {"replica": copy}}})) if copy else plan
-    rough = replace(plan, config=merged(plan.config, {"surfaces": {surface: own}})) if own else plan
+    rough = replace(plan, config=merged(plan.config, {"surfaces": {surface: quantities}})) if quantities else plan
     settings = {"device": points.settings_of(plan, at.device, rough), "surface": surface}
-    return settings | {"varied": list(map(without_unit, axes)), "values": values} | given
+    return settings | {"varied": list(map(without_unit, axes)), "values": values} | replica
 
 
 # Curves and maps
@@ -135,13 +135,13 @@ def curve_or_map(points: Sequence[xr.Dataset], surface: str, key: str, other: st
     """
     if "skewness" not in (key, other):
         points = [point.drop_vars(KURTOSIS, errors="ignore") for point in points]
-    rows, given = [points[k : k + POINTS] for k in range(0, len(points), POINTS)], {"given": points[-1].roughness}
+    rows, reference = [points[k : k + POINTS] for k in range(0, len(points), POINTS)], {"given": points[-1].roughness}
     over, attrs = ["roughness"], {"key": key, "surface": surface}
     if other:
         over, attrs = ["other", *over], attrs | {"other_key": other}
-        rows, given = _rows_apart(rows), given | {"other_given": points[-1].other_given}
+        rows, reference = _rows_apart(rows), reference | {"other_given": points[-1].other_given}
     curves = joined([point for row in rows for point in _apart(row)], *over).sortby(over)
-    curves = curves.assign(given).assign_attrs(attrs)
+    curves = curves.assign(reference).assign_attrs(attrs)
     smoother = ROUGHNESSES[key].smooths * (curves.roughness - curves.given) > 0
     if other:
         smoother = smoother | (ROUGHNESSES[other].smooths * (curves.other - curves.other_given) > 0)
@@ -150,16 +150,16 @@ def curve_or_map(points: Sequence[xr.Dataset], surface: str, key: str, other: st
 
 def _apart(row):
     """Points of a curve with another roughness than the given one, which is the last, and this one."""
-    *others, given = row
+    *others, original = row
     largest = max(abs(float(point.roughness)) for point in row)
-    return [point for point in others if not is_equal(point.roughness, given.roughness, largest)] + [given]
+    return [point for point in others if not is_equal(point.roughness, original.roughness, largest)] + [original]
 
 
 def _rows_apart(rows):
     """Curves of a map whose second quantity differs from that of the first curve, and this one."""
-    (given, *_), *others = rows
+    (original, *_), *others = rows
     largest = max(abs(float(row[0].other)) for row in others)
-    apart = [row for row in others if not is_equal(row[0].other, given.other_given, largest)]
+    apart = [row for row in others if not is_equal(row[0].other, original.other_given, largest)]
     return [[point.drop_vars("other_given") for point in row] for row in (rows[0], *apart)]
 
 
@@ -170,8 +170,8 @@ def _with_tables(curves):
     dimensions, crossed, ranges = [name for name in ("other", "humidity", "shape") if name in curves.dims], [], []
     for at in product(*(curves[name].values for name in dimensions)):
         curve = curves.sel(dict(zip(dimensions, at, strict=True)))
-        met = crossings(axis, margins_of(curve), relative_errors(curve))
-        crossed += [(*at, crossing.coordinate, crossing.error) for crossing in met]
+        roots = crossings(axis, margins_of(curve), relative_errors(curve))
+        crossed += [(*at, crossing.coordinate, crossing.error) for crossing in roots]
         ranges += [(*at, *ends) for ends in sufficient(axis, margins_of(curve, "safe"))]
     columns = _columns("crossing", crossed, [*dimensions, "place", "error"])
     columns |= _columns("range", ranges, [*dimensions, "low", "high"])
@@ -194,10 +194,10 @@ def curves_of(curves: xr.Dataset) -> list[xr.Dataset]:
     return [curves.sel(other=value).isel(rows) for value, rows in zip(curves.other.values, rows_of, strict=True)]
 
 
-def _what(plan, at):
+def _axes_and_surface(plan, at):
     """Varied quantities, and their surface."""
-    what = {"surface": plan.config["devices"][at.device]["roughness"]["surface"]}
-    return what | dict(zip(("key", "other"), axes_of(plan, at.device), strict=False))
+    settings = {"surface": plan.config["devices"][at.device]["roughness"]["surface"]}
+    return settings | dict(zip(("key", "other"), axes_of(plan, at.device), strict=False))
 
 
 STAGES = (
@@ -218,7 +218,7 @@ STAGES = (
         inputs=lambda plan, at: {
             "points": points.names("devices/roughness/points", at.device, axes_of(plan, at.device).values())
         },
-        settings=_what,
+        settings=_axes_and_surface,
         compute=lambda data, settings: curve_or_map(data["points"], **settings),
         message="Roughness that device {device} needs.",
     ),

@@ -14,6 +14,7 @@ from stiction.config.cases import case_id
 from stiction.config.units import in_si
 from stiction.contact.voltage import BREAKDOWN, Capacitor
 from stiction.devices.risk import stuck_share
+from stiction.plan.names import by_case
 
 
 def is_biased(plan: Any, device: str) -> bool:
@@ -29,6 +30,12 @@ def results_of(plan: Any, device: str, *names: str) -> dict[str, Any]:
     """
     files = _FILES[plan.devices.kind(device).release.name](plan, device)
     return {name: files[name] for name in names or files if name in files}
+
+
+def charts_of(plan: Any, device: str) -> dict[float, str]:
+    """Charts of a beam by humidity as inputs of a stage, none without a chart."""
+    cases = plan.devices.chart_cases(device) if device in plan.devices.with_chart else []
+    return {humidity: name for (_, humidity), name in by_case("devices/chart", cases).items()}
 
 
 def _of_beam(plan, device):

@@ -1,6 +1,6 @@
 """Stage stoppers: pull-off force of a patch of a pair against its restoring force, over the humidity."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -225,11 +225,13 @@ def layout(settings: Settings, of_device: np.ndarray, axis: np.ndarray, along: n
         none | {"long_name": "relative, of mean forces"},
         none | {"long_name": "P(stuck) and its 95 % band"},
     )
+    of_power = none | {"long_name": "relative, of the power of forces"}
     at = {"humidity": list(settings.humidities), "axis": axis, "share": _COORDS["share"]}
     return xr.Dataset(
         {
             "pull_off": (("humidity", "sample"), of_device, newton),
             "full_contact_error": ("humidity", _ratio_errors(changes), of_force),
+            "full_contact_power_error": ("humidity", [one.power_error / one.power for one in changes], of_power),
             "stuck": (("bound", "humidity"), _stuck(of_device, settings, changes), of_band),
             "safe_force": (("part", "humidity", "share"), safe, newton),
             "basis": ("share", basis),
@@ -310,6 +312,17 @@ def stuck_with_band(pull_off: np.ndarray, force: float, change: ElasticChange) -
         stuck_patches(pull_off, np.array([force]) * each)[k] for k, each in enumerate((1.0, factor, 1 / factor))
     )
     return [float(values[0]) for values in (estimate, low, high)]
+
+
+def stuck_over(stopper: xr.Dataset, humidity: float, restoring: Iterable[float]) -> np.ndarray:
+    """P(stuck) of a dataset of this stage over restoring forces (n,) [N], and the ends of its band, (3, n) [-].
+
+    At the restoring force of the device they are those that the dataset states.
+    """
+    of_air = stopper.sel(humidity=humidity)
+    errors = float(of_air.full_contact_error), float(of_air.full_contact_power_error)
+    change = ElasticChange(ratio_error=errors[0], power_error=errors[1])
+    return np.transpose([stuck_with_band(of_air.pull_off.values, force, change) for force in restoring])
 
 
 def numbers_of_fits(seed: int) -> np.random.Generator:

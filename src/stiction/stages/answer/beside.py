@@ -1,0 +1,93 @@
+"""Stricter sizes beside the size to build: of airs between the stated ones, and of what nothing stated asks for."""
+
+from collections.abc import Mapping
+
+import numpy as np
+import xarray as xr
+
+from stiction.answer.data import Answer, Between, Unasked
+from stiction.answer.sought import SOUGHT
+from stiction.contact.air import is_humid
+from stiction.stages.devices.opening import DesignedBeam
+from stiction.stages.life.answers import LifeRow, Name, answers_of
+
+#: Relative difference of sizes that rounding makes.
+_ROUNDED = 0.1 / 100
+
+
+def of_lengths(
+    lengths: Mapping[float, xr.Dataset], charts: Mapping[float, xr.Dataset], device: DesignedBeam, share: float
+) -> dict[float, float]:
+    """Simulated limits of a beam in its own airs and, if its chart has the beam itself, in those of the chart [m]."""
+    own = {humidity: dataset.isel(shape=-1) for humidity, dataset in lengths.items()}
+    at = {"thickness": device.thickness, "gap": device.gap}
+    for humidity, chart in charts.items():
+        if all(np.isclose(chart[name], size, rtol=1e-9).any() for name, size in at.items()):
+            own[humidity] = chart.isel(shape=-1).sel(at, method="nearest")
+    return {humidity: float(dataset.safe_length.sel(share=share)) for humidity, dataset in own.items()}
+
+
+def of_forces(stopper: xr.Dataset, share: float) -> dict[float, float]:
+    """Simulated limits of a stopper in its own airs and along the fine axis of humidities [N]."""
+    along, own = stopper.safe_force_along.sel(share=share), stopper.safe_force.sel(part="safe", share=share)
+    limits = zip((along.axis, along), (own.humidity, own), strict=True)
+    humidities, forces = (np.concatenate([one.values for one in pair]) for pair in limits)
+    return dict(zip(map(float, humidities), map(float, forces), strict=True))
+
+
+def between(answer: Answer, limits: Mapping[float, float]) -> Between | None:
+    """Strictest size to build between the humid airs of an answer, none if it reads as the size to build.
+
+    Parameters
+    ----------
+    answer
+        In its airs.
+    limits
+        Simulated limits by humidity, those of the answer among them [m, N].
+
+    Notes
+    -----
+    ASSUME: all causes inside change the simulated limit between two stated airs by what they do in these, interpolated
+    in the logarithm, as the controls of a page do. In the air that decides, it is the size for all airs.
+    """
+    builds = {air.humidity: air.build for air in answer.airs} | {answer.together.humidity: answer.build}
+    builds = {humidity: build for humidity, build in sorted(builds.items()) if is_humid(humidity)}
+    factors = {
+        rh: np.log(build / limits[rh]) for rh, build in builds.items() if build > 0 and 0 < limits.get(rh, 0) < np.inf
+    }
+    sizes = {
+        humidity: limit * float(np.exp(np.interp(humidity, list(factors), list(factors.values()))))
+        for humidity, limit in limits.items()
+        if factors and min(builds) < humidity < max(builds) and np.isfinite(limit)
+    }
+    sign = answer.sought.sign
+    worst = min(sizes, key=lambda humidity: sign * sizes[humidity], default=None)
+    if worst is None or not sign * sizes[worst] < sign * answer.build:
+        return None
+    return None if answer.in_words(sizes[worst]) == answer.in_words(answer.build) else Between(worst, sizes[worst])
+
+
+def unasked(life: xr.Dataset, answer: Answer) -> tuple[Unasked, ...]:
+    """Limits of a life that do not allow the size to build of an answer, the strictest first.
+
+    A mission asks for its touchdowns in their own airs, not for all of them in the worst one.
+    """
+    sought, inside = answer.sought, {Name.AFTER} if answer.stays else set()
+    rows = [
+        row
+        for row in answers_of(life)
+        if row.unit == answer.unit and row.name not in inside and np.isfinite(row.high) and is_short(row, answer.build)
+    ]
+    rows.sort(key=lambda row: sought.sign * unsafe_end(row))
+    return tuple(Unasked(row.name, row.what, unsafe_end(row)) for row in rows)
+
+
+def unsafe_end(row: LifeRow) -> float:
+    """End of a length or a force that decides about a size: its lower or, of a force, its upper bound [m, N]."""
+    return row.high if SOUGHT[row.unit].more_is_better or np.isnan(row.low) else row.low
+
+
+def is_short(row: LifeRow, build: float) -> bool:
+    """Whether a length or a force does not allow a size to build, beyond rounding."""
+    low, high = (build, unsafe_end(row)) if SOUGHT[row.unit].more_is_better else (unsafe_end(row), build)
+    return low * (1 + _ROUNDED) < high

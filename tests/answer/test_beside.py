@@ -1,0 +1,126 @@
+"""Stricter sizes beside the size to build: between the stated airs, and of what nothing stated asks for."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+from answers import BRIDGE, BUDGETS, CANTILEVER, STOPPER, STOPPERS, beam_answer, safe, stopper_answer
+from numpy.testing import assert_equal
+
+from stiction.answer.data import Answer, Between, Stay, Unasked, Verdict
+from stiction.report.answer import screen, tables, words
+from stiction.report.devices import explorer
+from stiction.stages.answer import beside
+from stiction.stages.answer.answer import answer_of, layout
+from stiction.stages.life.answers import LifeRow, Name
+
+LENGTHS = {0.44: safe(), 0.67: safe(longest=500e-6)}
+
+
+def peaked(at, force=60e-6):
+    """Stopper whose places hold most in one air of its fine axis."""
+    stopper = STOPPERS["S1"]
+    along = stopper.safe_force_along.fillna(1e-6)
+    return stopper.assign(safe_force_along=along.where(~np.isclose(stopper.axis, at)[:, None], force))
+
+
+def chart(kind, longest, thickness=2.6e-6):
+    """Chart of devices of two thicknesses in one air."""
+    limits = safe(kind, longest)[["safe_length"]]
+    return limits.expand_dims(thickness=[thickness, 4 * thickness], gap=[20e-6])
+
+
+def test_the_headline_of_a_stopper_names_a_larger_force_between_its_airs_as_its_controls_do():
+    stopper = peaked(0.55)
+    answer = stopper_answer(stopper, {(0.44,): BUDGETS["S1", 0.67]})
+    assert answer.between.humidity == pytest.approx(0.55)
+    assert answer.between.size > 1.002 * 60e-6 > answer.build, "the uncertainty of the inputs is inside"
+    view = explorer.stopper_view(STOPPER, stopper, answer)
+    grid, all_airs = view.grid, float(view.words["all_airs"])
+    assert all_airs == answer.together.humidity, "where the controls have the answer for all airs"
+    forces, airs = grid.safe[:, grid.share.values.index(answer.share)], np.array(grid.axes[0].values)
+    inside = (airs > 0.44) & (airs < 0.67)
+    assert 1e6 * answer.between.size == pytest.approx(forces[inside].max())
+    beside_it = f"{answer.in_words(answer.between.size)} between these airs (RH 0.55)"
+    assert screen.headline(answer).startswith(f"At least {answer.in_words(answer.build)}, but {beside_it}; with your ")
+    row = tables.devices({"S1": answer}).frame.iloc[0]
+    assert row["stricter"] == beside_it
+    assert row["between"] == pytest.approx(1e6 * answer.between.size)
+
+
+@pytest.mark.parametrize("at", [0.44, 0.85])
+def test_no_force_is_named_of_airs_that_are_not_between_the_stated_ones(at):
+    answer = stopper_answer(peaked(at))
+    assert answer.between is None
+    one = stopper_answer(peaked(at).sel(humidity=[0.44]))
+    assert "all_airs" not in explorer.stopper_view(STOPPER, peaked(at).sel(humidity=[0.44]), one).words
+    assert "between" not in screen.headline(answer)
+
+
+def test_a_force_that_suffices_in_the_stated_airs_alone_is_not_called_safe():
+    needed = stopper_answer(peaked(0.55))
+    for force, tone, change in ((needed.build, "open", "A restoring"), (needed.between.size, "good", "Nothing.")):
+        answer = replace(needed, size=1.001 * force, stuck=replace(needed.stuck, low=0.0))
+        assert answer.verdict is Verdict.SAFE
+        assert words.sign_of(answer)[0] == tone
+        assert screen.change(answer, STOPPER).startswith(change)
+
+
+@pytest.mark.parametrize("section", [CANTILEVER, BRIDGE], ids=lambda section: section["kind"])
+@pytest.mark.parametrize(
+    ("longest", "thickness", "is_named"), [(3e-4, 2.6e-6, True), (9e-4, 2.6e-6, False), (3e-4, 2e-6, False)]
+)
+def test_the_headline_of_a_beam_names_a_shorter_length_of_its_chart_between_its_airs(
+    section, longest, thickness, is_named
+):
+    kind = section["kind"]
+    lengths = {rh: safe(kind, longest=longest_of_air) for rh, longest_of_air in ((0.44, 6e-4), (0.67, 5e-4))}
+    answer = beam_answer(section, lengths, charts={0.5: chart(kind, longest, thickness)})
+    assert bool(answer.between) == is_named
+    assert (" µm between these airs (RH 0.5)" in screen.headline(answer)) == is_named
+    if is_named:  # by factors of about one: all inputs count as exact
+        limit = float(safe(kind, longest).isel(shape=-1).safe_length.sel(share=answer.share))
+        assert answer.between.size == pytest.approx(limit, rel=1e-2)
+
+
+def test_a_headline_names_what_nothing_stated_asks_for_if_it_is_stricter():
+    answer = replace(beam_answer(CANTILEVER, LENGTHS), unasked=())
+    build = answer.in_words(answer.build)
+    assert screen.headline(answer) == f"No longer than {build}."
+    limits = [(Name.FAST, "", 1e-4), (f"{Name.COLLAPSE}_water", "", 1.2e-4), ("other", "held length: more", 1.3e-4)]
+    stricter = replace(answer, unasked=tuple(Unasked(*limit) for limit in limits))
+    assert screen.headline(stricter) == (
+        f"No longer than {build}, but 100 µm if it separates fast, 120 µm if water dries on it and 130 µm by its held "
+        "length."
+    )
+
+
+def test_stricter_sizes_come_back_from_the_dataset_of_an_answer():
+    answer = replace(
+        beam_answer(CANTILEVER, LENGTHS), between=Between(0.5, 1e-4), unasked=(Unasked("fast", "what", 9e-5),)
+    )
+    again = answer_of(layout(answer))
+    assert (again.between, again.unasked) == (answer.between, answer.unasked)
+    without = replace(answer, between=None, unasked=())
+    assert not {"between_size", "unasked_size"} & set(layout(without).variables)
+
+
+def test_limits_of_forces_are_those_of_the_stated_airs_and_of_the_fine_axis():
+    stopper = peaked(0.55)
+    limits = beside.of_forces(stopper, 1e-2)
+    assert_equal(sorted(limits), np.unique([*stopper.humidity.values, *stopper.axis.values]))
+
+
+def test_a_mission_does_not_ask_for_all_touchdowns_in_the_worst_air():
+    rows = [
+        LifeRow(str(name), "stick", "", low, 3e-4, np.nan, "m", "", "")
+        for name, low in ((Name.AFTER, 1e-4), (Name.FAST, 2e-4))
+    ]
+    life = xr.Dataset({field: ("answer", [getattr(row, field) for row in rows]) for field in LifeRow._fields[1:]})
+    life = life.assign_coords(answer=[row.name for row in rows])
+    answer = Answer("C1", "cantilever", 1e-3, "m", 2.5e-4, 2.5e-4, (), ())
+    of_mission = replace(answer, stays=(Stay((0.5,), 9.0),))
+    assert [one.name for one in beside.unasked(life, answer)] == [Name.AFTER, Name.FAST]
+    assert [one.size for one in beside.unasked(life, of_mission)] == [2e-4]
+    assert not beside.unasked(life, replace(answer, build=np.nan))
