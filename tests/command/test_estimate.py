@@ -238,12 +238,28 @@ def test_large_sizes_have_no_exponent(capsys):
         (["--length=15"], "--length must be above --gap, in the same unit, got 15.0, 20.0"),
         (["--corner=200", "--cutoff=100"], "--cutoff must be above --corner, in the same unit, got 100.0, 200.0"),
         (["--kurtosis=4"], "--skewness and --kurtosis must come together"),
+        (["--like=Gold"], "like must be one of B1, B2, Sub1, Sub2"),
         (["--hurst=1.3"], "--hurst must be at most 1, got 1.3"),
         (["--voltage=5", "--dielectric", "0", "3.9"], "--dielectric must be above 0, got 0.0"),
     ],
 )
 def test_an_impossible_number_has_a_sentence_and_no_run(capsys, words, reason):
     assert said(capsys, *OPTIONS, *words) == (2, [f"The device has no estimate: {reason}."])
+
+
+@pytest.mark.parametrize("word", ["45%", "humid"])
+def test_a_word_for_a_number_has_two_lines(capsys, word):
+    with pytest.raises(SystemExit):
+        estimate.main([*OPTIONS, "--rh", word])
+    usage, error = capsys.readouterr().err.splitlines()
+    assert usage == "usage: stiction estimate FILE ... | OPTIONS (-h lists them)"
+    assert error.endswith(f"argument --rh: must be numbers above 0 and below 1, got {word}")
+
+
+def test_a_dielectric_in_metres_has_no_length(capsys):
+    status, lines = said(capsys, *OPTIONS, "--voltage=5", "--dielectric", "100e-9", "3.9")
+    assert (status, "below its gap or thickness: change voltage or dielectric" in lines[0]) == (2, True)
+    assert said(capsys, *OPTIONS, "--voltage=5", "--dielectric", "100", "3.9")[0] == 0
 
 
 @pytest.mark.parametrize("air", [["0"], ["dry"], ["0.5", "0"]])

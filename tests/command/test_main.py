@@ -277,7 +277,8 @@ def test_a_check_says_what_takes_most_of_the_time_of_a_device_on_measured_surfac
     path = tmp_path / "mine.yaml"
     path.write_text(yaml.safe_dump(config))
     assert main(["check", str(path), "--directory", str(tmp_path)]) == 0
-    can, _, costs = capsys.readouterr().out.splitlines()
+    can, _, estimate, costs = capsys.readouterr().out.splitlines()
+    assert estimate.startswith("Estimate: 1 in 1000 of Other sticks between")
     assert can.endswith("devices Measured, Other and scans of Etched.")
     assert costs.startswith("The budget of Measured draws the measured surfaces again")
 

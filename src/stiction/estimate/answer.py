@@ -15,7 +15,7 @@ from typing import Any
 
 from stiction.contact.air import is_humid
 from stiction.estimate.force import ForceRow, Stopper
-from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, after, normal_score
+from stiction.estimate.length import Impossible, LengthRow, Lengths, NotLearnt, after, normal_score, score_at
 from stiction.estimate.question import IN_DRY_AIR, Question
 from stiction.estimate.state import film
 from stiction.estimate.table import Surrogate
@@ -101,9 +101,25 @@ class LengthsInAir:
         scatter = math.sqrt(sum((value - mean) ** 2 for value in values) / (m - 1))
         return mean, scatter * math.sqrt(1 + 1 / m)
 
+    def logarithm(self, score: float) -> float:
+        """Logarithm of the length at a normal score without voltage."""
+        return self.centre(score)[0] if self.averaged else math.log(self.stated.at(score))
+
+    def ends(self, score: float, confidence: str) -> tuple[float, float]:
+        """Ends of the interval of that of a length without voltage."""
+        mean, scatter = self.centre(score)
+        half = math.hypot(_margin(self.errors, confidence, score, self.stated.slope), _STUDENT[confidence] * scatter)
+        return mean - half, mean + half
+
     def length(self, score: float) -> float:
         """Length at a normal score [m]."""
-        return self._driven(math.exp(self.centre(score)[0]) if self.averaged else self.stated.at(score))
+        return self._driven(math.exp(self.logarithm(score)))
+
+    def scores(self, length: float) -> tuple[float, float, float]:
+        """Normal scores at which a length, and the upper and the lower end of 95 %, is a length [m]."""
+        value = math.log(without_voltage(length, self.drive))
+        upper, lower = (score_at(lambda score, k=k: self.ends(score, "95")[k], value) for k in (1, 0))
+        return score_at(self.logarithm, value), upper, lower
 
     def _driven(self, length):
         """Length at the voltage from that without it [m]."""
@@ -111,13 +127,10 @@ class LengthsInAir:
 
     def row(self, fraction: float, score: float) -> LengthRow:
         """Length and intervals at a normal score."""
-        mean, scatter = self.centre(score)
-        ends = {}
-        for confidence in CONFIDENCES:
-            half = math.hypot(
-                _margin(self.errors, confidence, score, self.stated.slope), _STUDENT[confidence] * scatter
-            )
-            ends[confidence] = self._driven(math.exp(mean - half)), self._driven(math.exp(mean + half))
+        ends = {
+            confidence: tuple(self._driven(math.exp(end)) for end in self.ends(score, confidence))
+            for confidence in CONFIDENCES
+        }
         return LengthRow(fraction, self.length(score), ends)
 
 
@@ -145,16 +158,7 @@ def _worst(rows):
 
 def _stuck(question, airs):
     """Fraction stuck at the stated length or force in the worst air, with the ends of 95 %, after all touchdowns."""
-    found = []
-    for one in airs:
-        length = without_voltage(question.stated, one.drive)
-        score = one.stated.score(length)
-        mean, scatter = one.centre(score)
-        half = math.hypot(_margin(one.errors, "95", score, one.stated.slope), _STUDENT["95"] * scatter)
-        shift = mean - math.log(one.stated.at(score))
-        moves = [-shift if question.averaged else 0.0, -shift - half, -shift + half]
-        scores = (one.stated.score(length * math.exp(move)) for move in moves)
-        found.append([after(each, question.touchdowns) for each in scores])
+    found = ([after(score, question.touchdowns) for score in one.scores(question.stated)] for one in airs)
     return tuple(max(column) for column in zip(*found, strict=True))
 
 

@@ -66,7 +66,7 @@ function known(process, place, names) {
     const [first] = values.outside, side = place[first] > process.centre[process.columns.indexOf(first)] ? "large" : "small";
     throw new NotLearnt(`${names[first]} is too ${side}, beyond what was learnt`);
   }
-  if (values.distance > process.farthest) throw new NotLearnt("unlike all surfaces and devices that were learnt");
+  if (values.distance > process.farthest) throw new NotLearnt("its numbers together are unlike all that was learnt: change the humidity or the rms");
   return values.of;
 }
 function falling(values, shift) {
@@ -82,12 +82,6 @@ function lengthAt({logarithms: [first, second, third], slope}, score) {
   if (score <= c) return Math.exp(third + slope * (score - c));
   const [low, step, start] = score <= b ? [third, second - third, c] : [second, first - second, b];
   return Math.exp(low + step * (score - start));
-}
-function scoreOf({logarithms: [first, second, third], slope}, length) {
-  const [a, b, c] = SCORES, value = Math.log(length);
-  if (value <= third) return c + (value - third) / slope;
-  if (value <= second) return c + (value - third) / (second - third);
-  return Math.min(b + (value - second) / (first - second), a);
 }
 function change(state, found, gap, table) {
   const slope = 1.5 * gap / lengthAt(found, -2);
@@ -131,7 +125,10 @@ function ofCantilever({thickness, gap, width, length, added}, table) {
   return {
     lengths: (heights, water) => lengths({heights, film: water, stiffness, width, modulus: table.modulus}, gap, table),
     drive: 8 * (added || 0) / (3 * stiffness * gap ** 4), errors: table, stated: length,
-    row: ({length, intervals}) => ({size: length, intervals}),
+    row: ({length, intervals}) => {
+      if (length <= Math.max(thickness, gap)) throw new NotLearnt("it sticks even at a length below its gap or thickness: change voltage or dielectric");
+      return {size: length, intervals};
+    },
   };
 }
 
@@ -194,24 +191,32 @@ function answer(question, table) {
   const rows = FRACTIONS.map((fraction) => {
     const score = normalScore(once(fraction)), ends = {};
     for (const confidence of ["90", "95"]) {
-      const both = airs.map((one) => {
-        const [mean, scatter] = centre(one, score), half = Math.hypot(margin(errors, confidence, score, one.stated.slope), STUDENT[confidence] * scatter);
-        return [mean - half, mean + half].map((end) => driven(Math.exp(end)));
-      });
+      const both = airs.map((one) => endsOf(one, score, confidence, errors).map((end) => driven(Math.exp(end))));
       ends[confidence] = [0, 1].map((side) => Math.min(...both.map((each) => each[side])));
     }
-    const length = (one) => question.averaged ? Math.exp(centre(one, score)[0]) : lengthAt(one.stated, score);
+    const length = (one) => Math.exp(logarithmOf(one, score, question.averaged));
     return {fraction, ...row({length: driven(Math.min(...airs.map(length))), intervals: ends})};
   });
   return {rows, stuck: stated ? stuck(question, airs, errors, withoutVoltage(stated, drive)) : null};
 }
+const logarithmOf = (one, score, averaged) => averaged ? centre(one, score)[0] : Math.log(lengthAt(one.stated, score));
+function endsOf(one, score, confidence, errors) {
+  const [mean, scatter] = centre(one, score), half = Math.hypot(margin(errors, confidence, score, one.stated.slope), STUDENT[confidence] * scatter);
+  return [mean - half, mean + half];
+}
+function scoreAt(logarithm, value) {
+  let low = -9, high = SCORES[0];
+  for (let k = 0; k < 60; k++) {
+    const middle = 0.5 * (low + high);
+    if (logarithm(middle) < value) low = middle; else high = middle;
+  }
+  return high;
+}
 const after = (score, touchdowns) => -Math.expm1(touchdowns * Math.log1p(-fractionOf(score)));
 function stuck(question, airs, errors, bare) {
-  const found = airs.map((one) => {
-    const score = scoreOf(one.stated, bare), [mean, scatter] = centre(one, score);
-    const half = Math.hypot(margin(errors, "95", score, one.stated.slope), STUDENT["95"] * scatter), shift = mean - Math.log(lengthAt(one.stated, score));
-    return [question.averaged ? -shift : 0, -shift - half, -shift + half]
-      .map((move) => after(scoreOf(one.stated, bare * Math.exp(move)), question.touchdowns));
+  const value = Math.log(bare), found = airs.map((one) => {
+    const lines = [(score) => logarithmOf(one, score, question.averaged), ...[1, 0].map((k) => (score) => endsOf(one, score, "95", errors)[k])];
+    return lines.map((line) => after(scoreAt(line, value), question.touchdowns));
   });
   return [0, 1, 2].map((k) => Math.max(...found.map((each) => each[k])));
 }

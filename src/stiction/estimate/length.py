@@ -4,7 +4,7 @@ Plain Python: the page has the same arithmetic in JavaScript.
 """
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from stiction.estimate.state import COORDINATES, TipState
@@ -55,15 +55,6 @@ class Lengths:
             return math.exp(third + self.slope * (score - c))
         low, step, start = (third, second - third, c) if score <= b else (second, first - second, b)
         return math.exp(low + step * (score - start))
-
-    def score(self, length: float) -> float:
-        """Normal score of a length [m], at most the first one."""
-        (first, second, third), (a, b, c), value = self.logarithms, SCORES, math.log(length)
-        if value <= third:
-            return c + (value - third) / self.slope
-        if value <= second:
-            return c + (value - third) / (second - third)
-        return min(b + (value - second) / (first - second), a)
 
 
 class NotLearnt(Exception):
@@ -121,7 +112,7 @@ def known_at(process: Surrogate, coordinates: Sequence[float], names: Sequence[s
         first = values.outside[0]
         raise NotLearnt(f"{names[first]} is too {process.side(first, coordinates[first])}, beyond what was learnt")
     if values.distance > process.farthest:
-        raise NotLearnt("unlike all surfaces and devices that were learnt")
+        raise NotLearnt("its numbers together are unlike all that was learnt: change the humidity or the rms")
     return values.of
 
 
@@ -141,6 +132,10 @@ def most(ratio: float, fall: float) -> float:
     return ratio * math.exp(_AT_MOST * error)
 
 
+#: Least normal score that is asked for.
+_LEAST_SCORE = -9.0
+
+
 def normal_score(fraction: float) -> float:
     """Normal score of a fraction [-].
 
@@ -149,11 +144,20 @@ def normal_score(fraction: float) -> float:
     >>> round(normal_score(1e-3), 4), round(fraction_of(-3.0902), 6)
     (-3.0902, 0.001)
     """
-    low, high = -9.0, 9.0
+    low, high = _LEAST_SCORE, -_LEAST_SCORE
     for _ in range(60):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if fraction_of(middle) < fraction else (low, middle)
     return 0.5 * (low + high)
+
+
+def score_at(logarithm: Callable[[float], float], value: float) -> float:
+    """Normal score at which a logarithm of lengths, which falls with the score, has a value: at most the first one."""
+    low, high = _LEAST_SCORE, SCORES[0]
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if logarithm(middle) < value else (low, middle)
+    return high
 
 
 def fraction_of(score: float) -> float:

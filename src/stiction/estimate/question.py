@@ -104,7 +104,15 @@ class Question:
         return lengths(state, self.gap, tips, full)
 
     def row(self, row: LengthRow) -> LengthRow:
-        """Row of lengths as it is."""
+        """Row of lengths as it is.
+
+        Raises
+        ------
+        NotLearnt
+            If it holds beams that are not slender.
+        """
+        if row.length <= max(self.thickness, self.gap):
+            raise NotLearnt("it sticks even at a length below its gap or thickness: change voltage or dielectric")
         return row
 
 
@@ -128,7 +136,7 @@ def surface(entry: Mapping[str, Any], library: Library) -> tuple[Heights, dict[s
     members = {name: _as(other, entry, left_open) for name, other in library.items()} if left_open else {}
     if "like" in entry:
         if entry["like"] not in library:
-            raise NotLearnt(f"like must be one of {', '.join(library)}")
+            raise Impossible(f"like must be one of {', '.join(library)}")
         return _as(library[entry["like"]], entry, left_open), members
     if needed := [key for key in left_open if key in _OPEN[2:]]:
         raise NotLearnt(f"a surface without {needed[0]} needs like: one of {', '.join(library)}")

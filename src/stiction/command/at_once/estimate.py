@@ -87,7 +87,7 @@ def in_short(files: Sequence[str]) -> Iterator[str]:
 
 def main(words: Sequence[str]) -> int:
     """Print the estimates for the words after ``stiction estimate``."""
-    parser = argparse.ArgumentParser("stiction estimate", description=PURPOSE)
+    parser = argparse.ArgumentParser("stiction estimate", "%(prog)s FILE ... | OPTIONS (-h lists them)", PURPOSE)
     add_options(parser)
     try:
         return run(parser.parse_args(words))
@@ -178,7 +178,10 @@ def _in_yaml(entry):
 
 def _humidity(word):
     """Relative humidity of a word, which can be that for dry air."""
-    return 0.0 if word == DRY else float(word)
+    try:
+        return 0.0 if word == DRY else float(word)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be numbers above 0 and below 1, got {word}") from None
 
 
 #: Options that a device needs, those of other devices, and these.

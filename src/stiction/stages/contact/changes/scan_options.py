@@ -77,8 +77,8 @@ def other(source: EstimateParts, choice: str) -> EstimateParts:
 
     Examples
     --------
-    >>> other(ComparedPart("moments", "fitted", "cut"), "beyond")
-    Source(heights='moments', psd='fitted', beyond='continued')
+    >>> other(EstimateParts("moments", "fitted", "cut"), "beyond")
+    EstimateParts(heights='moments', psd='fitted', beyond='continued')
     """
     first, second = ALTERNATIVES_OF_SCANS[choice]
     return replace(source, **{choice: second if getattr(source, choice) == first else first})
