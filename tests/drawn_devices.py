@@ -98,7 +98,7 @@ def asked(draw: Drawn) -> dict:
         return {"requirement": {"share": 0.05} | length, "roughness": rms}
     if draw.extra == "chart" and draw.kind != "stopper":
         wet = 0.7 if draw.humidity == "dry" else draw.humidity
-        return {"chart": {"thicknesses_um": [2, 3], "humidities": [wet - 0.02, wet + 0.02]}}
+        return {"chart": {"thicknesses_um": [2, 3], "humidities": [round(wet - 0.02, 2), round(wet + 0.02, 2)]}}
     return {}
 
 

@@ -187,6 +187,7 @@ WRONG = [
     ({"width_um": 30.005}, "devices.C1.width_um", "whole number of contact points"),
     ({"width_um": 9000}, "devices.C1.width_um", "within 8 GB of memory: 2.5 x 9001 µm every 10 nm take 13.9 GB"),
     ({"chart": CHART | {"humidities": [0.9, 0.4]}}, "devices.C1.chart.humidities", "in increasing order"),
+    ({"chart": CHART | {"humidities": [0.4, 0.56 + 0.02]}}, "devices.C1.chart.humidities", "at most 4 decimals"),
     ({"chart": CHART | {"thicknesses_um": [2, 2]}}, "devices.C1.chart.thicknesses_um", "each value once"),
     ({"chart": CHART | {"gaps_um": [0.1, 20]}}, "devices.C1.chart.gaps_um", "20 times the sum of the height"),
     ({"uncertainty": {"gap_um": -1}}, "devices.C1.uncertainty.gap_um", "at least 0"),

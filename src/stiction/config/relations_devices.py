@@ -33,6 +33,7 @@ from stiction.config.relations import (
     repeated,
     schema,
     without_density,
+    without_unique_names,
 )
 from stiction.config.surfaces import process as process_surfaces
 from stiction.config.test_beams import DATA, pair_of, shared_uncertainty
@@ -236,6 +237,15 @@ def axes_increase(config):
     for key, values in config.given_items(*charts, *tilts, *rows, "design.worst_humidities"):
         if any(low >= high for low, high in zip(values, values[1:], strict=False)):
             yield key, "must be in increasing order, each value once"
+
+
+@relation
+def wettest_airs_along_axes_have_names(config):
+    """Require a name for the wettest air of charts and of the search of the worst, where contacts may be full."""
+    charts = [f"devices.{name}.chart.humidities" for name, _ in config.entries("devices", "chart.humidities")]
+    for key, humidities in config.given_items(*charts, "design.worst_humidities"):
+        if refusal := without_unique_names([max(humidities)]):
+            yield key, refusal
 
 
 @relation
