@@ -196,8 +196,10 @@ def test_whatever_writes_html_has_its_template_among_its_inputs():
 
 @pytest.mark.parametrize(("figure", "table"), [("chart", "chart"), ("risk", "devices")])
 def test_figures_of_devices_have_the_data_and_warnings_of_their_tables(figure, table):
+    """Charts also mark the size to build."""
     drawn, written = GRAPH.job(f"figures/{figure}.png").inputs, GRAPH.job(f"tables/{table}.md").inputs
-    assert {name: drawn[name] for name in drawn if name != "style"}.items() <= written.items()
+    of_figure = {"style", *(["answers"] if figure == "chart" else [])}
+    assert {name: drawn[name] for name in drawn if name not in of_figure}.items() <= written.items()
     assert drawn["warnings"]
 
 

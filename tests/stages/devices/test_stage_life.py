@@ -487,7 +487,7 @@ def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
         ends = [one.high if not is_length or np.isnan(one.low) else one.low for one in shown]
         build = factor * min(ends) if is_length else max(ends) / factor
         (panel,) = report.figure({name: dataset}, {name: build}).axes
-        red = [k for k, label in enumerate(panel.get_yticks()) if _colours(panel, label) & {report._SHORT}]  # noqa: SLF001
+        red = [round(text.xy[1]) for text in panel.texts if text.get_color() == report._SHORT]  # noqa: SLF001
         expected = [k for k, end in enumerate(ends) if (end < build if is_length else end > build)]
         assert red == expected
         assert bool(red) == (factor > 1)
@@ -495,11 +495,6 @@ def test_limits_that_do_not_allow_the_size_to_build_are_red(found, factor):
         built = Answer(name, "", 1e-3, unit, build, build, (), ())
         said = " ".join(report.judged_without(replace(built, unasked=unasked(dataset, built))))
         assert [k for k, one in enumerate(shown) if one.what.partition(":")[0] in said] == red, "said as it is drawn"
-
-
-def _colours(panel, row):
-    """Colours of the marks of a row."""
-    return {line.get_color() for line in panel.lines if line.get_ydata()[0] == row and line.get_linewidth() > 1}
 
 
 def test_a_page_says_the_life_and_shows_all_answers(found):
