@@ -258,9 +258,11 @@ def test_no_legend_covers_a_panel_a_text_or_another_legend(found, count):
 
 @pytest.mark.slow
 def test_many_warnings_leave_the_panels_their_place_and_keep_their_numbers(found):
-    cases = {(f"C{k}", rh): found["C1", 0.44] for k in range(20) for rh in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)}
-    warned = {(*case, shape): [noted(f"{case} is too wet.")] for case in cases for shape in (S_SHAPE, EITHER)}
+    dataset = found["C1", 0.44].sel(shape=[EITHER])
+    cases = {(f"C{k}", rh): dataset for k in range(20) for rh in (0.4, 0.5, 0.6, 0.7, 0.8, 0.9)}
+    warned = {(*case, EITHER): [noted(f"{case} is too wet.")] for case in cases}
     figure = figures_devices.simulated(cases, warned)
+    assert len(figure.axes) == 20
     assert figure._supxlabel.get_text() == "(1) to (120): beyond a limit of the model"
     assert figure.axes[0].get_legend().get_texts()[1].get_text() == "RH 0.5 (2)"
     assert "(2) surface B2: ('C0', 0.5) is too wet." in tables_devices.safe_lengths(cases, warned).caption
