@@ -29,6 +29,7 @@ class _Loader(FileSystemLoader):
     """Templates, and scripts without what is for readers of the source alone."""
 
     def get_source(self, environment, template):
+        """Source of a template (of scripts without comments and indentation), its file and whether it is new."""
         source, *rest = super().get_source(environment, template)
         return (_FOR_READERS.sub("", source) if template.endswith(".js") else source), *rest
 
