@@ -70,5 +70,5 @@ def test_training_goes_on_where_it_was(tmp_path):
         return done.append(point.number) or {"airs": np.zeros(1)}
 
     for chosen in (range(2), range(1, 4), range(4)):
-        training.train(tmp_path, "check_typical", chosen, {}, compute)
+        training.train(tmp_path / "check_typical", training.SETS["check_typical"].all, chosen, {}, compute)
     assert done == [0, 1, 2, 3]
